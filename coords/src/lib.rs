@@ -2,6 +2,7 @@
 //! developable meshes by the Hamilton principle*, Computer-Aided Design 39 (2007) 719-731, Sec. 3.
 
 mod frames;
+pub mod linalg;
 pub mod placement;
 mod vec3;
 
