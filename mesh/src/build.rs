@@ -1,0 +1,270 @@
+//! Building and validating a [`Topology`] from a face list.
+
+use crate::{EdgeId, FaceId, Topology, TopologyError, VertexId};
+
+/// Half-edge ids and fan offsets are 32-bit; 3 F of them must fit twice.
+const MAX_ELEMENTS: usize = (u32::MAX / 6) as usize;
+
+/// One side of a face: the edge it lies on, by sorted ends, and where it comes from.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Side {
+    low: u32,
+    high: u32,
+    face: u32,
+    corner: u8,
+    /// The face runs from `high` to `low`.
+    reversed: bool,
+}
+
+pub(crate) fn build(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Topology, TopologyError> {
+    check_faces(vertex_count, faces)?;
+    let sides = sorted_sides(faces);
+
+    let mut edges = Vec::with_capacity(sides.len() / 2 + 1);
+    let mut edge_faces = Vec::with_capacity(sides.len() / 2 + 1);
+    let mut face_edges = vec![[EdgeId(0); 3]; faces.len()];
+    let mut boundary_edge_count = 0;
+    for group in sides.chunk_by(|s, t| (s.low, s.high) == (t.low, t.high)) {
+        let (low, high) = (VertexId(group[0].low), VertexId(group[0].high));
+        let edge = EdgeId::from_index(edges.len());
+        for s in group {
+            face_edges[s.face as usize][s.corner as usize] = edge;
+        }
+        let ids = |k: usize| FaceId(group[k].face);
+        match group {
+            [s] => {
+                boundary_edge_count += 1;
+                edges.push(if s.reversed { [high, low] } else { [low, high] });
+                edge_faces.push([Some(ids(0)), None]);
+            }
+            [s, t] if s.reversed != t.reversed => {
+                edges.push([low, high]);
+                let (left, right) = if s.reversed { (1, 0) } else { (0, 1) };
+                edge_faces.push([Some(ids(left)), Some(ids(right))]);
+            }
+            [s, _] => {
+                let (a, b) = if s.reversed { (high, low) } else { (low, high) };
+                return Err(TopologyError::InconsistentWinding {
+                    a,
+                    b,
+                    first: ids(0),
+                    second: ids(1),
+                });
+            }
+            _ => {
+                return Err(TopologyError::NonManifoldEdge {
+                    a: low,
+                    b: high,
+                    count: group.len(),
+                    faces: [ids(0), ids(1), ids(2)],
+                });
+            }
+        }
+    }
+
+    let faces: Vec<[VertexId; 3]> = faces.iter().map(|f| f.map(VertexId)).collect();
+    let mut topology = Topology {
+        faces,
+        edges,
+        edge_faces,
+        face_edges,
+        vertex_edge_start: Vec::new(),
+        vertex_edges: Vec::new(),
+        vertex_face_start: Vec::new(),
+        vertex_faces: Vec::new(),
+        vertex_component: vec![u32::MAX; vertex_count],
+        component_count: 0,
+        boundary_edge_count,
+        boundary_vertex_count: 0,
+    };
+    build_fans(&mut topology)?;
+    label_components(&mut topology);
+    Ok(topology)
+}
+
+/// Counts, index range, repeated corners and duplicates: all that needs no adjacency.
+pub(crate) fn check_faces(vertex_count: usize, faces: &[[u32; 3]]) -> Result<(), TopologyError> {
+    if faces.is_empty() {
+        return Err(TopologyError::NoFaces);
+    }
+    for (what, count) in [("vertices", vertex_count), ("faces", faces.len())] {
+        if count > MAX_ELEMENTS {
+            return Err(TopologyError::TooLarge {
+                what,
+                count,
+                limit: MAX_ELEMENTS,
+            });
+        }
+    }
+    for (k, f) in faces.iter().enumerate() {
+        let face = FaceId::from_index(k);
+        if let Some(&vertex) = f.iter().find(|&&v| v as usize >= vertex_count) {
+            return Err(TopologyError::IndexOutOfRange {
+                face,
+                vertex,
+                vertex_count,
+            });
+        }
+        let [a, b, c] = *f;
+        if a == b || a == c {
+            return Err(TopologyError::RepeatedVertex {
+                face,
+                vertex: VertexId(a),
+            });
+        }
+        if b == c {
+            return Err(TopologyError::RepeatedVertex {
+                face,
+                vertex: VertexId(b),
+            });
+        }
+    }
+    let mut keys: Vec<([u32; 3], u32)> = faces
+        .iter()
+        .enumerate()
+        .map(|(k, f)| {
+            let mut corners = *f;
+            corners.sort_unstable();
+            (corners, k as u32)
+        })
+        .collect();
+    keys.sort_unstable();
+    // Of several duplicates the one met first in the file is reported.
+    let duplicate = keys
+        .windows(2)
+        .filter(|w| w[0].0 == w[1].0)
+        .min_by_key(|w| w[1].1);
+    match duplicate {
+        Some(w) => Err(TopologyError::DuplicateFace {
+            first: FaceId(w[0].1),
+            second: FaceId(w[1].1),
+            corners: w[0].0,
+        }),
+        None => Ok(()),
+    }
+}
+
+fn sorted_sides(faces: &[[u32; 3]]) -> Vec<Side> {
+    let mut sides = Vec::with_capacity(3 * faces.len());
+    for (k, f) in faces.iter().enumerate() {
+        for corner in 0..3 {
+            let (a, b) = (f[corner], f[(corner + 1) % 3]);
+            sides.push(Side {
+                low: a.min(b),
+                high: a.max(b),
+                face: k as u32,
+                corner: corner as u8,
+                reversed: a > b,
+            });
+        }
+    }
+    sides.sort_unstable();
+    sides
+}
+
+/// Walks round every vertex. Two faces share at most one edge here (duplicates are gone), so the walk never branches.
+fn build_fans(t: &mut Topology) -> Result<(), TopologyError> {
+    let n = t.vertex_count();
+    // Faces at each vertex in index order, as (face, corner).
+    let mut start = vec![0u32; n + 1];
+    for f in &t.faces {
+        for v in f {
+            start[v.index() + 1] += 1;
+        }
+    }
+    for v in 0..n {
+        if start[v + 1] == 0 {
+            return Err(TopologyError::UnreferencedVertex {
+                vertex: VertexId::from_index(v),
+            });
+        }
+        start[v + 1] += start[v];
+    }
+    let mut fill = start.clone();
+    let mut corners = vec![(FaceId(0), 0u8); 3 * t.faces.len()];
+    for (k, f) in t.faces.iter().enumerate() {
+        for (corner, v) in f.iter().enumerate() {
+            corners[fill[v.index()] as usize] = (FaceId::from_index(k), corner as u8);
+            fill[v.index()] += 1;
+        }
+    }
+
+    let mut vertex_faces = Vec::with_capacity(3 * t.faces.len());
+    let mut vertex_edges = Vec::with_capacity(2 * t.edges.len());
+    let mut edge_start = Vec::with_capacity(n + 1);
+    edge_start.push(0u32);
+    for v in 0..n {
+        let here = &corners[start[v] as usize..start[v + 1] as usize];
+        // Face (v, p, q) lies between the edges v-p and v-q, in counter-clockwise order.
+        let first = here
+            .iter()
+            .find(|&&(f, c)| t.is_boundary_edge(t.face_edges[f.index()][c as usize]));
+        let (first_face, first_corner) = *first.unwrap_or(&here[0]);
+        if first.is_some() {
+            t.boundary_vertex_count += 1;
+        }
+        let (mut face, mut corner) = (first_face, first_corner as usize);
+        let mut reached = 0;
+        loop {
+            vertex_faces.push(face);
+            vertex_edges.push(t.face_edges[face.index()][corner]);
+            reached += 1;
+            let leave = t.face_edges[face.index()][(corner + 2) % 3];
+            let [l, r] = t.edge_faces[leave.index()];
+            let next = if l == Some(face) { r } else { l };
+            match next {
+                None => {
+                    vertex_edges.push(leave);
+                    break;
+                }
+                Some(f) if f == first_face => break,
+                Some(f) => {
+                    face = f;
+                    corner = match t.faces[f.index()].iter().position(|w| w.index() == v) {
+                        Some(c) => c,
+                        None => unreachable!("a face across an edge at a vertex has that vertex"),
+                    };
+                }
+            }
+        }
+        if reached != here.len() {
+            let vertex = VertexId::from_index(v);
+            return Err(TopologyError::BowTieVertex {
+                vertex,
+                degree: here.len(),
+                reached,
+            });
+        }
+        edge_start.push(vertex_edges.len() as u32);
+    }
+    t.vertex_face_start = start;
+    t.vertex_faces = vertex_faces;
+    t.vertex_edge_start = edge_start;
+    t.vertex_edges = vertex_edges;
+    Ok(())
+}
+
+fn label_components(t: &mut Topology) {
+    let mut label = std::mem::take(&mut t.vertex_component);
+    let mut stack = Vec::new();
+    let mut count = 0;
+    // `vertex_component` gives the vertex count, so it is put back before any query that needs it.
+    for v in 0..label.len() {
+        if label[v] != u32::MAX {
+            continue;
+        }
+        label[v] = count;
+        stack.push(VertexId::from_index(v));
+        while let Some(w) = stack.pop() {
+            for u in t.neighbours(w) {
+                if label[u.index()] == u32::MAX {
+                    label[u.index()] = count;
+                    stack.push(u);
+                }
+            }
+        }
+        count += 1;
+    }
+    t.vertex_component = label;
+    t.component_count = count as usize;
+}

@@ -1,0 +1,181 @@
+//! What can be wrong with a mesh: each error names the element, the value and the remedy.
+
+use thiserror::Error;
+
+use crate::{EdgeId, FaceId, VertexId};
+
+/// A face list that does not describe an oriented surface.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum TopologyError {
+    /// The face list is empty.
+    #[error("the mesh has no faces; a sheet needs at least one triangle")]
+    NoFaces,
+    /// More vertices or faces than 32-bit ids can count.
+    #[error(
+        "the mesh has {count} {what}, more than the {limit} that 32-bit ids can number; split it into several sheets"
+    )]
+    TooLarge {
+        /// "vertices" or "faces".
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A corner refers to a vertex that does not exist.
+    #[error(
+        "{face} refers to vertex {vertex}, but there are only {vertex_count} vertices (indices start at 0); correct the index or add the vertex"
+    )]
+    IndexOutOfRange {
+        /// The face.
+        face: FaceId,
+        /// The index found.
+        vertex: u32,
+        /// The number of vertices.
+        vertex_count: usize,
+    },
+    /// A face uses one vertex twice.
+    #[error("{face} uses {vertex} more than once, so it is not a triangle; remove the face")]
+    RepeatedVertex {
+        /// The face.
+        face: FaceId,
+        /// The repeated vertex.
+        vertex: VertexId,
+    },
+    /// Two faces have the same three corners.
+    #[error("{first} and {second} have the same three corners {corners:?}; remove one of them")]
+    DuplicateFace {
+        /// The first of the two.
+        first: FaceId,
+        /// The second.
+        second: FaceId,
+        /// The corners, sorted.
+        corners: [u32; 3],
+    },
+    /// More than two faces meet at an edge.
+    #[error(
+        "{count} faces meet at the edge between {a} and {b} (among them {}, {} and {}); a surface has at most two: separate the sheets there by duplicating the edge's vertices",
+        faces[0], faces[1], faces[2]
+    )]
+    NonManifoldEdge {
+        /// One end of the edge.
+        a: VertexId,
+        /// The other end.
+        b: VertexId,
+        /// How many faces have this edge.
+        count: usize,
+        /// The first three of them.
+        faces: [FaceId; 3],
+    },
+    /// Two neighbouring faces run along their common edge in the same direction.
+    #[error(
+        "{first} and {second} both run from {a} to {b}, so their windings disagree; reverse the corners of one, or pass the faces through `orient_consistently`"
+    )]
+    InconsistentWinding {
+        /// Tail of the edge as both faces see it.
+        a: VertexId,
+        /// Head of the edge as both faces see it.
+        b: VertexId,
+        /// One of the faces.
+        first: FaceId,
+        /// The other.
+        second: FaceId,
+    },
+    /// The faces around a vertex form more than one fan.
+    #[error(
+        "the {degree} faces at {vertex} form more than one fan ({reached} of them are connected through edges): a bow tie; duplicate the vertex, one copy per fan"
+    )]
+    BowTieVertex {
+        /// The vertex.
+        vertex: VertexId,
+        /// The number of faces at the vertex.
+        degree: usize,
+        /// The number of faces in the first fan.
+        reached: usize,
+    },
+    /// No face uses a vertex.
+    #[error("{vertex} belongs to no face; remove it (and renumber), or add the missing face")]
+    UnreferencedVertex {
+        /// The vertex.
+        vertex: VertexId,
+    },
+    /// The surface has only one side.
+    #[error(
+        "the surface is not orientable (a Moebius band): going round it, {face} would have to be wound both ways; cut it open along some edges"
+    )]
+    NonOrientable {
+        /// A face at which the two windings meet.
+        face: FaceId,
+    },
+}
+
+/// A mesh that cannot be a sheet of rigid triangles.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// The faces are not a surface.
+    #[error(transparent)]
+    Topology(#[from] TopologyError),
+    /// The position array has the wrong length.
+    #[error(
+        "the position array has {got} numbers, but three per vertex are needed ({expected}); pass x0 y0 z0 x1 y1 z1 and so on"
+    )]
+    WrongLength {
+        /// Its length.
+        got: usize,
+        /// The length needed.
+        expected: usize,
+    },
+    /// A list with one entry per edge has the wrong length.
+    #[error(
+        "the list of lengths has {got} entries, but the mesh has {expected} edges; give one length per edge, in edge order"
+    )]
+    WrongEdgeCount {
+        /// Its length.
+        got: usize,
+        /// The number of edges.
+        expected: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("coordinate {} of {vertex} is {value}; every coordinate must be a finite number", ["x", "y", "z"][*axis])]
+    NonFinite {
+        /// The vertex.
+        vertex: VertexId,
+        /// 0, 1, 2 for x, y, z.
+        axis: usize,
+        /// The value found.
+        value: f64,
+    },
+    /// The corners of a face lie on a line, or at one point.
+    #[error(
+        "{face} has no area: its altitude over its longest edge is {relative_altitude:e} of that edge ({longest:e} long), less than {limit:e}; remove the face or move its corners apart",
+        limit = crate::Sheet::MIN_RELATIVE_ALTITUDE
+    )]
+    ZeroAreaFace {
+        /// The face.
+        face: FaceId,
+        /// The altitude over the longest edge divided by that edge.
+        relative_altitude: f64,
+        /// The length of the longest edge, in metres.
+        longest: f64,
+    },
+    /// A length or area over- or underflows.
+    #[error(
+        "{edge} has length {length:e} m, outside the range 1e-70 to 1e70 m in which squared areas can be formed; change the unit"
+    )]
+    LengthOutOfRange {
+        /// The edge.
+        edge: EdgeId,
+        /// Its length.
+        length: f64,
+    },
+    /// A mass or density is not a positive number.
+    #[error("the {what} is {value}; it must be a positive, finite number")]
+    NotPositive {
+        /// Which quantity.
+        what: &'static str,
+        /// The value found.
+        value: f64,
+    },
+}

@@ -1,0 +1,96 @@
+//! Arguments that no sheet can be made from.
+
+use thiserror::Error;
+
+use crate::MeshError;
+
+/// Why a sheet could not be generated.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum GenerateError {
+    /// A count is out of range.
+    #[error("{name} is {value}; it must be between {min} and {max}")]
+    Count {
+        /// The name of the argument.
+        name: &'static str,
+        /// Its value.
+        value: usize,
+        /// The least value allowed.
+        min: usize,
+        /// The largest value allowed.
+        max: usize,
+    },
+    /// A length is not a positive number.
+    #[error("{name} is {value}; it must be a positive, finite number of metres")]
+    Size {
+        /// The name of the argument.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// Two lengths are in the wrong order.
+    #[error("{small} is {small_value} and {large} is {large_value}; the first must be smaller")]
+    Order {
+        /// The name of the argument that must be smaller.
+        small: &'static str,
+        /// Its value.
+        small_value: f64,
+        /// The name of the argument that must be larger.
+        large: &'static str,
+        /// Its value.
+        large_value: f64,
+    },
+    /// The result would be too large to handle.
+    #[error(
+        "the sheet would have {faces} faces, more than the {limit} that are allowed; use fewer cells or a lower level"
+    )]
+    TooManyFaces {
+        /// The number of faces asked for.
+        faces: u128,
+        /// The largest number allowed.
+        limit: u128,
+    },
+    /// The result is not a valid mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
+/// Sixteen million faces: M^10, about 10 GB of simulation state. A larger number is a mistake.
+const MAX_FACES: u128 = 1 << 24;
+
+pub(crate) fn check_count(
+    name: &'static str,
+    value: usize,
+    min: usize,
+) -> Result<(), GenerateError> {
+    let max = 1 << 24;
+    if (min..=max).contains(&value) {
+        Ok(())
+    } else {
+        Err(GenerateError::Count {
+            name,
+            value,
+            min,
+            max,
+        })
+    }
+}
+
+pub(crate) fn check_size(name: &'static str, value: f64) -> Result<(), GenerateError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(GenerateError::Size { name, value })
+    }
+}
+
+pub(crate) fn check_faces(faces: u128) -> Result<(), GenerateError> {
+    if faces <= MAX_FACES {
+        Ok(())
+    } else {
+        Err(GenerateError::TooManyFaces {
+            faces,
+            limit: MAX_FACES,
+        })
+    }
+}

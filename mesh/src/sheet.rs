@@ -1,0 +1,191 @@
+//! A mesh with its rest shape.
+
+use crate::vec3::{at, cross, norm, scale, sub};
+use crate::{EdgeId, FaceId, MeshError, Topology, VertexId};
+
+/// A triangle mesh with its rest positions: the edge lengths and face areas that every later state keeps.
+///
+/// Positions are a flat array `x0 y0 z0 x1 y1 z1 ...` in metres. A sheet need not be planar or developable.
+///
+/// ```
+/// let sheet = isosheet_mesh::Sheet::new(
+///     vec![0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 4.0, 0.0],
+///     &[[0, 1, 2]],
+/// )?;
+/// assert_eq!(sheet.lengths(), [3.0, 4.0, 5.0]);
+/// assert_eq!(sheet.area(), 6.0);
+/// # Ok::<(), isosheet_mesh::MeshError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    topology: Topology,
+    positions: Vec<f64>,
+    lengths: Vec<f64>,
+    face_areas: Vec<f64>,
+}
+
+/// Lengths outside are refused: their fourth powers (squared areas) would leave the range of `f64`.
+const LENGTH_RANGE: std::ops::RangeInclusive<f64> = 1e-70..=1e70;
+
+impl Sheet {
+    /// A face whose altitude over its longest edge is less than this part of that edge is refused as having no area.
+    ///
+    /// The bound is relative, so it does not depend on the unit. It leaves four digits above the round-off of coordinates
+    /// that are a hundred times larger than the triangle (1e-14 of its size), and is far below any triangle that can
+    /// be computed with: the angles of one at the bound are known to about six digits.
+    pub const MIN_RELATIVE_ALTITUDE: f64 = 1e-10;
+
+    /// Builds a sheet from the rest positions (length 3V, metres) and the corners of its faces.
+    ///
+    /// # Errors
+    /// [`MeshError`] when the length of `positions` is not a multiple of three, a coordinate is not finite, the
+    /// faces are not an oriented surface, or a face has no area.
+    pub fn new(positions: Vec<f64>, faces: &[[u32; 3]]) -> Result<Self, MeshError> {
+        if !positions.len().is_multiple_of(3) {
+            return Err(MeshError::WrongLength {
+                got: positions.len(),
+                expected: positions.len().div_ceil(3) * 3,
+            });
+        }
+        let topology = Topology::from_faces(positions.len() / 3, faces)?;
+        Self::from_topology(topology, positions)
+    }
+
+    /// Builds a sheet from a topology and rest positions.
+    ///
+    /// # Errors
+    /// [`MeshError`] when `positions` does not have length 3V, a coordinate is not finite, or a face has no area.
+    pub fn from_topology(topology: Topology, positions: Vec<f64>) -> Result<Self, MeshError> {
+        check_positions(&topology, &positions)?;
+        let lengths: Vec<f64> = topology
+            .edges()
+            .iter()
+            .map(|&[a, b]| norm(sub(at(&positions, a), at(&positions, b))))
+            .collect();
+        let face_areas = topology
+            .face_ids()
+            .map(|f| face_area(&topology, &positions, &lengths, f))
+            .collect::<Result<_, _>>()?;
+        if let Some(k) = lengths.iter().position(|l| !LENGTH_RANGE.contains(l)) {
+            return Err(MeshError::LengthOutOfRange {
+                edge: EdgeId::from_index(k),
+                length: lengths[k],
+            });
+        }
+        Ok(Self {
+            topology,
+            positions,
+            lengths,
+            face_areas,
+        })
+    }
+
+    /// The connectivity.
+    #[inline]
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// The rest positions, length 3V, in metres.
+    #[inline]
+    pub fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+
+    /// The rest position of a vertex, in metres.
+    #[inline]
+    pub fn position(&self, v: VertexId) -> [f64; 3] {
+        at(&self.positions, v)
+    }
+
+    /// The rest length of every edge, in metres.
+    #[inline]
+    pub fn lengths(&self) -> &[f64] {
+        &self.lengths
+    }
+
+    /// The area of every face, in square metres.
+    #[inline]
+    pub fn face_areas(&self) -> &[f64] {
+        &self.face_areas
+    }
+
+    /// The area of the sheet, in square metres.
+    pub fn area(&self) -> f64 {
+        self.face_areas.iter().sum()
+    }
+
+    /// The mean edge length, in metres.
+    pub fn mean_length(&self) -> f64 {
+        self.lengths.iter().sum::<f64>() / self.lengths.len() as f64
+    }
+
+    /// The faces as index triples, as [`Sheet::new`] takes them.
+    pub fn face_indices(&self) -> Vec<[u32; 3]> {
+        self.topology
+            .faces()
+            .iter()
+            .map(|f| f.map(|v| v.0))
+            .collect()
+    }
+}
+
+/// Refuses positions of the wrong length or with a coordinate that is not finite.
+pub(crate) fn check_positions(topology: &Topology, x: &[f64]) -> Result<(), MeshError> {
+    let expected = 3 * topology.vertex_count();
+    if x.len() != expected {
+        return Err(MeshError::WrongLength {
+            got: x.len(),
+            expected,
+        });
+    }
+    match x.iter().position(|c| !c.is_finite()) {
+        Some(k) => Err(MeshError::NonFinite {
+            vertex: VertexId::from_index(k / 3),
+            axis: k % 3,
+            value: x[k],
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Area from edge vectors scaled by the longest edge, so that neither tiny nor huge units under- or overflow.
+fn face_area(t: &Topology, x: &[f64], lengths: &[f64], f: FaceId) -> Result<f64, MeshError> {
+    let edges = t.face_edges(f);
+    let (side, longest) =
+        edges
+            .iter()
+            .map(|e| lengths[e.index()])
+            .enumerate()
+            .fold(
+                (0, 0.0),
+                |best, (k, l)| if l > best.1 { (k, l) } else { best },
+            );
+    if longest == 0.0 {
+        return Err(MeshError::ZeroAreaFace {
+            face: f,
+            relative_altitude: 0.0,
+            longest,
+        });
+    }
+    if !LENGTH_RANGE.contains(&longest) {
+        return Err(MeshError::LengthOutOfRange {
+            edge: edges[side],
+            length: longest,
+        });
+    }
+    let [a, b, c] = t.faces()[f.index()].map(|v| at(x, v));
+    let (u, v) = (
+        scale(1.0 / longest, sub(b, a)),
+        scale(1.0 / longest, sub(c, a)),
+    );
+    let relative_altitude = norm(cross(u, v));
+    if relative_altitude < Sheet::MIN_RELATIVE_ALTITUDE {
+        return Err(MeshError::ZeroAreaFace {
+            face: f,
+            relative_altitude,
+            longest,
+        });
+    }
+    Ok(0.5 * relative_altitude * longest * longest)
+}

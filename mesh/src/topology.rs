@@ -1,0 +1,305 @@
+//! Which vertices, edges and faces meet where; no coordinates.
+
+use crate::{EdgeId, FaceId, HalfEdgeId, TopologyError, VertexId};
+
+/// The connectivity of an oriented triangulated surface, with or without boundary, of any number of components.
+///
+/// Everything is kept in flat arrays (compressed rows for the fans of the vertices), so that memory is O(V + E + F);
+/// building takes O(F log F).
+///
+/// Order and direction are fixed by the faces:
+/// * edges are sorted by their (smaller, larger) vertex index;
+/// * an interior edge runs from its smaller to its larger vertex, a boundary edge runs as its only face does, so
+///   that the left face always exists;
+/// * the faces and edges at a vertex are listed counter-clockwise as seen from the side from which the faces are
+///   counter-clockwise. At a boundary vertex the list runs from one boundary edge to the other; at an interior vertex it
+///   starts at the face of lowest index.
+///
+/// ```
+/// use isosheet_mesh::{EdgeId, FaceId, Topology, VertexId};
+/// // Two triangles on the edge between vertices 0 and 2.
+/// let t = Topology::from_faces(4, &[[0, 1, 2], [0, 2, 3]])?;
+/// let hinge = t.find_edge(VertexId(2), VertexId(0)).expect("the diagonal");
+/// assert_eq!(t.edge_faces(hinge), [Some(FaceId(1)), Some(FaceId(0))]);
+/// assert_eq!(t.opposite_vertex(hinge, FaceId(0)), VertexId(1));
+/// assert_eq!(t.euler_characteristic(), 1);
+/// # Ok::<(), isosheet_mesh::TopologyError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Topology {
+    pub(crate) faces: Vec<[VertexId; 3]>,
+    pub(crate) edges: Vec<[VertexId; 2]>,
+    /// Faces left of half-edge 2e and left of 2e + 1.
+    pub(crate) edge_faces: Vec<[Option<FaceId>; 2]>,
+    pub(crate) face_edges: Vec<[EdgeId; 3]>,
+    /// Row pointers and entries of the edges at each vertex.
+    pub(crate) vertex_edge_start: Vec<u32>,
+    pub(crate) vertex_edges: Vec<EdgeId>,
+    /// Row pointers and entries of the faces at each vertex.
+    pub(crate) vertex_face_start: Vec<u32>,
+    pub(crate) vertex_faces: Vec<FaceId>,
+    /// Component of each vertex, numbered by their smallest vertex.
+    pub(crate) vertex_component: Vec<u32>,
+    pub(crate) component_count: usize,
+    pub(crate) boundary_edge_count: usize,
+    pub(crate) boundary_vertex_count: usize,
+}
+
+impl Topology {
+    /// Builds the adjacency of the triangles `faces`, each a triple of vertex indices below `vertex_count`.
+    ///
+    /// # Errors
+    /// A [`TopologyError`] when the faces are not an oriented surface that uses every vertex. Faces that are wound
+    /// inconsistently can be repaired first with [`orient_consistently`](crate::orient_consistently).
+    pub fn from_faces(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Self, TopologyError> {
+        crate::build::build(vertex_count, faces)
+    }
+
+    /// The number of vertices V.
+    #[inline]
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_component.len()
+    }
+
+    /// The number of edges E.
+    #[inline]
+    pub fn edge_count(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// The number of faces F.
+    #[inline]
+    pub fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// The number B of edges with one face.
+    #[inline]
+    pub fn boundary_edge_count(&self) -> usize {
+        self.boundary_edge_count
+    }
+
+    /// The number of vertices on the boundary (equal to the number of boundary edges).
+    #[inline]
+    pub fn boundary_vertex_count(&self) -> usize {
+        self.boundary_vertex_count
+    }
+
+    /// The number `V_i` of vertices that are not on the boundary.
+    #[inline]
+    pub fn interior_vertex_count(&self) -> usize {
+        self.vertex_count() - self.boundary_vertex_count
+    }
+
+    /// The number of edges with two faces.
+    #[inline]
+    pub fn interior_edge_count(&self) -> usize {
+        self.edge_count() - self.boundary_edge_count
+    }
+
+    /// chi = V - E + F: 1 for a disk, 0 for an annulus, 2 for a sphere, the sum over the components of several.
+    #[inline]
+    pub fn euler_characteristic(&self) -> i64 {
+        self.vertex_count() as i64 - self.edge_count() as i64 + self.face_count() as i64
+    }
+
+    /// All vertices.
+    pub fn vertex_ids(&self) -> impl ExactSizeIterator<Item = VertexId> + use<> {
+        (0..self.vertex_count() as u32).map(VertexId)
+    }
+
+    /// All edges.
+    pub fn edge_ids(&self) -> impl ExactSizeIterator<Item = EdgeId> + use<> {
+        (0..self.edge_count() as u32).map(EdgeId)
+    }
+
+    /// All faces.
+    pub fn face_ids(&self) -> impl ExactSizeIterator<Item = FaceId> + use<> {
+        (0..self.face_count() as u32).map(FaceId)
+    }
+
+    /// The two ends of every edge; the edge runs from the first to the second.
+    #[inline]
+    pub fn edges(&self) -> &[[VertexId; 2]] {
+        &self.edges
+    }
+
+    /// The corners of every face, counter-clockwise, as given.
+    #[inline]
+    pub fn faces(&self) -> &[[VertexId; 3]] {
+        &self.faces
+    }
+
+    /// The faces to the left and to the right of an edge. The left one always exists.
+    #[inline]
+    pub fn edge_faces(&self, e: EdgeId) -> [Option<FaceId>; 2] {
+        self.edge_faces[e.index()]
+    }
+
+    /// The face to the left of the edge, which always exists.
+    #[inline]
+    pub fn left_face(&self, e: EdgeId) -> FaceId {
+        match self.edge_faces[e.index()][0] {
+            Some(f) => f,
+            None => unreachable!("every edge is directed so that its left face exists"),
+        }
+    }
+
+    /// The edges of a face: edge `i` joins corners `i` and `i + 1`.
+    #[inline]
+    pub fn face_edges(&self, f: FaceId) -> [EdgeId; 3] {
+        self.face_edges[f.index()]
+    }
+
+    /// The edges at a vertex, counter-clockwise; at a boundary vertex from boundary edge to boundary edge.
+    ///
+    /// Edge `i` and the next one (cyclically at an interior vertex) bound face `i` of [`Self::vertex_faces`].
+    #[inline]
+    pub fn vertex_edges(&self, v: VertexId) -> &[EdgeId] {
+        let (a, b) = (
+            self.vertex_edge_start[v.index()],
+            self.vertex_edge_start[v.index() + 1],
+        );
+        &self.vertex_edges[a as usize..b as usize]
+    }
+
+    /// The faces at a vertex, counter-clockwise; one less than its edges at a boundary vertex, else as many.
+    #[inline]
+    pub fn vertex_faces(&self, v: VertexId) -> &[FaceId] {
+        let (a, b) = (
+            self.vertex_face_start[v.index()],
+            self.vertex_face_start[v.index() + 1],
+        );
+        &self.vertex_faces[a as usize..b as usize]
+    }
+
+    /// The number of edges at a vertex.
+    #[inline]
+    pub fn degree(&self, v: VertexId) -> usize {
+        self.vertex_edges(v).len()
+    }
+
+    /// The vertices that share an edge with `v`, in the order of [`Self::vertex_edges`].
+    pub fn neighbours(&self, v: VertexId) -> impl ExactSizeIterator<Item = VertexId> + '_ {
+        self.vertex_edges(v)
+            .iter()
+            .map(move |&e| self.other_end(e, v))
+    }
+
+    /// The end of `e` that is not `v`; `v` must be an end of `e`.
+    #[inline]
+    pub fn other_end(&self, e: EdgeId, v: VertexId) -> VertexId {
+        let [a, b] = self.edges[e.index()];
+        debug_assert!(a == v || b == v, "{v} is not an end of {e}");
+        if a == v { b } else { a }
+    }
+
+    /// The edge between two vertices, in either order; `None` when there is none. O(log E).
+    pub fn find_edge(&self, a: VertexId, b: VertexId) -> Option<EdgeId> {
+        let key = (a.min(b), a.max(b));
+        self.edges
+            .binary_search_by_key(&key, |&[p, q]| (p.min(q), p.max(q)))
+            .ok()
+            .map(EdgeId::from_index)
+    }
+
+    /// The corner of `f` that is not an end of its edge `e`; `f` must have the edge `e`.
+    pub fn opposite_vertex(&self, e: EdgeId, f: FaceId) -> VertexId {
+        let edges = self.face_edges[f.index()];
+        debug_assert!(edges.contains(&e), "{f} does not have {e}");
+        let side = if edges[0] == e {
+            0
+        } else if edges[1] == e {
+            1
+        } else {
+            2
+        };
+        self.faces[f.index()][(side + 2) % 3]
+    }
+
+    /// The vertices opposite an edge in its left and right face: the two free corners of a hinge.
+    pub fn opposite_vertices(&self, e: EdgeId) -> [Option<VertexId>; 2] {
+        self.edge_faces(e)
+            .map(|f| f.map(|f| self.opposite_vertex(e, f)))
+    }
+
+    /// The vertex that a half-edge starts from.
+    #[inline]
+    pub fn tail(&self, h: HalfEdgeId) -> VertexId {
+        self.edges[h.edge().index()][h.side()]
+    }
+
+    /// The vertex that a half-edge runs to.
+    #[inline]
+    pub fn head(&self, h: HalfEdgeId) -> VertexId {
+        self.edges[h.edge().index()][1 - h.side()]
+    }
+
+    /// The face to the left of a half-edge.
+    #[inline]
+    pub fn half_edge_face(&self, h: HalfEdgeId) -> Option<FaceId> {
+        self.edge_faces[h.edge().index()][h.side()]
+    }
+
+    /// Whether the edge has only one face.
+    #[inline]
+    pub fn is_boundary_edge(&self, e: EdgeId) -> bool {
+        self.edge_faces[e.index()][1].is_none()
+    }
+
+    /// Whether the vertex lies on the boundary.
+    #[inline]
+    pub fn is_boundary_vertex(&self, v: VertexId) -> bool {
+        self.vertex_edges(v).len() != self.vertex_faces(v).len()
+    }
+
+    /// Whether there is no boundary at all.
+    #[inline]
+    pub fn is_closed(&self) -> bool {
+        self.boundary_edge_count == 0
+    }
+
+    /// The boundary as closed walks with the surface on the left, each starting at its lowest vertex.
+    ///
+    /// The outer boundary of a flat sheet is counter-clockwise, those of its holes clockwise.
+    pub fn boundary_loops(&self) -> Vec<Vec<VertexId>> {
+        let mut seen = vec![false; self.vertex_count()];
+        let mut loops = Vec::new();
+        for start in self.vertex_ids() {
+            if seen[start.index()] || !self.is_boundary_vertex(start) {
+                continue;
+            }
+            let mut walk = Vec::new();
+            let mut v = start;
+            while !seen[v.index()] {
+                seen[v.index()] = true;
+                walk.push(v);
+                // The first edge of a boundary fan leaves the vertex with the surface on its left.
+                v = self.other_end(self.vertex_edges(v)[0], v);
+            }
+            loops.push(walk);
+        }
+        loops
+    }
+
+    /// The number of connected components.
+    #[inline]
+    pub fn component_count(&self) -> usize {
+        self.component_count
+    }
+
+    /// The component of a vertex, below [`Self::component_count`]; components are numbered by their lowest vertex.
+    #[inline]
+    pub fn vertex_component(&self, v: VertexId) -> usize {
+        self.vertex_component[v.index()] as usize
+    }
+
+    /// The vertices of each component, ascending.
+    pub fn components(&self) -> Vec<Vec<VertexId>> {
+        let mut out = vec![Vec::new(); self.component_count];
+        for v in self.vertex_ids() {
+            out[self.vertex_component(v)].push(v);
+        }
+        out
+    }
+}
