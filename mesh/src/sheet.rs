@@ -1,6 +1,6 @@
 //! A mesh with its rest shape.
 
-use crate::vec3::{at, cross, norm, scale, sub};
+use crate::vec3::{at, cross, norm, sub};
 use crate::{EdgeId, FaceId, MeshError, Topology, VertexId};
 
 /// A triangle mesh with its rest positions: the edge lengths and face areas that every later state keeps.
@@ -149,7 +149,7 @@ pub(crate) fn check_positions(topology: &Topology, x: &[f64]) -> Result<(), Mesh
     }
 }
 
-/// Area from edge vectors scaled by the longest edge, so that neither tiny nor huge units under- or overflow.
+/// Area of a face. The longest edge is checked first, so that no square under- or overflows.
 fn face_area(t: &Topology, x: &[f64], lengths: &[f64], f: FaceId) -> Result<f64, MeshError> {
     let edges = t.face_edges(f);
     let (side, longest) =
@@ -175,11 +175,8 @@ fn face_area(t: &Topology, x: &[f64], lengths: &[f64], f: FaceId) -> Result<f64,
         });
     }
     let [a, b, c] = t.faces()[f.index()].map(|v| at(x, v));
-    let (u, v) = (
-        scale(1.0 / longest, sub(b, a)),
-        scale(1.0 / longest, sub(c, a)),
-    );
-    let relative_altitude = norm(cross(u, v));
+    let parallelogram = norm(cross(sub(b, a), sub(c, a)));
+    let relative_altitude = parallelogram / (longest * longest);
     if relative_altitude < Sheet::MIN_RELATIVE_ALTITUDE {
         return Err(MeshError::ZeroAreaFace {
             face: f,
@@ -187,5 +184,5 @@ fn face_area(t: &Topology, x: &[f64], lengths: &[f64], f: FaceId) -> Result<f64,
             longest,
         });
     }
-    Ok(0.5 * relative_altitude * longest * longest)
+    Ok(0.5 * parallelogram)
 }

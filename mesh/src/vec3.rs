@@ -15,11 +15,6 @@ pub(crate) fn sub(a: Vec3, b: Vec3) -> Vec3 {
 }
 
 #[inline]
-pub(crate) fn scale(s: f64, a: Vec3) -> Vec3 {
-    [s * a[0], s * a[1], s * a[2]]
-}
-
-#[inline]
 pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
