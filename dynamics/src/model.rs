@@ -1,0 +1,318 @@
+//! The mechanical system: rods, masses, pins, potentials and forces.
+
+use crate::potential::{Force, Gravity, Potential, PotentialShape, STANDARD_GRAVITY};
+use isosheet_mesh::{
+    LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
+};
+
+/// Why a model cannot be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// The mass does not fit the sheet.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A vertex has no mass.
+    #[error(
+        "vertex {vertex} has mass {mass} kg; every vertex that is not pinned needs a positive mass"
+    )]
+    Mass {
+        /// The vertex.
+        vertex: VertexId,
+        /// Its mass.
+        mass: f64,
+    },
+    /// A pinned vertex does not exist.
+    #[error("vertex {vertex} is pinned, but the sheet has only {vertex_count} vertices")]
+    NoSuchVertex {
+        /// The vertex.
+        vertex: VertexId,
+        /// Number of vertices.
+        vertex_count: usize,
+    },
+    /// The damping rate is negative or not finite.
+    #[error("damping rate is {rate}; give a finite rate of at least 0 per second")]
+    Damping {
+        /// The rate given, 1/s.
+        rate: f64,
+    },
+}
+
+/// Marks a vertex without unknowns in [`SheetModel::free_index`].
+pub(crate) const PINNED: u32 = u32::MAX;
+
+/// A sheet as a mechanical system: rigid rods between point masses (or with a consistent mass
+/// matrix), some vertices pinned, acted on by potentials, forces and velocity damping.
+///
+/// Only what is added costs anything; a pinned vertex has no unknowns.
+#[derive(Debug)]
+pub struct SheetModel {
+    topology: Topology,
+    rods: LengthConstraints,
+    mass: MassMatrix,
+    potentials: Vec<Box<dyn Potential>>,
+    forces: Vec<Box<dyn Force>>,
+    damping: f64,
+    free_index: Vec<u32>,
+    free_count: usize,
+    mean_length: f64,
+    mean_mass: f64,
+}
+
+impl SheetModel {
+    /// A free sheet of the given total mass (kilograms), spread evenly, without gravity.
+    ///
+    /// # Errors
+    /// [`ModelError::Mesh`] if the mass is not positive and finite.
+    pub fn new(sheet: &Sheet, total_mass: f64, kind: MassKind) -> Result<Self, ModelError> {
+        let mass = MassMatrix::from_total(sheet, total_mass, kind)?;
+        Self::with_mass(sheet, mass)
+    }
+
+    /// A free sheet with the given mass matrix, without gravity.
+    ///
+    /// # Errors
+    /// [`ModelError::Mass`] if a vertex mass is not positive and finite.
+    pub fn with_mass(sheet: &Sheet, mass: MassMatrix) -> Result<Self, ModelError> {
+        let topology = sheet.topology().clone();
+        let n = topology.vertex_count();
+        if mass.vertex.len() != n {
+            return Err(ModelError::NoSuchVertex {
+                vertex: VertexId(mass.vertex.len().min(u32::MAX as usize) as u32),
+                vertex_count: n,
+            });
+        }
+        if let Some(i) = mass
+            .vertex
+            .iter()
+            .position(|m| !(m.is_finite() && *m > 0.0))
+        {
+            return Err(ModelError::Mass {
+                vertex: VertexId(i as u32),
+                mass: mass.vertex[i],
+            });
+        }
+        Ok(Self {
+            rods: LengthConstraints::new(sheet),
+            mean_length: sheet.mean_length(),
+            mean_mass: mass.total() / n as f64,
+            mass,
+            potentials: Vec::new(),
+            forces: Vec::new(),
+            damping: 0.0,
+            free_index: (0..n as u32).collect(),
+            free_count: n,
+            topology,
+        })
+    }
+
+    /// Adds uniform gravity of 9.8 m/s2 along -z.
+    #[must_use]
+    pub fn with_gravity(self) -> Self {
+        self.with_acceleration(STANDARD_GRAVITY)
+    }
+
+    /// Adds uniform gravity of the given acceleration, m/s2.
+    #[must_use]
+    pub fn with_acceleration(self, acceleration: [f64; 3]) -> Self {
+        let weights = self.mass.row_sums(&self.topology);
+        self.with_potential(Gravity::new(weights, acceleration))
+    }
+
+    /// Adds a potential.
+    #[must_use]
+    pub fn with_potential(mut self, potential: impl Potential + 'static) -> Self {
+        self.potentials.push(Box::new(potential));
+        self
+    }
+
+    /// Adds a non-conservative force.
+    #[must_use]
+    pub fn with_force(mut self, force: impl Force + 'static) -> Self {
+        self.forces.push(Box::new(force));
+        self
+    }
+
+    /// Sets the rate `gamma` (1/s) of the velocity damping `v <- v exp(-gamma h)` that follows
+    /// every step: the paper's "we add this damping force to the velocity" (Sec. 6).
+    ///
+    /// # Errors
+    /// [`ModelError::Damping`] if the rate is negative or not finite.
+    pub fn with_damping(mut self, rate: f64) -> Result<Self, ModelError> {
+        if !(rate.is_finite() && rate >= 0.0) {
+            return Err(ModelError::Damping { rate });
+        }
+        self.damping = rate;
+        Ok(self)
+    }
+
+    /// Pins vertices where they are: they lose their unknowns (the single external point
+    /// constraint of Sec. 3.3 is one such vertex).
+    ///
+    /// # Errors
+    /// [`ModelError::NoSuchVertex`].
+    pub fn with_pins(mut self, pins: &[VertexId]) -> Result<Self, ModelError> {
+        for &v in pins {
+            match self.free_index.get_mut(v.index()) {
+                Some(i) => *i = PINNED,
+                None => {
+                    return Err(ModelError::NoSuchVertex {
+                        vertex: v,
+                        vertex_count: self.free_index.len(),
+                    });
+                }
+            }
+        }
+        let mut next = 0;
+        for i in self.free_index.iter_mut().filter(|i| **i != PINNED) {
+            *i = next;
+            next += 1;
+        }
+        self.free_count = next as usize;
+        Ok(self)
+    }
+
+    /// Connectivity.
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// The rods.
+    pub fn rods(&self) -> &LengthConstraints {
+        &self.rods
+    }
+
+    /// The mass matrix.
+    pub fn mass(&self) -> &MassMatrix {
+        &self.mass
+    }
+
+    /// The potentials.
+    pub fn potentials(&self) -> &[Box<dyn Potential>] {
+        &self.potentials
+    }
+
+    /// The non-conservative forces.
+    pub fn forces(&self) -> &[Box<dyn Force>] {
+        &self.forces
+    }
+
+    /// Rate of the velocity damping, 1/s.
+    pub fn damping(&self) -> f64 {
+        self.damping
+    }
+
+    /// Whether the vertex is pinned.
+    pub fn is_pinned(&self, v: VertexId) -> bool {
+        self.free_index[v.index()] == PINNED
+    }
+
+    /// The pinned vertices.
+    pub fn pins(&self) -> Vec<VertexId> {
+        self.topology
+            .vertex_ids()
+            .filter(|&v| self.is_pinned(v))
+            .collect()
+    }
+
+    /// Number of vertices that are not pinned.
+    pub fn free_count(&self) -> usize {
+        self.free_count
+    }
+
+    /// Position of each vertex among the free ones.
+    pub(crate) fn free_index(&self) -> &[u32] {
+        &self.free_index
+    }
+
+    /// Number of coordinates `3V`.
+    pub fn coordinate_count(&self) -> usize {
+        3 * self.free_index.len()
+    }
+
+    /// Mean rest length of the rods, metres: the length scale of tolerances.
+    pub fn mean_length(&self) -> f64 {
+        self.mean_length
+    }
+
+    /// Mean vertex mass, kilograms: the mass scale of tolerances.
+    pub fn mean_mass(&self) -> f64 {
+        self.mean_mass
+    }
+
+    /// Total potential energy, joules.
+    pub fn potential_energy(&self, t: f64, x: &[f64]) -> f64 {
+        self.potentials.iter().map(|p| p.energy(t, x)).sum()
+    }
+
+    /// Kinetic energy `v^T M v / 2` (Eq. 2), joules.
+    pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
+        self.mass.kinetic_energy(&self.topology, v)
+    }
+
+    /// Conservative force `f = -dV/dx`, overwriting `f`; zero at pinned vertices.
+    pub fn potential_force(&self, t: f64, x: &[f64], f: &mut [f64]) {
+        f.fill(0.0);
+        for p in &self.potentials {
+            p.add_gradient(t, x, f);
+        }
+        f.iter_mut().for_each(|v| *v = -*v);
+        self.clear_pinned(f);
+    }
+
+    /// Sum of the non-conservative forces, overwriting `f`; zero at pinned vertices.
+    pub fn applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        f.fill(0.0);
+        for force in &self.forces {
+            force.add_force(t, x, v, f);
+        }
+        self.clear_pinned(f);
+    }
+
+    /// Whether every potential is linear, so that its force is constant.
+    pub fn has_constant_forces(&self) -> bool {
+        self.potentials
+            .iter()
+            .all(|p| p.shape() == PotentialShape::Linear)
+    }
+
+    /// `out = M v`, zero at pinned vertices.
+    pub fn apply_mass(&self, v: &[f64], out: &mut [f64]) {
+        self.mass.apply(&self.topology, v, out);
+        self.clear_pinned(out);
+    }
+
+    /// Sets the entries of pinned vertices to zero.
+    pub(crate) fn clear_pinned(&self, f: &mut [f64]) {
+        if self.free_count == self.free_index.len() {
+            return;
+        }
+        for (i, row) in self.free_index.iter().zip(f.as_chunks_mut::<3>().0) {
+            if *i == PINNED {
+                *row = [0.0; 3];
+            }
+        }
+    }
+
+    /// Linear momentum, kg m/s.
+    pub fn linear_momentum(&self, v: &[f64]) -> [f64; 3] {
+        let mut p = vec![0.0; v.len()];
+        self.mass.apply(&self.topology, v, &mut p);
+        p.as_chunks::<3>()
+            .0
+            .iter()
+            .fold([0.0; 3], |s, r| [s[0] + r[0], s[1] + r[1], s[2] + r[2]])
+    }
+
+    /// Angular momentum about the origin, kg m2/s.
+    pub fn angular_momentum(&self, x: &[f64], v: &[f64]) -> [f64; 3] {
+        let mut p = vec![0.0; v.len()];
+        self.mass.apply(&self.topology, v, &mut p);
+        let mut l = [0.0; 3];
+        for (r, p) in x.as_chunks::<3>().0.iter().zip(p.as_chunks::<3>().0) {
+            l[0] += r[1] * p[2] - r[2] * p[1];
+            l[1] += r[2] * p[0] - r[0] * p[2];
+            l[2] += r[0] * p[1] - r[1] * p[0];
+        }
+        l
+    }
+}

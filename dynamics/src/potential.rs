@@ -1,0 +1,124 @@
+//! Potential energies (Liu, Tang and Joneja 2007, Eq. 1).
+
+use isosheet_mesh::{EdgeId, VertexId};
+use nalgebra::Matrix3;
+use std::fmt::Debug;
+
+/// A potential energy of the vertex positions, `V(t, x)`, from which the forces are
+/// `f = -dV/dx`.
+///
+/// A value and a gradient are enough. The Hessian only speeds the implicit integrators up:
+/// without it their Newton iterations converge linearly in this term instead of
+/// quadratically.
+pub trait Potential: Debug + Send + Sync {
+    /// Energy in joules at time `t` (seconds) and positions `x` (`3V`, metres).
+    fn energy(&self, t: f64, x: &[f64]) -> f64;
+
+    /// Adds `dV/dx` (`3V`, newtons) to `gradient`.
+    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]);
+
+    /// Adds second derivatives to `hessian`. The default adds none.
+    fn add_hessian(&self, _t: f64, _x: &[f64], _hessian: &mut dyn HessianSink) {}
+
+    /// How the energy depends on the positions.
+    fn shape(&self) -> PotentialShape {
+        PotentialShape::General
+    }
+}
+
+/// How a potential depends on the positions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PotentialShape {
+    /// Linear in the positions and independent of time: the force is constant, and midpoint
+    /// forces conserve its energy exactly.
+    Linear,
+    /// Anything else: the energy-momentum integrator uses a discrete gradient.
+    General,
+}
+
+/// Receives the 3 x 3 blocks of a potential's Hessian.
+///
+/// Blocks exist where the rods have them: at every vertex and along every edge. Couplings
+/// between vertices that share no edge have to be left out, which costs iterations, not
+/// accuracy.
+pub trait HessianSink {
+    /// Adds `d2V / dx_v dx_v`, symmetric.
+    fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>);
+
+    /// Adds `d2V / dx_a dx_b` for the edge `a -> b`; the transposed block is implied.
+    fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>);
+}
+
+/// Uniform gravity, `V = -sum_i w_i g . x_i` with the weights `w_i` (kilograms) of the vertices.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gravity {
+    weights: Vec<f64>,
+    acceleration: [f64; 3],
+}
+
+/// The acceleration of the paper's scenes, metres per second squared, z up.
+pub const STANDARD_GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
+
+impl Gravity {
+    /// Gravity acting on vertices of the given masses (for a consistent mass matrix its row
+    /// sums, see [`isosheet_mesh::MassMatrix::row_sums`]).
+    pub fn new(weights: Vec<f64>, acceleration: [f64; 3]) -> Self {
+        Self {
+            weights,
+            acceleration,
+        }
+    }
+}
+
+impl Potential for Gravity {
+    fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+        let g = self.acceleration;
+        -self
+            .weights
+            .iter()
+            .zip(x.as_chunks::<3>().0)
+            .map(|(w, p)| w * (g[0] * p[0] + g[1] * p[1] + g[2] * p[2]))
+            .sum::<f64>()
+    }
+
+    fn add_gradient(&self, _t: f64, _x: &[f64], gradient: &mut [f64]) {
+        for (w, row) in self.weights.iter().zip(gradient.as_chunks_mut::<3>().0) {
+            for k in 0..3 {
+                row[k] -= w * self.acceleration[k];
+            }
+        }
+    }
+
+    fn shape(&self) -> PotentialShape {
+        PotentialShape::Linear
+    }
+}
+
+/// A generalised, not necessarily conservative force (Liu, Tang and Joneja 2007, Sec. 5).
+///
+/// The force is given on the vertices; its generalised components follow by virtual work,
+/// `Q_k = f . dx/dq_k`. The work it does enters the energy balance.
+pub trait Force: Debug + Send + Sync {
+    /// Adds the force (`3V`, newtons) at time `t`, positions `x` and velocities `v` to `force`.
+    fn add_force(&self, t: f64, x: &[f64], v: &[f64], force: &mut [f64]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gravity_gradient_matches_differences() {
+        let g = Gravity::new(vec![0.3, 2.0], [1.0, -2.0, -9.8]);
+        let x = [0.1, 0.7, -0.4, 1.0, 2.0, 3.0];
+        let mut gradient = [0.0; 6];
+        g.add_gradient(0.0, &x, &mut gradient);
+        for i in 0..6 {
+            let (mut up, mut down) = (x, x);
+            up[i] += 0.5;
+            down[i] -= 0.5;
+            let slope = g.energy(0.0, &up) - g.energy(0.0, &down);
+            assert!((slope - gradient[i]).abs() < 1e-13, "coordinate {i}");
+        }
+    }
+}
