@@ -1,10 +1,53 @@
 //! System coordinates of a developable mesh, after Liu, Tang and Joneja, *Modeling dynamic
 //! developable meshes by the Hamilton principle*, Computer-Aided Design 39 (2007) 719-731, Sec. 3.
+//!
+//! A sheet of V vertices and E rigid edges has n = 3V - E degrees of freedom. *System coordinates* are
+//! n numbers from which all positions follow. This crate offers two systems of them behind one
+//! trait, [`Chart`]:
+//!
+//! * [`FrontChart`], the paper's: a front runs over the mesh and places vertex after vertex from one,
+//!   two or three known neighbours ([`assignment`], [`placement`], [`FrontMap`]). Placement is exact,
+//!   but the condition number grows exponentially with the number of fronts ([`condition_table`]).
+//! * [`CartesianChart`]: n Cartesian coordinates of well-chosen vertices. Well conditioned, positions
+//!   by Newton's method.
+//!
+//! Dynamics needs of a chart only its rows `s_k = dq_k/dx`: with the length equations they make the
+//! square sparse matrix `A = [G; S]` ([`Linearised`]), and the mass-matrix solve of any chart is one
+//! solve with the saddle-point matrix ([`SaddlePoint`]).
+//!
+//! States are flat slices of positions, three values per vertex; pinned vertices have no unknowns
+//! ([`RodSystem`]). Sparse direct solvers over fixed patterns are in [`linalg`].
 
+pub mod assignment;
+mod cartesian_chart;
+mod chart;
+#[cfg(test)]
+mod chart_tests;
+mod condition;
 mod frames;
+mod front_chart;
 pub mod linalg;
+mod linearised;
 pub mod placement;
+mod realise;
+mod saddle;
+mod select;
+mod system;
+#[cfg(test)]
+mod testing;
 mod vec3;
 
+pub use assignment::{Assignment, AssignmentOptions, Rule, Start, assign, sys_coord_assnmt_single};
+pub use cartesian_chart::{CartesianChart, Choice};
+pub use chart::{Chart, ChartError, RowPattern};
+pub use condition::{
+    BentState, ConditionRow, TableChart, bent_square, condition_table, mass_condition,
+    mass_condition_estimate, mass_matrix,
+};
 pub use frames::{EdgeFrame, EulerParameters, SphericalFrame};
+pub use front_chart::FrontChart;
+pub use linearised::Linearised;
 pub use placement::{Branch, PlacementError};
+pub use realise::{AngleTriple, FrontMap, Guide, RealiseError, RealiseOptions, RealiseReport};
+pub use saddle::{SaddlePoint, apply_mass};
+pub use system::{RodSystem, SystemError};

@@ -20,10 +20,10 @@ use thiserror::Error;
 /// Below this sine of the smallest angle of their triangle, three known vertices count as
 /// collinear (Fig. 7).
 ///
-/// The position found by [`place_f`] has an error of rounding divided by this sine; at 1e-6 ten
-/// digits are left, which is also about the accuracy with which the height above the three is known
-/// near a flat state.
-pub const COLLINEAR: f64 = 1e-6;
+/// [`place_f`] keeps the three lengths to rounding at any sine, but its position is uncertain by
+/// rounding divided by the sine; at 1e-9 seven digits are left, about as many as the height above the
+/// three has near a flat state. [`place_on_line`] in turn misses the third length by up to the sine.
+pub const COLLINEAR: f64 = 1e-9;
 
 /// Why a vertex cannot be placed, or a coordinate is not defined.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -205,9 +205,8 @@ pub fn collinearity(known: [&[f64; 3]; 3]) -> f64 {
 
 /// Rule f: the vertex at distances `lengths` from three known vertices.
 ///
-/// With `n = p x r`, `p` and `r` the vectors from the first known vertex to the others, the foot of the
-/// perpendicular in their plane solves two linear equations and the height h is left from the first
-/// length. Flat states have `h = 0`, where rounding decides the sign of `h^2`: values within `tolerance`
+/// The foot of the perpendicular in the plane of the three solves two linear equations (differences
+/// of squared lengths) and the height h is left from the first length. Flat states have `h = 0`, where rounding decides the sign of `h^2`: values within `tolerance`
 /// of zero, relative to the squared first length, count as zero, which costs at most `tolerance / 2`
 /// of relative length. Below that the state violates Eq. 10 and is refused.
 ///
@@ -228,21 +227,25 @@ pub fn place_f(
     if sine <= COLLINEAR {
         return Err(PlacementError::Collinear { sine });
     }
+    // Orthonormal axes in the plane: along the first side, and along the rest of the second, which
+    // keeps both perpendicular to rounding however small the angle between the sides is.
     let p = sub(known[1], known[0]);
     let r = sub(known[2], known[0]);
-    let n = cross(&p, &r);
-    let n2 = dot(&n, &n);
+    let span = norm(&p);
+    let e1 = scale(&p, 1.0 / span);
+    let along = dot(&r, &e1);
+    let rest = axpy(&r, -along, &e1);
+    let rest = axpy(&rest, -dot(&rest, &e1), &e1);
+    let across = norm(&rest);
+    let e2 = scale(&rest, 1.0 / across);
+    let unit = cross(&e1, &e2);
     let [l0, l1, l2] = lengths;
-    let alpha = 0.5 * ((l0 - l1) * (l0 + l1) + dot(&p, &p));
-    let beta = 0.5 * ((l0 - l2) * (l0 + l2) + dot(&r, &r));
-    let foot = scale(
-        &axpy(&scale(&cross(&r, &n), alpha), beta, &cross(&n, &p)),
-        1.0 / n2,
-    );
-    let distance = norm(&foot);
+    let y1 = 0.5 * ((l0 - l1) * (l0 + l1) / span + span);
+    let y2 = (0.5 * ((l0 - l2) * (l0 + l2) + dot(&r, &r)) - y1 * along) / across;
+    let foot = axpy(&scale(&e1, y1), y2, &e2);
+    let distance = y1.hypot(y2);
     let height_squared = (l0 - distance) * (l0 + distance) / (l0 * l0);
     let height = clamped_root(height_squared, tolerance)? * l0;
-    let unit = scale(&n, 1.0 / n2.sqrt());
     let base = add(known[0], &foot);
     let above = match branch {
         Branch::Above => true,

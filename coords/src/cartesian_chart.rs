@@ -1,0 +1,196 @@
+//! A well-conditioned chart: Cartesian coordinates of well-chosen vertices.
+
+use crate::chart::{Chart, ChartError, RowPattern};
+use crate::linearised::Linearised;
+use crate::realise::{check, check_length};
+use crate::select::{Selection, eliminate, exchange, pivoted_qr};
+use crate::system::RodSystem;
+use isosheet_mesh::VertexId;
+use nalgebra::DMatrix;
+
+/// How a [`CartesianChart`] chooses its coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// [`Choice::PivotedQr`] up to 300 unknowns, [`Choice::Exchange`] above.
+    #[default]
+    Auto,
+    /// Dense QR factorisation of G with column pivoting: the pivot columns are the dependent
+    /// unknowns, the others the coordinates. Cubic in the number of unknowns.
+    PivotedQr,
+    /// Sparse elimination of G^T with partial pivoting for a first choice, then exchanges of one
+    /// coordinate for one dependent unknown while an entry of J = dx/dq is larger than 1.2 (a
+    /// volume-maximising basis). All entries of J end up below that bound, which no other chart of
+    /// Cartesian coordinates improves by more than a modest factor. Needs J, unknowns x n, dense.
+    Exchange,
+    /// The sparse elimination alone, for meshes whose J does not fit.
+    Elimination,
+}
+
+/// Largest number of unknowns for which [`Choice::Auto`] takes the dense factorisation.
+const DENSE_LIMIT: usize = 300;
+
+/// Largest size of J (entries) for which [`Choice::Auto`] forms it; 256 MB.
+const EXCHANGE_LIMIT: usize = 32_000_000;
+
+/// Exchanges stop when no entry of J is larger. At 1 they would go on for round-off; at 1.2 every
+/// exchange grows the volume by a fifth, so that their number is bounded by a multiple of n.
+const EXCHANGE_BOUND: f64 = 1.2;
+
+/// Chart of n of the free unknowns, selected at a reference state so that the others depend on them
+/// gently.
+///
+/// The coordinates are values in metres; rows of S are unit rows and do not change. Positions are found
+/// by Newton's method on `[c(x); S x - q]`. The selection serves a neighbourhood of its reference state;
+/// as the sheet moves on the condition number grows and [`Chart::rebase`] selects anew.
+pub struct CartesianChart {
+    system: RodSystem,
+    choice: Choice,
+    selection: Vec<u32>,
+    pattern: RowPattern,
+}
+
+impl CartesianChart {
+    /// Select coordinates at the state `reference`.
+    ///
+    /// # Errors
+    /// [`ChartError::RankDeficient`] where the length equations are dependent (flat states),
+    /// [`ChartError::Realise`] for a malformed state, [`ChartError::Linalg`].
+    pub fn new(system: RodSystem, choice: Choice, reference: &[f64]) -> Result<Self, ChartError> {
+        let mut chart = Self {
+            system,
+            choice,
+            selection: Vec::new(),
+            pattern: RowPattern::new(),
+        };
+        chart.rebase(reference)?;
+        Ok(chart)
+    }
+
+    /// The selected unknowns, ascending.
+    #[must_use]
+    pub fn selection(&self) -> &[u32] {
+        &self.selection
+    }
+
+    /// Vertex and axis (0, 1, 2 for x, y, z) of each coordinate.
+    pub fn components(&self) -> impl Iterator<Item = (VertexId, usize)> + '_ {
+        self.selection.iter().map(|u| {
+            (
+                self.system.free_vertices()[*u as usize / 3],
+                *u as usize % 3,
+            )
+        })
+    }
+
+    fn full_index(&self, k: usize) -> usize {
+        let u = self.selection[k] as usize;
+        3 * self.system.free_vertices()[u / 3].index() + u % 3
+    }
+
+    fn take(&mut self, mut selection: Vec<u32>) {
+        selection.sort_unstable();
+        self.pattern = RowPattern::new();
+        for u in &selection {
+            self.pattern.push([*u]);
+        }
+        self.selection = selection;
+    }
+}
+
+impl Chart for CartesianChart {
+    fn dimension(&self) -> usize {
+        self.selection.len()
+    }
+
+    fn pattern(&self) -> &RowPattern {
+        &self.pattern
+    }
+
+    fn rows(&self, _x: &[f64], values: &mut [f64]) -> Result<(), ChartError> {
+        check_length("values", values.len(), self.selection.len())?;
+        values.fill(1.0);
+        Ok(())
+    }
+
+    fn rows_rate(&self, _x: &[f64], _v: &[f64], values: &mut [f64]) -> Result<(), ChartError> {
+        check_length("values", values.len(), self.selection.len())?;
+        values.fill(0.0);
+        Ok(())
+    }
+
+    fn coordinates(&self, x: &[f64], q: &mut [f64]) -> Result<(), ChartError> {
+        check_length("x", x.len(), 3 * self.system.vertex_count())?;
+        check_length("q", q.len(), self.selection.len())?;
+        for (k, value) in q.iter_mut().enumerate() {
+            *value = x[self.full_index(k)];
+        }
+        Ok(())
+    }
+
+    fn difference(&self, q1: &[f64], q0: &[f64], out: &mut [f64]) {
+        for (o, (a, b)) in out.iter_mut().zip(q1.iter().zip(q0)) {
+            *o = a - b;
+        }
+    }
+
+    fn realise(
+        &self,
+        linear: &mut Linearised,
+        q: &[f64],
+        near: &[f64],
+        x: &mut [f64],
+    ) -> Result<(), ChartError> {
+        check("near", near, 3 * self.system.vertex_count())?;
+        check_length("x", x.len(), near.len())?;
+        x.copy_from_slice(near);
+        linear.newton(&self.system, self, q, x)?;
+        Ok(())
+    }
+
+    fn jacobian(
+        &self,
+        system: &RodSystem,
+        linear: &mut Linearised,
+        x: &[f64],
+    ) -> Result<DMatrix<f64>, ChartError> {
+        linear.factorize(system, self, x)?;
+        linear.jacobian()
+    }
+
+    fn margin(&self, x: &[f64]) -> Result<f64, ChartError> {
+        check("x", x, 3 * self.system.vertex_count())?;
+        Ok(1.0)
+    }
+
+    fn rebase(&mut self, x: &[f64]) -> Result<(), ChartError> {
+        check("x", x, 3 * self.system.vertex_count())?;
+        let choice = match self.choice {
+            Choice::Auto if self.system.unknowns() <= DENSE_LIMIT => Choice::PivotedQr,
+            Choice::Auto if self.system.unknowns() * self.system.dof() <= EXCHANGE_LIMIT => {
+                Choice::Exchange
+            }
+            Choice::Auto => Choice::Elimination,
+            other => other,
+        };
+        let Selection { independent, rank } = match choice {
+            Choice::PivotedQr => pivoted_qr(&self.system, x),
+            _ => eliminate(&self.system, x),
+        };
+        if rank < self.system.equations() {
+            return Err(ChartError::RankDeficient {
+                equations: self.system.equations(),
+                rank,
+            });
+        }
+        self.take(independent);
+        if choice == Choice::Exchange {
+            let mut linear = Linearised::new(&self.system, self)?;
+            linear.factorize(&self.system, self, x)?;
+            let mut jacobian = linear.jacobian()?;
+            let mut selection = self.selection.clone();
+            exchange(&mut jacobian, &mut selection, EXCHANGE_BOUND);
+            self.take(selection);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,232 @@
+//! Charts: system coordinates and the rows that linearise them.
+//!
+//! A chart assigns n numbers q to a state x that has the right edge lengths, n the degrees of
+//! freedom. Its rows `s_k = dq_k/dx` form the sparse matrix S (n x unknowns); with the rows of
+//! the length equations they make up the square matrix `A = [G; S]`, and `J = dx/dq = A^-1 [0; I]`.
+//! Nothing else is needed for dynamics, so a chart is a small thing: rows, their rate along a
+//! velocity, coordinates, and a way back to positions.
+
+use crate::assignment::AssignmentError;
+use crate::linalg::LinalgError;
+use crate::linearised::Linearised;
+use crate::realise::RealiseError;
+use crate::system::{RodSystem, SystemError};
+use isosheet_mesh::{MeshError, VertexId};
+use nalgebra::DMatrix;
+use thiserror::Error;
+
+/// Why a chart cannot be built or used.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ChartError {
+    /// Coordinates or positions are not defined.
+    #[error(transparent)]
+    Realise(#[from] RealiseError),
+    /// Pins are not usable.
+    #[error(transparent)]
+    System(#[from] SystemError),
+    /// Coordinates cannot be assigned.
+    #[error(transparent)]
+    Assignment(#[from] AssignmentError),
+    /// A sheet or its masses are not valid.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A generated sheet is not valid.
+    #[error(transparent)]
+    Generate(#[from] isosheet_mesh::generate::GenerateError),
+    /// A sparse factorisation failed.
+    #[error(
+        "the linearised chart [G; S] cannot be factorised: {0}; the state is flat or the chart has left its domain, rebase it or perturb the state"
+    )]
+    Linalg(#[from] LinalgError),
+    /// The length equations are dependent, as in every flat state with interior vertices: no
+    /// choice of n coordinates is a chart.
+    #[error(
+        "the {equations} length equations have rank {rank} only at this state (flat sheet or branch point): perturb it, or use a chart-free integrator"
+    )]
+    RankDeficient {
+        /// Number of length equations.
+        equations: usize,
+        /// Their numerical rank.
+        rank: usize,
+    },
+    /// A coordinate row is not defined at this state.
+    #[error("coordinate {coordinate} (vertex {vertex}) has no gradient here: {source}")]
+    Row {
+        /// The coordinate.
+        coordinate: usize,
+        /// The vertex it belongs to.
+        vertex: VertexId,
+        /// The reason.
+        source: crate::placement::PlacementError,
+    },
+    /// Newton's method for positions did not converge.
+    #[error(
+        "positions were not found in {iterations} Newton steps: residual {residual:e} (relative), tolerance {tolerance:e}; take a smaller step"
+    )]
+    NotConverged {
+        /// Steps taken.
+        iterations: usize,
+        /// Relative residual left.
+        residual: f64,
+        /// The tolerance.
+        tolerance: f64,
+    },
+    /// The chart is too ill-conditioned to give digits.
+    #[error(
+        "the mass matrix of the chart has condition number {condition:e}, above the limit {limit:e}: the answer would be noise; use a better conditioned chart or a coarser mesh"
+    )]
+    IllConditioned {
+        /// Condition number of C.
+        condition: f64,
+        /// The limit.
+        limit: f64,
+    },
+}
+
+/// Row-compressed pattern of S: columns of row k are `columns[starts[k]..starts[k + 1]]`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RowPattern {
+    starts: Vec<usize>,
+    columns: Vec<u32>,
+}
+
+impl RowPattern {
+    /// A pattern without rows.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            starts: vec![0],
+            columns: Vec::new(),
+        }
+    }
+
+    /// Append a row with entries in the given unknowns.
+    pub fn push(&mut self, columns: impl IntoIterator<Item = u32>) {
+        self.columns.extend(columns);
+        self.starts.push(self.columns.len());
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Number of entries.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Whether there is no entry.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.columns.is_empty()
+    }
+
+    /// Entries of row k: range into the values.
+    #[must_use]
+    pub fn range(&self, k: usize) -> std::ops::Range<usize> {
+        self.starts[k]..self.starts[k + 1]
+    }
+
+    /// The unknown of each entry.
+    #[must_use]
+    pub fn columns(&self) -> &[u32] {
+        &self.columns
+    }
+
+    /// `(row, unknown)` of each entry.
+    pub fn entries(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        (0..self.rows()).flat_map(move |k| self.range(k).map(move |i| (k as u32, self.columns[i])))
+    }
+
+    /// `S v` for `v` on the unknowns.
+    pub fn apply(&self, values: &[f64], v: &[f64], out: &mut [f64]) {
+        for (k, o) in out.iter_mut().enumerate() {
+            *o = self
+                .range(k)
+                .map(|i| values[i] * v[self.columns[i] as usize])
+                .sum();
+        }
+    }
+
+    /// `out += S^T p` on the unknowns.
+    pub fn add_transpose(&self, values: &[f64], p: &[f64], out: &mut [f64]) {
+        for (k, pk) in p.iter().enumerate() {
+            for i in self.range(k) {
+                out[self.columns[i] as usize] += values[i] * pk;
+            }
+        }
+    }
+}
+
+/// System coordinates of a rod system. See the module text for the notation.
+///
+/// States x and velocities v are full slices, three values per vertex, with zero velocity at pinned
+/// vertices; entries of S refer to the unknowns of the [`crate::RodSystem`].
+pub trait Chart {
+    /// Number n of coordinates; the degrees of freedom of the system.
+    fn dimension(&self) -> usize;
+
+    /// Pattern of S.
+    fn pattern(&self) -> &RowPattern;
+
+    /// Values of S at x, in pattern order.
+    ///
+    /// # Errors
+    /// [`ChartError::Row`] where a coordinate has no gradient.
+    fn rows(&self, x: &[f64], values: &mut [f64]) -> Result<(), ChartError>;
+
+    /// Rate of change of the values of S along the velocity v: `d/d eps S(x + eps v)` at 0.
+    ///
+    /// # Errors
+    /// As [`Chart::rows`].
+    fn rows_rate(&self, x: &[f64], v: &[f64], values: &mut [f64]) -> Result<(), ChartError>;
+
+    /// Coordinate values of the state x.
+    ///
+    /// # Errors
+    /// [`ChartError::Realise`] where a coordinate is not defined.
+    fn coordinates(&self, x: &[f64], q: &mut [f64]) -> Result<(), ChartError>;
+
+    /// `out = q1 - q0` with angles taken to (-pi, pi].
+    fn difference(&self, q1: &[f64], q0: &[f64], out: &mut [f64]);
+
+    /// Positions with the right edge lengths and coordinates q, on the branch of the state `near`.
+    ///
+    /// # Errors
+    /// [`ChartError::Realise`] or [`ChartError::NotConverged`] when there is none near by.
+    fn realise(
+        &self,
+        linear: &mut Linearised,
+        q: &[f64],
+        near: &[f64],
+        x: &mut [f64],
+    ) -> Result<(), ChartError>;
+
+    /// The dense Jacobian `J = dx/dq` at x, unknowns x n. Leaves `linear` factorised at x.
+    ///
+    /// # Errors
+    /// [`ChartError::Row`], [`ChartError::Linalg`] where the chart is singular.
+    fn jacobian(
+        &self,
+        system: &RodSystem,
+        linear: &mut Linearised,
+        x: &[f64],
+    ) -> Result<DMatrix<f64>, ChartError>;
+
+    /// Distance of the state from a singularity of the coordinates themselves, 1 or more far away
+    /// and 0 at it. Below about 0.1 a [`Chart::rebase`] is due.
+    ///
+    /// # Errors
+    /// [`ChartError::Realise`] for a malformed state.
+    fn margin(&self, x: &[f64]) -> Result<f64, ChartError>;
+
+    /// Take a new reference state. Coordinate values and rows may change, and for a chart that
+    /// selects its coordinates the pattern too: build [`Linearised`] and what depends on it anew.
+    ///
+    /// # Errors
+    /// As for building the chart at that state.
+    fn rebase(&mut self, x: &[f64]) -> Result<(), ChartError>;
+}

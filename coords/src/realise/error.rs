@@ -1,0 +1,94 @@
+//! Why a realisation fails.
+
+use crate::assignment::Closure;
+use crate::placement::PlacementError;
+use isosheet_mesh::{EdgeId, VertexId};
+use thiserror::Error;
+
+/// The angles of Eq. 10 at one end of an edge, radians (Fig. 5).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AngleTriple {
+    /// Angle of the first triangle at the end, from its edge lengths.
+    pub alpha: f64,
+    /// Angle of the second triangle at the end, from its edge lengths.
+    pub beta: f64,
+    /// Angle between the two outer edges at the end, from positions.
+    pub gamma: f64,
+}
+
+impl AngleTriple {
+    /// Whether a position exists for the common edge: the spherical triangle inequalities
+    /// `|alpha - beta| <= gamma <= min(alpha + beta, 2 pi - alpha - beta)`.
+    ///
+    /// Eq. 10 states `gamma <= alpha + beta`; the other two bounds are needed as well for
+    /// triangles of different shape and for obtuse pairs.
+    #[must_use]
+    pub fn is_compatible(&self) -> bool {
+        let sum = self.alpha + self.beta;
+        (self.alpha - self.beta).abs() <= self.gamma
+            && self.gamma <= sum.min(2.0 * std::f64::consts::PI - sum)
+    }
+}
+
+/// Why a state cannot be realised, or coordinates cannot be read from it.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RealiseError {
+    /// Eq. 10 is violated at an edge: its two triangles cannot be closed.
+    #[error(
+        "Eq. 10 is violated at edge {edge}, vertex {vertex} cannot be placed: angles alpha {:.6}, beta {:.6}, gamma {:.6} rad \
+         (|alpha - beta| <= gamma <= alpha + beta needed; squared height {height_squared:e})",
+        angles.alpha, angles.beta, angles.gamma
+    )]
+    Incompatible {
+        /// The common edge of the two triangles.
+        edge: EdgeId,
+        /// The end of it that is being placed; the angles are those at the other end.
+        vertex: VertexId,
+        /// The angles.
+        angles: AngleTriple,
+        /// Squared height over the squared length of the first edge; negative.
+        height_squared: f64,
+    },
+    /// Another placement failed.
+    #[error("vertex {vertex} cannot be placed from {known:?}: {source}")]
+    Placement {
+        /// The vertex.
+        vertex: VertexId,
+        /// The known vertices.
+        known: Vec<VertexId>,
+        /// The reason.
+        source: PlacementError,
+    },
+    /// The coordinates do not satisfy the closure equations.
+    #[error("{count} closure edges do not have their lengths; the worst is edge {} with strain {strain:e} (tolerance {tolerance:e})", worst.edge)]
+    Closure {
+        /// Number of closure edges.
+        count: usize,
+        /// The worst one.
+        worst: Closure,
+        /// Its strain, (length - rest length) / rest length.
+        strain: f64,
+        /// The tolerance.
+        tolerance: f64,
+    },
+    /// A slice has the wrong length.
+    #[error("{what} has {found} values, expected {expected}")]
+    WrongLength {
+        /// Which argument.
+        what: &'static str,
+        /// Values given.
+        found: usize,
+        /// Values needed.
+        expected: usize,
+    },
+    /// A value is not finite.
+    #[error("{what} has the value {value} at index {index}")]
+    NotFinite {
+        /// Which argument.
+        what: &'static str,
+        /// Index of the value.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+}
