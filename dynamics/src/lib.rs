@@ -1,7 +1,26 @@
 //! Dynamics of developable meshes.
 
+mod energy_momentum;
+mod implicit_euler;
+mod integrator;
 mod model;
 pub mod potential;
+mod primal;
+mod project;
+mod projection_step;
+mod rattle;
+mod report;
+mod saddle;
+mod simulation;
+mod state;
 
+pub use energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
+pub use implicit_euler::{ImplicitEuler, ImplicitEulerOptions};
+pub use integrator::{Integrator, OptionsError};
 pub use model::{ModelError, SheetModel};
 pub use potential::{Force, Gravity, HessianSink, Potential, PotentialShape, STANDARD_GRAVITY};
+pub use projection_step::{ProjectionStep, ProjectionStepOptions};
+pub use rattle::{Rattle, RattleComposition, RattleOptions};
+pub use report::{Accepted, Effort, Path, StepError, StepReport};
+pub use simulation::{Method, Simulation, SimulationError, StepControl, project_positions};
+pub use state::State;

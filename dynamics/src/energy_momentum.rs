@@ -1,0 +1,246 @@
+//! The energy-momentum integrator.
+
+use crate::implicit_euler::not_converged;
+use crate::integrator::{Integrator, OptionsError};
+use crate::primal::strain_floor;
+use crate::report::{Accepted, Effort, Path, StepError};
+use crate::saddle::{SaddleMatrix, System};
+use crate::{SheetModel, State};
+use isosheet_coords::linalg::LinalgError;
+
+/// Options of [`EnergyMomentum`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnergyMomentumOptions {
+    /// Largest relative residual of the momentum balance. Default 1e-12: the energy error of a
+    /// step is about this fraction of the energy that changes hands in it.
+    pub tolerance: f64,
+    /// Largest relative edge length error of an accepted step. Default 2e-13.
+    pub strain_tolerance: f64,
+    /// Most Newton iterations. Default 15: a step that needs more is better halved.
+    pub max_iterations: usize,
+}
+
+impl Default for EnergyMomentumOptions {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-12,
+            strain_tolerance: 2e-13,
+            max_iterations: 15,
+        }
+    }
+}
+
+impl EnergyMomentumOptions {
+    /// # Errors
+    /// [`OptionsError`] naming the option that makes no sense.
+    pub fn validate(&self) -> Result<(), OptionsError> {
+        OptionsError::check_range("tolerance", self.tolerance, 1e-15, 1e-2)?;
+        OptionsError::check_range("strain_tolerance", self.strain_tolerance, 1e-15, 1e-2)?;
+        OptionsError::check_count("max_iterations", self.max_iterations)
+    }
+}
+
+/// Residual at which an iteration that has stopped improving counts as converged: round-off in
+/// the multipliers of nearly dependent rods can keep it above the tolerance.
+const STALLED_RESIDUAL: f64 = 1e-9;
+
+/// The energy-momentum step (after Simo and Gonzalez): with the midpoint velocity
+/// `w = (v0 + v1) / 2`, `x1 = x0 + h w`, `xm = (x0 + x1) / 2`,
+///
+/// ```text
+/// 2 M (w - v0) = h f + G(xm)^T L,    c(x1) = 0.
+/// ```
+///
+/// Because `c` is quadratic, `G(xm)` is its exact discrete gradient: the rods do no work, and
+/// energy, linear and angular momentum are conserved to the tolerance of the solver. Potentials
+/// that are not linear enter by Gonzalez' discrete gradient. Second order, symmetric.
+///
+/// Solved by Newton's method with one sparse LU per iteration, in the impulses `L`, which stay
+/// moderate where the multipliers `L / h` do not.
+pub struct EnergyMomentum {
+    options: EnergyMomentumOptions,
+    matrix: SaddleMatrix,
+    impulse: Vec<f64>,
+    impulse_step: f64,
+    trial: Vec<f64>,
+    density: Vec<f64>,
+    w: Vec<f64>,
+    x1: Vec<f64>,
+    xm: Vec<f64>,
+    force: Vec<f64>,
+    applied: Vec<f64>,
+    momentum: Vec<f64>,
+    difference: Vec<f64>,
+    rods: Vec<f64>,
+}
+
+impl EnergyMomentum {
+    /// Analyses the model.
+    ///
+    /// # Errors
+    /// [`LinalgError::Symbolic`] if memory runs out.
+    pub fn new(model: &SheetModel, options: EnergyMomentumOptions) -> Result<Self, LinalgError> {
+        let (n, m) = (model.coordinate_count(), model.rods().len());
+        Ok(Self {
+            options,
+            matrix: SaddleMatrix::new(model)?,
+            impulse: vec![0.0; m],
+            impulse_step: 0.0,
+            trial: vec![0.0; m],
+            density: vec![0.0; m],
+            w: vec![0.0; n],
+            x1: vec![0.0; n],
+            xm: vec![0.0; n],
+            force: vec![0.0; n],
+            applied: vec![0.0; n],
+            momentum: vec![0.0; n],
+            difference: vec![0.0; n],
+            rods: vec![0.0; m],
+        })
+    }
+
+    /// Force over the step from the potentials at the current iterate.
+    fn discrete_force(&mut self, model: &SheetModel, state: &State, h: f64) {
+        let t = state.t + 0.5 * h;
+        model.potential_force(t, &self.xm, &mut self.force);
+        if model.has_constant_forces() {
+            return;
+        }
+        // Gonzalez: correct the midpoint force along M dx so that its work is exactly -dV.
+        for i in 0..self.w.len() {
+            self.difference[i] = self.x1[i] - state.x[i];
+        }
+        model.apply_mass(&self.difference, &mut self.momentum);
+        let squared = dot(&self.difference, &self.momentum);
+        if squared > 0.0 {
+            let change = model.potential_energy(t, &self.x1) - model.potential_energy(t, &state.x);
+            let correction = (change + dot(&self.force, &self.difference)) / squared;
+            for (f, m) in self.force.iter_mut().zip(&self.momentum) {
+                *f -= correction * m;
+            }
+        }
+    }
+
+    /// Sets the negative residuals; returns the relative momentum residual and the strain.
+    fn residuals(&mut self, model: &SheetModel, state: &State, h: f64) -> (f64, f64) {
+        for i in 0..self.w.len() {
+            self.x1[i] = state.x[i] + h * self.w[i];
+            self.xm[i] = state.x[i] + 0.5 * h * self.w[i];
+        }
+        self.discrete_force(model, state, h);
+        model.applied_force(state.t + 0.5 * h, &self.xm, &self.w, &mut self.applied);
+        for i in 0..self.w.len() {
+            self.difference[i] = 2.0 * (self.w[i] - state.v[i]);
+        }
+        model.apply_mass(&self.difference, &mut self.momentum);
+        let mass = &model.mass().vertex;
+        let mut scale = 0.0_f64;
+        for i in 0..self.w.len() {
+            let f = h * (self.force[i] + self.applied[i]);
+            scale = scale.max((self.momentum[i].abs() + f.abs()) / mass[i / 3]);
+            self.momentum[i] = f - self.momentum[i];
+        }
+        model
+            .rods()
+            .apply_transpose_add(&self.xm, &self.trial, &mut self.momentum);
+        model.clear_pinned(&mut self.momentum);
+        let worst = self
+            .momentum
+            .iter()
+            .enumerate()
+            .fold(0.0_f64, |m, (i, r)| m.max(r.abs() / mass[i / 3]));
+        model.rods().residual_into(&self.x1, &mut self.rods);
+        self.rods.iter_mut().for_each(|c| *c = -*c / h);
+        let relative = if scale > 0.0 { worst / scale } else { 0.0 };
+        (relative, model.rods().max_strain(&self.x1))
+    }
+}
+
+impl Integrator for EnergyMomentum {
+    fn step(
+        &mut self,
+        model: &SheetModel,
+        state: &mut State,
+        h: f64,
+        effort: &mut Effort,
+    ) -> Result<Accepted, StepError> {
+        let strain_tolerance = self
+            .options
+            .strain_tolerance
+            .max(strain_floor(model, state));
+        let ratio = if self.impulse_step > 0.0 {
+            h / self.impulse_step
+        } else {
+            0.0
+        };
+        for (t, i) in self.trial.iter_mut().zip(&self.impulse) {
+            *t = ratio * i;
+        }
+        self.w.copy_from_slice(&state.v);
+        let (mut residual, mut strain) = self.residuals(model, state, h);
+        let mut previous = f64::INFINITY;
+        let mut path = Path::Newton;
+        let mut iterations = 0;
+        let converged = loop {
+            if residual <= self.options.tolerance && strain <= strain_tolerance {
+                break true;
+            }
+            if residual <= STALLED_RESIDUAL
+                && strain <= strain_tolerance
+                && residual > 0.3 * previous
+            {
+                break true;
+            }
+            if iterations == self.options.max_iterations || !(residual.is_finite() && strain < 1.0)
+            {
+                break false;
+            }
+            previous = residual;
+            iterations += 1;
+            effort.iterations += 1;
+            for (d, l) in self.density.iter_mut().zip(&self.trial) {
+                *d = -0.5 * h * l;
+            }
+            let system = System {
+                mass: 2.0,
+                density: &self.density,
+                left: &self.xm,
+                right: &self.x1,
+                potentials: Some((state.t + 0.5 * h, &self.xm, 0.5 * h * h)),
+            };
+            let used = self
+                .matrix
+                .solve(model, &system, &mut self.momentum, &mut self.rods, effort)
+                .map_err(|source| StepError::Linalg { t: state.t, source })?;
+            path = path.max(used);
+            for (w, d) in self.w.iter_mut().zip(&self.momentum) {
+                *w += d;
+            }
+            for (l, d) in self.trial.iter_mut().zip(&self.rods) {
+                *l += d;
+            }
+            (residual, strain) = self.residuals(model, state, h);
+        };
+        if !converged {
+            self.impulse_step = 0.0;
+            return Err(not_converged(state.t, h, effort, residual, strain));
+        }
+        self.impulse.copy_from_slice(&self.trial);
+        self.impulse_step = h;
+        let work = h * dot(&self.applied, &self.w);
+        for i in 0..self.w.len() {
+            state.v[i] = 2.0 * self.w[i] - state.v[i];
+        }
+        state.x.copy_from_slice(&self.x1);
+        state.t += h;
+        Ok(Accepted {
+            residual,
+            work,
+            path,
+        })
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

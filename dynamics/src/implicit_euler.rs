@@ -1,0 +1,372 @@
+//! Implicit Euler with the constraints in the step: the damped default.
+
+use crate::integrator::{Integrator, OptionsError};
+use crate::primal::{PrimalMatrix, penalties, strain_floor};
+use crate::project::Projector;
+use crate::report::{Accepted, Effort, Path, StepError};
+use crate::{SheetModel, State};
+use isosheet_coords::linalg::LinalgError;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Options of [`ImplicitEuler`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImplicitEulerOptions {
+    /// Penalty of the rods in the augmented Lagrangian, relative to the masses: rods are
+    /// `stiffness` times as stiff as the inertia term. Default 1e4: a hundred times more needs
+    /// several times the Newton iterations, a hundred times less twice the projections.
+    pub stiffness: f64,
+    /// Newton's method stops when the decrease it still promises is this fraction of the
+    /// inertia term of the incremental potential. Default 1e-4, far below the error of the
+    /// method itself; the lengths do not depend on it.
+    pub tolerance: f64,
+    /// Largest relative edge length error of an accepted step. Default 1e-12. Round-off sets a
+    /// floor of a few units in the last place of the coordinates.
+    pub strain_tolerance: f64,
+    /// Most Newton iterations in a step. Default 80.
+    pub max_iterations: usize,
+    /// Most iterations of the projection onto the lengths. Default 400.
+    pub max_projections: usize,
+    /// Seed of the perturbation that decides which way a sheet folds that sits on a saddle of
+    /// the incremental potential. Default 0.
+    pub seed: u64,
+}
+
+impl Default for ImplicitEulerOptions {
+    fn default() -> Self {
+        Self {
+            stiffness: 1e4,
+            tolerance: 1e-4,
+            strain_tolerance: 1e-12,
+            max_iterations: 80,
+            max_projections: 400,
+            seed: 0,
+        }
+    }
+}
+
+impl ImplicitEulerOptions {
+    /// # Errors
+    /// [`OptionsError`] naming the option that makes no sense.
+    pub fn validate(&self) -> Result<(), OptionsError> {
+        OptionsError::check_range("stiffness", self.stiffness, 1.0, 1e8)?;
+        OptionsError::check_range("tolerance", self.tolerance, 1e-14, 0.1)?;
+        OptionsError::check_range("strain_tolerance", self.strain_tolerance, 1e-15, 1e-2)?;
+        OptionsError::check_count("max_iterations", self.max_iterations)?;
+        OptionsError::check_count("max_projections", self.max_projections)
+    }
+}
+
+/// Size of the branch perturbation in mean edge lengths: large enough to leave a saddle, too
+/// small to be seen.
+const BRANCH_PERTURBATION: f64 = 1e-4;
+/// Armijo's constant.
+const ARMIJO: f64 = 1e-4;
+/// A Newton step shortened below this fraction is not a sign of convergence.
+const NEARLY_FULL: f64 = 0.2;
+
+/// Implicit Euler, `M (v1 - v0) = h f(x1) + G(x1)^T L, x1 = x0 + h v1, c(x1) = 0`.
+///
+/// Equivalently `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)`
+/// over all positions with the rest lengths, so a minimisation that always descends replaces
+/// a root finder that may not converge:
+///
+/// 1. augmented Lagrangian with the impulses of the previous step as multipliers, minimised by
+///    Newton's method with line search. Its Hessian ([`PrimalMatrix`]) is tried as it is and,
+///    where it is indefinite, with the negative part of the rods' geometric stiffness left out;
+/// 2. projection onto the lengths, which makes them exact.
+///
+/// First order, dissipative, stable at any step. A sheet that starts exactly flat needs no
+/// special treatment.
+pub struct ImplicitEuler {
+    options: ImplicitEulerOptions,
+    matrix: PrimalMatrix,
+    projector: Projector,
+    /// Impulse multipliers of the rods (h^2 times force densities), kept from step to step.
+    multipliers: Vec<f64>,
+    multiplier_step: f64,
+    penalty: Vec<f64>,
+    along: Vec<f64>,
+    across: Vec<f64>,
+    density: Vec<f64>,
+    c: Vec<f64>,
+    target: Vec<f64>,
+    force: Vec<f64>,
+    applied: Vec<f64>,
+    gradient: Vec<f64>,
+    difference: Vec<f64>,
+    weighted: Vec<f64>,
+    dx: Vec<f64>,
+    x: Vec<f64>,
+    start: Vec<f64>,
+}
+
+impl ImplicitEuler {
+    /// Analyses the model.
+    ///
+    /// # Errors
+    /// [`LinalgError::Symbolic`] if memory runs out.
+    pub fn new(model: &SheetModel, options: ImplicitEulerOptions) -> Result<Self, LinalgError> {
+        let (n, m) = (model.coordinate_count(), model.rods().len());
+        Ok(Self {
+            matrix: PrimalMatrix::new(model)?,
+            projector: Projector::new(model),
+            multipliers: vec![0.0; m],
+            multiplier_step: 0.0,
+            penalty: penalties(model, options.stiffness),
+            along: vec![0.0; m],
+            across: vec![0.0; m],
+            density: vec![0.0; m],
+            c: vec![0.0; m],
+            target: vec![0.0; n],
+            force: vec![0.0; n],
+            applied: vec![0.0; n],
+            gradient: vec![0.0; n],
+            difference: vec![0.0; n],
+            weighted: vec![0.0; n],
+            dx: vec![0.0; n],
+            x: vec![0.0; n],
+            start: vec![0.0; n],
+            options,
+        })
+    }
+
+    /// Value of the augmented Lagrangian at `self.x`; sets `self.c`.
+    fn merit(&mut self, model: &SheetModel, t: f64, h: f64) -> (f64, f64) {
+        for i in 0..self.x.len() {
+            self.difference[i] = self.x[i] - self.target[i];
+        }
+        let inertia = model.kinetic_energy(&self.difference);
+        let work: f64 = self
+            .applied
+            .iter()
+            .zip(&self.difference)
+            .map(|(f, d)| f * d)
+            .sum();
+        model.rods().residual_into(&self.x, &mut self.c);
+        let rods: f64 = (0..self.c.len())
+            .map(|e| (self.multipliers[e] + 0.5 * self.penalty[e] * self.c[e]) * self.c[e])
+            .sum();
+        let potential = model.potential_energy(t, &self.x);
+        (inertia, inertia + h * h * (potential - work) + rods)
+    }
+
+    /// Gradient of the augmented Lagrangian at `self.x`, with `self.c` current; sets the
+    /// force densities of the rods.
+    fn gradient(&mut self, model: &SheetModel, t: f64, h: f64) {
+        for i in 0..self.x.len() {
+            self.difference[i] = self.x[i] - self.target[i];
+        }
+        model.apply_mass(&self.difference, &mut self.weighted);
+        model.potential_force(t, &self.x, &mut self.force);
+        for i in 0..self.x.len() {
+            self.gradient[i] = self.weighted[i] - h * h * (self.force[i] + self.applied[i]);
+        }
+        for e in 0..self.c.len() {
+            self.density[e] = self.multipliers[e] + self.penalty[e] * self.c[e];
+        }
+        model
+            .rods()
+            .apply_transpose_add(&self.x, &self.density, &mut self.gradient);
+        model.clear_pinned(&mut self.gradient);
+    }
+
+    /// Factorises the Hessian; true if it was indefinite and had to be modified.
+    fn factorize(
+        &mut self,
+        model: &SheetModel,
+        t: f64,
+        h: f64,
+        effort: &mut Effort,
+    ) -> Result<bool, LinalgError> {
+        self.along.copy_from_slice(&self.penalty);
+        self.across.copy_from_slice(&self.density);
+        effort.factorisations += 1;
+        self.matrix
+            .assemble(model, &self.x, &self.along, &self.across);
+        self.matrix.add_potentials(model, t, &self.x, h * h);
+        if self.matrix.factorize().is_ok() {
+            return Ok(false);
+        }
+        // Each rod's own Hessian, projected onto the positive semidefinite matrices:
+        // eigenvalues p across and p + r |d|^2 along the rod.
+        for e in 0..self.c.len() {
+            let l = model.rods().lengths()[e];
+            let squared = (l * l + 2.0 * self.c[e]).max(f64::MIN_POSITIVE);
+            if self.density[e] < 0.0 {
+                self.along[e] = (self.penalty[e] + self.density[e] / squared).max(0.0);
+                self.across[e] = 0.0;
+            }
+        }
+        effort.factorisations += 1;
+        self.matrix
+            .assemble(model, &self.x, &self.along, &self.across);
+        self.matrix.add_potentials(model, t, &self.x, h * h);
+        if self.matrix.factorize().is_ok() {
+            return Ok(true);
+        }
+        // The potentials are concave here: leave their curvature out.
+        effort.factorisations += 1;
+        self.matrix
+            .assemble(model, &self.x, &self.along, &self.across);
+        self.matrix.factorize()?;
+        Ok(true)
+    }
+
+    /// Relative residual of the momentum balance: the largest acceleration that is not
+    /// accounted for, against the largest that is asked for.
+    fn residual(&self, model: &SheetModel, h: f64) -> f64 {
+        let mass = &model.mass().vertex;
+        let largest = |g: &[f64]| {
+            g.iter()
+                .enumerate()
+                .fold(0.0_f64, |m, (i, g)| m.max(g.abs() / mass[i / 3]))
+        };
+        let scale = largest(&self.force) * h * h + largest(&self.weighted);
+        if scale == 0.0 {
+            0.0
+        } else {
+            largest(&self.gradient) / scale
+        }
+    }
+
+    /// Displaces the iterate off a saddle.
+    fn perturb(&mut self, model: &SheetModel) {
+        let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed);
+        let size = BRANCH_PERTURBATION * model.mean_length();
+        self.dx.fill_with(|| rng.random_range(-size..=size));
+        model.clear_pinned(&mut self.dx);
+        for (x, d) in self.x.iter_mut().zip(&self.dx) {
+            *x += d;
+        }
+    }
+}
+
+impl Integrator for ImplicitEuler {
+    fn step(
+        &mut self,
+        model: &SheetModel,
+        state: &mut State,
+        h: f64,
+        effort: &mut Effort,
+    ) -> Result<Accepted, StepError> {
+        let t1 = state.t + h;
+        if self.multiplier_step > 0.0 && self.multiplier_step != h {
+            let ratio = (h / self.multiplier_step).powi(2);
+            self.multipliers.iter_mut().for_each(|m| *m *= ratio);
+        }
+        self.multiplier_step = h;
+        model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
+        for i in 0..self.x.len() {
+            self.target[i] = state.x[i] + h * state.v[i];
+        }
+        self.x.copy_from_slice(&self.target);
+        let mut path = Path::Newton;
+        let mut residual = f64::INFINITY;
+        let mut converged = false;
+        let (mut inertia, mut value) = self.merit(model, t1, h);
+        for _ in 0..self.options.max_iterations {
+            self.gradient(model, t1, h);
+            residual = self.residual(model, h);
+            effort.iterations += 1;
+            let modified = self
+                .factorize(model, t1, h, effort)
+                .map_err(|source| StepError::Linalg { t: state.t, source })?;
+            if modified {
+                path = path.max(Path::Globalised);
+            }
+            self.matrix.solve(model, &self.gradient, &mut self.dx);
+            let slope: f64 = -self
+                .dx
+                .iter()
+                .zip(&self.gradient)
+                .map(|(a, b)| a * b)
+                .sum::<f64>();
+            if !slope.is_finite() {
+                return Err(not_converged(state.t, h, effort, residual, f64::NAN));
+            }
+            let promised = self.options.tolerance * inertia;
+            let round_off = f64::EPSILON * value.abs();
+            self.start.copy_from_slice(&self.x);
+            let mut length = 1.0;
+            loop {
+                for i in 0..self.x.len() {
+                    self.x[i] = self.start[i] - length * self.dx[i];
+                }
+                let (now_inertia, now) = self.merit(model, t1, h);
+                if now <= value + ARMIJO * length * slope + round_off || length < 1e-9 {
+                    (inertia, value) = (now_inertia, now);
+                    break;
+                }
+                length *= 0.5;
+            }
+            if length < 1.0 {
+                path = path.max(Path::Globalised);
+            }
+            if length >= NEARLY_FULL && -slope <= promised.max(round_off) {
+                if modified && path != Path::BranchSeeded {
+                    // No slope left, but the curvature is negative somewhere: a saddle, where
+                    // the sheet could fold either way.
+                    path = Path::BranchSeeded;
+                    self.perturb(model);
+                    (inertia, value) = self.merit(model, t1, h);
+                    continue;
+                }
+                converged = true;
+                break;
+            }
+        }
+        for e in 0..self.c.len() {
+            self.multipliers[e] += self.penalty[e] * self.c[e];
+        }
+        let tolerance = self
+            .options
+            .strain_tolerance
+            .max(strain_floor(model, state));
+        let strain = if converged {
+            self.projector.positions(
+                model,
+                &mut self.matrix,
+                &mut self.x,
+                tolerance,
+                self.options.max_projections,
+                effort,
+            )
+        } else {
+            model.rods().max_strain(&self.x)
+        };
+        if !(converged && strain <= tolerance) {
+            self.multipliers.fill(0.0);
+            return Err(not_converged(state.t, h, effort, residual, strain));
+        }
+        let mut work = 0.0;
+        for i in 0..self.x.len() {
+            let dx = self.x[i] - state.x[i];
+            work += self.applied[i] * dx;
+            state.v[i] = dx / h;
+        }
+        state.x.copy_from_slice(&self.x);
+        state.t = t1;
+        Ok(Accepted {
+            residual,
+            work,
+            path,
+        })
+    }
+}
+
+pub(crate) fn not_converged(
+    t: f64,
+    h: f64,
+    effort: &Effort,
+    residual: f64,
+    strain: f64,
+) -> StepError {
+    StepError::NotConverged {
+        t,
+        h,
+        iterations: effort.iterations,
+        residual,
+        strain,
+    }
+}

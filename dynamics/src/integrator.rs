@@ -1,0 +1,59 @@
+//! What all integrators have in common.
+
+use crate::report::{Accepted, Effort, StepError};
+use crate::{SheetModel, State};
+
+/// A one-step method.
+pub trait Integrator: Send {
+    /// Advances `state` by `h`, or leaves it as it was and says why.
+    ///
+    /// `effort` is counted up whether the step is accepted or not.
+    ///
+    /// # Errors
+    /// [`StepError`]
+    fn step(
+        &mut self,
+        model: &SheetModel,
+        state: &mut State,
+        h: f64,
+        effort: &mut Effort,
+    ) -> Result<Accepted, StepError>;
+}
+
+/// An option that makes no sense.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("option {name} is {value}; give a value from {min} to {max}")]
+pub struct OptionsError {
+    /// Name of the option.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Smallest value that makes sense.
+    pub min: f64,
+    /// Largest value that makes sense.
+    pub max: f64,
+}
+
+impl OptionsError {
+    pub(crate) fn check_range(
+        name: &'static str,
+        value: f64,
+        min: f64,
+        max: f64,
+    ) -> Result<(), Self> {
+        if (min..=max).contains(&value) {
+            Ok(())
+        } else {
+            Err(Self {
+                name,
+                value,
+                min,
+                max,
+            })
+        }
+    }
+
+    pub(crate) fn check_count(name: &'static str, value: usize) -> Result<(), Self> {
+        Self::check_range(name, value as f64, 1.0, 1e6)
+    }
+}

@@ -1,0 +1,262 @@
+//! The primal matrix of an implicit step: masses, rods as stiff springs, potentials.
+
+use crate::model::PINNED;
+use crate::{HessianSink, SheetModel, State};
+use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt};
+use isosheet_mesh::{EdgeId, VertexId};
+use nalgebra::Matrix3;
+
+/// The symmetric matrix
+///
+/// ```text
+/// K = M + sum_e [ p_e I + r_e d_e d_e^T ] (blocks + at aa, bb and - at ab, ba) + s d2V/dx2
+/// ```
+///
+/// over the free vertices (`d_e = x_a - x_b`), and its Cholesky factorisation. With `r_e` the
+/// penalty and `p_e` the force density of rod `e` it is the Hessian of an augmented
+/// Lagrangian: positive definite whatever the rank of the rigidity matrix, a third the size of
+/// the saddle-point matrix and as sparse as the mesh.
+pub(crate) struct PrimalMatrix {
+    llt: SparseLlt,
+    /// Slots of the lower triangle of each vertex block, row by row.
+    vertex_slots: Vec<[u32; 6]>,
+    /// Slots of each edge block and whether its rows belong to end `b` (else to `a`).
+    edge_slots: Vec<Option<([u32; 9], bool)>>,
+    rhs: Vec<f64>,
+    pub(crate) factorisations: usize,
+}
+
+impl PrimalMatrix {
+    pub(crate) fn new(model: &SheetModel) -> Result<Self, LinalgError> {
+        let free = model.free_index();
+        let mut entries = Vec::new();
+        for &i in free.iter().filter(|&&i| i != PINNED) {
+            for r in 0..3 {
+                for c in 0..=r {
+                    entries.push((3 * i + r, 3 * i + c));
+                }
+            }
+        }
+        for &[a, b] in model.rods().edges() {
+            let (i, j) = (free[a], free[b]);
+            if i == PINNED || j == PINNED {
+                continue;
+            }
+            let (row, col) = (i.max(j), i.min(j));
+            for r in 0..3 {
+                for c in 0..3 {
+                    entries.push((3 * row + r, 3 * col + c));
+                }
+            }
+        }
+        let n = 3 * model.free_count();
+        let (pattern, slots) = Pattern::from_entries(n, n, &entries);
+        let mut next = slots.iter().copied();
+        let mut take = || next.next().expect("one slot per entry");
+        let vertex_slots = free
+            .iter()
+            .map(|&i| {
+                if i == PINNED {
+                    [0; 6]
+                } else {
+                    std::array::from_fn(|_| take())
+                }
+            })
+            .collect();
+        let edge_slots = model
+            .rods()
+            .edges()
+            .iter()
+            .map(|&[a, b]| {
+                let (i, j) = (free[a], free[b]);
+                (i != PINNED && j != PINNED).then(|| (std::array::from_fn(|_| take()), j > i))
+            })
+            .collect();
+        Ok(Self {
+            llt: SparseLlt::new(pattern)?,
+            vertex_slots,
+            edge_slots,
+            rhs: vec![0.0; n],
+            factorisations: 0,
+        })
+    }
+
+    /// Sets the values: `along[e] = r_e`, `across[e] = p_e`.
+    pub(crate) fn assemble(
+        &mut self,
+        model: &SheetModel,
+        x: &[f64],
+        along: &[f64],
+        across: &[f64],
+    ) {
+        let free = model.free_index();
+        let values = self.llt.values_mut();
+        values.fill(0.0);
+        for (i, slots) in self.vertex_slots.iter().enumerate() {
+            if free[i] != PINNED {
+                for k in [0, 2, 5] {
+                    values[slots[k] as usize] += model.mass().vertex[i];
+                }
+            }
+        }
+        let off_mass = model.mass().edge.as_deref();
+        for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
+            let (ia, ib) = (3 * a, 3 * b);
+            let d = [x[ia] - x[ib], x[ia + 1] - x[ib + 1], x[ia + 2] - x[ib + 2]];
+            let (r, p) = (along[e], across[e]);
+            let block = [
+                r * d[0] * d[0] + p,
+                r * d[1] * d[0],
+                r * d[1] * d[1] + p,
+                r * d[2] * d[0],
+                r * d[2] * d[1],
+                r * d[2] * d[2] + p,
+            ];
+            for v in [a, b] {
+                if free[v] != PINNED {
+                    let slots = &self.vertex_slots[v];
+                    for k in 0..6 {
+                        values[slots[k] as usize] += block[k];
+                    }
+                }
+            }
+            if let Some((slots, _)) = &self.edge_slots[e] {
+                const FULL: [usize; 9] = [0, 1, 3, 1, 2, 4, 3, 4, 5];
+                for k in 0..9 {
+                    values[slots[k] as usize] -= block[FULL[k]];
+                }
+                if let Some(m) = off_mass {
+                    for k in [0, 4, 8] {
+                        values[slots[k] as usize] += m[e];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds `scale` times the Hessians of the potentials.
+    pub(crate) fn add_potentials(&mut self, model: &SheetModel, t: f64, x: &[f64], scale: f64) {
+        for p in model.potentials() {
+            p.add_hessian(
+                t,
+                x,
+                &mut Sink {
+                    matrix: self,
+                    model,
+                    scale,
+                },
+            );
+        }
+    }
+
+    pub(crate) fn factorize(&mut self) -> Result<(), LinalgError> {
+        self.factorisations += 1;
+        self.llt.factorize()
+    }
+
+    /// `out = K^-1 b`, zero at pinned vertices.
+    pub(crate) fn solve(&mut self, model: &SheetModel, b: &[f64], out: &mut [f64]) {
+        gather(model, b, &mut self.rhs);
+        self.llt.solve(&mut self.rhs);
+        scatter(model, &self.rhs, out);
+    }
+}
+
+struct Sink<'a> {
+    matrix: &'a mut PrimalMatrix,
+    model: &'a SheetModel,
+    scale: f64,
+}
+
+impl HessianSink for Sink<'_> {
+    fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>) {
+        if self.model.is_pinned(v) {
+            return;
+        }
+        let slots = self.matrix.vertex_slots[v.index()];
+        let values = self.matrix.llt.values_mut();
+        let mut k = 0;
+        for r in 0..3 {
+            for c in 0..=r {
+                values[slots[k] as usize] += self.scale * block[(r, c)];
+                k += 1;
+            }
+        }
+    }
+
+    fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>) {
+        // `block` is d2V/dx_a dx_b, rows at a; the stored block has the rows of the later vertex.
+        if let Some((slots, rows_at_b)) = self.matrix.edge_slots[e.index()] {
+            let values = self.matrix.llt.values_mut();
+            for r in 0..3 {
+                for c in 0..3 {
+                    let entry = if rows_at_b {
+                        block[(c, r)]
+                    } else {
+                        block[(r, c)]
+                    };
+                    values[slots[3 * r + c] as usize] += self.scale * entry;
+                }
+            }
+        }
+    }
+}
+
+/// Copies the free entries of `full` (`3V`) into `packed`.
+pub(crate) fn gather(model: &SheetModel, full: &[f64], packed: &mut [f64]) {
+    for (v, &i) in model.free_index().iter().enumerate() {
+        if i != PINNED {
+            let i = 3 * i as usize;
+            packed[i..i + 3].copy_from_slice(&full[3 * v..3 * v + 3]);
+        }
+    }
+}
+
+/// Copies `packed` to the free entries of `full` (`3V`) and zeroes the others.
+pub(crate) fn scatter(model: &SheetModel, packed: &[f64], full: &mut [f64]) {
+    for (v, &i) in model.free_index().iter().enumerate() {
+        let row = &mut full[3 * v..3 * v + 3];
+        if i == PINNED {
+            row.fill(0.0);
+        } else {
+            let i = 3 * i as usize;
+            row.copy_from_slice(&packed[i..i + 3]);
+        }
+    }
+}
+
+/// Penalty of each rod, `kappa m_e / l_e^2` with `m_e` the reduced mass of its free ends: scale
+/// free, so that slivers and heavy vertices are treated alike. Kilograms per square metre.
+pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
+    let rods = model.rods();
+    rods.edges()
+        .iter()
+        .zip(rods.lengths())
+        .map(|(&[a, b], l)| {
+            let inverse = |v: usize| {
+                if model.free_index()[v] == PINNED {
+                    0.0
+                } else {
+                    1.0 / model.mass().vertex[v]
+                }
+            };
+            let sum = inverse(a) + inverse(b);
+            if sum == 0.0 {
+                0.0
+            } else {
+                kappa / (sum * l * l)
+            }
+        })
+        .collect()
+}
+
+/// Smallest edge strain that round-off in the coordinates allows to ask for.
+pub(crate) fn strain_floor(model: &SheetModel, state: &State) -> f64 {
+    let size = state.x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let shortest = model
+        .rods()
+        .lengths()
+        .iter()
+        .fold(f64::INFINITY, |m, l| m.min(*l));
+    4.0 * f64::EPSILON * (size / shortest + 1.0)
+}

@@ -1,0 +1,199 @@
+//! Projection of positions onto the rest lengths and of velocities onto their rates.
+
+use crate::SheetModel;
+use crate::primal::{PrimalMatrix, penalties};
+use crate::report::Effort;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Penalty (relative to the masses) that a projection starts from. From 1e9 the projection is
+/// a Gauss-Newton step to round-off wherever the rods are independent.
+const PROJECTION_PENALTY: f64 = 1e9;
+/// Bounds of the penalty while it adapts. Above 1e13 the masses drown in the round-off of the
+/// penalty and the matrix loses its definiteness; below 1e3 steps are too timid to be useful.
+const PENALTY_RANGE: (f64, f64) = (1e3, 1e13);
+/// Sufficient decrease of the length error per full step, the usual choice for Gauss-Newton.
+const SUFFICIENT_DECREASE: f64 = 0.1;
+/// A line search that has halved its step this often has stalled.
+const SMALLEST_STEP: f64 = 1e-2;
+
+/// Moves positions to the nearest ones, in the sense of the mass matrix, that have the rest
+/// lengths: a Levenberg-Marquardt iteration with line search
+///
+/// ```text
+/// (M + r G^T G) dx = -r G^T c(x),
+/// ```
+///
+/// with `r` raised while steps contract slowly and lowered when the line search shortens
+/// them. Positive definite at any rank of `G`, so flat states are no obstacle; close to them
+/// convergence is linear instead of quadratic.
+pub(crate) struct Projector {
+    along: Vec<f64>,
+    across: Vec<f64>,
+    unit: Vec<f64>,
+    c: Vec<f64>,
+    w: Vec<f64>,
+    rhs: Vec<f64>,
+    dx: Vec<f64>,
+    start: Vec<f64>,
+    rng: ChaCha8Rng,
+}
+
+impl Projector {
+    pub(crate) fn new(model: &SheetModel) -> Self {
+        let (n, m) = (model.coordinate_count(), model.rods().len());
+        Self {
+            along: vec![0.0; m],
+            across: vec![0.0; m],
+            unit: penalties(model, 1.0),
+            c: vec![0.0; m],
+            w: vec![0.0; m],
+            rhs: vec![0.0; n],
+            dx: vec![0.0; n],
+            start: vec![0.0; n],
+            rng: ChaCha8Rng::seed_from_u64(0),
+        }
+    }
+
+    /// Projects `x` in place; returns the strain reached, which exceeds `tolerance` if
+    /// `max_iterations` did not suffice.
+    pub(crate) fn positions(
+        &mut self,
+        model: &SheetModel,
+        matrix: &mut PrimalMatrix,
+        x: &mut [f64],
+        tolerance: f64,
+        max_iterations: usize,
+        effort: &mut Effort,
+    ) -> f64 {
+        let rods = model.rods();
+        let mut penalty = PROJECTION_PENALTY;
+        rods.residual_into(x, &mut self.c);
+        let mut strain = rods.max_strain(x);
+        for _ in 0..max_iterations {
+            // The negation also stops at a strain that is not a number.
+            if strain <= tolerance || strain.is_nan() {
+                break;
+            }
+            effort.iterations += 1;
+            effort.factorisations += 1;
+            for e in 0..rods.len() {
+                self.along[e] = penalty * self.unit[e];
+                self.w[e] = -self.along[e] * self.c[e];
+            }
+            self.across.fill(0.0);
+            matrix.assemble(model, x, &self.along, &self.across);
+            if matrix.factorize().is_err() {
+                if penalty <= PENALTY_RANGE.0 {
+                    break;
+                }
+                penalty = (penalty * 1e-2).max(PENALTY_RANGE.0);
+                continue;
+            }
+            self.rhs.fill(0.0);
+            rods.apply_transpose_add(x, &self.w, &mut self.rhs);
+            matrix.solve(model, &self.rhs, &mut self.dx);
+            let before = self.error(model);
+            self.start.copy_from_slice(x);
+            let mut length = 1.0;
+            let after = loop {
+                for (i, xi) in x.iter_mut().enumerate() {
+                    *xi = self.start[i] + length * self.dx[i];
+                }
+                rods.residual_into(x, &mut self.c);
+                let after = self.error(model);
+                if after <= (1.0 - SUFFICIENT_DECREASE * length) * before || length < SMALLEST_STEP
+                {
+                    break after;
+                }
+                length *= 0.5;
+            };
+            if length < SMALLEST_STEP {
+                // Stationary, but not solved: the error lies across the range of G, which
+                // happens where a patch is flat and asks for a fold. A displacement of order
+                // sqrt(strain), in any direction, opens it.
+                penalty = PROJECTION_PENALTY;
+                self.unfold(model, x, strain.sqrt());
+                rods.residual_into(x, &mut self.c);
+            } else if length < 1.0 {
+                penalty *= 0.1;
+            } else if after > 0.1 * before {
+                penalty *= 10.0;
+            }
+            penalty = penalty.clamp(PENALTY_RANGE.0, PENALTY_RANGE.1);
+            strain = rods.max_strain(x);
+        }
+        strain
+    }
+
+    /// Displaces every free vertex by up to `relative` mean rod lengths.
+    fn unfold(&mut self, model: &SheetModel, x: &mut [f64], relative: f64) {
+        let size = relative * model.mean_length();
+        let rng = &mut self.rng;
+        self.dx.fill_with(|| rng.random_range(-size..=size));
+        model.clear_pinned(&mut self.dx);
+        for (xi, d) in x.iter_mut().zip(&self.dx) {
+            *xi += d;
+        }
+    }
+
+    /// Projects `v` in place onto `G(x) v = 0`, nearest in the sense of the mass matrix, by
+    /// the method of multipliers: each solve with `M + r G^T G` is followed by the update of
+    /// the multipliers, all with one factor.
+    ///
+    /// Returns the largest rate left, relative to the speed and the length of the rod.
+    pub(crate) fn velocities(
+        &mut self,
+        model: &SheetModel,
+        matrix: &mut PrimalMatrix,
+        x: &[f64],
+        v: &mut [f64],
+        effort: &mut Effort,
+    ) -> f64 {
+        let rods = model.rods();
+        for e in 0..rods.len() {
+            self.along[e] = PROJECTION_PENALTY * self.unit[e];
+        }
+        self.across.fill(0.0);
+        matrix.assemble(model, x, &self.along, &self.across);
+        effort.factorisations += 1;
+        if matrix.factorize().is_err() {
+            return f64::INFINITY;
+        }
+        // Three passes: each contracts by the penalty, except along rods that are dependent.
+        let mut rate = f64::INFINITY;
+        for _ in 0..3 {
+            rods.apply(x, v, &mut self.c);
+            let speed = v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            rate = self
+                .c
+                .iter()
+                .zip(rods.lengths())
+                .fold(0.0_f64, |m, (c, l)| m.max(c.abs() / l))
+                / speed.max(f64::MIN_POSITIVE);
+            if rate < 1e-15 {
+                break;
+            }
+            for e in 0..rods.len() {
+                self.w[e] = -self.along[e] * self.c[e];
+            }
+            self.rhs.fill(0.0);
+            rods.apply_transpose_add(x, &self.w, &mut self.rhs);
+            matrix.solve(model, &self.rhs, &mut self.dx);
+            for (vi, d) in v.iter_mut().zip(&self.dx) {
+                *vi += d;
+            }
+        }
+        rate
+    }
+
+    /// Euclidean norm of the relative length errors.
+    fn error(&self, model: &SheetModel) -> f64 {
+        self.c
+            .iter()
+            .zip(model.rods().lengths())
+            .map(|(c, l)| (c / (l * l)).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    }
+}

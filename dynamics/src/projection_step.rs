@@ -1,0 +1,147 @@
+//! Predict, project onto the lengths, project the velocity.
+
+use crate::implicit_euler::not_converged;
+use crate::integrator::{Integrator, OptionsError};
+use crate::primal::{PrimalMatrix, strain_floor};
+use crate::project::Projector;
+use crate::report::{Accepted, Effort, Path, StepError};
+use crate::{SheetModel, State};
+use isosheet_coords::linalg::LinalgError;
+
+/// Options of [`ProjectionStep`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProjectionStepOptions {
+    /// Largest relative edge length error of an accepted step. Default 1e-12.
+    pub strain_tolerance: f64,
+    /// Most iterations of the projection onto the lengths. Default 400.
+    pub max_projections: usize,
+}
+
+impl Default for ProjectionStepOptions {
+    fn default() -> Self {
+        Self {
+            strain_tolerance: 1e-12,
+            max_projections: 400,
+        }
+    }
+}
+
+impl ProjectionStepOptions {
+    /// # Errors
+    /// [`OptionsError`] naming the option that makes no sense.
+    pub fn validate(&self) -> Result<(), OptionsError> {
+        OptionsError::check_range("strain_tolerance", self.strain_tolerance, 1e-15, 1e-2)?;
+        OptionsError::check_count("max_projections", self.max_projections)
+    }
+}
+
+/// Predict with the forces, project the positions onto the lengths, take the velocity from
+/// the displacement and project it onto `G(x1) v = 0`
+/// (in the manner of Goldenthal et al., "Efficient simulation of inextensible cloth", 2007).
+///
+/// First order, dissipative, stable at any step, positive definite solves at any rank.
+pub struct ProjectionStep {
+    options: ProjectionStepOptions,
+    matrix: PrimalMatrix,
+    projector: Projector,
+    force: Vec<f64>,
+    applied: Vec<f64>,
+    acceleration: Vec<f64>,
+    x: Vec<f64>,
+    v: Vec<f64>,
+    none: Vec<f64>,
+}
+
+impl ProjectionStep {
+    /// Analyses the model.
+    ///
+    /// # Errors
+    /// [`LinalgError::Symbolic`] if memory runs out.
+    pub fn new(model: &SheetModel, options: ProjectionStepOptions) -> Result<Self, LinalgError> {
+        let n = model.coordinate_count();
+        Ok(Self {
+            options,
+            matrix: PrimalMatrix::new(model)?,
+            projector: Projector::new(model),
+            force: vec![0.0; n],
+            applied: vec![0.0; n],
+            acceleration: vec![0.0; n],
+            x: vec![0.0; n],
+            v: vec![0.0; n],
+            none: vec![0.0; model.rods().len()],
+        })
+    }
+
+    /// `acceleration = M^-1 force`.
+    fn accelerate(&mut self, model: &SheetModel, effort: &mut Effort) -> Result<(), LinalgError> {
+        if model.mass().edge.is_none() {
+            for (i, a) in self.acceleration.iter_mut().enumerate() {
+                *a = self.force[i] / model.mass().vertex[i / 3];
+            }
+            return Ok(());
+        }
+        effort.factorisations += 1;
+        self.matrix.assemble(model, &self.x, &self.none, &self.none);
+        self.matrix.factorize()?;
+        self.matrix
+            .solve(model, &self.force, &mut self.acceleration);
+        Ok(())
+    }
+}
+
+impl Integrator for ProjectionStep {
+    fn step(
+        &mut self,
+        model: &SheetModel,
+        state: &mut State,
+        h: f64,
+        effort: &mut Effort,
+    ) -> Result<Accepted, StepError> {
+        model.potential_force(state.t, &state.x, &mut self.force);
+        model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
+        for (f, a) in self.force.iter_mut().zip(&self.applied) {
+            *f += a;
+        }
+        self.x.copy_from_slice(&state.x);
+        self.accelerate(model, effort)
+            .map_err(|source| StepError::Linalg { t: state.t, source })?;
+        for i in 0..self.x.len() {
+            self.x[i] = state.x[i] + h * (state.v[i] + h * self.acceleration[i]);
+        }
+        let tolerance = self
+            .options
+            .strain_tolerance
+            .max(strain_floor(model, state));
+        let strain = self.projector.positions(
+            model,
+            &mut self.matrix,
+            &mut self.x,
+            tolerance,
+            self.options.max_projections,
+            effort,
+        );
+        if strain > tolerance || strain.is_nan() {
+            return Err(not_converged(state.t, h, effort, 0.0, strain));
+        }
+        let mut work = 0.0;
+        for i in 0..self.x.len() {
+            let dx = self.x[i] - state.x[i];
+            work += self.applied[i] * dx;
+            self.v[i] = dx / h;
+        }
+        let residual =
+            self.projector
+                .velocities(model, &mut self.matrix, &self.x, &mut self.v, effort);
+        if !residual.is_finite() {
+            return Err(not_converged(state.t, h, effort, residual, strain));
+        }
+        state.x.copy_from_slice(&self.x);
+        state.v.copy_from_slice(&self.v);
+        state.t += h;
+        Ok(Accepted {
+            residual,
+            work,
+            path: Path::Newton,
+        })
+    }
+}

@@ -1,0 +1,184 @@
+//! What a step tells, and why a step fails.
+
+use isosheet_coords::linalg::LinalgError;
+use isosheet_mesh::{EdgeId, VertexId};
+
+/// How a step was obtained.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Path {
+    /// Newton's method alone.
+    Newton,
+    /// Newton's method with a modified, positive definite matrix or shortened steps, as near
+    /// flat states need it.
+    Globalised,
+    /// As `Globalised`, and a seeded perturbation decided which way the sheet folds.
+    BranchSeeded,
+}
+
+/// What one call of [`Simulation::step`](crate::Simulation::step) did.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct StepReport {
+    /// Time at the end of the step, seconds.
+    pub t: f64,
+    /// Length of the step, seconds.
+    pub h: f64,
+    /// Accepted sub-steps; 1 unless some had to be shortened.
+    pub substeps: usize,
+    /// Sub-steps that were tried and rejected.
+    pub rejected: usize,
+    /// Newton iterations, those of rejected sub-steps included.
+    pub iterations: usize,
+    /// Matrix factorisations, those of rejected sub-steps included.
+    pub factorisations: usize,
+    /// Largest residual of the momentum balance over the sub-steps, as an acceleration relative
+    /// to the acceleration that the applied forces and the motion ask for.
+    pub residual: f64,
+    /// Kinetic energy at the end, joules.
+    pub kinetic: f64,
+    /// Potential energy at the end, joules.
+    pub potential: f64,
+    /// Work done by the non-conservative forces since the start, joules.
+    pub work: f64,
+    /// Energy taken out by velocity damping since the start, joules.
+    pub dissipated: f64,
+    /// `T + V - work + dissipated` minus its value at the start, joules: the error of the
+    /// integrator, zero for the exact motion.
+    pub energy_drift: f64,
+    /// Largest relative edge length error at the end.
+    pub strain: f64,
+    /// Smallest gap to an obstacle or between parts of the sheet, metres; `None` without contact.
+    pub gap: Option<f64>,
+    /// How the hardest sub-step was obtained.
+    pub path: Path,
+}
+
+impl StepReport {
+    /// Total energy `H = T + V` (Liu, Tang and Joneja 2007, Eq. 17), joules.
+    pub fn hamiltonian(&self) -> f64 {
+        self.kinetic + self.potential
+    }
+}
+
+/// Why a step could not be taken. The state is left as it was.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// The step size makes no sense.
+    #[error("step size {h} s at t = {t} s; give a positive finite step")]
+    StepSize {
+        /// The step size given, seconds.
+        h: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// A position or velocity of the state is not finite.
+    #[error(
+        "vertex {vertex} has position or velocity {value} at t = {t} s; the state was changed from outside"
+    )]
+    NonFiniteState {
+        /// The vertex.
+        vertex: VertexId,
+        /// The value found.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// A potential or force returned a value that is not finite.
+    #[error(
+        "a potential or force is {value} at vertex {vertex}, t = {t} s; check the user-supplied functions"
+    )]
+    NonFiniteForce {
+        /// The vertex.
+        vertex: VertexId,
+        /// The value found.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// The start state does not have the rest lengths.
+    #[error(
+        "edge {edge} is {length} m long at t = {t} s, its rest length is {rest} m; start from a \
+         state on the constraints (see `Simulation::project`)"
+    )]
+    OffConstraints {
+        /// The worst edge.
+        edge: EdgeId,
+        /// Its length, metres.
+        length: f64,
+        /// Its rest length, metres.
+        rest: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// Newton's method did not converge.
+    #[error(
+        "Newton's method stopped at residual {residual:e}, edge strain {strain:e} after \
+         {iterations} iterations at t = {t} s, h = {h} s; take a smaller step"
+    )]
+    NotConverged {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// Iterations done.
+        iterations: usize,
+        /// Relative residual of the momentum balance.
+        residual: f64,
+        /// Relative edge length error reached.
+        strain: f64,
+    },
+    /// The length constraints are dependent, or so nearly that the multipliers are noise.
+    #[error(
+        "{rank_deficiency} of the length constraints are dependent at t = {t} s (smallest \
+         singular value of the scaled rigidity matrix {smallest_singular_value:e}): this \
+         integrator has no unique rod forces there. Start from a folded state, seed a branch with \
+         `Simulation::leave_flat`, or use the implicit Euler or projection method"
+    )]
+    RankDeficient {
+        /// Time, seconds.
+        t: f64,
+        /// Number of dependent constraints.
+        rank_deficiency: usize,
+        /// Smallest singular value of the rigidity matrix with rows scaled to unit rods; zero
+        /// if the matrix has fewer unknowns than rods.
+        smallest_singular_value: f64,
+    },
+    /// Even the smallest step allowed was rejected.
+    #[error("no step of at least {min_step} s was accepted at t = {t} s; last reason: {cause}")]
+    StepTooSmall {
+        /// Time, seconds.
+        t: f64,
+        /// Smallest step allowed, seconds.
+        min_step: f64,
+        /// Why the last step was rejected.
+        cause: Box<StepError>,
+    },
+    /// The linear algebra failed.
+    #[error("linear solve failed at t = {t} s: {source}")]
+    Linalg {
+        /// Time, seconds.
+        t: f64,
+        /// The reason.
+        source: LinalgError,
+    },
+}
+
+/// Counters of one attempted sub-step, filled also when it fails.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Effort {
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Matrix factorisations.
+    pub factorisations: usize,
+}
+
+/// What an accepted sub-step achieved.
+#[derive(Debug, Clone, Copy)]
+pub struct Accepted {
+    /// Relative residual of the momentum balance.
+    pub residual: f64,
+    /// Work done by the non-conservative forces, joules.
+    pub work: f64,
+    /// How it was obtained.
+    pub path: Path,
+}

@@ -1,0 +1,25 @@
+//! The state of a sheet in motion.
+
+/// Time, positions and velocities.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Time, seconds.
+    pub t: f64,
+    /// Positions, `3V`, metres.
+    pub x: Vec<f64>,
+    /// Velocities, `3V`, metres per second; zero at pinned vertices.
+    pub v: Vec<f64>,
+}
+
+impl State {
+    /// The given positions at rest, at time zero.
+    pub fn at_rest(x: Vec<f64>) -> Self {
+        let v = vec![0.0; x.len()];
+        Self { t: 0.0, x, v }
+    }
+
+    /// The given positions and velocities at time zero.
+    pub fn moving(x: Vec<f64>, v: Vec<f64>) -> Self {
+        Self { t: 0.0, x, v }
+    }
+}
