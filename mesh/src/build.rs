@@ -7,13 +7,13 @@ const MAX_ELEMENTS: usize = (u32::MAX / 6) as usize;
 
 /// One side of a face: the edge it lies on, by sorted ends, and where it comes from.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Side {
-    low: u32,
-    high: u32,
-    face: u32,
-    corner: u8,
+pub(crate) struct Side {
+    pub(crate) low: u32,
+    pub(crate) high: u32,
+    pub(crate) face: u32,
+    pub(crate) corner: u8,
     /// The face runs from `high` to `low`.
-    reversed: bool,
+    pub(crate) reversed: bool,
 }
 
 pub(crate) fn build(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Topology, TopologyError> {
@@ -144,7 +144,8 @@ pub(crate) fn check_faces(vertex_count: usize, faces: &[[u32; 3]]) -> Result<(),
     }
 }
 
-fn sorted_sides(faces: &[[u32; 3]]) -> Vec<Side> {
+/// All sides of all faces, sorted by their edge, so that the sides of one edge are neighbours.
+pub(crate) fn sorted_sides(faces: &[[u32; 3]]) -> Vec<Side> {
     let mut sides = Vec::with_capacity(3 * faces.len());
     for (k, f) in faces.iter().enumerate() {
         for corner in 0..3 {
@@ -267,4 +268,144 @@ fn label_components(t: &mut Topology) {
     }
     t.vertex_component = label;
     t.component_count = count as usize;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(vertex_count: usize, faces: &[[u32; 3]]) -> TopologyError {
+        build(vertex_count, faces).unwrap_err()
+    }
+
+    #[test]
+    fn every_defect_has_its_error() {
+        let (v, f) = (VertexId, FaceId);
+        assert_eq!(error(3, &[]), TopologyError::NoFaces);
+        assert_eq!(
+            error(3, &[[0, 1, 2], [0, 2, 3]]),
+            TopologyError::IndexOutOfRange {
+                face: f(1),
+                vertex: 3,
+                vertex_count: 3
+            }
+        );
+        assert_eq!(
+            error(3, &[[0, 1, 0]]),
+            TopologyError::RepeatedVertex {
+                face: f(0),
+                vertex: v(0)
+            }
+        );
+        assert_eq!(
+            error(3, &[[0, 1, 1]]),
+            TopologyError::RepeatedVertex {
+                face: f(0),
+                vertex: v(1)
+            }
+        );
+        assert_eq!(
+            error(3, &[[2, 2, 0]]),
+            TopologyError::RepeatedVertex {
+                face: f(0),
+                vertex: v(2)
+            }
+        );
+        for copy in [[0, 1, 2], [1, 2, 0], [2, 1, 0]] {
+            assert_eq!(
+                error(4, &[[0, 1, 2], [0, 2, 3], copy]),
+                TopologyError::DuplicateFace {
+                    first: f(0),
+                    second: f(2),
+                    corners: [0, 1, 2]
+                }
+            );
+        }
+        assert_eq!(
+            error(5, &[[0, 1, 2], [1, 0, 3], [0, 1, 4]]),
+            TopologyError::NonManifoldEdge {
+                a: v(0),
+                b: v(1),
+                count: 3,
+                faces: [f(0), f(1), f(2)]
+            }
+        );
+        assert_eq!(
+            error(4, &[[0, 1, 2], [0, 3, 2]]),
+            TopologyError::InconsistentWinding {
+                a: v(2),
+                b: v(0),
+                first: f(0),
+                second: f(1)
+            }
+        );
+        assert_eq!(
+            error(5, &[[0, 1, 2], [0, 3, 4]]),
+            TopologyError::BowTieVertex {
+                vertex: v(0),
+                degree: 2,
+                reached: 1
+            }
+        );
+        assert_eq!(
+            error(4, &[[0, 1, 2]]),
+            TopologyError::UnreferencedVertex { vertex: v(3) }
+        );
+        assert!(matches!(
+            error(usize::MAX, &[[0, 1, 2]]),
+            TopologyError::TooLarge {
+                what: "vertices",
+                ..
+            }
+        ));
+    }
+
+    #[test]
+    fn two_closed_fans_at_a_vertex_are_a_bow_tie() {
+        // Two tetrahedra that share vertex 0.
+        let faces = [
+            [0, 1, 2],
+            [0, 2, 3],
+            [0, 3, 1],
+            [1, 3, 2],
+            [0, 4, 5],
+            [0, 5, 6],
+            [0, 6, 4],
+            [4, 6, 5],
+        ];
+        assert_eq!(
+            error(7, &faces),
+            TopologyError::BowTieVertex {
+                vertex: VertexId(0),
+                degree: 6,
+                reached: 3
+            }
+        );
+        // A closed fan and an open one.
+        let faces = [[0, 4, 5], [0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+        assert_eq!(
+            error(6, &faces),
+            TopologyError::BowTieVertex {
+                vertex: VertexId(0),
+                degree: 4,
+                reached: 1
+            }
+        );
+    }
+
+    #[test]
+    fn messages_name_element_value_and_remedy() {
+        let text = error(3, &[[0, 1, 2], [0, 2, 7]]).to_string();
+        assert!(
+            text.contains("face 1") && text.contains("vertex 7") && text.contains("3 vertices"),
+            "{text}"
+        );
+        let text = error(4, &[[0, 1, 2], [0, 3, 2]]).to_string();
+        assert!(
+            text.contains("face 0")
+                && text.contains("face 1")
+                && text.contains("orient_consistently"),
+            "{text}"
+        );
+    }
 }

@@ -170,6 +170,18 @@ pub enum MeshError {
         /// Its length.
         length: f64,
     },
+    /// The angles about an interior vertex do not add up to a full turn.
+    #[error(
+        "the angles about {vertex} add up to 2 pi minus {defect:.3e} rad, more than {tolerance:e} from a full turn, so the sheet cannot be laid flat there; flatten it, or cut it open at this vertex"
+    )]
+    NotDevelopable {
+        /// The vertex.
+        vertex: VertexId,
+        /// 2 pi minus the angle sum, in radians.
+        defect: f64,
+        /// What was allowed.
+        tolerance: f64,
+    },
     /// A mass or density is not a positive number.
     #[error("the {what} is {value}; it must be a positive, finite number")]
     NotPositive {

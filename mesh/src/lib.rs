@@ -3,6 +3,9 @@
 //! * [`Topology`]: who meets whom, without coordinates; validates what it is built from.
 //! * [`Sheet`]: a topology with rest positions, lengths and areas.
 //! * [`LengthConstraints`] and [`MassMatrix`]: what the dynamics needs of the rest shape.
+//! * [`Dof`]: degrees of freedom by counting, with the two lemmas.
+//! * [`EdgeAngles`], [`check_compatibility`], [`fold_angle`]: angles of any state; [`CreasePattern`]: where the sheet folds straight.
+//! * [`orient_consistently`]: repair on request.
 //! * [`generate`]: squares, grids and other sheets made by formula.
 //!
 //! Conventions: SI units, radians, `f64`; positions are flat arrays `x0 y0 z0 x1 y1 z1 ...`; faces are
@@ -11,19 +14,34 @@
 //! The model is that of Y.-J. Liu, K. Tang and A. Joneja, "Modeling dynamic developable meshes by the Hamilton principle",
 //! Computer-Aided Design 39 (2007) 719-731.
 
+mod angles;
 mod build;
+mod creases;
+mod dof;
+mod edit;
 mod error;
 pub mod generate;
 mod ids;
+mod invariants;
 mod lengths;
 mod mass;
+mod repair;
 mod sheet;
+#[cfg(test)]
+mod testing;
 mod topology;
 mod vec3;
 
+pub use angles::{
+    AngleError, AngleTriple, COMPATIBILITY_TOLERANCE, EdgeAngles, angle_from_lengths,
+    check_compatibility, fold_angle,
+};
+pub use creases::{CreaseLine, CreasePattern, FoldingDirection, LineEnds};
+pub use dof::Dof;
 pub use error::{MeshError, TopologyError};
 pub use ids::{EdgeId, FaceId, HalfEdgeId, VertexId};
 pub use lengths::LengthConstraints;
 pub use mass::{MassKind, MassMatrix};
+pub use repair::orient_consistently;
 pub use sheet::Sheet;
 pub use topology::Topology;

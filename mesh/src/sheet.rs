@@ -5,7 +5,8 @@ use crate::{EdgeId, FaceId, MeshError, Topology, VertexId};
 
 /// A triangle mesh with its rest positions: the edge lengths and face areas that every later state keeps.
 ///
-/// Positions are a flat array `x0 y0 z0 x1 y1 z1 ...` in metres. A sheet need not be planar or developable.
+/// Positions are a flat array `x0 y0 z0 x1 y1 z1 ...` in metres. A sheet need not be planar or developable: see
+/// [`Sheet::check_developable`].
 ///
 /// ```
 /// let sheet = isosheet_mesh::Sheet::new(
@@ -185,4 +186,139 @@ fn face_area(t: &Topology, x: &[f64], lengths: &[f64], f: FaceId) -> Result<f64,
         });
     }
     Ok(0.5 * parallelogram)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRIANGLE: [f64; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.3, 0.8, 0.0];
+
+    #[test]
+    fn bad_coordinates_are_named() {
+        let mut x = TRIANGLE.to_vec();
+        x[7] = f64::NAN;
+        let error = Sheet::new(x, &[[0, 1, 2]]).unwrap_err();
+        assert!(matches!(
+            error,
+            MeshError::NonFinite {
+                vertex: VertexId(2),
+                axis: 1,
+                ..
+            }
+        ));
+        assert!(
+            error
+                .to_string()
+                .contains("coordinate y of vertex 2 is NaN"),
+            "{error}"
+        );
+        assert!(matches!(
+            Sheet::new(TRIANGLE[..8].to_vec(), &[[0, 1, 2]]),
+            Err(MeshError::WrongLength {
+                got: 8,
+                expected: 9
+            })
+        ));
+        let t = Topology::from_faces(3, &[[0, 1, 2]]).unwrap();
+        assert!(matches!(
+            Sheet::from_topology(t, vec![0.0; 12]),
+            Err(MeshError::WrongLength {
+                got: 12,
+                expected: 9
+            })
+        ));
+        assert!(matches!(
+            Sheet::new(TRIANGLE.to_vec(), &[[0, 1, 3]]),
+            Err(MeshError::Topology(
+                crate::TopologyError::IndexOutOfRange { .. }
+            ))
+        ));
+        let mut x = TRIANGLE.to_vec();
+        x[0] = 1e200;
+        assert!(matches!(
+            Sheet::new(x, &[[0, 1, 2]]),
+            Err(MeshError::LengthOutOfRange { .. })
+        ));
+    }
+
+    #[test]
+    fn zero_area_is_relative() {
+        for unit in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
+            let x: Vec<f64> = TRIANGLE.iter().map(|c| unit * c).collect();
+            let s = Sheet::new(x, &[[0, 1, 2]]).unwrap();
+            assert!((s.area() / (0.4 * unit * unit) - 1.0).abs() < 1e-14);
+            // Corners on a line, as well as the rounding of the coordinates allows.
+            let line = vec![
+                0.1 * unit,
+                0.2 * unit,
+                0.3 * unit,
+                0.2 * unit,
+                0.4 * unit,
+                0.6 * unit,
+                0.7 * unit,
+                1.4 * unit,
+                2.1 * unit,
+            ];
+            let error = Sheet::new(line, &[[0, 1, 2]]).unwrap_err();
+            assert!(
+                matches!(
+                    error,
+                    MeshError::ZeroAreaFace {
+                        face: FaceId(0),
+                        ..
+                    }
+                ),
+                "{error}"
+            );
+            let same = vec![unit; 9];
+            assert!(matches!(
+                Sheet::new(same, &[[0, 1, 2]]),
+                Err(MeshError::ZeroAreaFace { .. })
+            ));
+            // Two coincident corners.
+            let mut x: Vec<f64> = TRIANGLE.iter().map(|c| unit * c).collect();
+            x.copy_within(0..3, 3);
+            assert!(matches!(
+                Sheet::new(x, &[[0, 1, 2]]),
+                Err(MeshError::ZeroAreaFace { .. })
+            ));
+            // A needle of aspect ratio 1e-6 is still a triangle.
+            let mut x: Vec<f64> = TRIANGLE.iter().map(|c| unit * c).collect();
+            x[7] = 1e-6 * unit;
+            assert!(Sheet::new(x, &[[0, 1, 2]]).is_ok());
+        }
+    }
+
+    #[test]
+    fn parts_and_unions() {
+        let s = crate::generate::isotropic_square(0, 1.0).unwrap();
+        let moved = s.map_positions(|[x, y, z]| [x + 2.0, y, z]).unwrap();
+        let both = Sheet::union(&[&s, &moved]).unwrap();
+        both.topology().check_invariants();
+        assert_eq!(both.topology().component_count(), 2);
+        assert!((both.area() - 2.0).abs() < 1e-15);
+        let second = both.keep_faces(|f| f.index() >= 8).unwrap();
+        assert_eq!(second, moved);
+        assert!(s.keep_faces(|_| false).is_err());
+        assert!(Sheet::union(&[]).is_err());
+        assert!(matches!(
+            s.map_positions(|[_, y, z]| [0.0, y, z]),
+            Err(MeshError::ZeroAreaFace { .. })
+        ));
+        assert!(matches!(
+            s.map_positions(|_| [f64::NAN; 3]),
+            Err(MeshError::NonFinite { .. })
+        ));
+        // Two triangles that meet at the centre only.
+        let cross = s.keep_faces(|f| matches!(f.index(), 0 | 6));
+        assert!(matches!(
+            cross,
+            Err(MeshError::Topology(
+                crate::TopologyError::BowTieVertex { .. }
+            ))
+        ));
+        assert_eq!(s.face_indices().len(), 8);
+        assert!((s.mean_length() - (12.0 * 0.5 + 4.0 * 0.5f64.hypot(0.5)) / 16.0).abs() < 1e-15);
+    }
 }

@@ -303,3 +303,95 @@ impl Topology {
         out
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::testing::{disks, octahedron, surfaces, torus};
+
+    #[test]
+    fn closed_surfaces() {
+        for ((n, faces), chi) in [(octahedron(), 2), (torus(3, 3), 0), (torus(5, 4), 0)] {
+            let t = Topology::from_faces(n, &faces).unwrap();
+            t.check_invariants();
+            assert!(t.is_closed());
+            assert_eq!(t.euler_characteristic(), chi);
+            assert!(t.boundary_loops().is_empty());
+        }
+    }
+
+    #[test]
+    fn fan_of_a_boundary_vertex_is_counter_clockwise() {
+        // Three triangles about vertex 0, given in another order.
+        let t = Topology::from_faces(5, &[[0, 2, 3], [0, 3, 4], [0, 1, 2]]).unwrap();
+        t.check_invariants();
+        let around: Vec<u32> = t.neighbours(VertexId(0)).map(|v| v.0).collect();
+        assert_eq!(around, [1, 2, 3, 4]);
+        assert_eq!(
+            t.vertex_faces(VertexId(0)),
+            [FaceId(2), FaceId(0), FaceId(1)]
+        );
+        let walk: Vec<u32> = t.boundary_loops()[0].iter().map(|v| v.0).collect();
+        assert_eq!(walk, [0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn large_mesh_builds_fast() {
+        let start = std::time::Instant::now();
+        let s = crate::generate::isotropic_square(7, 1.0).unwrap();
+        let t = s.topology();
+        assert_eq!((t.face_count(), t.vertex_count()), (131_072, 66_049));
+        // About 30 ms optimised; the limit only catches a wrong complexity.
+        assert!(start.elapsed().as_secs_f64() < 2.0, "{:?}", start.elapsed());
+    }
+
+    proptest! {
+        #[test]
+        fn adjacency_of_any_surface_is_right((n, faces) in surfaces()) {
+            Topology::from_faces(n, &faces).unwrap().check_invariants();
+        }
+
+        #[test]
+        fn disks_are_disks((n, faces) in disks()) {
+            let t = Topology::from_faces(n, &faces).unwrap();
+            t.check_invariants();
+            prop_assert_eq!(t.euler_characteristic(), 1);
+            prop_assert_eq!((t.component_count(), t.boundary_loops().len()), (1, 1));
+        }
+
+        /// Renumbering vertices and reordering faces changes names only.
+        #[test]
+        fn numbering_does_not_matter((n, faces) in surfaces(), seed in any::<u64>()) {
+            use rand::{RngExt, SeedableRng};
+            let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+            let mut name: Vec<u32> = (0..n as u32).collect();
+            for k in (1..n).rev() {
+                name.swap(k, rng.random_range(0..=k));
+            }
+            let mut other: Vec<[u32; 3]> = faces.iter().map(|f| f.map(|v| name[v as usize])).collect();
+            for k in (1..other.len()).rev() {
+                other.swap(k, rng.random_range(0..=k));
+                other[k].rotate_left(rng.random_range(0..3));
+            }
+            let (s, t) = (Topology::from_faces(n, &faces).unwrap(), Topology::from_faces(n, &other).unwrap());
+            t.check_invariants();
+            prop_assert_eq!(s.edge_count(), t.edge_count());
+            prop_assert_eq!(s.boundary_loops().len(), t.boundary_loops().len());
+            prop_assert_eq!(s.component_count(), t.component_count());
+            for v in s.vertex_ids() {
+                let w = VertexId(name[v.index()]);
+                prop_assert_eq!(s.is_boundary_vertex(v), t.is_boundary_vertex(w));
+                let mut around: Vec<u32> = s.neighbours(v).map(|u| name[u.index()]).collect();
+                let other: Vec<u32> = t.neighbours(w).map(|u| u.0).collect();
+                // The same cyclic order; the same order where the fan has an end.
+                if !s.is_boundary_vertex(v) {
+                    let turn = around.iter().position(|u| *u == other[0]).unwrap();
+                    around.rotate_left(turn);
+                }
+                prop_assert_eq!(around, other);
+            }
+        }
+    }
+}

@@ -40,6 +40,16 @@ pub enum GenerateError {
         /// Its value.
         large_value: f64,
     },
+    /// An outline does not bound a simple polygon.
+    #[error(
+        "the outline is unusable at point {corner} of its boundary: {problem}; give the corners of a simple polygon in order"
+    )]
+    Outline {
+        /// Which point.
+        corner: usize,
+        /// What is wrong there.
+        problem: &'static str,
+    },
     /// The result would be too large to handle.
     #[error(
         "the sheet would have {faces} faces, more than the {limit} that are allowed; use fewer cells or a lower level"

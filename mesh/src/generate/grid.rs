@@ -85,16 +85,101 @@ fn grid_faces(columns: usize, rows: usize, diagonals: Diagonals) -> Vec<[u32; 3]
 /// # Errors
 /// [`GenerateError`] for a level above 10 or a side that is not positive.
 pub fn isotropic_square(level: u32, side: f64) -> Result<Sheet, GenerateError> {
-    if level > 10 {
-        return Err(GenerateError::Count {
-            name: "level",
-            value: level as usize,
-            min: 0,
-            max: 10,
-        });
-    }
+    check_level(level)?;
     let n = 2usize << level;
     grid(n, n, side, side, Diagonals::UnionJack)
+}
+
+/// The isotropic rectangle of `columns` x `rows` coarse rectangles at refinement `level`: each coarse rectangle is cut into
+/// 2^level x 2^level smaller ones and each of those into eight triangles about its centre (Fig. 4).
+///
+/// With one column and one row of equal sides this is [`isotropic_square`]. Numbering is that of [`grid`].
+///
+/// # Errors
+/// As [`grid`]; the level may be at most 10.
+pub fn isotropic_rectangle(
+    columns: usize,
+    rows: usize,
+    level: u32,
+    width: f64,
+    height: f64,
+) -> Result<Sheet, GenerateError> {
+    check_level(level)?;
+    check_count("columns", columns, 1)?;
+    check_count("rows", rows, 1)?;
+    grid(
+        columns << (level + 1),
+        rows << (level + 1),
+        width,
+        height,
+        Diagonals::UnionJack,
+    )
+}
+
+/// The one-way grid of Liu, Tang and Joneja 2007, Figs. 1 and 3: all diagonals run from lower right to upper left.
+///
+/// # Errors
+/// As [`grid`].
+pub fn anisotropic_grid(
+    columns: usize,
+    rows: usize,
+    width: f64,
+    height: f64,
+) -> Result<Sheet, GenerateError> {
+    grid(columns, rows, width, height, Diagonals::Falling)
+}
+
+/// A strip of one row of `cells` cells along x; no interior vertex, so that its lengths are independent even when flat.
+///
+/// With [`Diagonals::UnionJack`] the creases zigzag, otherwise they are parallel. Vertex i is at the bottom of rung i,
+/// vertex i + cells + 1 at its top.
+///
+/// # Errors
+/// As [`grid`].
+pub fn strip(
+    cells: usize,
+    length: f64,
+    width: f64,
+    diagonals: Diagonals,
+) -> Result<Sheet, GenerateError> {
+    grid(cells, 1, length, width, diagonals)
+}
+
+/// A strip of `rows` rungs of two vertices each, numbered downwards (along -y): the mesh of the hanging chain.
+///
+/// Rung k is at y = -k `spacing`; vertices 2k and 2k + 1 are at x = 0 and x = `rung` (metres). Held at the first rung, with
+/// equal vertex masses, it hangs and swings as `rows` - 1 equal beads on a string do: the side rods carry all the
+/// weight, rungs and diagonals none. Turn it upright with `map_positions(|[x, y, z]| [x, -z, y])`.
+///
+/// # Errors
+/// [`GenerateError`] for fewer than two rows or a size that is not positive.
+pub fn ladder(rows: usize, rung: f64, spacing: f64) -> Result<Sheet, GenerateError> {
+    check_count("rows", rows, 2)?;
+    check_size("rung", rung)?;
+    check_size("spacing", spacing)?;
+    let positions = (0..rows)
+        .flat_map(|k| {
+            let y = -(k as f64) * spacing;
+            [0.0, y, 0.0, rung, y, 0.0]
+        })
+        .collect();
+    let faces: Vec<[u32; 3]> = (0..rows as u32 - 1)
+        .flat_map(|k| [[2 * k, 2 * k + 2, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 1]])
+        .collect();
+    Ok(Sheet::new(positions, &faces)?)
+}
+
+fn check_level(level: u32) -> Result<(), GenerateError> {
+    const MAX: u32 = 10;
+    if level <= MAX {
+        return Ok(());
+    }
+    Err(GenerateError::Count {
+        name: "level",
+        value: level as usize,
+        min: 0,
+        max: MAX as usize,
+    })
 }
 
 #[cfg(test)]
@@ -130,6 +215,38 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn rectangles_and_strips() {
+        let s = isotropic_rectangle(3, 2, 1, 0.6, 0.4).unwrap();
+        s.topology().check_invariants();
+        assert_eq!(
+            (s.topology().vertex_count(), s.topology().face_count()),
+            (13 * 9, 2 * 12 * 8)
+        );
+        assert_eq!(
+            isotropic_rectangle(1, 1, 2, 0.3, 0.3).unwrap(),
+            isotropic_square(2, 0.3).unwrap()
+        );
+        let s = anisotropic_grid(3, 4, 0.6, 0.4).unwrap();
+        s.topology().check_invariants();
+        assert_eq!(s.topology().degree(crate::VertexId(5)), 6);
+        for diagonals in [Diagonals::UnionJack, Diagonals::Falling, Diagonals::Rising] {
+            let s = strip(6, 1.2, 0.1, diagonals).unwrap();
+            s.topology().check_invariants();
+            assert_eq!(s.topology().interior_vertex_count(), 0);
+        }
+        let s = ladder(4, 0.1, 0.3).unwrap();
+        s.topology().check_invariants();
+        assert_eq!(
+            (s.topology().vertex_count(), s.topology().face_count()),
+            (8, 6)
+        );
+        assert!((s.area() - 0.09).abs() < 1e-15);
+        let t = s.topology();
+        let side = t.find_edge(crate::VertexId(1), crate::VertexId(3)).unwrap();
+        assert!((s.lengths()[side.index()] - 0.3).abs() < 1e-15);
     }
 
     #[test]
