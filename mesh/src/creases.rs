@@ -290,7 +290,7 @@ mod tests {
 
     #[test]
     fn irregular_sheets_have_no_lines_through() {
-        let s = generate::irregular_square(1.0, 0.15, 2).unwrap();
+        let s = generate::delaunay_square(1.0, 0.15, 2).unwrap();
         let p = pattern(&s);
         // An edge between two boundary vertices cuts off a corner and is a line of its own.
         assert!(p.through_lines().all(|l| l.edges.len() == 1));

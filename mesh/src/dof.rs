@@ -198,7 +198,7 @@ mod tests {
         let m2 = generate::isotropic_square(2, 1.0).unwrap();
         assert_eq!(Dof::flat_redundancy(m2.topology()), 49);
         let ring = generate::annulus(9, 2, 0.4, 1.0).unwrap();
-        let irregular = generate::irregular_square(1.0, 0.25, 1).unwrap();
+        let irregular = generate::delaunay_square(1.0, 0.25, 1).unwrap();
         let holed = irregular.keep_faces(|f| f.index() % 11 != 5);
         let both = Sheet::union(&[&ring, &square]).unwrap();
         let strip = generate::strip(5, 1.0, 0.2, generate::Diagonals::UnionJack).unwrap();

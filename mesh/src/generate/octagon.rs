@@ -2,8 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_4, FRAC_PI_8};
 
+use super::delaunay::{relaxed, subdivide};
 use super::error::{GenerateError, check_size};
-use super::irregular::{relaxed, subdivide};
 use super::isotropic_square;
 use crate::Sheet;
 

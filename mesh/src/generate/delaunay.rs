@@ -26,7 +26,7 @@ const CLEARANCE: f64 = 0.55;
 /// # Errors
 /// [`GenerateError`] for a spacing that is not positive, an outline of fewer than three corners, with a corner that
 /// is not finite, with a side of no length or with crossing sides, or more than 2^24 faces.
-pub fn irregular(outline: &[[f64; 2]], spacing: f64, seed: u64) -> Result<Sheet, GenerateError> {
+pub fn delaunay(outline: &[[f64; 2]], spacing: f64, seed: u64) -> Result<Sheet, GenerateError> {
     check_size("spacing", spacing)?;
     let (min, max) = check_outline(outline)?;
     let cells = ((max[0] - min[0]) / spacing) * ((max[1] - min[1]) / spacing);
@@ -65,13 +65,13 @@ pub fn irregular(outline: &[[f64; 2]], spacing: f64, seed: u64) -> Result<Sheet,
     relaxed(points, boundary, SMOOTHING_ROUNDS)
 }
 
-/// [`irregular`] for the square `[0, side]` x `[0, side]` (metres).
+/// [`delaunay`] for the square `[0, side]` x `[0, side]` (metres).
 ///
 /// # Errors
-/// As [`irregular`].
-pub fn irregular_square(side: f64, spacing: f64, seed: u64) -> Result<Sheet, GenerateError> {
+/// As [`delaunay`].
+pub fn delaunay_square(side: f64, spacing: f64, seed: u64) -> Result<Sheet, GenerateError> {
     check_size("side", side)?;
-    irregular(
+    delaunay(
         &[[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]],
         spacing,
         seed,
@@ -242,16 +242,16 @@ mod tests {
     #[test]
     fn squares_are_good_irregular_and_seeded() {
         for seed in 0..20 {
-            let s = irregular_square(1.0, 0.12, seed).unwrap();
+            let s = delaunay_square(1.0, 0.12, seed).unwrap();
             s.topology().check_invariants();
             assert_eq!(s.topology().boundary_edge_count(), 32);
             assert_eq!(s.topology().euler_characteristic(), 1);
             assert!((s.area() - 1.0).abs() < 1e-12);
             assert!(min_angle(&s) > 20.0, "seed {seed}: {}", min_angle(&s));
         }
-        let again = irregular_square(1.0, 0.12, 3).unwrap();
-        assert_eq!(again, irregular_square(1.0, 0.12, 3).unwrap());
-        assert_ne!(again, irregular_square(1.0, 0.12, 4).unwrap());
+        let again = delaunay_square(1.0, 0.12, 3).unwrap();
+        assert_eq!(again, delaunay_square(1.0, 0.12, 3).unwrap());
+        assert_ne!(again, delaunay_square(1.0, 0.12, 4).unwrap());
     }
 
     #[test]
@@ -266,14 +266,14 @@ mod tests {
         ];
         let backwards: Vec<_> = l.iter().rev().copied().collect();
         for outline in [&l[..], &backwards] {
-            let s = irregular(outline, 0.2, 1).unwrap();
+            let s = delaunay(outline, 0.2, 1).unwrap();
             s.topology().check_invariants();
             assert!((s.area() - 3.0).abs() < 1e-12, "{}", s.area());
             assert_eq!(s.topology().boundary_edge_count(), 40);
             assert!(min_angle(&s) > 15.0);
         }
         // Coarser than the outline: its corners only.
-        let s = irregular(&l, 10.0, 1).unwrap();
+        let s = delaunay(&l, 10.0, 1).unwrap();
         assert_eq!(
             (s.topology().vertex_count(), s.topology().face_count()),
             (6, 4)
@@ -282,8 +282,8 @@ mod tests {
 
     #[test]
     fn scale_changes_nothing_but_the_scale() {
-        let small = irregular_square(1e-6, 1.2e-7, 5).unwrap();
-        let large = irregular_square(1e3, 1.2e2, 5).unwrap();
+        let small = delaunay_square(1e-6, 1.2e-7, 5).unwrap();
+        let large = delaunay_square(1e3, 1.2e2, 5).unwrap();
         assert_eq!(small.topology(), large.topology());
     }
 
@@ -291,31 +291,31 @@ mod tests {
     fn misuse_is_refused() {
         let bow_tie = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
         assert!(matches!(
-            irregular(&bow_tie, 0.1, 0),
+            delaunay(&bow_tie, 0.1, 0),
             Err(GenerateError::Outline { .. })
         ));
         assert!(matches!(
-            irregular(&bow_tie[..2], 0.1, 0),
+            delaunay(&bow_tie[..2], 0.1, 0),
             Err(GenerateError::Count { .. })
         ));
         let nan = [[0.0, 0.0], [1.0, f64::NAN], [1.0, 0.0]];
         assert!(matches!(
-            irregular(&nan, 0.1, 0),
+            delaunay(&nan, 0.1, 0),
             Err(GenerateError::Outline { corner: 1, .. })
         ));
         let double = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         assert!(matches!(
-            irregular(&double, 0.1, 0),
+            delaunay(&double, 0.1, 0),
             Err(GenerateError::Outline { corner: 1, .. })
         ));
         let flat = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]];
-        assert!(irregular(&flat, 0.1, 0).is_err());
+        assert!(delaunay(&flat, 0.1, 0).is_err());
         assert!(matches!(
-            irregular_square(1.0, 1e-9, 0),
+            delaunay_square(1.0, 1e-9, 0),
             Err(GenerateError::TooManyFaces { .. })
         ));
         assert!(matches!(
-            irregular_square(1.0, 0.0, 0),
+            delaunay_square(1.0, 0.0, 0),
             Err(GenerateError::Size { .. })
         ));
     }
