@@ -2,7 +2,7 @@
 
 use crate::realise::at;
 use crate::vec3::{dot, norm, sub};
-use isosheet_mesh::{EdgeId, Sheet, VertexId};
+use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId};
 use thiserror::Error;
 
 /// Why a [`RodSystem`] cannot be built.
@@ -58,7 +58,22 @@ impl RodSystem {
     /// # Errors
     /// See [`SystemError`].
     pub fn new(sheet: &Sheet, pins: &[VertexId]) -> Result<Self, SystemError> {
-        let count = sheet.topology().vertex_count();
+        Self::from_parts(sheet.topology(), sheet.lengths(), pins)
+    }
+
+    /// The system of a topology with one length (metres) per edge and the given vertices held.
+    ///
+    /// # Errors
+    /// See [`SystemError`].
+    ///
+    /// # Panics
+    /// When there are fewer lengths than edges.
+    pub fn from_parts(
+        topology: &Topology,
+        lengths: &[f64],
+        pins: &[VertexId],
+    ) -> Result<Self, SystemError> {
+        let count = topology.vertex_count();
         let mut pinned = vec![false; count];
         for &vertex in pins {
             *pinned
@@ -73,8 +88,7 @@ impl RodSystem {
                 free.push(VertexId(i as u32));
             }
         }
-        let rods: Vec<Rod> = sheet
-            .topology()
+        let rods: Vec<Rod> = topology
             .edges()
             .iter()
             .enumerate()
@@ -83,7 +97,7 @@ impl RodSystem {
                 edge: EdgeId(e as u32),
                 ends,
                 unknown: ends.map(|v| first_unknown[v.index()]),
-                length: sheet.lengths()[e],
+                length: lengths[e],
             })
             .collect();
         if rods.len() > 3 * free.len() {

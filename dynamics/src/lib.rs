@@ -1,5 +1,6 @@
 //! Dynamics of developable meshes.
 
+pub mod chart;
 mod energy_momentum;
 mod implicit_euler;
 mod integrator;

@@ -1,0 +1,27 @@
+//! Mechanics in system coordinates (Liu, Tang and Joneja 2007, Sec. 4): momenta, Hamiltonian, mass-matrix
+//! solvers, equations of motion and explicit integrators in a chart.
+//!
+//! * [`MassSolver`]: `qdot = C^-1 p` by Cramer's minors as published, by dense factorisations, or by one
+//!   sparse saddle-point solve;
+//! * [`ChartMechanics`]: p, H and their derivatives at a state;
+//! * [`ChartSimulation`]: forward Euler with the published step control, symplectic Euler and
+//!   Runge-Kutta in a chart, in the published, re-formed and full equations of motion.
+
+mod error;
+mod mechanics;
+mod simulation;
+mod solver;
+mod stepping;
+
+pub use error::ChartDynamicsError;
+pub use mechanics::{ChartMechanics, Equations};
+pub use simulation::{
+    ChartMethod, ChartOptions, ChartSimulation, ChartStepControl, ChartStepReport, PositionUpdate,
+    Rebase, StepRange,
+};
+pub use solver::{
+    CholeskySolver, CramerSolver, DenseLuSolver, MassSolver, MassSolverKind, SaddleSolver,
+};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,106 @@
+//! Why mechanics in a chart fails.
+
+use isosheet_coords::ChartError;
+use thiserror::Error;
+
+/// Why a step in a chart is refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ChartDynamicsError {
+    /// The chart is not usable at this state.
+    #[error(transparent)]
+    Chart(#[from] ChartError),
+    /// An option is out of range.
+    #[error("{option} is {value}: {remedy}")]
+    Option {
+        /// Name of the option.
+        option: &'static str,
+        /// Its value.
+        value: f64,
+        /// What to give instead.
+        remedy: &'static str,
+    },
+    /// The method and the other options do not go together.
+    #[error("{method} needs {needs}")]
+    Combination {
+        /// The method.
+        method: &'static str,
+        /// What it needs.
+        needs: &'static str,
+    },
+    /// Too many coordinates for Cramer's rule.
+    #[error(
+        "{dimension} coordinates are too many for Cramer's rule, whose cost grows with the fifth power; the limit is {limit}, use another solver"
+    )]
+    TooManyCoordinates {
+        /// Number of coordinates.
+        dimension: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// The dense mass matrix is singular to working precision.
+    #[error(
+        "the {dimension} x {dimension} mass matrix of the chart is singular to working precision; use the saddle-point solver or another chart"
+    )]
+    SingularMass {
+        /// Number of coordinates.
+        dimension: usize,
+    },
+    /// The position given at the start has the wrong lengths.
+    #[error(
+        "the largest edge strain of the initial state is {strain:e}, above {limit:e}: start from a state with the rest lengths"
+    )]
+    Strained {
+        /// Largest strain.
+        strain: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// A slice has the wrong length.
+    #[error("{what} has {found} values, expected {expected}")]
+    WrongLength {
+        /// Which argument.
+        what: &'static str,
+        /// Values given.
+        found: usize,
+        /// Values needed.
+        expected: usize,
+    },
+    /// The step control went below its smallest step.
+    #[error(
+        "at t = {t} s no step above {minimum:e} s keeps the change of the energy below {tolerance:e} J (it is {change:e} J): {cause}"
+    )]
+    StepTooSmall {
+        /// Time, seconds.
+        t: f64,
+        /// Smallest step allowed, seconds.
+        minimum: f64,
+        /// Bound on the change of the Hamiltonian, joules.
+        tolerance: f64,
+        /// Change at the last attempt, joules; NaN when the step itself failed.
+        change: f64,
+        /// What went wrong in the last attempt.
+        cause: String,
+    },
+    /// The implicit equation for the momenta did not converge.
+    #[error(
+        "the momenta of the symplectic Euler step did not converge (change {change:e}) at step {h:e} s: take a smaller step"
+    )]
+    Momenta {
+        /// Step, seconds.
+        h: f64,
+        /// Relative change in the last iteration.
+        change: f64,
+    },
+    /// A state is not finite.
+    #[error("the state is not finite at t = {t} s: the step is too large for this scheme")]
+    NotFinite {
+        /// Time, seconds.
+        t: f64,
+    },
+}
+
+impl From<isosheet_coords::linalg::LinalgError> for ChartDynamicsError {
+    fn from(error: isosheet_coords::linalg::LinalgError) -> Self {
+        Self::Chart(error.into())
+    }
+}

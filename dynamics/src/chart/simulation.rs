@@ -1,0 +1,477 @@
+//! Explicit integration in a chart, with the published step control.
+
+use super::stepping::{Stepper, Trial};
+use super::{ChartDynamicsError, ChartMechanics, Equations, MassSolverKind};
+use crate::SheetModel;
+use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
+
+/// Time integration method.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ChartMethod {
+    /// Forward Euler, Eq. 20; first order, gains energy.
+    #[default]
+    ForwardEuler,
+    /// Momenta first (implicit in p where dT/dq depends on them), then coordinates; first order, symplectic.
+    SymplecticEuler,
+    /// The classical Runge-Kutta method of fourth order. Needs [`Equations::Full`] and
+    /// [`PositionUpdate::Exact`].
+    RungeKutta4,
+}
+
+/// How positions follow from the step of the coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PositionUpdate {
+    /// To first order, `x + h J qdot` (Eq. 15): edge lengths drift.
+    Linear,
+    /// Through the chart, with exact edge lengths.
+    #[default]
+    Exact,
+    /// To first order, then projected onto the edge lengths by Newton's method with the
+    /// saddle-point matrix (the smallest correction in the mass metric).
+    Projected,
+}
+
+/// Choice of the time step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ChartStepControl {
+    /// The same step throughout, seconds.
+    Fixed(f64),
+    /// Sec. 4.2: the largest step that changes the Hamiltonian by less than a tolerance.
+    ///
+    /// The error of a step grows with its square, so that a rejected step is shortened by the
+    /// square root of tolerance over change, and after an accepted one the next is lengthened by it,
+    /// at most twofold.
+    Adaptive {
+        /// Bound on `|H(t + h) - H(t)|`, joules.
+        tolerance: f64,
+        /// Smallest step, seconds; below it the run is refused.
+        min: f64,
+        /// Largest step, seconds.
+        max: f64,
+    },
+}
+
+/// What to do when the chart approaches a singularity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rebase {
+    /// Take the current state as new reference and form the momenta anew from the velocities.
+    #[default]
+    WhenNeeded,
+    /// Refuse to go on.
+    Never,
+}
+
+/// Options of a [`ChartSimulation`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChartOptions {
+    /// Method, default forward Euler.
+    pub method: ChartMethod,
+    /// Equations of motion, default full.
+    pub equations: Equations,
+    /// Position update, default exact.
+    pub position: PositionUpdate,
+    /// Step control, default fixed 1 ms.
+    pub control: ChartStepControl,
+    /// Mass-matrix solver, default sparse saddle point.
+    pub solver: MassSolverKind,
+    /// Rebasing, default when needed.
+    pub rebase: Rebase,
+    /// Largest condition number of C, default 1e12: four digits of a dense solve are left there, and
+    /// an explicit method needs about as many.
+    pub condition_limit: f64,
+    /// Steps between condition estimates, default 50. The first step is always checked.
+    pub condition_interval: u32,
+    /// Growth of the largest eigenvalue of C since the chart's reference state above which the
+    /// chart is rebased, default 4: J is about twice as large then, well before a
+    /// singularity of the chart. Tracked by one power iteration per step.
+    pub growth_limit: f64,
+    /// Chart margin ([`Chart::margin`]) below which the chart is rebased, default 0.1.
+    pub margin_limit: f64,
+    /// Largest edge strain of the initial state, default 1e-6.
+    pub strain_limit: f64,
+}
+
+impl Default for ChartOptions {
+    fn default() -> Self {
+        Self {
+            method: ChartMethod::default(),
+            equations: Equations::default(),
+            position: PositionUpdate::default(),
+            control: ChartStepControl::Fixed(1e-3),
+            solver: MassSolverKind::default(),
+            rebase: Rebase::default(),
+            condition_limit: 1e12,
+            condition_interval: 50,
+            growth_limit: 4.0,
+            margin_limit: 0.1,
+            strain_limit: 1e-6,
+        }
+    }
+}
+
+impl ChartOptions {
+    /// Check ranges and combinations.
+    ///
+    /// # Errors
+    /// [`ChartDynamicsError::Option`], [`ChartDynamicsError::Combination`].
+    pub fn validate(&self) -> Result<(), ChartDynamicsError> {
+        let positive = |option, value: f64, remedy| {
+            if value > 0.0 && value.is_finite() {
+                Ok(())
+            } else {
+                Err(ChartDynamicsError::Option {
+                    option,
+                    value,
+                    remedy,
+                })
+            }
+        };
+        match self.control {
+            ChartStepControl::Fixed(h) => {
+                positive("fixed step", h, "give a positive step in seconds")?;
+            }
+            ChartStepControl::Adaptive {
+                tolerance,
+                min,
+                max,
+            } => {
+                positive(
+                    "energy tolerance",
+                    tolerance,
+                    "give a positive energy in joules",
+                )?;
+                positive("smallest step", min, "give a positive step in seconds")?;
+                positive("largest step", max, "give a positive step in seconds")?;
+                if min > max {
+                    return Err(ChartDynamicsError::Option {
+                        option: "smallest step",
+                        value: min,
+                        remedy: "give a value below the largest step",
+                    });
+                }
+            }
+        }
+        positive(
+            "condition limit",
+            self.condition_limit,
+            "give a number above 1",
+        )?;
+        positive("strain limit", self.strain_limit, "give a positive strain")?;
+        positive(
+            "growth limit",
+            self.growth_limit - 1.0,
+            "give a number above 1",
+        )?;
+        let interval = f64::from(self.condition_interval);
+        positive(
+            "condition interval",
+            interval,
+            "check at least every so many steps",
+        )?;
+        if !(0.0..1.0).contains(&self.margin_limit) {
+            return Err(ChartDynamicsError::Option {
+                option: "margin limit",
+                value: self.margin_limit,
+                remedy: "give a value from 0 to below 1",
+            });
+        }
+        if self.method == ChartMethod::RungeKutta4
+            && (self.equations != Equations::Full || self.position != PositionUpdate::Exact)
+        {
+            return Err(ChartDynamicsError::Combination {
+                method: "the fourth-order Runge-Kutta method",
+                needs: "the full equations of motion and exact positions",
+            });
+        }
+        Ok(())
+    }
+}
+
+/// What one step did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChartStepReport {
+    /// Time after the step, seconds.
+    pub t: f64,
+    /// Step taken, seconds.
+    pub h: f64,
+    /// Attempts rejected before it.
+    pub rejected: u32,
+    /// Kinetic energy after the step, joules.
+    pub kinetic: f64,
+    /// Potential energy after the step, joules.
+    pub potential: f64,
+    /// Change of the Hamiltonian over the step, before velocity damping, joules.
+    pub energy_change: f64,
+    /// Largest edge strain after the step.
+    pub strain: f64,
+    /// Whether the chart was rebased before the step.
+    pub rebased: bool,
+}
+
+/// Smallest and largest step of a run: the column "Step size min/max" of Fig. 10.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepRange {
+    /// Smallest, seconds.
+    pub min: f64,
+    /// Largest, seconds.
+    pub max: f64,
+    /// Number of steps.
+    pub steps: u64,
+}
+
+/// A sheet moving in a chart.
+pub struct ChartSimulation {
+    stepper: Stepper,
+    options: ChartOptions,
+    t: f64,
+    state: Trial,
+    hamiltonian: f64,
+    next_step: f64,
+    range: StepRange,
+    since_check: u32,
+    growth: f64,
+    fresh: bool,
+}
+
+impl ChartSimulation {
+    /// Start at positions x with velocities v, three values per vertex. Only the part of v that keeps the
+    /// edge lengths is used.
+    ///
+    /// # Errors
+    /// Invalid options; a state with the wrong edge lengths; [`ChartDynamicsError::Chart`] for states
+    /// where the chart is singular (flat sheets) or too ill-conditioned.
+    pub fn new(
+        model: SheetModel,
+        chart: Box<dyn Chart>,
+        options: ChartOptions,
+        x: &[f64],
+        v: &[f64],
+    ) -> Result<Self, ChartDynamicsError> {
+        options.validate()?;
+        for (what, slice) in [("x", x), ("v", v)] {
+            if slice.len() != model.coordinate_count() {
+                return Err(ChartDynamicsError::WrongLength {
+                    what,
+                    found: slice.len(),
+                    expected: model.coordinate_count(),
+                });
+            }
+        }
+        if !x.iter().chain(v).all(|c| c.is_finite()) {
+            return Err(ChartDynamicsError::NotFinite { t: 0.0 });
+        }
+        let mut mechanics = ChartMechanics::new(model, chart, options.solver)?;
+        let strain = mechanics.system().max_strain(x);
+        if strain > options.strain_limit {
+            return Err(ChartDynamicsError::Strained {
+                strain,
+                limit: options.strain_limit,
+            });
+        }
+        let n = mechanics.dimension();
+        let (mut q, mut p) = (vec![0.0; n], vec![0.0; n]);
+        mechanics.at(x)?;
+        mechanics.coordinates(x, &mut q)?;
+        let mut tangent = v.to_vec();
+        mechanics.model().clear_pinned(&mut tangent);
+        mechanics.momenta(&tangent, &mut p)?;
+        let hamiltonian = mechanics.hamiltonian(0.0, x, &p)?;
+        let mut simulation = Self {
+            stepper: Stepper::new(mechanics, &options)?,
+            options,
+            t: 0.0,
+            state: Trial {
+                x: x.to_vec(),
+                q,
+                p,
+                hamiltonian,
+            },
+            hamiltonian,
+            next_step: match options.control {
+                ChartStepControl::Fixed(h) => h,
+                ChartStepControl::Adaptive { max, .. } => max,
+            },
+            range: StepRange {
+                min: f64::INFINITY,
+                max: 0.0,
+                steps: 0,
+            },
+            since_check: 0,
+            growth: 1.0,
+            fresh: true,
+        };
+        simulation.check_condition()?;
+        simulation.stepper.set_reference()?;
+        Ok(simulation)
+    }
+
+    /// Time, seconds.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.t
+    }
+
+    /// Positions, three per vertex.
+    #[must_use]
+    pub fn positions(&self) -> &[f64] {
+        &self.state.x
+    }
+
+    /// Coordinates.
+    #[must_use]
+    pub fn coordinates(&self) -> &[f64] {
+        &self.state.q
+    }
+
+    /// Momenta.
+    #[must_use]
+    pub fn momenta(&self) -> &[f64] {
+        &self.state.p
+    }
+
+    /// The Hamiltonian, joules.
+    #[must_use]
+    pub fn hamiltonian(&self) -> f64 {
+        self.hamiltonian
+    }
+
+    /// Smallest and largest step so far.
+    #[must_use]
+    pub fn step_range(&self) -> StepRange {
+        self.range
+    }
+
+    /// The mechanics.
+    #[must_use]
+    pub fn mechanics(&self) -> &ChartMechanics {
+        &self.stepper.mechanics
+    }
+
+    /// Velocities of the vertices.
+    ///
+    /// # Errors
+    /// [`ChartDynamicsError::Chart`] where the chart is singular.
+    pub fn velocities(&mut self) -> Result<Vec<f64>, ChartDynamicsError> {
+        self.stepper.velocities(&self.state)
+    }
+
+    /// Estimate the condition number of C; above the limit rebase once, then refuse.
+    fn check_condition(&mut self) -> Result<(), ChartDynamicsError> {
+        self.since_check = 0;
+        loop {
+            let m = &self.stepper.mechanics;
+            let condition =
+                mass_condition_estimate(m.system(), m.chart(), m.model().mass(), &self.state.x)?;
+            // NaN counts as too large.
+            if condition <= self.options.condition_limit {
+                return Ok(());
+            }
+            if self.fresh || self.options.rebase == Rebase::Never {
+                return Err(ChartError::IllConditioned {
+                    condition,
+                    limit: self.options.condition_limit,
+                }
+                .into());
+            }
+            self.rebase()?;
+        }
+    }
+
+    fn rebase(&mut self) -> Result<(), ChartDynamicsError> {
+        self.stepper.rebase(&mut self.state)?;
+        self.growth = 1.0;
+        self.fresh = true;
+        Ok(())
+    }
+
+    /// Take one step.
+    ///
+    /// # Errors
+    /// [`ChartDynamicsError::StepTooSmall`] of the step control; with a fixed step the error of the step
+    /// itself. The state is that before the step then.
+    pub fn step(&mut self) -> Result<ChartStepReport, ChartDynamicsError> {
+        let mut rebased = false;
+        let rebasing = self.options.rebase == Rebase::WhenNeeded;
+        if rebasing && !self.fresh {
+            let margin = self.stepper.mechanics.chart().margin(&self.state.x)?;
+            if margin < self.options.margin_limit || self.growth > self.options.growth_limit {
+                self.rebase()?;
+                rebased = true;
+            }
+        }
+        if self.since_check >= self.options.condition_interval {
+            self.check_condition()?;
+        }
+        let mut rejected = 0;
+        let mut h = self.next_step;
+        let trial = loop {
+            let outcome = self.stepper.attempt(self.t, &self.state, h);
+            let change = match &outcome {
+                Ok(trial) => (trial.hamiltonian - self.hamiltonian).abs(),
+                Err(_) => f64::NAN,
+            };
+            match (self.options.control, outcome) {
+                (ChartStepControl::Fixed(_), Ok(trial)) => break trial,
+                (ChartStepControl::Adaptive { tolerance, max, .. }, Ok(trial))
+                    if change < tolerance =>
+                {
+                    let growth = (0.9 * (tolerance / change).sqrt()).clamp(1.0, 2.0);
+                    self.next_step = (h * growth).min(max);
+                    break trial;
+                }
+                (_, Err(ChartDynamicsError::Chart(_))) if rebasing && !self.fresh => {
+                    self.rebase()?;
+                    rebased = true;
+                }
+                (ChartStepControl::Fixed(_), Err(e)) => return Err(e),
+                (ChartStepControl::Adaptive { tolerance, min, .. }, outcome) => {
+                    if h <= min {
+                        return Err(ChartDynamicsError::StepTooSmall {
+                            t: self.t,
+                            minimum: min,
+                            tolerance,
+                            change,
+                            cause: match outcome {
+                                Ok(_) => "the change is too large".to_owned(),
+                                Err(e) => e.to_string(),
+                            },
+                        });
+                    }
+                    let factor = 0.9 * (tolerance / change).sqrt();
+                    let factor = if factor.is_nan() { 0.25 } else { factor };
+                    h = (h * factor.clamp(0.1, 0.9)).max(min);
+                    rejected += 1;
+                }
+            }
+        };
+        self.growth = self.stepper.growth()?;
+        let energy_change = trial.hamiltonian - self.hamiltonian;
+        self.state = trial;
+        self.t += h;
+        self.fresh = false;
+        self.since_check += 1;
+        let potential = {
+            let model = self.stepper.mechanics.model();
+            let damping = (-model.damping() * h).exp();
+            let potential = model.potential_energy(self.t, &self.state.x);
+            let kinetic = self.state.hamiltonian - potential;
+            self.state.p.iter_mut().for_each(|p| *p *= damping);
+            self.hamiltonian = potential + kinetic * damping * damping;
+            self.state.hamiltonian = self.hamiltonian;
+            potential
+        };
+        self.range.min = self.range.min.min(h);
+        self.range.max = self.range.max.max(h);
+        self.range.steps += 1;
+        Ok(ChartStepReport {
+            t: self.t,
+            h,
+            rejected,
+            kinetic: self.hamiltonian - potential,
+            potential,
+            energy_change,
+            strain: self.stepper.mechanics.system().max_strain(&self.state.x),
+            rebased,
+        })
+    }
+}

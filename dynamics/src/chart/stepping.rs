@@ -1,0 +1,277 @@
+//! One step of each method.
+
+use super::simulation::{ChartMethod, ChartOptions, PositionUpdate};
+use super::{ChartDynamicsError, ChartMechanics, Equations};
+use isosheet_coords::{ChartError, SaddlePoint};
+
+/// Relative change of the momenta at which the implicit part of symplectic Euler has converged.
+const MOMENTA_TOLERANCE: f64 = 1e-13;
+
+/// Most iterations for it; it contracts with the step size, and four to eight are usual.
+const MOMENTA_ITERATIONS: u32 = 60;
+
+/// Strain at which a projection onto the lengths has converged.
+const PROJECTION_TOLERANCE: f64 = 1e-13;
+
+/// Most Newton iterations of a projection.
+const PROJECTION_ITERATIONS: usize = 20;
+
+/// Power iterations after a rebase; later ones start from the last vector, one per step.
+const POWER_STEPS: usize = 6;
+
+/// A state in phase space, with the positions that belong to it.
+#[derive(Clone)]
+pub(super) struct Trial {
+    pub(super) x: Vec<f64>,
+    pub(super) q: Vec<f64>,
+    pub(super) p: Vec<f64>,
+    pub(super) hamiltonian: f64,
+}
+
+/// The methods, over a mechanics.
+pub(super) struct Stepper {
+    pub(super) mechanics: ChartMechanics,
+    method: ChartMethod,
+    equations: Equations,
+    position: PositionUpdate,
+    saddle: Option<SaddlePoint>,
+    /// Power iteration vector on C, and the eigenvalue found at the reference state of the chart.
+    power: Vec<f64>,
+    reference: f64,
+}
+
+impl Stepper {
+    pub(super) fn new(
+        mechanics: ChartMechanics,
+        options: &ChartOptions,
+    ) -> Result<Self, ChartDynamicsError> {
+        let saddle = match options.position {
+            PositionUpdate::Projected => Some(SaddlePoint::new(
+                mechanics.system(),
+                mechanics.model().mass(),
+            )?),
+            _ => None,
+        };
+        let n = mechanics.dimension();
+        Ok(Self {
+            power: (0..n).map(|k| 1.0 + (1.3 * k as f64).sin()).collect(),
+            reference: f64::NAN,
+            mechanics,
+            method: options.method,
+            equations: options.equations,
+            position: options.position,
+            saddle,
+        })
+    }
+
+    pub(super) fn velocities(&mut self, s: &Trial) -> Result<Vec<f64>, ChartDynamicsError> {
+        let mut qdot = vec![0.0; s.q.len()];
+        let mut v = vec![0.0; s.x.len()];
+        self.mechanics.at(&s.x)?;
+        self.mechanics.velocity(&s.p, &mut qdot, &mut v)?;
+        Ok(v)
+    }
+
+    /// New reference state for the chart; coordinates and momenta of `s` are replaced.
+    pub(super) fn rebase(&mut self, s: &mut Trial) -> Result<(), ChartDynamicsError> {
+        let v = self.velocities(s)?;
+        self.mechanics.rebase(&s.x)?;
+        self.mechanics.at(&s.x)?;
+        self.mechanics.coordinates(&s.x, &mut s.q)?;
+        self.mechanics.momenta(&v, &mut s.p)?;
+        self.set_reference()
+    }
+
+    /// Remember the largest eigenvalue of C at the current state, the chart's reference.
+    pub(super) fn set_reference(&mut self) -> Result<(), ChartDynamicsError> {
+        for _ in 0..POWER_STEPS {
+            self.reference = self.mechanics.power_step(&mut self.power)?;
+        }
+        Ok(())
+    }
+
+    /// Largest eigenvalue of C at the state the mechanics is at, over its value at the reference state.
+    /// It grows without bound where the chart becomes singular.
+    pub(super) fn growth(&mut self) -> Result<f64, ChartDynamicsError> {
+        Ok(self.mechanics.power_step(&mut self.power)? / self.reference)
+    }
+
+    /// Try a step of length h from time t.
+    pub(super) fn attempt(
+        &mut self,
+        t: f64,
+        s: &Trial,
+        h: f64,
+    ) -> Result<Trial, ChartDynamicsError> {
+        let mut trial = match self.method {
+            ChartMethod::ForwardEuler => self.forward_euler(t, s, h),
+            ChartMethod::SymplecticEuler => self.symplectic_euler(t, s, h),
+            ChartMethod::RungeKutta4 => self.runge_kutta(t, s, h),
+        }?;
+        let finite = |a: &[f64]| a.iter().all(|c| c.is_finite());
+        if !(finite(&trial.x) && finite(&trial.p)) {
+            return Err(ChartDynamicsError::NotFinite { t: t + h });
+        }
+        self.mechanics.coordinates(&trial.x, &mut trial.q)?;
+        trial.hamiltonian = self.mechanics.hamiltonian(t + h, &trial.x, &trial.p)?;
+        Ok(trial)
+    }
+
+    fn forward_euler(&mut self, t: f64, s: &Trial, h: f64) -> Result<Trial, ChartDynamicsError> {
+        let (mut qdot, mut pdot) = (vec![0.0; s.q.len()], vec![0.0; s.q.len()]);
+        let mut v = vec![0.0; s.x.len()];
+        self.mechanics.at(&s.x)?;
+        self.mechanics.velocity(&s.p, &mut qdot, &mut v)?;
+        self.mechanics
+            .momentum_rate(t, &s.x, &v, self.equations, &mut pdot)?;
+        let mut trial = s.clone();
+        add(h, &pdot, &mut trial.p);
+        self.finish(s, &qdot, &v, h, &mut trial)?;
+        Ok(trial)
+    }
+
+    fn symplectic_euler(&mut self, t: f64, s: &Trial, h: f64) -> Result<Trial, ChartDynamicsError> {
+        let (mut qdot, mut pdot) = (vec![0.0; s.q.len()], vec![0.0; s.q.len()]);
+        let mut v = vec![0.0; s.x.len()];
+        self.mechanics.at(&s.x)?;
+        let mut trial = s.clone();
+        // p1 = p0 - h dH/dq(q0, p1): fixed point; explicit when dT/dq is left out.
+        let mut change = f64::INFINITY;
+        for _ in 0..MOMENTA_ITERATIONS {
+            self.mechanics.velocity(&trial.p, &mut qdot, &mut v)?;
+            self.mechanics
+                .momentum_rate(t, &s.x, &v, self.equations, &mut pdot)?;
+            let (mut size, mut moved) = (0.0f64, 0.0f64);
+            for k in 0..pdot.len() {
+                let p = s.p[k] + h * pdot[k];
+                moved = moved.max((p - trial.p[k]).abs());
+                size = size.max(p.abs());
+                trial.p[k] = p;
+            }
+            change = if moved == 0.0 { 0.0 } else { moved / size };
+            if change <= MOMENTA_TOLERANCE || self.equations != Equations::Full {
+                break;
+            }
+        }
+        // Rounding of an ill-conditioned chart may keep the last digits moving.
+        if self.equations == Equations::Full && (change.is_nan() || change > 1e-9) {
+            return Err(ChartDynamicsError::Momenta { h, change });
+        }
+        self.mechanics.velocity(&trial.p, &mut qdot, &mut v)?;
+        self.finish(s, &qdot, &v, h, &mut trial)?;
+        Ok(trial)
+    }
+
+    /// Positions of the Euler methods, and the momenta formed anew where that is asked for. Leaves the
+    /// mechanics at the new state.
+    fn finish(
+        &mut self,
+        s: &Trial,
+        qdot: &[f64],
+        v: &[f64],
+        h: f64,
+        trial: &mut Trial,
+    ) -> Result<(), ChartDynamicsError> {
+        let mut new_velocity = Vec::new();
+        if self.equations == Equations::Reformed {
+            // Velocities of the new momenta with the old Jacobian, which this scheme takes as constant.
+            let mut rate = vec![0.0; qdot.len()];
+            new_velocity = vec![0.0; v.len()];
+            self.mechanics
+                .velocity(&trial.p, &mut rate, &mut new_velocity)?;
+        }
+        trial.x.copy_from_slice(&s.x);
+        add(h, v, &mut trial.x);
+        match self.position {
+            PositionUpdate::Linear => {}
+            PositionUpdate::Exact => {
+                trial.q.copy_from_slice(&s.q);
+                add(h, qdot, &mut trial.q);
+                let near = trial.x.clone();
+                self.mechanics.realise(&trial.q, &near, &mut trial.x)?;
+            }
+            PositionUpdate::Projected => self.project(&mut trial.x)?,
+        }
+        self.mechanics.at(&trial.x)?;
+        if self.equations == Equations::Reformed {
+            self.mechanics.momenta(&new_velocity, &mut trial.p)?;
+        }
+        Ok(())
+    }
+
+    fn project(&mut self, x: &mut [f64]) -> Result<(), ChartDynamicsError> {
+        let system = self.mechanics.system();
+        let Some(saddle) = self.saddle.as_mut() else {
+            return Ok(());
+        };
+        let mut c = vec![0.0; system.equations()];
+        let zero = vec![0.0; system.unknowns()];
+        let (mut step, mut mu) = (zero.clone(), c.clone());
+        let mut strain = f64::INFINITY;
+        for _ in 0..PROJECTION_ITERATIONS {
+            strain = system.max_strain(x);
+            if strain <= PROJECTION_TOLERANCE {
+                return Ok(());
+            }
+            system.residual(x, &mut c);
+            saddle.factorize(system, x)?;
+            saddle.solve(&zero, &c, &mut step, &mut mu)?;
+            system.add_scaled(-1.0, &step, x);
+        }
+        // The last correction may have reached the rounding level of a large sheet.
+        if strain <= 100.0 * PROJECTION_TOLERANCE {
+            return Ok(());
+        }
+        Err(ChartError::NotConverged {
+            iterations: PROJECTION_ITERATIONS,
+            residual: strain,
+            tolerance: PROJECTION_TOLERANCE,
+        }
+        .into())
+    }
+
+    fn runge_kutta(&mut self, t: f64, s: &Trial, h: f64) -> Result<Trial, ChartDynamicsError> {
+        let n = s.q.len();
+        let mut stage = s.clone();
+        let mut near = s.x.clone();
+        let mut v = vec![0.0; s.x.len()];
+        let (mut qdot, mut pdot) = (vec![0.0; n], vec![0.0; n]);
+        let (mut dq, mut dp) = (vec![0.0; n], vec![0.0; n]);
+        for (k, weight) in [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0]
+            .into_iter()
+            .enumerate()
+        {
+            let time = t + h * [0.0, 0.5, 0.5, 1.0][k];
+            self.mechanics.at(&stage.x)?;
+            self.mechanics.velocity(&stage.p, &mut qdot, &mut v)?;
+            self.mechanics
+                .momentum_rate(time, &stage.x, &v, self.equations, &mut pdot)?;
+            add(weight, &qdot, &mut dq);
+            add(weight, &pdot, &mut dp);
+            let ahead = h * [0.5, 0.5, 1.0, 0.0][k];
+            if k == 3 {
+                break;
+            }
+            for i in 0..n {
+                stage.q[i] = s.q[i] + ahead * qdot[i];
+                stage.p[i] = s.p[i] + ahead * pdot[i];
+            }
+            near.copy_from_slice(&s.x);
+            add(ahead, &v, &mut near);
+            self.mechanics.realise(&stage.q, &near, &mut stage.x)?;
+        }
+        let mut trial = s.clone();
+        add(h, &dq, &mut trial.q);
+        add(h, &dp, &mut trial.p);
+        self.mechanics.realise(&trial.q, &stage.x, &mut trial.x)?;
+        self.mechanics.at(&trial.x)?;
+        Ok(trial)
+    }
+}
+
+/// `y += a x`.
+fn add(a: f64, x: &[f64], y: &mut [f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += a * x;
+    }
+}
