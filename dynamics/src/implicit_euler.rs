@@ -213,23 +213,6 @@ impl ImplicitEuler {
         Ok(true)
     }
 
-    /// Relative residual of the momentum balance: the largest acceleration that is not
-    /// accounted for, against the largest that is asked for.
-    fn residual(&self, model: &SheetModel, h: f64) -> f64 {
-        let mass = &model.mass().vertex;
-        let largest = |g: &[f64]| {
-            g.iter()
-                .enumerate()
-                .fold(0.0_f64, |m, (i, g)| m.max(g.abs() / mass[i / 3]))
-        };
-        let scale = largest(&self.force) * h * h + largest(&self.weighted);
-        if scale == 0.0 {
-            0.0
-        } else {
-            largest(&self.gradient) / scale
-        }
-    }
-
     /// Displaces the iterate off a saddle.
     fn perturb(&mut self, model: &SheetModel) {
         let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed);
@@ -267,7 +250,6 @@ impl Integrator for ImplicitEuler {
         let (mut inertia, mut value) = self.merit(model, t1, h);
         for _ in 0..self.options.max_iterations {
             self.gradient(model, t1, h);
-            residual = self.residual(model, h);
             effort.iterations += 1;
             let modified = self
                 .factorize(model, t1, h, effort)
@@ -286,6 +268,7 @@ impl Integrator for ImplicitEuler {
                 return Err(not_converged(state.t, h, effort, residual, f64::NAN));
             }
             let promised = self.options.tolerance * inertia;
+            residual = if inertia > 0.0 { (-slope / inertia).sqrt() } else { 0.0 };
             let round_off = f64::EPSILON * value.abs();
             self.start.copy_from_slice(&self.x);
             let mut length = 1.0;

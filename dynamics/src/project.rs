@@ -17,6 +17,10 @@ const SUFFICIENT_DECREASE: f64 = 0.1;
 /// A line search that has halved its step this often has stalled.
 const SMALLEST_STEP: f64 = 1e-2;
 
+/// Growth of the displacement that opens a flat patch from one attempt to the next: the next
+/// one has to leave the basin that the last one fell back into.
+const OPENING_GROWTH: f64 = 4.0;
+
 /// Moves positions to the nearest ones, in the sense of the mass matrix, that have the rest
 /// lengths: a Levenberg-Marquardt iteration with line search
 ///
@@ -68,6 +72,7 @@ impl Projector {
     ) -> f64 {
         let rods = model.rods();
         let mut penalty = PROJECTION_PENALTY;
+        let mut opening = 1.0;
         rods.residual_into(x, &mut self.c);
         let mut strain = rods.max_strain(x);
         for _ in 0..max_iterations {
@@ -113,7 +118,8 @@ impl Projector {
                 // happens where a patch is flat and asks for a fold. A displacement of order
                 // sqrt(strain), in any direction, opens it.
                 penalty = PROJECTION_PENALTY;
-                self.unfold(model, x, strain.sqrt());
+                self.unfold(model, x, opening * strain.sqrt());
+                opening *= OPENING_GROWTH;
                 rods.residual_into(x, &mut self.c);
             } else if length < 1.0 {
                 penalty *= 0.1;
@@ -122,7 +128,9 @@ impl Projector {
             }
             penalty = penalty.clamp(PENALTY_RANGE.0, PENALTY_RANGE.1);
             strain = rods.max_strain(x);
+            if std::env::var("LM").is_ok() { println!("   lm strain {strain:.2e} err {before:.2e}->{after:.2e} length {length:.1e} penalty {penalty:.0e}"); }
         }
+        if std::env::var("LM").is_ok() { println!("lm end"); }
         strain
     }
 

@@ -31,8 +31,12 @@ pub struct StepReport {
     pub iterations: usize,
     /// Matrix factorisations, those of rejected sub-steps included.
     pub factorisations: usize,
-    /// Largest residual of the momentum balance over the sub-steps, as an acceleration relative
-    /// to the acceleration that the applied forces and the motion ask for.
+    /// Largest relative residual of the momentum balance over the sub-steps. For the
+    /// conservative integrators the largest acceleration left over against the largest one
+    /// asked for; for implicit Euler the Newton decrement before the last iteration against
+    /// the inertia term of the incremental potential (root of the energy ratio), an upper bound
+    /// of what that iteration left; for the projection step the length rates left over against
+    /// the speed.
     pub residual: f64,
     /// Kinetic energy at the end, joules.
     pub kinetic: f64,
