@@ -101,6 +101,13 @@ pub struct ImplicitEuler {
     start: Vec<f64>,
 }
 
+/// Value of the augmented Lagrangian, its inertia term, and the round-off in the value.
+struct Merit {
+    inertia: f64,
+    value: f64,
+    round_off: f64,
+}
+
 impl ImplicitEuler {
     /// Analyses the model.
     ///
@@ -131,8 +138,8 @@ impl ImplicitEuler {
         })
     }
 
-    /// Value of the augmented Lagrangian at `self.x`; sets `self.c`.
-    fn merit(&mut self, model: &SheetModel, t: f64, h: f64) -> (f64, f64) {
+    /// The augmented Lagrangian at `self.x`; sets `self.c`.
+    fn merit(&mut self, model: &SheetModel, t: f64, h: f64) -> Merit {
         for i in 0..self.x.len() {
             self.difference[i] = self.x[i] - self.target[i];
         }
@@ -147,8 +154,21 @@ impl ImplicitEuler {
         let rods: f64 = (0..self.c.len())
             .map(|e| (self.multipliers[e] + 0.5 * self.penalty[e] * self.c[e]) * self.c[e])
             .sum();
+        // Round-off of c is that of the squared lengths.
+        let rod_scale: f64 = self
+            .multipliers
+            .iter()
+            .zip(model.rods().lengths())
+            .map(|(m, l)| m.abs() * l * l)
+            .sum();
         let potential = model.potential_energy(t, &self.x);
-        (inertia, inertia + h * h * (potential - work) + rods)
+        Merit {
+            inertia,
+            value: inertia + h * h * (potential - work) + rods,
+            round_off: 8.0
+                * f64::EPSILON
+                * (inertia + h * h * (potential.abs() + work.abs()) + rods.abs() + rod_scale),
+        }
     }
 
     /// Gradient of the augmented Lagrangian at `self.x`, with `self.c` current; sets the
@@ -247,7 +267,7 @@ impl Integrator for ImplicitEuler {
         let mut path = Path::Newton;
         let mut residual = f64::INFINITY;
         let mut converged = false;
-        let (mut inertia, mut value) = self.merit(model, t1, h);
+        let mut merit = self.merit(model, t1, h);
         for _ in 0..self.options.max_iterations {
             self.gradient(model, t1, h);
             effort.iterations += 1;
@@ -267,18 +287,23 @@ impl Integrator for ImplicitEuler {
             if !slope.is_finite() {
                 return Err(not_converged(state.t, h, effort, residual, f64::NAN));
             }
-            let promised = self.options.tolerance * inertia;
-            residual = if inertia > 0.0 { (-slope / inertia).sqrt() } else { 0.0 };
-            let round_off = f64::EPSILON * value.abs();
+            let promised = self.options.tolerance * merit.inertia;
+            residual = if merit.inertia > 0.0 {
+                (-slope / merit.inertia).sqrt()
+            } else {
+                0.0
+            };
             self.start.copy_from_slice(&self.x);
             let mut length = 1.0;
             loop {
                 for i in 0..self.x.len() {
                     self.x[i] = self.start[i] - length * self.dx[i];
                 }
-                let (now_inertia, now) = self.merit(model, t1, h);
-                if now <= value + ARMIJO * length * slope + round_off || length < 1e-9 {
-                    (inertia, value) = (now_inertia, now);
+                let now = self.merit(model, t1, h);
+                if now.value <= merit.value + ARMIJO * length * slope + merit.round_off
+                    || length < 1e-9
+                {
+                    merit = now;
                     break;
                 }
                 length *= 0.5;
@@ -286,13 +311,13 @@ impl Integrator for ImplicitEuler {
             if length < 1.0 {
                 path = path.max(Path::Globalised);
             }
-            if length >= NEARLY_FULL && -slope <= promised.max(round_off) {
+            if length >= NEARLY_FULL && -slope <= promised.max(merit.round_off) {
                 if modified && path != Path::BranchSeeded {
                     // No slope left, but the curvature is negative somewhere: a saddle, where
                     // the sheet could fold either way.
                     path = Path::BranchSeeded;
                     self.perturb(model);
-                    (inertia, value) = self.merit(model, t1, h);
+                    merit = self.merit(model, t1, h);
                     continue;
                 }
                 converged = true;

@@ -9,6 +9,7 @@ pub mod potential;
 mod primal;
 mod project;
 mod projection_step;
+mod rank;
 mod rattle;
 mod report;
 mod saddle;
@@ -21,7 +22,10 @@ pub use integrator::{Integrator, OptionsError};
 pub use model::{ModelError, SheetModel};
 pub use potential::{Force, Gravity, HessianSink, Potential, PotentialShape, STANDARD_GRAVITY};
 pub use projection_step::{ProjectionStep, ProjectionStepOptions};
+pub use rank::{RodRank, rod_rank};
 pub use rattle::{Rattle, RattleComposition, RattleOptions};
 pub use report::{Accepted, Effort, Path, StepError, StepReport};
-pub use simulation::{Method, Simulation, SimulationError, StepControl, project_positions};
+pub use simulation::{
+    Fallback, Method, Simulation, SimulationError, StepControl, project_positions,
+};
 pub use state::State;

@@ -14,6 +14,8 @@ pub enum Path {
     Globalised,
     /// As `Globalised`, and a seeded perturbation decided which way the sheet folds.
     BranchSeeded,
+    /// The integrator asked for rejected every sub-step, and implicit Euler took one instead.
+    Fallback,
 }
 
 /// What one call of [`Simulation::step`](crate::Simulation::step) did.

@@ -6,6 +6,7 @@ use crate::integrator::{Integrator, OptionsError};
 use crate::primal::PrimalMatrix;
 use crate::project::Projector;
 use crate::projection_step::{ProjectionStep, ProjectionStepOptions};
+use crate::rank::rod_rank;
 use crate::rattle::{Rattle, RattleComposition, RattleOptions};
 use crate::report::{Effort, Path, StepError, StepReport};
 use crate::{SheetModel, State};
@@ -40,12 +41,27 @@ impl Default for Method {
 pub struct StepControl {
     /// Smallest sub-step, as a fraction of the step asked for. Default 2^-14 (6e-5).
     pub min_fraction: f64,
+    /// What to do when even that is rejected. Default [`Fallback::Refuse`].
+    pub fallback: Fallback,
+}
+
+/// What to do when an integrator rejects even the smallest sub-step.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Fallback {
+    /// Return the error.
+    #[default]
+    Refuse,
+    /// Take the step with implicit Euler, which accepts any state, and carry on with the
+    /// integrator asked for. Reported as [`Path::Fallback`]; costs the energy that implicit
+    /// Euler loses in that step.
+    ImplicitEuler(ImplicitEulerOptions),
 }
 
 impl Default for StepControl {
     fn default() -> Self {
         Self {
             min_fraction: 2.0_f64.powi(-14),
+            fallback: Fallback::Refuse,
         }
     }
 }
@@ -54,7 +70,11 @@ impl StepControl {
     /// # Errors
     /// [`OptionsError`] naming the option that makes no sense.
     pub fn validate(&self) -> Result<(), OptionsError> {
-        OptionsError::check_range("min_fraction", self.min_fraction, 1e-12, 1.0)
+        OptionsError::check_range("min_fraction", self.min_fraction, 1e-12, 1.0)?;
+        match &self.fallback {
+            Fallback::Refuse => Ok(()),
+            Fallback::ImplicitEuler(options) => options.validate(),
+        }
     }
 }
 
@@ -95,6 +115,7 @@ pub struct Simulation {
     state: State,
     integrator: Box<dyn Integrator>,
     control: StepControl,
+    fallback: Option<ImplicitEuler>,
     start_energy: f64,
     work: f64,
     dissipated: f64,
@@ -151,6 +172,7 @@ impl Simulation {
             state,
             integrator,
             control: StepControl::default(),
+            fallback: None,
             start_energy,
             work: 0.0,
             dissipated: 0.0,
@@ -160,9 +182,13 @@ impl Simulation {
     /// Replaces the step control.
     ///
     /// # Errors
-    /// [`OptionsError`] if it makes no sense.
-    pub fn with_control(mut self, control: StepControl) -> Result<Self, OptionsError> {
+    /// [`SimulationError`] if it makes no sense.
+    pub fn with_control(mut self, control: StepControl) -> Result<Self, SimulationError> {
         control.validate()?;
+        self.fallback = match &control.fallback {
+            Fallback::Refuse => None,
+            Fallback::ImplicitEuler(o) => Some(ImplicitEuler::new(&self.model, o.clone())?),
+        };
         self.control = control;
         Ok(self)
     }
@@ -221,48 +247,38 @@ impl Simulation {
         let mut effort = Effort::default();
         let (mut substeps, mut rejected) = (0, 0);
         let (mut residual, mut path) = (0.0_f64, Path::Newton);
-        // Sub-steps are h / 2^level, counted in units of the finest so that they end at h exactly.
-        let mut fraction = 1.0;
-        let mut done = 0.0;
+        // Sub-steps are h / 2^level on a binary grid, so that they end at h exactly.
+        let (mut fraction, mut done) = (1.0, 0.0);
         while done < 1.0 {
-            let sub = fraction * h;
-            match self
-                .integrator
-                .step(&self.model, &mut self.state, sub, &mut effort)
-            {
-                Ok(accepted) => {
-                    substeps += 1;
-                    done += fraction;
-                    self.state.t = if done < 1.0 { start + done * h } else { end };
-                    residual = residual.max(accepted.residual);
-                    path = path.max(accepted.path);
-                    self.work += accepted.work;
-                    self.damp(sub);
-                    // Grow again where the binary grid allows it.
-                    if fraction < 1.0 && (done / (2.0 * fraction)).fract() == 0.0 {
-                        fraction *= 2.0;
-                    }
-                }
-                Err(
-                    cause @ (StepError::NonFiniteForce { .. } | StepError::NonFiniteState { .. }),
-                ) => {
+            let mut tried =
+                self.integrator
+                    .step(&self.model, &mut self.state, fraction * h, &mut effort);
+            if let Err(cause) = tried {
+                if matches!(cause, StepError::NonFiniteForce { .. }) {
                     return Err(cause);
                 }
-                Err(cause) => {
-                    rejected += 1;
+                rejected += 1;
+                if 0.5 * fraction * h >= min_step {
                     fraction *= 0.5;
-                    if fraction * h < min_step {
-                        return Err(match cause {
-                            StepError::RankDeficient { .. } => cause,
-                            _ => StepError::StepTooSmall {
-                                t: self.state.t,
-                                min_step,
-                                cause: Box::new(cause),
-                            },
-                        });
-                    }
+                    continue;
                 }
+                let Some(fallback) = &mut self.fallback else {
+                    return Err(diagnose(&self.model, &self.state, min_step, cause));
+                };
+                fraction = largest_fraction(done);
+                tried = fallback.step(&self.model, &mut self.state, fraction * h, &mut effort);
+                path = Path::Fallback;
             }
+            let accepted =
+                tried.map_err(|cause| diagnose(&self.model, &self.state, min_step, cause))?;
+            substeps += 1;
+            done += fraction;
+            self.state.t = if done < 1.0 { start + done * h } else { end };
+            residual = residual.max(accepted.residual);
+            path = path.max(accepted.path);
+            self.work += accepted.work;
+            self.damp(fraction * h);
+            fraction = largest_fraction(done).min(2.0 * fraction);
         }
         let kinetic = self.model.kinetic_energy(&self.state.v);
         let potential = self.model.potential_energy(end, &self.state.x);
@@ -322,6 +338,36 @@ pub fn project_positions(
         })
     }
 }
+
+/// The largest sub-step `2^-k` that may start after the fraction `done` of a step.
+fn largest_fraction(done: f64) -> f64 {
+    let mut fraction = 1.0;
+    while (done / fraction).fract() != 0.0 {
+        fraction *= 0.5;
+    }
+    fraction
+}
+
+/// Says why no step was accepted: dependent rods, if that is what they are.
+fn diagnose(model: &SheetModel, state: &State, min_step: f64, cause: StepError) -> StepError {
+    match rod_rank(model, &state.x) {
+        Some(rank) if rank.smallest < DEPENDENT_RODS => StepError::RankDeficient {
+            t: state.t,
+            rank_deficiency: rank.deficiency,
+            smallest_singular_value: rank.smallest,
+        },
+        _ => StepError::StepTooSmall {
+            t: state.t,
+            min_step,
+            cause: Box::new(cause),
+        },
+    }
+}
+
+/// Smallest singular value (of the rigidity matrix with unit rods) below which dependence of
+/// the rods is named as the reason of a failure: the referee integrations of the smoothest
+/// known runs pass values down to 1e-6 only with steps of a microsecond.
+const DEPENDENT_RODS: f64 = 1e-5;
 
 fn energy(model: &SheetModel, state: &State) -> f64 {
     model.kinetic_energy(&state.v) + model.potential_energy(state.t, &state.x)

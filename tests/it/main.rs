@@ -1,1 +1,4 @@
 //! Tests that span several crates.
+
+mod conservation;
+mod orders;

@@ -1,0 +1,1 @@
+//! Conservation laws, exactness of the lengths, flat starts.

@@ -1,1 +1,0 @@
-//! Tests that span several crates of isosheet live in `it/`; this library is empty.

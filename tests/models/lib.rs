@@ -1,0 +1,25 @@
+//! Mechanical problems with exact solutions, shared by the tests that span several crates and by
+//! reports. Each model gives a sheet, a start state and the exact motion.
+
+mod elliptic;
+mod flap;
+mod pendulum;
+mod strip;
+mod triangle;
+
+pub use elliptic::{agm, complete_k, jacobi};
+pub use flap::Flap;
+pub use pendulum::Pendulum;
+pub use strip::{HangingStrip, laguerre, laguerre_zeros};
+pub use triangle::FreeTriangle;
+
+/// Observed orders `log2(e_k / e_{k+1})` of a sequence of errors at halved steps.
+pub fn orders(errors: &[f64]) -> Vec<f64> {
+    errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect()
+}
+
+/// Largest absolute difference of two vectors.
+pub fn max_difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len(), "vectors of equal length");
+    a.iter().zip(b).fold(0.0, |m, (a, b)| m.max((a - b).abs()))
+}
