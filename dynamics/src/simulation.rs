@@ -116,6 +116,7 @@ pub struct Simulation {
     integrator: Box<dyn Integrator>,
     control: StepControl,
     fallback: Option<ImplicitEuler>,
+    force: Vec<f64>,
     start_energy: f64,
     work: f64,
     dissipated: f64,
@@ -173,6 +174,7 @@ impl Simulation {
             integrator,
             control: StepControl::default(),
             fallback: None,
+            force: vec![0.0; expected],
             start_energy,
             work: 0.0,
             dissipated: 0.0,
@@ -196,6 +198,11 @@ impl Simulation {
     /// The model.
     pub fn model(&self) -> &SheetModel {
         &self.model
+    }
+
+    /// Ends the simulation and returns its model.
+    pub fn into_model(self) -> SheetModel {
+        self.model
     }
 
     /// Time, positions and velocities.
@@ -242,6 +249,7 @@ impl Simulation {
             return Err(StepError::StepSize { h, t: start });
         }
         check_finite(&self.state)?;
+        self.check_forces()?;
         let end = start + h;
         let min_step = self.control.min_fraction * h;
         let mut effort = Effort::default();
@@ -299,6 +307,23 @@ impl Simulation {
             gap: None,
             path,
         })
+    }
+
+    /// Refuses potentials and forces that are not finite at the state.
+    fn check_forces(&mut self) -> Result<(), StepError> {
+        let State { t, x, v } = &self.state;
+        self.model.potential_force(*t, x, &mut self.force);
+        for force in self.model.forces() {
+            force.add_force(*t, x, v, &mut self.force);
+        }
+        match self.force.iter().position(|f| !f.is_finite()) {
+            None => Ok(()),
+            Some(i) => Err(StepError::NonFiniteForce {
+                vertex: VertexId((i / 3) as u32),
+                value: self.force[i],
+                t: *t,
+            }),
+        }
     }
 
     fn damp(&mut self, h: f64) {

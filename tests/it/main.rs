@@ -1,4 +1,7 @@
 //! Tests that span several crates.
 
 mod conservation;
+mod flat;
+mod forces;
 mod orders;
+mod scenes;

@@ -1,0 +1,162 @@
+//! Exactly flat and otherwise rank-deficient states.
+
+use crate::scenes::{bumped, corner, gap, hanging, held, methods};
+use isosheet_dynamics::{
+    Fallback, Method, Path, SheetModel, Simulation, State, StepControl, StepError,
+};
+use isosheet_mesh::{MassKind, VertexId, generate};
+
+#[test]
+fn flat_start_is_never_rejected() {
+    for level in [1, 2, 3] {
+        for method in [Method::default(), Method::Projection(Default::default())] {
+            let mut run = hanging(level, 0.0, method.clone());
+            let mut last = 0.0;
+            for k in 0..60 {
+                let report = run.step(1.0 / 60.0).expect("accepted");
+                assert_eq!(report.rejected, 0, "M^{level}, {method:?}, step {k}");
+                assert!(report.strain < 1e-11, "strain {:e}", report.strain);
+                last = report.potential;
+            }
+            assert!(last < -0.1, "M^{level} fell: {last} J");
+        }
+    }
+}
+
+#[test]
+fn conservative_methods_refuse_a_loaded_flat_sheet_and_say_why() {
+    for (name, method) in methods().into_iter().skip(2) {
+        let mut run = hanging(1, 0.0, method);
+        match run.step(1.0 / 60.0) {
+            Err(StepError::RankDeficient {
+                rank_deficiency,
+                smallest_singular_value,
+                ..
+            }) => {
+                // Nine interior vertices, as many dependent rods; a step or two of regularised
+                // motion may have folded some of them by less than is needed.
+                assert!(
+                    rank_deficiency <= 9 && smallest_singular_value < 1e-5,
+                    "{name}"
+                );
+            }
+            other => panic!("{name}: {other:?}"),
+        }
+        assert!(run.state().x.iter().all(|x| x.is_finite()), "{name}");
+    }
+}
+
+#[test]
+fn fallback_carries_a_conservative_run_off_flat() {
+    let mut run = hanging(1, 0.0, Method::EnergyMomentum(Default::default()))
+        .with_control(StepControl {
+            fallback: Fallback::ImplicitEuler(Default::default()),
+            ..Default::default()
+        })
+        .expect("valid");
+    let mut paths = Vec::new();
+    for _ in 0..60 {
+        let report = run.step(1.0 / 60.0).expect("accepted");
+        assert!(report.strain < 1e-11);
+        paths.push(report.path);
+    }
+    assert_eq!(paths[0], Path::Fallback);
+    let fallbacks = paths.iter().filter(|p| **p == Path::Fallback).count();
+    assert!(fallbacks < 20, "{fallbacks} of 60 steps fell back");
+}
+
+#[test]
+fn leaving_flat_lets_conservative_methods_run() {
+    let mut run = hanging(1, 0.0, Method::EnergyMomentum(Default::default()));
+    run.leave_flat(1e-2, 7).expect("projected");
+    for _ in 0..60 {
+        let report = run.step(1.0 / 60.0).expect("accepted");
+        assert!(report.energy_drift.abs() < 1e-10 && report.strain < 1e-12);
+    }
+}
+
+#[test]
+fn free_fall_keeps_a_flat_sheet_flat() {
+    // No rod is loaded, so dependent rods do not matter to any method.
+    let sheet = bumped(2, 0.0);
+    for (name, method) in methods() {
+        let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
+            .expect("valid")
+            .with_gravity();
+        let start = State::at_rest(sheet.positions().to_vec());
+        let mut run = Simulation::new(model, start, method).expect("valid");
+        let (h, steps) = (1e-2, 20);
+        for _ in 0..steps {
+            let report = run.step(h).unwrap_or_else(|e| panic!("{name}: {e}"));
+            assert_eq!(report.rejected, 0, "{name}");
+        }
+        let t = h * f64::from(steps);
+        // First-order methods fall by g h^2 (n + 1) n / 2 instead of g t^2 / 2.
+        let fall = match name {
+            "implicit Euler" | "projection" => 4.9 * t * (t + h),
+            _ => 4.9 * t * t,
+        };
+        for (p, q) in run.state().x.chunks(3).zip(sheet.positions().chunks(3)) {
+            assert!(
+                gap(p, &[q[0], q[1], -fall]) < 1e-9,
+                "{name}: {p:?} from {q:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_sheet_hanging_flat_at_rest_stays_at_rest() {
+    let flat = generate::isotropic_square(1, 1.0).expect("valid");
+    // Turned upright: y becomes z.
+    let x: Vec<f64> = flat
+        .positions()
+        .chunks(3)
+        .flat_map(|p| [p[0], 0.0, p[1]])
+        .collect();
+    let top: Vec<VertexId> = (20..25).map(VertexId).collect();
+    for (name, method) in methods() {
+        let model = SheetModel::new(&flat, 0.1, MassKind::Lumped)
+            .expect("valid")
+            .with_gravity()
+            .with_pins(&top)
+            .expect("vertices exist");
+        let mut run = Simulation::new(model, State::at_rest(x.clone()), method).expect("valid");
+        for _ in 0..200 {
+            run.step(1e-2).unwrap_or_else(|e| panic!("{name}: {e}"));
+        }
+        let moved = gap(&run.state().x, &x);
+        assert!(moved < 1e-9, "{name}: moved {moved:e} m");
+    }
+}
+
+#[test]
+fn bad_states_are_refused() {
+    let sheet = bumped(1, 0.05);
+    let mut x = sheet.positions().to_vec();
+    x[3] += 0.01;
+    let error = Simulation::new(held(1, 0.05), State::at_rest(x), Method::default());
+    let message = error.err().expect("refused").to_string();
+    assert!(
+        message.contains("edge") && message.contains("rest length"),
+        "{message}"
+    );
+
+    let mut x = sheet.positions().to_vec();
+    x[7] = f64::NAN;
+    let error = Simulation::new(held(1, 0.05), State::at_rest(x), Method::default());
+    assert!(error.err().expect("refused").to_string().contains("NaN"));
+
+    let short = State::at_rest(vec![0.0; 6]);
+    assert!(Simulation::new(held(1, 0.05), short, Method::default()).is_err());
+
+    let mut run = hanging(1, 0.05, Method::default());
+    for h in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(
+            matches!(run.step(h), Err(StepError::StepSize { .. })),
+            "{h}"
+        );
+    }
+    assert!(held(1, 0.0).with_pins(&[VertexId(1000)]).is_err());
+    assert_eq!(corner(1), VertexId(20));
+}
