@@ -170,8 +170,9 @@ pub struct AssignmentOptions {
     /// Treatment of Fig. 7; default [`Degenerate::Carry`].
     pub degenerate: Degenerate,
     /// With [`Degenerate::Assign`], volume spanned by the unit vectors along the three edges below which
-    /// rule f is given up. Default 1e-3: the rule with a closure is valid away from the degenerate
-    /// state as well, and better conditioned near it.
+    /// rule f is given up. Default 0.2 (a fold of about 12 degrees): the rule with a closure is
+    /// valid away from the degenerate state as well and better conditioned near it, and with less an
+    /// explicit step easily runs past the turning point of a vertex.
     pub volume: f64,
 }
 
@@ -181,7 +182,7 @@ impl Default for AssignmentOptions {
             pins: Vec::new(),
             starts: Vec::new(),
             degenerate: Degenerate::default(),
-            volume: 1e-3,
+            volume: 0.2,
         }
     }
 }
@@ -190,7 +191,7 @@ impl Default for AssignmentOptions {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum AssignmentError {
     /// A pin or start names a vertex that the mesh does not have.
-    #[error("vertex {vertex} does not exist, the mesh has {count} vertices")]
+    #[error("{vertex} does not exist, the mesh has {count} vertices")]
     NoSuchVertex {
         /// The vertex.
         vertex: VertexId,
@@ -198,13 +199,13 @@ pub enum AssignmentError {
         count: usize,
     },
     /// A vertex is listed twice among pins and starts.
-    #[error("vertex {vertex} is listed twice among pins and starts; list it once")]
+    #[error("{vertex} is listed twice among pins and starts; list it once")]
     Repeated {
         /// The vertex.
         vertex: VertexId,
     },
     /// A start vertex lies in a component that already has a pin or a start.
-    #[error("start vertex {vertex} lies in a component that has a pin or another start; remove it")]
+    #[error("start {vertex} lies in a component that has a pin or another start; remove it")]
     UnusedStart {
         /// The vertex.
         vertex: VertexId,

@@ -9,9 +9,23 @@ use isosheet_mesh::VertexId;
 use nalgebra::DMatrix;
 
 /// How a [`CartesianChart`] chooses its coordinates.
+///
+/// Condition numbers of C at the noise / cylinder states of [`crate::condition_table`], measured:
+///
+/// | mesh | pivoted QR | elimination | with exchanges |
+/// |---|---|---|---|
+/// | M^2 | 1.3e2 / 9.6e1 | 1.3e2 / 9.6e1 | 1.3e2 / 9.6e1 |
+/// | M^3 | 5.5e2 / 4.5e2 | 5.2e2 / 5.3e2 | 5.2e2 / 5.3e2 |
+/// | M^4 | | 2.1e3 / 1.7e3 | 2.1e3 / 1.7e3 |
+/// | M^5 | | 8.4e3 / 8.6e3 | 8.3e3 / 8.6e3 |
+/// | M^6 | | 3.4e4 / 3.2e4 | |
+///
+/// The condition grows like the number of faces, and the sparse elimination is as good as the dense
+/// factorisation at a hundredth of its cost (M^3: 1.5 ms against 190 ms; M^6: 2.6 s).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Choice {
-    /// [`Choice::PivotedQr`] up to 300 unknowns, [`Choice::Exchange`] above.
+    /// [`Choice::PivotedQr`] up to 300 unknowns, [`Choice::Exchange`] above, and
+    /// [`Choice::Elimination`] where J would have more than 32 million entries.
     #[default]
     Auto,
     /// Dense QR factorisation of G with column pivoting: the pivot columns are the dependent
@@ -19,10 +33,10 @@ pub enum Choice {
     PivotedQr,
     /// Sparse elimination of G^T with partial pivoting for a first choice, then exchanges of one
     /// coordinate for one dependent unknown while an entry of J = dx/dq is larger than 1.2 (a
-    /// volume-maximising basis). All entries of J end up below that bound, which no other chart of
-    /// Cartesian coordinates improves by more than a modest factor. Needs J, unknowns x n, dense.
+    /// volume-maximising basis). The exchanges are few; they turn what elimination usually finds into
+    /// a bound that always holds. Needs J, unknowns x n, dense.
     Exchange,
-    /// The sparse elimination alone, for meshes whose J does not fit.
+    /// The sparse elimination alone.
     Elimination,
 }
 

@@ -50,7 +50,7 @@ pub enum ChartError {
         rank: usize,
     },
     /// A coordinate row is not defined at this state.
-    #[error("coordinate {coordinate} (vertex {vertex}) has no gradient here: {source}")]
+    #[error("coordinate {coordinate} ({vertex}) has no gradient here: {source}")]
     Row {
         /// The coordinate.
         coordinate: usize,

@@ -9,7 +9,7 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SystemError {
     /// A pin names a vertex that the mesh does not have.
-    #[error("pinned vertex {vertex} does not exist, the mesh has {count} vertices")]
+    #[error("pinned {vertex} does not exist, the mesh has {count} vertices")]
     NoSuchVertex {
         /// The vertex.
         vertex: VertexId,

@@ -35,7 +35,7 @@ impl AngleTriple {
 pub enum RealiseError {
     /// Eq. 10 is violated at an edge: its two triangles cannot be closed.
     #[error(
-        "Eq. 10 is violated at edge {edge}, vertex {vertex} cannot be placed: angles alpha {:.6}, beta {:.6}, gamma {:.6} rad \
+        "Eq. 10 is violated at {edge}, {vertex} cannot be placed: angles alpha {:.6}, beta {:.6}, gamma {:.6} rad \
          (|alpha - beta| <= gamma <= alpha + beta needed; squared height {height_squared:e})",
         angles.alpha, angles.beta, angles.gamma
     )]
@@ -50,7 +50,7 @@ pub enum RealiseError {
         height_squared: f64,
     },
     /// Another placement failed.
-    #[error("vertex {vertex} cannot be placed from {known:?}: {source}")]
+    #[error("{vertex} cannot be placed from {known:?}: {source}")]
     Placement {
         /// The vertex.
         vertex: VertexId,
@@ -60,7 +60,7 @@ pub enum RealiseError {
         source: PlacementError,
     },
     /// The coordinates do not satisfy the closure equations.
-    #[error("{count} closure edges do not have their lengths; the worst is edge {} with strain {strain:e} (tolerance {tolerance:e})", worst.edge)]
+    #[error("{count} closure edges do not have their lengths; the worst is {} with strain {strain:e} (tolerance {tolerance:e})", worst.edge)]
     Closure {
         /// Number of closure edges.
         count: usize,

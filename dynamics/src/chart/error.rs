@@ -91,6 +91,16 @@ pub enum ChartDynamicsError {
         /// Relative change in the last iteration.
         change: f64,
     },
+    /// The edge lengths have drifted too far.
+    #[error("at t = {t} s the largest edge strain is {strain:e}, above {limit:e}: the scheme has diverged; take smaller steps, exact positions or other equations of motion")]
+    Diverged {
+        /// Time, seconds.
+        t: f64,
+        /// Largest strain.
+        strain: f64,
+        /// The limit.
+        limit: f64,
+    },
     /// A state is not finite.
     #[error("the state is not finite at t = {t} s: the step is too large for this scheme")]
     NotFinite {

@@ -89,6 +89,9 @@ pub struct ChartOptions {
     pub margin_limit: f64,
     /// Largest edge strain of the initial state, default 1e-6.
     pub strain_limit: f64,
+    /// Edge strain at which a run is given up as diverged, default 0.5. Only the linear position update
+    /// ever strains edges.
+    pub failure_strain: f64,
 }
 
 impl Default for ChartOptions {
@@ -105,6 +108,7 @@ impl Default for ChartOptions {
             growth_limit: 4.0,
             margin_limit: 0.1,
             strain_limit: 1e-6,
+            failure_strain: 0.5,
         }
     }
 }
@@ -157,6 +161,7 @@ impl ChartOptions {
             "give a number above 1",
         )?;
         positive("strain limit", self.strain_limit, "give a positive strain")?;
+        positive("failure strain", self.failure_strain, "give a positive strain")?;
         positive(
             "growth limit",
             self.growth_limit - 1.0,
@@ -444,6 +449,14 @@ impl ChartSimulation {
                 }
             }
         };
+        let strain = self.stepper.mechanics.system().max_strain(&trial.x);
+        if strain > self.options.failure_strain {
+            return Err(ChartDynamicsError::Diverged {
+                t: self.t + h,
+                strain,
+                limit: self.options.failure_strain,
+            });
+        }
         self.growth = self.stepper.growth()?;
         let energy_change = trial.hamiltonian - self.hamiltonian;
         self.state = trial;
@@ -470,7 +483,7 @@ impl ChartSimulation {
             kinetic: self.hamiltonian - potential,
             potential,
             energy_change,
-            strain: self.stepper.mechanics.system().max_strain(&self.state.x),
+            strain,
             rebased,
         })
     }

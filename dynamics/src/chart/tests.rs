@@ -263,6 +263,80 @@ fn singular_and_ill_conditioned_charts_are_refused() {
     ));
 }
 
+#[derive(Debug)]
+struct Wind([f64; 3]);
+
+impl crate::Force for Wind {
+    fn add_force(&self, _t: f64, _x: &[f64], v: &[f64], force: &mut [f64]) {
+        // Drag relative to the wind, 0.01 N per m/s and vertex.
+        for (f, v) in force.chunks_exact_mut(3).zip(v.chunks_exact(3)) {
+            for i in 0..3 {
+                f[i] += 0.01 * (self.0[i] - v[i]);
+            }
+        }
+    }
+}
+
+/// Sec. 5: a generalised force does the same work as the force on the vertices.
+#[test]
+fn generalised_forces_do_the_same_work() {
+    let sheet = bumped(1, 0.2);
+    let pins = [VertexId(3)];
+    let x = sheet.positions();
+    for chart in both(&sheet, &pins) {
+        let with = model(&sheet, &pins, MassKind::Lumped).with_force(Wind([1.0, 2.0, -0.5]));
+        let mut m = ChartMechanics::new(with, chart, MassSolverKind::Saddle).unwrap();
+        let n = m.dimension();
+        let p = numbers(n, 0.1);
+        let (mut qdot, mut v) = (vec![0.0; n], vec![0.0; x.len()]);
+        m.at(x).unwrap();
+        m.velocity(&p, &mut qdot, &mut v).unwrap();
+        let mut f = vec![0.0; x.len()];
+        m.model().applied_force(0.0, x, &v, &mut f);
+        let work: f64 = f.iter().zip(&v).map(|(f, v)| f * v).sum();
+        let mut q = vec![0.0; n];
+        m.generalised_force(&f, &mut q).unwrap();
+        let same: f64 = q.iter().zip(&qdot).map(|(q, r)| q * r).sum();
+        assert!((work - same).abs() < 1e-8 * work.abs(), "{work} {same}");
+        // It enters the rate of the momenta as it is.
+        let (mut total, mut without) = (vec![0.0; n], vec![0.0; n]);
+        m.momentum_rate(0.0, x, &v, Equations::Published, &mut total)
+            .unwrap();
+        m.model().potential_force(0.0, x, &mut f);
+        m.generalised_force(&f, &mut without).unwrap();
+        for k in 0..n {
+            let size = q[k].abs() + without[k].abs();
+            assert!((total[k] - without[k] - q[k]).abs() < 1e-8 * size.max(1e-3));
+        }
+    }
+}
+
+/// The linear position update of a blown-up run ends with an error, not with numbers.
+#[test]
+fn divergence_is_reported() {
+    let sheet = bumped(1, 0.1);
+    let pins = [VertexId(0)];
+    let options = ChartOptions {
+        equations: Equations::Published,
+        position: PositionUpdate::Linear,
+        control: ChartStepControl::Fixed(5e-3),
+        ..Default::default()
+    };
+    let m = model(&sheet, &pins, MassKind::Lumped);
+    let v = vec![0.0; sheet.positions().len()];
+    let mut s =
+        ChartSimulation::new(m, front(&sheet, &pins), options, sheet.positions(), &v).unwrap();
+    let outcome = (0..2000).find_map(|_| s.step().err());
+    assert!(
+        matches!(
+            outcome,
+            Some(ChartDynamicsError::Diverged { .. } | ChartDynamicsError::Chart(_))
+        ),
+        "{outcome:?}"
+    );
+    assert!(s.positions().iter().all(|c| c.is_finite()));
+}
+
 #[test]
 fn options_are_checked() {
     let bad = |change: fn(&mut ChartOptions)| {
