@@ -163,7 +163,7 @@ fn figure_7_is_assigned_on_request() {
     );
     // With the middle of the three out of the plane it is rule f again.
     let mut x = sheet.positions().to_vec();
-    x[5] = 0.1;
+    x[5] = 0.8;
     let bent = assign(&sheet, &x, &options(Degenerate::Assign)).unwrap();
     assert_eq!(bent.rule_count('f'), 1);
 }

@@ -92,7 +92,9 @@ pub enum ChartDynamicsError {
         change: f64,
     },
     /// The edge lengths have drifted too far.
-    #[error("at t = {t} s the largest edge strain is {strain:e}, above {limit:e}: the scheme has diverged; take smaller steps, exact positions or other equations of motion")]
+    #[error(
+        "at t = {t} s the largest edge strain is {strain:e}, above {limit:e}: the scheme has diverged; take smaller steps, exact positions or other equations of motion"
+    )]
     Diverged {
         /// Time, seconds.
         t: f64,

@@ -161,7 +161,11 @@ impl ChartOptions {
             "give a number above 1",
         )?;
         positive("strain limit", self.strain_limit, "give a positive strain")?;
-        positive("failure strain", self.failure_strain, "give a positive strain")?;
+        positive(
+            "failure strain",
+            self.failure_strain,
+            "give a positive strain",
+        )?;
         positive(
             "growth limit",
             self.growth_limit - 1.0,
