@@ -1,0 +1,218 @@
+//! Files that appear only when they are complete.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// What [`write_atomically`] hands to its closure: buffered, and seekable as zip archives need it.
+pub type FileWriter<'a> = BufWriter<&'a File>;
+
+/// A file could not be written; nothing is left under its name that was not there before.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The path does not end in a file name.
+    #[error("{} does not name a file; give a path that ends in a file name", path.display())]
+    NoFileName {
+        /// The path.
+        path: PathBuf,
+    },
+    /// There is a folder of that name.
+    #[error("{} is a folder; choose another file name or move the folder away", path.display())]
+    IsFolder {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The folder of the file could not be made.
+    #[error("cannot create the folder {}: {source}; check the name and the permissions", folder.display())]
+    CreateFolder {
+        /// The folder.
+        folder: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The folder does not take a new file.
+    #[error("cannot create a file in {}: {source}; check the permissions and the free space", folder.display())]
+    CreateFile {
+        /// The folder.
+        folder: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Writing failed half way.
+    #[error("cannot write {}: {source}; check the free space", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The complete file could not be given its name.
+    #[error("cannot put the finished file in place as {}: {source}; check that no other program holds it", path.display())]
+    Persist {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+}
+
+/// Creates the missing parent folders of `path` and returns the folder.
+pub(crate) fn prepare_folder(path: &Path) -> Result<PathBuf, WriteError> {
+    if path.file_name().is_none() {
+        return Err(WriteError::NoFileName {
+            path: path.to_owned(),
+        });
+    }
+    if path.is_dir() {
+        return Err(WriteError::IsFolder {
+            path: path.to_owned(),
+        });
+    }
+    let folder = match path.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p.to_owned(),
+        _ => PathBuf::from("."),
+    };
+    match fs::create_dir_all(&folder) {
+        Ok(()) => Ok(folder),
+        Err(source) => Err(WriteError::CreateFolder { folder, source }),
+    }
+}
+
+/// Writes a file so that it is either complete or not there: `write` fills a temporary file in the same folder, which then
+/// takes the name `path`, replacing an older file. Missing parent folders are created.
+///
+/// When `write` fails, when the process is killed or the disk is full, an older file of that name stays as it was.
+///
+/// ```
+/// use std::io::Write;
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("runs/note.txt");
+/// isosheet_io::write_atomically(&path, |w| writeln!(w, "done"))?;
+/// assert_eq!(std::fs::read_to_string(&path)?, "done\n");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`WriteError`] naming the file or folder; errors that `write` returns become [`WriteError::Write`].
+pub fn write_atomically<T>(
+    path: &Path,
+    write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<T>,
+) -> Result<T, WriteError> {
+    let folder = prepare_folder(path)?;
+    let failed = |source| WriteError::Write {
+        path: path.to_owned(),
+        source,
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".").suffix(".part");
+    // Temporary files are private by default; a result should be as readable as any other new file.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file = builder
+        .tempfile_in(&folder)
+        .map_err(|source| WriteError::CreateFile { folder, source })?;
+    let value = {
+        let mut buffered = BufWriter::new(file.as_file());
+        let value = write(&mut buffered).map_err(failed)?;
+        buffered.flush().map_err(failed)?;
+        value
+    };
+    match file.persist(path) {
+        Ok(_) => Ok(value),
+        Err(e) => Err(WriteError::Persist {
+            path: path.to_owned(),
+            source: e.error,
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entries(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(folder)
+            .unwrap()
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn replaces_whole_files_and_leaves_nothing_behind() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a/b/c.txt");
+        write_atomically(&path, |w| w.write_all(b"first")).unwrap();
+        let error = write_atomically(&path, |w| {
+            w.write_all(&[b'x'; 100_000])?;
+            Err::<(), _>(io::Error::other("out of ideas"))
+        });
+        let text = error.unwrap_err().to_string();
+        assert!(
+            text.contains("c.txt") && text.contains("out of ideas"),
+            "{text}"
+        );
+        assert_eq!(
+            fs::read_to_string(&path).unwrap(),
+            "first",
+            "the older file is untouched"
+        );
+        assert_eq!(
+            write_atomically(&path, |w| w.write_all(b"second").map(|()| 7)).unwrap(),
+            7
+        );
+        assert_eq!(fs::read_to_string(&path).unwrap(), "second");
+        assert_eq!(entries(path.parent().unwrap()), ["c.txt"]);
+    }
+
+    #[test]
+    fn a_panic_leaves_nothing_behind() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("c.txt");
+        let result = std::panic::catch_unwind(|| {
+            let _ = write_atomically(&path, |_| -> io::Result<()> { panic!("interrupted") });
+        });
+        assert!(result.is_err());
+        assert!(entries(dir.path()).is_empty());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn results_are_readable_by_others_as_far_as_the_mask_allows() {
+        use std::os::unix::fs::PermissionsExt;
+        let dir = tempfile::tempdir().unwrap();
+        let (path, plain) = (dir.path().join("c.txt"), dir.path().join("plain.txt"));
+        write_atomically(&path, |w| w.write_all(b"x")).unwrap();
+        fs::write(&plain, b"x").unwrap();
+        let mode = |p: &Path| fs::metadata(p).unwrap().permissions().mode();
+        assert_eq!(mode(&path), mode(&plain));
+    }
+
+    #[test]
+    fn bad_places_are_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let file = dir.path().join("file");
+        fs::write(&file, b"x").unwrap();
+        let inside_a_file = file.join("sub/c.txt");
+        assert!(matches!(
+            write_atomically(&inside_a_file, |_| Ok(())),
+            Err(WriteError::CreateFolder { .. })
+        ));
+        assert!(matches!(
+            write_atomically(dir.path(), |_| Ok(())),
+            Err(WriteError::IsFolder { .. })
+        ));
+        assert!(matches!(
+            write_atomically(Path::new(".."), |_| Ok(())),
+            Err(WriteError::NoFileName { .. })
+        ));
+        assert!(matches!(
+            write_atomically(Path::new(""), |_| Ok(())),
+            Err(WriteError::NoFileName { .. })
+        ));
+    }
+}

@@ -1,0 +1,350 @@
+//! The history of a run: one row per step.
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::atomic::{WriteError, prepare_folder};
+
+/// One step of a run. The field order is the column order of the file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct HistoryRow {
+    /// Time at the end of the step, in seconds.
+    pub t: f64,
+    /// Length of the step, in seconds; 0 in a row for the start.
+    pub h: f64,
+    /// Iterations that the step took.
+    pub iterations: usize,
+    /// Kinetic energy, in joules.
+    pub kinetic: f64,
+    /// Potential energy, in joules.
+    pub potential: f64,
+    /// Total energy, in joules.
+    #[serde(rename = "H")]
+    pub total: f64,
+    /// Change of the total energy since the start, in joules.
+    #[serde(rename = "dH")]
+    pub drift: f64,
+    /// Largest relative change of an edge length.
+    pub strain: f64,
+    /// Smallest distance between things that must not touch, in metres; empty in the file where nothing can touch.
+    pub gap: Option<f64>,
+}
+
+/// The column names, in order.
+const COLUMNS: [&str; 9] = [
+    "t",
+    "h",
+    "iterations",
+    "kinetic",
+    "potential",
+    "H",
+    "dH",
+    "strain",
+    "gap",
+];
+
+/// A history that cannot be written or read.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum HistoryError {
+    /// The file could not be created or written.
+    #[error(transparent)]
+    File(#[from] WriteError),
+    /// A value is NaN or infinite.
+    #[error(
+        "{column} at t = {t} s is {value}; the row was not written, so the history ends with the last good step"
+    )]
+    NotFinite {
+        /// The column.
+        column: &'static str,
+        /// The time of the row, in seconds.
+        t: f64,
+        /// The value.
+        value: f64,
+    },
+    /// A file could not be read.
+    #[error("cannot read {}: {source}; check the path", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The first line is not the expected one.
+    #[error("{} does not start with the columns {}, but with {found:?}; it is not a history of a run", path.display(), COLUMNS.join(","))]
+    Header {
+        /// The file.
+        path: PathBuf,
+        /// The first line.
+        found: String,
+    },
+    /// A row is not readable.
+    #[error("row {row} of {}: {problem}; correct or remove the row", path.display())]
+    Row {
+        /// The file.
+        path: PathBuf,
+        /// The row, 1 for the first below the header.
+        row: usize,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+/// Writes a history row by row: every row is on disk when [`HistoryWriter::append`] returns, so that the file of an interrupted
+/// run ends with its last complete step.
+///
+/// ```
+/// use isosheet_io::{HistoryRow, HistoryWriter, read_history};
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("runs/free_fall/history.csv");
+/// let mut history = HistoryWriter::create(&path)?;
+/// history.append(&HistoryRow { t: 0.01, h: 0.01, iterations: 3, ..HistoryRow::default() })?;
+/// assert_eq!(read_history(&path)?.len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct HistoryWriter {
+    path: PathBuf,
+    file: File,
+}
+
+impl HistoryWriter {
+    /// Starts a new history, replacing an older file; missing parent folders are created.
+    ///
+    /// # Errors
+    /// [`HistoryError::File`].
+    pub fn create(path: &Path) -> Result<Self, HistoryError> {
+        let folder = prepare_folder(path)?;
+        let file =
+            File::create(path).map_err(|source| WriteError::CreateFile { folder, source })?;
+        let mut history = Self {
+            path: path.to_owned(),
+            file,
+        };
+        history.write_record(|w| w.write_record(COLUMNS))?;
+        Ok(history)
+    }
+
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// [`HistoryError::NotFinite`] naming the column, in which case nothing is written; [`HistoryError::File`].
+    pub fn append(&mut self, row: &HistoryRow) -> Result<(), HistoryError> {
+        let values = [
+            ("t", row.t),
+            ("h", row.h),
+            ("kinetic", row.kinetic),
+            ("potential", row.potential),
+            ("H", row.total),
+            ("dH", row.drift),
+            ("strain", row.strain),
+            ("gap", row.gap.unwrap_or(0.0)),
+        ];
+        if let Some(&(column, value)) = values.iter().find(|(_, v)| !v.is_finite()) {
+            return Err(HistoryError::NotFinite {
+                column,
+                t: row.t,
+                value,
+            });
+        }
+        self.write_record(|w| w.serialize(row))
+    }
+
+    /// The file being written.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Formats a record in memory and writes it with one call, so that no half row is left by a crash of this process.
+    fn write_record(
+        &mut self,
+        record: impl FnOnce(&mut csv::Writer<&mut Vec<u8>>) -> csv::Result<()>,
+    ) -> Result<(), HistoryError> {
+        let failed = |source| WriteError::Write {
+            path: self.path.clone(),
+            source,
+        };
+        let mut line = Vec::with_capacity(192);
+        {
+            let mut writer = csv::WriterBuilder::new()
+                .has_headers(false)
+                .from_writer(&mut line);
+            record(&mut writer).map_err(|e| failed(io::Error::other(e)))?;
+            writer.flush().map_err(failed)?;
+        }
+        self.file.write_all(&line).map_err(failed)?;
+        Ok(())
+    }
+}
+
+/// Reads a history. A last row that is cut short, as an interrupted run may leave it, is ignored.
+///
+/// # Errors
+/// [`HistoryError`] for a file that is missing, has other columns, or an unreadable row before the last.
+pub fn read_history(path: &Path) -> Result<Vec<HistoryRow>, HistoryError> {
+    let text = std::fs::read(path).map_err(|source| HistoryError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    // A complete row ends with a line break.
+    let complete = text.iter().rposition(|&b| b == b'\n').map_or(0, |k| k + 1);
+    let mut reader = csv::Reader::from_reader(&text[..complete]);
+    let header = reader
+        .headers()
+        .map(|h| h.iter().map(str::to_owned).collect::<Vec<_>>())
+        .unwrap_or_default();
+    if header != COLUMNS {
+        return Err(HistoryError::Header {
+            path: path.to_owned(),
+            found: header.join(","),
+        });
+    }
+    let mut rows = Vec::new();
+    for (k, row) in reader.deserialize().enumerate() {
+        rows.push(row.map_err(|e| HistoryError::Row {
+            path: path.to_owned(),
+            row: k + 1,
+            problem: e.to_string(),
+        })?);
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(k: usize) -> HistoryRow {
+        let s = (k as f64).sin();
+        HistoryRow {
+            t: 0.1 * k as f64,
+            h: 0.1,
+            iterations: 3 * k,
+            kinetic: s * 1e-12,
+            potential: -s * 1e9,
+            total: 1.0 / 3.0,
+            drift: f64::MIN_POSITIVE * s,
+            strain: f64::EPSILON,
+            gap: (k % 2 == 1).then_some(s),
+        }
+    }
+
+    #[test]
+    fn rows_come_back_bit_for_bit() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("new/history.csv");
+        let mut w = HistoryWriter::create(&path).unwrap();
+        assert_eq!(w.path(), path);
+        assert!(read_history(&path).unwrap().is_empty());
+        let rows: Vec<_> = (0..20).map(row).collect();
+        for (k, r) in rows.iter().enumerate() {
+            w.append(r).unwrap();
+            // Readable while the run goes on.
+            assert_eq!(read_history(&path).unwrap(), rows[..=k]);
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(
+            text.starts_with("t,h,iterations,kinetic,potential,H,dH,strain,gap\n"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_cut_file_keeps_its_complete_rows() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("history.csv");
+        let mut w = HistoryWriter::create(&path).unwrap();
+        for k in 0..3 {
+            w.append(&row(k)).unwrap();
+        }
+        let text = std::fs::read(&path).unwrap();
+        let second_end = text
+            .iter()
+            .enumerate()
+            .filter(|(_, b)| **b == b'\n')
+            .nth(2)
+            .unwrap()
+            .0
+            + 1;
+        for cut in second_end..text.len() {
+            std::fs::write(&path, &text[..cut]).unwrap();
+            assert_eq!(read_history(&path).unwrap(), [row(0), row(1)]);
+        }
+    }
+
+    #[test]
+    fn nan_is_refused_and_leaves_the_file_as_it_was() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("history.csv");
+        let mut w = HistoryWriter::create(&path).unwrap();
+        w.append(&row(1)).unwrap();
+        let before = std::fs::read(&path).unwrap();
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let cases = [
+                (
+                    HistoryRow {
+                        kinetic: bad,
+                        ..row(2)
+                    },
+                    "kinetic",
+                ),
+                (
+                    HistoryRow {
+                        total: bad,
+                        ..row(2)
+                    },
+                    "H",
+                ),
+                (
+                    HistoryRow {
+                        gap: Some(bad),
+                        ..row(2)
+                    },
+                    "gap",
+                ),
+            ];
+            for (r, name) in cases {
+                match w.append(&r) {
+                    Err(HistoryError::NotFinite { column, .. }) => assert_eq!(column, name),
+                    other => panic!("{other:?}"),
+                }
+            }
+        }
+        assert_eq!(std::fs::read(&path).unwrap(), before);
+    }
+
+    #[test]
+    fn other_files_are_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("x.csv");
+        assert!(matches!(
+            read_history(&path),
+            Err(HistoryError::Read { .. })
+        ));
+        std::fs::write(&path, "").unwrap();
+        assert!(matches!(
+            read_history(&path),
+            Err(HistoryError::Header { .. })
+        ));
+        std::fs::write(&path, "a,b\n1,2\n").unwrap();
+        assert!(matches!(
+            read_history(&path),
+            Err(HistoryError::Header { .. })
+        ));
+        let header = COLUMNS.join(",");
+        std::fs::write(
+            &path,
+            format!("{header}\n1,2,x,4,5,6,7,8,9\n1,2,3,4,5,6,7,8,9\n"),
+        )
+        .unwrap();
+        assert!(matches!(
+            read_history(&path),
+            Err(HistoryError::Row { row: 1, .. })
+        ));
+        assert!(HistoryWriter::create(dir.path()).is_err());
+    }
+}

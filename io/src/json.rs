@@ -1,0 +1,254 @@
+//! JSON files such as a run's summary.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use thiserror::Error;
+
+use crate::atomic::{WriteError, write_atomically};
+use crate::finite::{Finding, check_finite};
+
+/// A JSON file that cannot be written or read.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum JsonError {
+    /// The file could not be written.
+    #[error(transparent)]
+    File(#[from] WriteError),
+    /// A number is NaN or infinite, which JSON cannot hold.
+    #[error("{field} is {value}, which cannot be written to {}; leave it out (`None`) or find where it comes from", path.display())]
+    NotFinite {
+        /// The file.
+        path: PathBuf,
+        /// Which number, as in `steps[3].energy`.
+        field: String,
+        /// Its value.
+        value: f64,
+    },
+    /// The value has no JSON form, for example a map whose keys are not strings.
+    #[error("cannot write {} as JSON: {problem}", path.display())]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The file could not be opened.
+    #[error("cannot read {}: {source}; check the path", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The content is not what was expected.
+    #[error("{}: {source}; correct the file or write it anew", path.display())]
+    Parse {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with line and column.
+        source: serde_json::Error,
+    },
+}
+
+/// Writes `value` as indented JSON, atomically. Numbers keep all their digits.
+///
+/// # Errors
+/// [`JsonError`]; a number that is not finite is refused by name, and nothing is written then.
+pub fn write_json<T: Serialize + ?Sized>(path: &Path, value: &T) -> Result<(), JsonError> {
+    let path_buf = || path.to_owned();
+    check_finite(value).map_err(|finding| match finding {
+        Finding::NotFinite { path: field, value } => JsonError::NotFinite {
+            path: path_buf(),
+            field,
+            value,
+        },
+        Finding::Other(problem) => JsonError::Form {
+            path: path_buf(),
+            problem,
+        },
+    })?;
+    let mut text = serde_json::to_vec_pretty(value).map_err(|e| JsonError::Form {
+        path: path_buf(),
+        problem: e.to_string(),
+    })?;
+    text.push(b'\n');
+    Ok(write_atomically(path, |w| w.write_all(&text))?)
+}
+
+/// Reads a JSON file.
+///
+/// # Errors
+/// [`JsonError::Read`] or [`JsonError::Parse`].
+pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, JsonError> {
+    let text = std::fs::read(path).map_err(|source| JsonError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    serde_json::from_slice(&text).map_err(|source| JsonError::Parse {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    enum Scheme {
+        Plain,
+        Damped { rate: f64 },
+        Pair(f64, f64),
+        Wrapped(f64),
+    }
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    struct Summary {
+        name: String,
+        steps: Vec<Step>,
+        pair: (f64, i32),
+        note: Option<f64>,
+        sizes: BTreeMap<String, f64>,
+        scheme: Scheme,
+    }
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    struct Step {
+        energy: f64,
+        ok: bool,
+    }
+
+    fn summary() -> Summary {
+        Summary {
+            name: "falling \"sheet\"".into(),
+            steps: vec![
+                Step {
+                    energy: 0.1 + 0.2,
+                    ok: true,
+                },
+                Step {
+                    energy: -1e-300,
+                    ok: false,
+                },
+            ],
+            pair: (f64::MAX, -3),
+            note: None,
+            sizes: BTreeMap::from([("M1".into(), 1.0 / 3.0)]),
+            scheme: Scheme::Plain,
+        }
+    }
+
+    #[test]
+    fn values_come_back_bit_for_bit() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("runs/a/summary.json");
+        for scheme in [
+            Scheme::Plain,
+            Scheme::Damped { rate: 2.5 },
+            Scheme::Pair(1.0, 2.0),
+            Scheme::Wrapped(0.5),
+        ] {
+            let s = Summary {
+                scheme,
+                ..summary()
+            };
+            write_json(&path, &s).unwrap();
+            assert_eq!(read_json::<Summary>(&path).unwrap(), s);
+        }
+        assert!(std::fs::read_to_string(&path).unwrap().ends_with("}\n"));
+    }
+
+    #[test]
+    fn nan_is_refused_by_name() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("summary.json");
+        let cases: [(&str, Summary); 7] = [
+            ("steps[1].energy", {
+                let mut s = summary();
+                s.steps[1].energy = f64::NAN;
+                s
+            }),
+            (
+                "pair[0]",
+                Summary {
+                    pair: (f64::INFINITY, 0),
+                    ..summary()
+                },
+            ),
+            (
+                "note",
+                Summary {
+                    note: Some(f64::NEG_INFINITY),
+                    ..summary()
+                },
+            ),
+            (
+                "sizes.M1",
+                Summary {
+                    sizes: BTreeMap::from([("M1".into(), f64::NAN)]),
+                    ..summary()
+                },
+            ),
+            (
+                "scheme.rate",
+                Summary {
+                    scheme: Scheme::Damped { rate: f64::NAN },
+                    ..summary()
+                },
+            ),
+            (
+                "scheme[1]",
+                Summary {
+                    scheme: Scheme::Pair(0.0, f64::NAN),
+                    ..summary()
+                },
+            ),
+            (
+                "scheme.Wrapped",
+                Summary {
+                    scheme: Scheme::Wrapped(f64::NAN),
+                    ..summary()
+                },
+            ),
+        ];
+        for (name, s) in cases {
+            match write_json(&path, &s) {
+                Err(JsonError::NotFinite { field, .. }) => assert_eq!(field, name),
+                other => panic!("{name}: {other:?}"),
+            }
+        }
+        assert!(!path.exists());
+        assert!(matches!(
+            write_json(&path, &f32::NAN),
+            Err(JsonError::NotFinite { .. })
+        ));
+    }
+
+    #[test]
+    fn unreadable_files_are_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("summary.json");
+        assert!(matches!(
+            read_json::<Summary>(&path),
+            Err(JsonError::Read { .. })
+        ));
+        std::fs::write(&path, "{\"name\": 3").unwrap();
+        let error = read_json::<Summary>(&path).unwrap_err();
+        assert!(
+            error.to_string().contains("summary.json") && error.to_string().contains("line 1"),
+            "{error}"
+        );
+        let keyed = BTreeMap::from([((1, 2), 3)]);
+        assert!(matches!(
+            write_json(&path, &keyed),
+            Err(JsonError::Form { .. })
+        ));
+    }
+}

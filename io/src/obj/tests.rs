@@ -1,0 +1,281 @@
+use isosheet_mesh::{MeshError, TopologyError, generate};
+use proptest::prelude::*;
+
+use super::*;
+use crate::{ObjWriteError, frame_path, write_obj, write_obj_to};
+
+fn parse(text: &str) -> Result<ObjMesh, ObjError> {
+    parse_obj(
+        text.as_bytes(),
+        Path::new("test.obj"),
+        &ObjOptions::default(),
+    )
+}
+
+fn problem(text: &str) -> (Option<usize>, ObjProblem) {
+    let e = parse(text).unwrap_err();
+    assert!(e.to_string().starts_with("test.obj"), "{e}");
+    (e.line, e.problem)
+}
+
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+#[test]
+fn reads_what_the_format_allows() {
+    let m = parse(&format!(
+        "# comment\r\nmtllib a.mtl\no sheet\n{SQUARE}vt 0 0\nvn 0 0 1\ng one\nusemtl m\ns off\nf 1/1/1 2/1/1 3/1/1 # first\nf -4//1 \\\n  -2//1 -1//1\nl 1 2\n"
+    ))
+    .unwrap();
+    assert_eq!(m.faces, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!((m.vertex_count(), m.polygons), (4, 0));
+    assert_eq!(m.into_sheet().unwrap().area(), 1.0);
+    // Faces may come first; colours may be nonsense; numbers may have exponents.
+    let m =
+        parse("f 1 2 3\nv 0 0 0 nan nan nan\nv 1e0 0 0 0.1 0.2 0.3\nv 0 +1.0E+0 0 1.0\n").unwrap();
+    assert_eq!(m.positions, [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    assert_eq!(m.faces, [[0, 1, 2]]);
+    // Bytes that are not UTF-8 in a name.
+    let mut bytes = b"o \xff\xfe\n".to_vec();
+    bytes.extend(format!("{SQUARE}f 1 2 3\n").into_bytes());
+    assert!(parse_obj(&bytes, Path::new("x"), &ObjOptions::default()).is_ok());
+    // A continued last line.
+    assert_eq!(
+        parse(&format!("{SQUARE}f 1 2 3\\")).unwrap().faces,
+        [[0, 1, 2]]
+    );
+}
+
+#[test]
+fn every_defect_names_its_line() {
+    assert!(matches!(problem(""), (None, ObjProblem::Empty)));
+    assert!(matches!(problem("# only\n\n"), (None, ObjProblem::Empty)));
+    assert!(
+        matches!(problem("\nsolid thing\nfacet\n"), (Some(2), ObjProblem::NotObj { word }) if word == "solid")
+    );
+    assert!(matches!(
+        problem("f 1 2 3\n"),
+        (None, ObjProblem::NoVertices { faces: 1 })
+    ));
+    let points = format!("{SQUARE}p 1 2\nl 1 2\nl 2 3\n");
+    assert!(matches!(
+        problem(&points),
+        (
+            None,
+            ObjProblem::NoFaces {
+                vertices: 4,
+                lines: 2,
+                points: 1
+            }
+        )
+    ));
+    assert!(matches!(
+        problem("v 0 0\n"),
+        (Some(1), ObjProblem::BadVertex { .. })
+    ));
+    assert!(matches!(
+        problem("v 0 0 x\n"),
+        (Some(1), ObjProblem::BadVertex { .. })
+    ));
+    assert!(matches!(
+        problem("v 0 0 0\nv 0 nan 0\n"),
+        (
+            Some(2),
+            ObjProblem::NonFinite {
+                vertex: 2,
+                axis: 1,
+                ..
+            }
+        )
+    ));
+    assert!(matches!(
+        problem("v 0 0 1e999\n"),
+        (Some(1), ObjProblem::NonFinite { axis: 2, .. })
+    ));
+    assert!(matches!(
+        problem("v 0 0 0 0.5\n"),
+        (Some(1), ObjProblem::Weight { vertex: 1, .. })
+    ));
+    let face = |f: &str| problem(&format!("{SQUARE}f {f}\n"));
+    assert!(matches!(
+        face("1 2 5"),
+        (Some(5), ObjProblem::IndexOutOfRange { index: 5, count: 4 })
+    ));
+    assert!(matches!(
+        face("1 2 -5"),
+        (
+            Some(5),
+            ObjProblem::IndexOutOfRange {
+                index: -5,
+                count: 4
+            }
+        )
+    ));
+    assert!(matches!(
+        face("0 1 2"),
+        (Some(5), ObjProblem::IndexOutOfRange { index: 0, .. })
+    ));
+    assert!(matches!(
+        face("1 2 9999999999"),
+        (Some(5), ObjProblem::IndexOutOfRange { .. })
+    ));
+    assert!(matches!(
+        face("1 2 -9223372036854775808"),
+        (Some(5), ObjProblem::IndexOutOfRange { .. })
+    ));
+    assert!(matches!(
+        face("1 2 9223372036854775807"),
+        (Some(5), ObjProblem::IndexOutOfRange { .. })
+    ));
+    assert!(matches!(
+        face("1 b 3"),
+        (Some(5), ObjProblem::BadIndex { .. })
+    ));
+    assert!(matches!(
+        face("1 2.5 3"),
+        (Some(5), ObjProblem::BadIndex { .. })
+    ));
+    assert!(matches!(
+        face("/1 2 3"),
+        (Some(5), ObjProblem::BadIndex { .. })
+    ));
+    assert!(matches!(
+        face("1 2"),
+        (Some(5), ObjProblem::TooFewCorners { corners: 2 })
+    ));
+    assert!(matches!(
+        face(""),
+        (Some(5), ObjProblem::TooFewCorners { corners: 0 })
+    ));
+    assert!(matches!(
+        face("1 2 3 4"),
+        (Some(5), ObjProblem::Polygon { corners: 4 })
+    ));
+    let missing = read_sheet(Path::new("/no/such/file.obj")).unwrap_err();
+    assert!(matches!(missing.problem, ObjProblem::Read(_)));
+    assert!(
+        missing.to_string().contains("/no/such/file.obj"),
+        "{missing}"
+    );
+}
+
+#[test]
+fn polygons_are_cut_on_request() {
+    let options = ObjOptions {
+        polygons: Polygons::Triangulate,
+    };
+    let text = format!("{SQUARE}v 2 0.5 0\nf 1 2 3 4\nf 2 5 3\n");
+    let m = parse_obj(text.as_bytes(), Path::new("q"), &options).unwrap();
+    assert_eq!((m.faces.len(), m.polygons), (3, 1));
+    assert!((m.into_sheet().unwrap().area() - 1.5).abs() < 1e-15);
+    let flat = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n";
+    let e = parse_obj(flat.as_bytes(), Path::new("q"), &options).unwrap_err();
+    assert!(matches!(
+        e.problem,
+        ObjProblem::ConcavePolygon { corners: 4 }
+    ));
+}
+
+#[test]
+fn unused_vertices_are_refused_or_dropped() {
+    let text = format!("v 9 9 9\n{SQUARE}v 8 8 8\nf 2 3 4\nf 2 4 5\n");
+    let mut m = parse(&text).unwrap();
+    let error = m.clone().into_sheet().unwrap_err();
+    assert!(matches!(
+        error.problem,
+        ObjProblem::Mesh(MeshError::Topology(
+            TopologyError::UnreferencedVertex { .. }
+        ))
+    ));
+    assert_eq!(m.drop_unreferenced(), 2);
+    assert_eq!(m.into_sheet().unwrap().area(), 1.0);
+}
+
+#[test]
+fn frames_are_written_and_read_back_exactly() {
+    let dir = tempfile::tempdir().unwrap();
+    let sheet = generate::delaunay_square(0.3, 0.05, 3).unwrap();
+    let path = frame_path(&dir.path().join("frames"), 42);
+    assert!(path.ends_with("frame_00042.obj"));
+    let x: Vec<f64> = sheet.positions().iter().map(|c| c / 3.0 + 1e-17).collect();
+    write_obj(&path, sheet.topology(), &x).unwrap();
+    let back = read_sheet(&path).unwrap();
+    assert_eq!(back.topology(), sheet.topology());
+    assert_eq!(back.positions(), x);
+
+    let mut memory = Vec::new();
+    write_obj_to(&mut memory, sheet.topology(), &x).unwrap();
+    assert_eq!(memory, std::fs::read(&path).unwrap());
+
+    let mut bad = x.clone();
+    bad[7] = f64::INFINITY;
+    let error = write_obj(&path, sheet.topology(), &bad).unwrap_err();
+    assert!(
+        matches!(error, ObjWriteError::NotFinite { axis: 1, .. }),
+        "{error}"
+    );
+    assert!(matches!(
+        write_obj(&path, sheet.topology(), &x[3..]),
+        Err(ObjWriteError::WrongLength { .. })
+    ));
+    assert_eq!(std::fs::read(&path).unwrap(), memory, "left as it was");
+}
+
+/// Another reader finds the same triangles in space.
+#[test]
+fn agrees_with_another_reader() {
+    let sheet = generate::octagon_244(0.5).unwrap();
+    let mut text = Vec::new();
+    write_obj_to(&mut text, sheet.topology(), sheet.positions()).unwrap();
+    let ours = parse_obj(&text, Path::new("x"), &ObjOptions::default()).unwrap();
+    let no_materials = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
+    let (models, _) =
+        tobj::load_obj_buf(&mut &text[..], &tobj::LoadOptions::default(), no_materials).unwrap();
+    assert_eq!(models.len(), 1);
+    let theirs = &models[0].mesh;
+    let place = |x: &[f64], v: u32| {
+        [
+            x[3 * v as usize],
+            x[3 * v as usize + 1],
+            x[3 * v as usize + 2],
+        ]
+    };
+    let a: Vec<_> = ours
+        .faces
+        .iter()
+        .flatten()
+        .map(|&v| place(&ours.positions, v))
+        .collect();
+    let b: Vec<_> = theirs
+        .indices
+        .iter()
+        .map(|&v| place(&theirs.positions, v))
+        .collect();
+    assert_eq!(a, b);
+}
+
+proptest! {
+    /// Any f64 survives the text.
+    #[test]
+    fn coordinates_survive(c in prop::collection::vec(-1e30..1e30f64, 3), e in -60..30i32) {
+        let x: Vec<f64> = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().zip(c.iter().cycle()).map(|(b, c)| b + c * 10f64.powi(e)).collect();
+        let t = isosheet_mesh::Topology::from_faces(3, &[[0, 1, 2]]).unwrap();
+        let mut text = Vec::new();
+        write_obj_to(&mut text, &t, &x).unwrap();
+        prop_assert_eq!(parse_obj(&text, Path::new("x"), &ObjOptions::default()).unwrap().positions, x);
+    }
+
+    /// Whatever is in a file, it is read or refused, never a panic.
+    #[test]
+    fn no_text_makes_it_panic(text in "([vflpg#]|vt|usemtl| |/|-?[0-9]{1,3}|nan|1e[0-9]|\\\\|\n){0,60}") {
+        for polygons in [Polygons::Refuse, Polygons::Triangulate] {
+            if let Ok(m) = parse_obj(text.as_bytes(), Path::new("x"), &ObjOptions { polygons }) {
+                let _ = m.into_sheet();
+            }
+        }
+    }
+
+    #[test]
+    fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        let _ = parse_obj(&bytes, Path::new("x"), &ObjOptions::default());
+    }
+}

@@ -1,0 +1,104 @@
+//! Writing Wavefront OBJ files.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use isosheet_mesh::{Topology, VertexId};
+use thiserror::Error;
+
+use crate::atomic::{WriteError, write_atomically};
+
+/// A state that cannot be written as OBJ.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ObjWriteError {
+    /// The position array does not belong to the mesh.
+    #[error(
+        "there are {got} coordinates, but the mesh has {vertices} vertices, three coordinates each"
+    )]
+    WrongLength {
+        /// The length of the array.
+        got: usize,
+        /// The number of vertices.
+        vertices: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("coordinate {} of {vertex} is {value}; the file was not written", ["x", "y", "z"][*axis])]
+    NotFinite {
+        /// The vertex.
+        vertex: VertexId,
+        /// 0, 1, 2 for x, y, z.
+        axis: usize,
+        /// The value.
+        value: f64,
+    },
+    /// The file could not be written.
+    #[error(transparent)]
+    File(#[from] WriteError),
+}
+
+/// Writes the mesh at positions `x` (length 3V, metres) as an OBJ file, atomically.
+///
+/// Vertices and faces keep their order; numbers have as many digits as are needed to read them back exactly.
+///
+/// # Errors
+/// [`ObjWriteError`]; nothing is written then.
+pub fn write_obj(path: &Path, topology: &Topology, x: &[f64]) -> Result<(), ObjWriteError> {
+    check(topology, x)?;
+    Ok(write_atomically(path, |w| write_lines(w, topology, x))?)
+}
+
+/// [`write_obj`] to any writer, for example into memory.
+///
+/// # Errors
+/// [`ObjWriteError`] for bad positions; errors of the writer as [`WriteError::Write`] without a path.
+pub fn write_obj_to(
+    w: &mut impl Write,
+    topology: &Topology,
+    x: &[f64],
+) -> Result<(), ObjWriteError> {
+    check(topology, x)?;
+    let failed = |source| WriteError::Write {
+        path: PathBuf::new(),
+        source,
+    };
+    Ok(write_lines(w, topology, x).map_err(failed)?)
+}
+
+/// The file of frame `frame` in `folder`: `frame_00000.obj` and so on, so that names sort as frames do.
+pub fn frame_path(folder: &Path, frame: usize) -> PathBuf {
+    folder.join(format!("frame_{frame:05}.obj"))
+}
+
+fn check(topology: &Topology, x: &[f64]) -> Result<(), ObjWriteError> {
+    if x.len() != 3 * topology.vertex_count() {
+        return Err(ObjWriteError::WrongLength {
+            got: x.len(),
+            vertices: topology.vertex_count(),
+        });
+    }
+    match x.iter().position(|c| !c.is_finite()) {
+        Some(k) => Err(ObjWriteError::NotFinite {
+            vertex: VertexId::from_index(k / 3),
+            axis: k % 3,
+            value: x[k],
+        }),
+        None => Ok(()),
+    }
+}
+
+fn write_lines(w: &mut impl Write, topology: &Topology, x: &[f64]) -> io::Result<()> {
+    writeln!(
+        w,
+        "# isosheet: {} vertices, {} faces",
+        topology.vertex_count(),
+        topology.face_count()
+    )?;
+    for p in x.chunks_exact(3) {
+        writeln!(w, "v {} {} {}", p[0], p[1], p[2])?;
+    }
+    for [a, b, c] in topology.faces() {
+        writeln!(w, "f {} {} {}", a.0 + 1, b.0 + 1, c.0 + 1)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,357 @@
+//! Trajectories as numpy archives.
+
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use isosheet_mesh::{Sheet, VertexId};
+use npyz::WriterBuilder;
+use npyz::npz::{NpzArchive, NpzWriter};
+use thiserror::Error;
+
+use crate::atomic::{WriteError, write_atomically};
+
+/// The frames of a run with its mesh, as kept in an `.npz` file.
+///
+/// | array | type | shape | |
+/// |---|---|---|---|
+/// | `t` | f64 | T | time of each frame, in seconds |
+/// | `x` | f64 | T x V x 3 | positions, in metres |
+/// | `faces` | u32 | F x 3 | corners, counter-clockwise, from 0 |
+/// | `edges` | u32 | E x 2 | ends, from 0 |
+/// | `rest_lengths` | f64 | E | in metres |
+///
+/// In Python: `data = numpy.load("trajectory.npz"); data["x"][-1]` are the last positions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trajectory {
+    vertex_count: usize,
+    t: Vec<f64>,
+    x: Vec<f64>,
+    faces: Vec<[u32; 3]>,
+    edges: Vec<[u32; 2]>,
+    rest_lengths: Vec<f64>,
+}
+
+/// A trajectory that cannot be recorded, written or read.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum TrajectoryError {
+    /// The positions of a frame have the wrong length.
+    #[error(
+        "frame {frame} has {got} coordinates, but the mesh has {vertices} vertices, three coordinates each"
+    )]
+    WrongLength {
+        /// The frame.
+        frame: usize,
+        /// The length of its array.
+        got: usize,
+        /// The number of vertices.
+        vertices: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("coordinate {} of {vertex} in frame {frame} is {value}; the frame was not recorded", ["x", "y", "z"][*axis])]
+    NotFinite {
+        /// The frame.
+        frame: usize,
+        /// The vertex.
+        vertex: VertexId,
+        /// 0, 1, 2 for x, y, z.
+        axis: usize,
+        /// The value.
+        value: f64,
+    },
+    /// Time does not go forward.
+    #[error(
+        "frame {frame} has the time {t} s after {before} s; frames must be recorded in the order of time"
+    )]
+    Time {
+        /// The frame.
+        frame: usize,
+        /// Its time, in seconds.
+        t: f64,
+        /// The time of the frame before, in seconds (minus infinity for the first).
+        before: f64,
+    },
+    /// The file could not be written.
+    #[error(transparent)]
+    File(#[from] WriteError),
+    /// The file could not be opened or is not an archive.
+    #[error("cannot read {}: {source}; check that it is an .npz file", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: io::Error,
+    },
+    /// An array is missing or of another type or shape.
+    #[error("array `{array}` of {}: {problem}; the file is not a trajectory of this program", path.display())]
+    Array {
+        /// The file.
+        path: PathBuf,
+        /// The array.
+        array: &'static str,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+impl Trajectory {
+    /// An empty trajectory of a sheet.
+    pub fn new(sheet: &Sheet) -> Self {
+        let t = sheet.topology();
+        Self {
+            vertex_count: t.vertex_count(),
+            t: Vec::new(),
+            x: Vec::new(),
+            faces: sheet.face_indices(),
+            edges: t.edges().iter().map(|e| e.map(|v| v.0)).collect(),
+            rest_lengths: sheet.lengths().to_vec(),
+        }
+    }
+
+    /// Adds a frame: time in seconds and positions (length 3V, metres).
+    ///
+    /// # Errors
+    /// [`TrajectoryError`] for a wrong length, a number that is not finite, or a time before the last; nothing is added then.
+    pub fn push(&mut self, t: f64, x: &[f64]) -> Result<(), TrajectoryError> {
+        let frame = self.t.len();
+        if x.len() != 3 * self.vertex_count {
+            return Err(TrajectoryError::WrongLength {
+                frame,
+                got: x.len(),
+                vertices: self.vertex_count,
+            });
+        }
+        if let Some(k) = x.iter().position(|c| !c.is_finite()) {
+            let vertex = VertexId::from_index(k / 3);
+            return Err(TrajectoryError::NotFinite {
+                frame,
+                vertex,
+                axis: k % 3,
+                value: x[k],
+            });
+        }
+        let before = self.t.last().copied().unwrap_or(f64::NEG_INFINITY);
+        if !t.is_finite() || t < before {
+            return Err(TrajectoryError::Time { frame, t, before });
+        }
+        self.t.push(t);
+        self.x.extend_from_slice(x);
+        Ok(())
+    }
+
+    /// The number of frames T.
+    pub fn len(&self) -> usize {
+        self.t.len()
+    }
+
+    /// Whether there is no frame yet.
+    pub fn is_empty(&self) -> bool {
+        self.t.is_empty()
+    }
+
+    /// The number of vertices V.
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_count
+    }
+
+    /// The times of the frames, in seconds.
+    pub fn times(&self) -> &[f64] {
+        &self.t
+    }
+
+    /// The positions (length 3V, metres) of a frame; `None` when there is no such frame.
+    pub fn frame(&self, k: usize) -> Option<&[f64]> {
+        let n = 3 * self.vertex_count;
+        (k < self.len()).then(|| &self.x[n * k..n * (k + 1)])
+    }
+
+    /// The corners of the faces.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// The ends of the edges.
+    pub fn edges(&self) -> &[[u32; 2]] {
+        &self.edges
+    }
+
+    /// The rest length of each edge, in metres.
+    pub fn rest_lengths(&self) -> &[f64] {
+        &self.rest_lengths
+    }
+
+    /// Writes the `.npz` file, atomically.
+    ///
+    /// # Errors
+    /// [`TrajectoryError::File`].
+    pub fn write(&self, path: &Path) -> Result<(), TrajectoryError> {
+        let (frames, vertices) = (self.t.len() as u64, self.vertex_count as u64);
+        Ok(write_atomically(path, |w| {
+            let mut npz = NpzWriter::new(w);
+            put(&mut npz, "t", &[frames], self.t.iter().copied())?;
+            put(
+                &mut npz,
+                "x",
+                &[frames, vertices, 3],
+                self.x.iter().copied(),
+            )?;
+            put(
+                &mut npz,
+                "faces",
+                &[self.faces.len() as u64, 3],
+                self.faces.iter().flatten().copied(),
+            )?;
+            put(
+                &mut npz,
+                "edges",
+                &[self.edges.len() as u64, 2],
+                self.edges.iter().flatten().copied(),
+            )?;
+            put(
+                &mut npz,
+                "rest_lengths",
+                &[self.rest_lengths.len() as u64],
+                self.rest_lengths.iter().copied(),
+            )?;
+            npz.zip_writer().finish()?;
+            Ok(())
+        })?)
+    }
+
+    /// Reads an `.npz` file that [`Self::write`] wrote, or one of the same arrays.
+    ///
+    /// # Errors
+    /// [`TrajectoryError::Read`], or [`TrajectoryError::Array`] naming the array that is missing or does not fit the others.
+    pub fn read(path: &Path) -> Result<Self, TrajectoryError> {
+        let read_error = |source| TrajectoryError::Read {
+            path: path.to_owned(),
+            source,
+        };
+        let mut npz = NpzArchive::open(path).map_err(read_error)?;
+        let array = |array, problem: String| TrajectoryError::Array {
+            path: path.to_owned(),
+            array,
+            problem,
+        };
+        let (t_shape, t) = get::<f64>(&mut npz, path, "t", 1)?;
+        let (x_shape, x) = get::<f64>(&mut npz, path, "x", 3)?;
+        let (faces_shape, faces) = get::<u32>(&mut npz, path, "faces", 2)?;
+        let (edges_shape, edges) = get::<u32>(&mut npz, path, "edges", 2)?;
+        let (lengths_shape, rest_lengths) = get::<f64>(&mut npz, path, "rest_lengths", 1)?;
+        if x_shape[0] != t_shape[0] || x_shape[2] != 3 {
+            return Err(array(
+                "x",
+                format!(
+                    "its shape is {x_shape:?}, with {} times and 3 coordinates expected",
+                    t.len()
+                ),
+            ));
+        }
+        if faces_shape[1] != 3 {
+            return Err(array(
+                "faces",
+                format!("its shape is {faces_shape:?}, with 3 columns expected"),
+            ));
+        }
+        if edges_shape[1] != 2 {
+            return Err(array(
+                "edges",
+                format!("its shape is {edges_shape:?}, with 2 columns expected"),
+            ));
+        }
+        if lengths_shape[0] != edges_shape[0] {
+            return Err(array(
+                "rest_lengths",
+                format!(
+                    "it has {} entries for {} edges",
+                    lengths_shape[0], edges_shape[0]
+                ),
+            ));
+        }
+        let vertices = x_shape[1];
+        let outside = |v: &&u32| u64::from(**v) >= vertices;
+        for (name, list) in [("faces", &faces), ("edges", &edges)] {
+            if let Some(v) = list.iter().find(outside) {
+                return Err(array(
+                    name,
+                    format!("it refers to vertex {v} of {vertices}"),
+                ));
+            }
+        }
+        for (name, list) in [("t", &t), ("x", &x), ("rest_lengths", &rest_lengths)] {
+            if let Some(v) = list.iter().find(|v| !v.is_finite()) {
+                return Err(array(name, format!("it contains {v}")));
+            }
+        }
+        Ok(Self {
+            vertex_count: vertices as usize,
+            t,
+            x,
+            faces: faces.chunks_exact(3).map(|f| [f[0], f[1], f[2]]).collect(),
+            edges: edges.chunks_exact(2).map(|e| [e[0], e[1]]).collect(),
+            rest_lengths,
+        })
+    }
+}
+
+fn put<W: io::Write + io::Seek, T: npyz::AutoSerialize>(
+    npz: &mut NpzWriter<W>,
+    name: &str,
+    shape: &[u64],
+    values: impl Iterator<Item = T>,
+) -> io::Result<()> {
+    let mut writer = npz
+        .array(name, Default::default())?
+        .default_dtype()
+        .shape(shape)
+        .begin_nd()?;
+    writer.extend(values)?;
+    writer.finish()
+}
+
+type Shaped<T> = (Vec<u64>, Vec<T>);
+
+fn get<T: npyz::Deserialize>(
+    npz: &mut NpzArchive<io::BufReader<File>>,
+    path: &Path,
+    name: &'static str,
+    dimensions: usize,
+) -> Result<Shaped<T>, TrajectoryError> {
+    let error = |problem: String| TrajectoryError::Array {
+        path: path.to_owned(),
+        array: name,
+        problem,
+    };
+    let npy = npz.by_name(name).map_err(|e| error(e.to_string()))?;
+    let npy = npy.ok_or_else(|| error("it is missing".to_owned()))?;
+    let shape = npy.shape().to_vec();
+    if shape.len() != dimensions {
+        return Err(error(format!(
+            "it has {} dimensions, {dimensions} expected",
+            shape.len()
+        )));
+    }
+    if npy.header().order() != npyz::Order::C {
+        return Err(error(
+            "it is stored by columns; save it with numpy.ascontiguousarray".to_owned(),
+        ));
+    }
+    let expected = shape.iter().product::<u64>();
+    let values = npy
+        .try_data::<T>()
+        .map_err(|npy| error(format!("its type is {:?}", npy.dtype().descr())))?;
+    let values: Vec<T> = values
+        .collect::<Result<_, _>>()
+        .map_err(|e| error(e.to_string()))?;
+    if values.len() as u64 != expected {
+        return Err(error(format!(
+            "it holds {} values, {expected} expected",
+            values.len()
+        )));
+    }
+    Ok((shape, values))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,154 @@
+use isosheet_mesh::generate;
+
+use super::*;
+
+fn sample() -> (Sheet, Trajectory) {
+    let sheet = generate::annulus(7, 2, 0.3, 1.0).unwrap();
+    let mut run = Trajectory::new(&sheet);
+    for k in 0..5 {
+        let x: Vec<f64> = sheet
+            .positions()
+            .iter()
+            .enumerate()
+            .map(|(i, c)| c + (k as f64 * i as f64).sin() / 3.0)
+            .collect();
+        run.push(0.1 * k as f64, &x).unwrap();
+    }
+    (sheet, run)
+}
+
+#[test]
+fn comes_back_bit_for_bit() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("runs/a/trajectory.npz");
+    let (sheet, run) = sample();
+    run.write(&path).unwrap();
+    let back = Trajectory::read(&path).unwrap();
+    assert_eq!(back, run);
+    assert_eq!((back.len(), back.vertex_count()), (5, 21));
+    assert!(!back.is_empty());
+    assert_eq!(back.frame(4), run.frame(4));
+    assert_eq!(back.frame(5), None);
+    assert_eq!(back.times()[3], 0.1 * 3.0);
+    assert_eq!(back.faces(), sheet.face_indices());
+    assert_eq!(back.edges().len(), sheet.lengths().len());
+    assert_eq!(back.rest_lengths(), sheet.lengths());
+    // No frames: still a file.
+    Trajectory::new(&sheet).write(&path).unwrap();
+    assert!(Trajectory::read(&path).unwrap().is_empty());
+}
+
+/// The file as the numpy reader of another crate sees it.
+#[test]
+fn arrays_have_the_documented_names_types_and_shapes() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("trajectory.npz");
+    let (sheet, run) = sample();
+    run.write(&path).unwrap();
+    let mut npz = NpzArchive::open(&path).unwrap();
+    let mut names: Vec<String> = npz.array_names().map(str::to_owned).collect();
+    names.sort();
+    assert_eq!(names, ["edges", "faces", "rest_lengths", "t", "x"]);
+    let x = npz.by_name("x").unwrap().unwrap();
+    assert_eq!(x.shape(), [5, 21, 3]);
+    assert_eq!(x.dtype().descr(), "'<f8'");
+    let x = x.into_vec::<f64>().unwrap();
+    // Row-major: frame, vertex, axis.
+    assert_eq!(x[(2 * 21 + 4) * 3 + 1], run.frame(2).unwrap()[3 * 4 + 1]);
+    let faces = npz.by_name("faces").unwrap().unwrap();
+    assert_eq!(faces.shape(), [28, 3]);
+    assert_eq!(faces.dtype().descr(), "'<u4'");
+    drop(faces);
+    let e = npz.by_name("edges").unwrap().unwrap();
+    assert_eq!(e.shape(), [sheet.topology().edge_count() as u64, 2]);
+}
+
+#[test]
+fn bad_frames_are_refused() {
+    let (sheet, mut run) = sample();
+    let mut x = sheet.positions().to_vec();
+    assert!(matches!(
+        run.push(1.0, &x[..6]),
+        Err(TrajectoryError::WrongLength {
+            frame: 5,
+            got: 6,
+            vertices: 21
+        })
+    ));
+    assert!(matches!(
+        run.push(0.05, &x),
+        Err(TrajectoryError::Time { frame: 5, .. })
+    ));
+    assert!(matches!(
+        run.push(f64::NAN, &x),
+        Err(TrajectoryError::Time { .. })
+    ));
+    x[4] = f64::NAN;
+    let error = run.push(1.0, &x).unwrap_err();
+    assert!(matches!(
+        error,
+        TrajectoryError::NotFinite {
+            frame: 5,
+            vertex: VertexId(1),
+            axis: 1,
+            ..
+        }
+    ));
+    assert!(
+        error
+            .to_string()
+            .contains("coordinate y of vertex 1 in frame 5 is NaN"),
+        "{error}"
+    );
+    assert_eq!(run.len(), 5, "nothing was added");
+}
+
+#[test]
+fn other_files_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("x.npz");
+    assert!(matches!(
+        Trajectory::read(&path),
+        Err(TrajectoryError::Read { .. })
+    ));
+    std::fs::write(&path, b"not a zip").unwrap();
+    assert!(matches!(
+        Trajectory::read(&path),
+        Err(TrajectoryError::Read { .. })
+    ));
+    let (_, run) = sample();
+    run.write(&path).unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+    assert!(Trajectory::read(&path).is_err(), "cut in half");
+
+    let broken = |change: &dyn Fn(&mut Trajectory), array: &str| {
+        let (_, mut run) = sample();
+        change(&mut run);
+        run.write(&path).unwrap();
+        match Trajectory::read(&path) {
+            Err(TrajectoryError::Array { array: found, .. }) => assert_eq!(found, array),
+            other => panic!("{array}: {other:?}"),
+        }
+    };
+    broken(&|r| r.faces[3][1] = 21, "faces");
+    broken(&|r| r.edges[0][0] = 400, "edges");
+    broken(&|r| r.rest_lengths[0] = f64::NAN, "rest_lengths");
+    broken(&|r| r.rest_lengths.truncate(3), "rest_lengths");
+    broken(&|r| r.t[0] = f64::INFINITY, "t");
+
+    // A missing array.
+    let file = File::create(&path).unwrap();
+    let mut npz = NpzWriter::new(file);
+    put(&mut npz, "t", &[1], [0.0].into_iter()).unwrap();
+    put(&mut npz, "x", &[3], [0.0f64; 3].into_iter()).unwrap();
+    npz.zip_writer().finish().unwrap();
+    match Trajectory::read(&path) {
+        Err(TrajectoryError::Array {
+            array: "x",
+            problem,
+            ..
+        }) => assert!(problem.contains("1 dimensions"), "{problem}"),
+        other => panic!("{other:?}"),
+    }
+}
