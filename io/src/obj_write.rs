@@ -23,7 +23,7 @@ pub enum ObjWriteError {
         vertices: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("coordinate {} of {vertex} is {value}; the file was not written", ["x", "y", "z"][*axis])]
+    #[error("coordinate {} of {vertex} is {value}; the file was not written: go back to the last state that was finite", ["x", "y", "z"][*axis])]
     NotFinite {
         /// The vertex.
         vertex: VertexId,

@@ -337,7 +337,8 @@ fn get<T: npyz::Deserialize>(
             "it is stored by columns; save it with numpy.ascontiguousarray".to_owned(),
         ));
     }
-    let expected = shape.iter().product::<u64>();
+    let expected = shape.iter().try_fold(1u64, |n, &k| n.checked_mul(k));
+    let expected = expected.ok_or_else(|| error(format!("its shape {shape:?} is impossible")))?;
     let values = npy
         .try_data::<T>()
         .map_err(|npy| error(format!("its type is {:?}", npy.dtype().descr())))?;

@@ -65,7 +65,7 @@ pub enum GenerateError {
     Mesh(#[from] MeshError),
 }
 
-/// Sixteen million faces: M^10, about 10 GB of simulation state. A larger number is a mistake.
+/// Sixteen million faces, twice those of M^10. A larger number is taken for a mistake.
 const MAX_FACES: u128 = 1 << 24;
 
 pub(crate) fn check_count(
