@@ -13,6 +13,7 @@ use crate::saddle::SaddlePoint;
 use crate::system::RodSystem;
 use crate::testing::{bent, irregular_grid, isotropic_square};
 use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId};
+use proptest::prelude::*;
 
 fn front(sheet: &Sheet, pins: &[VertexId], x: &[f64]) -> FrontChart {
     let options = AssignmentOptions {
@@ -196,6 +197,48 @@ fn realisation_follows_the_jacobian() {
         case.system.gather(&along(&y, &case.x, -1.0), &mut reduced);
         for (a, b) in reduced.iter().zip(predicted.iter()) {
             assert!((a - b).abs() < 1e-5, "{} {a} {b}", case.name);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Any regular state of any mesh, in both charts: coordinates to positions and back.
+    #[test]
+    fn charts_round_trip(kind in 0..3u32, seed in 0..10_000u64, pin in 0..9u32, move_by in -0.5..0.5f64) {
+        let sheet = match kind {
+            0 => isotropic_square(0, 1.0),
+            1 => isotropic_square(1, 1.0),
+            _ => irregular_grid(3, seed),
+        };
+        let pins = [VertexId(pin)];
+        let Some(x) = bent(&sheet, &pins, 0.1, seed) else { return Ok(()) };
+        let system = RodSystem::new(&sheet, &pins).unwrap();
+        let cartesian = CartesianChart::new(system.clone(), Choice::Auto, &x).unwrap();
+        for chart in [Box::new(front(&sheet, &pins, &x)) as Box<dyn Chart>, Box::new(cartesian)] {
+            let n = chart.dimension();
+            prop_assert_eq!(n, system.dof());
+            let mut linear = Linearised::new(&system, chart.as_ref()).unwrap();
+            let jacobian = chart.jacobian(&system, &mut linear, &x).unwrap();
+            let mut q = vec![0.0; n];
+            chart.coordinates(&x, &mut q).unwrap();
+            for (k, value) in q.iter_mut().enumerate() {
+                *value += 1e-3 * move_by * (2.0 * k as f64).cos() / jacobian.amax();
+            }
+            let mut y = vec![0.0; x.len()];
+            chart.realise(&mut linear, &q, &x, &mut y).unwrap();
+            prop_assert!(system.max_strain(&y) < 1e-11);
+            let (mut back, mut error) = (vec![0.0; n], vec![0.0; n]);
+            chart.coordinates(&y, &mut back).unwrap();
+            chart.difference(&back, &q, &mut error);
+            prop_assert!(error.iter().all(|e| e.abs() < 1e-9), "{error:?}");
+            // And from there to the start.
+            chart.coordinates(&x, &mut q).unwrap();
+            let mut z = vec![0.0; x.len()];
+            chart.realise(&mut linear, &q, &y, &mut z).unwrap();
+            let worst = x.iter().zip(&z).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            prop_assert!(worst < 1e-8 * jacobian.amax().max(1.0), "{worst}");
         }
     }
 }

@@ -106,9 +106,12 @@ pub struct SphericalFrame {
 }
 
 impl SphericalFrame {
-    /// The frame whose first axis is along `direction`; the polar axis is the perpendicular that is
-    /// closest to the coordinate axis least aligned with `direction` (z for an edge of a horizontal
-    /// sheet along x or y when that is the least aligned one).
+    /// The frame whose first axis is along `direction`, with a horizontal polar axis
+    /// perpendicular to it.
+    ///
+    /// An edge that falls or swings in its own vertical plane then changes its longitude only, however
+    /// far it turns, and meets a pole only after a quarter turn sideways. For a vertical edge the
+    /// polar axis is x.
     ///
     /// # Errors
     /// [`PlacementError::Coincident`] when `direction` is zero or not finite.
@@ -118,7 +121,16 @@ impl SphericalFrame {
             return Err(PlacementError::Coincident { distance: length });
         }
         let e1 = scale(direction, 1.0 / length);
-        let e3 = any_perpendicular(&e1);
+        let sideways = cross(&[0.0, 0.0, 1.0], &e1);
+        // Within a thousandth of vertical the cross product would follow small changes too closely.
+        let pole = if norm(&sideways) > 1e-3 {
+            sideways
+        } else {
+            axpy(&[1.0, 0.0, 0.0], -e1[0], &e1)
+        };
+        let e3 = scale(&pole, 1.0 / norm(&pole));
+        let e3 = axpy(&e3, -dot(&e3, &e1), &e1);
+        let e3 = scale(&e3, 1.0 / norm(&e3));
         let e2 = cross(&e3, &e1);
         Ok(Self { axes: [e1, e2, e3] })
     }

@@ -17,6 +17,29 @@
 //!
 //! States are flat slices of positions, three values per vertex; pinned vertices have no unknowns
 //! ([`RodSystem`]). Sparse direct solvers over fixed patterns are in [`linalg`].
+//!
+//! ```
+//! use isosheet_coords::{Chart, CartesianChart, Choice, Linearised, RodSystem, Start, sys_coord_assnmt_single};
+//! use isosheet_coords::{BentState, bent_square};
+//! use isosheet_mesh::{VertexId, generate};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let sheet = generate::isotropic_square(2, 1.0)?;
+//! // The paper's assignment from a pinned corner: one coordinate per boundary edge is left.
+//! let assignment = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(0)))?;
+//! assert_eq!(assignment.dof(), 32);
+//!
+//! // A well-conditioned chart at a bent state, and the velocities that belong to rates of its coordinates.
+//! let x = bent_square(&sheet, 2, BentState::Cylinder);
+//! let system = RodSystem::new(&sheet, &[VertexId(0)])?;
+//! let chart = CartesianChart::new(system.clone(), Choice::Auto, &x)?;
+//! let mut linear = Linearised::new(&system, &chart)?;
+//! linear.factorize(&system, &chart, &x)?;
+//! let mut v = vec![0.0; system.unknowns()];
+//! linear.push(&[1.0; 32], &mut v)?;
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod assignment;
 mod cartesian_chart;

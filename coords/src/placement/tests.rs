@@ -269,6 +269,15 @@ fn refusals() {
         jacobian_f([&a, &b, &c], &x).unwrap_err(),
         PlacementError::Flat
     );
+    // The poles of a horizontal edge are horizontal: it can fall all the way without meeting one.
+    let fall = SphericalFrame::along(&[0.6, 0.8, 0.0]).unwrap();
+    for t in [0.3f64, 1.2, 1.57, 2.5] {
+        let q = fall.coordinates(&a, &[0.6 * t.cos(), 0.8 * t.cos(), -t.sin()]);
+        assert!(
+            (q[0].abs() - t).abs() < 1e-15 && q[1].abs() < 1e-15,
+            "{q:?}"
+        );
+    }
     // At a pole the latitude is a right angle and the longitude has no gradient.
     let ball = SphericalFrame::along(&[1.0, 0.0, 0.0]).unwrap();
     let pole = ball.axes()[2];
