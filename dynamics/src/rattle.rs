@@ -89,15 +89,6 @@ impl Rattle {
         })
     }
 
-    /// Total force at a state.
-    fn evaluate_force(&mut self, model: &SheetModel, t: f64, x: &[f64], v: &[f64]) {
-        model.potential_force(t, x, &mut self.force);
-        model.applied_force(t, x, v, &mut self.applied);
-        for (f, a) in self.force.iter_mut().zip(&self.applied) {
-            *f += a;
-        }
-    }
-
     /// Sets `momentum` and `rods` to the negative residuals at the iterate; returns the
     /// relative momentum residual and the strain.
     fn residuals(&mut self, model: &SheetModel, state: &State, h: f64) -> (f64, f64) {
@@ -125,26 +116,6 @@ impl Rattle {
         self.rods.iter_mut().for_each(|c| *c = -*c / h);
         let relative = if scale > 0.0 { worst / scale } else { 0.0 };
         (relative, model.rods().max_strain(&self.x1))
-    }
-
-    /// Solves `[M -G(left)^T; G(right) 0]` for `momentum` and `rods` in place.
-    fn solve(
-        &mut self,
-        model: &SheetModel,
-        t: f64,
-        left: &[f64],
-        effort: &mut Effort,
-    ) -> Result<Path, StepError> {
-        let system = System {
-            mass: 1.0,
-            density: &self.none,
-            left,
-            right: &self.x1,
-            potentials: None,
-        };
-        self.matrix
-            .solve(model, &system, &mut self.momentum, &mut self.rods, effort)
-            .map_err(|source| StepError::Linalg { t, source })
     }
 
     /// Finds `u`, `L` and `x1`.
@@ -180,7 +151,18 @@ impl Rattle {
             }
             iterations += 1;
             effort.iterations += 1;
-            path = path.max(self.solve(model, state.t, &state.x, effort)?);
+            let system = System {
+                mass: 1.0,
+                density: &self.none,
+                left: &state.x,
+                right: &self.x1,
+                potentials: None,
+            };
+            let used = self
+                .matrix
+                .solve(model, &system, &mut self.momentum, &mut self.rods, effort)
+                .map_err(|source| StepError::Linalg { t: state.t, source })?;
+            path = path.max(used);
             for (u, d) in self.u.iter_mut().zip(&self.momentum) {
                 *u += d;
             }
@@ -202,23 +184,32 @@ impl Rattle {
         h: f64,
         effort: &mut Effort,
     ) -> Result<Accepted, StepError> {
-        self.evaluate_force(model, state.t, &state.x, &state.v);
-        for (k, f) in self.kick.iter_mut().zip(&self.force) {
-            *k = 0.5 * h * f;
+        model.potential_force(state.t, &state.x, &mut self.force);
+        model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
+        for i in 0..self.u.len() {
+            self.kick[i] = 0.5 * h * (self.force[i] + self.applied[i]);
         }
         let mut work: f64 = 0.5 * h * dot(&self.applied, &state.v);
         let (residual, path) = self.solve_positions(model, state, h, effort)?;
         // Velocity: the momentum after the second half kick, projected onto G(x1) v = 0.
-        let (x1, u) = (std::mem::take(&mut self.x1), std::mem::take(&mut self.u));
-        self.evaluate_force(model, state.t + h, &x1, &u);
-        model.apply_mass(&u, &mut self.momentum);
-        for (m, f) in self.momentum.iter_mut().zip(&self.force) {
-            *m += 0.5 * h * f;
+        model.potential_force(state.t + h, &self.x1, &mut self.force);
+        model.applied_force(state.t + h, &self.x1, &self.u, &mut self.applied);
+        model.apply_mass(&self.u, &mut self.momentum);
+        for i in 0..self.u.len() {
+            self.momentum[i] += 0.5 * h * (self.force[i] + self.applied[i]);
         }
         self.rods.fill(0.0);
-        (self.x1, self.u) = (x1, u);
-        let left = self.x1.clone();
-        let projected = self.solve(model, state.t, &left, effort)?;
+        let system = System {
+            mass: 1.0,
+            density: &self.none,
+            left: &self.x1,
+            right: &self.x1,
+            potentials: None,
+        };
+        let projected = self
+            .matrix
+            .solve(model, &system, &mut self.momentum, &mut self.rods, effort)
+            .map_err(|source| StepError::Linalg { t: state.t, source })?;
         work += 0.5 * h * dot(&self.applied, &self.momentum);
         state.x.copy_from_slice(&self.x1);
         state.v.copy_from_slice(&self.momentum);
