@@ -1,0 +1,71 @@
+//! Fig. 2: external and internal degrees of freedom.
+
+use super::{Made, caption, style, svg};
+use crate::draw::spatial::arc;
+use crate::draw::{Align, Drawing, Stroke, TEXT, View, palette, row};
+use anyhow::Result;
+use isosheet_coords::EulerParameters;
+use isosheet_mesh::{Dof, Sheet};
+use serde_json::json;
+
+/// Fold of the pair that is drawn.
+const FOLD: f64 = 0.9;
+
+pub(super) fn make() -> Result<Made> {
+    let view = View::from(-72.0, 32.0, 105.0);
+    let a = [0.0, 0.0, 0.0];
+    let b = [1.0, 0.0, 0.0];
+    let left = [0.55, 0.85, 0.0];
+    let right = [0.42, -0.8, 0.0];
+    let one = Sheet::new([a, b, left].concat(), &[[0, 1, 2]])?;
+    let two = Sheet::new([a, b, left, right].concat(), &[[0, 1, 2], [0, 3, 1]])?;
+    let mut single = Drawing::new();
+    triangle(&mut single, &view, &[a, b, left], style::FACE);
+    let mut pair = Drawing::new();
+    // The far face turns about the common edge; its rest place is drawn as a ghost.
+    let turned = EulerParameters::about(&[1.0, 0.0, 0.0], FOLD).rotate(&left);
+    let foot = [left[0], 0.0, 0.0];
+    let ghost = view.project_all(&[a, left, b]);
+    pair.polygon(&ghost, palette::PALE.alpha(0.35));
+    pair.line(&ghost, style::GHOST.dashed());
+    triangle(&mut pair, &view, &[a, b, turned], palette::SKY.tint(0.55));
+    triangle(&mut pair, &view, &[a, right, b], style::FACE);
+    pair.line(&view.project_all(&[a, b]), Stroke::new(palette::VERMILION, 1.4));
+    let path = arc(&foot, &[0.0, left[1], 0.0], &[0.0, 0.0, left[1]], FOLD);
+    pair.arrow(&view.project_all(&path), Stroke::new(palette::VERMILION, 0.8));
+    let mut facts = Vec::new();
+    let mut lines = Vec::new();
+    for sheet in [&one, &two] {
+        let t = sheet.topology();
+        let dof = Dof::of(t);
+        lines.push(vec![
+            format!("~V~ = {}, ~E~ = {}, ~F~ = {}", t.vertex_count(), t.edge_count(), t.face_count()),
+            format!("DOF = 3~V~ − ~E~ = {}", dof.total),
+            format!("{} external, {} internal", dof.external, dof.internal),
+        ]);
+        facts.push(json!({ "total": dof.total, "external": dof.external, "internal": dof.internal }));
+    }
+    let low = single.bounds().min[1].min(pair.bounds().min[1]) - 9.0;
+    for (d, lines) in [(&mut single, &lines[0]), (&mut pair, &lines[1])] {
+        let x = d.bounds().centre()[0];
+        caption(d, [x, low], TEXT, lines);
+    }
+    let all = row(&[single, pair], 60.0, Align::Origin);
+    Ok(Made {
+        title: "External and internal degrees of freedom",
+        paper: "A single triangle only moves rigidly (six external degrees of freedom); two triangles with a common edge have \
+                a seventh, internal one: the fold about that edge.",
+        measured: "Counted on the two meshes: 6 = 6 + 0 and 7 = 6 + 1. The arrow is the path of the far vertex when the one \
+                   internal coordinate changes from flat to 51.6°."
+            .into(),
+        pictures: svg(2, &all, "One triangle, and two triangles folding about their common edge")?,
+        tables: Vec::new(),
+        facts: json!({ "triangle": facts[0], "pair": facts[1], "fold": FOLD }),
+    })
+}
+
+fn triangle(d: &mut Drawing, view: &View, corners: &[[f64; 3]; 3], colour: crate::draw::Colour) {
+    let points = view.project_all(corners);
+    d.polygon(&points, view.shade(colour, corners));
+    d.outline(&points, style::EDGE);
+}

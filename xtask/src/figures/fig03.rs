@@ -1,0 +1,101 @@
+//! Fig. 3: the directions in which a mesh folds.
+
+use super::{Made, caption, style, svg};
+use crate::draw::{Align, Colour, Drawing, Stroke, TEXT, flat_edges, flat_faces, palette, plan, row};
+use anyhow::Result;
+use isosheet_mesh::generate::{anisotropic_grid, isotropic_square};
+use isosheet_mesh::{CreasePattern, Sheet};
+use serde_json::{Value, json};
+
+const SIDE: f64 = 118.0;
+
+pub(super) fn make() -> Result<Made> {
+    let one_way = anisotropic_grid(4, 4, 1.0, 1.0)?;
+    let jack = isotropic_square(1, 1.0)?;
+    let mut panels = Vec::new();
+    let mut facts = Vec::new();
+    for (sheet, name) in [(&one_way, "one-way grid (Fig. 1)"), (&jack, "union jack (Fig. 4)")] {
+        let pattern = CreasePattern::of(sheet, CreasePattern::TOLERANCE);
+        let mut lines = draw_lines(sheet, &pattern);
+        let names: Vec<String> =
+            pattern.folding_directions().iter().map(|d| format!("{:.0}°", d.angle.to_degrees())).collect();
+        caption(&mut lines, [0.5 * SIDE, -7.0], TEXT, &[name.to_owned(), format!("folds along {}", names.join(", "))]);
+        panels.push(lines);
+        panels.push(rose(sheet, &pattern));
+        facts.push(describe(&pattern));
+    }
+    let gaps = [16.0, 34.0];
+    let pairs: Vec<Drawing> =
+        panels.chunks(2).map(|pair| row(pair, gaps[0], Align::Origin)).collect();
+    let all = row(&pairs, gaps[1], Align::Origin);
+    let anisotropy = |k: usize| facts[k]["anisotropy"].as_f64().unwrap_or(f64::NAN);
+    Ok(Made {
+        title: "Folding directions",
+        paper: "Meshes refined by the 1–4 split fold horizontally, vertically and along the diagonal from lower right to upper \
+                left, but not along the other diagonal: the pattern is anisotropic.",
+        measured: format!(
+            "Straight crease lines from boundary to boundary, found on the meshes and coloured by direction; the bars at the right \
+             are their total lengths by direction, in sides of the square. The one-way grid has none at 45°, the union jack has all \
+             four directions. Anisotropy |Σ l exp(2iφ)| / Σ l: {:.3} and {:.3}.",
+            anisotropy(0),
+            anisotropy(1)
+        ),
+        pictures: svg(3, &all, "Crease lines of the one-way grid and of the union-jack grid with their directions")?,
+        tables: Vec::new(),
+        facts: json!({ "one_way": facts[0], "union_jack": facts[1] }),
+    })
+}
+
+fn describe(pattern: &CreasePattern) -> Value {
+    let directions: Vec<Value> = pattern
+        .folding_directions()
+        .iter()
+        .map(|d| json!({ "degrees": d.angle.to_degrees(), "lines": d.lines, "length": d.length }))
+        .collect();
+    json!({ "directions": directions, "anisotropy": pattern.anisotropy() })
+}
+
+/// Colour of a direction; the four of the square patterns have their own.
+fn colour(angle: f64) -> Colour {
+    let eighth = (angle / std::f64::consts::FRAC_PI_4).round() as i64;
+    [palette::BLUE, palette::ORANGE, palette::GREEN, palette::VERMILION][eighth.rem_euclid(4) as usize]
+}
+
+fn draw_lines(sheet: &Sheet, pattern: &CreasePattern) -> Drawing {
+    let mut d = Drawing::new();
+    flat_faces(&mut d, sheet, SIDE, |_| style::FACE);
+    flat_edges(&mut d, sheet, SIDE, |e| sheet.topology().is_boundary_edge(e).then_some(style::EDGE));
+    let place = plan(sheet, SIDE);
+    for line in pattern.through_lines() {
+        let points: Vec<[f64; 2]> = line.vertices.iter().map(|&v| place(v)).collect();
+        d.line(&points, Stroke::new(colour(line.direction), 1.3));
+    }
+    for line in pattern.lines.iter().filter(|l| !pattern.through_lines().any(|t| t == *l)) {
+        let points: Vec<[f64; 2]> = line.vertices.iter().map(|&v| place(v)).collect();
+        d.line(&points, style::GHOST);
+    }
+    d
+}
+
+/// Half-lines from a point in each of the eight directions, as long as the total length of the crease lines along them.
+fn rose(sheet: &Sheet, pattern: &CreasePattern) -> Drawing {
+    let mut d = Drawing::new();
+    let unit = 9.0 / sheet.area().sqrt();
+    let centre = [0.0, 0.5 * SIDE];
+    for circle in [2.0, 4.0] {
+        let points: Vec<[f64; 2]> = (0..=72)
+            .map(|k| {
+                let (s, c) = (f64::from(k) * std::f64::consts::TAU / 72.0).sin_cos();
+                [centre[0] + 9.0 * circle * c, centre[1] + 9.0 * circle * s]
+            })
+            .collect();
+        d.line(&points, Stroke::new(palette::PALE, 0.5));
+    }
+    for direction in pattern.folding_directions() {
+        let (s, c) = direction.angle.sin_cos();
+        let r = unit * direction.length;
+        let ends = [[centre[0] - r * c, centre[1] - r * s], [centre[0] + r * c, centre[1] + r * s]];
+        d.line(&ends, Stroke::new(colour(direction.angle), 3.0));
+    }
+    d
+}

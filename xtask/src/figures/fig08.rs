@@ -1,0 +1,175 @@
+//! Fig. 8: fronts and rules of the assignment.
+
+use super::{Made, caption, style, svg};
+use crate::draw::{
+    Align, Anchor, Colour, Drawing, Marker, SMALL, Stroke, TEXT, Vertical, flat_edges, flat_faces, palette, plan, row,
+};
+use anyhow::{Result, ensure};
+use isosheet_coords::{Assignment, Rule, Start, sys_coord_assnmt_single};
+use isosheet_mesh::generate::isotropic_square;
+use isosheet_mesh::{Dof, Sheet, VertexId};
+use serde_json::json;
+
+const SIDE: f64 = 168.0;
+
+pub(super) fn make() -> Result<Made> {
+    let sheet = isotropic_square(1, 1.0)?;
+    let t = sheet.topology();
+    // The left-upper corner, as in the paper.
+    let start = t
+        .vertex_ids()
+        .min_by(|a, b| {
+            let key = |v: VertexId| sheet.position(v)[0] - sheet.position(v)[1];
+            key(*a).total_cmp(&key(*b))
+        })
+        .unwrap_or(VertexId(0));
+    let assignment = sys_coord_assnmt_single(&sheet, Start::Free(start))?;
+    let dof = Dof::of(t).total;
+    ensure!(
+        assignment.dof() as i64 == dof && assignment.closures().is_empty(),
+        "{} coordinates assigned, {dof} expected",
+        assignment.dof()
+    );
+    let mut fronts = fronts(&sheet, &assignment);
+    let mut order = order(&sheet, &assignment);
+    caption(&mut fronts, [0.5 * SIDE, -12.0], TEXT, &["(a) fronts, rules and coordinates".into()]);
+    caption(&mut order, [0.5 * SIDE, -12.0], TEXT, &["(b) order, and the rods that place each vertex".into()]);
+    let all = row(&[fronts, order, legend(&assignment)], 20.0, Align::Origin);
+    let vertices: Vec<_> = assignment
+        .order()
+        .iter()
+        .map(|p| {
+            json!({
+                "vertex": p.vertex.0, "front": p.front, "rule": p.rule.letter().to_string(),
+                "known": p.rule.known().iter().map(|v| v.0).collect::<Vec<_>>(),
+            })
+        })
+        .collect();
+    let count = |letter| assignment.rule_count(letter);
+    Ok(Made {
+        title: "Assignment of system coordinates",
+        paper: "From the left-upper corner, front after front, each vertex is placed by the rule that its known neighbours \
+                allow; the number of coordinates is the number of degrees of freedom.",
+        measured: format!(
+            "sys_coord_assnmt_single on M¹: {} fronts; 3 coordinates for the start vertex, {} vertex by rule h with two, {} by rule g with \
+             one, {} by rule f with none: {} = DOF. Every rod is used exactly once, by the end that is placed later (b).",
+            assignment.front_count(),
+            count('h'),
+            count('g'),
+            count('f'),
+            assignment.dof(),
+        ),
+        pictures: svg(8, &all, "Fronts, rules and order of the assignment of system coordinates on M1")?,
+        tables: Vec::new(),
+        facts: json!({
+            "dof": dof, "fronts": assignment.front_count(), "h": count('h'), "g": count('g'), "f": count('f'),
+            "vertices": vertices,
+        }),
+    })
+}
+
+/// Fronts in the order of a colour-blind-safe scale; the start has its own.
+fn colour(front: u32) -> Colour {
+    let fronts =
+        [palette::INK, palette::ORANGE, palette::SKY, palette::GREEN, palette::PURPLE, palette::VERMILION, palette::BLUE];
+    fronts[front as usize % fronts.len()]
+}
+
+fn marker(rule: &Rule) -> Marker {
+    match rule.letter() {
+        'h' => Marker::Diamond,
+        'g' => Marker::Triangle,
+        'f' => Marker::Disc,
+        _ => Marker::Square,
+    }
+}
+
+fn base(sheet: &Sheet) -> Drawing {
+    let mut d = Drawing::new();
+    flat_faces(&mut d, sheet, SIDE, |_| style::FACE);
+    d
+}
+
+fn fronts(sheet: &Sheet, assignment: &Assignment) -> Drawing {
+    let mut d = base(sheet);
+    flat_edges(&mut d, sheet, SIDE, |_| Some(Stroke::new(palette::PALE.mix(palette::GREY, 0.4), 0.6)));
+    let place = plan(sheet, SIDE);
+    // A front is joined up where its vertices are neighbours: it cuts the sheet in two.
+    let t = sheet.topology();
+    for e in t.edge_ids() {
+        let [a, b] = t.edges()[e.index()];
+        let front = assignment.placing(a).front;
+        if front == assignment.placing(b).front {
+            d.line(&[place(a), place(b)], Stroke::new(colour(front), 2.2));
+        }
+    }
+    for placing in assignment.order() {
+        let p = place(placing.vertex);
+        marker(&placing.rule).draw(&mut d, p, 4.6, colour(placing.front), Stroke::new(palette::WHITE, 0.8));
+        let names = match placing.rule {
+            Rule::Start { q } => format!("~q~_{{{}–{}}}", q + 1, q + 3),
+            Rule::H { q, .. } => format!("~q~_{{{},{}}}", q + 1, q + 2),
+            Rule::G { q, .. } => format!("~q~_{{{}}}", q + 1),
+            _ => continue,
+        };
+        label(&mut d, p, &names);
+    }
+    d
+}
+
+/// A label below right of a vertex, on a pale ground so that lines do not run through it.
+fn label(d: &mut Drawing, p: [f64; 2], text: &str) {
+    let at = [p[0] + 5.5, p[1] - 8.5];
+    let mut probe = Drawing::new();
+    probe.text(at, text, SMALL, Anchor::Start, Vertical::Centre, palette::INK);
+    let b = probe.bounds();
+    let ground = [b.min, [b.max[0], b.min[1]], b.max, [b.min[0], b.max[1]]];
+    d.polygon(&ground, palette::WHITE.alpha(0.72));
+    d.place(&probe, [0.0, 0.0]);
+}
+
+fn order(sheet: &Sheet, assignment: &Assignment) -> Drawing {
+    let mut d = base(sheet);
+    let place = plan(sheet, SIDE);
+    for placing in assignment.order() {
+        let to = place(placing.vertex);
+        for known in placing.rule.known() {
+            let from = place(*known);
+            let l = (to[0] - from[0]).hypot(to[1] - from[1]);
+            let at = |r: f64| [0, 1].map(|k| from[k] + (to[k] - from[k]) * r / l);
+            d.arrow(&[at(7.0), at(l - 7.0)], Stroke::new(colour(placing.front), 0.8));
+        }
+    }
+    for (k, placing) in assignment.order().iter().enumerate() {
+        let p = place(placing.vertex);
+        d.disc(p, 6.3, palette::WHITE, Stroke::new(colour(placing.front), 1.2));
+        d.text(p, &k.to_string(), SMALL, Anchor::Middle, Vertical::Centre, palette::INK);
+    }
+    d
+}
+
+fn legend(assignment: &Assignment) -> Drawing {
+    let mut d = Drawing::new();
+    let mut y = SIDE - 4.0;
+    let mut line = |d: &mut Drawing, symbol: Option<(Marker, Colour)>, text: &str| {
+        if let Some((marker, fill)) = symbol {
+            marker.draw(d, [4.0, y], 4.2, fill, Stroke::new(palette::WHITE, 0.8));
+        }
+        let x = if symbol.is_some() { 13.0 } else { 0.0 };
+        d.text([x, y], text, SMALL, Anchor::Start, Vertical::Centre, palette::INK);
+        y -= 13.0;
+    };
+    for (marker, name) in [
+        (Marker::Square, "start"),
+        (Marker::Diamond, "rule ~h~"),
+        (Marker::Triangle, "rule ~g~"),
+        (Marker::Disc, "rule ~f~"),
+    ] {
+        line(&mut d, Some((marker, palette::GREY)), name);
+    }
+    line(&mut d, None, "");
+    for front in 1..=assignment.front_count() {
+        line(&mut d, Some((Marker::Disc, colour(front))), &format!("front {front}"));
+    }
+    d
+}

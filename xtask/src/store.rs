@@ -1,0 +1,291 @@
+//! The output folder: nothing half-written, and a record of what is up to date.
+//!
+//! Each piece of work (a *unit*: a figure or a run) is made in a hidden folder beside the results and moved into place when it
+//! is complete; its stamp in `.stamps` is removed before and written after that. A stamp counts only while its options,
+//! the program and the files it lists are the same, so a rerun makes again whatever changed or was cut short.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// Prefix of hidden working folders; whatever a killed process left is removed at the next start.
+const PARTIAL: &str = ".partial-";
+
+/// Why the output folder cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum StoreError {
+    #[error("cannot write to the folder {}: {source}; choose another with --out", folder.display())]
+    Unwritable { folder: PathBuf, source: std::io::Error },
+    #[error("another process is writing to {}; wait for it or choose another folder with --out", folder.display())]
+    Busy { folder: PathBuf },
+    #[error("cannot write {}: {source}", path.display())]
+    Write { path: PathBuf, source: std::io::Error },
+    #[error("cannot read {}: {source}", path.display())]
+    Read { path: PathBuf, source: std::io::Error },
+}
+
+/// Whether a unit was finished.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Extent {
+    /// All of it.
+    Complete,
+    /// Cut short by Ctrl-C; readable, and made again next time.
+    Partial,
+}
+
+/// What is known about a unit that has been made.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Stamp {
+    /// Name of the unit.
+    pub(crate) unit: String,
+    /// Options it was made with.
+    pub(crate) options: Value,
+    /// Version of this package.
+    pub(crate) version: String,
+    /// Fingerprint of the program file.
+    pub(crate) program: String,
+    /// Whether it was finished.
+    pub(crate) extent: Extent,
+    /// Its files and folders, relative to the output folder.
+    pub(crate) entries: Vec<String>,
+    /// What it found.
+    pub(crate) facts: Value,
+}
+
+/// The output folder, locked against other processes.
+#[derive(Debug)]
+pub(crate) struct Store {
+    root: PathBuf,
+    program: String,
+    /// Held until the end: the lock goes with the file.
+    _lock: File,
+}
+
+impl Store {
+    /// Creates the folder when missing, checks that it can be written to, locks it and removes what a killed process left.
+    pub(crate) fn open(root: &Path) -> Result<Self, StoreError> {
+        let unwritable = |source| StoreError::Unwritable { folder: root.to_owned(), source };
+        fs::create_dir_all(root.join(".stamps")).map_err(unwritable)?;
+        let lock = File::create(root.join(".lock")).map_err(unwritable)?;
+        match lock.try_lock() {
+            Ok(()) => {}
+            Err(fs::TryLockError::WouldBlock) => return Err(StoreError::Busy { folder: root.to_owned() }),
+            Err(fs::TryLockError::Error(source)) => return Err(unwritable(source)),
+        }
+        tempfile::tempfile_in(root).map_err(unwritable)?;
+        for entry in fs::read_dir(root).map_err(unwritable)?.flatten() {
+            if entry.file_name().to_string_lossy().starts_with(PARTIAL) {
+                fs::remove_dir_all(entry.path()).map_err(unwritable)?;
+            }
+        }
+        Ok(Self { root: root.to_owned(), program: program_fingerprint(), _lock: lock })
+    }
+
+    /// The folder.
+    pub(crate) fn root(&self) -> &Path {
+        &self.root
+    }
+
+    fn stamp_path(&self, unit: &str) -> PathBuf {
+        self.root.join(".stamps").join(format!("{unit}.json"))
+    }
+
+    /// The stamp of a unit, whether up to date or not; `None` when there is none or it cannot be read.
+    pub(crate) fn stamp(&self, unit: &str) -> Option<Stamp> {
+        serde_json::from_slice(&fs::read(self.stamp_path(unit)).ok()?).ok()
+    }
+
+    /// The stamp of a unit if it is complete and was made by this program with these options.
+    pub(crate) fn current(&self, unit: &str, options: &Value) -> Option<Stamp> {
+        self.stamp(unit).filter(|s| {
+            s.extent == Extent::Complete
+                && s.options == *options
+                && s.program == self.program
+                && s.version == env!("CARGO_PKG_VERSION")
+                && s.entries.iter().all(|e| self.root.join(e).exists())
+        })
+    }
+
+    /// A working folder for a unit.
+    pub(crate) fn draft(&self) -> Result<Draft, StoreError> {
+        let folder = tempfile::Builder::new()
+            .prefix(PARTIAL)
+            .tempdir_in(&self.root)
+            .map_err(|source| StoreError::Unwritable { folder: self.root.clone(), source })?;
+        Ok(Draft { folder, entries: Vec::new() })
+    }
+
+    /// Moves a draft into place and stamps it.
+    pub(crate) fn commit(
+        &self,
+        draft: Draft,
+        unit: &str,
+        options: &Value,
+        extent: Extent,
+        facts: Value,
+    ) -> Result<Stamp, StoreError> {
+        let stamp_path = self.stamp_path(unit);
+        if stamp_path.exists() {
+            fs::remove_file(&stamp_path).map_err(|source| StoreError::Write { path: stamp_path, source })?;
+        }
+        let discarded = draft.folder.path().join(".discarded");
+        for (k, entry) in draft.entries.iter().enumerate() {
+            let target = self.root.join(entry);
+            let write = |source| StoreError::Write { path: target.clone(), source };
+            if let Some(parent) = target.parent() {
+                fs::create_dir_all(parent).map_err(write)?;
+            }
+            if target.is_dir() {
+                fs::create_dir_all(&discarded).map_err(write)?;
+                fs::rename(&target, discarded.join(k.to_string())).map_err(write)?;
+            }
+            fs::rename(draft.folder.path().join(entry), &target).map_err(write)?;
+        }
+        let stamp = Stamp {
+            unit: unit.to_owned(),
+            options: options.clone(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            program: self.program.clone(),
+            extent,
+            entries: draft.entries,
+            facts,
+        };
+        self.write_json(&format!(".stamps/{unit}.json"), &stamp)?;
+        Ok(stamp)
+    }
+
+    /// Writes a file of the output folder in one piece.
+    pub(crate) fn write(&self, path: &str, bytes: &[u8]) -> Result<(), StoreError> {
+        let target = self.root.join(path);
+        let failed = |source| StoreError::Write { path: target.clone(), source };
+        let folder = target.parent().unwrap_or(&self.root);
+        let mut file = tempfile::Builder::new()
+            .prefix(".writing-")
+            .tempfile_in(folder)
+            .map_err(failed)?;
+        file.write_all(bytes).map_err(failed)?;
+        share(file.path()).map_err(failed)?;
+        file.persist(&target).map_err(|e| failed(e.error))?;
+        Ok(())
+    }
+
+    /// Writes a JSON file of the output folder in one piece.
+    pub(crate) fn write_json(&self, path: &str, value: &impl Serialize) -> Result<(), StoreError> {
+        let mut text = serde_json::to_vec_pretty(value).map_err(|e| StoreError::Write {
+            path: self.root.join(path),
+            source: e.into(),
+        })?;
+        text.push(b'\n');
+        self.write(path, &text)
+    }
+
+    /// Reads a file of the output folder.
+    pub(crate) fn read(&self, path: &str) -> Result<Vec<u8>, StoreError> {
+        let path = self.root.join(path);
+        fs::read(&path).map_err(|source| StoreError::Read { path, source })
+    }
+}
+
+/// Temporary files are private to the user; results are readable as other new files are.
+#[cfg(unix)]
+fn share(path: &Path) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    fs::set_permissions(path, fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn share(_path: &Path) -> std::io::Result<()> {
+    Ok(())
+}
+
+/// A unit in the making: dropped without [`Store::commit`] it leaves no trace.
+#[derive(Debug)]
+pub(crate) struct Draft {
+    folder: TempDir,
+    entries: Vec<String>,
+}
+
+impl Draft {
+    /// Adds a file, given relative to the output folder.
+    pub(crate) fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), StoreError> {
+        let target = self.folder.path().join(path);
+        let failed = |source| StoreError::Write { path: target.clone(), source };
+        if let Some(parent) = target.parent() {
+            fs::create_dir_all(parent).map_err(failed)?;
+        }
+        fs::write(&target, bytes).map_err(failed)?;
+        self.entries.push(path.to_owned());
+        Ok(())
+    }
+
+    /// Adds a folder, given relative to the output folder, and returns where to fill it.
+    pub(crate) fn folder(&mut self, path: &str) -> Result<PathBuf, StoreError> {
+        let target = self.folder.path().join(path);
+        fs::create_dir_all(&target).map_err(|source| StoreError::Write { path: target.clone(), source })?;
+        self.entries.push(path.to_owned());
+        Ok(target)
+    }
+}
+
+/// 64-bit FNV-1a over the program file: figures made by an earlier build are not taken for current ones.
+fn program_fingerprint() -> String {
+    let bytes = std::env::current_exe().and_then(fs::read).unwrap_or_default();
+    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |h, &b| {
+        (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
+    format!("{hash:016x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn a_unit_is_current_until_something_changes() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let options = json!({"size": 3});
+        assert!(store.current("one", &options).is_none());
+        let mut draft = store.draft().unwrap();
+        draft.write("figures/one.svg", b"<svg/>").unwrap();
+        let run = draft.folder("runs/one").unwrap();
+        fs::write(run.join("a.csv"), "t\n").unwrap();
+        store.commit(draft, "one", &options, Extent::Complete, json!(7)).unwrap();
+        assert_eq!(store.current("one", &options).unwrap().facts, json!(7));
+        assert_eq!(store.read("runs/one/a.csv").unwrap(), b"t\n");
+        assert!(store.current("one", &json!({"size": 4})).is_none());
+        fs::remove_file(folder.path().join("figures/one.svg")).unwrap();
+        assert!(store.current("one", &options).is_none(), "a file is missing");
+    }
+
+    #[test]
+    fn folders_are_replaced_whole_and_drafts_leave_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        for name in ["old", "new"] {
+            let mut draft = store.draft().unwrap();
+            fs::write(draft.folder("runs/r").unwrap().join(name), "").unwrap();
+            store.commit(draft, "r", &json!(name), Extent::Partial, Value::Null).unwrap();
+        }
+        drop(store.draft().unwrap());
+        assert!(!folder.path().join("runs/r/old").exists());
+        assert!(folder.path().join("runs/r/new").exists());
+        assert!(store.current("r", &json!("new")).is_none(), "partial units are made again");
+        let hidden = fs::read_dir(folder.path()).unwrap().flatten();
+        assert_eq!(hidden.filter(|e| e.file_name().to_string_lossy().starts_with(PARTIAL)).count(), 0);
+    }
+
+    #[test]
+    fn one_process_at_a_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = Store::open(folder.path()).unwrap();
+        assert!(matches!(Store::open(folder.path()), Err(StoreError::Busy { .. })));
+        drop(first);
+        assert!(Store::open(folder.path()).is_ok());
+    }
+}
