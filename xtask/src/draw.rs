@@ -9,9 +9,9 @@ pub(crate) mod spatial;
 mod svg;
 mod text;
 
-pub(crate) use axes::{Axis, Marker, Plot, Series};
+pub(crate) use axes::{Axis, Legend, Marker, Plot, Series};
 pub(crate) use colour::{Colour, palette};
-pub(crate) use drawing::{Anchor, Drawing, Rect, Stroke, Vertical};
+pub(crate) use drawing::{Anchor, Drawing, Stroke, Vertical};
 pub(crate) use layout::{Align, column, row};
 pub(crate) use sheet::{flat_edges, flat_faces, plan};
 pub(crate) use spatial::View;

@@ -107,7 +107,6 @@ mod style {
     use super::{Colour, Stroke, palette};
 
     pub(super) const EDGE: Stroke = Stroke::new(palette::INK, 0.7);
-    pub(super) const RIM: Stroke = Stroke::new(palette::INK, 0.7);
     pub(super) const GHOST: Stroke = Stroke::new(palette::GREY, 0.5);
     /// Paper white with a hint of warmth, so that faces differ from the background.
     pub(super) const FACE: Colour = Colour::new(246, 243, 236);
@@ -117,7 +116,14 @@ mod style {
 fn caption(drawing: &mut Drawing, at: [f64; 2], size: f64, lines: &[String]) {
     for (k, line) in lines.iter().enumerate() {
         let y = at[1] - 1.35 * size * k as f64;
-        drawing.text([at[0], y], line, size, Anchor::Middle, Vertical::Below, palette::INK);
+        drawing.text(
+            [at[0], y],
+            line,
+            size,
+            Anchor::Middle,
+            Vertical::Below,
+            palette::INK,
+        );
     }
 }
 

@@ -27,5 +27,9 @@ pub(crate) struct Interrupted;
 
 /// [`Interrupted`] when Ctrl-C was pressed.
 pub(crate) fn check() -> Result<(), Interrupted> {
-    if requested() { Err(Interrupted) } else { Ok(()) }
+    if requested() {
+        Err(Interrupted)
+    } else {
+        Ok(())
+    }
 }

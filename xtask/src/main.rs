@@ -6,11 +6,14 @@
 //! The exit code is 0 when everything was made, 1 on failure, 2 for a command line that makes no sense and 130 when
 //! stopped with Ctrl-C.
 
+#![allow(dead_code, unused_imports, reason = "Figs. 10 to 12 follow")]
+
 mod cli;
 mod draw;
 mod figures;
 mod interrupt;
 mod progress;
+mod render;
 mod report;
 mod reproduce;
 mod selection;

@@ -16,8 +16,10 @@ impl Progress {
     pub(crate) fn start(name: impl Into<String>, length: usize) -> Self {
         let name = name.into();
         let bar = std::io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::with_draw_target(Some(length as u64), ProgressDrawTarget::stderr());
-            let style = ProgressStyle::with_template("{prefix:<28} {wide_bar} {pos}/{len} {elapsed}");
+            let bar =
+                ProgressBar::with_draw_target(Some(length as u64), ProgressDrawTarget::stderr());
+            let style =
+                ProgressStyle::with_template("{prefix:<28} {wide_bar} {pos}/{len} {elapsed}");
             if let Ok(style) = style {
                 bar.set_style(style);
             }
@@ -25,7 +27,11 @@ impl Progress {
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
         });
-        Self { name, bar, started: Instant::now() }
+        Self {
+            name,
+            bar,
+            started: Instant::now(),
+        }
     }
 
     /// One more step is done.
@@ -40,7 +46,11 @@ impl Progress {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
-        eprintln!("{:<28} {how} ({:.1} s)", self.name, self.started.elapsed().as_secs_f64());
+        eprintln!(
+            "{:<28} {how} ({:.1} s)",
+            self.name,
+            self.started.elapsed().as_secs_f64()
+        );
     }
 }
 

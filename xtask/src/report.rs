@@ -13,7 +13,12 @@ use serde_json::json;
 pub(crate) fn write(store: &Store, effort: Effort) -> Result<()> {
     let mut records = Vec::new();
     for figure in Selection::all().iter() {
-        let Some(stamp) = store.stamp(&unit(figure)).filter(|s| s.extent == Extent::Complete) else { continue };
+        let Some(stamp) = store
+            .stamp(&unit(figure))
+            .filter(|s| s.extent == Extent::Complete)
+        else {
+            continue;
+        };
         let record: Record = serde_json::from_value(stamp.facts)?;
         let quick = stamp.options["effort"] == serde_json::to_value(Effort::Quick)?;
         records.push((record, if quick { Effort::Quick } else { Effort::Full }));

@@ -11,7 +11,11 @@ use serde_json::json;
 /// Runs the command.
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
     let store = Store::open(&args.out)?;
-    let effort = if args.quick { Effort::Quick } else { Effort::Full };
+    let effort = if args.quick {
+        Effort::Quick
+    } else {
+        Effort::Full
+    };
     let mut outcome = Outcome::Complete;
     for figure in args.figures.iter() {
         if interrupt::requested() {
@@ -30,7 +34,10 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
         bar.finish("made");
     }
     report::write(&store, effort)?;
-    progress::note("report", &store.root().join("index.html").display().to_string());
+    progress::note(
+        "report",
+        &store.root().join("index.html").display().to_string(),
+    );
     Ok(outcome)
 }
 
@@ -46,7 +53,10 @@ fn keep(store: &Store, figure: u8, options: &serde_json::Value, made: Made) -> R
     for picture in &made.pictures {
         let path = format!("figures/{}", picture.file);
         draft.write(&path, &picture.bytes)?;
-        pictures.push(PictureRef { path, alt: picture.alt.clone() });
+        pictures.push(PictureRef {
+            path,
+            alt: picture.alt.clone(),
+        });
     }
     let record = Record {
         figure,
@@ -57,6 +67,12 @@ fn keep(store: &Store, figure: u8, options: &serde_json::Value, made: Made) -> R
         tables: made.tables,
         facts: made.facts,
     };
-    store.commit(draft, &unit(figure), options, Extent::Complete, serde_json::to_value(record)?)?;
+    store.commit(
+        draft,
+        &unit(figure),
+        options,
+        Extent::Complete,
+        serde_json::to_value(record)?,
+    )?;
     Ok(())
 }

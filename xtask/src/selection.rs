@@ -23,7 +23,9 @@ pub(crate) enum SelectionError {
     NotANumber(String),
     #[error("there is no figure {0}; known figures are 1 to 12")]
     Unknown(u64),
-    #[error("figure {0} needs contact with obstacles, which this version does not have yet; known figures are 1 to 12")]
+    #[error(
+        "figure {0} needs contact with obstacles, which this version does not have yet; known figures are 1 to 12"
+    )]
     NotBuilt(u64),
     #[error("the range {0}-{1} runs backwards; write {1}-{0}")]
     Backwards(u64, u64),
@@ -42,7 +44,8 @@ impl Selection {
 }
 
 fn number(text: &str) -> Result<u64, SelectionError> {
-    text.parse().map_err(|_| SelectionError::NotANumber(text.to_owned()))
+    text.parse()
+        .map_err(|_| SelectionError::NotANumber(text.to_owned()))
 }
 
 fn known(figure: u64) -> Result<u8, SelectionError> {
@@ -122,7 +125,10 @@ mod tests {
     #[test]
     fn what_makes_no_sense_is_named() {
         assert_eq!(parse(" "), Err(SelectionError::Empty));
-        assert_eq!(parse("1,,2"), Err(SelectionError::NotANumber(String::new())));
+        assert_eq!(
+            parse("1,,2"),
+            Err(SelectionError::NotANumber(String::new()))
+        );
         assert_eq!(parse("1-x"), Err(SelectionError::NotANumber("x".into())));
         assert_eq!(parse("-3"), Err(SelectionError::NotANumber("-3".into())));
         assert_eq!(parse("0"), Err(SelectionError::Unknown(0)));
@@ -131,13 +137,19 @@ mod tests {
         assert_eq!(parse("1-14"), Err(SelectionError::NotBuilt(14)));
         assert_eq!(parse("9-1"), Err(SelectionError::Backwards(9, 1)));
         // A range is refused by its ends, not walked through.
-        assert_eq!(parse("1-18446744073709551615"), Err(SelectionError::Unknown(u64::MAX)));
+        assert_eq!(
+            parse("1-18446744073709551615"),
+            Err(SelectionError::Unknown(u64::MAX))
+        );
     }
 
     #[test]
     fn written_as_read() {
         for list in ["1-12", "1,2,4-6,9", "11"] {
-            assert_eq!(list.parse::<Selection>().map(|s| s.to_string()).as_deref(), Ok(list));
+            assert_eq!(
+                list.parse::<Selection>().map(|s| s.to_string()).as_deref(),
+                Ok(list)
+            );
         }
     }
 }

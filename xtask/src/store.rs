@@ -18,13 +18,22 @@ const PARTIAL: &str = ".partial-";
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum StoreError {
     #[error("cannot write to the folder {}: {source}; choose another with --out", folder.display())]
-    Unwritable { folder: PathBuf, source: std::io::Error },
+    Unwritable {
+        folder: PathBuf,
+        source: std::io::Error,
+    },
     #[error("another process is writing to {}; wait for it or choose another folder with --out", folder.display())]
     Busy { folder: PathBuf },
     #[error("cannot write {}: {source}", path.display())]
-    Write { path: PathBuf, source: std::io::Error },
+    Write {
+        path: PathBuf,
+        source: std::io::Error,
+    },
     #[error("cannot read {}: {source}", path.display())]
-    Read { path: PathBuf, source: std::io::Error },
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
 }
 
 /// Whether a unit was finished.
@@ -68,12 +77,19 @@ pub(crate) struct Store {
 impl Store {
     /// Creates the folder when missing, checks that it can be written to, locks it and removes what a killed process left.
     pub(crate) fn open(root: &Path) -> Result<Self, StoreError> {
-        let unwritable = |source| StoreError::Unwritable { folder: root.to_owned(), source };
+        let unwritable = |source| StoreError::Unwritable {
+            folder: root.to_owned(),
+            source,
+        };
         fs::create_dir_all(root.join(".stamps")).map_err(unwritable)?;
         let lock = File::create(root.join(".lock")).map_err(unwritable)?;
         match lock.try_lock() {
             Ok(()) => {}
-            Err(fs::TryLockError::WouldBlock) => return Err(StoreError::Busy { folder: root.to_owned() }),
+            Err(fs::TryLockError::WouldBlock) => {
+                return Err(StoreError::Busy {
+                    folder: root.to_owned(),
+                });
+            }
             Err(fs::TryLockError::Error(source)) => return Err(unwritable(source)),
         }
         tempfile::tempfile_in(root).map_err(unwritable)?;
@@ -82,7 +98,11 @@ impl Store {
                 fs::remove_dir_all(entry.path()).map_err(unwritable)?;
             }
         }
-        Ok(Self { root: root.to_owned(), program: program_fingerprint(), _lock: lock })
+        Ok(Self {
+            root: root.to_owned(),
+            program: program_fingerprint(),
+            _lock: lock,
+        })
     }
 
     /// The folder.
@@ -115,8 +135,14 @@ impl Store {
         let folder = tempfile::Builder::new()
             .prefix(PARTIAL)
             .tempdir_in(&self.root)
-            .map_err(|source| StoreError::Unwritable { folder: self.root.clone(), source })?;
-        Ok(Draft { folder, entries: Vec::new() })
+            .map_err(|source| StoreError::Unwritable {
+                folder: self.root.clone(),
+                source,
+            })?;
+        Ok(Draft {
+            folder,
+            entries: Vec::new(),
+        })
     }
 
     /// Moves a draft into place and stamps it.
@@ -130,12 +156,18 @@ impl Store {
     ) -> Result<Stamp, StoreError> {
         let stamp_path = self.stamp_path(unit);
         if stamp_path.exists() {
-            fs::remove_file(&stamp_path).map_err(|source| StoreError::Write { path: stamp_path, source })?;
+            fs::remove_file(&stamp_path).map_err(|source| StoreError::Write {
+                path: stamp_path,
+                source,
+            })?;
         }
         let discarded = draft.folder.path().join(".discarded");
         for (k, entry) in draft.entries.iter().enumerate() {
             let target = self.root.join(entry);
-            let write = |source| StoreError::Write { path: target.clone(), source };
+            let write = |source| StoreError::Write {
+                path: target.clone(),
+                source,
+            };
             if let Some(parent) = target.parent() {
                 fs::create_dir_all(parent).map_err(write)?;
             }
@@ -161,7 +193,10 @@ impl Store {
     /// Writes a file of the output folder in one piece.
     pub(crate) fn write(&self, path: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let target = self.root.join(path);
-        let failed = |source| StoreError::Write { path: target.clone(), source };
+        let failed = |source| StoreError::Write {
+            path: target.clone(),
+            source,
+        };
         let folder = target.parent().unwrap_or(&self.root);
         let mut file = tempfile::Builder::new()
             .prefix(".writing-")
@@ -213,7 +248,10 @@ impl Draft {
     /// Adds a file, given relative to the output folder.
     pub(crate) fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let target = self.folder.path().join(path);
-        let failed = |source| StoreError::Write { path: target.clone(), source };
+        let failed = |source| StoreError::Write {
+            path: target.clone(),
+            source,
+        };
         if let Some(parent) = target.parent() {
             fs::create_dir_all(parent).map_err(failed)?;
         }
@@ -225,7 +263,10 @@ impl Draft {
     /// Adds a folder, given relative to the output folder, and returns where to fill it.
     pub(crate) fn folder(&mut self, path: &str) -> Result<PathBuf, StoreError> {
         let target = self.folder.path().join(path);
-        fs::create_dir_all(&target).map_err(|source| StoreError::Write { path: target.clone(), source })?;
+        fs::create_dir_all(&target).map_err(|source| StoreError::Write {
+            path: target.clone(),
+            source,
+        })?;
         self.entries.push(path.to_owned());
         Ok(target)
     }
@@ -233,7 +274,9 @@ impl Draft {
 
 /// 64-bit FNV-1a over the program file: figures made by an earlier build are not taken for current ones.
 fn program_fingerprint() -> String {
-    let bytes = std::env::current_exe().and_then(fs::read).unwrap_or_default();
+    let bytes = std::env::current_exe()
+        .and_then(fs::read)
+        .unwrap_or_default();
     let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |h, &b| {
         (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3)
     });
@@ -255,12 +298,17 @@ mod tests {
         draft.write("figures/one.svg", b"<svg/>").unwrap();
         let run = draft.folder("runs/one").unwrap();
         fs::write(run.join("a.csv"), "t\n").unwrap();
-        store.commit(draft, "one", &options, Extent::Complete, json!(7)).unwrap();
+        store
+            .commit(draft, "one", &options, Extent::Complete, json!(7))
+            .unwrap();
         assert_eq!(store.current("one", &options).unwrap().facts, json!(7));
         assert_eq!(store.read("runs/one/a.csv").unwrap(), b"t\n");
         assert!(store.current("one", &json!({"size": 4})).is_none());
         fs::remove_file(folder.path().join("figures/one.svg")).unwrap();
-        assert!(store.current("one", &options).is_none(), "a file is missing");
+        assert!(
+            store.current("one", &options).is_none(),
+            "a file is missing"
+        );
     }
 
     #[test]
@@ -270,21 +318,34 @@ mod tests {
         for name in ["old", "new"] {
             let mut draft = store.draft().unwrap();
             fs::write(draft.folder("runs/r").unwrap().join(name), "").unwrap();
-            store.commit(draft, "r", &json!(name), Extent::Partial, Value::Null).unwrap();
+            store
+                .commit(draft, "r", &json!(name), Extent::Partial, Value::Null)
+                .unwrap();
         }
         drop(store.draft().unwrap());
         assert!(!folder.path().join("runs/r/old").exists());
         assert!(folder.path().join("runs/r/new").exists());
-        assert!(store.current("r", &json!("new")).is_none(), "partial units are made again");
+        assert!(
+            store.current("r", &json!("new")).is_none(),
+            "partial units are made again"
+        );
         let hidden = fs::read_dir(folder.path()).unwrap().flatten();
-        assert_eq!(hidden.filter(|e| e.file_name().to_string_lossy().starts_with(PARTIAL)).count(), 0);
+        assert_eq!(
+            hidden
+                .filter(|e| e.file_name().to_string_lossy().starts_with(PARTIAL))
+                .count(),
+            0
+        );
     }
 
     #[test]
     fn one_process_at_a_time() {
         let folder = tempfile::tempdir().unwrap();
         let first = Store::open(folder.path()).unwrap();
-        assert!(matches!(Store::open(folder.path()), Err(StoreError::Busy { .. })));
+        assert!(matches!(
+            Store::open(folder.path()),
+            Err(StoreError::Busy { .. })
+        ));
         drop(first);
         assert!(Store::open(folder.path()).is_ok());
     }

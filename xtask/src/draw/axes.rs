@@ -25,14 +25,23 @@ enum Scale {
 impl Axis {
     /// A linear axis with the given ticks.
     pub(crate) fn linear(label: &str, range: [f64; 2], ticks: Vec<(f64, String)>) -> Self {
-        Self { label: label.to_owned(), range, ticks, logarithmic: Scale::Linear }
+        Self {
+            label: label.to_owned(),
+            range,
+            ticks,
+            logarithmic: Scale::Linear,
+        }
     }
 
     /// A linear axis from `range` with about `count` ticks at round values.
     pub(crate) fn round(label: &str, range: [f64; 2], count: usize) -> Self {
         let raw = (range[1] - range[0]) / count.max(1) as f64;
         let power = 10f64.powf(raw.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= raw).unwrap_or(raw);
+        let step = [1.0, 2.0, 5.0, 10.0]
+            .map(|m| m * power)
+            .into_iter()
+            .find(|s| *s >= raw)
+            .unwrap_or(raw);
         let decimals = (-step.log10().floor()).max(0.0) as usize;
         let first = (range[0] / step - 1e-9).ceil() as i64;
         let last = (range[1] / step + 1e-9).floor() as i64;
@@ -79,14 +88,24 @@ pub(crate) enum Marker {
 
 impl Marker {
     /// Draws the symbol with its middle at `p`; `radius` is that of the disc of about the same area.
-    pub(crate) fn draw(self, drawing: &mut Drawing, p: [f64; 2], radius: f64, fill: Colour, rim: Stroke) {
+    pub(crate) fn draw(
+        self,
+        drawing: &mut Drawing,
+        p: [f64; 2],
+        radius: f64,
+        fill: Colour,
+        rim: Stroke,
+    ) {
         let corners: &[[f64; 2]] = match self {
             Self::Disc => return drawing.disc(p, radius, fill, rim),
             Self::Square => &[[-0.88, -0.88], [0.88, -0.88], [0.88, 0.88], [-0.88, 0.88]],
             Self::Triangle => &[[-1.12, -0.76], [1.12, -0.76], [0.0, 1.24]],
             Self::Diamond => &[[0.0, -1.25], [1.25, 0.0], [0.0, 1.25], [-1.25, 0.0]],
         };
-        let points: Vec<[f64; 2]> = corners.iter().map(|c| [p[0] + radius * c[0], p[1] + radius * c[1]]).collect();
+        let points: Vec<[f64; 2]> = corners
+            .iter()
+            .map(|c| [p[0] + radius * c[0], p[1] + radius * c[1]])
+            .collect();
         drawing.polygon(&points, fill);
         drawing.outline(&points, rim);
     }
@@ -143,12 +162,29 @@ impl Plot {
             widest = widest.max(super::text::width(text, SMALL));
         }
         d.line(&[[0.0, h], [0.0, 0.0], [w, 0.0]], frame);
-        d.text([0.5 * w, -17.0], &self.x.label, TEXT, Anchor::Middle, Vertical::Below, ink);
+        d.text(
+            [0.5 * w, -17.0],
+            &self.x.label,
+            TEXT,
+            Anchor::Middle,
+            Vertical::Below,
+            ink,
+        );
         d.text_upwards([-12.0 - widest, 0.5 * h], &self.y.label, TEXT, ink);
         for s in &self.series {
-            let points: Vec<[f64; 2]> =
-                s.points.iter().map(|p| [self.x.part(p[0]) * w, self.y.part(p[1]) * h]).collect();
-            d.line(&points, Stroke { colour: s.colour, width: 1.1, dash: s.dash });
+            let points: Vec<[f64; 2]> = s
+                .points
+                .iter()
+                .map(|p| [self.x.part(p[0]) * w, self.y.part(p[1]) * h])
+                .collect();
+            d.line(
+                &points,
+                Stroke {
+                    colour: s.colour,
+                    width: 1.1,
+                    dash: s.dash,
+                },
+            );
             if let Some(marker) = s.marker {
                 for p in points {
                     marker.draw(&mut d, p, 2.4, s.colour, Stroke::new(palette::WHITE, 0.5));
@@ -159,11 +195,31 @@ impl Plot {
             for (k, s) in self.series.iter().enumerate() {
                 let y = h - 6.0 - 12.5 * k as f64;
                 let (a, b) = (w + 14.0, w + 32.0);
-                d.line(&[[a, y], [b, y]], Stroke { colour: s.colour, width: 1.1, dash: s.dash });
+                d.line(
+                    &[[a, y], [b, y]],
+                    Stroke {
+                        colour: s.colour,
+                        width: 1.1,
+                        dash: s.dash,
+                    },
+                );
                 if let Some(marker) = s.marker {
-                    marker.draw(&mut d, [0.5 * (a + b), y], 2.4, s.colour, Stroke::new(palette::WHITE, 0.5));
+                    marker.draw(
+                        &mut d,
+                        [0.5 * (a + b), y],
+                        2.4,
+                        s.colour,
+                        Stroke::new(palette::WHITE, 0.5),
+                    );
                 }
-                d.text([b + 5.0, y], &s.name, SMALL, Anchor::Start, Vertical::Centre, ink);
+                d.text(
+                    [b + 5.0, y],
+                    &s.name,
+                    SMALL,
+                    Anchor::Start,
+                    Vertical::Centre,
+                    ink,
+                );
             }
         }
         d

@@ -12,7 +12,10 @@ pub(crate) struct Colour {
 impl Colour {
     /// An opaque colour.
     pub(crate) const fn new(r: u8, g: u8, b: u8) -> Self {
-        Self { rgb: [r, g, b], alpha: 1.0 }
+        Self {
+            rgb: [r, g, b],
+            alpha: 1.0,
+        }
     }
 
     /// The same colour with the given opacity.
@@ -26,7 +29,10 @@ impl Colour {
             let (a, b) = (f64::from(self.rgb[k]), f64::from(other.rgb[k]));
             (a + (b - a) * part).round().clamp(0.0, 255.0) as u8
         };
-        Self { rgb: [channel(0), channel(1), channel(2)], alpha: self.alpha }
+        Self {
+            rgb: [channel(0), channel(1), channel(2)],
+            alpha: self.alpha,
+        }
     }
 
     /// Mixed with white; `part` = 1 is white.

@@ -16,17 +16,19 @@ pub(crate) struct Stroke {
 impl Stroke {
     /// A solid line.
     pub(crate) const fn new(colour: Colour, width: f64) -> Self {
-        Self { colour, width, dash: None }
+        Self {
+            colour,
+            width,
+            dash: None,
+        }
     }
 
     /// The same line, dashed.
     pub(crate) const fn dashed(self) -> Self {
-        Self { dash: Some([2.6, 2.0]), ..self }
-    }
-
-    /// The same line, dotted.
-    pub(crate) const fn dotted(self) -> Self {
-        Self { dash: Some([0.4, 1.9]), ..self }
+        Self {
+            dash: Some([2.6, 2.0]),
+            ..self
+        }
     }
 }
 
@@ -49,11 +51,28 @@ pub(crate) enum Vertical {
 /// One element of a drawing.
 #[derive(Clone, Debug)]
 pub(crate) enum Item {
-    Polygon { points: Vec<[f64; 2]>, fill: Colour },
-    Line { points: Vec<[f64; 2]>, stroke: Stroke },
-    Disc { centre: [f64; 2], radius: f64, fill: Colour },
+    Polygon {
+        points: Vec<[f64; 2]>,
+        fill: Colour,
+    },
+    Line {
+        points: Vec<[f64; 2]>,
+        stroke: Stroke,
+    },
+    Disc {
+        centre: [f64; 2],
+        radius: f64,
+        fill: Colour,
+    },
     /// `at` is on the baseline; `turned` by 90 degrees counter-clockwise for the labels of vertical axes.
-    Text { at: [f64; 2], text: String, size: f64, anchor: Anchor, colour: Colour, turned: Turned },
+    Text {
+        at: [f64; 2],
+        text: String,
+        size: f64,
+        anchor: Anchor,
+        colour: Colour,
+        turned: Turned,
+    },
 }
 
 /// The direction of a text.
@@ -71,7 +90,10 @@ pub(crate) struct Rect {
 }
 
 impl Rect {
-    const EMPTY: Self = Self { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
+    const EMPTY: Self = Self {
+        min: [f64::INFINITY; 2],
+        max: [f64::NEG_INFINITY; 2],
+    };
 
     fn add(&mut self, p: [f64; 2], margin: f64) {
         for k in 0..2 {
@@ -106,25 +128,42 @@ impl Drawing {
 
     /// A filled polygon without an outline.
     pub(crate) fn polygon(&mut self, points: &[[f64; 2]], fill: Colour) {
-        self.items.push(Item::Polygon { points: points.to_vec(), fill });
+        self.items.push(Item::Polygon {
+            points: points.to_vec(),
+            fill,
+        });
     }
 
     /// An open polyline.
     pub(crate) fn line(&mut self, points: &[[f64; 2]], stroke: Stroke) {
-        self.items.push(Item::Line { points: points.to_vec(), stroke });
+        self.items.push(Item::Line {
+            points: points.to_vec(),
+            stroke,
+        });
     }
 
     /// A closed polyline.
     pub(crate) fn outline(&mut self, points: &[[f64; 2]], stroke: Stroke) {
         let mut closed = points.to_vec();
         closed.extend(points.first());
-        self.items.push(Item::Line { points: closed, stroke });
+        self.items.push(Item::Line {
+            points: closed,
+            stroke,
+        });
     }
 
     /// A filled disc with a rim.
     pub(crate) fn disc(&mut self, centre: [f64; 2], radius: f64, fill: Colour, rim: Stroke) {
-        self.items.push(Item::Disc { centre, radius: radius + 0.5 * rim.width, fill: rim.colour });
-        self.items.push(Item::Disc { centre, radius: radius - 0.5 * rim.width, fill });
+        self.items.push(Item::Disc {
+            centre,
+            radius: radius + 0.5 * rim.width,
+            fill: rim.colour,
+        });
+        self.items.push(Item::Disc {
+            centre,
+            radius: radius - 0.5 * rim.width,
+            fill,
+        });
     }
 
     /// A polyline that ends in an arrow head.
@@ -140,12 +179,24 @@ impl Drawing {
             *last = [tip[0] - 0.8 * long * u[0], tip[1] - 0.8 * long * u[1]];
         }
         self.line(&shaft, stroke);
-        let head = [*tip, [base[0] - half * u[1], base[1] + half * u[0]], [base[0] + half * u[1], base[1] - half * u[0]]];
+        let head = [
+            *tip,
+            [base[0] - half * u[1], base[1] + half * u[0]],
+            [base[0] + half * u[1], base[1] - half * u[0]],
+        ];
         self.polygon(&head, stroke.colour);
     }
 
     /// A text. `_{..}`, `^{..}` lower and raise, `~..~` slants.
-    pub(crate) fn text(&mut self, at: [f64; 2], text: &str, size: f64, anchor: Anchor, vertical: Vertical, colour: Colour) {
+    pub(crate) fn text(
+        &mut self,
+        at: [f64; 2],
+        text: &str,
+        size: f64,
+        anchor: Anchor,
+        vertical: Vertical,
+        colour: Colour,
+    ) {
         let drop = match vertical {
             Vertical::Above => 0.0,
             Vertical::Centre => 0.35 * size,
@@ -176,17 +227,18 @@ impl Drawing {
     /// Another drawing, moved.
     pub(crate) fn place(&mut self, other: &Self, offset: [f64; 2]) {
         let moved = |p: &[f64; 2]| [p[0] + offset[0], p[1] + offset[1]];
-        self.items.extend(other.items.iter().cloned().map(|mut item| {
-            match &mut item {
-                Item::Polygon { points, .. } | Item::Line { points, .. } => {
-                    for p in points {
-                        *p = moved(p);
+        self.items
+            .extend(other.items.iter().cloned().map(|mut item| {
+                match &mut item {
+                    Item::Polygon { points, .. } | Item::Line { points, .. } => {
+                        for p in points {
+                            *p = moved(p);
+                        }
                     }
+                    Item::Disc { centre: p, .. } | Item::Text { at: p, .. } => *p = moved(p),
                 }
-                Item::Disc { centre: p, .. } | Item::Text { at: p, .. } => *p = moved(p),
-            }
-            item
-        }));
+                item
+            }));
     }
 
     /// The smallest rectangle that holds everything; widths of texts are estimated.
@@ -195,9 +247,18 @@ impl Drawing {
         for item in &self.items {
             match item {
                 Item::Polygon { points, .. } => points.iter().for_each(|&p| r.add(p, 0.0)),
-                Item::Line { points, stroke } => points.iter().for_each(|&p| r.add(p, 0.5 * stroke.width)),
+                Item::Line { points, stroke } => {
+                    points.iter().for_each(|&p| r.add(p, 0.5 * stroke.width));
+                }
                 Item::Disc { centre, radius, .. } => r.add(*centre, *radius),
-                Item::Text { at, text, size, anchor, turned, .. } => {
+                Item::Text {
+                    at,
+                    text,
+                    size,
+                    anchor,
+                    turned,
+                    ..
+                } => {
                     let (before, after) = match anchor {
                         Anchor::Start => (0.0, 1.0),
                         Anchor::Middle => (0.5, 0.5),

@@ -13,7 +13,12 @@ pub(crate) fn plan(sheet: &Sheet, scale: f64) -> impl Fn(VertexId) -> [f64; 2] +
 }
 
 /// Draws the faces; `colour` gives the colour of each.
-pub(crate) fn flat_faces(drawing: &mut Drawing, sheet: &Sheet, scale: f64, colour: impl Fn(FaceId) -> Colour) {
+pub(crate) fn flat_faces(
+    drawing: &mut Drawing,
+    sheet: &Sheet,
+    scale: f64,
+    colour: impl Fn(FaceId) -> Colour,
+) {
     let place = plan(sheet, scale);
     for f in sheet.topology().face_ids() {
         let corners = sheet.topology().faces()[f.index()].map(&place);

@@ -16,7 +16,11 @@ pub(crate) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 pub(crate) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 pub(crate) fn sub(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
@@ -48,7 +52,10 @@ impl View {
 
     /// Place in the drawing, points.
     pub(crate) fn project(&self, p: &[f64; 3]) -> [f64; 2] {
-        [self.scale * dot(&self.right, p), self.scale * dot(&self.up, p)]
+        [
+            self.scale * dot(&self.right, p),
+            self.scale * dot(&self.up, p),
+        ]
     }
 
     /// Places of several points.
@@ -63,11 +70,17 @@ impl View {
 
     /// A colour shaded for a face with the given corners, alike from both sides.
     pub(crate) fn shade(&self, colour: Colour, corners: &[[f64; 3]; 3]) -> Colour {
-        let n = unit(&cross(&sub(&corners[1], &corners[0]), &sub(&corners[2], &corners[0])));
+        let n = unit(&cross(
+            &sub(&corners[1], &corners[0]),
+            &sub(&corners[2], &corners[0]),
+        ));
         // Light from the upper left behind the viewer.
-        let light = unit(&[0, 1, 2].map(|k| self.toward[k] + 0.5 * self.up[k] - 0.4 * self.right[k]));
+        let light =
+            unit(&[0, 1, 2].map(|k| self.toward[k] + 0.5 * self.up[k] - 0.4 * self.right[k]));
         let lit = dot(&n, &light).abs();
-        colour.mix(palette::BLACK, 0.28 * (1.0 - lit)).mix(palette::WHITE, 0.12 * lit)
+        colour
+            .mix(palette::BLACK, 0.17 * (1.0 - lit))
+            .mix(palette::WHITE, 0.12 * lit)
     }
 }
 

@@ -4,7 +4,9 @@ use super::drawing::{Anchor, Drawing, Item, Turned};
 use super::{Colour, text};
 use plotters::backend::{DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{FontStyle, FontTransform, IntoFont, RGBAColor, RGBColor, ShapeStyle, TextStyle};
+use plotters::style::{
+    FontStyle, FontTransform, IntoFont, RGBAColor, RGBColor, ShapeStyle, TextStyle,
+};
 
 /// The backend rounds to whole units: a twentieth of a point each.
 const UNITS: f64 = 20.0;
@@ -41,10 +43,16 @@ impl Drawing {
         let bounds = self.bounds();
         let left = bounds.min[0] - MARGIN;
         let top = bounds.max[1] + MARGIN;
-        let size = [bounds.width() + 2.0 * MARGIN, bounds.height() + 2.0 * MARGIN];
+        let size = [
+            bounds.width() + 2.0 * MARGIN,
+            bounds.height() + 2.0 * MARGIN,
+        ];
         let units = size.map(|s| (s * UNITS).ceil() as u32);
         let map = |p: &[f64; 2]| -> Coord {
-            (((p[0] - left) * UNITS).round() as i32, ((top - p[1]) * UNITS).round() as i32)
+            (
+                ((p[0] - left) * UNITS).round() as i32,
+                ((top - p[1]) * UNITS).round() as i32,
+            )
         };
         let mut svg = String::new();
         {
@@ -56,7 +64,10 @@ impl Drawing {
         }
         let head = format!("width=\"{}\" height=\"{}\" viewBox", units[0], units[1]);
         let points = units.map(|u| f64::from(u) / UNITS);
-        let title = title.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+        let title = title
+            .replace('&', "&amp;")
+            .replace('<', "&lt;")
+            .replace('"', "&quot;");
         let replaced = format!(
             "width=\"{:.2}pt\" height=\"{:.2}pt\" role=\"img\" aria-label=\"{title}\" stroke-linecap=\"round\" \
              stroke-linejoin=\"round\" viewBox",
@@ -72,9 +83,15 @@ impl Drawing {
     }
 }
 
-fn draw(backend: &mut SVGBackend<'_>, item: &Item, map: &impl Fn(&[f64; 2]) -> Coord) -> Result<(), String> {
+fn draw(
+    backend: &mut SVGBackend<'_>,
+    item: &Item,
+    map: &impl Fn(&[f64; 2]) -> Coord,
+) -> Result<(), String> {
     let written = match item {
-        Item::Polygon { points, fill } => backend.fill_polygon(points.iter().map(map), &style(*fill, 0.0)),
+        Item::Polygon { points, fill } => {
+            backend.fill_polygon(points.iter().map(map), &style(*fill, 0.0))
+        }
         Item::Line { points, stroke } => {
             let style = style(stroke.colour, stroke.width);
             match stroke.dash {
@@ -84,10 +101,24 @@ fn draw(backend: &mut SVGBackend<'_>, item: &Item, map: &impl Fn(&[f64; 2]) -> C
                     .try_for_each(|piece| backend.draw_path(piece.iter().map(map), &style)),
             }
         }
-        Item::Disc { centre, radius, fill } => {
-            backend.draw_circle(map(centre), (radius * UNITS).round() as u32, &style(*fill, 0.0), true)
-        }
-        Item::Text { at, text, size, anchor, colour, turned } => {
+        Item::Disc {
+            centre,
+            radius,
+            fill,
+        } => backend.draw_circle(
+            map(centre),
+            (radius * UNITS).round() as u32,
+            &style(*fill, 0.0),
+            true,
+        ),
+        Item::Text {
+            at,
+            text,
+            size,
+            anchor,
+            colour,
+            turned,
+        } => {
             let [r, g, b] = colour.rgb;
             let h = match anchor {
                 Anchor::Start => HPos::Left,
@@ -98,9 +129,12 @@ fn draw(backend: &mut SVGBackend<'_>, item: &Item, map: &impl Fn(&[f64; 2]) -> C
                 Turned::No => FontTransform::None,
                 Turned::Upwards => FontTransform::Rotate270,
             };
-            let font = (FAMILY, size * UNITS * FONT_DIVISOR, FontStyle::Normal).into_font().transform(transform);
+            let colour = RGBColor(r, g, b);
+            let font = (FAMILY, size * UNITS * FONT_DIVISOR, FontStyle::Normal)
+                .into_font()
+                .transform(transform);
             let style = TextStyle::from(font)
-                .color(&RGBColor(r, g, b))
+                .color(&colour)
                 .pos(Pos::new(h, VPos::Center));
             backend.draw_text(&text::encode(text), &style, map(at))
         }
@@ -149,12 +183,28 @@ mod tests {
     #[test]
     fn size_follows_the_contents() {
         let mut d = Drawing::new();
-        d.line(&[[10.0, 10.0], [110.0, 60.0]], Stroke::new(palette::INK, 1.0));
-        d.text([60.0, 35.0], "~M~^{1} & more", 9.0, Anchor::Middle, Vertical::Centre, palette::INK);
+        d.line(
+            &[[10.0, 10.0], [110.0, 60.0]],
+            Stroke::new(palette::INK, 1.0),
+        );
+        d.text(
+            [60.0, 35.0],
+            "~M~^{1} & more",
+            9.0,
+            Anchor::Middle,
+            Vertical::Centre,
+            palette::INK,
+        );
         let svg = d.to_svg("A \"test\"").unwrap();
-        assert!(svg.contains("width=\"105.00pt\" height=\"55.00pt\""), "{svg}");
+        assert!(
+            svg.contains("width=\"105.00pt\" height=\"55.00pt\""),
+            "{svg}"
+        );
         assert!(svg.contains("aria-label=\"A &quot;test&quot;\""), "{svg}");
-        assert!(svg.contains("<tspan font-style=\"italic\">M</tspan>"), "{svg}");
+        assert!(
+            svg.contains("<tspan font-style=\"italic\">M</tspan>"),
+            "{svg}"
+        );
         assert!(svg.contains("&amp; more"), "{svg}");
         assert!(!svg.contains("0.5ex"), "{svg}");
     }

@@ -46,17 +46,24 @@ pub(super) fn encode(text: &str) -> String {
 /// Replaces the private characters in an SVG file by elements.
 pub(super) fn decode(svg: &str) -> String {
     let mut out = String::with_capacity(svg.len());
-    // Shift that the next piece of ordinary text has to take back, em of the text.
+    // Shift that a raised piece right after a lowered one has to take back, em of the text.
     let mut back = 0.0;
+    // Width of the last lowered piece, em of its own size: a raised piece right after it stands above it.
+    let mut lowered = 0.0;
     let mut chars = svg.chars().peekable();
     while let Some(c) = chars.next() {
         match c {
             SUB | SUPER => {
-                // Shifts are relative to what comes before: a raised piece right after a lowered one adds both.
                 let shift = if c == SUB { SHIFT[0] } else { -SHIFT[1] } + back;
+                let dx = if back == 0.0 {
+                    String::new()
+                } else {
+                    format!(" dx=\"{:.3}em\"", -lowered)
+                };
                 back = 0.0;
+                lowered = 0.0;
                 out.push_str(&format!(
-                    "<tspan dy=\"{:.3}em\" font-size=\"{:.0}%\">",
+                    "<tspan dy=\"{:.3}em\"{dx} font-size=\"{:.0}%\">",
                     shift / SCRIPT,
                     100.0 * SCRIPT
                 ));
@@ -77,7 +84,10 @@ pub(super) fn decode(svg: &str) -> String {
             }
             SLANT => out.push_str("<tspan font-style=\"italic\">"),
             END_SLANT => out.push_str("</tspan>"),
-            _ => out.push(c),
+            _ => {
+                lowered += advance(c);
+                out.push(c);
+            }
         }
     }
     out
@@ -128,7 +138,7 @@ mod tests {
         assert_eq!(
             svg,
             "<tspan font-style=\"italic\">v</tspan><tspan dy=\"0.306em\" font-size=\"72%\">I</tspan>\
-             <tspan dy=\"-0.833em\" font-size=\"72%\">t</tspan><tspan dy=\"0.380em\">\u{200b}</tspan> = 2"
+             <tspan dy=\"-0.833em\" dx=\"-0.280em\" font-size=\"72%\">t</tspan><tspan dy=\"0.380em\">\u{200b}</tspan> = 2"
         );
         assert_eq!(decode(&encode("a + b}")), "a + b}");
     }

@@ -23,11 +23,19 @@ pub(super) fn make() -> Result<Made> {
         if k > 0 {
             let before = sheets[k - 1].topology();
             let expected = Dof::of(before).total + before.boundary_edge_count() as i64;
-            ensure!(dof == expected, "Lemma 1 fails at step {k}: {dof} instead of {expected}");
+            ensure!(
+                dof == expected,
+                "Lemma 1 fails at step {k}: {dof} instead of {expected}"
+            );
         }
         let coarser = k.checked_sub(1).map(|j| &sheets[j]);
         let mut d = panel(sheet, coarser);
-        let counts = format!("~V~ = {}, ~E~ = {}, ~F~ = {}", t.vertex_count(), t.edge_count(), t.face_count());
+        let counts = format!(
+            "~V~ = {}, ~E~ = {}, ~F~ = {}",
+            t.vertex_count(),
+            t.edge_count(),
+            t.face_count()
+        );
         let freedom = format!("DOF = {dof}, ~B~ = {boundary}");
         caption(&mut d, [0.5 * SIDE, -7.0], TEXT, &[counts, freedom]);
         panels.push(d);
@@ -56,15 +64,28 @@ fn panel(sheet: &Sheet, coarser: Option<&Sheet>) -> Drawing {
     flat_faces(&mut d, sheet, SIDE, |_| style::FACE);
     // The split keeps the old vertices and puts vertex V + e in the middle of edge e: halves of old edges have an old end.
     let old = coarser.map_or(usize::MAX, |c| c.topology().vertex_count());
-    let is_new = |e: EdgeId| sheet.topology().edges()[e.index()].iter().all(|v| v.index() >= old);
+    let is_new = |e: EdgeId| {
+        sheet.topology().edges()[e.index()]
+            .iter()
+            .all(|v| v.index() >= old)
+    };
     let new = Stroke::new(palette::BLUE, 0.7);
     flat_edges(&mut d, sheet, SIDE, |e| is_new(e).then_some(new));
     flat_edges(&mut d, sheet, SIDE, |e| (!is_new(e)).then_some(style::EDGE));
     let r = 1.3;
     for v in sheet.topology().vertex_ids() {
         let p = sheet.position(v);
-        let colour = if v.index() >= old { palette::BLUE } else { palette::INK };
-        d.disc([SIDE * p[0], SIDE * p[1]], r, colour, Stroke::new(colour, 0.2));
+        let colour = if v.index() >= old {
+            palette::BLUE
+        } else {
+            palette::INK
+        };
+        d.disc(
+            [SIDE * p[0], SIDE * p[1]],
+            r,
+            colour,
+            Stroke::new(colour, 0.2),
+        );
     }
     d
 }

@@ -12,7 +12,7 @@ use serde_json::json;
 const FOLD: f64 = 0.9;
 
 pub(super) fn make() -> Result<Made> {
-    let view = View::from(-72.0, 32.0, 105.0);
+    let view = View::from(-24.0, 34.0, 108.0);
     let a = [0.0, 0.0, 0.0];
     let b = [1.0, 0.0, 0.0];
     let left = [0.55, 0.85, 0.0];
@@ -28,22 +28,35 @@ pub(super) fn make() -> Result<Made> {
     let ghost = view.project_all(&[a, left, b]);
     pair.polygon(&ghost, palette::PALE.alpha(0.35));
     pair.line(&ghost, style::GHOST.dashed());
-    triangle(&mut pair, &view, &[a, b, turned], palette::SKY.tint(0.55));
     triangle(&mut pair, &view, &[a, right, b], style::FACE);
-    pair.line(&view.project_all(&[a, b]), Stroke::new(palette::VERMILION, 1.4));
+    triangle(&mut pair, &view, &[a, b, turned], palette::SKY.tint(0.55));
+    pair.line(
+        &view.project_all(&[a, b]),
+        Stroke::new(palette::VERMILION, 1.4),
+    );
     let path = arc(&foot, &[0.0, left[1], 0.0], &[0.0, 0.0, left[1]], FOLD);
-    pair.arrow(&view.project_all(&path), Stroke::new(palette::VERMILION, 0.8));
+    pair.arrow(
+        &view.project_all(&path),
+        Stroke::new(palette::VERMILION, 0.8),
+    );
     let mut facts = Vec::new();
     let mut lines = Vec::new();
     for sheet in [&one, &two] {
         let t = sheet.topology();
         let dof = Dof::of(t);
         lines.push(vec![
-            format!("~V~ = {}, ~E~ = {}, ~F~ = {}", t.vertex_count(), t.edge_count(), t.face_count()),
+            format!(
+                "~V~ = {}, ~E~ = {}, ~F~ = {}",
+                t.vertex_count(),
+                t.edge_count(),
+                t.face_count()
+            ),
             format!("DOF = 3~V~ − ~E~ = {}", dof.total),
             format!("{} external, {} internal", dof.external, dof.internal),
         ]);
-        facts.push(json!({ "total": dof.total, "external": dof.external, "internal": dof.internal }));
+        facts.push(
+            json!({ "total": dof.total, "external": dof.external, "internal": dof.internal }),
+        );
     }
     let low = single.bounds().min[1].min(pair.bounds().min[1]) - 9.0;
     for (d, lines) in [(&mut single, &lines[0]), (&mut pair, &lines[1])] {

@@ -1,7 +1,9 @@
 //! Fig. 3: the directions in which a mesh folds.
 
 use super::{Made, caption, style, svg};
-use crate::draw::{Align, Colour, Drawing, Stroke, TEXT, flat_edges, flat_faces, palette, plan, row};
+use crate::draw::{
+    Align, Colour, Drawing, SMALL, Stroke, TEXT, flat_edges, flat_faces, palette, plan, row,
+};
 use anyhow::Result;
 use isosheet_mesh::generate::{anisotropic_grid, isotropic_square};
 use isosheet_mesh::{CreasePattern, Sheet};
@@ -14,19 +16,35 @@ pub(super) fn make() -> Result<Made> {
     let jack = isotropic_square(1, 1.0)?;
     let mut panels = Vec::new();
     let mut facts = Vec::new();
-    for (sheet, name) in [(&one_way, "one-way grid (Fig. 1)"), (&jack, "union jack (Fig. 4)")] {
+    for (sheet, name) in [
+        (&one_way, "one-way grid (Fig. 1)"),
+        (&jack, "union jack (Fig. 4)"),
+    ] {
         let pattern = CreasePattern::of(sheet, CreasePattern::TOLERANCE);
         let mut lines = draw_lines(sheet, &pattern);
-        let names: Vec<String> =
-            pattern.folding_directions().iter().map(|d| format!("{:.0}°", d.angle.to_degrees())).collect();
-        caption(&mut lines, [0.5 * SIDE, -7.0], TEXT, &[name.to_owned(), format!("folds along {}", names.join(", "))]);
+        let names: Vec<String> = pattern
+            .folding_directions()
+            .iter()
+            .map(|d| format!("{:.0}°", d.angle.to_degrees()))
+            .collect();
+        caption(
+            &mut lines,
+            [0.5 * SIDE, -7.0],
+            TEXT,
+            &[name.to_owned(), format!("folds along {}", names.join(", "))],
+        );
         panels.push(lines);
-        panels.push(rose(sheet, &pattern));
+        let mut rose = rose(sheet, &pattern);
+        let words = ["crease length", "(circles: 2 and 4 sides)"].map(str::to_owned);
+        caption(&mut rose, [0.0, 0.5 * SIDE - 46.0], SMALL, &words);
+        panels.push(rose);
         facts.push(describe(&pattern));
     }
     let gaps = [16.0, 34.0];
-    let pairs: Vec<Drawing> =
-        panels.chunks(2).map(|pair| row(pair, gaps[0], Align::Origin)).collect();
+    let pairs: Vec<Drawing> = panels
+        .chunks(2)
+        .map(|pair| row(pair, gaps[0], Align::Origin))
+        .collect();
     let all = row(&pairs, gaps[1], Align::Origin);
     let anisotropy = |k: usize| facts[k]["anisotropy"].as_f64().unwrap_or(f64::NAN);
     Ok(Made {
@@ -40,7 +58,11 @@ pub(super) fn make() -> Result<Made> {
             anisotropy(0),
             anisotropy(1)
         ),
-        pictures: svg(3, &all, "Crease lines of the one-way grid and of the union-jack grid with their directions")?,
+        pictures: svg(
+            3,
+            &all,
+            "Crease lines of the one-way grid and of the union-jack grid with their directions",
+        )?,
         tables: Vec::new(),
         facts: json!({ "one_way": facts[0], "union_jack": facts[1] }),
     })
@@ -58,19 +80,30 @@ fn describe(pattern: &CreasePattern) -> Value {
 /// Colour of a direction; the four of the square patterns have their own.
 fn colour(angle: f64) -> Colour {
     let eighth = (angle / std::f64::consts::FRAC_PI_4).round() as i64;
-    [palette::BLUE, palette::ORANGE, palette::GREEN, palette::VERMILION][eighth.rem_euclid(4) as usize]
+    [
+        palette::BLUE,
+        palette::ORANGE,
+        palette::GREEN,
+        palette::VERMILION,
+    ][eighth.rem_euclid(4) as usize]
 }
 
 fn draw_lines(sheet: &Sheet, pattern: &CreasePattern) -> Drawing {
     let mut d = Drawing::new();
     flat_faces(&mut d, sheet, SIDE, |_| style::FACE);
-    flat_edges(&mut d, sheet, SIDE, |e| sheet.topology().is_boundary_edge(e).then_some(style::EDGE));
+    flat_edges(&mut d, sheet, SIDE, |e| {
+        sheet.topology().is_boundary_edge(e).then_some(style::EDGE)
+    });
     let place = plan(sheet, SIDE);
     for line in pattern.through_lines() {
         let points: Vec<[f64; 2]> = line.vertices.iter().map(|&v| place(v)).collect();
         d.line(&points, Stroke::new(colour(line.direction), 1.3));
     }
-    for line in pattern.lines.iter().filter(|l| !pattern.through_lines().any(|t| t == *l)) {
+    for line in pattern
+        .lines
+        .iter()
+        .filter(|l| !pattern.through_lines().any(|t| t == *l))
+    {
         let points: Vec<[f64; 2]> = line.vertices.iter().map(|&v| place(v)).collect();
         d.line(&points, style::GHOST);
     }
@@ -94,7 +127,10 @@ fn rose(sheet: &Sheet, pattern: &CreasePattern) -> Drawing {
     for direction in pattern.folding_directions() {
         let (s, c) = direction.angle.sin_cos();
         let r = unit * direction.length;
-        let ends = [[centre[0] - r * c, centre[1] - r * s], [centre[0] + r * c, centre[1] + r * s]];
+        let ends = [
+            [centre[0] - r * c, centre[1] - r * s],
+            [centre[0] + r * c, centre[1] + r * s],
+        ];
         d.line(&ends, Stroke::new(colour(direction.angle), 3.0));
     }
     d

@@ -1,7 +1,9 @@
 //! Fig. 4: isotropic refinement.
 
 use super::{Made, caption, style, svg};
-use crate::draw::{Align, Drawing, Stroke, TEXT, column, flat_edges, flat_faces, palette, plan, row};
+use crate::draw::{
+    Align, Drawing, Stroke, TEXT, column, flat_edges, flat_faces, palette, plan, row,
+};
 use anyhow::{Result, ensure};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{Dof, Sheet, VertexId};
@@ -24,11 +26,17 @@ pub(super) fn make() -> Result<Made> {
             "the rectangles of level {level} do not give the triangles"
         );
         if let Some(before) = last {
-            ensure!(dof.total == 2 * before - 3, "Lemma 2 fails at level {level}");
+            ensure!(
+                dof.total == 2 * before - 3,
+                "Lemma 2 fails at level {level}"
+            );
         }
         last = Some(dof.total);
         let mut top = rectangles.draw(&sheet);
-        let words = [format!("{faces} rectangle{}", if faces == 1 { "" } else { "s" }), format!("{edges} edges")];
+        let words = [
+            format!("{faces} rectangle{}", if faces == 1 { "" } else { "s" }),
+            format!("{edges} edges"),
+        ];
         caption(&mut top, [0.5 * SIDE, -7.0], TEXT, &words);
         upper.push(top);
         let mut bottom = Drawing::new();
@@ -36,7 +44,11 @@ pub(super) fn make() -> Result<Made> {
         let thin = Stroke::new(palette::INK, if level < 3 { 0.7 } else { 0.45 });
         flat_edges(&mut bottom, &sheet, SIDE, |_| Some(thin));
         let words = [
-            format!("~M~^{{{level}}}: ~V~/~F~ = {}/{}", t.vertex_count(), t.face_count()),
+            format!(
+                "~M~^{{{level}}}: ~V~/~F~ = {}/{}",
+                t.vertex_count(),
+                t.face_count()
+            ),
             format!("DOF = {} = 6 + {}", dof.total, dof.internal),
         ];
         caption(&mut bottom, [0.5 * SIDE, -7.0], TEXT, &words);
@@ -47,7 +59,14 @@ pub(super) fn make() -> Result<Made> {
         }));
     }
     let gap = 14.0;
-    let all = column(&[row(&upper, gap, Align::Origin), row(&lower, gap, Align::Origin)], 12.0, Align::Origin);
+    let all = column(
+        &[
+            row(&upper, gap, Align::Origin),
+            row(&lower, gap, Align::Origin),
+        ],
+        12.0,
+        Align::Origin,
+    );
     Ok(Made {
         title: "Isotropic refinement",
         paper: "Rectangles (upper row) are split in four at each level and cut into eight triangles each (lower row). Lemma 2: \

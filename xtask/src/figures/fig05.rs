@@ -8,33 +8,59 @@ use isosheet_coords::EulerParameters;
 use isosheet_mesh::{EdgeAngles, Sheet, VertexId, fold_angle};
 use serde_json::json;
 
-/// Fold of the pair at time t: 75 degrees.
-const FOLD: f64 = 75.0 * std::f64::consts::PI / 180.0;
+/// Fold of the pair at time t: 70 degrees.
+const FOLD: f64 = 70.0 * std::f64::consts::PI / 180.0;
 
 const ALPHA: Colour = palette::BLUE;
 const BETA: Colour = palette::GREEN;
 const GAMMA: Colour = palette::VERMILION;
 
 pub(super) fn make() -> Result<Made> {
-    let view = View::from(-60.0, 33.0, 128.0);
-    let rest = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.30, 0.80, 0.0], [0.62, -0.72, 0.0]];
+    let view = View::from(-13.0, 56.0, 150.0);
+    let rest = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.30, 0.80, 0.0],
+        [0.62, -0.72, 0.0],
+    ];
     let sheet = Sheet::new(rest.concat(), &[[0, 1, 2], [0, 3, 1]])?;
-    let edge = sheet.topology().find_edge(VertexId(0), VertexId(1)).context("the pair has a common edge")?;
+    let edge = sheet
+        .topology()
+        .find_edge(VertexId(0), VertexId(1))
+        .context("the pair has a common edge")?;
     let mut folded = rest;
-    folded[2] = EulerParameters::about(&[1.0, 0.0, 0.0], FOLD).rotate(&rest[2]);
+    // Half of the fold on either side, so that neither face hides the other.
+    folded[2] = EulerParameters::about(&[1.0, 0.0, 0.0], 0.5 * FOLD).rotate(&rest[2]);
+    folded[3] = EulerParameters::about(&[1.0, 0.0, 0.0], -0.5 * FOLD).rotate(&rest[3]);
     let mut panels = Vec::new();
     let mut triples = Vec::new();
-    for (x, time) in [(&rest, "0"), (&folded, "t")] {
-        let angles = EdgeAngles::at(&sheet, &x.concat(), edge).context("the common edge is interior")?;
+    for (x, time) in [(&rest, "0"), (&folded, "~t~")] {
+        let angles =
+            EdgeAngles::at(&sheet, &x.concat(), edge).context("the common edge is interior")?;
         let ends = angles.ends;
-        ensure!(ends.iter().all(|e| e.margin() > -1e-12), "Eq. 10 is violated by a fold: {ends:?}");
+        ensure!(
+            ends.iter().all(|e| e.margin() > -1e-12),
+            "Eq. 10 is violated by a fold: {ends:?}"
+        );
         panels.push(panel(&view, x, time));
         triples.push(ends);
     }
-    let fold = fold_angle(sheet.topology(), &folded.concat(), edge).context("the common edge is interior")?;
-    let low = panels.iter().map(|p| p.bounds().min[1]).fold(f64::INFINITY, f64::min) - 8.0;
-    for (panel, name) in panels.iter_mut().zip(["at rest", "at time ~t~, folded by "]) {
-        let text = if name.ends_with(' ') { format!("{name}{}", degrees(fold.abs())) } else { name.to_owned() };
+    let fold = fold_angle(sheet.topology(), &folded.concat(), edge)
+        .context("the common edge is interior")?;
+    let low = panels
+        .iter()
+        .map(|p| p.bounds().min[1])
+        .fold(f64::INFINITY, f64::min)
+        - 8.0;
+    for (panel, name) in panels
+        .iter_mut()
+        .zip(["at rest", "at time ~t~, folded by "])
+    {
+        let text = if name.ends_with(' ') {
+            format!("{name}{}", degrees(fold.abs()))
+        } else {
+            name.to_owned()
+        };
         let x = panel.bounds().centre()[0];
         caption(panel, [x, low], TEXT, &[text]);
     }
@@ -49,11 +75,26 @@ pub(super) fn make() -> Result<Made> {
                 degrees(t.alpha + t.beta),
                 degrees(r.gamma),
                 degrees(t.gamma),
-                if t.gamma <= t.alpha + t.beta { "holds" } else { "violated" }.to_owned(),
+                if t.gamma <= t.alpha + t.beta {
+                    "holds"
+                } else {
+                    "violated"
+                }
+                .to_owned(),
             ]
         })
         .collect();
-    let head = ["end of the edge", "α", "β", "α + β", "γ⁰", "γᵗ", "γᵗ ≤ α + β"].map(str::to_owned).to_vec();
+    let head = [
+        "end of the edge",
+        "α",
+        "β",
+        "α + β",
+        "γ⁰",
+        "γᵗ",
+        "γᵗ ≤ α + β",
+    ]
+    .map(str::to_owned)
+    .to_vec();
     let [one, two] = triples[1];
     Ok(Made {
         title: "Angle triples and the compatibility condition",
@@ -68,8 +109,16 @@ pub(super) fn make() -> Result<Made> {
             degrees(one.fold()),
             degrees(two.fold()),
         ),
-        pictures: svg(5, &all, "A pair of triangles at rest and folded, with the angles alpha, beta and gamma at both ends")?,
-        tables: vec![Table { caption: "Measured angles of the folded pair".into(), head, rows }],
+        pictures: svg(
+            5,
+            &all,
+            "A pair of triangles at rest and folded, with the angles alpha, beta and gamma at both ends",
+        )?,
+        tables: vec![Table {
+            caption: "Measured angles of the folded pair".into(),
+            head,
+            rows,
+        }],
         facts: json!({
             "fold_degrees": fold.to_degrees(),
             "ends": triples[1].map(|t| json!({
@@ -87,28 +136,46 @@ fn panel(view: &View, x: &[[f64; 3]; 4], time: &str) -> Drawing {
         d.polygon(&points, view.shade(style::FACE, &corners));
         d.outline(&points, style::EDGE);
     }
-    d.line(&view.project_all(&[left, right]), Stroke::new(GAMMA, 0.6).dashed());
+    d.line(
+        &view.project_all(&[left, right]),
+        Stroke::new(GAMMA, 0.6).dashed(),
+    );
     d.line(&view.project_all(&[a, b]), Stroke::new(palette::INK, 1.5));
     let prime = [String::new(), "′".to_owned()];
     for (k, (apex, other)) in [(a, b), (b, a)].into_iter().enumerate() {
-        let p = &prime[k];
+        let prime = &prime[k];
+        // Where along the arc the name stands, and how far outside of it, points.
         let marks = [
-            (other, left, 0.20, ALPHA, format!("α{p}")),
-            (other, right, 0.16, BETA, format!("β{p}")),
-            (left, right, 0.30, GAMMA, format!("γ{p}^{{{time}}}")),
+            (other, left, 0.21, ALPHA, format!("α{prime}"), 0.5, -11.0),
+            (other, right, 0.21, BETA, format!("β{prime}"), 0.5, -11.0),
+            (
+                left,
+                right,
+                0.29,
+                GAMMA,
+                format!("γ{prime}^{{{time}}}"),
+                [0.12, 0.3][k],
+                12.0,
+            ),
         ];
-        for (from, to, radius, colour, name) in marks {
+        for (from, to, radius, colour, name, part, distance) in marks {
             let arc = angle_arc(&apex, &from, &to, radius);
             d.line(&view.project_all(&arc), Stroke::new(colour, 1.0));
-            let middle = arc[arc.len() / 2];
-            let at = [0, 1, 2].map(|i| apex[i] + (middle[i] - apex[i]) * (1.0 + 0.085 / radius));
-            d.text(view.project(&at), &name, TEXT, Anchor::Middle, Vertical::Centre, colour);
+            let middle = arc[(part * arc.len() as f64) as usize];
+            let (p, o) = (view.project(&middle), view.project(&apex));
+            let l = (p[0] - o[0]).hypot(p[1] - o[1]);
+            let at = [0, 1].map(|i| p[i] + (p[i] - o[i]) * distance / l);
+            d.text(at, &name, TEXT, Anchor::Middle, Vertical::Centre, colour);
         }
     }
-    let names = [("~e~", [0, 1, 2].map(|i| 0.5 * (a[i] + b[i])))];
-    for (name, p) in names {
-        let at = view.project(&p);
-        d.text([at[0] + 1.0, at[1] - 3.0], name, TEXT, Anchor::Middle, Vertical::Below, palette::INK);
-    }
+    let middle = view.project(&[0, 1, 2].map(|i| 0.64 * a[i] + 0.36 * b[i]));
+    d.text(
+        [middle[0] - 7.0, middle[1]],
+        "~e~",
+        TEXT,
+        Anchor::Middle,
+        Vertical::Centre,
+        palette::INK,
+    );
     d
 }

@@ -26,7 +26,11 @@ pub(super) fn make() -> Result<Made> {
     }
     // What rule f does as the line bends: the two mirror images part.
     let bend: f64 = 0.45;
-    let bent = [LINE[0], LINE[1], axpy(&LINE[1], 0.68, &[0.0, bend.cos(), bend.sin()])];
+    let bent = [
+        LINE[0],
+        LINE[1],
+        axpy(&LINE[1], 0.68, &[0.0, bend.cos(), bend.sin()]),
+    ];
     let regular = regular(&bent, lengths)?;
     let mut degenerate = Drawing::new();
     let view = View::from(-38.0, 27.0, 92.0);
@@ -36,13 +40,26 @@ pub(super) fn make() -> Result<Made> {
     let mut worst: f64 = 0.0;
     for turn in [0.0, 0.5, 1.0, 1.5, 2.0] {
         // The place that the function gives when the vertex was near the turned one before.
-        let before = axpy(&foot, 1.0, &EulerParameters::about(&axis, -turn).rotate(&radius));
-        let p = place_on_line([&LINE[0], &LINE[2]], [lengths[0], lengths[2]], &before, TOLERANCE)?.position;
+        let before = axpy(
+            &foot,
+            1.0,
+            &EulerParameters::about(&axis, -turn).rotate(&radius),
+        );
+        let p = place_on_line(
+            [&LINE[0], &LINE[2]],
+            [lengths[0], lengths[2]],
+            &before,
+            TOLERANCE,
+        )?
+        .position;
         worst = worst.max((norm(&sub(&p, &LINE[1])) - lengths[1]).abs() / lengths[1]);
         if turn == 1.0 {
             for corners in [[LINE[0], LINE[1], p], [LINE[1], LINE[2], p]] {
                 let points = view.project_all(&corners);
-                degenerate.polygon(&points, view.shade(palette::SKY.tint(0.55), &corners).alpha(0.92));
+                degenerate.polygon(
+                    &points,
+                    view.shade(palette::SKY.tint(0.55), &corners).alpha(0.92),
+                );
                 degenerate.outline(&points, style::EDGE);
             }
             placed(&mut degenerate, view.project(&p));
@@ -51,19 +68,40 @@ pub(super) fn make() -> Result<Made> {
             degenerate.line(&view.project_all(&[LINE[1], p]), style::GHOST);
         }
     }
-    ensure!(worst < 1e-12, "the middle rod changes its length by {worst}");
+    ensure!(
+        worst < 1e-12,
+        "the middle rod changes its length by {worst}"
+    );
     let w = EulerParameters::about(&axis, -std::f64::consts::FRAC_PI_2).rotate(&radius);
     let circle = arc(&foot, &radius, &w, 2.0);
     degenerate.arrow(&view.project_all(&circle), Stroke::new(PLACED, 0.9));
-    let q = view.project(&circle[circle.len() / 4]);
-    degenerate.text([q[0] + 8.0, q[1] + 3.0], "~q~", TEXT, Anchor::Middle, Vertical::Centre, palette::INK);
+    let (q, o) = (
+        view.project(&circle[3 * circle.len() / 4]),
+        view.project(&foot),
+    );
+    let out = (q[0] - o[0]).hypot(q[1] - o[1]) / 9.0;
+    degenerate.text(
+        [q[0] + (q[0] - o[0]) / out, q[1] + (q[1] - o[1]) / out],
+        "~q~",
+        TEXT,
+        Anchor::Middle,
+        Vertical::Centre,
+        palette::INK,
+    );
     for p in LINE {
         known(&mut degenerate, view.project(&p));
     }
     let mut panels = [regular, degenerate];
-    let low = panels.iter().map(|p| p.bounds().min[1]).fold(f64::INFINITY, f64::min) - 7.0;
+    let low = panels
+        .iter()
+        .map(|p| p.bounds().min[1])
+        .fold(f64::INFINITY, f64::min)
+        - 7.0;
     let words = [
-        vec![format!("γ = {}", degrees(std::f64::consts::PI - bend)), "two mirror images".to_owned()],
+        vec![
+            format!("γ = {}", degrees(std::f64::consts::PI - bend)),
+            "two mirror images".to_owned(),
+        ],
         vec!["γ = π".to_owned(), "one coordinate left".to_owned()],
     ];
     for (panel, words) in panels.iter_mut().zip(words) {
@@ -81,7 +119,11 @@ pub(super) fn make() -> Result<Made> {
              which is not used, keeps its length to {worst:.0e}.",
             degrees(bend)
         ),
-        pictures: svg(7, &all, "Three known vertices on a bent and on a straight line and the places of a fourth vertex")?,
+        pictures: svg(
+            7,
+            &all,
+            "Three known vertices on a bent and on a straight line and the places of a fourth vertex",
+        )?,
         tables: Vec::new(),
         facts: json!({ "sine": sine, "limit": COLLINEAR, "middle_rod_error": worst }),
     })
@@ -102,13 +144,21 @@ fn regular(bent: &[[f64; 3]; 3], lengths: [f64; 3]) -> Result<Drawing> {
     }
     for corners in [[bent[0], bent[1], shown], [bent[1], bent[2], shown]] {
         let points = view.project_all(&corners);
-        d.polygon(&points, view.shade(palette::SKY.tint(0.55), &corners).alpha(0.92));
+        d.polygon(
+            &points,
+            view.shade(palette::SKY.tint(0.55), &corners).alpha(0.92),
+        );
         d.outline(&points, style::EDGE);
     }
     for p in bent {
         known(&mut d, view.project(p));
     }
     placed(&mut d, view.project(&shown));
-    d.disc(view.project(&ghost), 2.4, palette::WHITE, Stroke::new(palette::GREY, 0.8));
+    d.disc(
+        view.project(&ghost),
+        2.4,
+        palette::WHITE,
+        Stroke::new(palette::GREY, 0.8),
+    );
     Ok(d)
 }

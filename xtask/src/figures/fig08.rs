@@ -2,7 +2,8 @@
 
 use super::{Made, caption, style, svg};
 use crate::draw::{
-    Align, Anchor, Colour, Drawing, Marker, SMALL, Stroke, TEXT, Vertical, flat_edges, flat_faces, palette, plan, row,
+    Align, Anchor, Colour, Drawing, Marker, SMALL, Stroke, TEXT, Vertical, flat_edges, flat_faces,
+    palette, plan, row,
 };
 use anyhow::{Result, ensure};
 use isosheet_coords::{Assignment, Rule, Start, sys_coord_assnmt_single};
@@ -32,8 +33,18 @@ pub(super) fn make() -> Result<Made> {
     );
     let mut fronts = fronts(&sheet, &assignment);
     let mut order = order(&sheet, &assignment);
-    caption(&mut fronts, [0.5 * SIDE, -12.0], TEXT, &["(a) fronts, rules and coordinates".into()]);
-    caption(&mut order, [0.5 * SIDE, -12.0], TEXT, &["(b) order, and the rods that place each vertex".into()]);
+    caption(
+        &mut fronts,
+        [0.5 * SIDE, -22.0],
+        TEXT,
+        &["(a) fronts, rules and coordinates".into()],
+    );
+    caption(
+        &mut order,
+        [0.5 * SIDE, -22.0],
+        TEXT,
+        &["(b) order, and the rods that place each vertex".into()],
+    );
     let all = row(&[fronts, order, legend(&assignment)], 20.0, Align::Origin);
     let vertices: Vec<_> = assignment
         .order()
@@ -59,7 +70,11 @@ pub(super) fn make() -> Result<Made> {
             count('f'),
             assignment.dof(),
         ),
-        pictures: svg(8, &all, "Fronts, rules and order of the assignment of system coordinates on M1")?,
+        pictures: svg(
+            8,
+            &all,
+            "Fronts, rules and order of the assignment of system coordinates on M1",
+        )?,
         tables: Vec::new(),
         facts: json!({
             "dof": dof, "fronts": assignment.front_count(), "h": count('h'), "g": count('g'), "f": count('f'),
@@ -70,8 +85,15 @@ pub(super) fn make() -> Result<Made> {
 
 /// Fronts in the order of a colour-blind-safe scale; the start has its own.
 fn colour(front: u32) -> Colour {
-    let fronts =
-        [palette::INK, palette::ORANGE, palette::SKY, palette::GREEN, palette::PURPLE, palette::VERMILION, palette::BLUE];
+    let fronts = [
+        palette::INK,
+        palette::ORANGE,
+        palette::SKY,
+        palette::GREEN,
+        palette::PURPLE,
+        palette::VERMILION,
+        palette::BLUE,
+    ];
     fronts[front as usize % fronts.len()]
 }
 
@@ -92,7 +114,9 @@ fn base(sheet: &Sheet) -> Drawing {
 
 fn fronts(sheet: &Sheet, assignment: &Assignment) -> Drawing {
     let mut d = base(sheet);
-    flat_edges(&mut d, sheet, SIDE, |_| Some(Stroke::new(palette::PALE.mix(palette::GREY, 0.4), 0.6)));
+    flat_edges(&mut d, sheet, SIDE, |_| {
+        Some(Stroke::new(palette::PALE.mix(palette::GREY, 0.4), 0.6))
+    });
     let place = plan(sheet, SIDE);
     // A front is joined up where its vertices are neighbours: it cuts the sheet in two.
     let t = sheet.topology();
@@ -105,7 +129,13 @@ fn fronts(sheet: &Sheet, assignment: &Assignment) -> Drawing {
     }
     for placing in assignment.order() {
         let p = place(placing.vertex);
-        marker(&placing.rule).draw(&mut d, p, 4.6, colour(placing.front), Stroke::new(palette::WHITE, 0.8));
+        marker(&placing.rule).draw(
+            &mut d,
+            p,
+            4.6,
+            colour(placing.front),
+            Stroke::new(palette::WHITE, 0.8),
+        );
         let names = match placing.rule {
             Rule::Start { q } => format!("~q~_{{{}–{}}}", q + 1, q + 3),
             Rule::H { q, .. } => format!("~q~_{{{},{}}}", q + 1, q + 2),
@@ -121,7 +151,14 @@ fn fronts(sheet: &Sheet, assignment: &Assignment) -> Drawing {
 fn label(d: &mut Drawing, p: [f64; 2], text: &str) {
     let at = [p[0] + 5.5, p[1] - 8.5];
     let mut probe = Drawing::new();
-    probe.text(at, text, SMALL, Anchor::Start, Vertical::Centre, palette::INK);
+    probe.text(
+        at,
+        text,
+        SMALL,
+        Anchor::Start,
+        Vertical::Centre,
+        palette::INK,
+    );
     let b = probe.bounds();
     let ground = [b.min, [b.max[0], b.min[1]], b.max, [b.min[0], b.max[1]]];
     d.polygon(&ground, palette::WHITE.alpha(0.72));
@@ -137,13 +174,28 @@ fn order(sheet: &Sheet, assignment: &Assignment) -> Drawing {
             let from = place(*known);
             let l = (to[0] - from[0]).hypot(to[1] - from[1]);
             let at = |r: f64| [0, 1].map(|k| from[k] + (to[k] - from[k]) * r / l);
-            d.arrow(&[at(7.0), at(l - 7.0)], Stroke::new(colour(placing.front), 0.8));
+            d.arrow(
+                &[at(7.0), at(l - 7.0)],
+                Stroke::new(colour(placing.front), 0.8),
+            );
         }
     }
     for (k, placing) in assignment.order().iter().enumerate() {
         let p = place(placing.vertex);
-        d.disc(p, 6.3, palette::WHITE, Stroke::new(colour(placing.front), 1.2));
-        d.text(p, &k.to_string(), SMALL, Anchor::Middle, Vertical::Centre, palette::INK);
+        d.disc(
+            p,
+            6.3,
+            palette::WHITE,
+            Stroke::new(colour(placing.front), 1.2),
+        );
+        d.text(
+            p,
+            &k.to_string(),
+            SMALL,
+            Anchor::Middle,
+            Vertical::Centre,
+            palette::INK,
+        );
     }
     d
 }
@@ -156,7 +208,14 @@ fn legend(assignment: &Assignment) -> Drawing {
             marker.draw(d, [4.0, y], 4.2, fill, Stroke::new(palette::WHITE, 0.8));
         }
         let x = if symbol.is_some() { 13.0 } else { 0.0 };
-        d.text([x, y], text, SMALL, Anchor::Start, Vertical::Centre, palette::INK);
+        d.text(
+            [x, y],
+            text,
+            SMALL,
+            Anchor::Start,
+            Vertical::Centre,
+            palette::INK,
+        );
         y -= 13.0;
     };
     for (marker, name) in [
@@ -169,7 +228,11 @@ fn legend(assignment: &Assignment) -> Drawing {
     }
     line(&mut d, None, "");
     for front in 1..=assignment.front_count() {
-        line(&mut d, Some((Marker::Disc, colour(front))), &format!("front {front}"));
+        line(
+            &mut d,
+            Some((Marker::Disc, colour(front))),
+            &format!("front {front}"),
+        );
     }
     d
 }

@@ -10,7 +10,7 @@ use isosheet_coords::{EdgeFrame, EulerParameters};
 use serde_json::json;
 
 /// The coordinate that is drawn, radians.
-const Q: f64 = 1.05;
+const Q: f64 = 1.0;
 
 pub(super) fn make() -> Result<Made> {
     let norm = |p: &[f64; 3]| dot(p, p).sqrt();
@@ -45,19 +45,37 @@ pub(super) fn make() -> Result<Made> {
     let moved = rest.map(|p| add(&first, &p));
     let ghost = view.project_all(&moved);
     d.outline(&ghost, style::GHOST.dashed());
-    face(&mut d, [first, second, aligned], palette::SKY.tint(0.7), 0.8);
-    face(&mut d, [first, second, turned], palette::ORANGE.tint(0.55), 0.85);
-    d.line(&view.project_all(&[first, second]), Stroke::new(palette::INK, 1.5));
+    let mut faces = [
+        ([first, second, aligned], palette::SKY.tint(0.5)),
+        ([first, second, turned], palette::ORANGE.tint(0.5)),
+    ];
+    faces.sort_by(|(a, _), (b, _)| view.nearness(&a[2]).total_cmp(&view.nearness(&b[2])));
+    for (corners, colour) in faces {
+        face(&mut d, corners, colour, 0.66);
+    }
+    d.line(
+        &view.project_all(&[first, second]),
+        Stroke::new(palette::INK, 1.5),
+    );
     // Axis and angle of the first rotation.
     let r = unit(&cross(&a0, &at));
-    d.arrow(&view.project_all(&[first, axpy(&first, 0.55, &r)]), Stroke::new(palette::BLUE, 0.9));
+    d.arrow(
+        &view.project_all(&[first, axpy(&first, 0.55, &r)]),
+        Stroke::new(palette::BLUE, 0.9),
+    );
     let theta_arc = angle_arc(&first, &moved[1], &second, 0.42);
-    d.arrow(&view.project_all(&theta_arc), Stroke::new(palette::BLUE, 0.9));
+    d.arrow(
+        &view.project_all(&theta_arc),
+        Stroke::new(palette::BLUE, 0.9),
+    );
     // The second rotation moves the vertex on a circle about the edge.
     let foot = axpy(&first, dot(&sub(&aligned, &first), &at), &at);
     let u = sub(&aligned, &foot);
     let w = cross(&at, &u);
-    d.line(&view.project_all(&[aligned, foot, turned]), style::GHOST.dashed());
+    d.line(
+        &view.project_all(&[aligned, foot, turned]),
+        style::GHOST.dashed(),
+    );
     let q_arc = arc(&foot, &u, &w, Q);
     d.arrow(&view.project_all(&q_arc), Stroke::new(PLACED, 0.9));
     for p in [rest[0], rest[1], rest[2], first, second] {
@@ -66,17 +84,36 @@ pub(super) fn make() -> Result<Made> {
     placed(&mut d, view.project(&turned));
     let mark = |d: &mut Drawing, p: &[f64; 3], shift: [f64; 2], name: &str, colour: Colour| {
         let s = view.project(p);
-        d.text([s[0] + shift[0], s[1] + shift[1]], name, TEXT, Anchor::Middle, Vertical::Centre, colour);
+        d.text(
+            [s[0] + shift[0], s[1] + shift[1]],
+            name,
+            TEXT,
+            Anchor::Middle,
+            Vertical::Centre,
+            colour,
+        );
     };
     let ink = palette::INK;
     mark(&mut d, &rest[0], [-9.0, -7.0], "~v~_{I}^{0}", ink);
     mark(&mut d, &rest[1], [8.0, -8.0], "~v~_{II}^{0}", ink);
     mark(&mut d, &rest[2], [0.0, 11.0], "~v~_{III}^{0}", ink);
-    mark(&mut d, &first, [-10.0, -7.0], "~v~_{I}^{t}", ink);
-    mark(&mut d, &second, [12.0, 1.0], "~v~_{II}^{t}", ink);
-    mark(&mut d, &turned, [-4.0, 11.0], "~v~_{III}^{t}", ink);
-    mark(&mut d, &axpy(&first, 0.55, &r), [-6.0, 4.0], "~r~", palette::BLUE);
-    mark(&mut d, &theta_arc[theta_arc.len() / 2], [8.0, -2.0], "θ", palette::BLUE);
+    mark(&mut d, &first, [-10.0, -7.0], "~v~_{I}^{~t~}", ink);
+    mark(&mut d, &second, [12.0, 1.0], "~v~_{II}^{~t~}", ink);
+    mark(&mut d, &turned, [-4.0, 11.0], "~v~_{III}^{~t~}", ink);
+    mark(
+        &mut d,
+        &axpy(&first, 0.55, &r),
+        [-6.0, 4.0],
+        "~r~",
+        palette::BLUE,
+    );
+    mark(
+        &mut d,
+        &theta_arc[theta_arc.len() / 2],
+        [8.0, -2.0],
+        "θ",
+        palette::BLUE,
+    );
     mark(&mut d, &q_arc[q_arc.len() / 2], [6.0, 6.0], "~q~", PLACED);
     Ok(Made {
         title: "Construction of function g",
@@ -89,7 +126,11 @@ pub(super) fn make() -> Result<Made> {
             theta.to_degrees(),
             Q.to_degrees()
         ),
-        pictures: svg(9, &d, "A triangle at rest, aligned with the known edge, and turned about it")?,
+        pictures: svg(
+            9,
+            &d,
+            "A triangle at rest, aligned with the known edge, and turned about it",
+        )?,
         tables: Vec::new(),
         facts: json!({ "theta": theta, "q": Q, "difference": error }),
     })

@@ -22,9 +22,11 @@ pub(super) fn page(
     read: &mut dyn FnMut(&str) -> Result<Vec<u8>, StoreError>,
 ) -> Result<String, StoreError> {
     let mut out = String::new();
-    out.push_str("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+    out.push_str(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
                   <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
-                  <title>Figures of Liu, Tang and Joneja 2007, reproduced</title><style>");
+                  <title>Figures of Liu, Tang and Joneja 2007, reproduced</title><style>",
+    );
     out.push_str(STYLE);
     out.push_str("</style></head><body><h1>Dynamic developable meshes: the figures reproduced</h1>\
                   <p>Every picture is computed by isosheet. Beside each: what is shown in Y.-J. Liu, K. Tang and A. Joneja, \
@@ -48,14 +50,22 @@ fn section(
     read: &mut dyn FnMut(&str) -> Result<Vec<u8>, StoreError>,
 ) -> Result<(), StoreError> {
     let n = record.figure;
-    let quick = if effort == Effort::Quick { " (quick)" } else { "" };
+    let quick = if effort == Effort::Quick {
+        " (quick)"
+    } else {
+        ""
+    };
     // Writing to a string cannot fail.
-    let _ = write!(out, "<section id=\"fig{n}\"><h2>Fig. {n}. {}{quick}</h2>", escape(&record.title));
+    let _ = write!(
+        out,
+        "<section id=\"fig{n}\"><h2>Fig. {n}. {}{quick}</h2>",
+        escape(&record.title)
+    );
     for picture in &record.pictures {
         let bytes = read(&picture.path)?;
         out.push_str("<figure>");
         if picture.path.ends_with(".svg") {
-            out.push_str(&inline_svg(&String::from_utf8_lossy(&bytes)));
+            out.push_str(inline_svg(&String::from_utf8_lossy(&bytes)));
         } else {
             let _ = write!(
                 out,
@@ -80,7 +90,11 @@ fn section(
 }
 
 fn table(out: &mut String, t: &Table) {
-    let _ = write!(out, "<div class=\"scroll\"><table><caption>{}</caption><thead><tr>", escape(&t.caption));
+    let _ = write!(
+        out,
+        "<div class=\"scroll\"><table><caption>{}</caption><thead><tr>",
+        escape(&t.caption)
+    );
     for h in &t.head {
         let _ = write!(out, "<th>{}</th>", escape(h));
     }
@@ -101,7 +115,10 @@ fn inline_svg(svg: &str) -> &str {
 }
 
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
 }
 
 #[cfg(test)]
@@ -117,13 +134,29 @@ mod tests {
             paper: "said".into(),
             measured: "seen".into(),
             pictures: vec![
-                PictureRef { path: "figures/a.svg".into(), alt: "a".into() },
-                PictureRef { path: "figures/b.png".into(), alt: "b \"quoted\"".into() },
+                PictureRef {
+                    path: "figures/a.svg".into(),
+                    alt: "a".into(),
+                },
+                PictureRef {
+                    path: "figures/b.png".into(),
+                    alt: "b \"quoted\"".into(),
+                },
             ],
-            tables: vec![Table { caption: "t".into(), head: vec!["x".into()], rows: vec![vec!["<1>".into()]] }],
+            tables: vec![Table {
+                caption: "t".into(),
+                head: vec!["x".into()],
+                rows: vec![vec!["<1>".into()]],
+            }],
             facts: serde_json::Value::Null,
         };
-        let mut read = |path: &str| Ok(if path.ends_with("svg") { b"<?xml?><svg></svg>".to_vec() } else { vec![1, 2, 3] });
+        let mut read = |path: &str| {
+            Ok(if path.ends_with("svg") {
+                b"<?xml?><svg></svg>".to_vec()
+            } else {
+                vec![1, 2, 3]
+            })
+        };
         let html = page(&[(record, Effort::Full)], &mut read).unwrap();
         for part in [
             "A &lt; B",

@@ -1,0 +1,13 @@
+//! A small renderer for shaded pictures of sheets: z-buffer, two-sided colours, ambient occlusion, thin wires.
+
+mod camera;
+mod canvas;
+mod glyphs;
+mod montage;
+mod occlusion;
+mod sheet;
+
+pub(crate) use camera::{Camera, Projection};
+pub(crate) use canvas::Image;
+pub(crate) use montage::{Labelled, montage};
+pub(crate) use sheet::{Look, SheetPicture, render};

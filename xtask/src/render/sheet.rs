@@ -1,0 +1,161 @@
+//! A shaded picture of a sheet.
+
+use super::camera::{Camera, normal};
+use super::canvas::{Corner, Depth, Image, light};
+use super::occlusion::openness;
+use crate::draw::spatial::{axpy, dot};
+use isosheet_mesh::{Topology, VertexId};
+
+/// Pixels rendered for each pixel of the picture, each way.
+const SUPERSAMPLING: usize = 3;
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SheetPicture<'a> {
+    pub(crate) topology: &'a Topology,
+    /// Positions, 3V.
+    pub(crate) positions: &'a [f64],
+    /// Vertices marked with a dot.
+    pub(crate) pins: &'a [VertexId],
+}
+
+/// How it is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look {
+    /// Size of the picture, pixels.
+    pub(crate) size: [usize; 2],
+    /// Colours of the upper and the lower side of the sheet as it lies flat.
+    pub(crate) sides: [[u8; 3]; 2],
+    /// Width of the wires, pixels.
+    pub(crate) wire: f64,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        // Paper white with a warm tint above, a blue that stays apart from it under any colour vision below.
+        Self {
+            size: [480, 480],
+            sides: [[250, 240, 214], [120, 172, 214]],
+            wire: 0.7,
+        }
+    }
+}
+
+/// Renders a sheet on white.
+pub(crate) fn render(picture: &SheetPicture<'_>, camera: &Camera, look: &Look) -> Image {
+    let [width, height] = look.size.map(|s| s * SUPERSAMPLING);
+    let mut depth = Depth::new(width, height);
+    let x: Vec<[f64; 3]> = picture.positions.as_chunks::<3>().0.to_vec();
+    let faces: Vec<[usize; 3]> = picture
+        .topology
+        .faces()
+        .iter()
+        .map(|f| f.map(VertexId::index))
+        .collect();
+    let place = |p: &[f64; 3], shade: f64| {
+        let q = camera.project(p);
+        Corner {
+            x: 0.5 * (width as f64 + q.x * height as f64),
+            y: 0.5 * height as f64 * (1.0 - q.y),
+            nearness: q.nearness,
+            shade,
+        }
+    };
+    let extent = extent(&x);
+    let open = openness(&faces, &x, 0.35 * extent);
+    // A key light from the upper left, and the surroundings, brighter from above.
+    let key = camera.direction([-0.55, 0.75, 0.65]);
+    for (k, face) in faces.iter().enumerate() {
+        let corners = face.map(|v| x[v]);
+        let n = normal(&corners);
+        let centre = [0, 1, 2].map(|i| (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0);
+        let back = usize::from(dot(&n, &camera.viewer(&centre)) < 0.0);
+        let n = if back == 1 { n.map(|c| -c) } else { n };
+        let sky = 0.34 + 0.12 * n[2];
+        let sun = 0.62 * dot(&n, &key).max(0.0);
+        let shaded = [0, 1, 2].map(|i| {
+            let o = open[k][back][i];
+            place(&corners[i], sky * o + sun * (0.45 + 0.55 * o))
+        });
+        depth.triangle(&shaded, light(look.sides[back]));
+    }
+    let ink = light([38, 42, 48]);
+    // Wires lie a little nearer than the faces that they bound.
+    let lift = 0.004 * extent;
+    let wire = look.wire * SUPERSAMPLING as f64;
+    for e in picture.topology.edge_ids() {
+        let [a, b] = picture.topology.edges()[e.index()].map(|v| {
+            let p = x[v.index()];
+            place(&axpy(&p, lift, &camera.viewer(&p)), 1.0)
+        });
+        let (width, cover) = if picture.topology.is_boundary_edge(e) {
+            (1.7 * wire, 0.9)
+        } else {
+            (wire, 0.55)
+        };
+        depth.line(&a, &b, width, ink, cover);
+    }
+    for pin in picture.pins {
+        let p = x[pin.index()];
+        let c = place(&axpy(&p, 3.0 * lift, &camera.viewer(&p)), 1.0);
+        depth.line(&c, &c, 9.0 * SUPERSAMPLING as f64, ink, 1.0);
+        let nearer = Corner {
+            nearness: c.nearness + lift,
+            ..c
+        };
+        depth.line(
+            &nearer,
+            &nearer,
+            6.0 * SUPERSAMPLING as f64,
+            light([213, 94, 0]),
+            1.0,
+        );
+    }
+    depth.image.reduced(SUPERSAMPLING)
+}
+
+/// Largest side of the box around the points.
+fn extent(x: &[[f64; 3]]) -> f64 {
+    (0..3)
+        .map(|k| {
+            let low = x.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+            x.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max) - low
+        })
+        .fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::Projection;
+    use isosheet_mesh::generate::isotropic_square;
+
+    #[test]
+    fn the_two_sides_have_their_own_colours() {
+        let sheet = isotropic_square(0, 1.0).unwrap();
+        let look = Look {
+            size: [64, 64],
+            ..Look::default()
+        };
+        let picture = SheetPicture {
+            topology: sheet.topology(),
+            positions: sheet.positions(),
+            pins: &[],
+        };
+        let middle = |elevation: f64| {
+            let camera = Camera::new(
+                [0.5, 0.5, 0.0],
+                -90.0,
+                elevation,
+                1.5,
+                Projection::Orthographic,
+            );
+            let image = render(&picture, &camera, &look);
+            assert_eq!(image.pixels[0], [1.0; 3], "the background is white");
+            image.pixels[28 * 64 + 36]
+        };
+        let (above, below) = (middle(80.0), middle(-80.0));
+        assert!(above[0] > above[2], "warm above: {above:?}");
+        assert!(below[2] > below[0], "blue below: {below:?}");
+    }
+}
