@@ -64,7 +64,7 @@ impl Camera {
     ) -> Self {
         let mut camera = self;
         // With perspective the framing shifts what is seen a little: it settles in a few rounds.
-        for _ in 0..4 {
+        for _ in 0..16 {
             let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
             for p in points.clone() {
                 let q = camera.project(&p);
