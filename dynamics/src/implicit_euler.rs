@@ -72,7 +72,7 @@ const NEARLY_FULL: f64 = 0.2;
 /// a root finder that may not converge:
 ///
 /// 1. augmented Lagrangian with the impulses of the previous step as multipliers, minimised by
-///    Newton's method with line search. Its Hessian ([`PrimalMatrix`]) is tried as it is and,
+///    Newton's method with line search. Its Hessian is tried as it is and,
 ///    where it is indefinite, with the negative part of the rods' geometric stiffness left out;
 /// 2. projection onto the lengths, which makes them exact.
 ///

@@ -4,6 +4,7 @@ pub mod chart;
 mod energy_momentum;
 mod implicit_euler;
 mod integrator;
+mod method;
 mod model;
 pub mod potential;
 mod primal;
@@ -14,18 +15,20 @@ mod rattle;
 mod report;
 mod saddle;
 mod simulation;
+mod start;
 mod state;
+mod subdivide;
 
 pub use energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
 pub use implicit_euler::{ImplicitEuler, ImplicitEulerOptions};
 pub use integrator::{Integrator, OptionsError};
+pub use method::{Fallback, Method, StepControl};
 pub use model::{ModelError, SheetModel};
 pub use potential::{Force, Gravity, HessianSink, Potential, PotentialShape, STANDARD_GRAVITY};
 pub use projection_step::{ProjectionStep, ProjectionStepOptions};
 pub use rank::{RodRank, rod_rank};
 pub use rattle::{Rattle, RattleComposition, RattleOptions};
 pub use report::{Accepted, Effort, Path, StepError, StepReport};
-pub use simulation::{
-    Fallback, Method, Simulation, SimulationError, StepControl, project_positions,
-};
+pub use simulation::{Simulation, SimulationError};
+pub use start::{leave_flat, project_positions};
 pub use state::State;

@@ -12,9 +12,7 @@ pub enum ModelError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// A vertex has no mass.
-    #[error(
-        "vertex {vertex} has mass {mass} kg; every vertex that is not pinned needs a positive mass"
-    )]
+    #[error("{vertex} has mass {mass} kg; every vertex that is not pinned needs a positive mass")]
     Mass {
         /// The vertex.
         vertex: VertexId,
@@ -22,7 +20,7 @@ pub enum ModelError {
         mass: f64,
     },
     /// A pinned vertex does not exist.
-    #[error("vertex {vertex} is pinned, but the sheet has only {vertex_count} vertices")]
+    #[error("{vertex} is pinned, but the sheet has only {vertex_count} vertices")]
     NoSuchVertex {
         /// The vertex.
         vertex: VertexId,

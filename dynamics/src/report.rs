@@ -1,5 +1,6 @@
 //! What a step tells, and why a step fails.
 
+use crate::chart::ChartDynamicsError;
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::{EdgeId, VertexId};
 
@@ -16,6 +17,10 @@ pub enum Path {
     BranchSeeded,
     /// The integrator asked for rejected every sub-step, and implicit Euler took one instead.
     Fallback,
+    /// Explicitly, in a chart.
+    Chart,
+    /// As `Chart`, and the chart was rebased on the way.
+    Rebased,
 }
 
 /// What one call of [`Simulation::step`](crate::Simulation::step) did.
@@ -79,7 +84,7 @@ pub enum StepError {
     },
     /// A position or velocity of the state is not finite.
     #[error(
-        "vertex {vertex} has position or velocity {value} at t = {t} s; the state was changed from outside"
+        "{vertex} has position or velocity {value} at t = {t} s; the state was changed from outside"
     )]
     NonFiniteState {
         /// The vertex.
@@ -91,7 +96,7 @@ pub enum StepError {
     },
     /// A potential or force returned a value that is not finite.
     #[error(
-        "a potential or force is {value} at vertex {vertex}, t = {t} s; check the user-supplied functions"
+        "a potential or force is {value} at {vertex}, t = {t} s; check the user-supplied functions"
     )]
     NonFiniteForce {
         /// The vertex.
@@ -103,8 +108,8 @@ pub enum StepError {
     },
     /// The start state does not have the rest lengths.
     #[error(
-        "edge {edge} is {length} m long at t = {t} s, its rest length is {rest} m; start from a \
-         state on the constraints (see `Simulation::project`)"
+        "{edge} is {length} m long at t = {t} s, its rest length is {rest} m; start from a \
+         state on the constraints (see `project_positions`)"
     )]
     OffConstraints {
         /// The worst edge.
@@ -138,7 +143,7 @@ pub enum StepError {
         "{rank_deficiency} of the length constraints are dependent at t = {t} s (smallest \
          singular value of the scaled rigidity matrix {smallest_singular_value:e}): this \
          integrator has no unique rod forces there. Start from a folded state, seed a branch with \
-         `Simulation::leave_flat`, or use the implicit Euler or projection method"
+         `leave_flat`, or use the implicit Euler or projection method"
     )]
     RankDeficient {
         /// Time, seconds.
@@ -158,6 +163,14 @@ pub enum StepError {
         min_step: f64,
         /// Why the last step was rejected.
         cause: Box<StepError>,
+    },
+    /// Motion in a chart failed.
+    #[error("at t = {t} s: {source}")]
+    Chart {
+        /// Time, seconds.
+        t: f64,
+        /// The reason.
+        source: Box<ChartDynamicsError>,
     },
     /// The linear algebra failed.
     #[error("linear solve failed at t = {t} s: {source}")]

@@ -2,7 +2,7 @@
 
 use crate::scenes::{bumped, corner, gap, hanging, held, methods};
 use isosheet_dynamics::{
-    Fallback, Method, Path, SheetModel, Simulation, State, StepControl, StepError,
+    Fallback, Method, Path, SheetModel, Simulation, State, StepControl, StepError, leave_flat,
 };
 use isosheet_mesh::{MassKind, VertexId, generate};
 
@@ -67,8 +67,11 @@ fn fallback_carries_a_conservative_run_off_flat() {
 
 #[test]
 fn leaving_flat_lets_conservative_methods_run() {
-    let mut run = hanging(1, 0.0, Method::EnergyMomentum(Default::default()));
-    run.leave_flat(1e-2, 7).expect("projected");
+    let model = held(1, 0.0);
+    let mut x = bumped(1, 0.0).positions().to_vec();
+    leave_flat(&model, &mut x, 1e-2, 7).expect("projected");
+    let method = Method::EnergyMomentum(Default::default());
+    let mut run = Simulation::new(model, State::at_rest(x), method).expect("valid");
     for _ in 0..60 {
         let report = run.step(1.0 / 60.0).expect("accepted");
         assert!(report.energy_drift.abs() < 1e-10 && report.strain < 1e-12);

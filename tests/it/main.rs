@@ -1,5 +1,6 @@
 //! Tests that span several crates.
 
+mod charts;
 mod conservation;
 mod flat;
 mod forces;

@@ -314,6 +314,18 @@ impl ChartSimulation {
         Ok(simulation)
     }
 
+    /// Sets the time of the start, by default zero: what potentials and forces that depend on time see.
+    #[must_use]
+    pub fn starting_at(mut self, t: f64) -> Self {
+        let x = &self.state.x;
+        let model = self.stepper.mechanics.model();
+        let change = model.potential_energy(t, x) - model.potential_energy(self.t, x);
+        self.hamiltonian += change;
+        self.state.hamiltonian += change;
+        self.t = t;
+        self
+    }
+
     /// Time, seconds.
     #[must_use]
     pub fn time(&self) -> f64 {
@@ -399,6 +411,15 @@ impl ChartSimulation {
     /// [`ChartDynamicsError::StepTooSmall`] of the step control; with a fixed step the error of the step
     /// itself. The state is that before the step then.
     pub fn step(&mut self) -> Result<ChartStepReport, ChartDynamicsError> {
+        self.step_within(f64::INFINITY)
+    }
+
+    /// As [`ChartSimulation::step`], of at most `limit` seconds. A step cut short by the limit does not
+    /// enter [`ChartSimulation::step_range`] and leaves the step control where it was.
+    ///
+    /// # Errors
+    /// As [`ChartSimulation::step`].
+    pub fn step_within(&mut self, limit: f64) -> Result<ChartStepReport, ChartDynamicsError> {
         let mut rebased = false;
         let rebasing = self.options.rebase == Rebase::WhenNeeded;
         if rebasing && !self.fresh {
@@ -412,7 +433,9 @@ impl ChartSimulation {
             self.check_condition()?;
         }
         let mut rejected = 0;
-        let mut h = self.next_step;
+        let planned = self.next_step;
+        let mut h = planned.min(limit);
+        let cut_short = h < planned;
         let trial = loop {
             let outcome = self.stepper.attempt(self.t, &self.state, h);
             let change = match &outcome {
@@ -425,7 +448,11 @@ impl ChartSimulation {
                     if change < tolerance =>
                 {
                     let growth = (0.9 * (tolerance / change).sqrt()).clamp(1.0, 2.0);
-                    self.next_step = (h * growth).min(max);
+                    self.next_step = if cut_short && rejected == 0 {
+                        planned
+                    } else {
+                        (h * growth).min(max)
+                    };
                     break trial;
                 }
                 (_, Err(ChartDynamicsError::Chart(_))) if rebasing && !self.fresh => {
@@ -477,9 +504,11 @@ impl ChartSimulation {
             self.state.hamiltonian = self.hamiltonian;
             potential
         };
-        self.range.min = self.range.min.min(h);
-        self.range.max = self.range.max.max(h);
-        self.range.steps += 1;
+        if !cut_short || rejected > 0 {
+            self.range.min = self.range.min.min(h);
+            self.range.max = self.range.max.max(h);
+            self.range.steps += 1;
+        }
         Ok(ChartStepReport {
             t: self.t,
             h,

@@ -1,0 +1,146 @@
+//! Steps of an integrator, subdivided where it rejects them.
+
+use crate::implicit_euler::ImplicitEuler;
+use crate::integrator::Integrator;
+use crate::rank::rod_rank;
+use crate::report::{Effort, Path, StepError};
+use crate::{Fallback, Method, SheetModel, SimulationError, State, StepControl};
+
+/// What was done on the way to the end of a step, kept also if it fails half-way.
+#[derive(Debug)]
+pub(crate) struct Tally {
+    pub(crate) substeps: usize,
+    pub(crate) rejected: usize,
+    pub(crate) effort: Effort,
+    pub(crate) residual: f64,
+    pub(crate) path: Path,
+    pub(crate) work: f64,
+    pub(crate) dissipated: f64,
+}
+
+impl Default for Tally {
+    fn default() -> Self {
+        Self {
+            substeps: 0,
+            rejected: 0,
+            effort: Effort::default(),
+            residual: 0.0,
+            path: Path::Newton,
+            work: 0.0,
+            dissipated: 0.0,
+        }
+    }
+}
+
+/// An integrator with step control.
+pub(crate) struct Subdivided {
+    pub(crate) model: SheetModel,
+    integrator: Box<dyn Integrator>,
+    control: StepControl,
+    fallback: Option<ImplicitEuler>,
+}
+
+impl Subdivided {
+    pub(crate) fn new(model: SheetModel, method: Method) -> Result<Self, SimulationError> {
+        Ok(Self {
+            integrator: method.build(&model)?,
+            control: StepControl::default(),
+            fallback: None,
+            model,
+        })
+    }
+
+    pub(crate) fn set_control(&mut self, control: StepControl) -> Result<(), SimulationError> {
+        control.validate()?;
+        self.fallback = match &control.fallback {
+            Fallback::Refuse => None,
+            Fallback::ImplicitEuler(o) => Some(ImplicitEuler::new(&self.model, o.clone())?),
+        };
+        self.control = control;
+        Ok(())
+    }
+
+    /// Advances `state` by `h`; sub-steps are `h / 2^level` on a binary grid, so that they end
+    /// at `h` exactly. On failure the state is that of the last accepted sub-step.
+    pub(crate) fn advance(
+        &mut self,
+        state: &mut State,
+        h: f64,
+        tally: &mut Tally,
+    ) -> Result<(), StepError> {
+        let start = state.t;
+        let min_step = self.control.min_fraction * h;
+        let (mut fraction, mut done) = (1.0, 0.0);
+        while done < 1.0 {
+            let effort = &mut tally.effort;
+            let mut tried = self
+                .integrator
+                .step(&self.model, state, fraction * h, effort);
+            if let Err(cause) = tried {
+                tally.rejected += 1;
+                if 0.5 * fraction * h >= min_step {
+                    fraction *= 0.5;
+                    continue;
+                }
+                let Some(fallback) = &mut self.fallback else {
+                    return Err(diagnose(&self.model, state, min_step, cause));
+                };
+                fraction = largest_fraction(done);
+                tried = fallback.step(&self.model, state, fraction * h, effort);
+                tally.path = Path::Fallback;
+            }
+            let accepted = tried.map_err(|cause| diagnose(&self.model, state, min_step, cause))?;
+            done += fraction;
+            // The end of the step is set by the caller, free of accumulated round-off.
+            state.t = start + done * h;
+            tally.substeps += 1;
+            tally.residual = tally.residual.max(accepted.residual);
+            tally.path = tally.path.max(accepted.path);
+            tally.work += accepted.work;
+            tally.dissipated += damp(&self.model, state, fraction * h);
+            fraction = largest_fraction(done).min(2.0 * fraction);
+        }
+        Ok(())
+    }
+}
+
+/// Applies velocity damping over a step; returns the energy taken out.
+fn damp(model: &SheetModel, state: &mut State, h: f64) -> f64 {
+    if model.damping() == 0.0 {
+        return 0.0;
+    }
+    let before = model.kinetic_energy(&state.v);
+    let factor = (-model.damping() * h).exp();
+    state.v.iter_mut().for_each(|v| *v *= factor);
+    before * (1.0 - factor * factor)
+}
+
+/// The largest sub-step `2^-k` that may start after the fraction `done` of a step.
+fn largest_fraction(done: f64) -> f64 {
+    let mut fraction = 1.0;
+    while (done / fraction).fract() != 0.0 {
+        fraction *= 0.5;
+    }
+    fraction
+}
+
+/// Says why no step was accepted: dependent rods, if that is what they are.
+fn diagnose(model: &SheetModel, state: &State, min_step: f64, cause: StepError) -> StepError {
+    match rod_rank(model, &state.x) {
+        Some(rank) if rank.smallest < DEPENDENT_RODS => StepError::RankDeficient {
+            t: state.t,
+            rank_deficiency: rank.deficiency,
+            smallest_singular_value: rank.smallest,
+        },
+        _ => StepError::StepTooSmall {
+            t: state.t,
+            min_step,
+            cause: Box::new(cause),
+        },
+    }
+}
+
+/// Smallest singular value (of the rigidity matrix with unit rods) below which dependence of
+/// the rods is named as the reason of a failure: the referee integrations of the smoothest
+/// known runs pass values down to 1e-6 only with steps of a microsecond.
+const DEPENDENT_RODS: f64 = 1e-5;

@@ -1,0 +1,109 @@
+//! Motion in system coordinates against chart-free motion.
+
+use crate::scenes::{bumped, corner, gap, hanging, held};
+use isosheet_coords::{
+    AssignmentOptions, CartesianChart, Chart, Choice, FrontChart, RodSystem, assignment::Degenerate,
+};
+use isosheet_dynamics::chart::{
+    ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind,
+};
+use isosheet_dynamics::{Method, Path, Simulation, State, StepControl};
+
+const BUMP: f64 = 0.1;
+
+fn cartesian(level: u32) -> Box<dyn Chart> {
+    let sheet = bumped(level, BUMP);
+    let system = RodSystem::new(&sheet, &[corner(level)]).expect("valid");
+    Box::new(CartesianChart::new(system, Choice::Auto, sheet.positions()).expect("folded"))
+}
+
+fn front(level: u32) -> Box<dyn Chart> {
+    let sheet = bumped(level, BUMP);
+    let options = AssignmentOptions {
+        pins: vec![corner(level)],
+        degenerate: Degenerate::Assign,
+        ..Default::default()
+    };
+    Box::new(FrontChart::new(&sheet, &options, sheet.positions()).expect("folded"))
+}
+
+fn in_chart(level: u32, chart: Box<dyn Chart>, options: ChartOptions) -> Simulation {
+    let start = State::at_rest(bumped(level, BUMP).positions().to_vec());
+    Simulation::in_chart(held(level, BUMP), start, chart, options).expect("usable")
+}
+
+/// Positions after a tenth of a second by the fourth-order composition of RATTLE.
+fn reference(level: u32) -> Vec<f64> {
+    let mut run = hanging(level, BUMP, Method::RattleComposition(Default::default()));
+    for _ in 0..100 {
+        run.step(1e-3).expect("accepted");
+    }
+    run.state().x.clone()
+}
+
+#[test]
+fn runge_kutta_in_both_charts_follows_the_chart_free_motion() {
+    for level in [0, 1] {
+        let want = reference(level);
+        for (name, chart) in [("Cartesian", cartesian(level)), ("front", front(level))] {
+            let options = ChartOptions {
+                method: ChartMethod::RungeKutta4,
+                equations: Equations::Full,
+                control: ChartStepControl::Fixed(5e-4),
+                ..Default::default()
+            };
+            let mut run = in_chart(level, chart, options);
+            let report = run.step(0.1).expect("accepted");
+            assert!(matches!(report.path, Path::Chart | Path::Rebased));
+            assert!(
+                report.substeps >= 200 && report.strain < 1e-11,
+                "{report:?}"
+            );
+            assert!(
+                report.energy_drift.abs() < 1e-7,
+                "{:e} J",
+                report.energy_drift
+            );
+            let error = gap(&run.state().x, &want);
+            assert!(error < 1e-6, "{name} chart, M^{level}: {error:e} m apart");
+        }
+    }
+}
+
+#[test]
+fn the_mass_solvers_give_the_same_motion() {
+    let mut ends: Vec<Vec<f64>> = Vec::new();
+    for solver in [
+        MassSolverKind::Cramer,
+        MassSolverKind::DenseLu,
+        MassSolverKind::Cholesky,
+        MassSolverKind::Saddle,
+    ] {
+        let options = ChartOptions {
+            solver,
+            control: ChartStepControl::Fixed(1e-3),
+            ..Default::default()
+        };
+        let mut run = in_chart(0, cartesian(0), options);
+        run.step(0.05).expect("accepted");
+        ends.push(run.state().x.clone());
+    }
+    for end in &ends[1..] {
+        assert!(gap(end, &ends[0]) < 1e-10);
+    }
+}
+
+#[test]
+fn subdivision_control_does_not_fit_a_chart() {
+    let run = in_chart(0, cartesian(0), ChartOptions::default());
+    assert!(run.with_control(StepControl::default()).is_err());
+}
+
+#[test]
+fn a_flat_sheet_has_no_chart() {
+    let sheet = bumped(1, 0.0);
+    let system = RodSystem::new(&sheet, &[corner(1)]).expect("valid");
+    let error = CartesianChart::new(system, Choice::Auto, sheet.positions()).err();
+    let message = error.expect("singular").to_string();
+    assert!(!message.is_empty() && !message.contains("NaN"), "{message}");
+}
