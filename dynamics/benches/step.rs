@@ -40,7 +40,7 @@ fn steps(c: &mut Criterion) {
         let (sheet, state) = falling(level);
         // Conservative methods at a step that they accept whole next to singular states.
         let cases = [
-            ("implicit Euler 1/60 s", Method::default(), 1.0 / 60.0),
+            ("BDF2 1/60 s", Method::default(), 1.0 / 60.0),
             (
                 "projection 1/60 s",
                 Method::Projection(Default::default()),

@@ -2,9 +2,10 @@
 
 pub mod chart;
 mod energy_momentum;
-mod implicit_euler;
+mod implicit;
 mod integrator;
 mod method;
+mod minimiser;
 mod model;
 pub mod potential;
 mod primal;
@@ -20,7 +21,7 @@ mod state;
 mod subdivide;
 
 pub use energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
-pub use implicit_euler::{ImplicitEuler, ImplicitEulerOptions};
+pub use implicit::{Bdf2, ImplicitEuler, ImplicitOptions};
 pub use integrator::{Integrator, OptionsError};
 pub use method::{Fallback, Method, StepControl};
 pub use model::{ModelError, SheetModel};

@@ -128,14 +128,6 @@ impl Projector {
             }
             penalty = penalty.clamp(PENALTY_RANGE.0, PENALTY_RANGE.1);
             strain = rods.max_strain(x);
-            if std::env::var("LM").is_ok() {
-                println!(
-                    "   lm strain {strain:.2e} err {before:.2e}->{after:.2e} length {length:.1e} penalty {penalty:.0e}"
-                );
-            }
-        }
-        if std::env::var("LM").is_ok() {
-            println!("lm end");
         }
         strain
     }

@@ -1,7 +1,7 @@
 //! Predict, project onto the lengths, project the velocity.
 
-use crate::implicit_euler::not_converged;
 use crate::integrator::{Integrator, OptionsError};
+use crate::minimiser::not_converged;
 use crate::primal::{PrimalMatrix, strain_floor};
 use crate::project::Projector;
 use crate::report::{Accepted, Effort, Path, StepError};

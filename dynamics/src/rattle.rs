@@ -1,7 +1,7 @@
 //! RATTLE and its fourth-order composition.
 
-use crate::implicit_euler::not_converged;
 use crate::integrator::{Integrator, OptionsError};
+use crate::minimiser::not_converged;
 use crate::primal::strain_floor;
 use crate::report::{Accepted, Effort, Path, StepError};
 use crate::saddle::{SaddleMatrix, System};

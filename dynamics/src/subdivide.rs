@@ -1,6 +1,6 @@
 //! Steps of an integrator, subdivided where it rejects them.
 
-use crate::implicit_euler::ImplicitEuler;
+use crate::implicit::ImplicitEuler;
 use crate::integrator::Integrator;
 use crate::rank::rod_rank;
 use crate::report::{Effort, Path, StepError};

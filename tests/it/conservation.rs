@@ -84,7 +84,7 @@ fn momenta_of_a_free_sheet() {
         let lost = gap(&angular, &angular_end);
         match name {
             // Their rods push along directions of the iterates, which is exact in the limit only.
-            "implicit Euler" | "projection" => {
+            "implicit Euler" | "BDF2" | "projection" => {
                 assert!(
                     lost < 0.2 * angular[2].abs(),
                     "{name}: angular momentum {lost:e}"
@@ -100,7 +100,7 @@ fn momenta_of_a_free_sheet() {
 
 #[test]
 fn symmetric_methods_run_backwards() {
-    for (name, method) in methods().into_iter().skip(2) {
+    for (name, method) in methods().into_iter().skip(3) {
         let mut run = tumbling(method.clone());
         let start = run.state().clone();
         for _ in 0..40 {

@@ -9,23 +9,30 @@ use isosheet_mesh::{MassKind, VertexId, generate};
 #[test]
 fn flat_start_is_never_rejected() {
     for level in [1, 2, 3] {
-        for method in [Method::default(), Method::Projection(Default::default())] {
-            let mut run = hanging(level, 0.0, method.clone());
+        for (name, method) in methods().into_iter().take(3) {
+            let mut run = hanging(level, 0.0, method);
             let mut last = 0.0;
             for k in 0..60 {
                 let report = run.step(1.0 / 60.0).expect("accepted");
-                assert_eq!(report.rejected, 0, "M^{level}, {method:?}, step {k}");
+                assert_eq!(report.rejected, 0, "M^{level}, {name}, step {k}");
                 assert!(report.strain < 1e-11, "strain {:e}", report.strain);
                 last = report.potential;
             }
-            assert!(last < -0.1, "M^{level} fell: {last} J");
+            let pin = 3 * corner(level).index();
+            let start = bumped(level, 0.0);
+            assert_eq!(
+                run.state().x[pin..pin + 3],
+                start.positions()[pin..pin + 3],
+                "{name}: the pin stays where it is to the last bit"
+            );
+            assert!(last < -0.03, "M^{level} fell: {last} J, {name}");
         }
     }
 }
 
 #[test]
 fn conservative_methods_refuse_a_loaded_flat_sheet_and_say_why() {
-    for (name, method) in methods().into_iter().skip(2) {
+    for (name, method) in methods().into_iter().skip(3) {
         let mut run = hanging(1, 0.0, method);
         match run.step(1.0 / 60.0) {
             Err(StepError::RankDeficient {
@@ -94,9 +101,11 @@ fn free_fall_keeps_a_flat_sheet_flat() {
             assert_eq!(report.rejected, 0, "{name}");
         }
         let t = h * f64::from(steps);
-        // First-order methods fall by g h^2 (n + 1) n / 2 instead of g t^2 / 2.
+        // First-order methods fall by g h^2 (n + 1) n / 2 instead of g t^2 / 2; BDF2 starts with
+        // one such step, of which 3/2 of the error remains.
         let fall = match name {
             "implicit Euler" | "projection" => 4.9 * t * (t + h),
+            "BDF2" => 4.9 * (t * t + 1.5 * h * h),
             _ => 4.9 * t * t,
         };
         for (p, q) in run.state().x.chunks(3).zip(sheet.positions().chunks(3)) {

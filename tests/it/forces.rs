@@ -198,7 +198,12 @@ fn consistent_mass_swings_like_a_uniform_plate() {
             Method::EnergyMomentum(Default::default()),
             1e-4,
         ),
-        ("implicit Euler", Method::default(), 2e-2),
+        (
+            "implicit Euler",
+            Method::ImplicitEuler(Default::default()),
+            2e-2,
+        ),
+        ("BDF2", Method::Bdf2(Default::default()), 1e-3),
         ("projection", Method::Projection(Default::default()), 2e-2),
     ] {
         let model = SheetModel::new(&sheet, 0.3, MassKind::Consistent)

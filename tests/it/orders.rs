@@ -1,16 +1,17 @@
 //! Convergence orders of the chart-free integrators on problems with exact solutions.
 
-use isosheet_dynamics::{ImplicitEulerOptions, Method, SheetModel, Simulation, State, StepControl};
+use isosheet_dynamics::{ImplicitOptions, Method, SheetModel, Simulation, State, StepControl};
 use isosheet_tests::{Flap, FreeTriangle, HangingStrip, Pendulum, max_difference, orders};
 
 /// The integrators, their orders, and the coarsest number of steps that shows the order.
 fn methods() -> Vec<(&'static str, Method, f64)> {
-    let tight = ImplicitEulerOptions {
+    let tight = || ImplicitOptions {
         tolerance: 1e-12,
         ..Default::default()
     };
     vec![
-        ("implicit Euler", Method::ImplicitEuler(tight), 1.0),
+        ("implicit Euler", Method::ImplicitEuler(tight()), 1.0),
+        ("BDF2", Method::Bdf2(tight()), 2.0),
         ("projection", Method::Projection(Default::default()), 1.0),
         (
             "energy-momentum",

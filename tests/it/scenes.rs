@@ -35,10 +35,11 @@ pub(crate) fn hanging(level: u32, bump: f64, method: Method) -> Simulation {
     Simulation::new(held(level, bump), start, method).expect("valid")
 }
 
-/// The chart-free integrators.
-pub(crate) fn methods() -> [(&'static str, Method); 5] {
+/// The chart-free integrators, the three damped ones first.
+pub(crate) fn methods() -> [(&'static str, Method); 6] {
     [
-        ("implicit Euler", Method::default()),
+        ("implicit Euler", Method::ImplicitEuler(Default::default())),
+        ("BDF2", Method::Bdf2(Default::default())),
         ("projection", Method::Projection(Default::default())),
         (
             "energy-momentum",

@@ -1,61 +1,13 @@
-//! Implicit Euler with the constraints in the step: the damped default.
+//! Minimisation of an implicit step's incremental potential under the length constraints.
 
-use crate::integrator::{Integrator, OptionsError};
+use crate::ImplicitOptions;
 use crate::primal::{PrimalMatrix, penalties, strain_floor};
 use crate::project::Projector;
-use crate::report::{Accepted, Effort, Path, StepError};
+use crate::report::{Effort, Path, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-
-/// Options of [`ImplicitEuler`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct ImplicitEulerOptions {
-    /// Penalty of the rods in the augmented Lagrangian, relative to the masses: rods are
-    /// `stiffness` times as stiff as the inertia term. Default 1e4: a hundred times more needs
-    /// several times the Newton iterations, a hundred times less twice the projections.
-    pub stiffness: f64,
-    /// Newton's method stops when the decrease it still promises is this fraction of the
-    /// inertia term of the incremental potential. Default 1e-4, far below the error of the
-    /// method itself; the lengths do not depend on it.
-    pub tolerance: f64,
-    /// Largest relative edge length error of an accepted step. Default 1e-12. Round-off sets a
-    /// floor of a few units in the last place of the coordinates.
-    pub strain_tolerance: f64,
-    /// Most Newton iterations in a step. Default 80.
-    pub max_iterations: usize,
-    /// Most iterations of the projection onto the lengths. Default 400.
-    pub max_projections: usize,
-    /// Seed of the perturbation that decides which way a sheet folds that sits on a saddle of
-    /// the incremental potential. Default 0.
-    pub seed: u64,
-}
-
-impl Default for ImplicitEulerOptions {
-    fn default() -> Self {
-        Self {
-            stiffness: 1e4,
-            tolerance: 1e-4,
-            strain_tolerance: 1e-12,
-            max_iterations: 80,
-            max_projections: 400,
-            seed: 0,
-        }
-    }
-}
-
-impl ImplicitEulerOptions {
-    /// # Errors
-    /// [`OptionsError`] naming the option that makes no sense.
-    pub fn validate(&self) -> Result<(), OptionsError> {
-        OptionsError::check_range("stiffness", self.stiffness, 1.0, 1e8)?;
-        OptionsError::check_range("tolerance", self.tolerance, 1e-14, 0.1)?;
-        OptionsError::check_range("strain_tolerance", self.strain_tolerance, 1e-15, 1e-2)?;
-        OptionsError::check_count("max_iterations", self.max_iterations)?;
-        OptionsError::check_count("max_projections", self.max_projections)
-    }
-}
 
 /// Size of the branch perturbation in mean edge lengths: large enough to leave a saddle, too
 /// small to be seen.
@@ -65,21 +17,15 @@ const ARMIJO: f64 = 1e-4;
 /// A Newton step shortened below this fraction is not a sign of convergence.
 const NEARLY_FULL: f64 = 0.2;
 
-/// Implicit Euler, `M (v1 - v0) = h f(x1) + G(x1)^T L, x1 = x0 + h v1, c(x1) = 0`.
+/// Minimises `|x - target|_M^2 / 2 + h^2 (V(x) - f . x)` over all positions with the rest lengths:
+/// a minimisation that always descends, in place of a root finder that may not converge.
 ///
-/// Equivalently `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)`
-/// over all positions with the rest lengths, so a minimisation that always descends replaces
-/// a root finder that may not converge:
-///
-/// 1. augmented Lagrangian with the impulses of the previous step as multipliers, minimised by
-///    Newton's method with line search. Its Hessian is tried as it is and,
-///    where it is indefinite, with the negative part of the rods' geometric stiffness left out;
-/// 2. projection onto the lengths, which makes them exact.
-///
-/// First order, dissipative, stable at any step. A sheet that starts exactly flat needs no
-/// special treatment.
-pub struct ImplicitEuler {
-    options: ImplicitEulerOptions,
+/// 1. Augmented Lagrangian with the impulses of the previous step as multipliers, minimised by
+///    Newton's method with line search. Its Hessian is tried as it is and, where it is
+///    indefinite, with the negative part of the rods' geometric stiffness left out.
+/// 2. Projection onto the lengths, which makes them exact.
+pub(crate) struct Minimiser {
+    options: ImplicitOptions,
     matrix: PrimalMatrix,
     projector: Projector,
     /// Impulse multipliers of the rods (h^2 times force densities), kept from step to step.
@@ -90,14 +36,17 @@ pub struct ImplicitEuler {
     across: Vec<f64>,
     density: Vec<f64>,
     c: Vec<f64>,
-    target: Vec<f64>,
+    /// Where inertia alone would take the sheet.
+    pub(crate) target: Vec<f64>,
     force: Vec<f64>,
-    applied: Vec<f64>,
+    /// Non-conservative forces, constant over the step.
+    pub(crate) applied: Vec<f64>,
     gradient: Vec<f64>,
     difference: Vec<f64>,
     weighted: Vec<f64>,
     dx: Vec<f64>,
-    x: Vec<f64>,
+    /// The iterate and, after [`Minimiser::minimise`], the result.
+    pub(crate) x: Vec<f64>,
     start: Vec<f64>,
 }
 
@@ -108,12 +57,8 @@ struct Merit {
     round_off: f64,
 }
 
-impl ImplicitEuler {
-    /// Analyses the model.
-    ///
-    /// # Errors
-    /// [`LinalgError::Symbolic`] if memory runs out.
-    pub fn new(model: &SheetModel, options: ImplicitEulerOptions) -> Result<Self, LinalgError> {
+impl Minimiser {
+    pub(crate) fn new(model: &SheetModel, options: ImplicitOptions) -> Result<Self, LinalgError> {
         let (n, m) = (model.coordinate_count(), model.rods().len());
         Ok(Self {
             matrix: PrimalMatrix::new(model)?,
@@ -243,26 +188,25 @@ impl ImplicitEuler {
             *x += d;
         }
     }
-}
 
-impl Integrator for ImplicitEuler {
-    fn step(
+    /// Minimises the incremental potential over all positions with the rest lengths, with
+    /// [`Minimiser::target`] and [`Minimiser::applied`] set. `h` is the effective step, the
+    /// factor of the acceleration being `h^2`; forces are those at time `t1`.
+    ///
+    /// Returns the relative Newton decrement and the path.
+    pub(crate) fn minimise(
         &mut self,
         model: &SheetModel,
-        state: &mut State,
+        state: &State,
+        t1: f64,
         h: f64,
         effort: &mut Effort,
-    ) -> Result<Accepted, StepError> {
-        let t1 = state.t + h;
+    ) -> Result<(f64, Path), StepError> {
         if self.multiplier_step > 0.0 && self.multiplier_step != h {
             let ratio = (h / self.multiplier_step).powi(2);
             self.multipliers.iter_mut().for_each(|m| *m *= ratio);
         }
         self.multiplier_step = h;
-        model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
-        for i in 0..self.x.len() {
-            self.target[i] = state.x[i] + h * state.v[i];
-        }
         self.x.copy_from_slice(&self.target);
         let mut path = Path::Newton;
         let mut residual = f64::INFINITY;
@@ -285,6 +229,7 @@ impl Integrator for ImplicitEuler {
                 .map(|(a, b)| a * b)
                 .sum::<f64>();
             if !slope.is_finite() {
+                self.multipliers.fill(0.0);
                 return Err(not_converged(state.t, h, effort, residual, f64::NAN));
             }
             let promised = self.options.tolerance * merit.inertia;
@@ -347,19 +292,7 @@ impl Integrator for ImplicitEuler {
             self.multipliers.fill(0.0);
             return Err(not_converged(state.t, h, effort, residual, strain));
         }
-        let mut work = 0.0;
-        for i in 0..self.x.len() {
-            let dx = self.x[i] - state.x[i];
-            work += self.applied[i] * dx;
-            state.v[i] = dx / h;
-        }
-        state.x.copy_from_slice(&self.x);
-        state.t = t1;
-        Ok(Accepted {
-            residual,
-            work,
-            path,
-        })
+        Ok((residual, path))
     }
 }
 
