@@ -1,4 +1,41 @@
-//! Dynamics of developable meshes.
+//! Dynamics of developable meshes: sheets of rigid rods moved by Hamilton's principle, after Liu,
+//! Tang and Joneja, *Modeling dynamic developable meshes by the Hamilton principle*,
+//! Computer-Aided Design 39 (2007) 719-731, Secs. 2, 4 and 5.
+//!
+//! A [`SheetModel`] says what moves: rods, masses, pins, potentials, forces, damping. A
+//! [`Simulation`] moves it and reports on every step ([`StepReport`]).
+//!
+//! | method | order | energy | takes flat states | solve |
+//! |---|---|---|---|---|
+//! | [`Method::Bdf2`] (default) | 2 | lightly damped | yes | Cholesky, `3V` unknowns |
+//! | [`Method::ImplicitEuler`] | 1 | strongly damped | yes | Cholesky, `3V` unknowns |
+//! | [`Method::Projection`] | 1 | strongly damped | yes | Cholesky, `3V` unknowns |
+//! | [`Method::EnergyMomentum`] | 2 | conserved | unloaded ones | LU, `3V + E` unknowns |
+//! | [`Method::Rattle`] | 2 | bounded error | unloaded ones | LU, `3V + E` unknowns |
+//! | [`Method::RattleComposition`] | 4 | bounded error | unloaded ones | LU, `3V + E` unknowns |
+//! | [`Simulation::in_chart`]: the paper's scheme and relatives | 1 or 4 | | no | see [`chart`] |
+//!
+//! # Why not the paper's scheme
+//!
+//! Where a sheet is flat, one length constraint for each interior vertex depends on the others,
+//! and the paper's system coordinates do not exist; near flat, the rigidity matrix is
+//! nearly singular. Every sheet starts there. The damped methods minimise an incremental
+//! potential over the positions with the right lengths, which has a solution at any rank of the
+//! constraints; the conservative ones solve for rod impulses, shorten their steps near
+//! singular states, and refuse loaded flat ones with [`StepError::RankDeficient`]: start them from
+//! a folded state, displace the sheet with [`leave_flat`], or allow a [`Fallback`].
+//!
+//! # Conventions
+//!
+//! SI units; positions, velocities and forces are flat slices of length `3V`; gravity acts along
+//! -z. Length constraints are `c_e = (|x_a - x_b|^2 - l_e^2) / 2` with Jacobian `G`; a positive
+//! rod multiplier in [`chart`] and in the implicit methods is a tension.
+//!
+//! # Room for contact and further constraints
+//!
+//! Contact enters as a potential whose Hessian couples more vertices than the mesh does, and as a
+//! bound on the length of every Newton step; both have one place each, the minimiser of the damped
+//! methods. [`StepReport::gap`] is there for it.
 
 pub mod chart;
 mod energy_momentum;
@@ -33,3 +70,8 @@ pub use report::{Accepted, Effort, Path, StepError, StepReport};
 pub use simulation::{Simulation, SimulationError};
 pub use start::{leave_flat, project_positions};
 pub use state::State;
+
+/// The code of the README is compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
