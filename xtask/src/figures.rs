@@ -1,5 +1,6 @@
 //! The figures, one module each, and what is kept about them.
 
+mod crumple;
 mod fig01;
 mod fig02;
 mod fig03;
@@ -9,8 +10,11 @@ mod fig06;
 mod fig07;
 mod fig08;
 mod fig09;
+mod performance;
+mod softness;
 
 use crate::draw::{Anchor, Colour, Drawing, Stroke, Vertical, palette};
+use crate::store::Store;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -77,8 +81,19 @@ pub(crate) struct Made {
     pub(crate) facts: Value,
 }
 
-/// Makes one of the drawings, Figs. 1 to 9.
-pub(crate) fn draw(figure: u8) -> Result<Made> {
+/// What figures are made with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Context<'a> {
+    /// Where runs are kept.
+    pub(crate) store: &'a Store,
+    pub(crate) effort: Effort,
+}
+
+/// Makes a figure.
+///
+/// # Errors
+/// [`Interrupted`](crate::interrupt::Interrupted) after Ctrl-C.
+pub(crate) fn make(figure: u8, context: &Context<'_>) -> Result<Made> {
     match figure {
         1 => fig01::make(),
         2 => fig02::make(),
@@ -89,7 +104,10 @@ pub(crate) fn draw(figure: u8) -> Result<Made> {
         7 => fig07::make(),
         8 => fig08::make(),
         9 => fig09::make(),
-        _ => anyhow::bail!("figure {figure} is not a drawing"),
+        10 => performance::make(context),
+        11 => crumple::make(11, 1, context),
+        12 => crumple::make(12, 2, context),
+        _ => anyhow::bail!("figure {figure} cannot be made"),
     }
 }
 

@@ -16,6 +16,7 @@ mod progress;
 mod render;
 mod report;
 mod reproduce;
+mod runs;
 mod selection;
 mod store;
 

@@ -1,12 +1,14 @@
 //! `reproduce-figures`: makes what is asked for and not up to date, then writes the report.
 
 use crate::cli::ReproduceArgs;
-use crate::figures::{self, Effort, Made, PictureRef, Record};
-use crate::progress::{self, Progress};
+use crate::figures::{self, Context, Effort, Made, PictureRef, Record};
+use crate::interrupt::Interrupted;
+use crate::progress;
 use crate::store::{Extent, Store};
 use crate::{Outcome, interrupt, report};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use serde_json::json;
+use std::time::Instant;
 
 /// Runs the command.
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
@@ -15,6 +17,10 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
         Effort::Quick
     } else {
         Effort::Full
+    };
+    let context = Context {
+        store: &store,
+        effort,
     };
     let mut outcome = Outcome::Complete;
     for figure in args.figures.iter() {
@@ -28,10 +34,19 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
             progress::note(&format!("figure {figure}"), "up to date");
             continue;
         }
-        let bar = Progress::start(format!("figure {figure}"), 1);
-        let made = figures::draw(figure).with_context(|| format!("figure {figure}"))?;
-        keep(&store, figure, &options, made)?;
-        bar.finish("made");
+        let started = Instant::now();
+        match figures::make(figure, &context) {
+            Ok(made) => keep(&store, figure, &options, made)?,
+            Err(error) if error.is::<Interrupted>() => {
+                outcome = Outcome::Interrupted;
+                break;
+            }
+            Err(error) => return Err(error.context(format!("figure {figure}"))),
+        }
+        progress::note(
+            &format!("figure {figure}"),
+            &format!("made ({:.1} s)", started.elapsed().as_secs_f64()),
+        );
     }
     report::write(&store, effort)?;
     progress::note(
