@@ -20,6 +20,22 @@ pub(crate) enum Command {
     /// Writes DIR/index.html (self-contained), DIR/figures, DIR/runs and DIR/summary.json. What is already there and was made
     /// by the same program with the same options is kept; Ctrl-C stops at the next frame, and the same command continues.
     ReproduceFigures(ReproduceArgs),
+    /// Tabulate and plot the condition numbers of three systems of coordinates, by mesh level
+    ///
+    /// Writes DIR/condition.csv and DIR/condition.svg and prints the table.
+    ConditionTable(ConditionArgs),
+}
+
+/// Arguments of `condition-table`.
+#[derive(Debug, Args)]
+pub(crate) struct ConditionArgs {
+    /// Finest mesh, M^LEVEL
+    #[arg(long, value_name = "LEVEL", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=5))]
+    pub(crate) level: u32,
+
+    /// Folder to write to; it is created when missing
+    #[arg(long, value_name = "DIR", default_value = "out/condition-table")]
+    pub(crate) out: PathBuf,
 }
 
 /// Arguments of `reproduce-figures`.

@@ -9,10 +9,10 @@ pub(crate) mod spatial;
 mod svg;
 mod text;
 
-pub(crate) use axes::{Axis, Legend, Marker, Plot, Series};
+pub(crate) use axes::{Axis, Legend, Line, Marker, Plot, Series};
 pub(crate) use colour::{Colour, palette};
 pub(crate) use drawing::{Anchor, Drawing, Stroke, Vertical};
-pub(crate) use layout::{Align, column, row};
+pub(crate) use layout::{column, row};
 pub(crate) use sheet::{flat_edges, flat_faces, plan};
 pub(crate) use spatial::View;
 

@@ -6,9 +6,8 @@
 //! The exit code is 0 when everything was made, 1 on failure, 2 for a command line that makes no sense and 130 when
 //! stopped with Ctrl-C.
 
-#![allow(dead_code, unused_imports, reason = "Figs. 10 to 12 follow")]
-
 mod cli;
+mod condition;
 mod draw;
 mod figures;
 mod interrupt;
@@ -36,11 +35,12 @@ fn main() -> ExitCode {
     let cli = cli::Cli::parse();
     let result = interrupt::install().and_then(|()| match cli.command {
         cli::Command::ReproduceFigures(args) => reproduce::run(&args),
+        cli::Command::ConditionTable(args) => condition::run(&args),
     });
     match result {
         Ok(Outcome::Complete) => ExitCode::SUCCESS,
         Ok(Outcome::Interrupted) => {
-            eprintln!("stopped; finished figures are kept, the same command continues");
+            eprintln!("stopped; what is finished is kept, the same command continues");
             ExitCode::from(130)
         }
         Err(error) => {

@@ -7,7 +7,6 @@ mod montage;
 mod occlusion;
 mod sheet;
 
-pub(crate) use camera::{Camera, Projection};
-pub(crate) use canvas::Image;
+pub(crate) use camera::Camera;
 pub(crate) use montage::{Labelled, montage};
 pub(crate) use sheet::{Look, SheetPicture, render};

@@ -114,11 +114,31 @@ impl Marker {
 /// Points joined by a line.
 #[derive(Clone, Debug)]
 pub(crate) struct Series {
+    /// Name in the legend; left out there when empty.
     pub(crate) name: String,
     pub(crate) points: Vec<[f64; 2]>,
     pub(crate) colour: Colour,
     pub(crate) marker: Option<Marker>,
-    pub(crate) dash: Option<[f64; 2]>,
+    pub(crate) line: Line,
+}
+
+/// The line through the points of a series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Line {
+    None,
+    Solid,
+    Dashed,
+}
+
+impl Series {
+    fn stroke(&self) -> Option<Stroke> {
+        let solid = Stroke::new(self.colour, 1.1);
+        match self.line {
+            Line::None => None,
+            Line::Solid => Some(solid),
+            Line::Dashed => Some(solid.dashed()),
+        }
+    }
 }
 
 /// A plot: axes, series and a legend to the right.
@@ -177,14 +197,9 @@ impl Plot {
                 .iter()
                 .map(|p| [self.x.part(p[0]) * w, self.y.part(p[1]) * h])
                 .collect();
-            d.line(
-                &points,
-                Stroke {
-                    colour: s.colour,
-                    width: 1.1,
-                    dash: s.dash,
-                },
-            );
+            if let Some(stroke) = s.stroke() {
+                d.line(&points, stroke);
+            }
             if let Some(marker) = s.marker {
                 for p in points {
                     marker.draw(&mut d, p, 2.4, s.colour, Stroke::new(palette::WHITE, 0.5));
@@ -192,17 +207,17 @@ impl Plot {
             }
         }
         if self.legend == Legend::Right {
-            for (k, s) in self.series.iter().enumerate() {
+            for (k, s) in self
+                .series
+                .iter()
+                .filter(|s| !s.name.is_empty())
+                .enumerate()
+            {
                 let y = h - 6.0 - 12.5 * k as f64;
                 let (a, b) = (w + 14.0, w + 32.0);
-                d.line(
-                    &[[a, y], [b, y]],
-                    Stroke {
-                        colour: s.colour,
-                        width: 1.1,
-                        dash: s.dash,
-                    },
-                );
+                if let Some(stroke) = s.stroke() {
+                    d.line(&[[a, y], [b, y]], stroke);
+                }
                 if let Some(marker) = s.marker {
                     marker.draw(
                         &mut d,

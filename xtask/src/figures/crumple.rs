@@ -2,14 +2,15 @@
 
 use super::{Context, Effort, Made, Picture};
 use crate::interrupt;
-use crate::render::{Camera, Labelled, Look, Projection, SheetPicture, montage, render};
+use crate::render::{Camera, Labelled, Look, SheetPicture, montage, render};
 use crate::runs::{self, RunSummary, Scene};
 use anyhow::{Context as _, Result};
 use isosheet_io::Trajectory;
 use serde_json::json;
 
-/// Times of the pictures, seconds. The fall takes the first half second; later the sheet swings and comes to rest.
-const TIMES: [f64; 10] = [0.0, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.6, 1.2, 8.0];
+/// Times of the pictures, seconds. The fall takes the first third of a second; then the sheet swings, crumples and comes to
+/// rest.
+const TIMES: [f64; 10] = [0.0, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.6, 8.0];
 
 /// The scene of the figure with mesh M^level.
 pub(crate) fn scene(level: u32, effort: Effort) -> Scene {
@@ -26,7 +27,9 @@ pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made
     let frames = choose(&trajectory);
     let mut pictures = vec![Picture {
         file: format!("fig{figure:02}.png"),
-        alt: format!("A sheet of paper held at its left-upper corner falls from flat and crumples, mesh M{level}"),
+        alt: format!(
+            "A sheet of paper held at its left-upper corner falls from flat and crumples, mesh M{level}"
+        ),
         bytes: sequence(&scene, &trajectory, &frames, context.effort)?,
     }];
     let (mut tables, mut softness) = (Vec::new(), serde_json::Value::Null);
@@ -37,7 +40,11 @@ pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made
         softness = part.facts;
     }
     Ok(Made {
-        title: if level == 1 { "Crumpled paper, M¹" } else { "Crumpled paper, M²" },
+        title: if level == 1 {
+            "Crumpled paper, M¹"
+        } else {
+            "Crumpled paper, M²"
+        },
         paper: if level == 1 {
             "A piece of paper modelled by M¹ is held at its left-upper corner, falls and crumples."
         } else {
@@ -83,7 +90,9 @@ fn choose(trajectory: &Trajectory) -> Vec<usize> {
     let end = times.last().copied().unwrap_or(0.0);
     let nearest = |t: f64| {
         let distance = |k: &usize| (times[*k] - t).abs();
-        (0..times.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
+        (0..times.len())
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            .unwrap_or(0)
     };
     if end < 0.5 * TIMES[TIMES.len() - 1] {
         return (0..4).map(|k| nearest(end * f64::from(k) / 3.0)).collect();
@@ -91,24 +100,45 @@ fn choose(trajectory: &Trajectory) -> Vec<usize> {
     TIMES.iter().map(|t| nearest(*t)).collect()
 }
 
-fn sequence(scene: &Scene, trajectory: &Trajectory, frames: &[usize], effort: Effort) -> Result<Vec<u8>> {
+fn sequence(
+    scene: &Scene,
+    trajectory: &Trajectory,
+    frames: &[usize],
+    effort: Effort,
+) -> Result<Vec<u8>> {
     let sheet = scene.sheet()?;
-    let size = match effort {
-        Effort::Full => [430, 470],
-        Effort::Quick => [160, 175],
+    let height = match effort {
+        Effort::Full => 470,
+        Effort::Quick => 170,
     };
-    let look = Look { size, ..Look::default() };
-    let states: Vec<&[f64]> = frames.iter().map(|k| trajectory.frame(*k).context("frame")).collect::<Result<_>>()?;
-    let points = states.iter().flat_map(|x| x.as_chunks::<3>().0.iter().copied());
-    let aspect = size[0] as f64 / size[1] as f64;
-    let camera = Camera::new([0.0; 3], -62.0, 17.0, scene.side, Projection::Perspective { distance: 6.0 * scene.side })
-        .framing(points, aspect, 0.05);
+    let states: Vec<&[f64]> = frames
+        .iter()
+        .map(|k| trajectory.frame(*k).context("frame"))
+        .collect::<Result<_>>()?;
+    let points = states
+        .iter()
+        .flat_map(|x| x.as_chunks::<3>().0.iter().copied());
+    let view = Camera::new([0.0; 3], -62.0, 17.0, scene.side, 6.0 * scene.side);
+    let aspect = view.aspect(points.clone());
+    let camera = view.framing(points, aspect, 0.04);
+    let size = [(height as f64 * aspect).round().max(1.0) as usize, height];
+    let look = Look {
+        size,
+        ..Look::default()
+    };
     let mut labelled = Vec::new();
     for (k, x) in frames.iter().zip(&states) {
         interrupt::check()?;
-        let picture = SheetPicture { topology: sheet.topology(), positions: x, pins: &[scene.pin()] };
+        let picture = SheetPicture {
+            topology: sheet.topology(),
+            positions: x,
+            pins: &[scene.pin()],
+        };
         let label = format!("{:.2} s", trajectory.times()[*k]);
-        labelled.push(Labelled { image: render(&picture, &camera, &look), label });
+        labelled.push(Labelled {
+            image: render(&picture, &camera, &look),
+            label,
+        });
     }
     montage(&labelled, 5).to_png()
 }

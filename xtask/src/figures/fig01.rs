@@ -1,7 +1,7 @@
 //! Fig. 1: refinement by the 1-4 split.
 
 use super::{Made, caption, style, svg};
-use crate::draw::{Align, Drawing, Stroke, TEXT, flat_edges, flat_faces, palette, row};
+use crate::draw::{Drawing, Stroke, TEXT, flat_edges, flat_faces, palette, row};
 use anyhow::{Result, ensure};
 use isosheet_mesh::generate::{anisotropic_grid, split_1_4};
 use isosheet_mesh::{Dof, EdgeId, Sheet};
@@ -44,7 +44,7 @@ pub(super) fn make() -> Result<Made> {
             "dof": dof, "boundary_edges": boundary,
         }));
     }
-    let all = row(&panels, 14.0, Align::Origin);
+    let all = row(&panels, 14.0);
     Ok(Made {
         title: "Refinement by the 1–4 split",
         paper: "A mesh is refined by splitting every triangle into four; Lemma 1 says that each step adds as many degrees of \

@@ -2,7 +2,7 @@
 
 use super::{Made, caption, style, svg};
 use crate::draw::spatial::arc;
-use crate::draw::{Align, Drawing, Stroke, TEXT, View, palette, row};
+use crate::draw::{Drawing, Stroke, TEXT, View, palette, row};
 use anyhow::Result;
 use isosheet_coords::EulerParameters;
 use isosheet_mesh::{Dof, Sheet};
@@ -63,7 +63,7 @@ pub(super) fn make() -> Result<Made> {
         let x = d.bounds().centre()[0];
         caption(d, [x, low], TEXT, lines);
     }
-    let all = row(&[single, pair], 60.0, Align::Origin);
+    let all = row(&[single, pair], 60.0);
     Ok(Made {
         title: "External and internal degrees of freedom",
         paper: "A single triangle only moves rigidly (six external degrees of freedom); two triangles with a common edge have \

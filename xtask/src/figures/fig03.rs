@@ -2,7 +2,7 @@
 
 use super::{Made, caption, style, svg};
 use crate::draw::{
-    Align, Colour, Drawing, SMALL, Stroke, TEXT, flat_edges, flat_faces, palette, plan, row,
+    Colour, Drawing, SMALL, Stroke, TEXT, flat_edges, flat_faces, palette, plan, row,
 };
 use anyhow::Result;
 use isosheet_mesh::generate::{anisotropic_grid, isotropic_square};
@@ -41,11 +41,8 @@ pub(super) fn make() -> Result<Made> {
         facts.push(describe(&pattern));
     }
     let gaps = [16.0, 34.0];
-    let pairs: Vec<Drawing> = panels
-        .chunks(2)
-        .map(|pair| row(pair, gaps[0], Align::Origin))
-        .collect();
-    let all = row(&pairs, gaps[1], Align::Origin);
+    let pairs: Vec<Drawing> = panels.chunks(2).map(|pair| row(pair, gaps[0])).collect();
+    let all = row(&pairs, gaps[1]);
     let anisotropy = |k: usize| facts[k]["anisotropy"].as_f64().unwrap_or(f64::NAN);
     Ok(Made {
         title: "Folding directions",

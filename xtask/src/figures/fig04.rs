@@ -1,9 +1,7 @@
 //! Fig. 4: isotropic refinement.
 
 use super::{Made, caption, style, svg};
-use crate::draw::{
-    Align, Drawing, Stroke, TEXT, column, flat_edges, flat_faces, palette, plan, row,
-};
+use crate::draw::{Drawing, Stroke, TEXT, column, flat_edges, flat_faces, palette, plan, row};
 use anyhow::{Result, ensure};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{Dof, Sheet, VertexId};
@@ -59,14 +57,7 @@ pub(super) fn make() -> Result<Made> {
         }));
     }
     let gap = 14.0;
-    let all = column(
-        &[
-            row(&upper, gap, Align::Origin),
-            row(&lower, gap, Align::Origin),
-        ],
-        12.0,
-        Align::Origin,
-    );
+    let all = column(&[row(&upper, gap), row(&lower, gap)], 12.0);
     Ok(Made {
         title: "Isotropic refinement",
         paper: "Rectangles (upper row) are split in four at each level and cut into eight triangles each (lower row). Lemma 2: \

@@ -2,7 +2,7 @@
 
 use super::{Made, Table, caption, degrees, style, svg};
 use crate::draw::spatial::angle_arc;
-use crate::draw::{Align, Anchor, Colour, Drawing, Stroke, TEXT, Vertical, View, palette, row};
+use crate::draw::{Anchor, Colour, Drawing, Stroke, TEXT, Vertical, View, palette, row};
 use anyhow::{Context, Result, ensure};
 use isosheet_coords::EulerParameters;
 use isosheet_mesh::{EdgeAngles, Sheet, VertexId, fold_angle};
@@ -64,7 +64,7 @@ pub(super) fn make() -> Result<Made> {
         let x = panel.bounds().centre()[0];
         caption(panel, [x, low], TEXT, &[text]);
     }
-    let all = row(&panels, 44.0, Align::Origin);
+    let all = row(&panels, 44.0);
     let rows = (0..2)
         .map(|k| {
             let (r, t) = (triples[0][k], triples[1][k]);

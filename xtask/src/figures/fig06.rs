@@ -2,7 +2,7 @@
 
 use super::{Made, caption, style, svg};
 use crate::draw::spatial::{arc, axpy, dot, sub, unit};
-use crate::draw::{Align, Anchor, Drawing, Stroke, TEXT, Vertical, View, palette, row};
+use crate::draw::{Anchor, Drawing, Stroke, TEXT, Vertical, View, palette, row};
 use anyhow::{Result, ensure};
 use isosheet_coords::placement::{place_f, place_g, place_h};
 use isosheet_coords::{Branch, EdgeFrame, EulerParameters, SphericalFrame};
@@ -32,7 +32,7 @@ pub(super) fn make() -> Result<Made> {
         let x = panel.bounds().centre()[0];
         caption(panel, [x, low], TEXT, &words.map(str::to_owned));
     }
-    let all = row(&panels, 30.0, Align::Origin);
+    let all = row(&panels, 30.0);
     Ok(Made {
         title: "Basic geometric relations",
         paper: "A vertex with one known neighbour takes two spherical coordinates, with two known neighbours one angle, with three \

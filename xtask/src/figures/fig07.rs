@@ -3,7 +3,7 @@
 use super::fig06::{PLACED, known, placed};
 use super::{Made, caption, degrees, style, svg};
 use crate::draw::spatial::{arc, axpy, dot, sub, unit};
-use crate::draw::{Align, Anchor, Drawing, Stroke, TEXT, Vertical, View, palette, row};
+use crate::draw::{Anchor, Drawing, Stroke, TEXT, Vertical, View, palette, row};
 use anyhow::{Result, bail, ensure};
 use isosheet_coords::placement::{COLLINEAR, collinearity, place_f, place_on_line};
 use isosheet_coords::{Branch, EulerParameters, PlacementError};
@@ -108,7 +108,7 @@ pub(super) fn make() -> Result<Made> {
         let x = panel.bounds().centre()[0];
         caption(panel, [x, low], TEXT, &words);
     }
-    let all = row(&panels, 50.0, Align::Origin);
+    let all = row(&panels, 50.0);
     Ok(Made {
         title: "The degenerate case of function f",
         paper: "When the three known vertices lie on a line (γ = π), the vertex can still turn about that line: one coordinate has \

@@ -2,7 +2,7 @@
 
 use super::{Made, caption, style, svg};
 use crate::draw::{
-    Align, Anchor, Colour, Drawing, Marker, SMALL, Stroke, TEXT, Vertical, flat_edges, flat_faces,
+    Anchor, Colour, Drawing, Marker, SMALL, Stroke, TEXT, Vertical, flat_edges, flat_faces,
     palette, plan, row,
 };
 use anyhow::{Result, ensure};
@@ -45,7 +45,7 @@ pub(super) fn make() -> Result<Made> {
         TEXT,
         &["(b) order, and the rods that place each vertex".into()],
     );
-    let all = row(&[fronts, order, legend(&assignment)], 20.0, Align::Origin);
+    let all = row(&[fronts, order, legend(&assignment)], 20.0);
     let vertices: Vec<_> = assignment
         .order()
         .iter()

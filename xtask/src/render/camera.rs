@@ -2,23 +2,15 @@
 
 use crate::draw::spatial::{cross, dot, sub, unit};
 
-/// How the scene is projected.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Projection {
-    /// Parallel rays.
-    Orthographic,
-    /// Rays from a point at the given distance (metres) from the target.
-    Perspective { distance: f64 },
-}
-
-/// A camera that looks at a target; z of the scene points upwards in the picture.
+/// A camera that looks at a target from a distance; z of the scene points upwards in the picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Camera {
     target: [f64; 3],
     right: [f64; 3],
     up: [f64; 3],
     toward: [f64; 3],
-    projection: Projection,
+    /// From the viewer to the target, metres.
+    distance: f64,
     /// Half the height of the picture in the plane of the target, metres.
     half_height: f64,
 }
@@ -40,7 +32,7 @@ impl Camera {
         azimuth: f64,
         elevation: f64,
         height: f64,
-        projection: Projection,
+        distance: f64,
     ) -> Self {
         let (sa, ca) = azimuth.to_radians().sin_cos();
         let (se, ce) = elevation.to_radians().sin_cos();
@@ -49,20 +41,31 @@ impl Camera {
             right: [-sa, ca, 0.0],
             up: [-se * ca, -se * sa, ce],
             toward: [ce * ca, ce * sa, se],
-            projection,
+            distance,
             half_height: 0.5 * height,
         }
+    }
+
+    /// Width over height of what is seen of the points, from a third to three.
+    pub(crate) fn aspect(&self, points: impl Iterator<Item = [f64; 3]> + Clone) -> f64 {
+        let mut size = [0.0; 2];
+        let framed = self.framing(points.clone(), 1.0, 0.0);
+        for p in points {
+            let q = framed.project(&p);
+            size = [f64::max(size[0], q.x.abs()), f64::max(size[1], q.y.abs())];
+        }
+        (size[0] / size[1].max(1e-9)).clamp(1.0 / 3.0, 3.0)
     }
 
     /// The same camera, framed so that all points are inside the picture with a margin (part of its height), which has
     /// the given width over height.
     pub(crate) fn framing(
-        self,
+        &self,
         points: impl Iterator<Item = [f64; 3]> + Clone,
         aspect: f64,
         margin: f64,
     ) -> Self {
-        let mut camera = self;
+        let mut camera = *self;
         // With perspective the framing shifts what is seen a little: it settles in a few rounds.
         for _ in 0..16 {
             let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -96,40 +99,25 @@ impl Camera {
             dot(&d, &self.up),
             dot(&d, &self.toward),
         );
-        let (scale, nearness) = match self.projection {
-            Projection::Orthographic => (1.0, z),
-            Projection::Perspective { distance } => {
-                let away = (distance - z).max(1e-6 * distance);
-                (distance / away, distance * distance / away)
-            }
-        };
+        let away = (self.distance - z).max(1e-6 * self.distance);
+        let scale = self.distance / away;
         let s = scale / self.half_height;
         Projected {
             x: x * s,
             y: y * s,
-            nearness,
+            nearness: self.distance * scale,
         }
     }
 
     /// The direction from a point to the viewer.
     pub(crate) fn viewer(&self, p: &[f64; 3]) -> [f64; 3] {
-        match self.projection {
-            Projection::Orthographic => self.toward,
-            Projection::Perspective { distance } => {
-                let eye = [0, 1, 2].map(|k| self.target[k] + distance * self.toward[k]);
-                unit(&sub(&eye, p))
-            }
-        }
+        let eye = [0, 1, 2].map(|k| self.target[k] + self.distance * self.toward[k]);
+        unit(&sub(&eye, p))
     }
 
     /// A direction given in the picture: rightwards, upwards and towards the viewer.
     pub(crate) fn direction(&self, d: [f64; 3]) -> [f64; 3] {
         unit(&[0, 1, 2].map(|k| d[0] * self.right[k] + d[1] * self.up[k] + d[2] * self.toward[k]))
-    }
-
-    /// Length of one unit of the picture at the target, metres.
-    pub(crate) fn half_height(&self) -> f64 {
-        self.half_height
     }
 }
 
@@ -153,11 +141,8 @@ mod tests {
             [1.0, 2.0, -0.7],
             [-0.4, 0.1, 0.2],
         ];
-        for projection in [
-            Projection::Orthographic,
-            Projection::Perspective { distance: 6.0 },
-        ] {
-            let camera = Camera::new([5.0, 1.0, 0.0], -50.0, 20.0, 0.1, projection).framing(
+        for distance in [6.0, 600.0] {
+            let camera = Camera::new([5.0, 1.0, 0.0], -50.0, 20.0, 0.1, distance).framing(
                 points.into_iter(),
                 1.5,
                 0.05,
@@ -173,13 +158,7 @@ mod tests {
 
     #[test]
     fn nearer_points_have_larger_nearness() {
-        let camera = Camera::new(
-            [0.0; 3],
-            0.0,
-            0.0,
-            1.0,
-            Projection::Perspective { distance: 3.0 },
-        );
+        let camera = Camera::new([0.0; 3], 0.0, 0.0, 1.0, 3.0);
         let near = camera.project(&[1.0, 0.2, 0.0]);
         let far = camera.project(&[0.0, 0.2, 0.0]);
         assert!(near.nearness > far.nearness && near.x.abs() > far.x.abs());

@@ -14,7 +14,7 @@ pub(crate) struct Labelled {
 const LABEL: f64 = 17.0;
 
 /// Height of the strip below each picture that holds its label, pixels.
-const STRIP: usize = 44;
+const STRIP: usize = 58;
 
 /// Pixels rendered for each pixel of the labels, each way.
 const FINE: usize = 4;

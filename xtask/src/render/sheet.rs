@@ -71,11 +71,11 @@ pub(crate) fn render(picture: &SheetPicture<'_>, camera: &Camera, look: &Look) -
         let centre = [0, 1, 2].map(|i| (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0);
         let back = usize::from(dot(&n, &camera.viewer(&centre)) < 0.0);
         let n = if back == 1 { n.map(|c| -c) } else { n };
-        let sky = 0.34 + 0.12 * n[2];
-        let sun = 0.62 * dot(&n, &key).max(0.0);
+        let sky = 0.56 + 0.10 * n[2] + 0.12 * dot(&n, &camera.viewer(&centre));
+        let sun = 0.42 * dot(&n, &key).max(0.0);
         let shaded = [0, 1, 2].map(|i| {
             let o = open[k][back][i];
-            place(&corners[i], sky * o + sun * (0.45 + 0.55 * o))
+            place(&corners[i], sky * o + sun * (0.4 + 0.6 * o))
         });
         depth.triangle(&shaded, light(look.sides[back]));
     }
@@ -127,7 +127,6 @@ fn extent(x: &[[f64; 3]]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::Projection;
     use isosheet_mesh::generate::isotropic_square;
 
     #[test]
@@ -143,13 +142,7 @@ mod tests {
             pins: &[],
         };
         let middle = |elevation: f64| {
-            let camera = Camera::new(
-                [0.5, 0.5, 0.0],
-                -90.0,
-                elevation,
-                1.5,
-                Projection::Orthographic,
-            );
+            let camera = Camera::new([0.5, 0.5, 0.0], -90.0, elevation, 1.5, 100.0);
             let image = render(&picture, &camera, &look);
             assert_eq!(image.pixels[0], [1.0; 3], "the background is white");
             image.pixels[28 * 64 + 36]

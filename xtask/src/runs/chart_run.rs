@@ -1,14 +1,19 @@
-//! The paper's own scheme on the same sheet: forward Euler in the coordinates of the front, with the published step control.
+//! The paper's own scheme on the same sheet: forward Euler in system coordinates, with the published step control.
 
 use super::Scene;
 use crate::interrupt;
 use crate::progress::Progress;
 use anyhow::Result;
-use isosheet_coords::{AssignmentOptions, FrontChart};
-use isosheet_dynamics::chart::{
-    ChartDynamicsError, ChartMethod, ChartOptions, ChartSimulation, ChartStepControl, Equations, MassSolverKind, PositionUpdate, Rebase,
+use isosheet_coords::assignment::Degenerate;
+use isosheet_coords::{
+    AssignmentOptions, CartesianChart, Chart, ChartError, Choice, FrontChart, RodSystem,
 };
-use isosheet_dynamics::{Method, Simulation, State};
+use isosheet_dynamics::chart::{
+    ChartDynamicsError, ChartMethod, ChartOptions, ChartSimulation, ChartStepControl, Equations,
+    MassSolverKind, PositionUpdate, Rebase,
+};
+use isosheet_dynamics::leave_flat;
+use isosheet_mesh::Sheet;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -24,18 +29,21 @@ pub(crate) struct ChartScene {
     pub(crate) steps: [f64; 2],
     /// Wall time after which the run is given up, seconds.
     pub(crate) patience: f64,
-    /// What happens to the momenta from step to step.
-    pub(crate) momenta: Momenta,
+    pub(crate) scheme: ChartScheme,
 }
 
-/// What happens to the momenta from step to step.
+/// The paper's scheme, with ever more help.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Momenta {
-    /// Carried over, as published.
-    Carried,
-    /// Formed anew from the velocities.
+pub(crate) enum ChartScheme {
+    /// As published: coordinates of `sys_coord_assnmt_single`, momenta carried over, positions to first order.
+    Published,
+    /// The same, with a coordinate for every vertex whose three known neighbours do not determine it (Fig. 7).
+    FreeCreases,
+    /// The same, with momenta formed anew from the velocities after every step.
     Reformed,
+    /// The same, with positions projected onto the edge lengths, in a well-conditioned chart that is renewed when needed.
+    Projected,
 }
 
 /// How a run ended.
@@ -91,7 +99,9 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
     let mut simulation = match start(run)? {
         Ok(simulation) => simulation,
         Err(error) => {
-            summary.fate = Fate::Refused { reason: error.to_string() };
+            summary.fate = Fate::Refused {
+                reason: error.to_string(),
+            };
             bar.finish("refused at the start");
             return Ok(summary);
         }
@@ -103,7 +113,10 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
         match simulation.step() {
             Ok(report) => summary.max_strain = summary.max_strain.max(report.strain),
             Err(error) => {
-                summary.fate = Fate::Stopped { t: simulation.time(), reason: error.to_string() };
+                summary.fate = Fate::Stopped {
+                    t: simulation.time(),
+                    reason: error.to_string(),
+                };
                 break;
             }
         }
@@ -112,7 +125,9 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
             bar.step();
         }
         if clock.elapsed().as_secs_f64() > run.patience {
-            summary.fate = Fate::OutOfPatience { t: simulation.time() };
+            summary.fate = Fate::OutOfPatience {
+                t: simulation.time(),
+            };
             break;
         }
     }
@@ -122,7 +137,10 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
     let range = simulation.step_range();
     summary.steps = range.steps;
     summary.step_range = (range.steps > 0).then_some([range.min, range.max]);
-    bar.finish(&format!("{:.3} s simulated, {} steps", summary.time, summary.steps));
+    bar.finish(&format!(
+        "{:.3} s simulated, {} steps",
+        summary.time, summary.steps
+    ));
     Ok(summary)
 }
 
@@ -130,31 +148,69 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
 fn start(run: &ChartScene) -> Result<Result<ChartSimulation, ChartDynamicsError>> {
     let scene = &run.scene;
     let sheet = scene.sheet()?;
-    let mut simulation =
-        Simulation::new(scene.model(&sheet)?, State::at_rest(sheet.positions().to_vec()), Method::default())?;
-    if run.bump > 0.0 {
-        simulation.leave_flat(run.bump, 1)?;
-    }
-    let x = &simulation.state().x;
     let model = scene.model(&sheet)?;
-    let assignment = AssignmentOptions { pins: vec![scene.pin()], ..AssignmentOptions::default() };
-    let chart = match FrontChart::new(&sheet, &assignment, x) {
+    let mut x = sheet.positions().to_vec();
+    if run.bump > 0.0 {
+        leave_flat(&model, &mut x, run.bump, 1)?;
+    }
+    let chart = match chart(run, &sheet, &x) {
         Ok(chart) => chart,
         Err(error) => return Ok(Err(error.into())),
     };
     let released = scene.mass() * 9.8 * 0.5 * scene.side;
     let [min, max] = run.steps;
+    let projected = run.scheme == ChartScheme::Projected;
     let options = ChartOptions {
         method: ChartMethod::ForwardEuler,
-        equations: match run.momenta {
-            Momenta::Carried => Equations::Published,
-            Momenta::Reformed => Equations::Reformed,
+        equations: match run.scheme {
+            ChartScheme::Published | ChartScheme::FreeCreases => Equations::Published,
+            ChartScheme::Reformed | ChartScheme::Projected => Equations::Reformed,
         },
-        position: PositionUpdate::Linear,
-        control: ChartStepControl::Adaptive { tolerance: run.tolerance * released, min, max },
-        solver: if chart.kept().len() <= CRAMER { MassSolverKind::Cramer } else { MassSolverKind::DenseLu },
-        rebase: Rebase::Never,
+        position: if projected {
+            PositionUpdate::Projected
+        } else {
+            PositionUpdate::Linear
+        },
+        control: ChartStepControl::Adaptive {
+            tolerance: run.tolerance * released,
+            min,
+            max,
+        },
+        solver: if chart.dimension() <= CRAMER {
+            MassSolverKind::Cramer
+        } else {
+            MassSolverKind::DenseLu
+        },
+        rebase: if projected {
+            Rebase::WhenNeeded
+        } else {
+            Rebase::Never
+        },
         ..ChartOptions::default()
     };
-    Ok(ChartSimulation::new(model, Box::new(chart), options, x, &vec![0.0; x.len()]))
+    Ok(ChartSimulation::new(
+        model,
+        chart,
+        options,
+        &x,
+        &vec![0.0; x.len()],
+    ))
+}
+
+fn chart(run: &ChartScene, sheet: &Sheet, x: &[f64]) -> Result<Box<dyn Chart>, ChartError> {
+    let pins = vec![run.scene.pin()];
+    let degenerate = match run.scheme {
+        ChartScheme::Projected => {
+            let system = RodSystem::new(sheet, &pins)?;
+            return Ok(Box::new(CartesianChart::new(system, Choice::Auto, x)?));
+        }
+        ChartScheme::Published => Degenerate::Carry,
+        ChartScheme::FreeCreases | ChartScheme::Reformed => Degenerate::Assign,
+    };
+    let options = AssignmentOptions {
+        pins,
+        degenerate,
+        ..AssignmentOptions::default()
+    };
+    Ok(Box::new(FrontChart::new(sheet, &options, x)?))
 }

@@ -36,8 +36,8 @@ pub(crate) struct RunSummary {
     pub(crate) step_range: [f64; 2],
     /// Largest relative edge length error.
     pub(crate) max_strain: f64,
-    /// Frames by the path that their hardest sub-step took: Newton alone, globalised, seeded.
-    pub(crate) paths: [usize; 3],
+    /// Frames by the path that their hardest sub-step took: Newton alone, globalised, seeded, other.
+    pub(crate) paths: [usize; 4],
     /// Kinetic energy at the end as part of the potential energy released.
     pub(crate) motion_left: f64,
     /// The shape at the end.
@@ -65,7 +65,13 @@ pub(crate) fn ensure(store: &Store, scene: &Scene) -> Result<RunSummary> {
     let mut draft = store.draft()?;
     let summary = run(scene, &mut draft).with_context(|| format!("run {}", scene.name))?;
     let extent = summary.extent;
-    store.commit(draft, &unit(scene), &options, extent, serde_json::to_value(&summary)?)?;
+    store.commit(
+        draft,
+        &unit(scene),
+        &options,
+        extent,
+        serde_json::to_value(&summary)?,
+    )?;
     if extent == Extent::Partial {
         return Err(Interrupted.into());
     }
@@ -91,9 +97,16 @@ impl Recorder<'_> {
         let state = simulation.state();
         let frame = self.trajectory.len();
         self.trajectory.push(state.t, &state.x)?;
-        write_obj(&frame_path(&self.folder.join("obj"), frame), self.sheet.topology(), &state.x)?;
+        write_obj(
+            &frame_path(&self.folder.join("obj"), frame),
+            self.sheet.topology(),
+            &state.x,
+        )?;
         let model = simulation.model();
-        let (kinetic, potential) = (model.kinetic_energy(&state.v), model.potential_energy(state.t, &state.x));
+        let (kinetic, potential) = (
+            model.kinetic_energy(&state.v),
+            model.potential_energy(state.t, &state.x),
+        );
         if report.is_none() {
             self.start = kinetic + potential;
         }
@@ -139,11 +152,13 @@ fn run(scene: &Scene, draft: &mut Draft) -> Result<RunSummary> {
         factorisations: 0,
         step_range: [f64::INFINITY, 0.0],
         max_strain: 0.0,
-        paths: [0; 3],
+        paths: [0; 4],
         motion_left: 0.0,
         shape: Shape::of(scene, &sheet, sheet.positions())?,
     };
-    let before = simulation.model().potential_energy(0.0, &simulation.state().x);
+    let before = simulation
+        .model()
+        .potential_energy(0.0, &simulation.state().x);
     let bar = Progress::start(format!("run {}", scene.name), scene.frames);
     for _ in 0..scene.frames {
         if interrupt::requested() {
@@ -157,13 +172,20 @@ fn run(scene: &Scene, draft: &mut Draft) -> Result<RunSummary> {
         recorder.frame(&simulation, Some(&report))?;
         bar.step();
         let released = before - report.potential;
-        s.motion_left = if released > 0.0 { report.kinetic / released } else { 0.0 };
+        s.motion_left = if released > 0.0 {
+            report.kinetic / released
+        } else {
+            0.0
+        };
     }
     recorder.trajectory.write(&folder.join("trajectory.npz"))?;
     s.shape = Shape::of(scene, &sheet, &simulation.state().x)?;
     s.frames_per_second = s.frames as f64 / s.wall.max(1e-9);
     write_json(&folder.join("summary.json"), &s)?;
-    let how = format!("{} of {} frames, {:.1} frames/s", s.frames, scene.frames, s.frames_per_second);
+    let how = format!(
+        "{} of {} frames, {:.1} frames/s",
+        s.frames, scene.frames, s.frames_per_second
+    );
     bar.finish(&how);
     Ok(s)
 }
@@ -183,6 +205,7 @@ impl RunSummary {
             SolverPath::Newton => 0,
             SolverPath::Globalised => 1,
             SolverPath::BranchSeeded => 2,
+            _ => 3,
         }] += 1;
     }
 }

@@ -58,13 +58,20 @@ impl Scene {
     /// The mechanical system: lumped masses as in the paper, gravity, damping, one corner held.
     pub(crate) fn model(&self, sheet: &Sheet) -> Result<SheetModel> {
         let model = SheetModel::new(sheet, self.mass(), MassKind::Lumped)?;
-        Ok(model.with_gravity().with_damping(self.damping)?.with_pins(&[self.pin()])?)
+        Ok(model
+            .with_gravity()
+            .with_damping(self.damping)?
+            .with_pins(&[self.pin()])?)
     }
 
     /// The simulation with the default method.
     pub(crate) fn simulation(&self, sheet: &Sheet) -> Result<Simulation> {
         let state = State::at_rest(sheet.positions().to_vec());
-        Ok(Simulation::new(self.model(sheet)?, state, Method::default())?)
+        Ok(Simulation::new(
+            self.model(sheet)?,
+            state,
+            Method::default(),
+        )?)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Scene;
 use anyhow::Result;
-use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId, fold_angle};
+use isosheet_mesh::{EdgeId, MassKind, MassMatrix, Sheet, VertexId, fold_angle};
 use serde::{Deserialize, Serialize};
 
 /// Measures of a state of a sheet that is held at a corner. Lengths in sides of the sheet.
@@ -14,14 +14,17 @@ pub(crate) struct Shape {
     pub(crate) corner_depth: f64,
     /// Largest horizontal distance between two vertices.
     pub(crate) extent: f64,
-    /// Root of the mean square of the fold angles, weighted by edge length, degrees.
-    pub(crate) fold: f64,
-    /// Depth of the centre of mass that no sheet can exceed: every mass straight below the pin at its distance from it.
-    pub(crate) deepest: f64,
+    /// Total bending: the sum of edge length times size of the fold angle, radians times sides. Unlike the fold angles
+    /// themselves it does not depend on how many edges share a bend.
+    pub(crate) bending: f64,
 }
 
 /// Depth of the centre of mass of a rigid square plate that hangs from a corner, sides: half a diagonal.
 pub(crate) const PLATE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Depth of the centre of mass that no unstretchable square sheet can exceed, sides: no point hangs deeper than its distance
+/// from the pin on the sheet, and the mean distance from a corner is `(sqrt 2 + ln(1 + sqrt 2)) / 3`.
+pub(crate) const LIMIT: f64 = 0.765_195_716_464_212_7;
 
 impl Shape {
     /// Measures the positions `x`.
@@ -35,8 +38,13 @@ impl Shape {
             (p[0] - q[0]).hypot(p[1] - q[1])
         };
         let depth = |v: VertexId| at(pin)[2] - at(v)[2];
-        let mean = |f: &dyn Fn(VertexId) -> f64| t.vertex_ids().map(|v| mass[v.index()] * f(v)).sum::<f64>();
-        let far = t.vertex_ids().max_by(|a, b| distance(*a).total_cmp(&distance(*b))).unwrap_or(pin);
+        let mean = |f: &dyn Fn(VertexId) -> f64| {
+            t.vertex_ids().map(|v| mass[v.index()] * f(v)).sum::<f64>()
+        };
+        let far = t
+            .vertex_ids()
+            .max_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+            .unwrap_or(pin);
         let mut extent: f64 = 0.0;
         for a in t.vertex_ids() {
             for b in t.vertex_ids() {
@@ -44,27 +52,28 @@ impl Shape {
                 extent = extent.max((p[0] - q[0]).hypot(p[1] - q[1]));
             }
         }
-        let (mut square, mut length) = (0.0, 0.0);
-        for e in t.edge_ids() {
-            if let Some(fold) = fold_angle(t, x, e) {
-                let l = sheet.lengths()[e.index()];
-                square += l * fold * fold;
-                length += l;
-            }
-        }
+        let bend = |e: EdgeId| {
+            fold_angle(t, x, e).map_or(0.0, |fold| sheet.lengths()[e.index()] * fold.abs())
+        };
         Ok(Self {
             centre_depth: mean(&depth) / scene.side,
             corner_depth: depth(far) / scene.side,
             extent: extent / scene.side,
-            fold: (square / length).sqrt().to_degrees(),
-            deepest: mean(&distance) / scene.side,
+            bending: t.edge_ids().map(bend).sum::<f64>() / scene.side,
         })
     }
 
-    /// Part of the way from the rigid plate to the deepest centre of mass possible: 0 for a plate that hangs flat, 1 for a
-    /// sheet gathered into a line.
+    /// Part of the way from the rigid plate to the [`LIMIT`]: 0 for a plate that hangs flat, 1 for a sheet gathered into a line.
     pub(crate) fn softness(&self) -> f64 {
-        (self.centre_depth - PLATE) / (self.deepest - PLATE)
+        (self.centre_depth - PLATE) / (LIMIT - PLATE)
+    }
+
+    /// Whether the sheet hangs folded in half along the diagonal from the pin, like a triangle: centre of mass at sqrt 5 / 3,
+    /// total bending pi sqrt 2, both within a thousandth.
+    pub(crate) fn is_folded_in_half(&self) -> bool {
+        let (depth, bending) = (5f64.sqrt() / 3.0, std::f64::consts::PI * 2f64.sqrt());
+        (self.centre_depth / depth - 1.0).abs() < 1e-3
+            && (self.bending / bending - 1.0).abs() < 1e-3
     }
 }
 
@@ -92,18 +101,47 @@ mod tests {
         assert!((shape.centre_depth - PLATE).abs() < 1e-12 && shape.softness().abs() < 1e-10);
         assert!((shape.corner_depth - 2f64.sqrt()).abs() < 1e-12);
         assert!((shape.extent - 2f64.sqrt()).abs() < 1e-12);
-        assert!(shape.fold < 1e-5);
+        assert!(shape.bending < 1e-5);
     }
 
     #[test]
-    fn the_bound_tends_to_the_mean_distance_from_a_corner() {
-        // Mean distance of the points of the unit square from a corner.
+    fn the_limit_is_the_mean_distance_from_a_corner() {
         let exact = (2f64.sqrt() + (1.0 + 2f64.sqrt()).ln()) / 3.0;
-        let deepest = |level| {
-            let scene = Scene::paper(level, 1);
-            let sheet = scene.sheet().unwrap();
-            Shape::of(&scene, &sheet, sheet.positions()).unwrap().deepest - exact
-        };
-        assert!(deepest(4).abs() < 0.3 * deepest(3).abs() && deepest(4).abs() < 1e-3);
+        assert!((LIMIT - exact).abs() < 1e-15);
+        let n = 200;
+        let at = |k: usize| (k as f64 + 0.5) / n as f64;
+        let sum: f64 = (0..n)
+            .flat_map(|i| (0..n).map(move |j| at(i).hypot(at(j))))
+            .sum();
+        assert!((sum / (n * n) as f64 - LIMIT).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_sheet_folded_in_half_along_the_diagonal_has_the_centroid_of_a_triangle() {
+        let scene = Scene::paper(1, 1);
+        let sheet = scene.sheet().unwrap();
+        // In the plane of the triangle with corners pin (0, 0), far (0, -sqrt 2) and side (h, -h), then turned so that the centroid
+        // is below the pin.
+        let h = std::f64::consts::FRAC_1_SQRT_2;
+        let tilt = (h / 3.0f64).atan2((2f64.sqrt() + h) / 3.0);
+        let (s, c) = tilt.sin_cos();
+        let x: Vec<f64> = sheet
+            .positions()
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .flat_map(|p| {
+                let (u, w) = (p[0], scene.side - p[1]);
+                let (across, down) = ((h * (u - w)).abs(), h * (u + w));
+                [c * across - s * down, 0.0, -s * across - c * down]
+            })
+            .collect();
+        let shape = Shape::of(&scene, &sheet, &x).unwrap();
+        assert!(
+            (shape.centre_depth - 5f64.sqrt() / 3.0).abs() < 1e-12,
+            "{shape:?}"
+        );
+        assert!((shape.bending - 2f64.sqrt() * std::f64::consts::PI).abs() < 1e-10);
+        assert!(shape.is_folded_in_half());
     }
 }
