@@ -2,7 +2,7 @@
 
 use crate::integrator::{Integrator, OptionsError};
 use crate::minimiser::not_converged;
-use crate::primal::strain_floor;
+use crate::primal::{dot, strain_floor};
 use crate::report::{Accepted, Effort, Path, StepError};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
@@ -144,11 +144,7 @@ impl EnergyMomentum {
             .rods()
             .apply_transpose_add(&self.xm, &self.trial, &mut self.momentum);
         model.clear_pinned(&mut self.momentum);
-        let worst = self
-            .momentum
-            .iter()
-            .enumerate()
-            .fold(0.0_f64, |m, (i, r)| m.max(r.abs() / mass[i / 3]));
+        let worst = model.largest_acceleration(&self.momentum);
         model.rods().residual_into(&self.x1, &mut self.rods);
         self.rods.iter_mut().for_each(|c| *c = -*c / h);
         let relative = if scale > 0.0 { worst / scale } else { 0.0 };
@@ -239,8 +235,4 @@ impl Integrator for EnergyMomentum {
             path,
         })
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

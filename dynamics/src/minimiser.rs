@@ -1,7 +1,7 @@
 //! Minimisation of an implicit step's incremental potential under the length constraints.
 
 use crate::ImplicitOptions;
-use crate::primal::{PrimalMatrix, penalties, strain_floor};
+use crate::primal::{PrimalMatrix, dot, penalties, strain_floor};
 use crate::project::Projector;
 use crate::report::{Effort, Path, StepError};
 use crate::{SheetModel, State};
@@ -89,12 +89,7 @@ impl Minimiser {
             self.difference[i] = self.x[i] - self.target[i];
         }
         let inertia = model.kinetic_energy(&self.difference);
-        let work: f64 = self
-            .applied
-            .iter()
-            .zip(&self.difference)
-            .map(|(f, d)| f * d)
-            .sum();
+        let work = dot(&self.applied, &self.difference);
         model.rods().residual_into(&self.x, &mut self.c);
         let rods: f64 = (0..self.c.len())
             .map(|e| (self.multipliers[e] + 0.5 * self.penalty[e] * self.c[e]) * self.c[e])
@@ -222,12 +217,7 @@ impl Minimiser {
                 path = path.max(Path::Globalised);
             }
             self.matrix.solve(model, &self.gradient, &mut self.dx);
-            let slope: f64 = -self
-                .dx
-                .iter()
-                .zip(&self.gradient)
-                .map(|(a, b)| a * b)
-                .sum::<f64>();
+            let slope = -dot(&self.dx, &self.gradient);
             if !slope.is_finite() {
                 self.multipliers.fill(0.0);
                 return Err(not_converged(state.t, h, effort, residual, f64::NAN));

@@ -291,6 +291,14 @@ impl SheetModel {
         }
     }
 
+    /// Largest `|f_i| / m_i` of forces, momenta or impulses: the size of a residual that weighs
+    /// light and heavy vertices alike.
+    pub(crate) fn largest_acceleration(&self, f: &[f64]) -> f64 {
+        f.iter()
+            .enumerate()
+            .fold(0.0, |m, (i, f)| m.max(f.abs() / self.mass.vertex[i / 3]))
+    }
+
     /// Linear momentum, kg m/s.
     pub fn linear_momentum(&self, v: &[f64]) -> [f64; 3] {
         let mut p = vec![0.0; v.len()];

@@ -260,3 +260,8 @@ pub(crate) fn strain_floor(model: &SheetModel, state: &State) -> f64 {
         .fold(f64::INFINITY, |m, l| m.min(*l));
     4.0 * f64::EPSILON * (size / shortest + 1.0)
 }
+
+/// Inner product.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
