@@ -25,8 +25,8 @@ mod tests;
 /// the common plane or normal is not used. The features left over are then wrong by less than
 /// 1e-10 of the lengths involved.
 const DEGENERATE_SINE: f64 = 1e-10;
-/// Above this sine the weights of two crossing lines are exact enough to be trusted alone; below it
-/// the ends are looked at as well.
+/// Above this sine the weights of two crossing lines are exact enough to be trusted alone, and so is
+/// the common normal; below it the ends are looked at as well.
 const RELIABLE_SINE: f64 = 1e-6;
 
 /// The pair of features on which a distance is attained. Numbers are positions in the stencil.
@@ -74,6 +74,21 @@ impl<const N: usize> Closest<N> {
         let mut difference = Vector3::zeros();
         for i in 1..N {
             difference += weights[i] * (x[i] - x[0]);
+        }
+        // It is perpendicular to the features, but its round-off is not, and turns a distance that
+        // is small against the lengths away from the common normal.
+        let (coefficients, count) = feature.tangents::<N>();
+        let tangent = |m: usize| tangent(x, &coefficients[m]);
+        if count == 1 {
+            let e = tangent(0);
+            difference -= difference.dot(&e) / e.norm_squared() * e;
+        } else if count == 2 {
+            let (a, b) = (tangent(0), tangent(1));
+            let n = a.cross(&b);
+            let nn = n.norm_squared();
+            if nn > RELIABLE_SINE * RELIABLE_SINE * a.norm_squared() * b.norm_squared() {
+                difference = difference.dot(&n) / nn * n;
+            }
         }
         Self {
             feature,
@@ -171,6 +186,11 @@ impl Feature {
             }
         }
     }
+}
+
+/// `sum_i a_i x_i` with coefficients that add up to zero.
+fn tangent<const N: usize>(x: &[Vector3<f64>; N], a: &[f64; N]) -> Vector3<f64> {
+    (1..N).map(|i| a[i] * (x[i] - x[0])).sum()
 }
 
 /// Distance of two points `[p, q]`.

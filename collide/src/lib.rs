@@ -3,16 +3,19 @@
 //! * [`distance`]: squared distances of points, edges and triangles with closest points, gradients
 //!   and Hessians; [`ParallelMollifier`] smooths two edges that become parallel.
 //! * [`Jet`]: value, gradient and Hessian on a stencil of points, with product and chain rule.
+//! * [`CcdOptions`]: how far a motion may go before two primitives touch.
 //!
 //! Everything is free of absolute tolerances: a sheet of a micrometre and one of a kilometre are
 //! treated alike. SI units and `f64` throughout.
 
+mod ccd;
 pub mod distance;
 mod jet;
 mod mollifier;
 #[cfg(test)]
 mod testing;
 
+pub use ccd::{CcdOptions, CcdOptionsError};
 pub use distance::{Closest, Feature};
 pub use jet::Jet;
 pub use mollifier::ParallelMollifier;
