@@ -1,0 +1,264 @@
+//! Which primitives may meet during a step: a bounding-volume hierarchy over swept boxes.
+
+use crate::contact_mesh::{ContactMesh, Element};
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
+
+#[cfg(test)]
+mod tests;
+
+/// Pairs of primitives of one mesh whose swept boxes overlap.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Candidates {
+    /// Vertex and face; the vertex is no corner of the face.
+    pub vertex_face: Vec<[u32; 2]>,
+    /// Two edges without a common end, the lower number first.
+    pub edge_edge: Vec<[u32; 2]>,
+}
+
+/// Pairs of primitives of two meshes whose swept boxes overlap.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct CrossCandidates {
+    /// Vertex of the first mesh and face of the second.
+    pub vertex_face: Vec<[u32; 2]>,
+    /// Face of the first mesh and vertex of the second.
+    pub face_vertex: Vec<[u32; 2]>,
+    /// Edge of the first mesh and edge of the second.
+    pub edge_edge: Vec<[u32; 2]>,
+}
+
+impl Candidates {
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.vertex_face.len() + self.edge_edge.len()
+    }
+
+    /// Whether there is no pair.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+impl CrossCandidates {
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.vertex_face.len() + self.face_vertex.len() + self.edge_edge.len()
+    }
+
+    /// Whether there is no pair.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// An axis-aligned box.
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+impl Bounds {
+    fn merged(&self, other: &Self) -> Self {
+        Self {
+            min: std::array::from_fn(|k| self.min[k].min(other.min[k])),
+            max: std::array::from_fn(|k| self.max[k].max(other.max[k])),
+        }
+    }
+
+    fn overlaps(&self, other: &Self) -> bool {
+        (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
+    }
+}
+
+/// A dynamic bounding-volume hierarchy of a mesh in motion.
+///
+/// The tree is over the faces (and free edges and vertices); it is built once and refitted to new
+/// positions by [`BroadPhase::update`]. After the first few calls nothing is allocated unless there
+/// are more pairs than ever before. The boxes are those of the whole straight motion from one set of
+/// positions to another; a pair that comes within twice the inflation of each other at any time
+/// between is reported, and each pair once.
+#[derive(Clone)]
+pub struct BroadPhase {
+    mesh: ContactMesh,
+    tree: Bvh,
+    workspace: BvhWorkspace,
+    vertices: Vec<Bounds>,
+    edges: Vec<Bounds>,
+    faces: Vec<Bounds>,
+}
+
+impl std::fmt::Debug for BroadPhase {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("BroadPhase")
+            .field("vertices", &self.mesh.vertex_count())
+            .field("edges", &self.mesh.edges().len())
+            .field("faces", &self.mesh.faces().len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl BroadPhase {
+    /// Builds the tree at positions `x` (`3V`, metres). The quality of the tree comes from these
+    /// positions: give a state without degenerate overlaps, such as the flat one.
+    ///
+    /// # Panics
+    /// If the length of `x` is not three times the number of vertices.
+    pub fn new(mesh: ContactMesh, x: &[f64]) -> Self {
+        let empty = Bounds {
+            min: [0.0; 3],
+            max: [0.0; 3],
+        };
+        let mut phase = Self {
+            vertices: vec![empty; mesh.vertex_count()],
+            edges: vec![empty; mesh.edges().len()],
+            faces: vec![empty; mesh.faces().len()],
+            tree: Bvh::new(),
+            workspace: BvhWorkspace::default(),
+            mesh,
+        };
+        phase.set_bounds(x, x, 0.0);
+        let leaves: Vec<Aabb> = (0..phase.mesh.elements().len())
+            .map(|i| phase.element_box(i))
+            .collect();
+        phase.tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves);
+        phase
+    }
+
+    /// The primitives.
+    pub fn mesh(&self) -> &ContactMesh {
+        &self.mesh
+    }
+
+    /// Refits the tree to the motion from `x0` to `x1` (`3V`, metres), every box enlarged by
+    /// `inflation` (metres) on all sides. For pairs within a distance `d` give both meshes `d / 2`,
+    /// or one of them `d`.
+    ///
+    /// # Panics
+    /// If the lengths of `x0` and `x1` are not three times the number of vertices.
+    pub fn update(&mut self, x0: &[f64], x1: &[f64], inflation: f64) {
+        self.set_bounds(x0, x1, inflation);
+        for i in 0..self.mesh.elements().len() {
+            let leaf = self.element_box(i);
+            // A zero margin overwrites the box.
+            let number = u32::try_from(i).expect("elements are numbered with 32 bits");
+            let _ = self.tree.insert_or_update_partially(leaf, number, 0.0);
+        }
+        self.tree.refit_without_opt();
+    }
+
+    fn set_bounds(&mut self, x0: &[f64], x1: &[f64], inflation: f64) {
+        let n = 3 * self.mesh.vertex_count();
+        assert!(
+            x0.len() == n && x1.len() == n,
+            "positions have lengths {} and {}, expected {n}",
+            x0.len(),
+            x1.len()
+        );
+        let chunks = x0.as_chunks::<3>().0.iter().zip(x1.as_chunks::<3>().0);
+        for (bounds, (p, q)) in self.vertices.iter_mut().zip(chunks) {
+            // What the sum loses is made up for: boxes that touch stay touching.
+            *bounds = Bounds {
+                min: std::array::from_fn(|k| (p[k].min(q[k]) - inflation).next_down()),
+                max: std::array::from_fn(|k| (p[k].max(q[k]) + inflation).next_up()),
+            };
+        }
+        let vertex = |v: u32| &self.vertices[v as usize];
+        for (bounds, &[a, b]) in self.edges.iter_mut().zip(self.mesh.edges()) {
+            *bounds = vertex(a).merged(vertex(b));
+        }
+        for (bounds, &[a, b, c]) in self.faces.iter_mut().zip(self.mesh.faces()) {
+            *bounds = vertex(a).merged(vertex(b)).merged(vertex(c));
+        }
+    }
+
+    fn element_box(&self, i: usize) -> Aabb {
+        let element = &self.mesh.elements()[i];
+        let bounds = match element.face {
+            Some(f) => self.faces[f as usize],
+            None => match element.edges.iter().next() {
+                Some(e) => self.edges[e as usize],
+                None => {
+                    let v = element.vertices.iter().next();
+                    self.vertices[v.expect("an element has a primitive") as usize]
+                }
+            },
+        };
+        Aabb::new(Vector::from(bounds.min), Vector::from(bounds.max))
+    }
+
+    /// Pairs of the mesh with itself since the last update; `out` is overwritten.
+    pub fn self_candidates(&mut self, out: &mut Candidates) {
+        out.vertex_face.clear();
+        out.edge_edge.clear();
+        let Self {
+            mesh,
+            tree,
+            workspace,
+            vertices,
+            edges,
+            faces,
+        } = self;
+        let mut vertex_face = |a: &Element, b: &Element| {
+            let Some(f) = b.face else { return };
+            let bounds = &faces[f as usize];
+            let corners = &mesh.faces()[f as usize];
+            for v in a.vertices.iter() {
+                if vertices[v as usize].overlaps(bounds) && !corners.contains(&v) {
+                    out.vertex_face.push([v, f]);
+                }
+            }
+        };
+        tree.traverse_bvtt_single_tree::<false>(workspace, &mut |i, j| {
+            let (a, b) = (&mesh.elements()[i as usize], &mesh.elements()[j as usize]);
+            vertex_face(a, b);
+            vertex_face(b, a);
+            for e in a.edges.iter() {
+                let bounds = &edges[e as usize];
+                let ends = &mesh.edges()[e as usize];
+                for g in b.edges.iter() {
+                    let others = &mesh.edges()[g as usize];
+                    if bounds.overlaps(&edges[g as usize])
+                        && !ends.iter().any(|v| others.contains(v))
+                    {
+                        out.edge_edge.push([e.min(g), e.max(g)]);
+                    }
+                }
+            }
+        });
+    }
+
+    /// Pairs of this mesh with another since the last updates of both; `out` is overwritten.
+    pub fn candidates_with(&self, other: &Self, out: &mut CrossCandidates) {
+        out.vertex_face.clear();
+        out.face_vertex.clear();
+        out.edge_edge.clear();
+        let pairs = self.tree.leaf_pairs(&other.tree, |a, b| a.intersects(b));
+        for (i, j) in pairs {
+            let a = &self.mesh.elements()[i as usize];
+            let b = &other.mesh.elements()[j as usize];
+            if let Some(f) = b.face {
+                for v in a.vertices.iter() {
+                    if self.vertices[v as usize].overlaps(&other.faces[f as usize]) {
+                        out.vertex_face.push([v, f]);
+                    }
+                }
+            }
+            if let Some(f) = a.face {
+                for v in b.vertices.iter() {
+                    if self.faces[f as usize].overlaps(&other.vertices[v as usize]) {
+                        out.face_vertex.push([f, v]);
+                    }
+                }
+            }
+            for e in a.edges.iter() {
+                for g in b.edges.iter() {
+                    if self.edges[e as usize].overlaps(&other.edges[g as usize]) {
+                        out.edge_edge.push([e, g]);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,282 @@
+//! What of a mesh can touch: its vertices, edges and faces.
+
+use isosheet_mesh::Topology;
+use std::collections::HashMap;
+use thiserror::Error;
+
+/// Vertices, edges and faces that take part in contact, without coordinates.
+///
+/// Unlike [`Topology`] it needs no manifold: the surface of an obstacle may be any set of triangles,
+/// also a single segment or point (the axis of a capsule, the centre of a ball).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ContactMesh {
+    vertex_count: usize,
+    edges: Vec<[u32; 2]>,
+    faces: Vec<[u32; 3]>,
+    elements: Vec<Element>,
+}
+
+/// A face, a free edge or a free vertex together with the vertices and edges that it represents.
+///
+/// Every edge and vertex belongs to exactly one element that contains it. Two primitives whose boxes
+/// overlap have elements whose boxes overlap, so a tree over the elements finds each pair of
+/// primitives once (Curtis, Tamstorf and Manocha 2008, representative triangles).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Element {
+    pub(crate) face: Option<u32>,
+    pub(crate) edges: Owned,
+    pub(crate) vertices: Owned,
+}
+
+/// Up to three indices.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Owned {
+    items: [u32; 3],
+    len: u8,
+}
+
+impl Owned {
+    fn push(&mut self, item: u32) {
+        self.items[usize::from(self.len)] = item;
+        self.len += 1;
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = u32> + '_ {
+        self.items[..usize::from(self.len)].iter().copied()
+    }
+}
+
+/// A primitive that makes no sense.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum ContactMeshError {
+    /// A face names a vertex that does not exist.
+    #[error("face {face} names vertex {vertex} of {vertex_count}: number vertices from 0")]
+    FaceVertex {
+        /// The face.
+        face: usize,
+        /// The vertex named.
+        vertex: u32,
+        /// How many there are.
+        vertex_count: usize,
+    },
+    /// A face names a vertex twice.
+    #[error("face {face} names vertex {vertex} twice: remove the face")]
+    RepeatedVertex {
+        /// The face.
+        face: usize,
+        /// The vertex.
+        vertex: u32,
+    },
+    /// More vertices, edges or faces than 32-bit indices can number.
+    #[error("{count} primitives: the limit is 2^32 - 1")]
+    TooMany {
+        /// How many.
+        count: usize,
+    },
+}
+
+impl ContactMesh {
+    /// All primitives of a sheet, with the same numbering.
+    pub fn from_topology(topology: &Topology) -> Self {
+        let edges = topology.edges().iter().map(|e| e.map(|v| v.0)).collect();
+        let faces = topology.faces().iter().map(|f| f.map(|v| v.0)).collect();
+        let face_edges: Vec<[u32; 3]> = topology
+            .face_ids()
+            .map(|f| topology.face_edges(f).map(|e| e.0))
+            .collect();
+        Self::with_elements(topology.vertex_count(), edges, faces, &face_edges)
+    }
+
+    /// Triangles with vertices `0 .. vertex_count`. Edges are numbered in the order in which the
+    /// faces name them; vertices without a face still take part as points.
+    ///
+    /// # Errors
+    /// [`ContactMeshError`] naming the first face that makes no sense.
+    pub fn from_triangles(
+        vertex_count: usize,
+        faces: &[[u32; 3]],
+    ) -> Result<Self, ContactMeshError> {
+        let count = vertex_count.max(3 * faces.len());
+        if u32::try_from(count).is_err() {
+            return Err(ContactMeshError::TooMany { count });
+        }
+        let mut edges = Vec::new();
+        let mut numbers = HashMap::new();
+        let mut face_edges = Vec::with_capacity(faces.len());
+        for (face, corners) in faces.iter().enumerate() {
+            for (k, &vertex) in corners.iter().enumerate() {
+                if vertex as usize >= vertex_count {
+                    return Err(ContactMeshError::FaceVertex {
+                        face,
+                        vertex,
+                        vertex_count,
+                    });
+                }
+                if corners[..k].contains(&vertex) {
+                    return Err(ContactMeshError::RepeatedVertex { face, vertex });
+                }
+            }
+            face_edges.push(std::array::from_fn(|k| {
+                let (a, b) = (corners[k], corners[(k + 1) % 3]);
+                *numbers.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                    edges.push([a, b]);
+                    index(edges.len() - 1)
+                })
+            }));
+        }
+        Ok(Self::with_elements(
+            vertex_count,
+            edges,
+            faces.to_vec(),
+            &face_edges,
+        ))
+    }
+
+    /// A single point.
+    pub fn point() -> Self {
+        Self::with_elements(1, Vec::new(), Vec::new(), &[])
+    }
+
+    /// A single segment between the vertices 0 and 1.
+    pub fn segment() -> Self {
+        Self::with_elements(2, vec![[0, 1]], Vec::new(), &[])
+    }
+
+    fn with_elements(
+        vertex_count: usize,
+        edges: Vec<[u32; 2]>,
+        faces: Vec<[u32; 3]>,
+        face_edges: &[[u32; 3]],
+    ) -> Self {
+        let mut edge_taken = vec![false; edges.len()];
+        let mut vertex_taken = vec![false; vertex_count];
+        let mut elements = Vec::with_capacity(faces.len());
+        let take = |taken: &mut [bool], candidates: &[u32]| {
+            let mut owned = Owned::default();
+            for &c in candidates {
+                if !std::mem::replace(&mut taken[c as usize], true) {
+                    owned.push(c);
+                }
+            }
+            owned
+        };
+        for (f, (corners, sides)) in faces.iter().zip(face_edges).enumerate() {
+            elements.push(Element {
+                face: Some(index(f)),
+                edges: take(&mut edge_taken, sides),
+                vertices: take(&mut vertex_taken, corners),
+            });
+        }
+        for e in 0..edges.len() {
+            if !edge_taken[e] {
+                elements.push(Element {
+                    face: None,
+                    edges: take(&mut edge_taken, &[index(e)]),
+                    vertices: take(&mut vertex_taken, &edges[e]),
+                });
+            }
+        }
+        for v in 0..vertex_count {
+            if !vertex_taken[v] {
+                elements.push(Element {
+                    face: None,
+                    edges: Owned::default(),
+                    vertices: take(&mut vertex_taken, &[index(v)]),
+                });
+            }
+        }
+        Self {
+            vertex_count,
+            edges,
+            faces,
+            elements,
+        }
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_count
+    }
+
+    /// Ends of the edges.
+    pub fn edges(&self) -> &[[u32; 2]] {
+        &self.edges
+    }
+
+    /// Corners of the faces.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    pub(crate) fn elements(&self) -> &[Element] {
+        &self.elements
+    }
+}
+
+/// Counts were checked to fit, or come from a [`Topology`], which checked them.
+fn index(i: usize) -> u32 {
+    u32::try_from(i).expect("primitives are numbered with 32 bits")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isosheet_mesh::generate;
+
+    fn check_ownership(mesh: &ContactMesh) {
+        let mut edges: Vec<u32> = mesh.elements.iter().flat_map(|e| e.edges.iter()).collect();
+        let mut vertices: Vec<u32> = mesh
+            .elements
+            .iter()
+            .flat_map(|e| e.vertices.iter())
+            .collect();
+        edges.sort_unstable();
+        vertices.sort_unstable();
+        assert!(edges.iter().copied().eq(0..mesh.edges.len() as u32));
+        assert!(vertices.iter().copied().eq(0..mesh.vertex_count as u32));
+        for element in &mesh.elements {
+            if let Some(f) = element.face {
+                let corners = mesh.faces[f as usize];
+                assert!(element.vertices.iter().all(|v| corners.contains(&v)));
+                for e in element.edges.iter() {
+                    assert!(mesh.edges[e as usize].iter().all(|v| corners.contains(v)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_primitive_has_one_owner() {
+        let sheet = generate::isotropic_square(2, 1.0).unwrap();
+        let mesh = ContactMesh::from_topology(sheet.topology());
+        assert_eq!(mesh.faces().len(), sheet.topology().face_count());
+        assert_eq!(mesh.edges().len(), sheet.topology().edge_count());
+        check_ownership(&mesh);
+        let faces: Vec<[u32; 3]> = mesh.faces().to_vec();
+        let again = ContactMesh::from_triangles(mesh.vertex_count() + 2, &faces).unwrap();
+        assert_eq!(again.edges().len(), mesh.edges().len());
+        check_ownership(&again);
+        check_ownership(&ContactMesh::point());
+        check_ownership(&ContactMesh::segment());
+        // Three triangles at one edge: no manifold.
+        check_ownership(
+            &ContactMesh::from_triangles(5, &[[0, 1, 2], [0, 1, 3], [1, 0, 4]]).unwrap(),
+        );
+    }
+
+    #[test]
+    fn bad_faces_are_named() {
+        assert_eq!(
+            ContactMesh::from_triangles(3, &[[0, 1, 2], [0, 1, 3]]),
+            Err(ContactMeshError::FaceVertex {
+                face: 1,
+                vertex: 3,
+                vertex_count: 3
+            })
+        );
+        assert_eq!(
+            ContactMesh::from_triangles(3, &[[0, 1, 0]]),
+            Err(ContactMeshError::RepeatedVertex { face: 0, vertex: 0 })
+        );
+    }
+}
