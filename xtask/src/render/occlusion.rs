@@ -10,7 +10,7 @@ const RAYS: usize = 40;
 /// neighbouring face as touching.
 const INSET: f64 = 0.25;
 
-/// Openness (0 dark to 1 free) at the three corners of every face, on its front ([0]) and back ([1]) side.
+/// Openness (0 dark to 1 free) at the three corners of every face, on its front (index 0) and back (index 1) side.
 ///
 /// Rays are distributed by the cosine law; a face hides what is behind it out to `reach`, less and less with distance.
 pub(super) fn openness(faces: &[[usize; 3]], x: &[[f64; 3]], reach: f64) -> Vec<[[f64; 3]; 2]> {
