@@ -22,6 +22,9 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
         store: &store,
         effort,
     };
+    if args.force && args.figures.iter().any(|f| f >= 10) {
+        store.forget("run-")?;
+    }
     let mut outcome = Outcome::Complete;
     for figure in args.figures.iter() {
         if interrupt::requested() {

@@ -130,6 +130,21 @@ impl Store {
         })
     }
 
+    /// Forgets all units whose names start with `prefix`, so that they are made again.
+    pub(crate) fn forget(&self, prefix: &str) -> Result<(), StoreError> {
+        let folder = self.root.join(".stamps");
+        let failed = |source| StoreError::Read {
+            path: folder.clone(),
+            source,
+        };
+        for entry in fs::read_dir(&folder).map_err(failed)?.flatten() {
+            if entry.file_name().to_string_lossy().starts_with(prefix) {
+                fs::remove_file(entry.path()).map_err(failed)?;
+            }
+        }
+        Ok(())
+    }
+
     /// A working folder for a unit.
     pub(crate) fn draft(&self) -> Result<Draft, StoreError> {
         let folder = tempfile::Builder::new()

@@ -70,12 +70,13 @@ fn describe(s: &RunSummary, effort: Effort) -> String {
         Effort::Quick => "Cut short.".to_owned(),
     };
     format!(
-        "A square of office paper, {:.0} mm, {:.0} g/m² ({:.2} g), lumped masses, velocity damping {:.0}/s, {:.1} s from exactly flat \
+        "A square of office paper, {:.0} mm, {:.0} g/m² ({:.2} g), lumped masses, {} with velocity damping {:.0}/s, {:.1} s from exactly flat \
          and horizontal; {} frames of 1/60 s with {} rejected steps; largest edge strain {:.0e}. Warm: the side that was above; \
          blue: below. Nothing keeps the sheet from passing through itself in this version. {end}",
         1e3 * scene.side,
         1e3 * scene.paper,
         1e3 * scene.mass(),
+        Scene::method(),
         scene.damping,
         s.time,
         s.frames,

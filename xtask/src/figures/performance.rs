@@ -1,7 +1,7 @@
 //! Fig. 10: the paper's table of performance, with ours beside it.
 
 use super::{Context, Effort, Made, Picture, Table, crumple};
-use crate::runs::{self, ChartScene, ChartScheme, ChartSummary, Fate, RunSummary};
+use crate::runs::{self, ChartScene, ChartScheme, ChartSummary, Fate, RunSummary, Scene};
 use anyhow::Result;
 use isosheet_coords::condition_table;
 use serde_json::json;
@@ -165,7 +165,7 @@ fn default_row(mesh: &str, s: &RunSummary) -> Vec<String> {
     vec![
         String::new(),
         mesh.into(),
-        "isosheet default (implicit Euler), from exactly flat".into(),
+        format!("isosheet default ({}), from exactly flat", Scene::method()),
         format!("{:.0}", s.frames_per_second),
         milliseconds(s.step_range),
         format!(

@@ -64,6 +64,18 @@ impl Scene {
             .with_pins(&[self.pin()])?)
     }
 
+    /// Name of the default method.
+    pub(crate) fn method() -> &'static str {
+        match Method::default() {
+            Method::ImplicitEuler(_) => "implicit Euler",
+            Method::Bdf2(_) => "BDF2",
+            Method::Projection(_) => "projection",
+            Method::EnergyMomentum(_) => "energy-momentum",
+            Method::Rattle(_) => "RATTLE",
+            Method::RattleComposition(_) => "fourth-order RATTLE",
+        }
+    }
+
     /// The simulation with the default method.
     pub(crate) fn simulation(&self, sheet: &Sheet) -> Result<Simulation> {
         let state = State::at_rest(sheet.positions().to_vec());

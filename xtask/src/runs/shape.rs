@@ -62,19 +62,6 @@ impl Shape {
             bending: t.edge_ids().map(bend).sum::<f64>() / scene.side,
         })
     }
-
-    /// Part of the way from the rigid plate to the [`LIMIT`]: 0 for a plate that hangs flat, 1 for a sheet gathered into a line.
-    pub(crate) fn softness(&self) -> f64 {
-        (self.centre_depth - PLATE) / (LIMIT - PLATE)
-    }
-
-    /// Whether the sheet hangs folded in half along the diagonal from the pin, like a triangle: centre of mass at sqrt 5 / 3,
-    /// total bending pi sqrt 2, both within a thousandth.
-    pub(crate) fn is_folded_in_half(&self) -> bool {
-        let (depth, bending) = (5f64.sqrt() / 3.0, std::f64::consts::PI * 2f64.sqrt());
-        (self.centre_depth / depth - 1.0).abs() < 1e-3
-            && (self.bending / bending - 1.0).abs() < 1e-3
-    }
 }
 
 #[cfg(test)]
@@ -82,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_plate_that_hangs_flat_has_softness_zero() {
+    fn a_plate_that_hangs_flat() {
         let scene = Scene::paper(2, 1);
         let sheet = scene.sheet().unwrap();
         // Turned so that the diagonal from the pin points down.
@@ -98,7 +85,7 @@ mod tests {
             })
             .collect();
         let shape = Shape::of(&scene, &sheet, &x).unwrap();
-        assert!((shape.centre_depth - PLATE).abs() < 1e-12 && shape.softness().abs() < 1e-10);
+        assert!((shape.centre_depth - PLATE).abs() < 1e-12);
         assert!((shape.corner_depth - 2f64.sqrt()).abs() < 1e-12);
         assert!((shape.extent - 2f64.sqrt()).abs() < 1e-12);
         assert!(shape.bending < 1e-5);
@@ -142,6 +129,5 @@ mod tests {
             "{shape:?}"
         );
         assert!((shape.bending - 2f64.sqrt() * std::f64::consts::PI).abs() < 1e-10);
-        assert!(shape.is_folded_in_half());
     }
 }

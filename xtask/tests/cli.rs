@@ -1,0 +1,205 @@
+//! The command line from outside: what it makes, what it refuses, what it leaves behind.
+
+use assert_cmd::Command;
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+fn xtask() -> Command {
+    Command::new(assert_cmd::cargo::cargo_bin!("xtask"))
+}
+
+/// Runs `reproduce-figures` with a list and further arguments and returns exit code, output and messages.
+fn reproduce(out: &Path, figures: &str, more: &[&str]) -> (Option<i32>, String) {
+    let result = xtask()
+        .args(["reproduce-figures", "--figures", figures, "--out"])
+        .arg(out)
+        .args(more)
+        .output()
+        .unwrap();
+    let text = [result.stdout, result.stderr].concat();
+    (
+        result.status.code(),
+        String::from_utf8_lossy(&text).into_owned(),
+    )
+}
+
+fn folder() -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    (folder, out)
+}
+
+/// Names in a folder that start with a dot and are not the program's own records.
+fn leftovers(out: &Path) -> Vec<String> {
+    fs::read_dir(out)
+        .unwrap()
+        .flatten()
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .filter(|n| n.starts_with('.') && n != ".stamps" && n != ".lock")
+        .collect()
+}
+
+#[test]
+fn makes_figures_and_skips_them_when_run_again() {
+    let (_keep, out) = folder();
+    let (code, text) = reproduce(&out, "1,2", &["--quick"]);
+    assert_eq!(code, Some(0), "{text}");
+    for file in [
+        "figures/fig01.svg",
+        "figures/fig02.svg",
+        "index.html",
+        "summary.json",
+    ] {
+        assert!(
+            fs::metadata(out.join(file)).unwrap().len() > 500,
+            "{file} is empty"
+        );
+    }
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    assert_eq!(page.matches("<section").count(), 2);
+    assert!(page.contains("<svg") && !page.contains("<script") && !page.contains("<link"));
+    let summary: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(summary["figures"][1]["facts"]["pair"]["total"], 7);
+    assert_eq!(leftovers(&out), Vec::<String>::new());
+
+    let before = fs::metadata(out.join("figures/fig01.svg"))
+        .unwrap()
+        .modified()
+        .unwrap();
+    let (code, text) = reproduce(&out, "1-3", &["--quick"]);
+    assert_eq!(code, Some(0), "{text}");
+    assert_eq!(text.matches("up to date").count(), 2, "{text}");
+    let after = fs::metadata(out.join("figures/fig01.svg"))
+        .unwrap()
+        .modified()
+        .unwrap();
+    assert_eq!(before, after);
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    assert_eq!(
+        page.matches("<section").count(),
+        3,
+        "earlier figures stay in the report"
+    );
+}
+
+#[test]
+fn makes_again_what_changed_or_is_missing() {
+    let (_keep, out) = folder();
+    reproduce(&out, "1,2", &["--quick"]);
+    fs::remove_file(out.join("figures/fig02.svg")).unwrap();
+    let (code, text) = reproduce(&out, "1,2", &["--quick"]);
+    assert_eq!(
+        (code, text.matches("up to date").count()),
+        (Some(0), 1),
+        "{text}"
+    );
+    assert!(out.join("figures/fig02.svg").exists());
+    let (_, text) = reproduce(&out, "1,2", &[]);
+    assert_eq!(
+        text.matches("up to date").count(),
+        0,
+        "other options: {text}"
+    );
+    let (_, text) = reproduce(&out, "1,2", &["--force"]);
+    assert_eq!(text.matches("up to date").count(), 0, "{text}");
+}
+
+#[test]
+fn a_quick_run_of_everything_writes_readable_runs() {
+    let (_keep, out) = folder();
+    let (code, text) = reproduce(&out, "10-12", &["--quick"]);
+    assert_eq!(code, Some(0), "{text}");
+    let run = out.join("runs/crumple-m1");
+    let history = fs::read_to_string(run.join("history.csv")).unwrap();
+    assert_eq!(
+        history.lines().count(),
+        1 + 13,
+        "a header, the start and twelve frames"
+    );
+    assert!(run.join("trajectory.npz").exists());
+    assert_eq!(fs::read_dir(run.join("obj")).unwrap().count(), 13);
+    let summary: serde_json::Value =
+        serde_json::from_slice(&fs::read(run.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(summary["extent"], "complete");
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    assert!(page.contains("data:image/png;base64,") && page.contains("33.33"));
+    assert!(page.contains("made with <code>--quick</code>"));
+}
+
+#[test]
+fn refuses_what_makes_no_sense_before_any_work() {
+    let (_keep, out) = folder();
+    for (figures, words) in [
+        ("99", "there is no figure 99; known figures are 1 to 12"),
+        ("1,13", "figure 13 needs contact"),
+        ("nine", "'nine' is neither a figure nor a range"),
+        ("9-1", "runs backwards"),
+        ("", "the list is empty"),
+    ] {
+        let (code, text) = reproduce(&out, figures, &[]);
+        assert_eq!(code, Some(2), "{text}");
+        assert!(text.contains(words), "{words} is missing in {text}");
+    }
+    let (code, text) = reproduce(&out, "1", &["--fast"]);
+    assert_eq!(code, Some(2));
+    assert!(text.contains("unexpected argument '--fast'"), "{text}");
+    assert!(!out.exists(), "nothing was written");
+    let result = xtask()
+        .args(["condition-table", "--level", "9"])
+        .output()
+        .unwrap();
+    assert_eq!(result.status.code(), Some(2));
+}
+
+#[test]
+fn an_unwritable_folder_gets_a_clear_message() {
+    let (keep, _) = folder();
+    let file = keep.path().join("file");
+    fs::write(&file, "not a folder").unwrap();
+    let (code, text) = reproduce(&file.join("out"), "1", &[]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(
+        text.contains("cannot write to the folder") && text.contains("choose another with --out"),
+        "{text}"
+    );
+    assert!(!text.contains("figure 1"), "no work was done: {text}");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on() {
+    let (_keep, out) = folder();
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("xtask"))
+        .args(["reproduce-figures", "--figures", "1,12", "--out"])
+        .arg(&out)
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    // The long part of figure 12 follows when figure 1 and the first run are there.
+    let run = out.join("runs/crumple-m2/summary.json");
+    let start = std::time::Instant::now();
+    while !run.exists() && start.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let pid = child.id().to_string();
+    std::process::Command::new("kill")
+        .args(["-INT", &pid])
+        .status()
+        .unwrap();
+    let status = child.wait().unwrap();
+    assert_eq!(status.code(), Some(130));
+    assert!(out.join("figures/fig01.svg").exists() && out.join("index.html").exists());
+    assert!(!out.join("figures/fig12.png").exists());
+    assert_eq!(leftovers(&out), Vec::<String>::new());
+    let (code, text) = reproduce(&out, "1", &[]);
+    assert_eq!(
+        (code, text.matches("up to date").count()),
+        (Some(0), 1),
+        "{text}"
+    );
+    let (code, text) = reproduce(&out, "12", &["--quick"]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(out.join("figures/fig12.png").exists());
+}
