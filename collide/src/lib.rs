@@ -6,6 +6,7 @@
 //! * [`CcdOptions`]: how far a motion may go before two primitives touch.
 //! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle.
 //! * [`Barrier`] and [`Friction`]: the energies of contact, as functions of these distances.
+//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a prescribed [`Motion`].
 //!
 //! Everything is free of absolute tolerances: a sheet of a micrometre and one of a kilometre are
 //! treated alike. SI units and `f64` throughout.
@@ -18,6 +19,10 @@ pub mod distance;
 mod friction;
 mod jet;
 mod mollifier;
+mod motion;
+mod obstacle;
+mod signed_distance;
+mod surface;
 #[cfg(test)]
 mod testing;
 
@@ -29,3 +34,7 @@ pub use distance::{Closest, Feature};
 pub use friction::{Friction, FrictionError, LaggedContact};
 pub use jet::Jet;
 pub use mollifier::ParallelMollifier;
+pub use motion::{Keyframe, Motion, MotionError};
+pub use obstacle::{ContactGeometry, Obstacle, ObstacleError, Shape};
+pub use signed_distance::SignedDistance;
+pub use surface::{SurfaceError, TriangleSurface};

@@ -1,0 +1,229 @@
+use super::*;
+use crate::Jet;
+use crate::distance::{point_edge, point_point};
+use crate::motion::Keyframe;
+use crate::testing::{check_jet, points, sizes};
+use proptest::prelude::*;
+
+fn shapes() -> impl Strategy<Value = Shape> {
+    (0..5_u8, proptest::array::uniform3(0.2..1.0_f64)).prop_map(|(kind, [a, b, c])| match kind {
+        0 => Shape::HalfSpace,
+        1 => Shape::Cuboid { half: [a, b, c] },
+        2 => Shape::Sphere { radius: a },
+        3 => Shape::Cylinder {
+            radius: a,
+            half_height: b,
+        },
+        _ => Shape::Capsule {
+            radius: a,
+            half_length: b,
+        },
+    })
+}
+
+fn scaled(shape: &Shape, s: f64) -> Shape {
+    match *shape {
+        Shape::HalfSpace => Shape::HalfSpace,
+        Shape::Cuboid { half } => Shape::Cuboid {
+            half: half.map(|h| s * h),
+        },
+        Shape::Sphere { radius } => Shape::Sphere { radius: s * radius },
+        Shape::Cylinder {
+            radius,
+            half_height,
+        } => Shape::Cylinder {
+            radius: s * radius,
+            half_height: s * half_height,
+        },
+        Shape::Capsule {
+            radius,
+            half_length,
+        } => Shape::Capsule {
+            radius: s * radius,
+            half_length: s * half_length,
+        },
+        Shape::Surface(_) => unreachable!("only analytic shapes are generated"),
+    }
+}
+
+fn moving(shape: Shape, pose: &[f64; 6], end: &[f64; 6]) -> Obstacle {
+    let key = |t, p: &[f64; 6]| Keyframe {
+        t,
+        pose: Isometry3::new(
+            Vector3::new(p[0], p[1], p[2]),
+            Vector3::new(p[3], p[4], p[5]),
+        ),
+    };
+    Obstacle::new(
+        shape,
+        Motion::new(vec![key(0.0, pose), key(1.0, end)]).unwrap(),
+    )
+    .unwrap()
+}
+
+fn pose() -> impl Strategy<Value = [f64; 6]> {
+    proptest::array::uniform6(-1.0..1.0_f64)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn derivatives_match_differences(shape in shapes(), size in sizes(), p in points::<1>(), a in pose(), t in 0.0..1.0_f64) {
+        let mut place = a;
+        place[..3].iter_mut().for_each(|c| *c *= size);
+        let body = moving(scaled(&shape, size), &place, &[0.0; 6]);
+        let centre = body.motion().pose(t).translation.vector;
+        let p = centre + 2.0 * size * p[0];
+        let at = body.signed_distance(t, &p);
+        // The gradient jumps on the medial axis, the Hessian where the nearest feature changes.
+        let steady = (0..6).all(|k| {
+            let mut q = p;
+            q[k / 2] += if k % 2 == 0 { 1e-3 } else { -1e-3 } * size;
+            let d = body.signed_distance(t, &q);
+            (d.hessian - at.hessian).norm() * size < 0.1 && (d.normal - at.normal).norm() < 0.1
+        });
+        if steady {
+            check_jet(&[p], 0.03 * size, &|q| {
+                let d = body.signed_distance(t, &q[0]);
+                Jet { value: d.value, gradient: [d.normal], hessian: [[d.hessian]] }
+            });
+            let h = 1e-5;
+            let at = |t: f64| body.signed_distance(t, &p).value;
+            let t = t.clamp(2.0 * h, 1.0 - 2.0 * h);
+            let rate = (at(t + h) - at(t - h)) / (2.0 * h);
+            prop_assert!((rate - body.distance_rate(t, &p)).abs() < 1e-6 * size);
+        }
+        prop_assert!((at.normal.norm() - 1.0).abs() < 1e-12);
+        // The closest point is on the surface.
+        prop_assert!(body.signed_distance(t, &at.closest(&p)).value.abs() < 1e-12 * size);
+    }
+
+    /// Against the primitives of the body: another way to its distances.
+    #[test]
+    fn distances_agree_with_the_contact_geometry(shape in shapes(), p in points::<1>()) {
+        let p = 2.0 * p[0];
+        let found = shape.signed_distance(&p).value;
+        let Some(g) = shape.contact_geometry(100).unwrap() else {
+            prop_assert_eq!(found, p.z);
+            return Ok(());
+        };
+        let x: Vec<Vector3<f64>> = g.positions.as_chunks::<3>().0.iter().map(|q| Vector3::from(*q)).collect();
+        match shape {
+            Shape::Sphere { .. } => {
+                prop_assert!((point_point(&[p, x[0]]).distance() - g.radius - found).abs() < 1e-15);
+            }
+            Shape::Capsule { .. } => {
+                prop_assert!((point_edge(&[p, x[0], x[1]]).distance() - g.radius - found).abs() < 1e-15);
+            }
+            _ => {
+                let surface = TriangleSurface::new(&g.positions, g.mesh.faces()).unwrap();
+                prop_assert!(surface.is_closed());
+                let other = surface.signed_distance(&p).value;
+                let sag = if let Shape::Cylinder { radius, .. } = shape {
+                    radius * (1.0 - (std::f64::consts::PI / 100.0).cos())
+                } else {
+                    0.0
+                };
+                prop_assert!((-1e-12..=sag + 1e-12).contains(&(other - found)), "{other} {found}");
+                let as_shape = Shape::Surface(Arc::new(surface));
+                prop_assert_eq!(as_shape.signed_distance(&p).value, other);
+            }
+        }
+    }
+
+    #[test]
+    fn placed_vertices_move_with_the_body(a in pose(), b in pose(), t in 0.0..1.0_f64) {
+        let shape = Shape::Cuboid { half: [0.3, 0.4, 0.5] };
+        let body = moving(shape, &a, &b);
+        let g = body.shape().contact_geometry(3).unwrap().unwrap();
+        let mut placed = g.positions.clone();
+        body.place(t, &g.positions, &mut placed);
+        for q in placed.as_chunks::<3>().0 {
+            prop_assert!(body.signed_distance(t, &Vector3::from(*q)).value.abs() < 1e-14);
+        }
+    }
+}
+
+/// Points by hand, on every feature.
+#[test]
+fn distances_by_hand() {
+    let at = |shape: &Shape, p: [f64; 3]| shape.signed_distance(&Vector3::from(p)).value;
+    let cuboid = Shape::Cuboid {
+        half: [1.0, 2.0, 3.0],
+    };
+    assert_eq!(at(&cuboid, [0.0, 0.0, 0.0]), -1.0);
+    assert_eq!(at(&cuboid, [0.0, 5.0, 7.0]), 5.0);
+    assert_eq!(at(&cuboid, [2.0, -4.0, 5.0]), 3.0);
+    let cylinder = Shape::Cylinder {
+        radius: 5.0,
+        half_height: 1.0,
+    };
+    assert_eq!(at(&cylinder, [6.0, 8.0, 0.0]), 5.0);
+    assert_eq!(at(&cylinder, [0.0, 0.0, -4.0]), 3.0);
+    assert_eq!(at(&cylinder, [4.8, 6.4, 5.0]), 5.0);
+    assert_eq!(at(&cylinder, [0.0, 0.0, 0.0]), -1.0);
+    let capsule = Shape::Capsule {
+        radius: 1.0,
+        half_length: 2.0,
+    };
+    assert_eq!(at(&capsule, [3.0, 0.0, 6.0]), 4.0);
+    assert_eq!(at(&capsule, [3.0, 4.0, 1.0]), 4.0);
+    // Where the closest point is not unique, values and normals are still finite.
+    for shape in [cuboid, cylinder, capsule, Shape::Sphere { radius: 1.0 }] {
+        let d = shape.signed_distance(&Vector3::zeros());
+        assert!(d.value < 0.0 && d.normal.norm() == 1.0 && d.hessian.iter().all(|h| h.is_finite()));
+    }
+}
+
+#[test]
+fn bad_lengths_are_named() {
+    let still = |shape| Obstacle::still(shape, Isometry3::identity()).map(|_| ());
+    assert_eq!(
+        still(Shape::Cuboid {
+            half: [1.0, 0.0, 1.0]
+        }),
+        Err(ObstacleError::Length {
+            shape: "cuboid",
+            name: "half[1]",
+            value: 0.0
+        })
+    );
+    assert_eq!(
+        still(Shape::Sphere { radius: -1.0 }),
+        Err(ObstacleError::Length {
+            shape: "sphere",
+            name: "radius",
+            value: -1.0
+        })
+    );
+    assert!(
+        still(Shape::Capsule {
+            radius: 1.0,
+            half_length: f64::NAN
+        })
+        .is_err()
+    );
+    assert!(
+        still(Shape::Cylinder {
+            radius: 1.0,
+            half_height: f64::INFINITY
+        })
+        .is_err()
+    );
+    assert!(still(Shape::HalfSpace).is_ok());
+    let cylinder = Shape::Cylinder {
+        radius: 1.0,
+        half_height: 1.0,
+    };
+    assert_eq!(
+        cylinder.contact_geometry(2),
+        Err(ObstacleError::Segments(2))
+    );
+    let mut pose = Isometry3::identity();
+    pose.translation.vector.x = f64::NAN;
+    assert!(matches!(
+        Obstacle::still(Shape::HalfSpace, pose),
+        Err(ObstacleError::Motion(MotionError::NotFinite { .. }))
+    ));
+}
