@@ -38,6 +38,8 @@
 //! methods. [`StepReport::gap`] is there for it.
 
 pub mod chart;
+#[cfg(test)]
+mod derivative_tests;
 mod energy_momentum;
 mod implicit;
 mod integrator;

@@ -154,6 +154,20 @@ impl PrimalMatrix {
         self.llt.factorize()
     }
 
+    /// `K v` with the values assembled last, zero at pinned vertices.
+    #[cfg(test)]
+    pub(crate) fn product(&mut self, model: &SheetModel, v: &[f64]) -> Vec<f64> {
+        gather(model, v, &mut self.rhs);
+        let mut packed = vec![0.0; self.rhs.len()];
+        self.llt
+            .pattern()
+            .sub_symmetric_product(self.llt.values(), &self.rhs, &mut packed);
+        packed.iter_mut().for_each(|p| *p = -*p);
+        let mut full = vec![0.0; v.len()];
+        scatter(model, &packed, &mut full);
+        full
+    }
+
     /// `out = K^-1 b`, zero at pinned vertices.
     pub(crate) fn solve(&mut self, model: &SheetModel, b: &[f64], out: &mut [f64]) {
         gather(model, b, &mut self.rhs);

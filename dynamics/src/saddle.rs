@@ -273,6 +273,36 @@ impl SaddleMatrix {
         }
     }
 
+    /// The matrix times a direction and multipliers, in the units of the right-hand sides.
+    #[cfg(test)]
+    pub(crate) fn product(
+        &mut self,
+        model: &SheetModel,
+        system: &System<'_>,
+        direction: &[f64],
+        multipliers: &[f64],
+    ) -> (Vec<f64>, Vec<f64>) {
+        self.assemble(model, system, 0.0);
+        let mut packed = vec![0.0; self.rhs.len()];
+        gather(model, direction, &mut packed[..self.primal]);
+        for (&i, l) in self.rod_index.iter().zip(multipliers) {
+            packed[i as usize] = l * self.length_scale / self.mass_scale;
+        }
+        let mut out = vec![0.0; packed.len()];
+        self.lu
+            .pattern()
+            .sub_product(self.lu.values(), &packed, &mut out);
+        let mut momentum = vec![0.0; direction.len()];
+        scatter(model, &out[..self.primal], &mut momentum);
+        momentum.iter_mut().for_each(|m| *m *= -self.mass_scale);
+        let rods = self
+            .rod_index
+            .iter()
+            .map(|&i| -out[i as usize] * self.length_scale)
+            .collect();
+        (momentum, rods)
+    }
+
     /// Replaces right-hand sides by the solution; leaves them alone on failure.
     fn back_substitute(
         &mut self,
