@@ -4,7 +4,8 @@
 //!   and Hessians; [`ParallelMollifier`] smooths two edges that become parallel.
 //! * [`Jet`]: value, gradient and Hessian on a stencil of points, with product and chain rule.
 //! * [`CcdOptions`]: how far a motion may go before two primitives touch.
-//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle.
+//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle; bulk queries over
+//!   these pairs, and [`crossings`] as a check that uses none of them.
 //! * [`Barrier`] and [`Friction`]: the energies of contact, as functions of these distances.
 //! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a prescribed [`Motion`].
 //!
@@ -20,6 +21,7 @@ mod friction;
 mod jet;
 mod mollifier;
 mod motion;
+mod narrow_phase;
 mod obstacle;
 mod signed_distance;
 mod surface;
@@ -35,6 +37,7 @@ pub use friction::{Friction, FrictionError, LaggedContact};
 pub use jet::Jet;
 pub use mollifier::ParallelMollifier;
 pub use motion::{Keyframe, Motion, MotionError};
+pub use narrow_phase::{Moving, crossings, crossings_between};
 pub use obstacle::{ContactGeometry, Obstacle, ObstacleError, Shape};
 pub use signed_distance::SignedDistance;
 pub use surface::{SurfaceError, TriangleSurface};

@@ -1,0 +1,122 @@
+use super::*;
+use crate::BroadPhase;
+use isosheet_mesh::generate;
+use proptest::prelude::*;
+
+fn add(x: &[f64], dx: &[f64], t: f64) -> Vec<f64> {
+    x.iter().zip(dx).map(|(x, d)| x + t * d).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// A sheet whose vertices are thrown about at random, each step cut to what is proven safe: it
+    /// never passes through itself, and the same motions uncut do.
+    #[test]
+    fn a_sheet_thrown_about_never_crosses_itself(
+        throws in proptest::collection::vec(proptest::collection::vec(-1.0..1.0_f64, 3 * 25), 12),
+        size in -6.0..3.0_f64,
+    ) {
+        let unit = 10.0_f64.powf(size);
+        let sheet = generate::isotropic_square(1, unit).unwrap();
+        let mesh = ContactMesh::from_topology(sheet.topology());
+        prop_assert_eq!(mesh.vertex_count(), 25);
+        let mut phase = BroadPhase::new(mesh.clone(), sheet.positions());
+        let mut candidates = Candidates::default();
+        let mut x = sheet.positions().to_vec();
+        let options = CcdOptions::default();
+        let mut cut = 0;
+        for throw in &throws {
+            let dx: Vec<f64> = throw.iter().map(|d| 0.5 * unit * d).collect();
+            let goal = add(&x, &dx, 1.0);
+            phase.update(&x, &goal, 0.0);
+            phase.self_candidates(&mut candidates);
+            let before = candidates.smallest_distance(&mesh, &x);
+            let t = candidates.safe_fraction(Moving { mesh: &mesh, x: &x, dx: &dx }, &options, 1.0);
+            cut += usize::from(t < 1.0);
+            x = add(&x, &dx, t);
+            prop_assert_eq!(crossings(&mesh, &x), Vec::<[u32; 2]>::new());
+            prop_assert!(candidates.smallest_distance(&mesh, &x) > 0.0);
+            prop_assert!(before > 0.0);
+        }
+        prop_assert!(cut > 0, "no step was cut");
+        // One throw as far as the sheet is wide, uncut: the test for crossings does find some.
+        let far = add(sheet.positions(), &throws[0].iter().map(|d| unit * d).collect::<Vec<_>>(), 1.0);
+        prop_assert!(!crossings(&mesh, &far).is_empty());
+    }
+
+    /// A tetrahedron shot through a sheet at a thousand sheet sizes per step stops before it.
+    #[test]
+    fn a_fast_body_does_not_tunnel(
+        place in proptest::array::uniform2(0.1..0.9_f64), gap in 1e-6..1.0_f64, speed in 1.0..1000.0_f64, thickness in 0.0..0.9_f64,
+    ) {
+        let sheet = generate::isotropic_square(1, 1.0).unwrap();
+        let mesh = ContactMesh::from_topology(sheet.topology());
+        let body = ContactMesh::from_triangles(4, &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]).unwrap();
+        let [u, v] = place;
+        let y = [u, v, gap, u + 0.1, v, gap + 0.2, u, v + 0.1, gap + 0.2, u, v, gap + 0.3];
+        let dy: Vec<f64> = (0..12).map(|k| if k % 3 == 2 { -speed } else { 0.0 }).collect();
+        let x = sheet.positions();
+        let still = vec![0.0; x.len()];
+        let separation = thickness * gap;
+        let mut sheet_boxes = BroadPhase::new(mesh.clone(), x);
+        let mut body_boxes = BroadPhase::new(body.clone(), &y);
+        sheet_boxes.update(x, x, separation);
+        body_boxes.update(&y, &add(&y, &dy, 1.0), 0.0);
+        let mut pairs = CrossCandidates::default();
+        sheet_boxes.candidates_with(&body_boxes, &mut pairs);
+        let options = CcdOptions { separation, ..CcdOptions::default() };
+        let sheet_moves = Moving { mesh: &mesh, x, dx: &still };
+        let body_moves = Moving { mesh: &body, x: &y, dx: &dy };
+        let t = pairs.safe_fraction(sheet_moves, body_moves, &options, 1.0);
+        let impact = (gap - separation) / speed;
+        prop_assert!(t < impact && t > 0.8 * impact, "{t} {impact}");
+        let stopped = add(&y, &dy, t);
+        prop_assert!(crossings_between(&body, &stopped, &mesh, x).is_empty());
+        prop_assert!(crossings_between(&mesh, x, &body, &stopped).is_empty());
+        let left = pairs.smallest_distance([&mesh, &body], x, &stopped);
+        prop_assert!((left - (gap - t * speed)).abs() < 1e-12 && left > separation);
+        // The other way round too.
+        body_boxes.candidates_with(&sheet_boxes, &mut pairs);
+        let again = pairs.safe_fraction(body_moves, sheet_moves, &options, 1.0);
+        prop_assert!(again < impact && again > 0.8 * impact);
+        let left_again = pairs.smallest_distance([&body, &mesh], &stopped, x);
+        prop_assert!((left_again - left).abs() < 1e-15);
+        let through = add(&y, &dy, (gap + 0.1) / speed);
+        prop_assert!(!crossings_between(&body, &through, &mesh, x).is_empty());
+    }
+}
+
+#[test]
+fn no_pairs_mean_no_limit_and_no_distance() {
+    let sheet = generate::isotropic_square(0, 1.0).unwrap();
+    let mesh = ContactMesh::from_topology(sheet.topology());
+    let none = Candidates::default();
+    let x = sheet.positions();
+    assert_eq!(none.smallest_distance(&mesh, x), f64::INFINITY);
+    let moving = Moving {
+        mesh: &mesh,
+        x,
+        dx: x,
+    };
+    assert_eq!(none.safe_fraction(moving, &CcdOptions::default(), 0.5), 0.5);
+    // A state that is not a number has no distance and no safe step.
+    let mut broken = x.to_vec();
+    broken[0] = f64::NAN;
+    let far_face = (0..)
+        .zip(mesh.faces())
+        .find(|(_, f)| !f.contains(&0))
+        .unwrap()
+        .0;
+    let pair = Candidates {
+        vertex_face: vec![[0, far_face]],
+        edge_edge: Vec::new(),
+    };
+    assert!(pair.smallest_distance(&mesh, &broken).is_nan());
+    let moving = Moving {
+        mesh: &mesh,
+        x: &broken,
+        dx: x,
+    };
+    assert_eq!(pair.safe_fraction(moving, &CcdOptions::default(), 1.0), 0.0);
+}
