@@ -115,7 +115,7 @@ pub(super) fn make() -> Result<Made> {
                 to be assigned.",
         measured: format!(
             "Left, the line bent by {}: function f has two solutions. Right, straight: f refuses (sine of the smallest angle \
-             {sine:.0e}, limit {COLLINEAR:.0e}) and the vertex keeps the angle it had before; for the five angles drawn the middle rod, \
+             {sine}, limit {COLLINEAR:.0e}) and the vertex keeps the angle it had before; for the five angles drawn the middle rod, \
              which is not used, keeps its length to {worst:.0e}.",
             degrees(bend)
         ),

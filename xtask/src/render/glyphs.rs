@@ -96,7 +96,7 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
 /// Draws a label with the left end of its baseline at (x, y), pixels.
 pub(super) fn write(image: &mut Image, text: &str, at: [f64; 2], size: f64, colour: Light) {
     let mut x = at[0];
-    let radius = 0.075 * size;
+    let radius = 0.065 * size;
     for glyph in text.chars().filter_map(glyph) {
         for stroke in &glyph.strokes {
             for pair in stroke.windows(2) {

@@ -11,10 +11,10 @@ pub(crate) struct Labelled {
 }
 
 /// Height of the labels' digits, pixels.
-const LABEL: f64 = 17.0;
+const LABEL: f64 = 27.0;
 
 /// Height of the strip below each picture that holds its label, pixels.
-const STRIP: usize = 58;
+const STRIP: usize = 84;
 
 /// Pixels rendered for each pixel of the labels, each way.
 const FINE: usize = 4;

@@ -65,7 +65,7 @@ fn section(
         let bytes = read(&picture.path)?;
         out.push_str("<figure>");
         if picture.path.ends_with(".svg") {
-            out.push_str(inline_svg(&String::from_utf8_lossy(&bytes)));
+            out.push_str(&inline_svg(&String::from_utf8_lossy(&bytes)));
         } else {
             let _ = write!(
                 out,
@@ -109,9 +109,26 @@ fn table(out: &mut String, t: &Table) {
     out.push_str("</tbody></table></div>");
 }
 
-/// The part of an SVG file that may stand in a page: without an XML declaration.
-fn inline_svg(svg: &str) -> &str {
-    svg.find("<svg").map_or(svg, |start| &svg[start..])
+/// Size of drawings in the page relative to their own: their text is as large as that of the page then.
+const ENLARGED: f64 = 1.3;
+
+/// The part of an SVG file that may stand in a page: without an XML declaration, and enlarged.
+fn inline_svg(svg: &str) -> String {
+    let svg = svg.find("<svg").map_or(svg, |start| &svg[start..]);
+    let mut out = svg.to_owned();
+    for name in ["width=\"", "height=\""] {
+        // The first of each belongs to the drawing as a whole.
+        let Some(start) = out.find(name).map(|k| k + name.len()) else {
+            continue;
+        };
+        let Some(length) = out[start..].find("pt\"") else {
+            continue;
+        };
+        if let Ok(points) = out[start..start + length].parse::<f64>() {
+            out.replace_range(start..start + length, &format!("{:.2}", ENLARGED * points));
+        }
+    }
+    out
 }
 
 fn escape(text: &str) -> String {
@@ -152,7 +169,7 @@ mod tests {
         };
         let mut read = |path: &str| {
             Ok(if path.ends_with("svg") {
-                b"<?xml?><svg></svg>".to_vec()
+                br#"<?xml?><svg width="100.00pt" height="50.00pt"></svg>"#.to_vec()
             } else {
                 vec![1, 2, 3]
             })
@@ -160,7 +177,7 @@ mod tests {
         let html = page(&[(record, Effort::Full)], &mut read).unwrap();
         for part in [
             "A &lt; B",
-            "<figure><svg></svg></figure>",
+            "<figure><svg width=\"130.00pt\" height=\"65.00pt\"></svg></figure>",
             "alt=\"b &quot;quoted&quot;\" src=\"data:image/png;base64,AQID\"",
             "<td>&lt;1&gt;</td>",
         ] {
