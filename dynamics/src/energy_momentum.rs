@@ -44,6 +44,13 @@ impl EnergyMomentumOptions {
 /// the multipliers of nearly dependent rods can keep it above the tolerance.
 const STALLED_RESIDUAL: f64 = 1e-9;
 
+/// Newton iterations that converge at all are in their quadratic phase after this many: a residual
+/// still above [`QUADRATIC_BELOW`] then never recovered in the falls of M^1 to M^3, and a step is
+/// halved sooner.
+const QUADRATIC_FROM: usize = 6;
+/// See [`QUADRATIC_FROM`].
+const QUADRATIC_BELOW: f64 = 1e-2;
+
 /// The energy-momentum step (after Simo and Gonzalez): with the midpoint velocity
 /// `w = (v0 + v1) / 2`, `x1 = x0 + h w`, `xm = (x0 + x1) / 2`,
 ///
@@ -187,7 +194,10 @@ impl Integrator for EnergyMomentum {
             {
                 break true;
             }
-            if iterations == self.options.max_iterations || !(residual.is_finite() && strain < 1.0)
+            let lost = iterations >= QUADRATIC_FROM && residual > QUADRATIC_BELOW;
+            if iterations == self.options.max_iterations
+                || lost
+                || !(residual.is_finite() && strain < 1.0)
             {
                 break false;
             }

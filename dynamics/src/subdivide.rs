@@ -32,6 +32,10 @@ impl Default for Tally {
     }
 }
 
+/// Sub-steps accepted after a rejection before a longer one is tried: a singular state takes a few
+/// steps to pass, and trying too soon is what most rejections were.
+const PATIENCE: usize = 4;
+
 /// An integrator with step control.
 pub(crate) struct Subdivided {
     pub(crate) model: SheetModel,
@@ -71,6 +75,7 @@ impl Subdivided {
         let start = state.t;
         let min_step = self.control.min_fraction * h;
         let (mut fraction, mut done) = (1.0, 0.0);
+        let mut patience = 0;
         while done < 1.0 {
             let effort = &mut tally.effort;
             let mut tried = self
@@ -80,6 +85,7 @@ impl Subdivided {
                 tally.rejected += 1;
                 if 0.5 * fraction * h >= min_step {
                     fraction *= 0.5;
+                    patience = PATIENCE;
                     continue;
                 }
                 let Some(fallback) = &mut self.fallback else {
@@ -98,7 +104,9 @@ impl Subdivided {
             tally.path = tally.path.max(accepted.path);
             tally.work += accepted.work;
             tally.dissipated += damp(&self.model, state, fraction * h);
-            fraction = largest_fraction(done).min(2.0 * fraction);
+            patience = patience.saturating_sub(1);
+            let growth = if patience == 0 { 2.0 } else { 1.0 };
+            fraction = largest_fraction(done).min(growth * fraction);
         }
         Ok(())
     }
