@@ -178,7 +178,7 @@ fn default_row(mesh: &str, s: &RunSummary) -> Vec<String> {
         mesh.into(),
         format!("isosheet default ({}), from exactly flat", Scene::method()),
         format!("{:.0}", s.frames_per_second),
-        milliseconds(s.step_range),
+        s.step_range.map_or("–".into(), milliseconds),
         format!(
             "{:.1} s, {} rejected steps, strain {:.0e}",
             s.time, s.rejected, s.max_strain

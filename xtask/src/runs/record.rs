@@ -32,8 +32,9 @@ pub(crate) struct RunSummary {
     pub(crate) rejected: usize,
     pub(crate) iterations: usize,
     pub(crate) factorisations: usize,
-    /// Shortest and longest step, seconds; where a frame was subdivided, the mean of its sub-steps counts.
-    pub(crate) step_range: [f64; 2],
+    /// Shortest and longest step, seconds; where a frame was subdivided, the mean of its sub-steps counts. `None` without a
+    /// step.
+    pub(crate) step_range: Option<[f64; 2]>,
     /// Largest relative edge length error.
     pub(crate) max_strain: f64,
     /// Frames by the path that their hardest sub-step took: Newton alone, globalised, seeded, other.
@@ -63,7 +64,8 @@ pub(crate) fn ensure(store: &Store, scene: &Scene) -> Result<RunSummary> {
         return Ok(serde_json::from_value(stamp.facts)?);
     }
     let mut draft = store.draft()?;
-    let summary = run(scene, &mut draft).with_context(|| format!("run {}", scene.name))?;
+    let summary = run(scene, &mut draft, interrupt::requested)
+        .with_context(|| format!("run {}", scene.name))?;
     let extent = summary.extent;
     store.commit(
         draft,
@@ -125,7 +127,8 @@ impl Recorder<'_> {
     }
 }
 
-fn run(scene: &Scene, draft: &mut Draft) -> Result<RunSummary> {
+/// Runs a scene into a draft until it ends or `stop` says so.
+fn run(scene: &Scene, draft: &mut Draft, stop: impl Fn() -> bool) -> Result<RunSummary> {
     let folder = draft.folder(&folder(scene))?;
     let sheet = scene.sheet()?;
     let mut simulation = scene.simulation(&sheet)?;
@@ -150,7 +153,7 @@ fn run(scene: &Scene, draft: &mut Draft) -> Result<RunSummary> {
         rejected: 0,
         iterations: 0,
         factorisations: 0,
-        step_range: [f64::INFINITY, 0.0],
+        step_range: None,
         max_strain: 0.0,
         paths: [0; 4],
         motion_left: 0.0,
@@ -161,7 +164,7 @@ fn run(scene: &Scene, draft: &mut Draft) -> Result<RunSummary> {
         .potential_energy(0.0, &simulation.state().x);
     let bar = Progress::start(format!("run {}", scene.name), scene.frames);
     for _ in 0..scene.frames {
-        if interrupt::requested() {
+        if stop() {
             s.extent = Extent::Partial;
             break;
         }
@@ -199,7 +202,8 @@ impl RunSummary {
         self.iterations += r.iterations;
         self.factorisations += r.factorisations;
         let step = r.h / r.substeps.max(1) as f64;
-        self.step_range = [self.step_range[0].min(step), self.step_range[1].max(step)];
+        let [low, high] = self.step_range.unwrap_or([step, step]);
+        self.step_range = Some([low.min(step), high.max(step)]);
         self.max_strain = self.max_strain.max(r.strain);
         self.paths[match r.path {
             SolverPath::Newton => 0,
@@ -207,5 +211,43 @@ impl RunSummary {
             SolverPath::BranchSeeded => 2,
             _ => 3,
         }] += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    #[test]
+    fn a_run_that_is_stopped_is_readable_and_made_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let scene = Scene::paper(0, 6);
+        for stopped_after in [0, 3] {
+            let count = Cell::new(0);
+            let stop = || count.replace(count.get() + 1) == stopped_after;
+            let mut draft = store.draft().unwrap();
+            let s = run(&scene, &mut draft, stop).unwrap();
+            assert_eq!((s.frames, s.extent), (stopped_after, Extent::Partial));
+            let options = serde_json::to_value(&scene).unwrap();
+            store
+                .commit(
+                    draft,
+                    &unit(&scene),
+                    &options,
+                    s.extent,
+                    serde_json::to_value(&s).unwrap(),
+                )
+                .unwrap();
+            assert_eq!(trajectory(&store, &scene).unwrap().len(), stopped_after + 1);
+            let rows =
+                isosheet_io::read_history(&folder.path().join("runs/crumple-m0/history.csv"))
+                    .unwrap();
+            assert_eq!(rows.len(), stopped_after + 1);
+        }
+        let whole = ensure(&store, &scene).unwrap();
+        assert_eq!((whole.frames, whole.extent), (6, Extent::Complete));
+        assert!(whole.max_strain < 1e-11 && whole.step_range.is_some());
     }
 }
