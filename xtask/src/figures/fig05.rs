@@ -136,35 +136,50 @@ fn panel(view: &View, x: &[[f64; 3]; 4], time: &str) -> Drawing {
         d.polygon(&points, view.shade(style::FACE, &corners));
         d.outline(&points, style::EDGE);
     }
-    d.line(
-        &view.project_all(&[left, right]),
-        Stroke::new(GAMMA, 0.6).dashed(),
-    );
     d.line(&view.project_all(&[a, b]), Stroke::new(palette::INK, 1.5));
     let prime = [String::new(), "′".to_owned()];
     for (k, (apex, other)) in [(a, b), (b, a)].into_iter().enumerate() {
         let prime = &prime[k];
-        // Where along the arc the name stands, and how far outside of it, points.
+        // Where along the arc the name stands, how far outside of it and how much higher, points. At the far end of the folded
+        // pair gamma's arc runs over the others, whose names stand outside then.
+        let crowded = k == 0 && time != "0";
+        let inside = if crowded { 8.0 } else { -11.0 };
+        let gamma =
+            [[0.3, 12.0, 0.0], [0.12, 12.0, 0.0], [0.0, 4.0, 8.0]][if crowded { 2 } else { 1 - k }];
         let marks = [
-            (other, left, 0.21, ALPHA, format!("α{prime}"), 0.5, -11.0),
-            (other, right, 0.21, BETA, format!("β{prime}"), 0.5, -11.0),
+            (
+                other,
+                left,
+                0.21,
+                ALPHA,
+                format!("α{prime}"),
+                [0.5, inside, 0.0],
+            ),
+            (
+                other,
+                right,
+                0.21,
+                BETA,
+                format!("β{prime}"),
+                [0.5, inside, 0.0],
+            ),
             (
                 left,
                 right,
                 0.29,
                 GAMMA,
                 format!("γ{prime}^{{{time}}}"),
-                [0.12, 0.3][k],
-                12.0,
+                gamma,
             ),
         ];
-        for (from, to, radius, colour, name, part, distance) in marks {
+        for (from, to, radius, colour, name, [part, distance, lift]) in marks {
             let arc = angle_arc(&apex, &from, &to, radius);
             d.line(&view.project_all(&arc), Stroke::new(colour, 1.0));
             let middle = arc[(part * arc.len() as f64) as usize];
             let (p, o) = (view.project(&middle), view.project(&apex));
             let l = (p[0] - o[0]).hypot(p[1] - o[1]);
-            let at = [0, 1].map(|i| p[i] + (p[i] - o[i]) * distance / l);
+            let mut at = [0, 1].map(|i| p[i] + (p[i] - o[i]) * distance / l);
+            at[1] += lift;
             d.text(at, &name, TEXT, Anchor::Middle, Vertical::Centre, colour);
         }
     }
