@@ -1,7 +1,7 @@
 //! Writing a drawing as SVG through the backend of plotters.
 
 use super::drawing::{Anchor, Drawing, Item, Turned};
-use super::{Colour, text};
+use super::{Colour, palette, text};
 use plotters::backend::{DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{
@@ -57,6 +57,11 @@ impl Drawing {
         let mut svg = String::new();
         {
             let mut backend = SVGBackend::with_string(&mut svg, (units[0], units[1]));
+            // White paper: dark lines on a dark viewer's page would vanish.
+            let corner = (units[0] as i32, units[1] as i32);
+            backend
+                .draw_rect((0, 0), corner, &style(palette::WHITE, 0.0), true)
+                .map_err(|e| SvgError(e.to_string()))?;
             for item in &self.items {
                 draw(&mut backend, item, &map).map_err(SvgError)?;
             }
