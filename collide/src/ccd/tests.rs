@@ -325,3 +325,168 @@ fn bad_input_is_stopped_at_once() {
     assert_eq!(with(0.0, 1.0, 1), Err(CcdOptionsError::Remainder(1.0)));
     assert_eq!(with(0.0, 0.1, 0), Err(CcdOptionsError::Iterations));
 }
+
+/// Offsets by which published tests graze a boundary: a single-precision unit to either side.
+const HAIRS: [f64; 3] = [-1.2e-7, 0.0, 1.2e-7];
+
+/// Faces and edges that meet, miss or just reach each other at the very end of the motion, and at
+/// the very rim of the primitives.
+#[test]
+fn grazing_at_the_rim_and_at_the_end() {
+    let options = CcdOptions::default();
+    let zero = Vector3::zeros();
+    for rim in HAIRS {
+        for end in HAIRS {
+            // A point that falls past the corner of a triangle rising towards it.
+            let x = [
+                v(1.0 + rim, 0.0, 1.0),
+                v(0.0, -1.0, 0.0),
+                v(0.0, 1.0, 0.0),
+                v(1.0, 0.0, 0.0),
+            ];
+            let (fall, rise) = (v(0.0, 0.0, -0.5 - end), v(0.0, 0.0, 0.5));
+            let t = check(
+                &options,
+                QUERIES[0].0,
+                QUERIES[0].1,
+                &x,
+                &[fall, rise, rise, rise],
+            );
+            assert!(t < 1.0, "{rim} {end}");
+            // Edges that cross at the end of one of them.
+            let x = [
+                v(-1.0, 0.0, 1.0),
+                v(1.0, 0.0, 1.0),
+                v(1.0 + rim, -1.0, 0.0),
+                v(1.0 + rim, 1.0, 0.0),
+            ];
+            let t = check(
+                &options,
+                QUERIES[1].0,
+                QUERIES[1].1,
+                &x,
+                &[fall, fall, rise, rise],
+            );
+            assert!(t < 1.0, "{rim} {end}");
+        }
+        // Resting in the plane of a triangle that moves off sideways: touching, or a hair apart.
+        let x = [
+            v(0.0, rim, 0.0),
+            v(0.0, 0.5, 0.0),
+            v(0.0, 1.0, 0.0),
+            v(1.0, 0.5, 0.0),
+        ];
+        let off = v(0.0, 0.0, 1.0);
+        assert_eq!(
+            check(
+                &options,
+                QUERIES[0].0,
+                QUERIES[0].1,
+                &x,
+                &[zero, off, off, off]
+            ),
+            1.0
+        );
+    }
+}
+
+/// Vertices on straight lines that make the four points coplanar twice: a root finder meets a
+/// double root.
+#[test]
+fn double_roots_are_no_matter() {
+    let options = CcdOptions {
+        remainder: 1e-3,
+        ..CcdOptions::default()
+    };
+    let zero = Vector3::zeros();
+    // A rod that turns over while it drops across a post, ends on opposite sides afterwards.
+    let x = [
+        v(0.0, 0.0, 1.0),
+        v(0.0, 1.0, 1.0),
+        v(0.2, 0.3, 2.0),
+        v(0.2, 0.3, -1.0),
+    ];
+    for part in [0.3, 0.5, 0.8, 0.95, 1.0] {
+        let dx = [
+            v(1.0, 1.0, -1.0) * part,
+            v(0.0, -1.0, -1.0) * part,
+            zero,
+            zero,
+        ];
+        let t = check(&options, QUERIES[1].0, QUERIES[1].1, &x, &dx);
+        // Dense sampling says whether they meet.
+        let hits = (0..=100_000).any(|k| {
+            let at = moved(&x, &dx, f64::from(k) / 1e5);
+            edge_edge(&at).distance() < 1e-5
+        });
+        assert_eq!(hits, t < 1.0, "{part}: {t}");
+    }
+}
+
+/// Motions on which the bound by the largest displacement makes tiny steps: the primitives shear at
+/// a small distance while they approach slowly, or travel far together.
+#[test]
+fn shearing_at_a_small_distance_is_quick() {
+    let few = CcdOptions {
+        max_iterations: 30,
+        ..CcdOptions::default()
+    };
+    for gap in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
+        let x = [
+            v(-1.0, -0.5 * gap, 0.0),
+            v(1.0, -0.5 * gap, 0.0),
+            v(0.0, 0.5 * gap, -1.0),
+            v(0.0, 0.5 * gap, 1.0),
+        ];
+        for shear in [1e-3, 1.0, 1e3] {
+            let s = v(shear, 0.0, shear);
+            let up = v(0.0, gap, 0.0);
+            let dx = [up - s, up + s, s - up, -s - up];
+            let t = few.edge_edge(&x, &dx, 1.0);
+            // They meet in the middle of the motion. Round-off counts against the gap.
+            let certain = 1.0 - 16.0 * f64::EPSILON * (1.0 + 2.0 * shear) / gap;
+            assert!(
+                t < 0.5 && (t > 0.4 * certain || certain < 0.1),
+                "{gap} {shear}: {t}"
+            );
+        }
+    }
+    // A point close to a triangle, both carried along by a thousand gaps, with the last digits of
+    // the displacements different.
+    let x = [
+        v(0.3, 0.3, 1e-4),
+        v(0.0, 0.0, 0.0),
+        v(1.0, 0.1, 0.0),
+        v(0.1, 1.0, 0.0),
+    ];
+    let shift = v(0.1, -0.2, 0.1);
+    let dx: Stencil = std::array::from_fn(|i| shift * (1.0 + 1e-12 * i as f64));
+    assert_eq!(few.point_triangle(&x, &dx, 1.0), 1.0);
+}
+
+/// Edges that share their directions to a millionth, turning into each other.
+#[test]
+fn nearly_parallel_edges_turn_into_each_other() {
+    let options = CcdOptions::default();
+    for tilt in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
+        for gap in [1e-1, 1e-4, 1e-7] {
+            let x = [
+                v(-1.0, 0.0, gap),
+                v(1.0, 0.0, gap),
+                v(-1.0, -tilt, 0.0),
+                v(1.0, tilt, 0.0),
+            ];
+            let zero = Vector3::zeros();
+            let down = v(0.0, 0.0, -2.0 * gap);
+            for dx in [
+                [down, down, zero, zero],
+                // One end down, one end up: they cross in the middle.
+                [2.0 * down, zero, zero, zero],
+                [down + v(0.0, 1.0, 0.0), down - v(0.0, 1.0, 0.0), zero, zero],
+            ] {
+                let t = check(&options, QUERIES[1].0, QUERIES[1].1, &x, &dx);
+                assert!(t < 1.0, "{tilt} {gap}: {t}");
+            }
+        }
+    }
+}
