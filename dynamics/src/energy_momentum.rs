@@ -1,6 +1,6 @@
 //! The energy-momentum integrator.
 
-use crate::integrator::{Integrator, OptionsError};
+use crate::integrator::{Integrator, OptionsError, RodDemand};
 use crate::minimiser::not_converged;
 use crate::primal::{dot, strain_floor};
 use crate::report::{Accepted, Effort, Path, StepError};
@@ -160,6 +160,10 @@ impl EnergyMomentum {
 }
 
 impl Integrator for EnergyMomentum {
+    fn demand(&self) -> RodDemand {
+        RodDemand::Independent
+    }
+
     fn step(
         &mut self,
         model: &SheetModel,

@@ -1,6 +1,6 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
-use crate::integrator::{Integrator, OptionsError};
+use crate::integrator::{Integrator, OptionsError, RodDemand};
 use crate::minimiser::Minimiser;
 use crate::report::{Accepted, Effort, StepError};
 use crate::{SheetModel, State};
@@ -80,6 +80,10 @@ impl ImplicitEuler {
 }
 
 impl Integrator for ImplicitEuler {
+    fn demand(&self) -> RodDemand {
+        RodDemand::Nothing
+    }
+
     fn step(
         &mut self,
         model: &SheetModel,
@@ -146,6 +150,10 @@ impl Bdf2 {
 }
 
 impl Integrator for Bdf2 {
+    fn demand(&self) -> RodDemand {
+        RodDemand::Nothing
+    }
+
     fn step(
         &mut self,
         model: &SheetModel,

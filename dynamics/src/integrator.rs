@@ -18,6 +18,18 @@ pub trait Integrator: Send {
         h: f64,
         effort: &mut Effort,
     ) -> Result<Accepted, StepError>;
+
+    /// What the method asks of the rods.
+    fn demand(&self) -> RodDemand;
+}
+
+/// What an integrator asks of the rods' rigidity matrix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RodDemand {
+    /// Loaded rods have to be independent: the method solves for their impulses.
+    Independent,
+    /// Nothing: the method minimises, at any rank.
+    Nothing,
 }
 
 /// An option that makes no sense.

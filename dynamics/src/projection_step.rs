@@ -1,6 +1,6 @@
 //! Predict, project onto the lengths, project the velocity.
 
-use crate::integrator::{Integrator, OptionsError};
+use crate::integrator::{Integrator, OptionsError, RodDemand};
 use crate::minimiser::not_converged;
 use crate::primal::{PrimalMatrix, strain_floor};
 use crate::project::Projector;
@@ -90,6 +90,10 @@ impl ProjectionStep {
 }
 
 impl Integrator for ProjectionStep {
+    fn demand(&self) -> RodDemand {
+        RodDemand::Nothing
+    }
+
     fn step(
         &mut self,
         model: &SheetModel,

@@ -1,6 +1,6 @@
 //! RATTLE and its fourth-order composition.
 
-use crate::integrator::{Integrator, OptionsError};
+use crate::integrator::{Integrator, OptionsError, RodDemand};
 use crate::minimiser::not_converged;
 use crate::primal::{dot, strain_floor};
 use crate::report::{Accepted, Effort, Path, StepError};
@@ -223,6 +223,10 @@ impl Rattle {
 const MOMENTUM_TOLERANCE: f64 = 1e-10;
 
 impl Integrator for Rattle {
+    fn demand(&self) -> RodDemand {
+        RodDemand::Independent
+    }
+
     fn step(
         &mut self,
         model: &SheetModel,
@@ -256,6 +260,10 @@ impl RattleComposition {
 }
 
 impl Integrator for RattleComposition {
+    fn demand(&self) -> RodDemand {
+        RodDemand::Independent
+    }
+
     fn step(
         &mut self,
         model: &SheetModel,

@@ -140,10 +140,10 @@ pub enum StepError {
     },
     /// The length constraints are dependent, or so nearly that the multipliers are noise.
     #[error(
-        "{rank_deficiency} of the length constraints are dependent at t = {t} s (smallest \
-         singular value of the scaled rigidity matrix {smallest_singular_value:e}): this \
-         integrator has no unique rod forces there. Start from a folded state, seed a branch with \
-         `leave_flat`, or use the implicit Euler or projection method"
+        "the length constraints are dependent or nearly so at t = {t} s ({rank_deficiency} \
+         redundant, smallest singular value of the rigidity matrix with unit rods \
+         {smallest_singular_value:e}): this integrator has no unique rod forces there. Start from a \
+         folded state, displace the sheet with `leave_flat`, allow a `Fallback`, or use BDF2"
     )]
     RankDeficient {
         /// Time, seconds.

@@ -1,7 +1,7 @@
 //! Steps of an integrator, subdivided where it rejects them.
 
 use crate::implicit::ImplicitEuler;
-use crate::integrator::Integrator;
+use crate::integrator::{Integrator, RodDemand};
 use crate::rank::rod_rank;
 use crate::report::{Effort, Path, StepError};
 use crate::{Fallback, Method, SheetModel, SimulationError, State, StepControl};
@@ -89,13 +89,16 @@ impl Subdivided {
                     continue;
                 }
                 let Some(fallback) = &mut self.fallback else {
-                    return Err(diagnose(&self.model, state, min_step, cause));
+                    return Err(self.diagnose(state, min_step, cause));
                 };
                 fraction = largest_fraction(done);
                 tried = fallback.step(&self.model, state, fraction * h, effort);
                 tally.path = Path::Fallback;
             }
-            let accepted = tried.map_err(|cause| diagnose(&self.model, state, min_step, cause))?;
+            let accepted = match tried {
+                Ok(accepted) => accepted,
+                Err(cause) => return Err(self.diagnose(state, min_step, cause)),
+            };
             done += fraction;
             // The end of the step is set by the caller, free of accumulated round-off.
             state.t = start + done * h;
@@ -109,6 +112,25 @@ impl Subdivided {
             fraction = largest_fraction(done).min(growth * fraction);
         }
         Ok(())
+    }
+
+    /// Says why no step was accepted: dependent rods, if that is what they are.
+    fn diagnose(&self, state: &State, min_step: f64, cause: StepError) -> StepError {
+        if self.integrator.demand() == RodDemand::Independent
+            && let Some(rank) = rod_rank(&self.model, &state.x)
+            && rank.smallest < DEPENDENT_RODS
+        {
+            return StepError::RankDeficient {
+                t: state.t,
+                rank_deficiency: rank.deficiency,
+                smallest_singular_value: rank.smallest,
+            };
+        }
+        StepError::StepTooSmall {
+            t: state.t,
+            min_step,
+            cause: Box::new(cause),
+        }
     }
 }
 
@@ -130,22 +152,6 @@ fn largest_fraction(done: f64) -> f64 {
         fraction *= 0.5;
     }
     fraction
-}
-
-/// Says why no step was accepted: dependent rods, if that is what they are.
-fn diagnose(model: &SheetModel, state: &State, min_step: f64, cause: StepError) -> StepError {
-    match rod_rank(model, &state.x) {
-        Some(rank) if rank.smallest < DEPENDENT_RODS => StepError::RankDeficient {
-            t: state.t,
-            rank_deficiency: rank.deficiency,
-            smallest_singular_value: rank.smallest,
-        },
-        _ => StepError::StepTooSmall {
-            t: state.t,
-            min_step,
-            cause: Box::new(cause),
-        },
-    }
 }
 
 /// Smallest singular value (of the rigidity matrix with unit rods) below which dependence of
