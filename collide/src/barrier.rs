@@ -161,6 +161,8 @@ mod tests {
     proptest! {
         #[test]
         fn derivatives_match_differences(z in 1e-3..1.2_f64, d_hat in sizes(), thick in 0.0..3.0_f64) {
+            // The third derivative jumps where the barrier starts.
+            prop_assume!((z - 1.0).abs() > 1e-3);
             let b = Barrier::new(d_hat, thick * d_hat).unwrap();
             let range = b.reach() * b.reach() - b.thickness() * b.thickness();
             let y = b.thickness() * b.thickness() + z * range;

@@ -7,12 +7,12 @@
 //! gap = min over the first of n . x_i  -  max over the second of n . x_j.
 //! ```
 //!
-//! The gap shrinks at most at the constant speed
-//! `max over the second of n . dx_j - min over the first of n . dx_i`, whatever else the primitives
-//! do, so `gap / speed` is a time step in which they cannot meet. Summing such steps is the additive
+//! Every `n . x_i` is linear in time, so it is known exactly how long the slab stays open, whatever
+//! else the primitives do: a time step in which they cannot meet. Summing such steps is the additive
 //! continuous collision detection of Li et al. 2021 (Codimensional incremental potential contact,
-//! Sec. 5), with the bound of conservative advancement (Mirtich 1996) in place of the largest
-//! displacement: primitives that slide along each other or part cost one step instead of thousands.
+//! Sec. 5), with a separating direction as in conservative advancement (Mirtich 1996) in place of the
+//! largest displacement: primitives that slide along each other or part cost one step instead of
+//! thousands, and a fast far end does not slow a near end down.
 //!
 //! Nothing is solved for, so there is no root to lose. The bound holds for *every* unit vector `n`: an
 //! inexact closest point costs progress, never safety. Round-off is subtracted from each gap.
@@ -114,6 +114,9 @@ impl CcdOptions {
         limit: f64,
         closest: impl Fn(&[Vector3<f64>; N]) -> Vector3<f64>,
     ) -> f64 {
+        if !x.iter().chain(dx).flatten().all(|c| c.is_finite()) {
+            return 0.0;
+        }
         // Positions relative to one of the points; its own motion is a motion of the frame.
         let start: [Vector3<f64>; N] = std::array::from_fn(|i| x[i] - x[0]);
         let motion: [Vector3<f64>; N] = std::array::from_fn(|i| dx[i] - dx[0]);
@@ -128,33 +131,34 @@ impl CcdOptions {
             let at: [Vector3<f64>; N] = std::array::from_fn(|i| start[i] + t * motion[i]);
             let difference = closest(&at);
             let distance = difference.norm();
-            // Also false for what is not a number.
+            // Squares of huge coordinates may overflow.
             if !(distance > 0.0 && distance < f64::INFINITY) {
                 return t;
             }
             let n = difference / distance;
-            let (mut low, mut slowest) = (f64::INFINITY, f64::INFINITY);
-            let (mut high, mut fastest) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-            for i in 0..split {
-                low = low.min(n.dot(&at[i]));
-                slowest = slowest.min(n.dot(&motion[i]));
-            }
-            for i in split..N {
-                high = high.max(n.dot(&at[i]));
-                fastest = fastest.max(n.dot(&motion[i]));
-            }
-            let gap = low - high - self.separation - round_off;
-            let speed = fastest - slowest;
+            let height = at.map(|p| n.dot(&p));
+            let speed = motion.map(|v| n.dot(&v));
+            let margin = self.separation + round_off;
+            let pairs = (0..split).flat_map(|i| (split..N).map(move |j| (i, j)));
+            let gap = pairs
+                .clone()
+                .map(|(i, j)| height[i] - height[j] - margin)
+                .fold(f64::INFINITY, f64::min);
             if iteration == 0 {
                 enough = self.remainder * gap;
             }
-            if !(gap > 0.0 && speed.is_finite()) || (iteration > 0 && gap <= enough) {
+            if gap <= 0.0 || (iteration > 0 && gap <= enough) {
                 return t;
             }
-            if speed <= 0.0 {
-                return limit;
+            let mut step = f64::INFINITY;
+            for (i, j) in pairs {
+                let closing = speed[j] - speed[i];
+                if closing > 0.0 {
+                    let clear = height[i] - height[j] - margin - (1.0 - ADVANCE) * gap;
+                    step = step.min(clear / closing);
+                }
             }
-            t += ADVANCE * gap / speed;
+            t += step;
             if t >= limit {
                 return limit;
             }
@@ -163,8 +167,8 @@ impl CcdOptions {
     }
 }
 
-/// Part of the provably safe advance that is taken, Li et al. 2021: some gap is left, so that the
-/// next direction is defined.
+/// Part of the gap that an advance may use up, Li et al. 2021: some is left, so that the next
+/// direction is defined.
 const ADVANCE: f64 = 0.9;
 /// Round-off of a gap relative to the largest coordinate: the differences, the products with the
 /// direction and the positions that the caller computes, each a few units in the last place.
