@@ -9,16 +9,15 @@
 
 mod error;
 mod mechanics;
+mod options;
 mod simulation;
 mod solver;
 mod stepping;
 
 pub use error::ChartDynamicsError;
 pub use mechanics::{ChartMechanics, Equations};
-pub use simulation::{
-    ChartMethod, ChartOptions, ChartSimulation, ChartStepControl, ChartStepReport, PositionUpdate,
-    Rebase, StepRange,
-};
+pub use options::{ChartMethod, ChartOptions, ChartStepControl, PositionUpdate, Rebase};
+pub use simulation::{ChartSimulation, ChartStepReport, StepRange};
 pub use solver::{
     CholeskySolver, CramerSolver, DenseLuSolver, MassSolver, MassSolverKind, SaddleSolver,
 };

@@ -1,7 +1,7 @@
 //! One step of each method.
 
-use super::simulation::{ChartMethod, ChartOptions, PositionUpdate};
 use super::{ChartDynamicsError, ChartMechanics, Equations};
+use super::{ChartMethod, ChartOptions, PositionUpdate};
 use isosheet_coords::{ChartError, SaddlePoint};
 
 /// Relative change of the momenta at which the implicit part of symplectic Euler has converged.
