@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use isosheet_mesh::{Sheet, VertexId};
 use npyz::WriterBuilder;
 use npyz::npz::{NpzArchive, NpzWriter};
+use npyz::zip::DateTime;
+use npyz::zip::write::FileOptions;
 use thiserror::Error;
 
 use crate::atomic::{WriteError, write_atomically};
@@ -181,7 +183,7 @@ impl Trajectory {
         &self.rest_lengths
     }
 
-    /// Writes the `.npz` file, atomically.
+    /// Writes the `.npz` file, atomically. Equal trajectories give equal bytes.
     ///
     /// # Errors
     /// [`TrajectoryError::File`].
@@ -301,8 +303,10 @@ fn put<W: io::Write + io::Seek, T: npyz::AutoSerialize>(
     shape: &[u64],
     values: impl Iterator<Item = T>,
 ) -> io::Result<()> {
+    // A fixed date (that of an empty entry, 1980), so that equal runs give equal files.
+    let options = FileOptions::default().last_modified_time(DateTime::default());
     let mut writer = npz
-        .array(name, Default::default())?
+        .array(name, options)?
         .default_dtype()
         .shape(shape)
         .begin_nd()?;

@@ -38,6 +38,25 @@ fn comes_back_bit_for_bit() {
     assert!(Trajectory::read(&path).unwrap().is_empty());
 }
 
+/// The directory of the archive: entries carry a fixed date (1980-01-01 00:00, `0x0021` and 0 in the format) and no clock.
+#[test]
+fn equal_trajectories_are_equal_files() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("trajectory.npz");
+    let (_, run) = sample();
+    run.write(&path).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let entries: Vec<usize> = (0..bytes.len() - 46)
+        .filter(|k| bytes[*k..].starts_with(b"PK\x01\x02"))
+        .collect();
+    assert_eq!(entries.len(), 5);
+    for k in entries {
+        assert_eq!(bytes[k + 12..k + 16], [0, 0, 0x21, 0]);
+    }
+    run.write(&path).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), bytes);
+}
+
 /// The file as the numpy reader of another crate sees it.
 #[test]
 fn arrays_have_the_documented_names_types_and_shapes() {
