@@ -44,8 +44,12 @@ impl Selection {
 }
 
 fn number(text: &str) -> Result<u64, SelectionError> {
-    text.parse()
-        .map_err(|_| SelectionError::NotANumber(text.to_owned()))
+    let wrong = || SelectionError::NotANumber(text.to_owned());
+    // The parser of the standard library also takes a plus sign.
+    if !text.bytes().all(|b| b.is_ascii_digit()) {
+        return Err(wrong());
+    }
+    text.parse().map_err(|_| wrong())
 }
 
 fn known(figure: u64) -> Result<u8, SelectionError> {
@@ -131,6 +135,9 @@ mod tests {
         );
         assert_eq!(parse("1-x"), Err(SelectionError::NotANumber("x".into())));
         assert_eq!(parse("-3"), Err(SelectionError::NotANumber("-3".into())));
+        for list in ["+3", "1-+3", "+1-3"] {
+            assert!(matches!(parse(list), Err(SelectionError::NotANumber(_))));
+        }
         assert_eq!(parse("0"), Err(SelectionError::Unknown(0)));
         assert_eq!(parse("99"), Err(SelectionError::Unknown(99)));
         assert_eq!(parse("300"), Err(SelectionError::Unknown(300)));
