@@ -68,8 +68,10 @@ impl CartesianChart {
     ///
     /// # Errors
     /// [`ChartError::RankDeficient`] where the length equations are dependent (flat states),
-    /// [`ChartError::Realise`] for a malformed state, [`ChartError::Linalg`].
+    /// [`ChartError::System`] when the pins leave no degree of freedom, [`ChartError::Realise`] for a
+    /// malformed state, [`ChartError::Linalg`].
     pub fn new(system: RodSystem, choice: Choice, reference: &[f64]) -> Result<Self, ChartError> {
+        system.check_freedom()?;
         let mut chart = Self {
             system,
             choice,
@@ -112,6 +114,10 @@ impl CartesianChart {
 }
 
 impl Chart for CartesianChart {
+    fn system(&self) -> &RodSystem {
+        &self.system
+    }
+
     fn dimension(&self) -> usize {
         self.selection.len()
     }

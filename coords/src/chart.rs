@@ -166,6 +166,9 @@ impl RowPattern {
 /// States x and velocities v are full slices, three values per vertex, with zero velocity at pinned
 /// vertices; entries of S refer to the unknowns of the [`crate::RodSystem`].
 pub trait Chart {
+    /// The rod system that the chart was built for.
+    fn system(&self) -> &RodSystem;
+
     /// Number n of coordinates; the degrees of freedom of the system.
     fn dimension(&self) -> usize;
 

@@ -378,3 +378,29 @@ fn flat_sheets_are_refused() {
         assert!(outcome.is_err(), "{degenerate:?}");
     }
 }
+
+#[test]
+fn a_sheet_that_is_pinned_everywhere_has_no_chart() {
+    let sheet = isotropic_square(0, 1.0);
+    let pins: Vec<VertexId> = (0..9).map(VertexId).collect();
+    let system = RodSystem::new(&sheet, &pins).unwrap();
+    let refusal = ChartError::System(crate::system::SystemError::NoFreedom {
+        equations: 0,
+        unknowns: 0,
+    });
+    for choice in [
+        Choice::Auto,
+        Choice::PivotedQr,
+        Choice::Exchange,
+        Choice::Elimination,
+    ] {
+        let outcome = CartesianChart::new(system.clone(), choice, sheet.positions());
+        assert_eq!(outcome.err().as_ref(), Some(&refusal), "{choice:?}");
+    }
+    let options = AssignmentOptions {
+        pins,
+        ..Default::default()
+    };
+    let outcome = FrontChart::new(&sheet, &options, sheet.positions());
+    assert!(outcome.is_err());
+}

@@ -47,6 +47,7 @@ impl FrontChart {
     ) -> Result<Self, ChartError> {
         let assignment = assign(sheet, reference, options)?;
         let system = RodSystem::new(sheet, &options.pins)?;
+        system.check_freedom()?;
         let map = FrontMap::new(sheet, assignment, reference, RealiseOptions::default())?;
         let count = map.coordinate_count();
         let mut chart = Self {
@@ -380,6 +381,10 @@ impl FrontChart {
 }
 
 impl Chart for FrontChart {
+    fn system(&self) -> &RodSystem {
+        &self.system
+    }
+
     fn dimension(&self) -> usize {
         self.kept.len()
     }

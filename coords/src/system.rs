@@ -16,7 +16,7 @@ pub enum SystemError {
         /// Number of vertices.
         count: usize,
     },
-    /// More length equations than unknowns are left.
+    /// More length equations than unknowns are left; or as many, where coordinates are wanted.
     #[error(
         "{equations} length equations for {unknowns} unknowns: the pins leave no degree of freedom; remove some"
     )]
@@ -142,6 +142,17 @@ impl RodSystem {
     #[must_use]
     pub fn dof(&self) -> usize {
         self.unknowns() - self.equations()
+    }
+
+    /// Refuses a system without degrees of freedom: there is nothing that a chart could have coordinates of.
+    pub(crate) fn check_freedom(&self) -> Result<(), SystemError> {
+        if self.dof() > 0 {
+            return Ok(());
+        }
+        Err(SystemError::NoFreedom {
+            equations: self.equations(),
+            unknowns: self.unknowns(),
+        })
     }
 
     /// First unknown of a vertex, `None` when it is pinned.
