@@ -1,6 +1,7 @@
 //! Why mechanics in a chart fails.
 
 use isosheet_coords::ChartError;
+use isosheet_mesh::VertexId;
 use thiserror::Error;
 
 /// Why a step in a chart is refused.
@@ -64,6 +65,14 @@ pub enum ChartDynamicsError {
         found: usize,
         /// Values needed.
         expected: usize,
+    },
+    /// The chart was built for other pins than those of the model.
+    #[error(
+        "the chart was built for other pins than the model's: {vertex} is held in one and free in the other; build the chart with the pins of the model"
+    )]
+    OtherPins {
+        /// The first vertex that differs.
+        vertex: VertexId,
     },
     /// The step control went below its smallest step.
     #[error(

@@ -3,6 +3,7 @@
 use super::{ChartDynamicsError, MassSolver, MassSolverKind};
 use crate::SheetModel;
 use isosheet_coords::{Chart, Linearised, RodSystem};
+use isosheet_mesh::VertexId;
 
 /// Which terms of the equations of motion are kept, and what happens to the momenta.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,7 +46,8 @@ impl ChartMechanics {
     ///
     /// # Errors
     /// [`ChartDynamicsError::Chart`], [`ChartDynamicsError::TooManyCoordinates`]; and
-    /// [`ChartDynamicsError::WrongLength`] when the chart belongs to another sheet or to other pins.
+    /// [`ChartDynamicsError::WrongLength`] or [`ChartDynamicsError::OtherPins`] when the chart belongs to
+    /// another sheet or to other pins.
     pub fn new(
         model: SheetModel,
         chart: Box<dyn Chart>,
@@ -53,6 +55,19 @@ impl ChartMechanics {
     ) -> Result<Self, ChartDynamicsError> {
         let system = RodSystem::from_parts(model.topology(), model.rods().lengths(), &model.pins())
             .map_err(isosheet_coords::ChartError::from)?;
+        let pinned = |of: &RodSystem, v| of.unknown(v).is_none();
+        let vertices = system.vertex_count();
+        if chart.system().vertex_count() != vertices {
+            return Err(ChartDynamicsError::WrongLength {
+                what: "the vertices of the chart's sheet",
+                found: chart.system().vertex_count(),
+                expected: vertices,
+            });
+        }
+        let other = |v: &VertexId| pinned(&system, *v) != pinned(chart.system(), *v);
+        if let Some(vertex) = (0..vertices as u32).map(VertexId).find(other) {
+            return Err(ChartDynamicsError::OtherPins { vertex });
+        }
         if chart.dimension() != system.dof() {
             return Err(ChartDynamicsError::WrongLength {
                 what: "the chart (built for this sheet and these pins)",

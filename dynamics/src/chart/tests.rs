@@ -263,6 +263,34 @@ fn singular_and_ill_conditioned_charts_are_refused() {
     ));
 }
 
+#[test]
+fn charts_for_other_pins_are_refused_as_such() {
+    let sheet = bumped(1, 0.1);
+    for chart in both(&sheet, &[VertexId(0)]) {
+        let outcome = ChartSimulation::new(
+            model(&sheet, &[VertexId(4)], MassKind::Lumped),
+            chart,
+            ChartOptions::default(),
+            sheet.positions(),
+            &vec![0.0; sheet.positions().len()],
+        );
+        assert_eq!(
+            outcome.err(),
+            Some(ChartDynamicsError::OtherPins {
+                vertex: VertexId(0)
+            })
+        );
+    }
+    let other = bumped(0, 0.1);
+    let outcome = ChartMechanics::new(
+        model(&sheet, &[VertexId(0)], MassKind::Lumped),
+        cartesian(&other, &[VertexId(0)]),
+        MassSolverKind::Saddle,
+    );
+    let text = outcome.err().unwrap().to_string();
+    assert!(text.contains("the chart's sheet"), "{text}");
+}
+
 #[derive(Debug)]
 struct Wind([f64; 3]);
 
