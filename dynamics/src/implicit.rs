@@ -113,6 +113,10 @@ impl Integrator for ImplicitEuler {
     }
 }
 
+/// Largest growth of the step that the two-step formula is used over: variable-step BDF2 is
+/// unstable from 1 + sqrt 2 on.
+const MAX_STEP_RATIO: f64 = 2.0 + 1e-9;
+
 /// The second-order backward differentiation formula, with the ratio `w = h / h_previous`:
 ///
 /// ```text
@@ -123,7 +127,8 @@ impl Integrator for ImplicitEuler {
 /// (`x_`, `v_` one step before `x0`, `v0`). The same minimisation as [`ImplicitEuler`] with the
 /// effective step `k h`, at the same price, but second order and far less dissipative: it
 /// keeps the motions that the step resolves and damps the ones that it does not. The first
-/// step, and the first after the state was changed from outside, is implicit Euler.
+/// step, the first after the state was changed from outside, and one that is more than twice as
+/// long as the one before are implicit Euler (`w = 0`).
 /// Non-conservative forces are taken at the start of the step, which makes them first order.
 pub struct Bdf2 {
     minimiser: Minimiser,
@@ -168,6 +173,7 @@ impl Integrator for Bdf2 {
         } else {
             0.0
         };
+        let w = if w <= MAX_STEP_RATIO { w } else { 0.0 };
         // a = 1 + b: differences keep pinned vertices where they are to the last bit.
         let b = w * w / (1.0 + 2.0 * w);
         let k = (1.0 + w) / (1.0 + 2.0 * w);

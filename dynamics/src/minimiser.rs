@@ -9,11 +9,14 @@ use isosheet_coords::linalg::LinalgError;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Size of the branch perturbation in mean edge lengths: large enough to leave a saddle, too
+/// Size of the branch perturbation in lengths of a vertex's shortest rod: large enough to leave a saddle, too
 /// small to be seen.
 const BRANCH_PERTURBATION: f64 = 1e-4;
 /// Armijo's constant.
 const ARMIJO: f64 = 1e-4;
+/// Ratios of squared steps over which multipliers are carried; beyond, the motion has changed too
+/// much for them to be of use.
+const MULTIPLIER_RATIOS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 /// A Newton step shortened below this fraction is not a sign of convergence.
 const NEARLY_FULL: f64 = 0.2;
 
@@ -50,10 +53,17 @@ pub(crate) struct Minimiser {
     start: Vec<f64>,
 }
 
-/// Value of the augmented Lagrangian, its inertia term, and the round-off in the value.
+/// The augmented Lagrangian at an iterate.
 struct Merit {
+    /// Its inertia term.
     inertia: f64,
+    /// Without the rods: the incremental potential.
+    potential: f64,
+    /// Size of the multipliers' terms, `sum |L| l^2`.
+    rod_scale: f64,
+    /// Its value.
     value: f64,
+    /// Round-off in the value.
     round_off: f64,
 }
 
@@ -101,13 +111,25 @@ impl Minimiser {
             .zip(model.rods().lengths())
             .map(|(m, l)| m.abs() * l * l)
             .sum();
+        // And where inertia alone has the right lengths already, nothing but the round-off of the
+        // positions is left to minimise.
+        let size = self.x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let still: f64 = self
+            .penalty
+            .iter()
+            .zip(model.rods().lengths())
+            .map(|(p, l)| p * (f64::EPSILON * l * (size + l)).powi(2))
+            .sum();
         let potential = model.potential_energy(t, &self.x);
         Merit {
             inertia,
             value: inertia + h * h * (potential - work) + rods,
+            potential: inertia + h * h * (potential - work),
+            rod_scale,
             round_off: 8.0
                 * f64::EPSILON
-                * (inertia + h * h * (potential.abs() + work.abs()) + rods.abs() + rod_scale),
+                * (inertia + h * h * (potential.abs() + work.abs()) + rods.abs() + rod_scale)
+                + 64.0 * still,
         }
     }
 
@@ -176,8 +198,10 @@ impl Minimiser {
     /// Displaces the iterate off a saddle.
     fn perturb(&mut self, model: &SheetModel) {
         let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed);
-        let size = BRANCH_PERTURBATION * model.mean_length();
-        self.dx.fill_with(|| rng.random_range(-size..=size));
+        for (i, d) in self.dx.iter_mut().enumerate() {
+            let size = BRANCH_PERTURBATION * model.shortest_rod(i / 3);
+            *d = rng.random_range(-size..=size);
+        }
         model.clear_pinned(&mut self.dx);
         for (x, d) in self.x.iter_mut().zip(&self.dx) {
             *x += d;
@@ -188,6 +212,10 @@ impl Minimiser {
     /// [`Minimiser::target`] and [`Minimiser::applied`] set. `h` is the effective step, the
     /// factor of the acceleration being `h^2`; forces are those at time `t1`.
     ///
+    /// The positions at the start have the rest lengths too, so a result with a higher
+    /// incremental potential than theirs is no minimum, and would create energy: then the
+    /// minimisation starts anew, from them.
+    ///
     /// Returns the relative Newton decrement and the path.
     pub(crate) fn minimise(
         &mut self,
@@ -197,12 +225,51 @@ impl Minimiser {
         h: f64,
         effort: &mut Effort,
     ) -> Result<(f64, Path), StepError> {
-        if self.multiplier_step > 0.0 && self.multiplier_step != h {
-            let ratio = (h / self.multiplier_step).powi(2);
+        let ratio = (h / self.multiplier_step).powi(2);
+        if MULTIPLIER_RATIOS.contains(&ratio) {
             self.multipliers.iter_mut().for_each(|m| *m *= ratio);
+        } else {
+            self.multipliers.fill(0.0);
         }
         self.multiplier_step = h;
+        self.x.copy_from_slice(&state.x);
+        let bound = self.merit(model, t1, h);
         self.x.copy_from_slice(&self.target);
+        let first = self.descend(model, state, t1, h, effort);
+        if let Ok(done) = first
+            && self.is_below(&bound, model, t1, h)
+        {
+            return Ok(done);
+        }
+        self.multipliers.fill(0.0);
+        self.x.copy_from_slice(&state.x);
+        let (residual, path) = self.descend(model, state, t1, h, effort)?;
+        if self.is_below(&bound, model, t1, h) {
+            return Ok((residual, path.max(Path::Globalised)));
+        }
+        self.multipliers.fill(0.0);
+        let strain = model.rods().max_strain(&self.x);
+        Err(not_converged(state.t, h, effort, residual, strain))
+    }
+
+    /// Whether the incremental potential at the iterate is not above `bound`, but for what the
+    /// tolerance of the lengths and round-off allow.
+    fn is_below(&mut self, bound: &Merit, model: &SheetModel, t: f64, h: f64) -> bool {
+        let now = self.merit(model, t, h);
+        let slack = 10.0 * (now.round_off + bound.round_off)
+            + 10.0 * self.options.strain_tolerance * now.rod_scale.max(bound.rod_scale);
+        now.potential <= bound.potential + slack
+    }
+
+    /// One minimisation from the iterate, followed by the projection onto the lengths.
+    fn descend(
+        &mut self,
+        model: &SheetModel,
+        state: &State,
+        t1: f64,
+        h: f64,
+        effort: &mut Effort,
+    ) -> Result<(f64, Path), StepError> {
         let mut path = Path::Newton;
         let mut residual = f64::INFINITY;
         let mut converged = false;
@@ -223,7 +290,7 @@ impl Minimiser {
                 return Err(not_converged(state.t, h, effort, residual, f64::NAN));
             }
             let promised = self.options.tolerance * merit.inertia;
-            residual = if merit.inertia > 0.0 {
+            residual = if -slope > merit.round_off {
                 (-slope / merit.inertia).sqrt()
             } else {
                 0.0

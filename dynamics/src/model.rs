@@ -11,6 +11,17 @@ pub enum ModelError {
     /// The mass does not fit the sheet.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// The mass matrix belongs to another sheet.
+    #[error(
+        "the mass matrix is for {masses} vertices, the sheet has {vertex_count}; build it for \
+         this sheet"
+    )]
+    MassLength {
+        /// Vertices of the mass matrix.
+        masses: usize,
+        /// Vertices of the sheet.
+        vertex_count: usize,
+    },
     /// A vertex has no mass.
     #[error("{vertex} has mass {mass} kg; every vertex that is not pinned needs a positive mass")]
     Mass {
@@ -54,6 +65,7 @@ pub struct SheetModel {
     free_count: usize,
     mean_length: f64,
     mean_mass: f64,
+    shortest_rods: Vec<f64>,
 }
 
 impl SheetModel {
@@ -69,13 +81,14 @@ impl SheetModel {
     /// A free sheet with the given mass matrix, without gravity.
     ///
     /// # Errors
-    /// [`ModelError::Mass`] if a vertex mass is not positive and finite.
+    /// [`ModelError::MassLength`]; [`ModelError::Mass`] if a vertex mass is not positive and finite.
     pub fn with_mass(sheet: &Sheet, mass: MassMatrix) -> Result<Self, ModelError> {
         let topology = sheet.topology().clone();
         let n = topology.vertex_count();
-        if mass.vertex.len() != n {
-            return Err(ModelError::NoSuchVertex {
-                vertex: VertexId(mass.vertex.len().min(u32::MAX as usize) as u32),
+        let edges = topology.edge_count();
+        if mass.vertex.len() != n || mass.edge.as_ref().is_some_and(|e| e.len() != edges) {
+            return Err(ModelError::MassLength {
+                masses: mass.vertex.len(),
                 vertex_count: n,
             });
         }
@@ -89,8 +102,16 @@ impl SheetModel {
                 mass: mass.vertex[i],
             });
         }
+        let rods = LengthConstraints::new(sheet);
+        let mut shortest_rods = vec![f64::INFINITY; n];
+        for (e, l) in rods.edges().iter().zip(rods.lengths()) {
+            for &v in e {
+                shortest_rods[v] = l.min(shortest_rods[v]);
+            }
+        }
         Ok(Self {
-            rods: LengthConstraints::new(sheet),
+            rods,
+            shortest_rods,
             mean_length: sheet.mean_length(),
             mean_mass: mass.total() / n as f64,
             mass,
@@ -230,6 +251,12 @@ impl SheetModel {
     /// Mean rest length of the rods, metres: the length scale of tolerances.
     pub fn mean_length(&self) -> f64 {
         self.mean_length
+    }
+
+    /// Length of the shortest rod at a vertex, metres: the scale of displacements that must not
+    /// turn a face over.
+    pub(crate) fn shortest_rod(&self, vertex: usize) -> f64 {
+        self.shortest_rods[vertex]
     }
 
     /// Mean vertex mass, kilograms: the mass scale of tolerances.

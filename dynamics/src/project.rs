@@ -132,11 +132,12 @@ impl Projector {
         strain
     }
 
-    /// Displaces every free vertex by up to `relative` mean rod lengths.
+    /// Displaces every free vertex by up to `relative` lengths of its shortest rod.
     fn unfold(&mut self, model: &SheetModel, x: &mut [f64], relative: f64) {
-        let size = relative * model.mean_length();
-        let rng = &mut self.rng;
-        self.dx.fill_with(|| rng.random_range(-size..=size));
+        for (i, d) in self.dx.iter_mut().enumerate() {
+            let size = relative * model.shortest_rod(i / 3);
+            *d = self.rng.random_range(-size..=size);
+        }
         model.clear_pinned(&mut self.dx);
         for (xi, d) in x.iter_mut().zip(&self.dx) {
             *xi += d;
