@@ -2,7 +2,7 @@
 
 use crate::integrator::{Integrator, OptionsError, RodDemand};
 use crate::minimiser::not_converged;
-use crate::primal::{dot, strain_floor};
+use crate::primal::{dot, strain_floor, velocity_round_off};
 use crate::report::{Accepted, Effort, Path, StepError};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
@@ -154,7 +154,17 @@ impl EnergyMomentum {
         let worst = model.largest_acceleration(&self.momentum);
         model.rods().residual_into(&self.x1, &mut self.rods);
         self.rods.iter_mut().for_each(|c| *c = -*c / h);
-        let relative = if scale > 0.0 { worst / scale } else { 0.0 };
+        // Where nothing pushes, the speed sets the scale.
+        let speed = self
+            .w
+            .iter()
+            .chain(&state.v)
+            .fold(0.0_f64, |m, v| m.max(v.abs()));
+        let relative = if worst > velocity_round_off(state, h) {
+            worst / (scale + 1e-3 * speed).max(f64::MIN_POSITIVE)
+        } else {
+            0.0
+        };
         (relative, model.rods().max_strain(&self.x1))
     }
 }

@@ -279,3 +279,9 @@ pub(crate) fn strain_floor(model: &SheetModel, state: &State) -> f64 {
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
+
+/// Velocities below this are round-off: of the speed, and of positions over a step.
+pub(crate) fn velocity_round_off(state: &State, h: f64) -> f64 {
+    let largest = |a: &[f64]| a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    16.0 * f64::EPSILON * (largest(&state.x) / h.abs() + largest(&state.v))
+}

@@ -20,6 +20,8 @@ const SMALLEST_STEP: f64 = 1e-2;
 /// Growth of the displacement that opens a flat patch from one attempt to the next: the next
 /// one has to leave the basin that the last one fell back into.
 const OPENING_GROWTH: f64 = 4.0;
+/// Largest such displacement, in rod lengths: beyond, faces could turn over.
+const LARGEST_OPENING: f64 = 0.05;
 
 /// Moves positions to the nearest ones, in the sense of the mass matrix, that have the rest
 /// lengths: a Levenberg-Marquardt iteration with line search
@@ -118,7 +120,7 @@ impl Projector {
                 // happens where a patch is flat and asks for a fold. A displacement of order
                 // sqrt(strain), in any direction, opens it.
                 penalty = PROJECTION_PENALTY;
-                self.unfold(model, x, opening * strain.sqrt());
+                self.unfold(model, x, (opening * strain.sqrt()).min(LARGEST_OPENING));
                 opening *= OPENING_GROWTH;
                 rods.residual_into(x, &mut self.c);
             } else if length < 1.0 {

@@ -35,6 +35,9 @@ impl ProjectionStepOptions {
     }
 }
 
+/// Allowance for round-off and for the tolerance of the lengths when two distances are compared.
+const DISTANCE_SLACK: f64 = 1e-6;
+
 /// Predict with the forces, project the positions onto the lengths, take the velocity from
 /// the displacement and project it onto `G(x1) v = 0`
 /// (in the manner of Goldenthal et al., "Efficient simulation of inextensible cloth", 2007).
@@ -47,6 +50,7 @@ pub struct ProjectionStep {
     force: Vec<f64>,
     applied: Vec<f64>,
     acceleration: Vec<f64>,
+    predicted: Vec<f64>,
     x: Vec<f64>,
     v: Vec<f64>,
     none: Vec<f64>,
@@ -66,6 +70,7 @@ impl ProjectionStep {
             force: vec![0.0; n],
             applied: vec![0.0; n],
             acceleration: vec![0.0; n],
+            predicted: vec![0.0; n],
             x: vec![0.0; n],
             v: vec![0.0; n],
             none: vec![0.0; model.rods().len()],
@@ -112,6 +117,7 @@ impl Integrator for ProjectionStep {
         for i in 0..self.x.len() {
             self.x[i] = state.x[i] + h * (state.v[i] + h * self.acceleration[i]);
         }
+        self.predicted.copy_from_slice(&self.x);
         let tolerance = self
             .options
             .strain_tolerance
@@ -125,6 +131,19 @@ impl Integrator for ProjectionStep {
             effort,
         );
         if strain > tolerance || strain.is_nan() {
+            return Err(not_converged(state.t, h, effort, 0.0, strain));
+        }
+        // The start has the rest lengths too: a projection that ends further away than it is not
+        // the nearest point, and would create energy.
+        let distance = |x: &[f64], v: &mut Vec<f64>, predicted: &[f64]| {
+            for i in 0..x.len() {
+                v[i] = x[i] - predicted[i];
+            }
+            model.kinetic_energy(v)
+        };
+        let to_result = distance(&self.x, &mut self.v, &self.predicted);
+        let to_start = distance(&state.x, &mut self.v, &self.predicted);
+        if to_result > to_start * (1.0 + DISTANCE_SLACK) {
             return Err(not_converged(state.t, h, effort, 0.0, strain));
         }
         let mut work = 0.0;

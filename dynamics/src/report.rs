@@ -54,7 +54,8 @@ pub struct StepReport {
     /// Energy taken out by velocity damping since the start, joules.
     pub dissipated: f64,
     /// `T + V - work + dissipated` minus its value at the start, joules: the error of the
-    /// integrator, zero for the exact motion.
+    /// integrator, zero for the exact motion. Of potentials that depend on time the work done by
+    /// changing them, the integral of dV/dt at fixed positions, is not accounted for.
     pub energy_drift: f64,
     /// Largest relative edge length error at the end.
     pub strain: f64,
@@ -71,7 +72,8 @@ impl StepReport {
     }
 }
 
-/// Why a step could not be taken. The state is left as it was.
+/// Why a step could not be taken. [`Integrator::step`](crate::Integrator::step) leaves the state as
+/// it was, [`Simulation::step`](crate::Simulation::step) at the last accepted sub-step.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// The step size makes no sense.
@@ -81,6 +83,36 @@ pub enum StepError {
         h: f64,
         /// Time, seconds.
         t: f64,
+    },
+    /// The time of the state is not finite.
+    #[error("the state is at t = {t} s; start at a finite time")]
+    Time {
+        /// The time given, seconds.
+        t: f64,
+    },
+    /// An energy or the work of a force is not finite.
+    #[error("{quantity} is {value} J at t = {t} s; check the user-supplied potentials and forces")]
+    NonFiniteEnergy {
+        /// Which one.
+        quantity: &'static str,
+        /// Its value, joules.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// No positions with the rest lengths were found.
+    #[error(
+        "no positions with the rest lengths were found near the ones given: the best have edge \
+         strain {strain:e} after {iterations} iterations, {tolerance:e} was asked for; start \
+         closer to the rest lengths or raise the tolerance"
+    )]
+    Projection {
+        /// Relative edge length error reached.
+        strain: f64,
+        /// The tolerance.
+        tolerance: f64,
+        /// Iterations done.
+        iterations: usize,
     },
     /// A position or velocity of the state is not finite.
     #[error(
@@ -137,6 +169,21 @@ pub enum StepError {
         residual: f64,
         /// Relative edge length error reached.
         strain: f64,
+    },
+    /// A damped step would have created energy.
+    #[error(
+        "a step of {h} s at t = {t} s would create {gain} J (kinetic energy {kinetic} J): rods in \
+         compression snap through faster than the step resolves; take a smaller step"
+    )]
+    EnergyGain {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// Energy created, joules.
+        gain: f64,
+        /// Kinetic energy at the end of the step, joules.
+        kinetic: f64,
     },
     /// The length constraints are dependent, or so nearly that the multipliers are noise.
     #[error(

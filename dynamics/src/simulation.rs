@@ -178,10 +178,10 @@ impl Simulation {
     /// [`StepError`]; the state is then that of the last accepted sub-step.
     pub fn step(&mut self, h: f64) -> Result<StepReport, StepError> {
         let start = self.state.t;
+        check_finite(&self.state)?;
         if !(h.is_finite() && h > 0.0) || start + h <= start {
             return Err(StepError::StepSize { h, t: start });
         }
-        check_finite(&self.state)?;
         self.check_forces()?;
         let end = start + h;
         let mut tally = Tally::default();
@@ -196,6 +196,19 @@ impl Simulation {
         let model = self.model();
         let kinetic = model.kinetic_energy(&self.state.v);
         let potential = model.potential_energy(end, &self.state.x);
+        for (quantity, value) in [
+            ("the potential energy", potential),
+            ("the kinetic energy", kinetic),
+            ("the work of the applied forces", self.work),
+        ] {
+            if !value.is_finite() {
+                return Err(StepError::NonFiniteEnergy {
+                    quantity,
+                    value,
+                    t: end,
+                });
+            }
+        }
         Ok(StepReport {
             t: end,
             h,

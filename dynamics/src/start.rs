@@ -13,30 +13,54 @@ use rand_chacha::ChaCha8Rng;
 /// projected first; anything within this bound is closed by the first step unnoticed.
 const START_STRAIN: f64 = 1e-8;
 
+/// Most iterations of [`project_positions`]; a thousand is ten times what crumpled states need.
+const MAX_ITERATIONS: usize = 1000;
+
 /// Moves positions (`3V`, in place) to nearby ones with the rest lengths, pinned vertices kept.
+/// Returns the largest relative length error left.
 ///
 /// # Errors
-/// [`StepError::NotConverged`] if no positions with a relative length error below `tolerance`
-/// were found; `x` then holds the best ones.
+/// [`SimulationError`] if `x` has the wrong length, `tolerance` is not between 1e-15 and 1, or no
+/// positions with a relative length error below it were found; `x` is then unchanged.
 pub fn project_positions(
     model: &SheetModel,
     x: &mut [f64],
     tolerance: f64,
-) -> Result<f64, StepError> {
-    let linalg = |source| StepError::Linalg { t: 0.0, source };
-    let mut matrix = PrimalMatrix::new(model).map_err(linalg)?;
+) -> Result<f64, SimulationError> {
+    OptionsError::check_range("tolerance", tolerance, 1e-15, 1.0)?;
+    check_count(model, x)?;
+    let mut matrix = PrimalMatrix::new(model)?;
     let mut effort = Effort::default();
-    let strain =
-        Projector::new(model).positions(model, &mut matrix, x, tolerance, 1000, &mut effort);
+    let mut moved = x.to_vec();
+    let strain = Projector::new(model).positions(
+        model,
+        &mut matrix,
+        &mut moved,
+        tolerance,
+        MAX_ITERATIONS,
+        &mut effort,
+    );
     if strain <= tolerance {
+        x.copy_from_slice(&moved);
         Ok(strain)
     } else {
-        Err(StepError::NotConverged {
-            t: 0.0,
-            h: 0.0,
-            iterations: effort.iterations,
-            residual: 0.0,
+        Err(SimulationError::Start(StepError::Projection {
             strain,
+            tolerance,
+            iterations: effort.iterations,
+        }))
+    }
+}
+
+fn check_count(model: &SheetModel, x: &[f64]) -> Result<(), SimulationError> {
+    let expected = model.coordinate_count();
+    if x.len() == expected {
+        Ok(())
+    } else {
+        Err(SimulationError::StateLength {
+            positions: x.len(),
+            velocities: x.len(),
+            expected,
         })
     }
 }
@@ -57,6 +81,7 @@ pub fn leave_flat(
     seed: u64,
 ) -> Result<f64, SimulationError> {
     OptionsError::check_range("amplitude", amplitude, 0.0, 1.0)?;
+    check_count(model, x)?;
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let size = amplitude * model.mean_length();
     let mut displacement: Vec<f64> = (0..x.len())
@@ -71,6 +96,9 @@ pub fn leave_flat(
 
 /// Refuses positions and velocities that are not finite.
 pub(crate) fn check_finite(state: &State) -> Result<(), StepError> {
+    if !state.t.is_finite() {
+        return Err(StepError::Time { t: state.t });
+    }
     for values in [&state.x, &state.v] {
         if let Some(i) = values.iter().position(|v| !v.is_finite()) {
             return Err(StepError::NonFiniteState {

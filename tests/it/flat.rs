@@ -31,10 +31,22 @@ fn flat_start_is_never_rejected() {
 }
 
 #[test]
-fn conservative_methods_refuse_a_loaded_flat_sheet_and_say_why() {
+fn conservative_methods_refuse_a_loaded_flat_sheet_and_say_why_or_move_it_right() {
     for (name, method) in methods().into_iter().skip(3) {
         let mut run = hanging(1, 0.0, method);
         match run.step(1.0 / 60.0) {
+            // Many short steps may find the way.
+            Ok(report) => {
+                let fallen = report.kinetic;
+                assert!(
+                    report.energy_drift.abs() < 1e-3 * fallen,
+                    "{name}: {report:?}"
+                );
+                assert!(
+                    report.strain < 1e-12 && report.substeps > 1,
+                    "{name}: {report:?}"
+                );
+            }
             Err(StepError::RankDeficient {
                 rank_deficiency,
                 smallest_singular_value,
@@ -47,7 +59,7 @@ fn conservative_methods_refuse_a_loaded_flat_sheet_and_say_why() {
                     "{name}"
                 );
             }
-            other => panic!("{name}: {other:?}"),
+            Err(other) => panic!("{name}: {other}"),
         }
         assert!(run.state().x.iter().all(|x| x.is_finite()), "{name}");
     }

@@ -5,4 +5,5 @@ mod conservation;
 mod flat;
 mod forces;
 mod orders;
+mod robust;
 mod scenes;

@@ -1,0 +1,228 @@
+//! States and scenes that have broken integrators before.
+
+use crate::scenes::{bumped, corner, gap, hanging, held, methods};
+use isosheet_dynamics::{
+    Force, Method, Path, Potential, SheetModel, Simulation, State, StepError, leave_flat,
+    project_positions,
+};
+use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId, generate};
+use isosheet_tests::Pendulum;
+
+/// A folded or flat sheet without gravity.
+fn weightless(level: u32, amplitude: f64) -> (SheetModel, Vec<f64>) {
+    let sheet = bumped(level, 0.0);
+    let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped).expect("valid");
+    let mut x = sheet.positions().to_vec();
+    if amplitude > 0.0 {
+        leave_flat(&model, &mut x, amplitude, 3).expect("projected");
+    }
+    (model, x)
+}
+
+#[test]
+fn rest_stays_rest_and_translation_goes_on() {
+    for level in 0..=2 {
+        for amplitude in [0.0, 0.01, 0.3] {
+            for speed in [0.0, 1.0, 100.0] {
+                for (name, method) in methods() {
+                    let (model, x) = weightless(level, amplitude);
+                    let v: Vec<f64> = (0..x.len())
+                        .map(|i| if i % 3 == 0 { speed } else { 0.0 })
+                        .collect();
+                    let start = State::moving(x.clone(), v);
+                    let mut run = Simulation::new(model, start, method).expect("valid");
+                    let what = format!("{name}, M^{level}, {amplitude}, {speed} m/s");
+                    for _ in 0..5 {
+                        let report = run
+                            .step(1.0 / 60.0)
+                            .unwrap_or_else(|e| panic!("{what}: {e}"));
+                        // Dependent rods, even unloaded, may cost a conservative method a try.
+                        if amplitude > 0.0 || report.path != Path::Globalised {
+                            assert_eq!(report.rejected, 0, "{what}");
+                        }
+                    }
+                    let moved = speed * run.state().t;
+                    let want: Vec<f64> = x
+                        .iter()
+                        .enumerate()
+                        .map(|(i, x)| if i % 3 == 0 { x + moved } else { *x })
+                        .collect();
+                    let error = gap(&run.state().x, &want);
+                    assert!(error < 1e-8 * (1.0 + moved), "{what}: {error:e} m");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn damped_methods_do_not_create_energy() {
+    // Strips far from square, checkerboard masses: from exactly flat, step by step.
+    for (width, ratio) in [(0.02, 1.0), (0.005, 1.0), (1.0, 1e4)] {
+        let square = generate::isotropic_square(1, 1.0).expect("valid");
+        let positions = square
+            .positions()
+            .chunks(3)
+            .flat_map(|p| [p[0], width * p[1], 0.0])
+            .collect();
+        let sheet = Sheet::new(positions, &square.face_indices()).expect("valid");
+        let masses = (0..25)
+            .map(|i| if i % 2 == 0 { 0.004 } else { 0.004 * ratio })
+            .collect();
+        let mass = MassMatrix::from_vertex_masses(masses).expect("positive");
+        for (name, method) in methods().into_iter().take(3) {
+            let model = SheetModel::with_mass(&sheet, mass.clone())
+                .expect("valid")
+                .with_gravity()
+                .with_pins(&[VertexId(0)])
+                .expect("exists");
+            let weight = 9.8 * mass.total();
+            let start = State::at_rest(sheet.positions().to_vec());
+            let mut run = Simulation::new(model, start, method).expect("valid");
+            let mut last = 0.0;
+            for k in 0..30 {
+                let what = format!("{name}, width {width}, mass ratio {ratio}, step {k}");
+                match run.step(1.0 / 60.0) {
+                    Ok(report) => {
+                        // The bound that every sub-step keeps: a tenth of the kinetic energy.
+                        let energy = report.hamiltonian();
+                        let slack = 0.12 * report.substeps as f64 * report.kinetic;
+                        assert!(
+                            energy < last + slack + 1e-9 * weight,
+                            "{what}: {energy} J after {last} J"
+                        );
+                        assert!(energy < 0.5 * weight, "{what}: {energy} J from rest");
+                        last = energy;
+                    }
+                    // Giving up is allowed on the hardest of them, with the reason; lying is not.
+                    Err(StepError::StepTooSmall { .. }) => break,
+                    Err(e) => panic!("{what}: {e}"),
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn changing_steps_do_not_feed_energy() {
+    let problem = Pendulum::default();
+    for short in [1e-3, 1e-4, 1e-5] {
+        for (name, method) in methods() {
+            let mut run = Simulation::new(problem.model(), problem.start(), method).expect("valid");
+            let scale = run.energy().abs();
+            for k in 0..60 {
+                let h = if k % 2 == 0 { 1e-2 } else { short };
+                let report = run.step(h).expect("accepted");
+                assert!(
+                    report.energy_drift < 0.02 * scale,
+                    "{name}, {short:e} s: {} J",
+                    report.energy_drift
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn rattle_keeps_the_momentum_of_a_flat_sheet_or_refuses() {
+    let sheet = bumped(2, 0.0);
+    for (name, method) in methods().into_iter().skip(3) {
+        for speed in [1.0, 100.0] {
+            let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
+                .expect("valid")
+                .with_gravity();
+            let x = sheet.positions().to_vec();
+            let v = (0..x.len())
+                .map(|i| if i % 3 == 0 { speed } else { 0.0 })
+                .collect();
+            let mut run =
+                Simulation::new(model, State::moving(x, v), method.clone()).expect("valid");
+            for _ in 0..4 {
+                if let Err(error) = run.step(1.0 / 60.0) {
+                    assert!(
+                        matches!(error, StepError::RankDeficient { .. }),
+                        "{name}: {error}"
+                    );
+                    break;
+                }
+                let p = run.model().linear_momentum(&run.state().v);
+                let lost = (p[0] - 0.1 * speed).abs();
+                assert!(lost < 1e-7 * speed, "{name} at {speed} m/s: lost {lost:e}");
+            }
+        }
+    }
+}
+
+/// An energy that is not a number, with a gradient that is.
+#[derive(Debug)]
+struct BadEnergy;
+
+impl Potential for BadEnergy {
+    fn energy(&self, _t: f64, _x: &[f64]) -> f64 {
+        f64::NAN
+    }
+
+    fn add_gradient(&self, _t: f64, _x: &[f64], _gradient: &mut [f64]) {}
+}
+
+/// A force that breaks after a while.
+#[derive(Debug)]
+struct BreaksLater;
+
+impl Force for BreaksLater {
+    fn add_force(&self, t: f64, _x: &[f64], _v: &[f64], force: &mut [f64]) {
+        if t > 0.012 {
+            force[3] = f64::NAN;
+        }
+    }
+}
+
+#[test]
+fn no_report_holds_a_nan() {
+    let start = || State::at_rest(bumped(1, 0.05).positions().to_vec());
+    for (name, method) in methods() {
+        let model = held(1, 0.05).with_potential(BadEnergy);
+        let mut run = Simulation::new(model, start(), method.clone()).expect("valid");
+        assert!(
+            run.step(1e-2).is_err(),
+            "{name}: an energy that is not a number"
+        );
+
+        let model = held(1, 0.05).with_force(BreaksLater);
+        let mut run = Simulation::new(model, start(), method).expect("valid");
+        for _ in 0..3 {
+            match run.step(1e-2) {
+                Ok(report) => assert!(report.work.is_finite(), "{name}: {report:?}"),
+                Err(_) => break,
+            }
+            assert!(run.state().x.iter().all(|x| x.is_finite()), "{name}");
+        }
+    }
+    let mut nowhen = start();
+    nowhen.t = f64::NAN;
+    let error = Simulation::new(held(1, 0.05), nowhen, Method::default()).err();
+    assert!(error.expect("refused").to_string().contains("time"));
+}
+
+#[test]
+fn projection_refuses_nonsense_and_leaves_positions_alone() {
+    let model = held(1, 0.05);
+    let good = bumped(1, 0.05).positions().to_vec();
+    for tolerance in [0.0, f64::NAN, -1.0, 2.0] {
+        assert!(project_positions(&model, &mut good.clone(), tolerance).is_err());
+    }
+    assert!(project_positions(&model, &mut [0.0; 4], 1e-9).is_err());
+    assert!(leave_flat(&model, &mut [0.0; 4], 0.1, 0).is_err());
+    // All vertices in one point: no direction to go.
+    let mut point = vec![1.0; good.len()];
+    if project_positions(&model, &mut point, 1e-12).is_err() {
+        assert!(point.iter().all(|x| *x == 1.0), "unchanged on failure");
+    }
+    let masses = MassMatrix::from_vertex_masses(vec![1.0; 24]).expect("positive");
+    let error = SheetModel::with_mass(&bumped(1, 0.0), masses).err();
+    assert!(error.expect("refused").to_string().contains("24"));
+    assert_eq!(
+        hanging(1, 0.05, Method::default()).model().pins(),
+        [corner(1)]
+    );
+}
