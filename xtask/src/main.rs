@@ -44,8 +44,38 @@ fn main() -> ExitCode {
             ExitCode::from(130)
         }
         Err(error) => {
-            eprintln!("error: {error:#}");
+            eprintln!("error: {}", explain(&error));
             ExitCode::FAILURE
         }
+    }
+}
+
+/// An error with its causes, each unless the text before holds it already: many of our messages name their cause.
+fn explain(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !text.contains(&cause) {
+            text.push_str(": ");
+            text.push_str(&cause);
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn causes_are_told_once() {
+        let full = || std::io::Error::other("disk full");
+        let error = store::StoreError::Read {
+            path: "a".into(),
+            source: full(),
+        };
+        let error = anyhow::Error::from(error).context("figure 3");
+        assert_eq!(explain(&error), "figure 3: cannot read a: disk full");
+        let error = anyhow::Error::from(full()).context("figure 3");
+        assert_eq!(explain(&error), "figure 3: disk full");
     }
 }
