@@ -1,8 +1,11 @@
 //! The output folder: nothing half-written, and a record of what is up to date.
 //!
-//! Each piece of work (a *unit*: a figure or a run) is made in a hidden folder beside the results and moved into place when it
+//! Each piece of work (a *unit*: a figure or a run) is made in a working folder inside `.stamps` and moved into place when it
 //! is complete; its stamp in `.stamps` is removed before and written after that. A stamp counts only while its options,
 //! the program and the files it lists are the same, so a rerun makes again whatever changed or was cut short.
+//!
+//! The lock file in `.stamps` also marks a folder as the program's own: a folder that has other files and not this one is
+//! refused, and only what lies in `.stamps` is ever cleaned up.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -11,8 +14,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// Prefix of hidden working folders; whatever a killed process left is removed at the next start.
-const PARTIAL: &str = ".partial-";
+/// Folder of the program's own records and of its unfinished work.
+const RECORDS: &str = ".stamps";
+
+/// The file in [`RECORDS`] that marks a folder as the program's own, locked while a process works there.
+const MARKER: &str = "isosheet-xtask.lock";
+
+/// Prefix of unfinished work in [`RECORDS`]; whatever a killed process left is removed at the next start.
+const PARTIAL: &str = "partial-";
 
 /// Why the output folder cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -22,6 +31,10 @@ pub(crate) enum StoreError {
         folder: PathBuf,
         source: std::io::Error,
     },
+    #[error(
+        "{} holds files that are not results of this program; choose an empty or a new folder with --out", folder.display()
+    )]
+    Foreign { folder: PathBuf },
     #[error("another process is writing to {}; wait for it or choose another folder with --out", folder.display())]
     Busy { folder: PathBuf },
     #[error("cannot write {}: {source}", path.display())]
@@ -75,14 +88,22 @@ pub(crate) struct Store {
 }
 
 impl Store {
-    /// Creates the folder when missing, checks that it can be written to, locks it and removes what a killed process left.
+    /// Creates the folder when missing, checks that it is empty or this program's own and that it can be written to, locks it
+    /// and removes what a killed process left.
     pub(crate) fn open(root: &Path) -> Result<Self, StoreError> {
         let unwritable = |source| StoreError::Unwritable {
             folder: root.to_owned(),
             source,
         };
-        fs::create_dir_all(root.join(".stamps")).map_err(unwritable)?;
-        let lock = File::create(root.join(".lock")).map_err(unwritable)?;
+        fs::create_dir_all(root).map_err(unwritable)?;
+        let records = root.join(RECORDS);
+        if !records.join(MARKER).is_file() && !is_empty(root).map_err(unwritable)? {
+            return Err(StoreError::Foreign {
+                folder: root.to_owned(),
+            });
+        }
+        fs::create_dir_all(&records).map_err(unwritable)?;
+        let lock = File::create(records.join(MARKER)).map_err(unwritable)?;
         match lock.try_lock() {
             Ok(()) => {}
             Err(fs::TryLockError::WouldBlock) => {
@@ -93,9 +114,9 @@ impl Store {
             Err(fs::TryLockError::Error(source)) => return Err(unwritable(source)),
         }
         tempfile::tempfile_in(root).map_err(unwritable)?;
-        for entry in fs::read_dir(root).map_err(unwritable)?.flatten() {
+        for entry in fs::read_dir(&records).map_err(unwritable)?.flatten() {
             if entry.file_name().to_string_lossy().starts_with(PARTIAL) {
-                fs::remove_dir_all(entry.path()).map_err(unwritable)?;
+                remove(&entry.path()).map_err(unwritable)?;
             }
         }
         Ok(Self {
@@ -111,7 +132,7 @@ impl Store {
     }
 
     fn stamp_path(&self, unit: &str) -> PathBuf {
-        self.root.join(".stamps").join(format!("{unit}.json"))
+        self.root.join(RECORDS).join(format!("{unit}.json"))
     }
 
     /// The stamp of a unit, whether up to date or not; `None` when there is none or it cannot be read.
@@ -132,7 +153,7 @@ impl Store {
 
     /// Forgets all units whose names start with `prefix`, so that they are made again.
     pub(crate) fn forget(&self, prefix: &str) -> Result<(), StoreError> {
-        let folder = self.root.join(".stamps");
+        let folder = self.root.join(RECORDS);
         let failed = |source| StoreError::Read {
             path: folder.clone(),
             source,
@@ -145,11 +166,32 @@ impl Store {
         Ok(())
     }
 
+    /// Removes all units with their files.
+    pub(crate) fn clear(&self) -> Result<(), StoreError> {
+        let folder = self.root.join(RECORDS);
+        let listing = fs::read_dir(&folder).map_err(|source| StoreError::Read {
+            path: folder.clone(),
+            source,
+        })?;
+        for entry in listing.flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let Some(stamp) = name.strip_suffix(".json").and_then(|u| self.stamp(u)) else {
+                continue;
+            };
+            // The stamp last: a clearing that is cut short is done again.
+            let files = stamp.entries.iter().map(|e| self.root.join(e));
+            for path in files.chain([entry.path()]).filter(|p| p.exists()) {
+                remove(&path).map_err(|source| StoreError::Write { path, source })?;
+            }
+        }
+        Ok(())
+    }
+
     /// A working folder for a unit.
     pub(crate) fn draft(&self) -> Result<Draft, StoreError> {
         let folder = tempfile::Builder::new()
             .prefix(PARTIAL)
-            .tempdir_in(&self.root)
+            .tempdir_in(self.root.join(RECORDS))
             .map_err(|source| StoreError::Unwritable {
                 folder: self.root.clone(),
                 source,
@@ -201,7 +243,7 @@ impl Store {
             entries: draft.entries,
             facts,
         };
-        self.write_json(&format!(".stamps/{unit}.json"), &stamp)?;
+        self.write_json(&format!("{RECORDS}/{unit}.json"), &stamp)?;
         Ok(stamp)
     }
 
@@ -212,10 +254,9 @@ impl Store {
             path: target.clone(),
             source,
         };
-        let folder = target.parent().unwrap_or(&self.root);
         let mut file = tempfile::Builder::new()
-            .prefix(".writing-")
-            .tempfile_in(folder)
+            .prefix(PARTIAL)
+            .tempfile_in(self.root.join(RECORDS))
             .map_err(failed)?;
         file.write_all(bytes).map_err(failed)?;
         share(file.path()).map_err(failed)?;
@@ -237,6 +278,29 @@ impl Store {
     pub(crate) fn read(&self, path: &str) -> Result<Vec<u8>, StoreError> {
         let path = self.root.join(path);
         fs::read(&path).map_err(|source| StoreError::Read { path, source })
+    }
+}
+
+/// Whether a folder has nothing in it, or only the beginnings of a [`Store`] that was killed at once.
+fn is_empty(root: &Path) -> std::io::Result<bool> {
+    for entry in fs::read_dir(root)? {
+        let entry = entry?;
+        let begun = entry.file_name() == RECORDS
+            && entry.file_type()?.is_dir()
+            && fs::read_dir(entry.path())?.next().is_none();
+        if !begun {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Removes a file or a folder.
+fn remove(path: &Path) -> std::io::Result<()> {
+    if path.is_dir() && !path.is_symlink() {
+        fs::remove_dir_all(path)
+    } else {
+        fs::remove_file(path)
     }
 }
 
@@ -344,13 +408,72 @@ mod tests {
             store.current("r", &json!("new")).is_none(),
             "partial units are made again"
         );
-        let hidden = fs::read_dir(folder.path()).unwrap().flatten();
+        assert_eq!(names(folder.path()), [".stamps", "runs"]);
+        assert_eq!(names(&folder.path().join(RECORDS)), [MARKER, "r.json"]);
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap().flatten();
+        let mut names: Vec<String> = entries
+            .map(|e| e.file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn what_a_killed_process_left_is_removed_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let records = folder.path().join(RECORDS);
+        fs::create_dir(&records).unwrap();
+        // Killed before the marker was there; then in the middle of two pieces of work.
+        let store = Store::open(folder.path()).unwrap();
+        std::mem::forget(store.draft().unwrap());
+        drop(store);
+        fs::write(records.join("partial-file"), "x").unwrap();
+        fs::create_dir(folder.path().join(".partial-work")).unwrap();
+        fs::write(folder.path().join("notes.txt"), "mine").unwrap();
+        assert_eq!(names(&records).len(), 3);
+        Store::open(folder.path()).unwrap();
+        assert_eq!(names(&records), [MARKER]);
         assert_eq!(
-            hidden
-                .filter(|e| e.file_name().to_string_lossy().starts_with(PARTIAL))
-                .count(),
-            0
+            names(folder.path()),
+            [".partial-work", RECORDS, "notes.txt"]
         );
+    }
+
+    #[test]
+    fn folders_of_others_are_refused_and_left_alone() {
+        for theirs in [".partial-work/f", "index.html", ".stamps/f"] {
+            let folder = tempfile::tempdir().unwrap();
+            let file = folder.path().join(theirs);
+            fs::create_dir_all(file.parent().unwrap()).unwrap();
+            fs::write(&file, "mine").unwrap();
+            let before = names(folder.path());
+            assert!(matches!(
+                Store::open(folder.path()),
+                Err(StoreError::Foreign { .. })
+            ));
+            assert_eq!(fs::read(&file).unwrap(), b"mine");
+            assert_eq!(names(folder.path()), before);
+        }
+    }
+
+    #[test]
+    fn clearing_removes_units_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let mut draft = store.draft().unwrap();
+        draft.write("figures/one.svg", b"<svg/>").unwrap();
+        draft.folder("runs/one").unwrap();
+        store
+            .commit(draft, "one", &json!(1), Extent::Complete, Value::Null)
+            .unwrap();
+        fs::write(folder.path().join("runs/notes.txt"), "mine").unwrap();
+        store.clear().unwrap();
+        assert!(store.stamp("one").is_none());
+        assert_eq!(names(&folder.path().join("runs")), ["notes.txt"]);
+        assert!(names(&folder.path().join("figures")).is_empty());
     }
 
     #[test]
