@@ -33,7 +33,7 @@ pub(crate) struct ConditionArgs {
     #[arg(long, value_name = "LEVEL", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=5))]
     pub(crate) level: u32,
 
-    /// Folder to write to; it is created when missing
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
     #[arg(long, value_name = "DIR", default_value = "out/condition-table")]
     pub(crate) out: PathBuf,
 }
@@ -45,11 +45,13 @@ pub(crate) struct ReproduceArgs {
     #[arg(long, value_name = "LIST", default_value_t = Selection::all())]
     pub(crate) figures: Selection,
 
-    /// Folder to write to; it is created when missing
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
     #[arg(long, value_name = "DIR", default_value = "out/reproduce-figures")]
     pub(crate) out: PathBuf,
 
     /// Short runs and small pictures: checks that everything works in seconds, and shows no result
+    ///
+    /// Not for a folder that has full results. A full run removes quick results.
     #[arg(long)]
     pub(crate) quick: bool,
 

@@ -6,7 +6,7 @@ use crate::interrupt::Interrupted;
 use crate::progress;
 use crate::store::{Extent, Store};
 use crate::{Outcome, interrupt, report};
-use anyhow::Result;
+use anyhow::{Result, bail};
 use serde_json::json;
 use std::time::Instant;
 
@@ -18,6 +18,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
     } else {
         Effort::Full
     };
+    claim(&store, effort)?;
     let context = Context {
         store: &store,
         effort,
@@ -57,6 +58,31 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
         &store.root().join("index.html").display().to_string(),
     );
     Ok(outcome)
+}
+
+/// Where the folder keeps the effort that its results were made with.
+const EFFORT: &str = ".stamps/effort.json";
+
+/// Keeps quick and full results apart, which share the names of figures and runs: full results are not replaced by quick
+/// ones, and quick ones are removed before the first full one is made.
+fn claim(store: &Store, effort: Effort) -> Result<()> {
+    let recorded = store.read(EFFORT).ok();
+    let recorded = recorded.and_then(|text| serde_json::from_slice::<Effort>(&text).ok());
+    match (recorded, effort) {
+        (Some(Effort::Full), Effort::Quick) => bail!(
+            "{} is for results without --quick, which are not mixed with quick ones; choose another folder with --out",
+            store.root().display()
+        ),
+        (Some(Effort::Quick), Effort::Full) => {
+            progress::note("quick results", "removed");
+            store.clear()?;
+        }
+        _ => {}
+    }
+    if recorded != Some(effort) {
+        store.write_json(EFFORT, &effort)?;
+    }
+    Ok(())
 }
 
 /// Name of the unit of a figure.

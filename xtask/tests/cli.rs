@@ -36,7 +36,14 @@ fn leftovers(out: &Path) -> Vec<String> {
         .unwrap()
         .flatten()
         .map(|e| e.file_name().to_string_lossy().into_owned())
-        .filter(|n| n.starts_with('.') && n != ".stamps" && n != ".lock")
+        .filter(|n| n.starts_with('.') && n != ".stamps")
+        .chain(
+            fs::read_dir(out.join(".stamps"))
+                .unwrap()
+                .flatten()
+                .map(|e| e.file_name().to_string_lossy().into_owned())
+                .filter(|n| n.starts_with("partial-")),
+        )
         .collect()
 }
 
@@ -165,6 +172,46 @@ fn an_unwritable_folder_gets_a_clear_message() {
         "{text}"
     );
     assert!(!text.contains("figure 1"), "no work was done: {text}");
+    assert_eq!(text.matches("os error").count(), 1, "told twice: {text}");
+}
+
+#[test]
+fn folders_of_others_are_left_alone() {
+    let (_keep, out) = folder();
+    fs::create_dir_all(out.join(".partial-work")).unwrap();
+    fs::write(out.join(".partial-work/f"), "").unwrap();
+    fs::write(out.join("index.html"), "MYSITE").unwrap();
+    let (code, text) = reproduce(&out, "1", &[]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(
+        text.contains("choose an empty or a new folder with --out"),
+        "{text}"
+    );
+    let table = xtask()
+        .args(["condition-table", "--level", "0", "--out"])
+        .arg(&out)
+        .output()
+        .unwrap();
+    assert_eq!(table.status.code(), Some(1));
+    assert_eq!(fs::read(out.join("index.html")).unwrap(), b"MYSITE");
+    assert!(out.join(".partial-work/f").exists());
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 2);
+}
+
+#[test]
+fn quick_and_full_results_do_not_mix() {
+    let (_keep, out) = folder();
+    reproduce(&out, "1,11", &["--quick"]);
+    assert!(out.join("runs/crumple-m1").exists());
+    let (code, text) = reproduce(&out, "1", &[]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(!out.join("runs/crumple-m1").exists() && !out.join("figures/fig11.png").exists());
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    assert!(page.matches("<section").count() == 1 && !page.contains("quick"));
+    let (code, text) = reproduce(&out, "2", &["--quick"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("not mixed with quick ones"), "{text}");
+    assert!(!out.join("figures/fig02.svg").exists());
 }
 
 #[cfg(unix)]
@@ -200,6 +247,6 @@ fn ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on() {
         "{text}"
     );
     let (code, text) = reproduce(&out, "12", &["--quick"]);
-    assert_eq!(code, Some(0), "{text}");
-    assert!(out.join("figures/fig12.png").exists());
+    assert_eq!(code, Some(1), "{text}");
+    assert!(run.exists(), "a full run is not replaced by a quick one");
 }
