@@ -150,7 +150,12 @@ impl Rattle {
         let (mut residual, mut strain) = self.residuals(model, state, h);
         let mut path = Path::Newton;
         let mut iterations = 0;
-        while residual > MOMENTUM_TOLERANCE || strain > tolerance || iterations == 0 {
+        // At least one iteration, unless there is nothing but round-off to correct.
+        let floor = strain_floor(model, state);
+        while residual > MOMENTUM_TOLERANCE
+            || strain > tolerance
+            || (iterations == 0 && strain > floor)
+        {
             if iterations == self.options.max_iterations || !(residual.is_finite() && strain < 1.0)
             {
                 self.impulse_step = 0.0;
@@ -237,11 +242,12 @@ impl Rattle {
         // Velocity: the momentum after the second half kick, projected onto G(x1) v = 0.
         model.potential_force(state.t + h, &self.x1, &mut self.force);
         model.applied_force(state.t + h, &self.x1, &self.u, &mut self.applied);
-        model.apply_mass(&self.u, &mut self.momentum);
+        // Solved for the change of velocity, so that round-off is relative to it.
         for i in 0..self.u.len() {
-            self.momentum[i] += 0.5 * h * (self.force[i] + self.applied[i]);
+            self.momentum[i] = 0.5 * h * (self.force[i] + self.applied[i]);
         }
-        self.rods.fill(0.0);
+        model.rods().apply(&self.x1, &self.u, &mut self.rods);
+        self.rods.iter_mut().for_each(|r| *r = -*r);
         let system = System {
             mass: 1.0,
             density: &self.none,
@@ -253,6 +259,9 @@ impl Rattle {
             .matrix
             .solve(model, &system, &mut self.momentum, &mut self.rods, effort)
             .map_err(|source| StepError::Linalg { t: state.t, source })?;
+        for (m, u) in self.momentum.iter_mut().zip(&self.u) {
+            *m += u;
+        }
         let (rate, balance) = self.velocity_errors(model, state, h);
         if rate > VELOCITY_TOLERANCE || balance > VELOCITY_TOLERANCE || rate.is_nan() {
             self.impulse_step = 0.0;
