@@ -25,6 +25,19 @@
 //! singular states, and refuse loaded flat ones with [`StepError::RankDeficient`]: start them from
 //! a folded state, displace the sheet with [`leave_flat`], or allow a [`Fallback`].
 //!
+//! Every accepted step has the rest lengths to the tolerance of its method (a relative 1e-12 or better by
+//! default, or the round-off of the coordinates where that is larger), finite energies, and, with a
+//! damped method, an energy gain of at most a tenth of the kinetic energy: compressed rods that
+//! snap through can feed any implicit method, and such steps are shortened.
+//!
+//! # Limits
+//!
+//! Constraints that leave a vertex no room at all, such as two pins that stretch a straight line of
+//! rods taut, are approached only as far as the square root of round-off allows: a step may be
+//! refused there ([`StepError::StepTooSmall`]). So may one on meshes graded over many orders of
+//! magnitude. Conservative runs on fine, nearly flat sheets are slow: the exact motion flutters on
+//! ever smaller scales there.
+//!
 //! # Conventions
 //!
 //! SI units; positions, velocities and forces are flat slices of length `3V`; gravity acts along

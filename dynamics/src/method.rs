@@ -15,7 +15,7 @@ pub enum Method {
     ImplicitEuler(ImplicitOptions),
     /// The second-order backward differentiation formula with the constraints in the step:
     /// second order, lightly damped, takes any state. The default: at the price of implicit
-    /// Euler it loses a fifth of the energy or less.
+    /// Euler it loses a sixth to a half as much energy.
     Bdf2(ImplicitOptions),
     /// Predict and project: first order, damped, cheapest, takes any state.
     Projection(ProjectionStepOptions),
