@@ -274,7 +274,10 @@ fn advance_chart(
             break Ok(());
         }
         if has_forces {
-            let v = chart.velocities().map_err(|e| failed(chart.time(), e))?;
+            let v = match chart.velocities() {
+                Ok(v) => v,
+                Err(error) => break Err(failed(chart.time(), error)),
+            };
             let model = chart.mechanics().model();
             model.applied_force(chart.time(), chart.positions(), &v, &mut applied);
             state.x.copy_from_slice(chart.positions());
