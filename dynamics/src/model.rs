@@ -319,11 +319,13 @@ impl SheetModel {
     }
 
     /// Largest `|f_i| / m_i` of forces, momenta or impulses: the size of a residual that weighs
-    /// light and heavy vertices alike.
+    /// light and heavy vertices alike. Infinite if any is not a number.
     pub(crate) fn largest_acceleration(&self, f: &[f64]) -> f64 {
-        f.iter()
-            .enumerate()
-            .fold(0.0, |m, (i, f)| m.max(f.abs() / self.mass.vertex[i / 3]))
+        f.iter().enumerate().fold(0.0, |m: f64, (i, f)| {
+            // `max` would pass over a value that is not a number.
+            let a = f.abs() / self.mass.vertex[i / 3];
+            if a.is_nan() { f64::INFINITY } else { m.max(a) }
+        })
     }
 
     /// Linear momentum, kg m/s.

@@ -2,7 +2,7 @@
 
 use crate::model::PINNED;
 use crate::{HessianSink, SheetModel, State};
-use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt};
+use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt, norm_inf};
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::Matrix3;
 
@@ -266,7 +266,7 @@ pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
 
 /// Smallest edge strain that round-off in the coordinates allows to ask for.
 pub(crate) fn strain_floor(model: &SheetModel, state: &State) -> f64 {
-    let size = state.x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let size = norm_inf(&state.x);
     let shortest = model
         .rods()
         .lengths()
@@ -282,6 +282,5 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Velocities below this are round-off: of the speed, and of positions over a step.
 pub(crate) fn velocity_round_off(state: &State, h: f64) -> f64 {
-    let largest = |a: &[f64]| a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    16.0 * f64::EPSILON * (largest(&state.x) / h.abs() + largest(&state.v))
+    16.0 * f64::EPSILON * (norm_inf(&state.x) / h.abs() + norm_inf(&state.v))
 }

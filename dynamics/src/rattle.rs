@@ -6,7 +6,7 @@ use crate::primal::{dot, strain_floor, velocity_round_off};
 use crate::report::{Accepted, Effort, Path, StepError};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
-use isosheet_coords::linalg::LinalgError;
+use isosheet_coords::linalg::{LinalgError, norm_inf};
 
 /// Options of [`Rattle`] and [`RattleComposition`].
 #[derive(Debug, Clone, PartialEq)]
@@ -192,12 +192,11 @@ impl Rattle {
     /// equations: the largest rate of a rod and the largest velocity not accounted for, both
     /// relative to the speed before and after.
     fn velocity_errors(&mut self, model: &SheetModel, state: &State, h: f64) -> (f64, f64) {
-        let largest = |v: &[f64]| v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         for i in 0..self.u.len() {
             self.kick[i] = 0.5 * h * (self.force[i] + self.applied[i]);
         }
-        let speed = largest(&self.u)
-            + largest(&self.momentum)
+        let speed = norm_inf(&self.u)
+            + norm_inf(&self.momentum)
             + model.largest_acceleration(&self.kick)
             + velocity_round_off(state, h) / VELOCITY_TOLERANCE;
         let rods = model.rods();

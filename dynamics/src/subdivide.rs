@@ -5,6 +5,7 @@ use crate::integrator::{Integrator, RodDemand};
 use crate::rank::rod_rank;
 use crate::report::{Accepted, Effort, Path, StepError};
 use crate::{Fallback, Method, SheetModel, SimulationError, State, StepControl};
+use isosheet_coords::linalg::norm_inf;
 
 /// What was done on the way to the end of a step, kept also if it fails half-way.
 #[derive(Debug)]
@@ -78,14 +79,18 @@ impl Subdivided {
         let min_step = self.control.min_fraction * h;
         let (mut fraction, mut done) = (1.0, 0.0);
         let mut patience = 0;
+        // The conservative methods keep the energy by themselves.
+        let guarded = self.integrator.demand() == RodDemand::Nothing;
         while done < 1.0 {
             let effort = &mut tally.effort;
-            self.before.clone_from(state);
+            if guarded {
+                self.before.clone_from(state);
+            }
             let mut tried = self
                 .integrator
                 .step(&self.model, state, fraction * h, effort);
-            if let Ok(accepted) = &tried
-                && self.integrator.demand() == RodDemand::Nothing
+            if guarded
+                && let Ok(accepted) = &tried
                 && let Some(error) = energy_gain(&self.model, &self.before, state, accepted)
             {
                 state.clone_from(&self.before);
@@ -168,8 +173,7 @@ fn energy_gain(
         model.potential_energy(after.t, &after.x),
     );
     let gain = t1 + v1 - t0 - v0 - accepted.work;
-    let size = after.x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let noise = POSITION_NOISE * size / (after.t - before.t);
+    let noise = POSITION_NOISE * norm_inf(&after.x) / (after.t - before.t);
     let round_off = 1e-9 * (t0 + v0.abs() + v1.abs() + accepted.work.abs())
         + model.mass().total() * noise * noise;
     (gain > MAX_ENERGY_GAIN * t0.max(t1) + round_off).then_some(StepError::EnergyGain {
