@@ -51,6 +51,7 @@
 //! methods. [`StepReport::gap`] is there for it.
 
 pub mod chart;
+pub mod contact;
 #[cfg(test)]
 mod derivative_tests;
 mod energy_momentum;
