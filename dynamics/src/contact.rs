@@ -96,6 +96,8 @@ pub struct ContactWork {
     pub bodies: f64,
     /// Energy lost to friction, joules; not negative.
     pub friction: f64,
+    /// Change of the barrier potential `B`, joules.
+    pub stored: f64,
 }
 
 /// What the sheet does to a body.
@@ -180,10 +182,7 @@ pub enum ContactError {
     },
     /// The method has no place for contact.
     #[error(
-        "{method} does not support contact: use BDF2 or implicit Euler, or a chart simulation with impulses"
+        "this method has no place for contact: use BDF2 or implicit Euler, or a chart simulation with impulses"
     )]
-    Method {
-        /// Name of the method.
-        method: &'static str,
-    },
+    Method,
 }

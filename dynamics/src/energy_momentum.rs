@@ -1,6 +1,7 @@
 //! The energy-momentum integrator.
 
-use crate::integrator::{Integrator, OptionsError, RodDemand};
+use crate::contact::ContactWork;
+use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
 use crate::minimiser::not_converged;
 use crate::primal::{dot, strain_floor, velocity_round_off};
 use crate::report::{Accepted, Effort, Path, StepError};
@@ -176,11 +177,12 @@ impl Integrator for EnergyMomentum {
 
     fn step(
         &mut self,
-        model: &SheetModel,
+        scene: Scene<'_>,
         state: &mut State,
         h: f64,
         effort: &mut Effort,
     ) -> Result<Accepted, StepError> {
+        let model = scene.model;
         let strain_tolerance = self
             .options
             .strain_tolerance
@@ -257,6 +259,7 @@ impl Integrator for EnergyMomentum {
             residual,
             work,
             path,
+            contact: ContactWork::default(),
         })
     }
 }

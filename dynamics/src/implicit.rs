@@ -1,6 +1,6 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
-use crate::integrator::{Integrator, OptionsError, RodDemand};
+use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
 use crate::minimiser::Minimiser;
 use crate::report::{Accepted, Effort, StepError};
 use crate::{SheetModel, State};
@@ -24,6 +24,9 @@ pub struct ImplicitOptions {
     pub max_iterations: usize,
     /// Most iterations of the projection onto the lengths. Default 400.
     pub max_projections: usize,
+    /// Most renewals of friction's normal forces within a step, beyond the ones at its start. Default 2;
+    /// without friction there are none.
+    pub max_friction_updates: usize,
     /// Seed of the perturbation that decides which way a sheet folds that sits on a saddle of
     /// the incremental potential. Default 0.
     pub seed: u64,
@@ -37,6 +40,7 @@ impl Default for ImplicitOptions {
             strain_tolerance: 1e-12,
             max_iterations: 80,
             max_projections: 400,
+            max_friction_updates: 2,
             seed: 0,
         }
     }
@@ -84,19 +88,25 @@ impl Integrator for ImplicitEuler {
         RodDemand::Nothing
     }
 
+    fn takes_contact(&self) -> bool {
+        true
+    }
+
     fn step(
         &mut self,
-        model: &SheetModel,
+        scene: Scene<'_>,
         state: &mut State,
         h: f64,
         effort: &mut Effort,
     ) -> Result<Accepted, StepError> {
         let m = &mut self.minimiser;
-        model.applied_force(state.t, &state.x, &state.v, &mut m.applied);
+        scene
+            .model
+            .applied_force(state.t, &state.x, &state.v, &mut m.applied);
         for i in 0..m.x.len() {
             m.target[i] = state.x[i] + h * state.v[i];
         }
-        let (residual, path) = m.minimise(model, state, state.t + h, h, effort)?;
+        let (residual, path, contact) = m.minimise(scene, state, h, h, effort)?;
         let mut work = 0.0;
         for i in 0..m.x.len() {
             let dx = m.x[i] - state.x[i];
@@ -109,6 +119,7 @@ impl Integrator for ImplicitEuler {
             residual,
             work,
             path,
+            contact,
         })
     }
 }
@@ -159,9 +170,13 @@ impl Integrator for Bdf2 {
         RodDemand::Nothing
     }
 
+    fn takes_contact(&self) -> bool {
+        true
+    }
+
     fn step(
         &mut self,
-        model: &SheetModel,
+        scene: Scene<'_>,
         state: &mut State,
         h: f64,
         effort: &mut Effort,
@@ -178,13 +193,15 @@ impl Integrator for Bdf2 {
         let b = w * w / (1.0 + 2.0 * w);
         let k = (1.0 + w) / (1.0 + 2.0 * w);
         let m = &mut self.minimiser;
-        model.applied_force(state.t, &state.x, &state.v, &mut m.applied);
+        scene
+            .model
+            .applied_force(state.t, &state.x, &state.v, &mut m.applied);
         let before = &self.previous;
         for i in 0..m.x.len() {
             let (x, v) = (state.x[i], state.v[i]);
             m.target[i] = x + b * (x - before.x[i]) + k * h * (v + b * (v - before.v[i]));
         }
-        let (residual, path) = m.minimise(model, state, state.t + h, k * h, effort)?;
+        let (residual, path, contact) = m.minimise(scene, state, h, k * h, effort)?;
         let mut work = 0.0;
         for i in 0..m.x.len() {
             work += m.applied[i] * (m.x[i] - state.x[i]);
@@ -202,6 +219,7 @@ impl Integrator for Bdf2 {
             residual,
             work,
             path,
+            contact,
         })
     }
 }

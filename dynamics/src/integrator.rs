@@ -1,7 +1,16 @@
 //! What all integrators have in common.
 
+use crate::contact::Contact;
 use crate::report::{Accepted, Effort, StepError};
 use crate::{SheetModel, State};
+
+/// What an integrator moves: a sheet, and what it may touch.
+pub struct Scene<'a> {
+    /// The sheet.
+    pub model: &'a SheetModel,
+    /// Contact, in scenes that name it; only methods that [`Integrator::takes_contact`] are given any.
+    pub contact: Option<&'a mut (dyn Contact + 'static)>,
+}
 
 /// A one-step method.
 pub trait Integrator: Send {
@@ -13,7 +22,7 @@ pub trait Integrator: Send {
     /// [`StepError`]
     fn step(
         &mut self,
-        model: &SheetModel,
+        scene: Scene<'_>,
         state: &mut State,
         h: f64,
         effort: &mut Effort,
@@ -21,6 +30,11 @@ pub trait Integrator: Send {
 
     /// What the method asks of the rods.
     fn demand(&self) -> RodDemand;
+
+    /// Whether the method has a place for contact.
+    fn takes_contact(&self) -> bool {
+        false
+    }
 }
 
 /// What an integrator asks of the rods' rigidity matrix.

@@ -75,7 +75,7 @@ mod subdivide;
 
 pub use energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
 pub use implicit::{Bdf2, ImplicitEuler, ImplicitOptions};
-pub use integrator::{Integrator, OptionsError, RodDemand};
+pub use integrator::{Integrator, OptionsError, RodDemand, Scene};
 pub use method::{Fallback, Method, StepControl};
 pub use model::{ModelError, SheetModel};
 pub use potential::{Force, Gravity, HessianSink, Potential, PotentialShape, STANDARD_GRAVITY};

@@ -1,11 +1,15 @@
 //! Minimisation of an implicit step's incremental potential under the length constraints.
 
 use crate::ImplicitOptions;
+use crate::contact::{Contact, ContactWork};
+use crate::integrator::Scene;
+use crate::model::PINNED;
 use crate::primal::{PrimalMatrix, dot, penalties, strain_floor};
-use crate::project::Projector;
+use crate::project::{Aim, Held, Projector};
 use crate::report::{Effort, Path, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
+use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -19,14 +23,26 @@ const ARMIJO: f64 = 1e-4;
 const MULTIPLIER_RATIOS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 /// A Newton step shortened below this fraction is not a sign of convergence.
 const NEARLY_FULL: f64 = 0.2;
+/// Iterations in which bodies and pins have to get to the ends of their motions. They arrive in one or two
+/// where nothing is in the way; a step that needs more is better halved.
+const MAX_DRIVEN: usize = 20;
+/// Rounds of minimisation and projection where contact is in the way of the projection: each shrinks
+/// what is left to project by the penalty.
+const MAX_ROUNDS: usize = 4;
+/// Relative change of friction's normal forces below which they count as settled.
+const SETTLED: f64 = 0.05;
 
-/// Minimises `|x - target|_M^2 / 2 + h^2 (V(x) - f . x)` over all positions with the rest lengths:
-/// a minimisation that always descends, in place of a root finder that may not converge.
+/// Minimises `|x - target|_M^2 / 2 + h^2 (V(x) + B(x) + D(x - x0) - f . x)` over all positions with the rest lengths,
+/// `B` and `D` being contact and its friction where a scene has any: a minimisation that always descends, in place of a
+/// root finder that may not converge.
 ///
 /// 1. Augmented Lagrangian with the impulses of the previous step as multipliers, minimised by
 ///    Newton's method with line search. Its Hessian is tried as it is and, where it is
 ///    indefinite, with the negative part of the rods' geometric stiffness left out.
 /// 2. Projection onto the lengths, which makes them exact.
+///
+/// With contact every displacement, of either stage, is cut to the part that is proven to bring nothing into contact. Pins and
+/// bodies in motion start where they were and advance with the iterates.
 pub(crate) struct Minimiser {
     options: ImplicitOptions,
     matrix: PrimalMatrix,
@@ -51,6 +67,32 @@ pub(crate) struct Minimiser {
     /// The iterate and, after [`Minimiser::minimise`], the result.
     pub(crate) x: Vec<f64>,
     start: Vec<f64>,
+    /// Where prescribed motions end, at the pinned vertices.
+    end: Vec<f64>,
+}
+
+/// The problem of one step.
+struct Step<'a, 'b> {
+    scene: &'a mut Scene<'b>,
+    state: &'a State,
+    /// Time at the end, seconds.
+    t: f64,
+    /// Effective step, the root of the factor of the forces, seconds.
+    h: f64,
+}
+
+impl Step<'_, '_> {
+    fn contact(&self) -> Option<&(dyn Contact + 'static)> {
+        self.scene.contact.as_deref()
+    }
+
+    /// Largest safe part of a displacement.
+    fn safe_fraction(&mut self, x: &[f64], dx: &[f64]) -> f64 {
+        match &mut self.scene.contact {
+            None => 1.0,
+            Some(contact) => contact.safe_fraction(x, dx),
+        }
+    }
 }
 
 /// The augmented Lagrangian at an iterate.
@@ -89,12 +131,14 @@ impl Minimiser {
             dx: vec![0.0; n],
             x: vec![0.0; n],
             start: vec![0.0; n],
+            end: vec![0.0; n],
             options,
         })
     }
 
     /// The augmented Lagrangian at `self.x`; sets `self.c`.
-    fn merit(&mut self, model: &SheetModel, t: f64, h: f64) -> Merit {
+    fn merit(&mut self, step: &Step<'_, '_>) -> Merit {
+        let (model, t, h) = (step.scene.model, step.t, step.h);
         for i in 0..self.x.len() {
             self.difference[i] = self.x[i] - self.target[i];
         }
@@ -120,7 +164,10 @@ impl Minimiser {
             .zip(model.rods().lengths())
             .map(|(p, l)| p * (f64::EPSILON * l * (size + l)).powi(2))
             .sum();
-        let potential = model.potential_energy(t, &self.x);
+        let mut potential = model.potential_energy(t, &self.x);
+        if let Some(contact) = step.contact() {
+            potential += contact.energy(&self.x);
+        }
         Merit {
             inertia,
             value: inertia + h * h * (potential - work) + rods,
@@ -135,7 +182,8 @@ impl Minimiser {
 
     /// Gradient of the augmented Lagrangian at `self.x`, with `self.c` current; sets the
     /// force densities of the rods.
-    fn gradient(&mut self, model: &SheetModel, t: f64, h: f64) {
+    fn gradient(&mut self, step: &Step<'_, '_>) {
+        let (model, t, h) = (step.scene.model, step.t, step.h);
         for i in 0..self.x.len() {
             self.difference[i] = self.x[i] - self.target[i];
         }
@@ -150,23 +198,49 @@ impl Minimiser {
         model
             .rods()
             .apply_transpose_add(&self.x, &self.density, &mut self.gradient);
+        if let Some(contact) = step.contact() {
+            contact.add_gradient(&self.x, h * h, &mut self.gradient);
+        }
+        model.clear_pinned(&mut self.gradient);
+    }
+
+    /// Adds to the gradient what the rest of the prescribed motions will change it by, to first order.
+    fn add_drive(&mut self, step: &Step<'_, '_>) {
+        let model = step.scene.model;
+        if let Some(contact) = step.contact() {
+            contact.add_drive(&self.x, step.h * step.h, &mut self.gradient);
+        }
+        let free = model.free_index();
+        for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
+            let (pin, end) = match (free[a] == PINNED, free[b] == PINNED) {
+                (true, false) => (a, b),
+                (false, true) => (b, a),
+                _ => continue,
+            };
+            let at = |x: &[f64], v: usize| Vector3::new(x[3 * v], x[3 * v + 1], x[3 * v + 2]);
+            let (d, u) = (
+                at(&self.x, end) - at(&self.x, pin),
+                at(&self.end, pin) - at(&self.x, pin),
+            );
+            let change = self.density[e] * u + self.penalty[e] * d.dot(&u) * d;
+            for k in 0..3 {
+                self.gradient[3 * end + k] -= change[k];
+            }
+        }
         model.clear_pinned(&mut self.gradient);
     }
 
     /// Factorises the Hessian; true if it was indefinite and had to be modified.
-    fn factorize(
-        &mut self,
-        model: &SheetModel,
-        t: f64,
-        h: f64,
-        effort: &mut Effort,
-    ) -> Result<bool, LinalgError> {
+    fn factorize(&mut self, step: &Step<'_, '_>, effort: &mut Effort) -> Result<bool, LinalgError> {
+        let model = step.scene.model;
+        if let Some(contact) = step.contact() {
+            self.matrix.make_room(model, contact, &self.x)?;
+        }
         self.along.copy_from_slice(&self.penalty);
         self.across.copy_from_slice(&self.density);
         effort.factorisations += 1;
-        self.matrix
-            .assemble(model, &self.x, &self.along, &self.across);
-        self.matrix.add_potentials(model, t, &self.x, h * h);
+        self.assemble(step);
+        self.add_potentials(step);
         if self.matrix.factorize().is_ok() {
             return Ok(false);
         }
@@ -181,50 +255,67 @@ impl Minimiser {
             }
         }
         effort.factorisations += 1;
-        self.matrix
-            .assemble(model, &self.x, &self.along, &self.across);
-        self.matrix.add_potentials(model, t, &self.x, h * h);
+        self.assemble(step);
+        self.add_potentials(step);
         if self.matrix.factorize().is_ok() {
             return Ok(true);
         }
         // The potentials are concave here: leave their curvature out.
         effort.factorisations += 1;
-        self.matrix
-            .assemble(model, &self.x, &self.along, &self.across);
+        self.assemble(step);
         self.matrix.factorize()?;
         Ok(true)
     }
 
+    /// Masses, rods and contact.
+    fn assemble(&mut self, step: &Step<'_, '_>) {
+        let model = step.scene.model;
+        self.matrix
+            .assemble(model, &self.x, &self.along, &self.across);
+        if let Some(contact) = step.contact() {
+            self.matrix
+                .add_contact(model, contact, &self.x, step.h * step.h);
+        }
+    }
+
+    fn add_potentials(&mut self, step: &Step<'_, '_>) {
+        self.matrix
+            .add_potentials(step.scene.model, step.t, &self.x, step.h * step.h);
+    }
+
     /// Displaces the iterate off a saddle.
-    fn perturb(&mut self, model: &SheetModel) {
+    fn perturb(&mut self, step: &mut Step<'_, '_>) {
+        let model = step.scene.model;
         let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed);
         for (i, d) in self.dx.iter_mut().enumerate() {
             let size = BRANCH_PERTURBATION * model.shortest_rod(i / 3);
             *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
+        let part = step.safe_fraction(&self.x, &self.dx);
         for (x, d) in self.x.iter_mut().zip(&self.dx) {
-            *x += d;
+            *x += part * d;
         }
     }
 
     /// Minimises the incremental potential over all positions with the rest lengths, with
-    /// [`Minimiser::target`] and [`Minimiser::applied`] set. `h` is the effective step, the
-    /// factor of the acceleration being `h^2`; forces are those at time `t1`.
+    /// [`Minimiser::target`] and [`Minimiser::applied`] set. `span` is the step, `h` the effective step, the
+    /// factor of the acceleration being `h^2`; forces are those at the end.
     ///
     /// The positions at the start have the rest lengths too, so a result with a higher
     /// incremental potential than theirs is no minimum, and would create energy: then the
-    /// minimisation starts anew, from them.
+    /// minimisation starts anew, from them. (Where pins or bodies move, the start is not among the
+    /// positions to choose from, and there is no such bound.)
     ///
-    /// Returns the relative Newton decrement and the path.
+    /// Returns the relative Newton decrement, the path and what contact did.
     pub(crate) fn minimise(
         &mut self,
-        model: &SheetModel,
+        mut scene: Scene<'_>,
         state: &State,
-        t1: f64,
+        span: f64,
         h: f64,
         effort: &mut Effort,
-    ) -> Result<(f64, Path), StepError> {
+    ) -> Result<(f64, Path, ContactWork), StepError> {
         let ratio = (h / self.multiplier_step).powi(2);
         if MULTIPLIER_RATIOS.contains(&ratio) {
             self.multipliers.iter_mut().for_each(|m| *m *= ratio);
@@ -232,30 +323,99 @@ impl Minimiser {
             self.multipliers.fill(0.0);
         }
         self.multiplier_step = h;
+        let mut step = Step {
+            scene: &mut scene,
+            state,
+            t: state.t + span,
+            h,
+        };
+        let stored = self.begin(&mut step, span);
         self.x.copy_from_slice(&state.x);
-        let bound = self.merit(model, t1, h);
+        let driven = self.is_driven(&step);
+        let bound = (!driven).then(|| self.merit(&step));
+        self.predict(&mut step);
+        let mut result = self.descend(&mut step, effort);
+        if !(result.is_ok() && self.is_below(bound.as_ref(), &step)) {
+            self.multipliers.fill(0.0);
+            self.begin(&mut step, span);
+            self.x.copy_from_slice(&state.x);
+            if step.contact().is_none() {
+                step.scene.model.place_pins(step.t, &mut self.x);
+            }
+            let (residual, path) = self.descend(&mut step, effort)?;
+            if !self.is_below(bound.as_ref(), &step) {
+                self.multipliers.fill(0.0);
+                let strain = step.scene.model.rods().max_strain(&self.x);
+                return Err(not_converged(state.t, span, effort, residual, strain));
+            }
+            result = Ok((residual, path.max(Path::Globalised)));
+        }
+        let (residual, path) = result?;
+        let mut work = ContactWork::default();
+        if let Some(contact) = &mut step.scene.contact {
+            work = contact.finish(&self.x);
+            work.stored = contact.potential(&self.x) - stored;
+            let gap = contact.gap(&self.x);
+            if gap <= 0.0 || gap.is_nan() {
+                self.multipliers.fill(0.0);
+                return Err(StepError::Contact {
+                    t: state.t,
+                    h: span,
+                    gap,
+                });
+            }
+        }
+        Ok((residual, path, work))
+    }
+
+    /// Puts pins' ends and bodies in place for a step; returns the barrier's energy.
+    fn begin(&mut self, step: &mut Step<'_, '_>, span: f64) -> f64 {
+        let state = step.state;
+        self.end.copy_from_slice(&state.x);
+        step.scene.model.place_pins(step.t, &mut self.end);
+        match &mut step.scene.contact {
+            None => 0.0,
+            Some(contact) => {
+                contact.begin(state.t, span, &state.x);
+                contact.potential(&state.x)
+            }
+        }
+    }
+
+    /// Whether bodies or pins are on their way.
+    fn is_driven(&self, step: &Step<'_, '_>) -> bool {
+        step.contact().is_some_and(|c| c.progress() < 1.0)
+            || step
+                .scene
+                .model
+                .moving_pins()
+                .any(|v| (3 * v..3 * v + 3).any(|i| self.x[i] != self.end[i]))
+    }
+
+    /// Starts the iteration where inertia alone would go, unless something is in the way.
+    fn predict(&mut self, step: &mut Step<'_, '_>) {
+        let model = step.scene.model;
         self.x.copy_from_slice(&self.target);
-        let first = self.descend(model, state, t1, h, effort);
-        if let Ok(done) = first
-            && self.is_below(&bound, model, t1, h)
-        {
-            return Ok(done);
+        model.place_pins(step.t, &mut self.x);
+        if step.contact().is_none() {
+            return;
         }
-        self.multipliers.fill(0.0);
-        self.x.copy_from_slice(&state.x);
-        let (residual, path) = self.descend(model, state, t1, h, effort)?;
-        if self.is_below(&bound, model, t1, h) {
-            return Ok((residual, path.max(Path::Globalised)));
+        let x0 = &step.state.x;
+        for ((d, x), x0) in self.dx.iter_mut().zip(&self.x).zip(x0) {
+            *d = x - x0;
         }
-        self.multipliers.fill(0.0);
-        let strain = model.rods().max_strain(&self.x);
-        Err(not_converged(state.t, h, effort, residual, strain))
+        if step.safe_fraction(&step.state.x, &self.dx) < 1.0 {
+            self.x.copy_from_slice(&step.state.x);
+        } else if let Some(contact) = &mut step.scene.contact {
+            contact.advance(1.0);
+        }
     }
 
     /// Whether the incremental potential at the iterate is not above `bound`, but for what the
     /// tolerance of the lengths and round-off allow.
-    fn is_below(&mut self, bound: &Merit, model: &SheetModel, t: f64, h: f64) -> bool {
-        let now = self.merit(model, t, h);
+    fn is_below(&mut self, bound: Option<&Merit>, step: &Step<'_, '_>) -> bool {
+        let Some(bound) = bound else { return true };
+        let now = self.merit(step);
         let slack = 10.0 * (now.round_off + bound.round_off)
             + 10.0 * self.options.strain_tolerance * now.rod_scale.max(bound.rod_scale);
         now.potential <= bound.potential + slack
@@ -264,44 +424,115 @@ impl Minimiser {
     /// One minimisation from the iterate, followed by the projection onto the lengths.
     fn descend(
         &mut self,
-        model: &SheetModel,
-        state: &State,
-        t1: f64,
-        h: f64,
+        step: &mut Step<'_, '_>,
         effort: &mut Effort,
     ) -> Result<(f64, Path), StepError> {
+        let model = step.scene.model;
+        let tolerance = self
+            .options
+            .strain_tolerance
+            .max(strain_floor(model, step.state));
         let mut path = Path::Newton;
-        let mut residual = f64::INFINITY;
-        let mut converged = false;
-        let mut merit = self.merit(model, t1, h);
+        let rounds = if step.contact().is_some() {
+            MAX_ROUNDS
+        } else {
+            1
+        };
+        let (mut residual, mut strain) = (f64::INFINITY, f64::INFINITY);
+        for _ in 0..rounds {
+            let converged = self.newton(step, &mut residual, &mut path, effort)?;
+            for e in 0..self.c.len() {
+                self.multipliers[e] += self.penalty[e] * self.c[e];
+            }
+            if !converged {
+                strain = f64::INFINITY;
+                break;
+            }
+            let held = step.scene.contact.as_deref_mut().map(|contact| Held {
+                contact,
+                scale: step.h * step.h,
+            });
+            strain = self.projector.positions(
+                model,
+                &mut self.matrix,
+                held,
+                &mut self.x,
+                Aim {
+                    tolerance,
+                    max_iterations: self.options.max_projections,
+                },
+                effort,
+            );
+            if strain <= tolerance {
+                return Ok((residual, path));
+            }
+            model.rods().residual_into(&self.x, &mut self.c);
+        }
+        if strain == f64::INFINITY {
+            strain = model.rods().max_strain(&self.x);
+        }
+        self.multipliers.fill(0.0);
+        let (t, h) = (step.state.t, step.t - step.state.t);
+        Err(not_converged(t, h, effort, residual, strain))
+    }
+
+    /// Newton's method on the augmented Lagrangian; whether it converged.
+    fn newton(
+        &mut self,
+        step: &mut Step<'_, '_>,
+        residual: &mut f64,
+        path: &mut Path,
+        effort: &mut Effort,
+    ) -> Result<bool, StepError> {
+        let model = step.scene.model;
+        let (mut driven, mut updates) = (0, 0);
+        let mut merit = self.merit(step);
         for _ in 0..self.options.max_iterations {
-            self.gradient(model, t1, h);
+            let is_driven = self.is_driven(step);
+            self.gradient(step);
+            if is_driven {
+                self.add_drive(step);
+            }
             effort.iterations += 1;
             let modified = self
-                .factorize(model, t1, h, effort)
-                .map_err(|source| StepError::Linalg { t: state.t, source })?;
+                .factorize(step, effort)
+                .map_err(|source| StepError::Linalg {
+                    t: step.state.t,
+                    source,
+                })?;
             if modified {
-                path = path.max(Path::Globalised);
+                *path = (*path).max(Path::Globalised);
             }
             self.matrix.solve(model, &self.gradient, &mut self.dx);
             let slope = -dot(&self.dx, &self.gradient);
             if !slope.is_finite() {
                 self.multipliers.fill(0.0);
-                return Err(not_converged(state.t, h, effort, residual, f64::NAN));
+                let (t, h) = (step.state.t, step.t - step.state.t);
+                return Err(not_converged(t, h, effort, *residual, f64::NAN));
             }
             let promised = self.options.tolerance * merit.inertia;
-            residual = if -slope > merit.round_off {
+            *residual = if -slope > merit.round_off {
                 (-slope / merit.inertia).sqrt()
             } else {
                 0.0
             };
             self.start.copy_from_slice(&self.x);
-            let mut length = 1.0;
+            let limit = self.limit(step);
+            if is_driven {
+                driven += 1;
+                if driven > MAX_DRIVEN || limit == 0.0 {
+                    return Ok(false);
+                }
+                self.drive(step, limit);
+                merit = self.merit(step);
+                continue;
+            }
+            let mut length = limit;
             loop {
                 for i in 0..self.x.len() {
                     self.x[i] = self.start[i] - length * self.dx[i];
                 }
-                let now = self.merit(model, t1, h);
+                let now = self.merit(step);
                 if now.value <= merit.value + ARMIJO * length * slope + merit.round_off
                     || length < 1e-9
                 {
@@ -311,45 +542,60 @@ impl Minimiser {
                 length *= 0.5;
             }
             if length < 1.0 {
-                path = path.max(Path::Globalised);
+                *path = (*path).max(Path::Globalised);
             }
             if length >= NEARLY_FULL && -slope <= promised.max(merit.round_off) {
-                if modified && path != Path::BranchSeeded {
+                if modified && *path != Path::BranchSeeded {
                     // No slope left, but the curvature is negative somewhere: a saddle, where
                     // the sheet could fold either way.
-                    path = Path::BranchSeeded;
-                    self.perturb(model);
-                    merit = self.merit(model, t1, h);
+                    *path = Path::BranchSeeded;
+                    self.perturb(step);
+                    merit = self.merit(step);
                     continue;
                 }
-                converged = true;
-                break;
+                if let Some(contact) = &mut step.scene.contact
+                    && updates < self.options.max_friction_updates
+                    && contact.relag(&self.x) > SETTLED
+                {
+                    updates += 1;
+                    merit = self.merit(step);
+                    continue;
+                }
+                return Ok(true);
             }
         }
-        for e in 0..self.c.len() {
-            self.multipliers[e] += self.penalty[e] * self.c[e];
+        Ok(false)
+    }
+
+    /// Largest safe part of the displacement `-dx`, pinned vertices going to their ends.
+    fn limit(&mut self, step: &mut Step<'_, '_>) -> f64 {
+        if step.contact().is_none() {
+            return 1.0;
         }
-        let tolerance = self
-            .options
-            .strain_tolerance
-            .max(strain_floor(model, state));
-        let strain = if converged {
-            self.projector.positions(
-                model,
-                &mut self.matrix,
-                &mut self.x,
-                tolerance,
-                self.options.max_projections,
-                effort,
-            )
-        } else {
-            model.rods().max_strain(&self.x)
-        };
-        if !(converged && strain <= tolerance) {
-            self.multipliers.fill(0.0);
-            return Err(not_converged(state.t, h, effort, residual, strain));
+        for v in step.scene.model.moving_pins() {
+            for i in 3 * v..3 * v + 3 {
+                self.dx[i] = self.x[i] - self.end[i];
+            }
         }
-        Ok((residual, path))
+        for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
+            *w = -d;
+        }
+        step.safe_fraction(&self.x, &self.weighted)
+    }
+
+    /// Moves sheet, pins and bodies on together.
+    fn drive(&mut self, step: &mut Step<'_, '_>, part: f64) {
+        for i in 0..self.x.len() {
+            self.x[i] = self.start[i] - part * self.dx[i];
+        }
+        if part == 1.0 {
+            for v in step.scene.model.moving_pins() {
+                self.x[3 * v..3 * v + 3].copy_from_slice(&self.end[3 * v..3 * v + 3]);
+            }
+        }
+        if let Some(contact) = &mut step.scene.contact {
+            contact.advance(part);
+        }
     }
 }
 

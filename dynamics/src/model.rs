@@ -4,6 +4,7 @@ use crate::potential::{Force, Gravity, Potential, PotentialShape, STANDARD_GRAVI
 use isosheet_mesh::{
     LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
 };
+use std::fmt;
 
 /// Why a model cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -46,6 +47,18 @@ pub enum ModelError {
     },
 }
 
+/// A pinned vertex in prescribed motion.
+struct MovingPin {
+    vertex: usize,
+    position: Box<dyn Fn(f64) -> [f64; 3] + Send + Sync>,
+}
+
+impl fmt::Debug for MovingPin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "MovingPin({})", self.vertex)
+    }
+}
+
 /// Marks a vertex without unknowns in [`SheetModel::free_index`].
 pub(crate) const PINNED: u32 = u32::MAX;
 
@@ -63,6 +76,7 @@ pub struct SheetModel {
     damping: f64,
     free_index: Vec<u32>,
     free_count: usize,
+    moving_pins: Vec<MovingPin>,
     mean_length: f64,
     mean_mass: f64,
     shortest_rods: Vec<f64>,
@@ -120,6 +134,7 @@ impl SheetModel {
             damping: 0.0,
             free_index: (0..n as u32).collect(),
             free_count: n,
+            moving_pins: Vec::new(),
             topology,
         })
     }
@@ -188,6 +203,39 @@ impl SheetModel {
         }
         self.free_count = next as usize;
         Ok(self)
+    }
+
+    /// Pins a vertex to a prescribed motion: a function of time (seconds) that returns its position (metres).
+    ///
+    /// The start state has to have it there. Like any pin it has no unknowns.
+    ///
+    /// # Errors
+    /// [`ModelError::NoSuchVertex`].
+    pub fn with_moving_pin(
+        self,
+        v: VertexId,
+        position: impl Fn(f64) -> [f64; 3] + Send + Sync + 'static,
+    ) -> Result<Self, ModelError> {
+        let mut model = self.with_pins(&[v])?;
+        let vertex = v.index();
+        model.moving_pins.retain(|pin| pin.vertex != vertex);
+        model.moving_pins.push(MovingPin {
+            vertex,
+            position: Box::new(position),
+        });
+        Ok(model)
+    }
+
+    /// Moves the pins in prescribed motion to where they are at time `t`.
+    pub(crate) fn place_pins(&self, t: f64, x: &mut [f64]) {
+        for pin in &self.moving_pins {
+            x[3 * pin.vertex..3 * pin.vertex + 3].copy_from_slice(&(pin.position)(t));
+        }
+    }
+
+    /// The vertices in prescribed motion.
+    pub(crate) fn moving_pins(&self) -> impl Iterator<Item = usize> + '_ {
+        self.moving_pins.iter().map(|pin| pin.vertex)
     }
 
     /// Connectivity.

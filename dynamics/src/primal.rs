@@ -1,10 +1,15 @@
 //! The primal matrix of an implicit step: masses, rods as stiff springs, potentials.
 
+use crate::contact::{Contact, CouplingSink};
 use crate::model::PINNED;
 use crate::{HessianSink, SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt, norm_inf};
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::Matrix3;
+
+/// Pairs without contact that keep their room, per pair and rod in use: room costs fill, analysing
+/// costs about ten factorisations.
+const EXTRA_LIMIT: usize = 2;
 
 /// The symmetric matrix
 ///
@@ -23,11 +28,18 @@ pub(crate) struct PrimalMatrix {
     /// Slots of each edge block and whether its rows belong to end `b` (else to `a`).
     edge_slots: Vec<Option<([u32; 9], bool)>>,
     rhs: Vec<f64>,
-    pub(crate) factorisations: usize,
+    /// Pairs of free vertices (in free numbers, larger first) that contact couples beyond the mesh's edges, sorted.
+    extra: Vec<[u32; 2]>,
+    couplings: Vec<[u32; 2]>,
 }
 
 impl PrimalMatrix {
     pub(crate) fn new(model: &SheetModel) -> Result<Self, LinalgError> {
+        Self::with_extra(model, Vec::new())
+    }
+
+    /// Room for the blocks of the `extra` pairs of free vertices too.
+    fn with_extra(model: &SheetModel, extra: Vec<[u32; 2]>) -> Result<Self, LinalgError> {
         let free = model.free_index();
         let mut entries = Vec::new();
         for &i in free.iter().filter(|&&i| i != PINNED) {
@@ -43,6 +55,13 @@ impl PrimalMatrix {
                 continue;
             }
             let (row, col) = (i.max(j), i.min(j));
+            for r in 0..3 {
+                for c in 0..3 {
+                    entries.push((3 * row + r, 3 * col + c));
+                }
+            }
+        }
+        for &[row, col] in &extra {
             for r in 0..3 {
                 for c in 0..3 {
                     entries.push((3 * row + r, 3 * col + c));
@@ -77,8 +96,62 @@ impl PrimalMatrix {
             vertex_slots,
             edge_slots,
             rhs: vec![0.0; n],
-            factorisations: 0,
+            extra,
+            couplings: Vec::new(),
         })
+    }
+
+    /// Makes room for what contact couples at `x`. The matrix is analysed anew only when a pair
+    /// appears that it has no room for; pairs that have parted keep their room until they
+    /// outnumber the ones in use.
+    pub(crate) fn make_room(
+        &mut self,
+        model: &SheetModel,
+        contact: &dyn Contact,
+        x: &[f64],
+    ) -> Result<(), LinalgError> {
+        let mut pairs = std::mem::take(&mut self.couplings);
+        contact.couplings(x, &mut pairs);
+        let free = model.free_index();
+        pairs.retain_mut(|[a, b]| {
+            let (i, j) = (free[*a as usize], free[*b as usize]);
+            (*a, *b) = (i.max(j), i.min(j));
+            i != PINNED && j != PINNED && i != j
+        });
+        let pattern = self.llt.pattern();
+        if pairs
+            .iter()
+            .any(|&[i, j]| block_start(pattern, i, j).is_none())
+        {
+            let mut extra = pairs.clone();
+            // What was in contact before is likely to be again.
+            if self.extra.len() <= EXTRA_LIMIT * (pairs.len() + model.rods().len()) {
+                extra.extend_from_slice(&self.extra);
+            }
+            extra.sort_unstable();
+            extra.dedup();
+            *self = Self::with_extra(model, extra)?;
+        }
+        self.couplings = pairs;
+        Ok(())
+    }
+
+    /// Adds `scale` times the Hessian of contact; call [`PrimalMatrix::make_room`] before.
+    pub(crate) fn add_contact(
+        &mut self,
+        model: &SheetModel,
+        contact: &dyn Contact,
+        x: &[f64],
+        scale: f64,
+    ) {
+        contact.add_hessian(
+            x,
+            &mut Sink {
+                matrix: self,
+                model,
+                scale,
+            },
+        );
     }
 
     /// Sets the values: `along[e] = r_e`, `across[e] = p_e`.
@@ -150,7 +223,6 @@ impl PrimalMatrix {
     }
 
     pub(crate) fn factorize(&mut self) -> Result<(), LinalgError> {
-        self.factorisations += 1;
         self.llt.factorize()
     }
 
@@ -214,6 +286,43 @@ impl HessianSink for Sink<'_> {
             }
         }
     }
+}
+
+impl CouplingSink for Sink<'_> {
+    fn add(&mut self, a: u32, b: u32, block: &Matrix3<f64>) {
+        if a == b {
+            self.add_vertex(VertexId(a), block);
+            return;
+        }
+        let free = self.model.free_index();
+        let (i, j) = (free[a as usize], free[b as usize]);
+        if i == PINNED || j == PINNED {
+            return;
+        }
+        let llt = &mut self.matrix.llt;
+        let start = block_start(llt.pattern(), i.max(j), i.min(j))
+            .expect("make_room was called for these pairs");
+        let values = llt.values_mut();
+        for c in 0..3 {
+            for r in 0..3 {
+                let entry = if i > j { block[(r, c)] } else { block[(c, r)] };
+                values[start[c] + r] += self.scale * entry;
+            }
+        }
+    }
+}
+
+/// Slots of the first row of the block of two free vertices (`row > col`) in each of its three columns;
+/// the other two rows follow.
+fn block_start(pattern: &Pattern, row: u32, col: u32) -> Option<[usize; 3]> {
+    let mut start = [0; 3];
+    for (c, s) in start.iter_mut().enumerate() {
+        let column = 3 * col as usize + c;
+        let first = pattern.col_ptr()[column];
+        let rows = &pattern.row_idx()[first..pattern.col_ptr()[column + 1]];
+        *s = first + rows.binary_search(&(3 * row as usize)).ok()?;
+    }
+    Some(start)
 }
 
 /// Copies the free entries of `full` (`3V`) into `packed`.

@@ -1,6 +1,7 @@
 //! Projection of positions onto the rest lengths and of velocities onto their rates.
 
 use crate::SheetModel;
+use crate::contact::Contact;
 use crate::primal::{PrimalMatrix, penalties};
 use crate::report::Effort;
 use rand::{RngExt, SeedableRng};
@@ -33,6 +34,9 @@ const LARGEST_OPENING: f64 = 0.05;
 /// with `r` raised while steps contract slowly and lowered when the line search shortens
 /// them. Positive definite at any rank of `G`, so flat states are no obstacle; close to them
 /// convergence is linear instead of quadratic.
+///
+/// Where there is contact its Hessian joins the mass matrix, so that the nearest positions are those that
+/// press least on it, and nothing is passed through on the way.
 pub(crate) struct Projector {
     along: Vec<f64>,
     across: Vec<f64>,
@@ -43,6 +47,21 @@ pub(crate) struct Projector {
     dx: Vec<f64>,
     start: Vec<f64>,
     rng: ChaCha8Rng,
+}
+
+/// When a projection stops.
+#[derive(Clone, Copy)]
+pub(crate) struct Aim {
+    /// Largest edge strain wanted.
+    pub(crate) tolerance: f64,
+    pub(crate) max_iterations: usize,
+}
+
+/// Contact that a projection has to keep.
+pub(crate) struct Held<'a> {
+    pub(crate) contact: &'a mut dyn Contact,
+    /// Factor of its energy in the incremental potential, `h^2`.
+    pub(crate) scale: f64,
 }
 
 impl Projector {
@@ -67,11 +86,15 @@ impl Projector {
         &mut self,
         model: &SheetModel,
         matrix: &mut PrimalMatrix,
+        mut held: Option<Held<'_>>,
         x: &mut [f64],
-        tolerance: f64,
-        max_iterations: usize,
+        aim: Aim,
         effort: &mut Effort,
     ) -> f64 {
+        let Aim {
+            tolerance,
+            max_iterations,
+        } = aim;
         let rods = model.rods();
         let mut penalty = PROJECTION_PENALTY;
         let mut opening = 1.0;
@@ -89,7 +112,15 @@ impl Projector {
                 self.w[e] = -self.along[e] * self.c[e];
             }
             self.across.fill(0.0);
+            if let Some(held) = &held
+                && matrix.make_room(model, held.contact, x).is_err()
+            {
+                break;
+            }
             matrix.assemble(model, x, &self.along, &self.across);
+            if let Some(held) = &held {
+                matrix.add_contact(model, held.contact, x, held.scale);
+            }
             if matrix.factorize().is_err() {
                 if penalty <= PENALTY_RANGE.0 {
                     break;
@@ -102,7 +133,15 @@ impl Projector {
             matrix.solve(model, &self.rhs, &mut self.dx);
             let before = self.error(model);
             self.start.copy_from_slice(x);
-            let mut length = 1.0;
+            let limit = match &mut held {
+                None => 1.0,
+                Some(held) => held.contact.safe_fraction(x, &self.dx),
+            };
+            if limit < SMALLEST_STEP {
+                // Contact is in the way; more pressure has to build up before.
+                break;
+            }
+            let mut length = limit;
             let after = loop {
                 for (i, xi) in x.iter_mut().enumerate() {
                     *xi = self.start[i] + length * self.dx[i];
@@ -120,12 +159,13 @@ impl Projector {
                 // happens where a patch is flat and asks for a fold. A displacement of order
                 // sqrt(strain), in any direction, opens it.
                 penalty = PROJECTION_PENALTY;
-                self.unfold(model, x, (opening * strain.sqrt()).min(LARGEST_OPENING));
+                let size = (opening * strain.sqrt()).min(LARGEST_OPENING);
+                self.unfold(model, held.as_mut(), x, size);
                 opening *= OPENING_GROWTH;
                 rods.residual_into(x, &mut self.c);
-            } else if length < 1.0 {
+            } else if length < limit {
                 penalty *= 0.1;
-            } else if after > 0.1 * before {
+            } else if limit == 1.0 && after > 0.1 * before {
                 penalty *= 10.0;
             }
             penalty = penalty.clamp(PENALTY_RANGE.0, PENALTY_RANGE.1);
@@ -135,14 +175,24 @@ impl Projector {
     }
 
     /// Displaces every free vertex by up to `relative` lengths of its shortest rod.
-    fn unfold(&mut self, model: &SheetModel, x: &mut [f64], relative: f64) {
+    fn unfold(
+        &mut self,
+        model: &SheetModel,
+        held: Option<&mut Held<'_>>,
+        x: &mut [f64],
+        relative: f64,
+    ) {
         for (i, d) in self.dx.iter_mut().enumerate() {
             let size = relative * model.shortest_rod(i / 3);
             *d = self.rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
+        let part = match held {
+            None => 1.0,
+            Some(held) => held.contact.safe_fraction(x, &self.dx),
+        };
         for (xi, d) in x.iter_mut().zip(&self.dx) {
-            *xi += d;
+            *xi += part * d;
         }
     }
 

@@ -1,9 +1,10 @@
 //! Predict, project onto the lengths, project the velocity.
 
-use crate::integrator::{Integrator, OptionsError, RodDemand};
+use crate::contact::ContactWork;
+use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
 use crate::minimiser::not_converged;
 use crate::primal::{PrimalMatrix, strain_floor};
-use crate::project::Projector;
+use crate::project::{Aim, Projector};
 use crate::report::{Accepted, Effort, Path, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
@@ -101,11 +102,12 @@ impl Integrator for ProjectionStep {
 
     fn step(
         &mut self,
-        model: &SheetModel,
+        scene: Scene<'_>,
         state: &mut State,
         h: f64,
         effort: &mut Effort,
     ) -> Result<Accepted, StepError> {
+        let model = scene.model;
         model.potential_force(state.t, &state.x, &mut self.force);
         model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
         for (f, a) in self.force.iter_mut().zip(&self.applied) {
@@ -125,9 +127,12 @@ impl Integrator for ProjectionStep {
         let strain = self.projector.positions(
             model,
             &mut self.matrix,
+            None,
             &mut self.x,
-            tolerance,
-            self.options.max_projections,
+            Aim {
+                tolerance,
+                max_iterations: self.options.max_projections,
+            },
             effort,
         );
         if strain > tolerance || strain.is_nan() {
@@ -165,6 +170,7 @@ impl Integrator for ProjectionStep {
             residual,
             work,
             path: Path::Newton,
+            contact: ContactWork::default(),
         })
     }
 }

@@ -1,6 +1,7 @@
 //! RATTLE and its fourth-order composition.
 
-use crate::integrator::{Integrator, OptionsError, RodDemand};
+use crate::contact::ContactWork;
+use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
 use crate::minimiser::not_converged;
 use crate::primal::{dot, strain_floor, velocity_round_off};
 use crate::report::{Accepted, Effort, Path, StepError};
@@ -275,6 +276,7 @@ impl Rattle {
             residual,
             work,
             path: path.max(projected),
+            contact: ContactWork::default(),
         })
     }
 }
@@ -298,12 +300,12 @@ impl Integrator for Rattle {
 
     fn step(
         &mut self,
-        model: &SheetModel,
+        scene: Scene<'_>,
         state: &mut State,
         h: f64,
         effort: &mut Effort,
     ) -> Result<Accepted, StepError> {
-        self.advance(model, state, h, effort)
+        self.advance(scene.model, state, h, effort)
     }
 }
 
@@ -335,11 +337,12 @@ impl Integrator for RattleComposition {
 
     fn step(
         &mut self,
-        model: &SheetModel,
+        scene: Scene<'_>,
         state: &mut State,
         h: f64,
         effort: &mut Effort,
     ) -> Result<Accepted, StepError> {
+        let model = scene.model;
         let a = 1.0 / (4.0 - 4.0_f64.cbrt());
         let t0 = state.t;
         self.saved.clone_from(state);
@@ -347,6 +350,7 @@ impl Integrator for RattleComposition {
             residual: 0.0,
             work: 0.0,
             path: Path::Newton,
+            contact: ContactWork::default(),
         };
         for part in [a, a, 1.0 - 4.0 * a, a, a] {
             match self.rattle.advance(model, state, part * h, effort) {

@@ -1,6 +1,7 @@
 //! What a step tells, and why a step fails.
 
 use crate::chart::ChartDynamicsError;
+use crate::contact::ContactWork;
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::{EdgeId, VertexId};
 
@@ -47,13 +48,15 @@ pub struct StepReport {
     pub residual: f64,
     /// Kinetic energy at the end, joules.
     pub kinetic: f64,
-    /// Potential energy at the end, joules.
+    /// Potential energy at the end, contact included, joules.
     pub potential: f64,
-    /// Work done by the non-conservative forces since the start, joules.
+    /// Work done since the start by the non-conservative forces and by moving bodies, joules.
     pub work: f64,
     /// Energy taken out by velocity damping since the start, joules.
     pub dissipated: f64,
-    /// `T + V - work + dissipated` minus its value at the start, joules: the error of the
+    /// Energy lost to friction since the start, joules.
+    pub friction: f64,
+    /// `T + V - work + dissipated + friction` minus its value at the start, joules: the error of the
     /// integrator, zero for the exact motion. Of potentials that depend on time the work done by
     /// changing them, the integral of dV/dt at fixed positions, is not accounted for.
     pub energy_drift: f64,
@@ -185,6 +188,18 @@ pub enum StepError {
         /// Kinetic energy at the end of the step, joules.
         kinetic: f64,
     },
+    /// A step would have ended in contact.
+    #[error(
+        "a step of {h} s at t = {t} s would close the smallest gap to {gap} m; take a smaller step"
+    )]
+    Contact {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// The gap, metres.
+        gap: f64,
+    },
     /// The length constraints are dependent, or so nearly that the multipliers are noise.
     #[error(
         "the length constraints are dependent or nearly so at t = {t} s ({rank_deficiency} \
@@ -247,4 +262,6 @@ pub struct Accepted {
     pub work: f64,
     /// How it was obtained.
     pub path: Path,
+    /// What contact did; zero without.
+    pub contact: ContactWork,
 }

@@ -1,6 +1,7 @@
 //! A sheet in motion: state, integrator, step control and energy balance.
 
 use crate::chart::{ChartDynamicsError, ChartOptions, ChartSimulation};
+use crate::contact::{BodyLoad, Contact, ContactError};
 use crate::integrator::OptionsError;
 use crate::report::{Path, StepError, StepReport};
 use crate::start::{check_finite, check_state};
@@ -38,6 +39,9 @@ pub enum SimulationError {
     /// The chart cannot be used.
     #[error(transparent)]
     Chart(#[from] ChartDynamicsError),
+    /// Contact cannot start here.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
     /// Step control by subdivision was asked for a chart, which has its own.
     #[error(
         "a simulation in a chart controls its steps by `ChartOptions::control`; leave `StepControl` out"
@@ -70,6 +74,7 @@ pub struct Simulation {
     start_energy: f64,
     work: f64,
     dissipated: f64,
+    friction: f64,
 }
 
 enum Engine {
@@ -127,6 +132,7 @@ impl Simulation {
             start_energy: 0.0,
             work: 0.0,
             dissipated: 0.0,
+            friction: 0.0,
         };
         simulation.start_energy = simulation.energy();
         simulation
@@ -142,6 +148,37 @@ impl Simulation {
             Engine::Chart(_) => return Err(SimulationError::ChartControl),
         }
         Ok(self)
+    }
+
+    /// Adds contact with bodies and of the sheet with itself: a barrier that keeps every gap positive at every
+    /// accepted step.
+    ///
+    /// # Errors
+    /// [`SimulationError::Contact`] if the method has no place for contact or something touches already.
+    pub fn with_contact(
+        mut self,
+        contact: impl Contact + 'static,
+    ) -> Result<Self, SimulationError> {
+        match &mut self.engine {
+            Engine::Subdivided(engine) => engine.set_contact(Box::new(contact), &self.state)?,
+            Engine::Chart(_) => return Err(ContactError::Method.into()),
+        }
+        self.start_energy = self.energy();
+        Ok(self)
+    }
+
+    /// Contact, if this scene has any.
+    pub fn contact(&self) -> Option<&dyn Contact> {
+        match &self.engine {
+            Engine::Subdivided(engine) => engine.contact.as_deref(),
+            Engine::Chart(_) => None,
+        }
+    }
+
+    /// What the sheet does to the bodies, in the order in which they were added; empty without contact.
+    pub fn body_loads(&self) -> Vec<BodyLoad> {
+        self.contact()
+            .map_or_else(Vec::new, |c| c.loads(&self.state.x))
     }
 
     /// The model.
@@ -165,10 +202,18 @@ impl Simulation {
         &self.state
     }
 
-    /// Total energy `T + V`, joules.
+    /// Total energy `T + V`, contact included, joules.
     pub fn energy(&self) -> f64 {
-        let State { t, x, v } = &self.state;
-        self.model().kinetic_energy(v) + self.model().potential_energy(*t, x)
+        self.model().kinetic_energy(&self.state.v) + self.potential_energy()
+    }
+
+    fn potential_energy(&self) -> f64 {
+        let State { t, x, .. } = &self.state;
+        let potential = self.model().potential_energy(*t, x);
+        match self.contact() {
+            None => potential,
+            Some(contact) => potential + contact.potential(x),
+        }
     }
 
     /// Advances by exactly `h` seconds, in sub-steps where the integrator rejects the whole or,
@@ -191,11 +236,12 @@ impl Simulation {
         };
         self.work += tally.work;
         self.dissipated += tally.dissipated;
+        self.friction += tally.friction;
         done?;
         self.state.t = end;
         let model = self.model();
         let kinetic = model.kinetic_energy(&self.state.v);
-        let potential = model.potential_energy(end, &self.state.x);
+        let potential = self.potential_energy();
         for (quantity, value) in [
             ("the potential energy", potential),
             ("the kinetic energy", kinetic),
@@ -221,9 +267,11 @@ impl Simulation {
             potential,
             work: self.work,
             dissipated: self.dissipated,
-            energy_drift: kinetic + potential - self.work + self.dissipated - self.start_energy,
+            friction: self.friction,
+            energy_drift: kinetic + potential - self.work + self.dissipated + self.friction
+                - self.start_energy,
             strain: model.rods().max_strain(&self.state.x),
-            gap: None,
+            gap: self.contact().map(|c| c.gap(&self.state.x)),
             path: tally.path,
         })
     }

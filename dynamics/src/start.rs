@@ -2,7 +2,7 @@
 
 use crate::integrator::OptionsError;
 use crate::primal::PrimalMatrix;
-use crate::project::Projector;
+use crate::project::{Aim, Projector};
 use crate::report::{Effort, StepError};
 use crate::{SheetModel, SimulationError, State};
 use isosheet_mesh::{EdgeId, VertexId};
@@ -35,9 +35,12 @@ pub fn project_positions(
     let strain = Projector::new(model).positions(
         model,
         &mut matrix,
+        None,
         &mut moved,
-        tolerance,
-        MAX_ITERATIONS,
+        Aim {
+            tolerance,
+            max_iterations: MAX_ITERATIONS,
+        },
         &mut effort,
     );
     if strain <= tolerance {

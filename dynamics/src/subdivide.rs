@@ -1,7 +1,8 @@
 //! Steps of an integrator, subdivided where it rejects them.
 
+use crate::contact::{Contact, ContactError};
 use crate::implicit::ImplicitEuler;
-use crate::integrator::{Integrator, RodDemand};
+use crate::integrator::{Integrator, RodDemand, Scene};
 use crate::rank::rod_rank;
 use crate::report::{Accepted, Effort, Path, StepError};
 use crate::{Fallback, Method, SheetModel, SimulationError, State, StepControl};
@@ -17,6 +18,7 @@ pub(crate) struct Tally {
     pub(crate) path: Path,
     pub(crate) work: f64,
     pub(crate) dissipated: f64,
+    pub(crate) friction: f64,
 }
 
 impl Default for Tally {
@@ -29,6 +31,7 @@ impl Default for Tally {
             path: Path::Newton,
             work: 0.0,
             dissipated: 0.0,
+            friction: 0.0,
         }
     }
 }
@@ -44,6 +47,7 @@ pub(crate) struct Subdivided {
     control: StepControl,
     fallback: Option<ImplicitEuler>,
     before: State,
+    pub(crate) contact: Option<Box<dyn Contact>>,
 }
 
 impl Subdivided {
@@ -53,8 +57,24 @@ impl Subdivided {
             control: StepControl::default(),
             fallback: None,
             before: State::at_rest(vec![0.0; model.coordinate_count()]),
+            contact: None,
             model,
         })
+    }
+
+    /// Adds contact.
+    pub(crate) fn set_contact(
+        &mut self,
+        mut contact: Box<dyn Contact>,
+        state: &State,
+    ) -> Result<(), SimulationError> {
+        if !self.integrator.takes_contact() {
+            return Err(ContactError::Method.into());
+        }
+        contact.check_start(&self.model, state)?;
+        contact.begin(state.t, 0.0, &state.x);
+        self.contact = Some(contact);
+        Ok(())
     }
 
     pub(crate) fn set_control(&mut self, control: StepControl) -> Result<(), SimulationError> {
@@ -80,15 +100,19 @@ impl Subdivided {
         let (mut fraction, mut done) = (1.0, 0.0);
         let mut patience = 0;
         // The conservative methods keep the energy by themselves.
-        let guarded = self.integrator.demand() == RodDemand::Nothing;
+        let guarded = self.integrator.demand() == RodDemand::Nothing
+            && self.model.moving_pins().next().is_none();
         while done < 1.0 {
             let effort = &mut tally.effort;
             if guarded {
                 self.before.clone_from(state);
             }
-            let mut tried = self
-                .integrator
-                .step(&self.model, state, fraction * h, effort);
+            let mut tried = self.integrator.step(
+                scene(&self.model, &mut self.contact),
+                state,
+                fraction * h,
+                effort,
+            );
             if guarded
                 && let Ok(accepted) = &tried
                 && let Some(error) = energy_gain(&self.model, &self.before, state, accepted)
@@ -107,7 +131,12 @@ impl Subdivided {
                     return Err(self.diagnose(state, min_step, cause));
                 };
                 fraction = largest_fraction(done);
-                tried = fallback.step(&self.model, state, fraction * h, effort);
+                tried = fallback.step(
+                    scene(&self.model, &mut self.contact),
+                    state,
+                    fraction * h,
+                    effort,
+                );
                 tally.path = Path::Fallback;
             }
             let accepted = match tried {
@@ -120,7 +149,8 @@ impl Subdivided {
             tally.substeps += 1;
             tally.residual = tally.residual.max(accepted.residual);
             tally.path = tally.path.max(accepted.path);
-            tally.work += accepted.work;
+            tally.work += accepted.work + accepted.contact.bodies;
+            tally.friction += accepted.contact.friction;
             tally.dissipated += damp(&self.model, state, fraction * h);
             patience = patience.saturating_sub(1);
             let growth = if patience == 0 { 2.0 } else { 1.0 };
@@ -149,6 +179,13 @@ impl Subdivided {
     }
 }
 
+fn scene<'a>(model: &'a SheetModel, contact: &'a mut Option<Box<dyn Contact>>) -> Scene<'a> {
+    Scene {
+        model,
+        contact: contact.as_deref_mut(),
+    }
+}
+
 /// Share of the kinetic energy that a damped method may gain in one step. Compressed rods that snap
 /// through can feed implicit methods; shorter steps do not let them.
 const MAX_ENERGY_GAIN: f64 = 0.1;
@@ -172,11 +209,15 @@ fn energy_gain(
         model.potential_energy(after.t, &before.x),
         model.potential_energy(after.t, &after.x),
     );
-    let gain = t1 + v1 - t0 - v0 - accepted.work;
+    let contact = &accepted.contact;
+    let driven = accepted.work.abs() + contact.bodies.abs();
+    let gain = t1 + v1 + contact.stored - t0 - v0 - accepted.work - contact.bodies;
     let noise = POSITION_NOISE * norm_inf(&after.x) / (after.t - before.t);
-    let round_off = 1e-9 * (t0 + v0.abs() + v1.abs() + accepted.work.abs())
-        + model.mass().total() * noise * noise;
-    (gain > MAX_ENERGY_GAIN * t0.max(t1) + round_off).then_some(StepError::EnergyGain {
+    let round_off =
+        1e-9 * (t0 + v0.abs() + v1.abs() + driven) + model.mass().total() * noise * noise;
+    // The work of bodies is known to the accuracy of the trapezoidal rule only.
+    let share = t0.max(t1) + 5.0 * contact.bodies.abs();
+    (gain > MAX_ENERGY_GAIN * share + round_off).then_some(StepError::EnergyGain {
         t: before.t,
         h: after.t - before.t,
         gain,
