@@ -5,6 +5,7 @@
 //! | Wavefront OBJ | [`read_obj`], [`read_sheet`] | [`write_obj`], one per frame |
 //! | history CSV: `t,h,iterations,kinetic,potential,H,dH,strain,gap` | [`read_history`] | [`HistoryWriter`], row by row |
 //! | trajectory npz: `t`, `x` (T x V x 3), `faces`, `edges`, `rest_lengths` | [`Trajectory::read`] | [`Trajectory::write`] |
+//! | Matrix Market, coordinate format | | [`write_matrix_market`] |
 //! | summary JSON | [`read_json`] | [`write_json`] |
 //!
 //! Two rules hold for everything that is written: no number that is not finite gets into a file (a typed error says which one
@@ -15,6 +16,7 @@ mod atomic;
 mod finite;
 mod history;
 mod json;
+mod matrix_market;
 mod obj;
 mod obj_error;
 mod obj_write;
@@ -24,6 +26,7 @@ mod trajectory;
 pub use atomic::{FileWriter, WriteError, write_atomically};
 pub use history::{HistoryError, HistoryRow, HistoryWriter, read_history};
 pub use json::{JsonError, read_json, write_json};
+pub use matrix_market::{MatrixMarketError, MatrixSymmetry, write_matrix_market};
 pub use obj::{ObjMesh, ObjOptions, Polygons, parse_obj, read_obj, read_sheet};
 pub use obj_error::{ObjError, ObjProblem};
 pub use obj_write::{ObjWriteError, frame_path, write_obj, write_obj_to};
