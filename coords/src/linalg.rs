@@ -10,16 +10,19 @@
 //! threads inside one factorisation were measured to be slower than one, and sequential
 //! solves are bitwise reproducible.
 
+mod graph;
 mod ldlt;
 mod llt;
 mod lu;
+mod nested_dissection;
 mod ordering;
 mod pattern;
+mod separator;
 
 pub use ldlt::SparseLdlt;
 pub use llt::SparseLlt;
 pub use lu::SparseLu;
-pub use ordering::delay_multipliers;
+pub use ordering::{Fill, Ordering, delay_multipliers, elimination_order};
 pub use pattern::{Pattern, norm_inf};
 
 /// Why a sparse factorisation or solve failed.

@@ -92,7 +92,7 @@ impl PrimalMatrix {
             })
             .collect();
         Ok(Self {
-            llt: SparseLlt::new(pattern)?,
+            llt: SparseLlt::with_blocks(pattern, 3)?,
             vertex_slots,
             edge_slots,
             rhs: vec![0.0; n],

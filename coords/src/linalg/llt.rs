@@ -1,6 +1,6 @@
 //! Sparse Cholesky factorisation of a symmetric positive definite matrix.
 
-use super::{LinalgError, Pattern};
+use super::{LinalgError, Ordering, Pattern, elimination_order};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;
 use faer::sparse::linalg::{SupernodalThreshold, cholesky as ch};
@@ -25,6 +25,19 @@ impl SparseLlt {
     /// [`LinalgError::Symbolic`] if memory runs out.
     pub fn new(pattern: Pattern) -> Result<Self, LinalgError> {
         Self::with_ordering(pattern, None)
+    }
+
+    /// Analyses the lower-triangular `pattern` of unknowns that come in groups of `block`, as the three coordinates
+    /// of a vertex do, in the [best](Ordering::Best) order known for it.
+    ///
+    /// # Errors
+    /// [`LinalgError::Symbolic`] if memory runs out.
+    ///
+    /// # Panics
+    /// If `block` does not divide the order of the matrix.
+    pub fn with_blocks(pattern: Pattern, block: usize) -> Result<Self, LinalgError> {
+        let order = elimination_order(&pattern, block, Ordering::Best);
+        Self::with_ordering(pattern, Some(&order))
     }
 
     /// As [`SparseLlt::new`] with a given elimination order (`order[k]` is the unknown
