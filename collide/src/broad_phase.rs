@@ -229,6 +229,53 @@ impl BroadPhase {
         });
     }
 
+    /// Pairs of an edge and a face of the mesh without a common vertex since the last update; `out` is
+    /// overwritten.
+    pub(crate) fn self_edge_faces(&mut self, out: &mut Vec<[u32; 2]>) {
+        out.clear();
+        let Self {
+            mesh,
+            tree,
+            workspace,
+            edges,
+            faces,
+            ..
+        } = self;
+        let mut edge_face = |a: &Element, b: &Element| {
+            let Some(f) = b.face else { return };
+            let corners = &mesh.faces()[f as usize];
+            for e in a.edges.iter() {
+                let ends = &mesh.edges()[e as usize];
+                if edges[e as usize].overlaps(&faces[f as usize])
+                    && !ends.iter().any(|v| corners.contains(v))
+                {
+                    out.push([e, f]);
+                }
+            }
+        };
+        tree.traverse_bvtt_single_tree::<false>(workspace, &mut |i, j| {
+            let (a, b) = (&mesh.elements()[i as usize], &mesh.elements()[j as usize]);
+            edge_face(a, b);
+            edge_face(b, a);
+        });
+    }
+
+    /// Pairs of an edge of this mesh and a face of another since the last updates of both; `out` is
+    /// overwritten.
+    pub(crate) fn edge_faces_with(&self, other: &Self, out: &mut Vec<[u32; 2]>) {
+        out.clear();
+        for (i, j) in self.tree.leaf_pairs(&other.tree, |a, b| a.intersects(b)) {
+            let Some(f) = other.mesh.elements()[j as usize].face else {
+                continue;
+            };
+            for e in self.mesh.elements()[i as usize].edges.iter() {
+                if self.edges[e as usize].overlaps(&other.faces[f as usize]) {
+                    out.push([e, f]);
+                }
+            }
+        }
+    }
+
     /// Pairs of this mesh with another since the last updates of both; `out` is overwritten.
     pub fn candidates_with(&self, other: &Self, out: &mut CrossCandidates) {
         out.vertex_face.clear();

@@ -142,6 +142,12 @@ impl ContactMesh {
         Self::with_elements(2, vec![[0, 1]], Vec::new(), &[])
     }
 
+    /// The same vertices without the faces, and with the edges that are to be kept.
+    pub(crate) fn without_faces(mut self, keep: impl FnMut(&[u32; 2]) -> bool) -> Self {
+        self.edges.retain(keep);
+        Self::with_elements(self.vertex_count, self.edges, Vec::new(), &[])
+    }
+
     fn with_elements(
         vertex_count: usize,
         edges: Vec<[u32; 2]>,

@@ -7,6 +7,7 @@
 //! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle; bulk queries over
 //!   these pairs, and [`crossings`] as a check that uses none of them.
 //! * [`Barrier`] and [`Friction`]: the energies of contact, as functions of these distances.
+//! * [`Contacts`]: all of it together, as a step of `isosheet_dynamics` asks for it.
 //! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a prescribed [`Motion`].
 //!
 //! Everything is free of absolute tolerances: a sheet of a micrometre and one of a kilometre are
@@ -16,6 +17,7 @@ mod barrier;
 mod broad_phase;
 mod ccd;
 mod contact_mesh;
+mod contacts;
 pub mod distance;
 mod friction;
 mod jet;
@@ -32,6 +34,7 @@ pub use barrier::{Barrier, BarrierError};
 pub use broad_phase::{BroadPhase, Candidates, CrossCandidates};
 pub use ccd::{CcdOptions, CcdOptionsError};
 pub use contact_mesh::{ContactMesh, ContactMeshError};
+pub use contacts::{Coefficients, ContactOptions, Contacts, ContactsError, Stiffness};
 pub use distance::{Closest, Feature};
 pub use friction::{Friction, FrictionError, LaggedContact};
 pub use jet::Jet;

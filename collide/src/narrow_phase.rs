@@ -21,7 +21,7 @@ pub struct Moving<'a> {
 }
 
 /// The points with the given numbers.
-fn gather<const N: usize>(x: &[f64], vertices: [u32; N]) -> [Vector3<f64>; N] {
+pub(crate) fn gather<const N: usize>(x: &[f64], vertices: [u32; N]) -> [Vector3<f64>; N] {
     vertices.map(|v| {
         let i = 3 * v as usize;
         Vector3::new(x[i], x[i + 1], x[i + 2])
@@ -178,9 +178,6 @@ fn pierced(
     y: &[f64],
     keep: impl Fn(&[u32; 2], &[u32; 3]) -> bool,
 ) -> Vec<[u32; 2]> {
-    let volume = |a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>, d: Vector3<f64>| {
-        (b - a).cross(&(c - a)).dot(&(d - a))
-    };
     let mut found = Vec::new();
     for (f, face) in (0..).zip(second.faces()) {
         let [a, b, c] = gather(y, *face);
@@ -189,13 +186,22 @@ fn pierced(
                 continue;
             }
             let [p, q] = gather(x, *edge);
-            if volume(a, b, c, p) * volume(a, b, c, q) < 0.0 {
-                let sides = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
-                if sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0) {
-                    found.push([e, f]);
-                }
+            if pierces([p, q], [a, b, c]) {
+                found.push([e, f]);
             }
         }
     }
     found
+}
+
+/// Whether the open segment `pq` runs through the open triangle `abc`.
+pub(crate) fn pierces([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
+    let volume = |a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>, d: Vector3<f64>| {
+        (b - a).cross(&(c - a)).dot(&(d - a))
+    };
+    if volume(a, b, c, p) * volume(a, b, c, q) >= 0.0 {
+        return false;
+    }
+    let sides = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
+    sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0)
 }

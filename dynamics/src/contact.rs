@@ -43,7 +43,8 @@ pub trait Contact: Send {
     fn add_gradient(&self, x: &[f64], scale: f64, out: &mut [f64]);
 
     /// Adds `scale` times the change of the gradient of `B` that the rest of the bodies' motion
-    /// causes, to first order: with `u` the displacement of the body at a contact, `-d2B/dx2 u`.
+    /// causes, to first order: with `u` the displacement of the body at a contact, `-d2B/dx2 u`, with the
+    /// same semidefinite part of the Hessian as in [`Contact::add_hessian`].
     fn add_drive(&self, x: &[f64], scale: f64, out: &mut [f64]);
 
     /// Adds the Hessian of `B + D`, each contact's own part made positive semidefinite.

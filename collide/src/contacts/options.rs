@@ -1,0 +1,188 @@
+//! What a user chooses about contact.
+
+use crate::{
+    Barrier, BarrierError, CcdOptions, CcdOptionsError, Friction, FrictionError, ObstacleError,
+};
+use isosheet_dynamics::SheetModel;
+use thiserror::Error;
+
+/// Options of [`super::Contacts`]. Start from [`ContactOptions::for_sheet`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactOptions {
+    /// Gap below which the barrier acts, `d_hat`, metres. For a sheet: 1 % of the mean rod length,
+    /// small against what a mesh of straight rods errs by in a bend (an eighth of a rod at one
+    /// radian), and not more than half the smallest height of a face, so that it may touch
+    /// itself. A sheet may start closer; it is then pushed away.
+    pub activation: f64,
+    /// Thickness of the sheet, metres: the least distance from bodies and from itself, before the
+    /// gap begins to count. Default 0.
+    pub thickness: f64,
+    /// Stiffness of the barrier. Default [`Stiffness::Automatic`].
+    pub stiffness: Stiffness,
+    /// Speed below which sliding counts as rest, metres per second. For a sheet: 1 % of a mean rod
+    /// length per second, at which a sheet needs minutes to creep over an edge of its mesh; a
+    /// hundredth of the speed of a fall from the height of a few rods.
+    pub rest_speed: f64,
+    /// Sides of the prism that stands for a cylinder against edges and faces, see
+    /// [`crate::Shape::contact_geometry`]. Default 64: they come closer to the true cylinder by at
+    /// most 0.12 % of its radius. Vertices meet the true cylinder.
+    pub segments: usize,
+    /// Part of a gap that a checked motion leaves, see [`CcdOptions::remainder`]. Default 0.1.
+    pub remainder: f64,
+}
+
+/// Stiffness `kappa` of the barrier potential `kappa b`, constant over a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stiffness {
+    /// A vertex of mean mass at rest under the largest acceleration that the potentials cause at the
+    /// start keeps half the activation distance: `kappa = m a d_hat / |b'(1/2)|`, the slope taken
+    /// by the gap over `d_hat`. The acceleration is that of gravity, 9.8 m/s2, if there are no
+    /// potentials.
+    Automatic,
+    /// A given value, joules.
+    Joules(f64),
+}
+
+/// Coefficients of Coulomb friction, see [`Friction`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coefficients {
+    /// Static coefficient, at least the kinetic one.
+    pub rest: f64,
+    /// Kinetic coefficient.
+    pub sliding: f64,
+}
+
+impl Coefficients {
+    /// No friction, and no cost of it.
+    pub const FRICTIONLESS: Self = Self {
+        rest: 0.0,
+        sliding: 0.0,
+    };
+
+    /// The same coefficient at rest and in motion.
+    pub const fn equal(mu: f64) -> Self {
+        Self {
+            rest: mu,
+            sliding: mu,
+        }
+    }
+
+    pub(super) fn is_frictionless(&self) -> bool {
+        self.rest == 0.0
+    }
+
+    /// # Errors
+    /// [`FrictionError`] unless `0 <= sliding <= rest`.
+    pub fn validate(&self) -> Result<(), FrictionError> {
+        Friction::new(self.rest, self.sliding, 1.0).map(|_| ())
+    }
+}
+
+/// Why contact cannot be set up.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ContactsError {
+    /// Activation distance or thickness make no sense.
+    #[error(transparent)]
+    Barrier(#[from] BarrierError),
+    /// The stiffness is not a positive energy.
+    #[error("stiffness {0} J: give a positive energy, or Stiffness::Automatic")]
+    Stiffness(f64),
+    /// The speed that counts as rest is not positive.
+    #[error(
+        "rest_speed {0} m/s: give a positive speed, for instance 1 % of a rod length per second"
+    )]
+    RestSpeed(f64),
+    /// An option of the collision detection makes no sense.
+    #[error(transparent)]
+    Ccd(#[from] CcdOptionsError),
+    /// A body cannot be approximated.
+    #[error(transparent)]
+    Obstacle(#[from] ObstacleError),
+    /// The coefficients of friction make no sense.
+    #[error(transparent)]
+    Friction(#[from] FrictionError),
+    /// Neighbouring parts of a flat sheet would repel each other.
+    #[error(
+        "face {face} is only {height} m high, and the sheet repels itself up to {reach} m (activation and thickness): choose them below that height, or merge the short edges"
+    )]
+    Reach {
+        /// The face.
+        face: u32,
+        /// Its smallest height, metres.
+        height: f64,
+        /// Activation distance plus thickness, metres.
+        reach: f64,
+    },
+}
+
+/// Activation distance over the mean rod length.
+const RELATIVE_ACTIVATION: f64 = 1e-2;
+/// Speed that counts as rest, mean rod lengths per second.
+const RELATIVE_REST_SPEED: f64 = 1e-2;
+
+impl ContactOptions {
+    /// The defaults for a sheet.
+    pub fn for_sheet(model: &SheetModel) -> Self {
+        let length = model.mean_length();
+        let (_, height) = smallest_height(model);
+        Self {
+            activation: (RELATIVE_ACTIVATION * length).min(0.5 * height),
+            thickness: 0.0,
+            stiffness: Stiffness::Automatic,
+            rest_speed: RELATIVE_REST_SPEED * length,
+            segments: 64,
+            remainder: CcdOptions::default().remainder,
+        }
+    }
+
+    /// # Errors
+    /// [`ContactsError`] naming the option that makes no sense.
+    pub fn validate(&self) -> Result<(), ContactsError> {
+        Barrier::new(self.activation, 0.0)?;
+        Barrier::new(self.activation, self.thickness)?;
+        if let Stiffness::Joules(kappa) = self.stiffness
+            && !(kappa > 0.0 && kappa.is_finite())
+        {
+            return Err(ContactsError::Stiffness(kappa));
+        }
+        if !(self.rest_speed > 0.0 && self.rest_speed.is_finite()) {
+            return Err(ContactsError::RestSpeed(self.rest_speed));
+        }
+        self.ccd().validate()?;
+        Ok(())
+    }
+
+    pub(super) fn ccd(&self) -> CcdOptions {
+        CcdOptions {
+            separation: self.thickness,
+            remainder: self.remainder,
+            ..CcdOptions::default()
+        }
+    }
+
+    /// Distance below which the barrier acts, metres.
+    pub(super) fn reach(&self) -> f64 {
+        self.thickness + self.activation
+    }
+}
+
+/// The face with the smallest height and that height, metres. In the flat sheet no vertex is closer
+/// than this to an edge or face that it does not belong to, nor are two edges without a common end,
+/// except across slits and at re-entrant corners of the outline.
+pub(super) fn smallest_height(model: &SheetModel) -> (u32, f64) {
+    let lengths = model.rods().lengths();
+    let topology = model.topology();
+    let mut best = (0, f64::INFINITY);
+    for (number, face) in (0..).zip(topology.face_ids()) {
+        let mut l = topology.face_edges(face).map(|e| lengths[e.index()]);
+        l.sort_by(f64::total_cmp);
+        let [a, b, c] = l;
+        // Heron's formula in the form of Kahan, which loses no digits for needles.
+        let product = (c + (b + a)) * (a - (c - b)) * (a + (c - b)) * (c + (b - a));
+        let height = 0.5 * product.max(0.0).sqrt() / c;
+        if height < best.1 {
+            best = (number, height);
+        }
+    }
+    best
+}

@@ -1,0 +1,245 @@
+//! The sheet as seen from a moving body, and how far that motion is safe.
+
+use crate::CcdOptions;
+use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
+
+/// The motion of a body over a step: its origin on a straight line at constant speed, its
+/// orientation about a fixed axis at a constant rate, from the pose at the start to that at the end.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StepMotion {
+    start: Isometry3<f64>,
+    end: Isometry3<f64>,
+    /// Displacement of the origin, metres.
+    shift: Vector3<f64>,
+    /// Rotation vector in space, radians.
+    turn: Vector3<f64>,
+}
+
+impl StepMotion {
+    pub(super) fn new(start: Isometry3<f64>, end: Isometry3<f64>) -> Self {
+        let turn = if start.rotation == end.rotation {
+            Vector3::zeros()
+        } else {
+            start.rotation.rotation_to(&end.rotation).scaled_axis()
+        };
+        Self {
+            start,
+            end,
+            shift: end.translation.vector - start.translation.vector,
+            turn,
+        }
+    }
+
+    pub(super) fn moves(&self) -> bool {
+        self.start != self.end
+    }
+
+    pub(super) fn start(&self) -> &Isometry3<f64> {
+        &self.start
+    }
+
+    pub(super) fn end(&self) -> &Isometry3<f64> {
+        &self.end
+    }
+
+    /// Velocity at an offset from the origin, per step, metres.
+    pub(super) fn velocity(&self, arm: &Vector3<f64>) -> Vector3<f64> {
+        self.shift + self.turn.cross(arm)
+    }
+
+    pub(super) fn pose(&self, s: f64) -> Isometry3<f64> {
+        if s >= 1.0 {
+            return self.end;
+        }
+        Isometry3::from_parts(
+            Translation3::from(self.start.translation.vector + s * self.shift),
+            UnitQuaternion::from_scaled_axis(s * self.turn) * self.start.rotation,
+        )
+    }
+
+    /// The rest of the motion after progress `s`.
+    pub(super) fn rest(&self, s: f64) -> RestOfStep {
+        let pose = self.pose(s);
+        RestOfStep {
+            origin: pose.translation.vector,
+            shift: (1.0 - s) * self.shift,
+            turn: (1.0 - s) * self.turn,
+            rotation: pose.rotation,
+            frame: pose.rotation.to_rotation_matrix().into_inner(),
+        }
+    }
+}
+
+/// The rest of a body's motion over a step; time runs from 0 to 1 again.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RestOfStep {
+    origin: Vector3<f64>,
+    shift: Vector3<f64>,
+    turn: Vector3<f64>,
+    rotation: UnitQuaternion<f64>,
+    /// Columns: the body's axes in space.
+    frame: Matrix3<f64>,
+}
+
+/// A point of the sheet on the way from `x` to `x + dx`, relative to a body.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Course {
+    /// Offset from the body's origin in space, and its rate.
+    offset: Vector3<f64>,
+    rate: Vector3<f64>,
+    /// Bound on the acceleration in the body's frame.
+    bend: f64,
+}
+
+impl RestOfStep {
+    pub(super) fn moves(&self) -> bool {
+        self.shift != Vector3::zeros() || self.turn != Vector3::zeros()
+    }
+
+    /// Pose at a time.
+    pub(super) fn pose_at(&self, time: f64) -> Isometry3<f64> {
+        Isometry3::from_parts(
+            Translation3::from(self.origin + time * self.shift),
+            UnitQuaternion::from_scaled_axis(time * self.turn) * self.rotation,
+        )
+    }
+
+    /// The same body held where it is.
+    pub(super) fn frozen(&self) -> Self {
+        Self {
+            shift: Vector3::zeros(),
+            turn: Vector3::zeros(),
+            ..*self
+        }
+    }
+
+    /// In the body's frame the point is at `p = Q^T y` with `y` linear in time and `Q' = [w] Q`, so
+    /// `p'' = Q^T (w x (w x y) - 2 w x y')`.
+    pub(super) fn course(&self, x: &Vector3<f64>, dx: &Vector3<f64>) -> Course {
+        let (offset, rate) = (x - self.origin, dx - self.shift);
+        let w = &self.turn;
+        let bend = if *w == Vector3::zeros() {
+            0.0
+        } else {
+            let spin = |y: &Vector3<f64>| w.cross(y).norm();
+            2.0 * spin(&rate) + w.norm() * spin(&offset).max(spin(&(offset + rate)))
+        };
+        Course { offset, rate, bend }
+    }
+
+    /// Largest distance of a point of the body at radius `r` from the chord of its path in space,
+    /// metres: its acceleration, at most `|w|^2 r`, over eight.
+    pub(super) fn sagitta(&self, r: f64) -> f64 {
+        self.turn.norm_squared() * r / 8.0
+    }
+
+    /// Takes vectors in space to the body's frame at a time.
+    fn body_axes(&self, time: f64) -> Matrix3<f64> {
+        if self.turn == Vector3::zeros() {
+            return self.frame.transpose();
+        }
+        let turned = UnitQuaternion::from_scaled_axis(time * self.turn);
+        (turned.to_rotation_matrix().into_inner() * self.frame).transpose()
+    }
+
+    /// Positions and velocities of points in the body's frame.
+    fn at<const N: usize>(&self, courses: &[Course; N], time: f64) -> [[Vector3<f64>; N]; 2] {
+        let axes = self.body_axes(time);
+        let y = courses.map(|c| c.offset + time * c.rate);
+        [
+            y.map(|y| axes * y),
+            std::array::from_fn(|i| axes * (courses[i].rate - self.turn.cross(&y[i]))),
+        ]
+    }
+
+    /// Where a point is now, in the body's frame.
+    pub(super) fn now(&self, course: &Course) -> Vector3<f64> {
+        self.frame.tr_mul(&course.offset)
+    }
+
+    /// A time up to which points of the sheet stay further from the body than the separation of the
+    /// options; at most `limit`.
+    ///
+    /// `support` gives, for places of the points in the body's frame, a unit vector `n` and a bound
+    /// on `n . q` over the body's primitive: a separating plane. The distance of a point from that
+    /// plane changes at a rate that is known at one time, and by no more than its bound on the
+    /// acceleration allows later; the plane stays clear for as long as that. The sum of such times is
+    /// safe whatever the choice of `n`, on the true curved path of a turning body. Without rotation
+    /// it is the advance of [`CcdOptions`].
+    pub(super) fn advance<const N: usize>(
+        &self,
+        options: &CcdOptions,
+        courses: &[Course; N],
+        limit: f64,
+        support: impl Fn(&[Vector3<f64>; N]) -> (Vector3<f64>, f64),
+    ) -> f64 {
+        let far = self.origin.amax() + self.shift.amax();
+        let size = courses
+            .iter()
+            .map(|c| 2.0 * (c.offset.amax() + c.rate.amax()) + far)
+            .fold(far, f64::max);
+        let margin = options.separation + ROUND_OFF * size;
+        let mut time = 0.0;
+        let mut enough = 0.0;
+        for iteration in 0..options.max_iterations {
+            let [places, velocities] = self.at(courses, time);
+            let (n, plane) = support(&places);
+            let clear = places.map(|p| n.dot(&p) - plane - margin);
+            let gap = clear.iter().copied().fold(f64::INFINITY, f64::min);
+            // Not a number where the closest points coincide.
+            if !(gap > 0.0 && plane.is_finite()) {
+                return time;
+            }
+            if iteration == 0 {
+                enough = options.remainder * gap;
+            } else if gap <= enough {
+                return time;
+            }
+            let mut step = f64::INFINITY;
+            for i in 0..N {
+                let closing = -n.dot(&velocities[i]);
+                let room = clear[i] - (1.0 - ADVANCE) * gap;
+                step = step.min(crossing_time(closing, courses[i].bend, room));
+            }
+            time += step;
+            if time >= limit {
+                return limit;
+            }
+        }
+        time
+    }
+}
+
+impl Course {
+    /// Bound on the distance from the place now during the motion, metres: chord and bulge.
+    pub(super) fn reach(&self, rest: &RestOfStep) -> f64 {
+        if self.bend == 0.0 {
+            return self.rate.norm();
+        }
+        let [[now], _] = rest.at(&[*self], 0.0);
+        let [[then], _] = rest.at(&[*self], 1.0);
+        (then - now).norm() + self.bend / 8.0
+    }
+}
+
+/// Least positive time at which `closing t + bend t^2 / 2 = room`; infinite if never.
+fn crossing_time(closing: f64, bend: f64, room: f64) -> f64 {
+    if bend > 0.0 {
+        let root = (closing * closing + 2.0 * bend * room).sqrt();
+        if closing > 0.0 {
+            2.0 * room / (closing + root)
+        } else {
+            (root - closing) / bend
+        }
+    } else if closing > 0.0 {
+        room / closing
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// Part of the gap that an advance may use up, as in [`CcdOptions`].
+const ADVANCE: f64 = 0.9;
+/// Round-off of a gap relative to the largest coordinate: differences, rotations, products with the
+/// direction and the poses that the caller computes, each a few units in the last place.
+const ROUND_OFF: f64 = 32.0 * f64::EPSILON;

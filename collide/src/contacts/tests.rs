@@ -1,0 +1,169 @@
+//! Tests of the whole contact potential and of its guarantee.
+
+mod derivatives;
+mod safety;
+mod start;
+
+use super::*;
+use crate::{Keyframe, Motion, Shape, TriangleSurface};
+use isosheet_mesh::{MassKind, Sheet, generate};
+use nalgebra::{Isometry3, Matrix3};
+use std::sync::Arc;
+
+fn sheet(level: u32) -> Sheet {
+    generate::isotropic_square(level, 1.0).unwrap()
+}
+
+fn model(sheet: &Sheet) -> SheetModel {
+    SheetModel::new(sheet, 0.1, MassKind::Lumped)
+        .unwrap()
+        .with_gravity()
+}
+
+fn options(model: &SheetModel, activation: f64) -> ContactOptions {
+    ContactOptions {
+        activation,
+        stiffness: Stiffness::Joules(2.0),
+        segments: 12,
+        ..ContactOptions::for_sheet(model)
+    }
+}
+
+/// A roof of two triangles: open.
+fn roof() -> Shape {
+    let x = [
+        -0.3, -0.2, -0.1, 0.3, -0.2, -0.1, 0.3, 0.0, 0.1, -0.3, 0.0, 0.1, 0.3, 0.2, -0.1, -0.3,
+        0.2, -0.1,
+    ];
+    let faces = [[0, 1, 2], [0, 2, 3], [3, 2, 4], [3, 4, 5]];
+    Shape::Surface(Arc::new(TriangleSurface::new(&x, &faces).unwrap()))
+}
+
+/// A closed surface.
+fn tetrahedron() -> Shape {
+    let x = [
+        0.0, 0.0, 0.2, 0.2, 0.0, -0.1, -0.1, 0.2, -0.1, -0.1, -0.2, -0.1,
+    ];
+    let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+    Shape::Surface(Arc::new(TriangleSurface::new(&x, &faces).unwrap()))
+}
+
+/// Every kind of body, with the height of its top above its origin in the pose of [`tilted`].
+fn shapes() -> Vec<(&'static str, Shape)> {
+    vec![
+        ("half-space", Shape::HalfSpace),
+        (
+            "cuboid",
+            Shape::Cuboid {
+                half: [0.2, 0.15, 0.1],
+            },
+        ),
+        ("sphere", Shape::Sphere { radius: 0.2 }),
+        (
+            "cylinder",
+            Shape::Cylinder {
+                radius: 0.15,
+                half_height: 0.2,
+            },
+        ),
+        (
+            "capsule",
+            Shape::Capsule {
+                radius: 0.1,
+                half_length: 0.2,
+            },
+        ),
+        ("roof", roof()),
+        ("tetrahedron", tetrahedron()),
+    ]
+}
+
+/// Height of a body's highest point in a pose.
+fn top(shape: &Shape, pose: &Isometry3<f64>) -> f64 {
+    let Some(geometry) = shape.contact_geometry(12).unwrap() else {
+        return pose.translation.vector.z;
+    };
+    let points = geometry.positions.as_chunks::<3>().0.iter();
+    let heights = points.map(|p| (pose * nalgebra::Point3::from(*p)).z);
+    heights.fold(f64::NEG_INFINITY, f64::max) + geometry.radius
+}
+
+/// A sheet bent over a body: the flat sheet over the origin with its lowest parts `gap` above the
+/// body's top, waves of amplitude `wave`, and an irregular part that leaves no two edges parallel.
+fn waves(sheet: &Sheet, height: f64, wave: f64) -> Vec<f64> {
+    let mut x = sheet.positions().to_vec();
+    for (i, p) in x.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+        let (u, v) = (p[0] - 0.51, p[1] - 0.47);
+        let bump = (7.0 * u).cos() * (5.0 * v + 0.3).cos();
+        let odd = (12.9898 * (i as f64 + 1.0)).sin() * 43_758.547;
+        let odd = odd - odd.floor();
+        *p = [
+            u + 0.02 * odd,
+            v - 0.03 * odd * odd,
+            height + wave * (1.0 - bump) * 0.5 + 0.3 * wave * odd,
+        ];
+    }
+    x
+}
+
+fn still(shape: Shape, pose: Isometry3<f64>) -> Obstacle {
+    Obstacle::still(shape, pose).unwrap()
+}
+
+fn moving(shape: Shape, from: Isometry3<f64>, to: Isometry3<f64>, h: f64) -> Obstacle {
+    let keys = vec![Keyframe { t: 0.0, pose: from }, Keyframe { t: h, pose: to }];
+    Obstacle::new(shape, Motion::new(keys).unwrap()).unwrap()
+}
+
+/// A dense Hessian that collects blocks.
+struct Dense {
+    n: usize,
+    values: Vec<f64>,
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Dense {
+    fn new(n: usize) -> Self {
+        Self {
+            n,
+            values: vec![0.0; n * n],
+            pairs: Vec::new(),
+        }
+    }
+
+    fn matrix(&self) -> nalgebra::DMatrix<f64> {
+        nalgebra::DMatrix::from_vec(self.n, self.n, self.values.clone())
+    }
+}
+
+impl CouplingSink for Dense {
+    fn add(&mut self, a: u32, b: u32, block: &Matrix3<f64>) {
+        assert!(a <= b);
+        self.pairs.push([a, b]);
+        for r in 0..3 {
+            for c in 0..3 {
+                let (i, j) = (3 * a as usize + r, 3 * b as usize + c);
+                self.values[i + self.n * j] += block[(r, c)];
+                if a != b {
+                    self.values[j + self.n * i] += block[(r, c)];
+                }
+            }
+        }
+    }
+}
+
+fn gradient(contacts: &Contacts, x: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; x.len()];
+    contacts.add_gradient(x, 1.0, &mut out);
+    out
+}
+
+fn hessian(contacts: &Contacts, x: &[f64]) -> Dense {
+    let mut out = Dense::new(x.len());
+    contacts.add_hessian(x, &mut out);
+    out
+}
+
+fn largest(list: &[f64]) -> f64 {
+    list.iter().fold(0.0, |m, v| m.max(v.abs()))
+}

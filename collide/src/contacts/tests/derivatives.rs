@@ -1,0 +1,373 @@
+//! Energies, gradients and Hessians against finite differences, and the balance of forces.
+
+use super::*;
+use nalgebra::DMatrix;
+
+const H: f64 = 1.0 / 60.0;
+
+/// Central differences of the energy against the gradient.
+fn check_gradient(name: &str, contacts: &Contacts, x: &[f64]) {
+    assert!(contacts.energy(x) > 0.0, "{name}: nothing within reach");
+    let g = gradient(contacts, x);
+    let scale = largest(&g);
+    let step = 1e-7;
+    for i in 0..x.len() {
+        let at = |d: f64| {
+            let mut y = x.to_vec();
+            y[i] += d;
+            contacts.energy(&y)
+        };
+        let slope = (at(step) - at(-step)) / (2.0 * step);
+        assert!(
+            (slope - g[i]).abs() < 1e-6 * scale,
+            "{name}, coordinate {i}: {slope} against {} of {scale}",
+            g[i]
+        );
+    }
+}
+
+/// Differences of the gradient.
+fn curvature(contacts: &Contacts, x: &[f64]) -> DMatrix<f64> {
+    let n = x.len();
+    let step = 1e-7;
+    let mut out = DMatrix::zeros(n, n);
+    for i in 0..n {
+        let at = |d: f64| {
+            let mut y = x.to_vec();
+            y[i] += d;
+            gradient(contacts, &y)
+        };
+        let (up, down) = (at(step), at(-step));
+        for j in 0..n {
+            out[(j, i)] = (up[j] - down[j]) / (2.0 * step);
+        }
+    }
+    0.5 * (&out + out.transpose())
+}
+
+fn positive_part(m: &DMatrix<f64>) -> DMatrix<f64> {
+    let eigen = m.clone().symmetric_eigen();
+    let values = eigen.eigenvalues.map(|v| v.max(0.0));
+    &eigen.eigenvectors * DMatrix::from_diagonal(&values) * eigen.eigenvectors.transpose()
+}
+
+/// Visits the pairs one by one.
+fn sum_of_positive_parts(contacts: &mut Contacts, x: &[f64]) -> DMatrix<f64> {
+    let mut sum = DMatrix::zeros(x.len(), x.len());
+    let mut visit = |contacts: &mut Contacts| {
+        contacts.forget();
+        if contacts.energy(x) > 0.0 {
+            sum += positive_part(&curvature(contacts, x));
+        }
+    };
+    if let Some(body) = contacts.bodies.first_mut() {
+        let (vertices, pairs) = body.pairs_mut();
+        let (all_vertices, all) = (std::mem::take(vertices), std::mem::take(pairs));
+        for &v in &all_vertices {
+            contacts.bodies[0].pairs_mut().0.push(v);
+            visit(contacts);
+            contacts.bodies[0].pairs_mut().0.clear();
+        }
+        for kind in 0..3 {
+            for pair in [&all.vertex_face, &all.face_vertex, &all.edge_edge][kind] {
+                let one = contacts.bodies[0].pairs_mut().1;
+                let list = [
+                    &mut one.vertex_face,
+                    &mut one.face_vertex,
+                    &mut one.edge_edge,
+                ];
+                list.into_iter().nth(kind).unwrap().push(*pair);
+                visit(contacts);
+                *contacts.bodies[0].pairs_mut().1 = crate::CrossCandidates::default();
+            }
+        }
+        *contacts.bodies[0].pairs_mut().0 = all_vertices;
+        *contacts.bodies[0].pairs_mut().1 = all;
+    }
+    if let Some(itself) = &mut contacts.itself {
+        let all = std::mem::take(&mut itself.pairs);
+        for kind in 0..2 {
+            for pair in [&all.vertex_face, &all.edge_edge][kind] {
+                let mut one = crate::Candidates::default();
+                let list = [&mut one.vertex_face, &mut one.edge_edge];
+                list.into_iter().nth(kind).unwrap().push(*pair);
+                contacts.itself.as_mut().unwrap().pairs = one;
+                visit(contacts);
+            }
+        }
+        contacts.itself.as_mut().unwrap().pairs = all;
+    }
+    contacts.forget();
+    sum
+}
+
+/// Semidefinite, within the reported couplings, and the sum of the positive parts of all contacts' true
+/// Hessians up to `tolerance`.
+fn check_hessian(name: &str, contacts: &mut Contacts, x: &[f64], tolerance: f64) {
+    let dense = hessian(contacts, x);
+    let ours = dense.matrix();
+    let size = ours.norm();
+    assert!(size > 0.0, "{name}: nothing within reach");
+    assert!((&ours - ours.transpose()).norm() < 1e-14 * size, "{name}");
+    let lowest = ours.clone().symmetric_eigenvalues().min();
+    assert!(lowest > -1e-12 * size, "{name}: {lowest} of {size}");
+    let truth = sum_of_positive_parts(contacts, x);
+    let error = (&ours - &truth).norm() / size;
+    assert!(error < tolerance, "{name}: error {error}");
+    let mut couplings = vec![[9, 9]];
+    contacts.couplings(x, &mut couplings);
+    for pair in dense.pairs {
+        let [a, b] = pair;
+        let neighbours = contacts
+            .mesh
+            .edges()
+            .iter()
+            .any(|e| *e == [a, b] || *e == [b, a]);
+        assert!(
+            a == b || neighbours || couplings.contains(&pair),
+            "{name}: {pair:?}"
+        );
+    }
+}
+
+fn tilt() -> nalgebra::UnitQuaternion<f64> {
+    nalgebra::UnitQuaternion::from_euler_angles(0.4, 0.25, 0.7)
+}
+
+/// Contacts with one body below a wavy sheet, `gap` below it.
+fn over(shape: Shape, friction: Coefficients, gap: f64) -> (Contacts, Vec<f64>) {
+    let sheet = sheet(1);
+    let model = model(&sheet);
+    let rotation = match shape {
+        Shape::HalfSpace => nalgebra::UnitQuaternion::identity(),
+        _ => tilt(),
+    };
+    let pose = Isometry3::from_parts(nalgebra::Translation3::identity(), rotation);
+    let mut x = waves(&sheet, top(&shape, &pose) + gap, 0.05);
+    let options = options(&model, 0.1);
+    let mut contacts = Contacts::new(&model, options)
+        .unwrap()
+        .with_body(still(shape, pose), friction)
+        .unwrap();
+    let state = State::at_rest(x.clone());
+    contacts.check_start(&model, &state).unwrap();
+    // Down until the smallest gap is the one asked for; a gap shrinks by no more than the shift.
+    for _ in 0..60 {
+        contacts.begin(0.0, H, &x);
+        let down = 0.5 * (contacts.gap(&x) - gap);
+        x.iter_mut().skip(2).step_by(3).for_each(|z| *z -= down);
+    }
+    contacts.begin(0.0, H, &x);
+    assert!((contacts.gap(&x) / gap - 1.0).abs() < 1e-6);
+    (contacts, x)
+}
+
+#[test]
+fn bodies_match_differences() {
+    for (name, shape) in shapes() {
+        let (mut contacts, x) = over(shape.clone(), Coefficients::FRICTIONLESS, 0.02);
+        check_gradient(name, &contacts, &x);
+        assert_eq!(contacts.potential(&x), contacts.energy(&x));
+        // The gap is not small against the mesh here, a tenth.
+        check_hessian(name, &mut contacts, &x, 0.3);
+        let (mut contacts, x) = over(shape, Coefficients::FRICTIONLESS, 1e-4);
+        check_hessian(name, &mut contacts, &x, 2e-3);
+    }
+}
+
+/// A strip folded over itself, all pairs within reach at once.
+fn folded(gap: f64, friction: Coefficients, skew: f64) -> (Contacts, Vec<f64>) {
+    let sheet = sheet(1);
+    let model = model(&sheet);
+    let x = {
+        let mut x = waves(&sheet, 0.0, 0.2 * gap * skew.abs());
+        for p in x.as_chunks_mut::<3>().0 {
+            // Round a hairpin of the width of the gap.
+            if p[0] > 0.0 {
+                *p = [
+                    0.9 * gap - p[0],
+                    p[1] + skew * p[0],
+                    p[2] + gap + skew * 0.02 * p[0],
+                ];
+            }
+        }
+        x
+    };
+    let options = options(&model, 0.08);
+    let mut contacts = Contacts::new(&model, options)
+        .unwrap()
+        .with_self_contact(friction)
+        .unwrap();
+    let state = State::at_rest(x.clone());
+    contacts.check_start(&model, &state).unwrap();
+    contacts.begin(0.0, H, &x);
+    (contacts, x)
+}
+
+#[test]
+fn self_contact_matches_differences() {
+    let (mut contacts, x) = folded(0.05, Coefficients::FRICTIONLESS, 0.3);
+    check_gradient("folded", &contacts, &x);
+    check_hessian("folded", &mut contacts, &x, 0.2);
+    // Parallel edges and the mollifier.
+    let (mut contacts, x) = folded(0.05, Coefficients::FRICTIONLESS, 0.01);
+    assert!(
+        contacts
+            .touches(&x)
+            .list
+            .iter()
+            .any(|t| t.parallel.is_some())
+    );
+    check_gradient("parallel", &contacts, &x);
+    check_hessian("parallel", &mut contacts, &x, 0.3);
+}
+
+#[test]
+fn friction_matches_differences() {
+    let coefficients = Coefficients {
+        rest: 0.6,
+        sliding: 0.4,
+    };
+    for (name, shape) in shapes() {
+        let (contacts, x) = over(shape, coefficients, 0.02);
+        let smoothing = contacts.options.rest_speed * H;
+        for size in [0.3, 2.0, 30.0] {
+            let y: Vec<f64> = (0..x.len())
+                .map(|i| x[i] + size * smoothing * (3.0 * i as f64).sin())
+                .collect();
+            check_friction(name, &contacts, &x, &y, smoothing);
+        }
+    }
+    let (contacts, x) = folded(0.05, coefficients, 0.3);
+    let smoothing = contacts.options.rest_speed * H;
+    let y: Vec<f64> = (0..x.len())
+        .map(|i| x[i] + 2.0 * smoothing * (3.0 * i as f64).sin())
+        .collect();
+    check_friction("folded", &contacts, &x, &y, smoothing);
+}
+
+/// The part of friction alone, which changes over its smoothing distance.
+fn check_friction(name: &str, contacts: &Contacts, x0: &[f64], y: &[f64], smoothing: f64) {
+    assert!(!contacts.rubbing.is_empty(), "{name}");
+    let energy = |x: &[f64]| -> f64 {
+        let list = contacts.rubbing.iter();
+        list.map(|r| r.energy(x0, x, &contacts.bodies)).sum()
+    };
+    assert!((contacts.energy(y) - contacts.potential(y) - energy(y)).abs() < 1e-12);
+    let mut barrier = vec![0.0; y.len()];
+    for touch in &contacts.touches(y).list {
+        touch.gradient(&contacts.law, |v, g| add(&mut barrier, v, g));
+    }
+    let all = gradient(contacts, y);
+    let g: Vec<f64> = all.iter().zip(&barrier).map(|(a, b)| a - b).collect();
+    let scale = largest(&g);
+    assert!(scale > 0.0, "{name}");
+    for i in 0..y.len() {
+        let at = |d: f64| {
+            let mut z = y.to_vec();
+            z[i] += d;
+            energy(&z)
+        };
+        let step = 1e-4 * smoothing;
+        let slope = (at(step) - at(-step)) / (2.0 * step);
+        assert!(
+            (slope - g[i]).abs() < 1e-5 * scale,
+            "{name} {i}: {slope} against {} of {scale}",
+            g[i]
+        );
+    }
+    let mut dense = Dense::new(y.len());
+    for r in &contacts.rubbing {
+        r.hessian(x0, y, &contacts.bodies, &mut dense);
+    }
+    let ours = dense.matrix();
+    assert!(ours.clone().symmetric_eigenvalues().min() > -1e-12 * ours.norm());
+}
+
+/// The loads balance the gradient, in force and torque.
+#[test]
+fn action_is_reaction() {
+    for (name, shape) in shapes() {
+        let (contacts, x) = over(shape, Coefficients::equal(0.5), 0.02);
+        let y: Vec<f64> = (0..x.len())
+            .map(|i| x[i] + 1e-4 * (3.0 * i as f64).sin())
+            .collect();
+        for (x, rubs) in [(&x, false), (&y, true)] {
+            let g = gradient(&contacts, x);
+            let load = contacts.loads(x)[0];
+            let mut force = Vector3::zeros();
+            let mut torque = Vector3::zeros();
+            for (p, g) in x.as_chunks::<3>().0.iter().zip(g.as_chunks::<3>().0) {
+                let (p, g) = (Vector3::from(*p), Vector3::from(*g));
+                force += g;
+                torque += p.cross(&g);
+            }
+            let scale = load.force.norm();
+            assert!(scale > 0.0);
+            assert!((load.force - force).norm() < 1e-11 * scale, "{name}");
+            // Friction acts at the foot, a gap below the sheet.
+            let slack = if rubs { 0.1 } else { 1e-11 };
+            assert!(
+                (load.torque - torque).norm() < slack * scale,
+                "{name}: {} {torque}",
+                load.torque
+            );
+        }
+    }
+}
+
+/// For a body that is shifted by `u`, the drive is minus the Hessian times a shift of the sheet by
+/// `u`; over a floor, where nothing is left out of the Hessian, it is the change of the gradient.
+#[test]
+fn drive_is_the_shift_of_a_body() {
+    let sheet = sheet(1);
+    let model = model(&sheet);
+    for (name, shape) in shapes() {
+        let pose = Isometry3::from_parts(
+            nalgebra::Translation3::identity(),
+            if name == "half-space" {
+                nalgebra::UnitQuaternion::identity()
+            } else {
+                tilt()
+            },
+        );
+        let x = waves(&sheet, top(&shape, &pose) + 0.002, 0.05);
+        let push = nalgebra::Translation3::new(0.1e-7, -0.2e-7, 1e-7);
+        let body = moving(shape, pose, push * pose, H);
+        let mut contacts = Contacts::new(&model, options(&model, 0.1))
+            .unwrap()
+            .with_body(body, Coefficients::FRICTIONLESS)
+            .unwrap();
+        contacts
+            .check_start(&model, &State::at_rest(x.clone()))
+            .unwrap();
+        contacts.begin(0.0, H, &x);
+        assert_eq!(contacts.progress(), 0.0);
+        let mut drive = vec![0.0; x.len()];
+        contacts.add_drive(&x, 1.0, &mut drive);
+        let u = Vector3::from(push.vector);
+        let shift = nalgebra::DVector::from_fn(x.len(), |i, _| u[i % 3]);
+        let expected = -hessian(&contacts, &x).matrix() * shift;
+        let before = gradient(&contacts, &x);
+        contacts.advance(1.0);
+        assert_eq!(contacts.progress(), 1.0);
+        let after = gradient(&contacts, &x);
+        let scale = expected.amax();
+        assert!(scale > 0.0);
+        for i in 0..x.len() {
+            let error = (drive[i] - expected[i]).abs();
+            assert!(error < 1e-10 * scale, "{name}: {error} of {scale}");
+            if name == "half-space" {
+                let change = after[i] - before[i];
+                assert!(
+                    (drive[i] - change).abs() < 1e-4 * scale,
+                    "{change} {}",
+                    drive[i]
+                );
+            }
+        }
+        let mut none = vec![0.0; x.len()];
+        contacts.add_drive(&x, 1.0, &mut none);
+        assert_eq!(largest(&none), 0.0);
+    }
+}

@@ -1,0 +1,213 @@
+//! No accepted motion passes anything.
+
+use super::*;
+use crate::{crossings, crossings_between};
+use proptest::prelude::*;
+
+/// Whether the sheet passes through the body or is inside it at progress `s` of the step.
+fn passes(contacts: &Contacts, x: &[f64], s: f64) -> bool {
+    let body = &contacts.bodies[0];
+    let pose = body.rest(0.0).pose_at(s);
+    let shape = body.obstacle().shape();
+    let solid = !matches!(shape, Shape::Surface(surface) if !surface.is_closed());
+    if solid {
+        for p in x.as_chunks::<3>().0 {
+            let local = pose.inverse_transform_point(&(*p).into()).coords;
+            let distance = shape.signed_distance(&local).value;
+            if distance.is_nan() || distance <= 0.0 {
+                return true;
+            }
+        }
+    }
+    let Some(geometry) = shape.contact_geometry(contacts.options.segments).unwrap() else {
+        return false;
+    };
+    let mut places = geometry.positions.clone();
+    for p in places.as_chunks_mut::<3>().0 {
+        *p = (pose * nalgebra::Point3::from(*p)).coords.into();
+    }
+    !crossings_between(&contacts.mesh, x, &geometry.mesh, &places).is_empty()
+        || !crossings_between(&geometry.mesh, &places, &contacts.mesh, x).is_empty()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Bodies of all kinds shot at and turned against a sheet that is thrown about: whatever part of
+    /// the joint motion is accepted, nothing is passed at any time of it.
+    #[test]
+    fn accepted_motions_pass_nothing(
+        which in 0..7_usize,
+        throws in proptest::collection::vec(proptest::collection::vec(-1.0..1.0_f64, 75), 4),
+        turn in proptest::array::uniform3(-1.5..1.5_f64),
+        shift in proptest::array::uniform3(-0.4..0.4_f64),
+        size in 0.001..0.3_f64,
+    ) {
+        let sheet = sheet(1);
+        let model = model(&sheet);
+        let (name, shape) = shapes().swap_remove(which);
+        let from = Isometry3::identity();
+        let up = Vector3::from(shift) + Vector3::new(0.0, 0.0, 0.6);
+        let to = Isometry3::new(up, Vector3::from(turn));
+        let mut x = waves(&sheet, top(&shape, &from) + 0.01, 0.05);
+        let mut contacts = Contacts::new(&model, options(&model, 0.005)).unwrap()
+            .with_body(moving(shape, from, to, 0.02), Coefficients::FRICTIONLESS).unwrap();
+        contacts.check_start(&model, &State::at_rest(x.clone())).unwrap();
+        contacts.begin(0.0, 0.02, &x);
+        let mut cut = 0;
+        for throw in &throws {
+            let dx: Vec<f64> = throw.iter().map(|d| size * d).collect();
+            let s0 = contacts.progress();
+            let a = contacts.safe_fraction(&x, &dx);
+            cut += usize::from(a < 1.0);
+            for k in 0..=8 {
+                let b = a * f64::from(k) / 8.0;
+                let y: Vec<f64> = x.iter().zip(&dx).map(|(x, d)| x + b * d).collect();
+                let s = s0 + b * (1.0 - s0);
+                prop_assert!(!passes(&contacts, &y, s), "{} at {} of {}", name, b, a);
+            }
+            for i in 0..x.len() {
+                x[i] += a * dx[i];
+            }
+            contacts.advance(a);
+            let gap = contacts.gap(&x);
+            prop_assert!(gap > 0.0, "{}: gap {}", name, gap);
+            prop_assert!(contacts.energy(&x).is_finite());
+        }
+        prop_assert!(cut > 0 || contacts.progress() == 1.0);
+    }
+
+    /// A sheet thrown at itself.
+    #[test]
+    fn a_sheet_passes_not_itself(
+        throws in proptest::collection::vec(proptest::collection::vec(-1.0..1.0_f64, 75), 4),
+        size in 0.01..0.5_f64, thickness in 0.0..0.005_f64,
+    ) {
+        let sheet = sheet(1);
+        let model = model(&sheet);
+        let mut x = waves(&sheet, 0.0, 0.05);
+        let options = ContactOptions { thickness, ..options(&model, 0.01) };
+        let mut contacts = Contacts::new(&model, options).unwrap()
+            .with_self_contact(Coefficients::FRICTIONLESS).unwrap();
+        contacts.check_start(&model, &State::at_rest(x.clone())).unwrap();
+        contacts.begin(0.0, 0.02, &x);
+        for throw in &throws {
+            let dx: Vec<f64> = throw.iter().map(|d| size * d).collect();
+            let a = contacts.safe_fraction(&x, &dx);
+            for k in 1..=8 {
+                let b = a * f64::from(k) / 8.0;
+                let y: Vec<f64> = x.iter().zip(&dx).map(|(x, d)| x + b * d).collect();
+                prop_assert!(crossings(&contacts.mesh, &y).is_empty());
+                // The pairs found are those of the whole motion.
+                let gap = contacts.gap(&y);
+                prop_assert!(gap > 0.0);
+                let all = every_gap(&contacts, &y);
+                prop_assert!((gap.min(0.01) - all.min(0.01)).abs() < 1e-12, "{} {}", gap, all);
+            }
+            for i in 0..x.len() {
+                x[i] += a * dx[i];
+            }
+        }
+    }
+}
+
+/// Smallest gap of the sheet with itself over all pairs.
+fn every_gap(contacts: &Contacts, x: &[f64]) -> f64 {
+    let mesh = &contacts.mesh;
+    let mut all = crate::Candidates::default();
+    for v in 0..mesh.vertex_count() as u32 {
+        for (f, face) in (0..).zip(mesh.faces()) {
+            if !face.contains(&v) {
+                all.vertex_face.push([v, f]);
+            }
+        }
+    }
+    for (e, edge) in (0..).zip(mesh.edges()) {
+        for (g, other) in (0..).zip(mesh.edges()) {
+            if e < g && !edge.iter().any(|v| other.contains(v)) {
+                all.edge_edge.push([e, g]);
+            }
+        }
+    }
+    all.smallest_distance(mesh, x) - contacts.options.thickness
+}
+
+/// A die at 10 m/s, a millimetre below a sheet, and steps of a sixtieth of a second.
+#[test]
+fn a_fast_punch_does_not_tunnel() {
+    let sheet = sheet(2);
+    let model = model(&sheet);
+    for (name, shape) in shapes() {
+        let from = Isometry3::identity();
+        let gap = 1e-3;
+        let x = waves(&sheet, top(&shape, &from) + gap, 1e-5);
+        let h = 1.0 / 60.0;
+        let to = nalgebra::Translation3::new(0.0, 0.0, 10.0 * h) * from;
+        let mut contacts = Contacts::new(&model, options(&model, 5e-4))
+            .unwrap()
+            .with_body(moving(shape, from, to, h), Coefficients::FRICTIONLESS)
+            .unwrap();
+        contacts
+            .check_start(&model, &State::at_rest(x.clone()))
+            .unwrap();
+        contacts.begin(0.0, h, &x);
+        let still = vec![0.0; x.len()];
+        let a = contacts.safe_fraction(&x, &still);
+        let impact = gap / (10.0 * h);
+        assert!(
+            a < 1.05 * impact && a > 0.8 * impact,
+            "{name}: {a} {impact}"
+        );
+        contacts.advance(a);
+        assert!(contacts.gap(&x) > 0.0 && contacts.gap(&x) < 3e-4, "{name}");
+        // Nothing more is possible, and it does not end with a touch.
+        for _ in 0..5 {
+            let a = contacts.safe_fraction(&x, &still);
+            contacts.advance(a);
+            assert!(contacts.gap(&x) > 0.0, "{name}");
+        }
+        assert!(contacts.progress() < 2.0 * impact);
+    }
+}
+
+/// A ball and a cylinder that spin about their own axis under a sheet at rest sweep nothing: the
+/// whole step is safe, however small the gap against the path of a point.
+#[test]
+fn spinning_in_place_is_safe() {
+    let sheet = sheet(2);
+    let model = model(&sheet);
+    let lying = nalgebra::UnitQuaternion::from_euler_angles(0.0, std::f64::consts::FRAC_PI_2, 0.0);
+    for (name, shape, pose) in [
+        ("ball", Shape::Sphere { radius: 0.2 }, Isometry3::identity()),
+        ("half-space", Shape::HalfSpace, Isometry3::identity()),
+        (
+            "capsule",
+            Shape::Capsule {
+                radius: 0.1,
+                half_length: 0.6,
+            },
+            Isometry3::from_parts(nalgebra::Translation3::identity(), lying),
+        ),
+    ] {
+        let x = waves(&sheet, top(&shape, &pose) + 1e-6, 1e-6);
+        let axis = if name == "half-space" {
+            Vector3::z()
+        } else {
+            Vector3::x()
+        };
+        let to = Isometry3::from_parts(
+            pose.translation,
+            nalgebra::UnitQuaternion::from_scaled_axis(0.8 * axis) * pose.rotation,
+        );
+        let mut contacts = Contacts::new(&model, options(&model, 1e-3))
+            .unwrap()
+            .with_body(moving(shape, pose, to, 0.01), Coefficients::FRICTIONLESS)
+            .unwrap();
+        contacts
+            .check_start(&model, &State::at_rest(x.clone()))
+            .unwrap();
+        contacts.begin(0.0, 0.01, &x);
+        let still = vec![0.0; x.len()];
+        assert_eq!(contacts.safe_fraction(&x, &still), 1.0, "{name}");
+    }
+}
