@@ -1,6 +1,7 @@
 //! The command line.
 
 use crate::selection::Selection;
+use crate::speed_vs_error::Part;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -24,6 +25,36 @@ pub(crate) enum Command {
     ///
     /// Writes DIR/condition.csv and DIR/condition.svg and prints the table.
     ConditionTable(ConditionArgs),
+    /// Measure time against errors: every method on every problem, the hanging sheet of other programs, the linear solvers
+    ///
+    /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG). What is already there and was made
+    /// by the same program with the same effort is kept. Times are wall times on one core: leave the machine alone meanwhile.
+    SpeedVsError(SpeedArgs),
+}
+
+/// Arguments of `speed-vs-error`.
+#[derive(Debug, Args)]
+pub(crate) struct SpeedArgs {
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
+    #[arg(long, value_name = "DIR", default_value = "out/speed-vs-error")]
+    pub(crate) out: PathBuf,
+
+    /// Seconds instead of ten minutes: checks that everything works, and shows no result
+    #[arg(long, conflicts_with = "full")]
+    pub(crate) quick: bool,
+
+    /// Longer runs, smaller steps, larger matrices: about an hour
+    #[arg(long)]
+    pub(crate) full: bool,
+
+    /// What to measure, separated by commas: problems (pendulum, triangle, strip-2, ..., sheet-3), hanging, solvers; all
+    /// when left out
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub(crate) problems: Vec<Part>,
+
+    /// Write the matrices of the solver study to this folder as Matrix Market files, and measure nothing
+    #[arg(long, value_name = "DIR", conflicts_with = "problems")]
+    pub(crate) matrices: Option<PathBuf>,
 }
 
 /// Arguments of `condition-table`.

@@ -4,6 +4,7 @@ mod axes;
 mod colour;
 mod drawing;
 mod layout;
+mod png;
 mod sheet;
 pub(crate) mod spatial;
 mod svg;

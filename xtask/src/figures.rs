@@ -13,6 +13,8 @@ mod fig09;
 mod performance;
 mod softness;
 
+pub(crate) use performance::{machine, rounded};
+
 use crate::draw::{Anchor, Colour, Drawing, Stroke, Vertical, palette};
 use crate::store::Store;
 use anyhow::Result;

@@ -2,6 +2,7 @@
 //!
 //! * `reproduce-figures`: the figures and the table of Liu, Tang and Joneja 2007, made with this workspace.
 //! * `condition-table`: the condition numbers of the system coordinates.
+//! * `speed-vs-error`: time against errors of all methods and solvers.
 //!
 //! The exit code is 0 when everything was made, 1 on failure, 2 for a command line that makes no sense and 130 when
 //! stopped with Ctrl-C.
@@ -17,6 +18,7 @@ mod report;
 mod reproduce;
 mod runs;
 mod selection;
+mod speed_vs_error;
 mod store;
 
 use clap::Parser;
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
     let result = interrupt::install().and_then(|()| match cli.command {
         cli::Command::ReproduceFigures(args) => reproduce::run(&args),
         cli::Command::ConditionTable(args) => condition::run(&args),
+        cli::Command::SpeedVsError(args) => speed_vs_error::run(&args),
     });
     match result {
         Ok(Outcome::Complete) => ExitCode::SUCCESS,

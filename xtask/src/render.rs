@@ -8,5 +8,6 @@ mod occlusion;
 mod sheet;
 
 pub(crate) use camera::Camera;
+pub(crate) use canvas::png;
 pub(crate) use montage::{Labelled, montage};
 pub(crate) use sheet::{Look, SheetPicture, render};

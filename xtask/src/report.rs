@@ -1,6 +1,6 @@
 //! The report: DIR/index.html and DIR/summary.json, from the stamps of all figures made so far.
 
-mod html;
+pub(crate) mod html;
 
 use crate::figures::{Effort, Record};
 use crate::reproduce::unit;

@@ -250,3 +250,59 @@ fn ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on() {
     assert_eq!(code, Some(1), "{text}");
     assert!(run.exists(), "a full run is not replaced by a quick one");
 }
+
+#[test]
+fn speed_vs_error_measures_parts_and_keeps_them() {
+    let (_keep, out) = folder();
+    let run = |list: &str| {
+        let result = xtask()
+            .args(["speed-vs-error", "--quick", "--problems", list, "--out"])
+            .arg(&out)
+            .output()
+            .unwrap();
+        let text = [result.stdout, result.stderr].concat();
+        (
+            result.status.code(),
+            String::from_utf8_lossy(&text).into_owned(),
+        )
+    };
+    let (code, text) = run("triangle,solvers");
+    assert_eq!(code, Some(0), "{text}");
+    for file in [
+        "tables/triangle.csv",
+        "plots/triangle.svg",
+        "plots/triangle.png",
+        "tables/solvers.csv",
+        "plots/solvers.png",
+        "index.html",
+    ] {
+        assert!(
+            fs::metadata(out.join(file)).unwrap().len() > 500,
+            "{file} is empty"
+        );
+    }
+    let (code, text) = run("hanging,triangle");
+    assert_eq!(code, Some(0), "{text}");
+    assert_eq!(text.matches("up to date").count(), 1, "{text}");
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    for part in ["id=\"triangle\"", "id=\"hanging\"", "id=\"solvers\""] {
+        assert!(page.contains(part), "{part} is missing");
+    }
+    assert!(!page.contains("<script") && !page.contains("<link") && !page.contains("NaN"));
+    let (code, text) = run("moon");
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("sheet-3, hanging, solvers"), "{text}");
+}
+
+#[test]
+fn matrices_are_written_for_other_programs() {
+    let (_keep, out) = folder();
+    let result = xtask()
+        .args(["speed-vs-error", "--quick", "--matrices"])
+        .arg(&out)
+        .output()
+        .unwrap();
+    assert_eq!(result.status.code(), Some(0));
+    let text = fs::read_to_string(out.join("M0-schur.mtx")).unwrap();
+    assert!(text.starts_with("%%MatrixMarket matrix coordinate real symmetric"));
+}

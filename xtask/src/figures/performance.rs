@@ -187,7 +187,7 @@ fn default_row(mesh: &str, s: &RunSummary) -> Vec<String> {
 }
 
 /// A message with its long numbers rounded to three digits.
-fn rounded(text: &str) -> String {
+pub(crate) fn rounded(text: &str) -> String {
     let word = |w: &str| {
         let number = w
             .trim_start_matches('(')
@@ -239,7 +239,7 @@ fn chart_row(mesh: &str, name: &str, s: &ChartSummary) -> Vec<String> {
 }
 
 /// The processor, as the system names it.
-fn machine() -> String {
+pub(crate) fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let field = |name: &str| {

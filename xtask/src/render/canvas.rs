@@ -109,21 +109,26 @@ impl Image {
     /// The picture as a PNG file, sRGB, eight bits.
     pub(crate) fn to_png(&self) -> Result<Vec<u8>> {
         let data: Vec<u8> = self.pixels.iter().flat_map(|p| p.map(srgb)).collect();
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::High);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        let mut writer = encoder
-            .write_header()
-            .context("cannot write the PNG header")?;
-        writer
-            .write_image_data(&data)
-            .context("cannot write the PNG data")?;
-        writer.finish().context("cannot finish the PNG file")?;
-        Ok(bytes)
+        png(self.width as u32, self.height as u32, &data)
     }
+}
+
+/// The PNG file of a picture given as rows of three sRGB bytes a pixel.
+pub(crate) fn png(width: u32, height: u32, data: &[u8]) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let mut writer = encoder
+        .write_header()
+        .context("cannot write the PNG header")?;
+    writer
+        .write_image_data(data)
+        .context("cannot write the PNG data")?;
+    writer.finish().context("cannot finish the PNG file")?;
+    Ok(bytes)
 }
 
 /// A picture with depth: what is nearer hides what is farther.

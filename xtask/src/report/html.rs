@@ -6,7 +6,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::fmt::Write;
 
-const STYLE: &str = "\
+/// The look of all pages.
+pub(crate) const STYLE: &str = "\
 :root{color-scheme:light}body{font:16px/1.5 Helvetica,Arial,sans-serif;color:#222;background:#fff;margin:2.5rem auto;\
 max-width:64rem;padding:0 1.5rem}h1{font-size:1.7rem;margin-bottom:.3rem}h2{font-size:1.15rem;margin:0 0 .7rem}\
 section{border-top:1px solid #ddd;padding:1.6rem 0}figure{margin:0 0 1rem}figure svg,figure img{max-width:100%;height:auto;\
@@ -89,7 +90,8 @@ fn section(
     Ok(())
 }
 
-fn table(out: &mut String, t: &Table) {
+/// A table that scrolls when it is wide.
+pub(crate) fn table(out: &mut String, t: &Table) {
     let _ = write!(
         out,
         "<div class=\"scroll\"><table><caption>{}</caption><thead><tr>",
@@ -113,7 +115,7 @@ fn table(out: &mut String, t: &Table) {
 const ENLARGED: f64 = 1.3;
 
 /// The part of an SVG file that may stand in a page: without an XML declaration, and enlarged.
-fn inline_svg(svg: &str) -> String {
+pub(crate) fn inline_svg(svg: &str) -> String {
     let svg = svg.find("<svg").map_or(svg, |start| &svg[start..]);
     let mut out = svg.to_owned();
     for name in ["width=\"", "height=\""] {
@@ -131,7 +133,8 @@ fn inline_svg(svg: &str) -> String {
     out
 }
 
-fn escape(text: &str) -> String {
+/// Text as it stands in a page.
+pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

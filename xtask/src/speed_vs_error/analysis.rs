@@ -1,0 +1,247 @@
+//! What the points of a study say: orders, Pareto fronts, in numbers and words.
+
+use super::measure::{Errors, Point};
+use std::fmt::Write;
+
+/// Which error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Measure {
+    Position,
+    Energy,
+    Strain,
+}
+
+impl Measure {
+    pub(crate) const ALL: [Self; 3] = [Self::Position, Self::Energy, Self::Strain];
+
+    pub(crate) fn of(self, errors: &Errors) -> f64 {
+        match self {
+            Self::Position => errors.position,
+            Self::Energy => errors.energy,
+            Self::Strain => errors.strain,
+        }
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Energy => "energy",
+            Self::Strain => "strain",
+        }
+    }
+
+    pub(crate) fn unit(self) -> &'static str {
+        match self {
+            Self::Position => " m",
+            Self::Energy | Self::Strain => "",
+        }
+    }
+}
+
+/// Slope of the least-squares line through (log x, log y); `None` with fewer than two different x.
+pub(crate) fn exponent(points: &[[f64; 2]]) -> Option<f64> {
+    let n = points.len() as f64;
+    let logs: Vec<[f64; 2]> = points.iter().map(|p| p.map(f64::ln)).collect();
+    let mean = |k: usize| logs.iter().map(|p| p[k]).sum::<f64>() / n;
+    let [mx, my] = [mean(0), mean(1)];
+    let sxx: f64 = logs.iter().map(|p| (p[0] - mx).powi(2)).sum();
+    let sxy: f64 = logs.iter().map(|p| (p[0] - mx) * (p[1] - my)).sum();
+    let slope = sxy / sxx;
+    (points.len() > 1 && slope.is_finite()).then_some(slope)
+}
+
+/// Points that a fitted order rests on: the finest ones, before floors are reached.
+const FITTED: usize = 4;
+
+/// Order of a method: the slope of its error over its step, from the finest runs whose error is ten times above `floor` and
+/// whose steps were taken as asked for.
+pub(crate) fn order(points: &[Point], scheme: &str, measure: Measure, floor: f64) -> Option<f64> {
+    let usable: Vec<[f64; 2]> = points
+        .iter()
+        .filter(|p| p.scheme == scheme && p.uniform)
+        .filter_map(|p| {
+            p.errors
+                .map(|e| [p.step, measure.of(&e)])
+                .filter(|[_, e]| *e > 10.0 * floor)
+        })
+        .collect();
+    let finest = usable.len().saturating_sub(FITTED);
+    exponent(&usable[finest..]).filter(|_| usable.len() - finest >= 3)
+}
+
+/// Times within this factor count as equal: repeated measurements differ by as much.
+const NOISE: f64 = 1.1;
+
+/// The cheapest point whose error is at most `level`.
+pub(crate) fn cheapest<'a>(
+    points: impl IntoIterator<Item = &'a Point>,
+    measure: Measure,
+    level: f64,
+) -> Option<&'a Point> {
+    points
+        .into_iter()
+        .filter(|p| p.errors.is_some_and(|e| measure.of(&e) <= level))
+        .min_by(|a, b| a.wall.total_cmp(&b.wall))
+}
+
+/// The largest and smallest error of the points of a method that no other method reaches in less time (beyond noise)
+/// with as small an error: its part of the front.
+pub(crate) fn on_front(points: &[Point], scheme: &str, measure: Measure) -> Option<[f64; 2]> {
+    points
+        .iter()
+        .filter(|p| p.scheme == scheme)
+        .filter_map(|p| {
+            let level = measure.of(&p.errors?);
+            let others = points.iter().filter(|q| q.scheme != scheme);
+            cheapest(others, measure, level)
+                .is_none_or(|q| q.wall * NOISE >= p.wall)
+                .then_some([level; 2])
+        })
+        .reduce(|a, b| [a[0].max(b[0]), a[1].min(b[1])])
+}
+
+/// One piece of a front: the method to use for errors from one level to another.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Stretch {
+    pub(crate) scheme: String,
+    /// The smallest error, a power of ten.
+    pub(crate) to: i32,
+    /// Its price at the smallest error, wall seconds for a simulated second.
+    pub(crate) wall: f64,
+}
+
+/// Which method is the cheapest at errors of 1e-1, 1e-2, ..., neighbouring levels with the same one joined.
+pub(crate) fn front(points: &[Point], measure: Measure) -> Vec<Stretch> {
+    let mut stretches: Vec<Stretch> = Vec::new();
+    for k in 1..=14 {
+        let Some(best) = cheapest(points, measure, 10f64.powi(-k)) else {
+            break;
+        };
+        let stretch = Stretch {
+            scheme: best.scheme.clone(),
+            to: -k,
+            wall: best.wall,
+        };
+        match stretches.last_mut() {
+            Some(last) if last.scheme == stretch.scheme => *last = stretch,
+            _ => stretches.push(stretch),
+        }
+    }
+    stretches
+}
+
+/// The front in words.
+pub(crate) fn advice(points: &[Point], measure: Measure) -> String {
+    let mut text = String::new();
+    for stretch in front(points, measure) {
+        let join = if text.is_empty() { "" } else { "; " };
+        // Writing to a string cannot fail.
+        let _ = write!(
+            text,
+            "{join}down to 1e{}{}: {} ({} s/s)",
+            stretch.to,
+            measure.unit(),
+            stretch.scheme,
+            short(stretch.wall)
+        );
+    }
+    if text.is_empty() {
+        text.push_str("no method reaches 1e-1");
+    }
+    text
+}
+
+/// A positive number with two digits.
+pub(crate) fn short(value: f64) -> String {
+    if !value.is_finite() {
+        "–".into()
+    } else if (0.01..100.0).contains(&value) {
+        let digits = (1 - value.log10().floor() as i32).max(0) as usize;
+        format!("{value:.digits$}")
+    } else if (100.0..9999.5).contains(&value) {
+        format!("{value:.0}")
+    } else if value == 0.0 {
+        "0".into()
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(scheme: &str, step: f64, wall: f64, position: f64) -> Point {
+        Point {
+            scheme: scheme.into(),
+            fineness: step,
+            step,
+            uniform: true,
+            wall,
+            repetitions: 1,
+            steps: 1,
+            rejected: 0,
+            factorisations: 0,
+            errors: Some(Errors {
+                position,
+                energy: position,
+                strain: 0.0,
+            }),
+            partial: None,
+            reached: 1.0,
+            failure: None,
+        }
+    }
+
+    fn sample() -> Vec<Point> {
+        let mut points = Vec::new();
+        for k in 0..6 {
+            let h = 0.1 * 0.5f64.powi(k);
+            points.push(point("one", h, 0.01 / h, h));
+            points.push(point("four", h, 0.1 / h, h.powi(4)));
+            points.push(point("bad", h, 1.0 / h, h));
+        }
+        points
+    }
+
+    #[test]
+    fn orders_are_slopes_above_the_floor() {
+        let points = sample();
+        let o = |name, floor| order(&points, name, Measure::Position, floor);
+        assert!((o("one", 1e-12).unwrap() - 1.0).abs() < 1e-12);
+        assert!((o("four", 1e-12).unwrap() - 4.0).abs() < 1e-12);
+        assert_eq!(o("four", 1e-5), None, "too few points are left");
+        assert_eq!(exponent(&[[1.0, 2.0]]), None);
+        assert_eq!(exponent(&[[1.0, 2.0], [1.0, 3.0]]), None);
+    }
+
+    #[test]
+    fn the_front_names_the_cheapest() {
+        let points = sample();
+        let stretches = front(&points, Measure::Position);
+        assert_eq!(stretches[0].scheme, "one");
+        assert_eq!(stretches[0].to, -1);
+        assert_eq!(stretches[1].scheme, "four");
+        let [high, low] = on_front(&points, "one", Measure::Position).unwrap();
+        assert!(high == 0.1 && low < 0.1);
+        assert!(on_front(&points, "four", Measure::Position).is_some());
+        assert_eq!(on_front(&points, "bad", Measure::Position), None);
+        assert_eq!(on_front(&points, "absent", Measure::Position), None);
+        let words = advice(&points, Measure::Position);
+        assert!(
+            words.starts_with("down to 1e-1 m: one (0.10 s/s)"),
+            "{words}"
+        );
+        assert_eq!(advice(&[], Measure::Energy), "no method reaches 1e-1");
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(short(0.012_34), "0.012");
+        assert_eq!(short(1.26), "1.3");
+        assert_eq!(short(55.0), "55");
+        assert_eq!(short(1234.0), "1234");
+        assert_eq!(short(12_345.0), "1.2e4");
+        assert_eq!(short(f64::INFINITY), "–");
+    }
+}

@@ -1,0 +1,62 @@
+//! How much time the study may take.
+
+use super::problem::Problem;
+use serde::{Deserialize, Serialize};
+
+/// How much time the study may take, with the limits that follow. Times are wall times in seconds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Effort {
+    /// Seconds, shows that everything works.
+    Quick,
+    /// Some ten minutes.
+    Usual,
+    /// About an hour.
+    Full,
+}
+
+impl Effort {
+    fn of<T>(self, [quick, usual, full]: [T; 3]) -> T {
+        match self {
+            Self::Quick => quick,
+            Self::Usual => usual,
+            Self::Full => full,
+        }
+    }
+
+    /// Longest run without a chart: steps are halved until a run takes longer.
+    pub(crate) fn run(self) -> f64 {
+        self.of([0.01, 1.0, 8.0])
+    }
+
+    /// Longest run in a chart, of which there are 24 for each problem.
+    pub(crate) fn chart_run(self) -> f64 {
+        self.of([0.004, 0.25, 3.0])
+    }
+
+    /// Longest computation of one reference and of its second opinion, each.
+    pub(crate) fn reference(self, problem: Problem) -> f64 {
+        let large = matches!(problem, Problem::Sheet(2..));
+        self.of([0.1, if large { 15.0 } else { 5.0 }, 60.0])
+    }
+
+    /// Longest run of the hanging sheet, one for each mesh and method.
+    pub(crate) fn hanging(self) -> f64 {
+        self.of([0.3, 20.0, 240.0])
+    }
+
+    /// Finest mesh of the hanging sheet.
+    pub(crate) fn hanging_level(self) -> u32 {
+        self.of([1, 4, 4])
+    }
+
+    /// Longest measurement of one solver on one matrix, all repetitions together.
+    pub(crate) fn solver(self) -> f64 {
+        self.of([0.02, 2.0, 20.0])
+    }
+
+    /// Finest mesh of the solver study.
+    pub(crate) fn solver_level(self) -> u32 {
+        self.of([2, 6, 7])
+    }
+}

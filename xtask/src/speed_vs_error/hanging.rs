@@ -1,0 +1,327 @@
+//! A work that other programs have been measured on as well: the hanging sheet.
+
+use super::analysis::short;
+use super::effort::Effort;
+use super::problem::{bumped, corner};
+use super::scheme::DEFAULT;
+use crate::figures::{Table, rounded};
+use crate::interrupt;
+use crate::progress::Progress;
+use anyhow::Result;
+use isosheet_dynamics::{Method, ProjectionStepOptions, SheetModel, Simulation, State};
+use isosheet_mesh::MassKind;
+use serde::{Deserialize, Serialize};
+use std::fmt::Write;
+use std::time::Instant;
+
+/// What the work is, in words.
+pub(crate) const ABOUT: &str = "Square sheet, side 1 m, union-jack mesh M^k, mass 0.1 kg lumped by thirds of the incident areas, horizontal with \
+    z = 1e-3 sin(πx) sin(πy), rest lengths those of the start, corner (0, 1) pinned, gravity 9.8 m/s², no bending stiffness, no contact, no \
+    damping, 1.0 s.";
+
+/// Height of the bump, metres: nearly flat, so that the length constraints are nearly dependent.
+const BUMP: f64 = 1e-3;
+
+/// Simulated time, seconds.
+const DURATION: f64 = 1.0;
+
+/// One run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Hanging {
+    pub(crate) level: u32,
+    pub(crate) method: String,
+    /// Step asked for, seconds.
+    pub(crate) step: f64,
+    /// Wall seconds for a simulated second, the minimum over the repetitions.
+    pub(crate) wall: f64,
+    pub(crate) repetitions: usize,
+    /// Largest relative edge length error over the run.
+    pub(crate) strain: f64,
+    /// Change of energy at the end, parts of the potential energy released.
+    pub(crate) balance: f64,
+    pub(crate) factorisations: usize,
+    pub(crate) steps: usize,
+    pub(crate) rejected: usize,
+    /// Simulated time, seconds.
+    pub(crate) reached: f64,
+    /// Why it did not come to the end.
+    pub(crate) failure: Option<String>,
+}
+
+/// The methods and steps of the work.
+fn methods() -> [(&'static str, Method, f64); 5] {
+    let loose = Method::Projection(ProjectionStepOptions {
+        strain_tolerance: 1e-9,
+        ..Default::default()
+    });
+    [
+        (DEFAULT, Method::default(), 1.0 / 60.0),
+        (DEFAULT, Method::default(), 5e-3),
+        ("projection, tolerance 1e-9", loose.clone(), 1.0 / 60.0),
+        ("projection, tolerance 1e-9", loose, 5e-3),
+        (
+            "energy-momentum",
+            Method::EnergyMomentum(Default::default()),
+            2e-3,
+        ),
+    ]
+}
+
+/// Runs the work on all meshes.
+pub(crate) fn make(effort: Effort) -> Result<Vec<Hanging>> {
+    let levels = 1..=effort.hanging_level();
+    let bar = Progress::start("hanging sheet", levels.clone().count() * methods().len());
+    let mut rows = Vec::new();
+    for level in levels {
+        for (name, method, step) in methods() {
+            rows.push(measure(level, name, &method, step, effort.hanging())?);
+            bar.step();
+        }
+    }
+    bar.finish(&format!("{} runs", rows.len()));
+    Ok(rows)
+}
+
+/// Repetitions of runs that take no longer than a twentieth of the patience.
+const REPETITIONS: usize = 3;
+
+fn measure(level: u32, name: &str, method: &Method, step: f64, patience: f64) -> Result<Hanging> {
+    let mut best: Option<Hanging> = None;
+    let clock = Instant::now();
+    loop {
+        let mut row = run(level, name, method, step, patience)?;
+        let repetitions = best.as_ref().map_or(0, |b| b.repetitions) + 1;
+        if let Some(b) = &best {
+            row.wall = row.wall.min(b.wall);
+        }
+        row.repetitions = repetitions;
+        let done = row.failure.is_some()
+            || repetitions == REPETITIONS
+            || clock.elapsed().as_secs_f64() > 0.1 * patience;
+        if done {
+            return Ok(row);
+        }
+        best = Some(row);
+    }
+}
+
+fn run(level: u32, name: &str, method: &Method, step: f64, patience: f64) -> Result<Hanging> {
+    let sheet = bumped(level, BUMP)?;
+    let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)?
+        .with_gravity()
+        .with_pins(&[corner(level)])?;
+    let start = State::at_rest(sheet.positions().to_vec());
+    let mut simulation = Simulation::new(model, start, method.clone())?;
+    let potential = |s: &Simulation| s.model().potential_energy(s.state().t, &s.state().x);
+    let (energy, height) = (simulation.energy(), potential(&simulation));
+    let mut row = Hanging {
+        level,
+        method: name.into(),
+        step,
+        wall: 0.0,
+        repetitions: 1,
+        strain: 0.0,
+        balance: 0.0,
+        factorisations: 0,
+        steps: 0,
+        rejected: 0,
+        reached: 0.0,
+        failure: None,
+    };
+    let clock = Instant::now();
+    for _ in 0..(DURATION / step).round() as usize {
+        interrupt::check()?;
+        match simulation.step(step) {
+            Ok(report) => {
+                row.strain = row.strain.max(report.strain);
+                row.factorisations += report.factorisations;
+                row.steps += report.substeps;
+                row.rejected += report.rejected;
+            }
+            Err(error) => {
+                row.failure = Some(error.to_string());
+                break;
+            }
+        }
+        if clock.elapsed().as_secs_f64() > patience {
+            row.failure = Some(format!("given up after {patience} s of wall time"));
+            break;
+        }
+    }
+    row.reached = simulation.state().t;
+    let wall = clock.elapsed().as_secs_f64();
+    row.wall = if row.reached > 0.0 {
+        wall / row.reached
+    } else {
+        0.0
+    };
+    let released = height - potential(&simulation);
+    if released > 0.0 {
+        row.balance = (simulation.energy() - energy) / released;
+    }
+    // The last step may have taken long without the run being unfinished.
+    if row.reached > DURATION - 0.5 * step {
+        row.failure = None;
+    }
+    Ok(row)
+}
+
+/// All runs as CSV.
+pub(crate) fn csv(rows: &[Hanging]) -> String {
+    let mut out = String::from(
+        "mesh,method,step_s,wall_s_per_simulated_s,strain,energy_balance,factorisations,steps,rejected,reached_s,repetitions,failure\n",
+    );
+    for r in rows {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            out,
+            "M^{},\"{}\",{:e},{:e},{:e},{:e},{},{},{},{},{},\"{}\"",
+            r.level,
+            r.method,
+            r.step,
+            r.wall,
+            r.strain,
+            r.balance,
+            r.factorisations,
+            r.steps,
+            r.rejected,
+            r.reached,
+            r.repetitions,
+            r.failure.as_deref().unwrap_or("").replace('"', "'")
+        );
+    }
+    out
+}
+
+/// A signed part as a percentage with the digits that matter.
+fn percent(part: f64) -> String {
+    let p = 100.0 * part;
+    let text = if p.abs() >= 0.1 {
+        format!("{p:.1} %")
+    } else {
+        format!("{p:.0e} %")
+    };
+    text.replace('-', "−")
+}
+
+/// The table for people.
+pub(crate) fn table(rows: &[Hanging]) -> Table {
+    Table {
+        caption: "Hanging sheet: wall seconds for a simulated second on one core, largest relative edge length error, energy balance at the end as \
+                  part of the potential energy released (negative: lost)"
+            .into(),
+        head: [
+            "mesh", "method", "step (ms)", "s/s", "strain", "energy", "factorisations", "steps", "rejected", "remark",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows
+            .iter()
+            .map(|r| {
+                vec![
+                    format!("M^{}", r.level),
+                    r.method.clone(),
+                    format!("{:.1}", 1e3 * r.step),
+                    if r.reached > 0.0 { short(r.wall) } else { "–".into() },
+                    format!("{:.0e}", r.strain),
+                    percent(r.balance),
+                    r.factorisations.to_string(),
+                    r.steps.to_string(),
+                    r.rejected.to_string(),
+                    r.failure.as_ref().map_or(String::new(), |f| {
+                        format!("stopped at {} s: {}", short(r.reached), rounded(f))
+                    }),
+                ]
+            })
+            .collect(),
+    }
+}
+
+/// What the rows say.
+pub(crate) fn conclusions(rows: &[Hanging]) -> Vec<String> {
+    let finished: Vec<&Hanging> = rows.iter().filter(|r| r.failure.is_none()).collect();
+    let mut all = Vec::new();
+    if let Some(strain) = finished.iter().map(|r| r.strain).reduce(f64::max) {
+        all.push(format!(
+            "{} of {} runs of the hanging sheet came to the end; none of these strains an edge by more than {strain:.0e}.",
+            finished.len(),
+            rows.len()
+        ));
+    }
+    let mut levels: Vec<u32> = rows.iter().map(|r| r.level).collect();
+    levels.dedup();
+    for level in levels {
+        let here = || finished.iter().filter(|r| r.level == level);
+        let damped = here()
+            .filter(|r| r.method != "energy-momentum")
+            .min_by(|a, b| a.wall.total_cmp(&b.wall));
+        let mut text = match damped {
+            Some(r) => format!(
+                "M^{level}: the cheapest damped run is {} at {:.1} ms, {} s/s with strain {:.0e}",
+                r.method,
+                1e3 * r.step,
+                short(r.wall),
+                r.strain
+            ),
+            None => format!("M^{level}: no damped run came to the end"),
+        };
+        match here().find(|r| r.method == "energy-momentum") {
+            Some(r) => {
+                let _ = write!(
+                    text,
+                    "; the conservative one takes {} s/s and keeps the energy to {:.0e}.",
+                    short(r.wall),
+                    r.balance.abs()
+                );
+            }
+            None => text.push_str("; the conservative one did not come to the end."),
+        }
+        all.push(text);
+    }
+    let gains: Vec<String> = finished
+        .iter()
+        .filter(|r| r.balance > GAIN)
+        .map(|r| {
+            format!(
+                "{} on M^{} at {:.1} ms by {}",
+                r.method,
+                r.level,
+                1e3 * r.step,
+                percent(r.balance)
+            )
+        })
+        .collect();
+    if !gains.is_empty() {
+        all.push(format!(
+            "These runs end with more energy than they started with, as part of the energy released: {}.",
+            gains.join("; ")
+        ));
+    }
+    all
+}
+
+/// Gain of energy, as part of the potential energy released, that is worth a word.
+const GAIN: f64 = 1e-3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_coarsest_mesh_hangs() {
+        let (name, method, step) = methods()[0].clone();
+        let row = measure(1, name, &method, step, 1.0).unwrap();
+        assert_eq!(row.failure, None);
+        assert!((row.reached - DURATION).abs() < 1e-9);
+        assert!(row.strain < 1e-11 && row.factorisations > 60, "{row:?}");
+        assert!((-0.9..0.01).contains(&row.balance), "{}", row.balance);
+        assert!(csv(std::slice::from_ref(&row)).contains("M^1,\"BDF2 (default)\""));
+        assert!(conclusions(&[row])[1].starts_with("M^1: the cheapest damped run is BDF2"));
+    }
+
+    #[test]
+    fn percentages() {
+        assert_eq!(percent(-0.143), "−14.3 %");
+        assert_eq!(percent(2e-7), "2e−5 %");
+    }
+}

@@ -1,0 +1,284 @@
+//! One run of a method: its time and its errors.
+
+use super::problem::Problem;
+use super::reference::Reference;
+use super::scheme::{Fineness, Scheme};
+use crate::interrupt;
+use anyhow::Result;
+use isosheet_dynamics::Simulation;
+use isosheet_tests::max_difference;
+use serde::{Deserialize, Serialize};
+use std::time::Instant;
+
+/// What one run of a method gave.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Point {
+    /// Name of the method.
+    pub(crate) scheme: String,
+    /// Step asked for, seconds, or of adaptive methods the bound on the change of energy, parts of the energy scale.
+    pub(crate) fineness: f64,
+    /// Mean step taken, seconds.
+    pub(crate) step: f64,
+    /// Whether all steps were taken as asked for, so that errors show the order.
+    pub(crate) uniform: bool,
+    /// Wall time in seconds for a simulated second, the minimum over the repetitions.
+    pub(crate) wall: f64,
+    pub(crate) repetitions: usize,
+    pub(crate) steps: usize,
+    pub(crate) rejected: usize,
+    pub(crate) factorisations: usize,
+    /// Errors, of runs that came to the end.
+    pub(crate) errors: Option<Errors>,
+    /// Errors up to the last checkpoint that was reached, of runs that did not come to the end.
+    pub(crate) partial: Option<Errors>,
+    /// Simulated time, seconds.
+    pub(crate) reached: f64,
+    /// Why a run did not come to the end.
+    pub(crate) failure: Option<String>,
+}
+
+/// Largest errors over a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Errors {
+    /// Distance of a vertex from the reference at the checkpoints, metres.
+    pub(crate) position: f64,
+    /// Change of the energy, as part of the largest kinetic energy.
+    pub(crate) energy: f64,
+    /// Relative edge length error.
+    pub(crate) strain: f64,
+}
+
+/// One pass over the checkpoints.
+struct Pass {
+    wall: f64,
+    steps: usize,
+    rejected: usize,
+    factorisations: usize,
+    errors: Errors,
+    failure: Option<String>,
+    reached: f64,
+    /// Checkpoints reached.
+    checkpoints: usize,
+}
+
+/// Most repetitions of short runs.
+const REPETITIONS: usize = 5;
+
+/// Measures a method at `intervals` steps between checkpoints, or with a tolerance relative to the energy scale.
+/// Runs that take longer than `patience` seconds are given up.
+pub(crate) fn point(
+    problem: Problem,
+    scheme: &Scheme,
+    reference: &Reference,
+    fineness: Asked,
+    patience: f64,
+) -> Result<Point> {
+    let (asked, value, pieces) = match fineness {
+        Asked::Steps(n) => {
+            let h = reference.interval() / n as f64;
+            (Fineness::Step(h), h, n)
+        }
+        Asked::Tolerance(part) => (Fineness::Tolerance(part * reference.energy), part, 1),
+    };
+    let pieces = if scheme.is_chart() { 1 } else { pieces };
+    let mut best: Option<Pass> = None;
+    let mut repetitions = 0;
+    let clock = Instant::now();
+    let failed = |failure: String| Point {
+        scheme: scheme.name.clone(),
+        fineness: value,
+        step: 0.0,
+        uniform: false,
+        wall: 0.0,
+        repetitions: 0,
+        steps: 0,
+        rejected: 0,
+        factorisations: 0,
+        errors: None,
+        partial: None,
+        reached: 0.0,
+        failure: Some(failure),
+    };
+    while repetitions < REPETITIONS {
+        let mut simulation = match scheme.start(problem, asked)? {
+            Ok(simulation) => simulation,
+            Err(error) => return Ok(failed(format!("refused at the start: {error}"))),
+        };
+        let pass = run(&mut simulation, reference, pieces, patience)?;
+        repetitions += 1;
+        let stop = pass.failure.is_some();
+        if best.as_ref().is_none_or(|b| pass.wall < b.wall) {
+            best = Some(pass);
+        }
+        if stop || clock.elapsed().as_secs_f64() > 0.1 * patience {
+            break;
+        }
+    }
+    let Some(pass) = best else {
+        return Ok(failed("not run".into()));
+    };
+    let mut pass = pass;
+    // Differences smaller than the doubt of the reference mean nothing.
+    pass.errors.position = pass.errors.position.max(reference.doubt());
+    if pass.failure.is_none() && pass.errors.energy > BLOWN_UP {
+        pass.failure = Some(format!(
+            "blown up: its energy changes by {:.0e} of the largest kinetic energy",
+            pass.errors.energy
+        ));
+    }
+    let finished = pass.failure.is_none();
+    let partial = (!finished && pass.checkpoints > 0 && pass.errors.energy <= BLOWN_UP)
+        .then_some(pass.errors);
+    let expected = match fineness {
+        Asked::Steps(n) => n * reference.usable(),
+        Asked::Tolerance(_) => pass.steps,
+    };
+    // Round-off may leave a rest of a step at every checkpoint.
+    let rests = if scheme.is_chart() {
+        reference.usable()
+    } else {
+        0
+    };
+    Ok(Point {
+        step: match asked {
+            Fineness::Step(h) if rests > 0 => h,
+            _ => pass.reached / pass.steps.max(1) as f64,
+        },
+        uniform: finished
+            && (expected..=expected + rests).contains(&pass.steps)
+            && pass.rejected == 0,
+        wall: if pass.reached > 0.0 {
+            pass.wall / pass.reached
+        } else {
+            0.0
+        },
+        repetitions,
+        steps: pass.steps,
+        rejected: pass.rejected,
+        factorisations: pass.factorisations,
+        errors: finished.then_some(pass.errors),
+        partial,
+        reached: pass.reached,
+        failure: pass.failure,
+        ..failed(String::new())
+    })
+}
+
+/// How fine a run is asked to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Asked {
+    /// Steps between two checkpoints.
+    Steps(usize),
+    /// Change of energy in a step, parts of the energy scale.
+    Tolerance(f64),
+}
+
+fn run(
+    simulation: &mut Simulation,
+    reference: &Reference,
+    pieces: usize,
+    patience: f64,
+) -> Result<Pass> {
+    let mut pass = Pass {
+        wall: 0.0,
+        steps: 0,
+        rejected: 0,
+        factorisations: 0,
+        errors: Errors {
+            position: 0.0,
+            energy: 0.0,
+            strain: 0.0,
+        },
+        failure: None,
+        reached: 0.0,
+        checkpoints: 0,
+    };
+    let h = reference.interval() / pieces as f64;
+    let clock = Instant::now();
+    let mut comparing = 0.0;
+    'run: for want in reference.positions() {
+        for _ in 0..pieces {
+            interrupt::check()?;
+            match simulation.step(h) {
+                Ok(report) => {
+                    pass.steps += report.substeps;
+                    pass.rejected += report.rejected;
+                    pass.factorisations += report.factorisations;
+                    let e = &mut pass.errors;
+                    e.energy = e.energy.max(report.energy_drift.abs() / reference.energy);
+                    e.strain = e.strain.max(report.strain);
+                }
+                Err(error) => {
+                    pass.failure = Some(error.to_string());
+                    break 'run;
+                }
+            }
+            if clock.elapsed().as_secs_f64() - comparing > patience {
+                pass.failure = Some(format!("given up after {patience} s of wall time"));
+                break 'run;
+            }
+        }
+        let before = Instant::now();
+        let error = max_difference(&simulation.state().x, want);
+        pass.errors.position = pass.errors.position.max(error);
+        pass.checkpoints += 1;
+        comparing += before.elapsed().as_secs_f64();
+    }
+    pass.wall = clock.elapsed().as_secs_f64() - comparing;
+    pass.reached = simulation.state().t;
+    Ok(pass)
+}
+
+/// Change of energy, as part of the largest kinetic energy, that is no motion any more.
+const BLOWN_UP: f64 = 100.0;
+
+/// Most halvings of the step.
+const HALVINGS: u32 = 14;
+
+/// All runs of a method together may take so many times the longest.
+const MOST: f64 = 5.0;
+
+/// Runs that fail in a row after which finer ones are not tried.
+const FAILURES: usize = 5;
+
+/// Measures a method over its steps or tolerances, coarse to fine, until a run takes longer than `limit` seconds or
+/// refining makes no difference.
+pub(crate) fn sweep(
+    problem: Problem,
+    scheme: &Scheme,
+    reference: &Reference,
+    limit: f64,
+) -> Result<Vec<Point>> {
+    let mut points: Vec<Point> = Vec::new();
+    let mut failures = 0;
+    let total = Instant::now();
+    for k in 0..=HALVINGS {
+        let asked = if scheme.is_adaptive() {
+            Asked::Tolerance(0.3 * 10f64.powf(-0.5 * f64::from(k)))
+        } else {
+            Asked::Steps(1 << k)
+        };
+        let clock = Instant::now();
+        // A run costs about twice the one before.
+        let point = point(problem, scheme, reference, asked, 2.0 * limit)?;
+        let spent = clock.elapsed().as_secs_f64() / point.repetitions.max(1) as f64;
+        failures = if point.errors.is_some() {
+            0
+        } else {
+            failures + 1
+        };
+        let refused = point.steps == 0;
+        // Below the doubt of the reference nothing is learnt.
+        let settled = point
+            .errors
+            .is_some_and(|e| e.position <= reference.doubt());
+        // A run that fails early says nothing about how long a finer one takes.
+        let slow =
+            point.errors.is_some() && spent > limit || total.elapsed().as_secs_f64() > MOST * limit;
+        points.push(point);
+        if refused || settled || failures == FAILURES || slow {
+            break;
+        }
+    }
+    Ok(points)
+}

@@ -1,0 +1,285 @@
+//! The problems of the study.
+
+use anyhow::{Result, bail};
+use isosheet_dynamics::{SheetModel, State};
+use isosheet_mesh::generate::isotropic_square;
+use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId};
+use isosheet_tests::{FreeTriangle, Pendulum};
+use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+use std::fmt;
+use std::str::FromStr;
+
+/// What moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Problem {
+    /// A triangle pinned along an edge: the pendulum at large amplitude, exact by elliptic functions.
+    Pendulum,
+    /// A free triangle: Euler's rigid body, exact by elliptic functions and one quadrature.
+    Triangle,
+    /// A strip of so many links hanging from its pinned top edge, released at an angle.
+    Strip(u32),
+    /// The square sheet M^k held at a corner, released from a bumped, not flat state.
+    Sheet(u32),
+}
+
+/// Points of time at which positions are compared.
+pub(crate) const CHECKPOINTS: usize = 8;
+
+impl Problem {
+    /// All of them, easy ones first.
+    pub(crate) const ALL: [Self; 9] = [
+        Self::Pendulum,
+        Self::Triangle,
+        Self::Strip(2),
+        Self::Strip(8),
+        Self::Strip(64),
+        Self::Sheet(0),
+        Self::Sheet(1),
+        Self::Sheet(2),
+        Self::Sheet(3),
+    ];
+
+    /// Title for people, with the mark-up of drawings.
+    pub(crate) fn title(self) -> String {
+        match self {
+            Self::Pendulum => "Triangle pinned along an edge".into(),
+            Self::Triangle => "Free triangle".into(),
+            Self::Strip(n) => format!("Hanging strip of {n} links"),
+            Self::Sheet(k) => format!("Sheet M^{k} held at a corner"),
+        }
+    }
+
+    /// The set-up in words.
+    pub(crate) fn about(self) -> String {
+        let time = format!("{} s are compared.", self.duration());
+        match self {
+            Self::Pendulum => format!(
+                "A pendulum of 0.7 m released at 2 rad, one period; exact by Jacobi functions. {:.4} s are compared.",
+                self.duration()
+            ),
+            Self::Triangle => format!(
+                "A tumbling triangle without gravity, one period of its spin; the spin is exact by Jacobi functions, the attitude follows \
+                 from it by quadrature to round-off. {:.4} s are compared.",
+                self.duration()
+            ),
+            Self::Strip(n) => format!(
+                "A strip 1 m long and 0.3 m wide of {n} rigid links (each cut by a diagonal, 0.1 kg in all, lumped), pinned along its top edge, \
+                 straight, {STRIP_ANGLE} rad from the vertical, released at rest. {time}"
+            ),
+            Self::Sheet(k) => format!(
+                "The union-jack square M^{k}, 1 m, 0.1 kg, lumped, horizontal with z = {BUMP} sin(πx) sin(πy) as the rest shape, held at the corner \
+                 (0, 1), released at rest. {time}"
+            ),
+        }
+    }
+
+    /// The time over which motions are compared at most, seconds.
+    pub(crate) fn duration(self) -> f64 {
+        match self {
+            Self::Pendulum => Pendulum::default().period(),
+            Self::Triangle => FreeTriangle::default().period(),
+            Self::Strip(2) => 1.6,
+            Self::Strip(8) => 0.8,
+            Self::Strip(_) => 0.4,
+            Self::Sheet(0) => 0.8,
+            Self::Sheet(1) => 0.4,
+            Self::Sheet(2) => 0.24,
+            Self::Sheet(_) => 0.08,
+        }
+    }
+
+    /// The sheet, in the position of the start.
+    pub(crate) fn sheet(self) -> Result<Sheet> {
+        Ok(match self {
+            Self::Pendulum => Sheet::new(Pendulum::default().start().x, &[[0, 1, 2]])?,
+            Self::Triangle => Sheet::new(FreeTriangle::default().start().x, &[[0, 1, 2]])?,
+            Self::Strip(links) => strip(links)?,
+            Self::Sheet(level) => bumped(level, BUMP)?,
+        })
+    }
+
+    /// The vertices that are held.
+    pub(crate) fn pins(self) -> Vec<VertexId> {
+        match self {
+            Self::Pendulum | Self::Strip(_) => vec![VertexId(0), VertexId(1)],
+            Self::Triangle => Vec::new(),
+            Self::Sheet(level) => vec![corner(level)],
+        }
+    }
+
+    /// The mechanical system.
+    pub(crate) fn model(self) -> Result<SheetModel> {
+        Ok(match self {
+            Self::Pendulum => Pendulum::default().model(),
+            Self::Triangle => {
+                let masses = vec![FreeTriangle::default().vertex_mass; 3];
+                SheetModel::with_mass(&self.sheet()?, MassMatrix::from_vertex_masses(masses)?)?
+            }
+            Self::Strip(_) | Self::Sheet(_) => {
+                SheetModel::new(&self.sheet()?, 0.1, MassKind::Lumped)?
+                    .with_gravity()
+                    .with_pins(&self.pins())?
+            }
+        })
+    }
+
+    /// Positions and velocities at the start.
+    pub(crate) fn start(self) -> Result<State> {
+        Ok(match self {
+            Self::Triangle => FreeTriangle::default().start(),
+            _ => State::at_rest(self.sheet()?.positions().to_vec()),
+        })
+    }
+
+    /// Exact positions at the given increasing times, where they are known.
+    pub(crate) fn exact(self, times: &[f64]) -> Option<Vec<Vec<f64>>> {
+        match self {
+            Self::Pendulum => {
+                let problem = Pendulum::default();
+                Some(times.iter().map(|t| problem.exact(*t)).collect())
+            }
+            Self::Triangle => Some(tumbling(times)),
+            Self::Strip(_) | Self::Sheet(_) => None,
+        }
+    }
+}
+
+/// Angle of the released strips from the vertical, radians.
+const STRIP_ANGLE: f64 = 0.5;
+
+/// Height of the bump of the released sheets, metres.
+const BUMP: f64 = 0.1;
+
+fn strip(links: u32) -> Result<Sheet> {
+    let (s, c) = STRIP_ANGLE.sin_cos();
+    let positions = (0..=links)
+        .flat_map(|row| {
+            let r = f64::from(row) / f64::from(links);
+            [0.0, r * s, -r * c, 0.3, r * s, -r * c]
+        })
+        .collect();
+    let faces: Vec<[u32; 3]> = (0..links)
+        .flat_map(|row| {
+            let i = 2 * row;
+            [[i, i + 2, i + 1], [i + 1, i + 2, i + 3]]
+        })
+        .collect();
+    Ok(Sheet::new(positions, &faces)?)
+}
+
+/// The union-jack square `M^level` of side 1 m with `z = bump sin(pi x) sin(pi y)`.
+pub(super) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
+    let flat = isotropic_square(level, 1.0)?;
+    let mut x = flat.positions().to_vec();
+    for p in x.as_chunks_mut::<3>().0 {
+        p[2] = bump * (PI * p[0]).sin() * (PI * p[1]).sin();
+    }
+    Ok(Sheet::new(x, &flat.face_indices())?)
+}
+
+/// The corner (0, 1) of `M^level`.
+pub(super) fn corner(level: u32) -> VertexId {
+    let n = (1 << (level + 1)) + 1;
+    VertexId(n * (n - 1))
+}
+
+/// Positions of the free triangle: the attitude R follows from the exact spin w in body axes by `R' = R [w]`.
+fn tumbling(times: &[f64]) -> Vec<Vec<f64>> {
+    let problem = FreeTriangle::default();
+    let body = problem.start().x;
+    // Classical Runge-Kutta; at 2e-4 of a period its error is about (2 pi 2e-4)^4 / 120, below 1e-13.
+    let longest = 2e-4 * problem.period();
+    let rate = |r: &Matrix3<f64>, t: f64| r * Vector3::from(problem.spin_at(t)).cross_matrix();
+    let mut attitude = Matrix3::identity();
+    let mut now = 0.0;
+    let mut states = Vec::new();
+    for &t in times {
+        let steps = ((t - now) / longest).ceil().max(1.0);
+        let h = (t - now) / steps;
+        for k in 0..steps as usize {
+            let at = now + k as f64 * h;
+            let k1 = rate(&attitude, at);
+            let k2 = rate(&(attitude + 0.5 * h * k1), at + 0.5 * h);
+            let k3 = rate(&(attitude + 0.5 * h * k2), at + 0.5 * h);
+            let k4 = rate(&(attitude + h * k3), at + h);
+            attitude += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+        }
+        now = t;
+        let corners = body.as_chunks::<3>().0;
+        states.push(
+            corners
+                .iter()
+                .flat_map(|c| {
+                    let p = attitude * Vector3::from(*c);
+                    [p.x, p.y, p.z]
+                })
+                .collect(),
+        );
+    }
+    states
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pendulum => f.write_str("pendulum"),
+            Self::Triangle => f.write_str("triangle"),
+            Self::Strip(n) => write!(f, "strip-{n}"),
+            Self::Sheet(k) => write!(f, "sheet-{k}"),
+        }
+    }
+}
+
+impl FromStr for Problem {
+    type Err = anyhow::Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        match Self::ALL.iter().find(|p| p.to_string() == text) {
+            Some(problem) => Ok(*problem),
+            None => {
+                let names: Vec<String> = Self::ALL.iter().map(ToString::to_string).collect();
+                bail!(
+                    "there is no problem {text:?}; choose from {}",
+                    names.join(", ")
+                )
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isosheet_dynamics::{Method, Simulation};
+    use isosheet_tests::max_difference;
+
+    #[test]
+    fn names_read_back_and_starts_fit_their_models() {
+        for problem in Problem::ALL {
+            assert_eq!(problem.to_string().parse::<Problem>().unwrap(), problem);
+            let (model, start) = (problem.model().unwrap(), problem.start().unwrap());
+            Simulation::new(model, start, Method::default()).unwrap();
+        }
+        assert!("moon".parse::<Problem>().is_err());
+    }
+
+    /// The attitude against the chart-free motion, and the corners against the lengths.
+    #[test]
+    fn the_tumbling_triangle_is_exact() {
+        let problem = Problem::Triangle;
+        let end = 0.25 * problem.duration();
+        let exact = problem.exact(&[0.5 * end, end]).unwrap();
+        let rods = problem.model().unwrap().rods().max_strain(&exact[1]);
+        assert!(rods < 1e-12, "strain {rods:e}");
+        let method = Method::RattleComposition(Default::default());
+        let mut run =
+            Simulation::new(problem.model().unwrap(), problem.start().unwrap(), method).unwrap();
+        for _ in 0..400 {
+            run.step(end / 400.0).unwrap();
+        }
+        let gap = max_difference(&run.state().x, &exact[1]);
+        assert!(gap < 1e-10, "{gap:e} m");
+    }
+}

@@ -1,0 +1,328 @@
+//! Reference motions, and how long they mean something.
+
+use super::problem::{CHECKPOINTS, Problem};
+use super::scheme::{Fineness, Scheme};
+use crate::interrupt;
+use anyhow::{Context, Result};
+use isosheet_dynamics::{Method, Simulation, State, leave_flat};
+use isosheet_tests::max_difference;
+use serde::{Deserialize, Serialize};
+use std::time::Instant;
+
+/// Positions that errors are measured against.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Reference {
+    duration: f64,
+    #[serde(skip)]
+    states: Vec<Vec<f64>>,
+    /// How far the second opinion is away at each checkpoint, metres.
+    doubts: Vec<f64>,
+    usable: usize,
+    /// Largest kinetic energy at the checkpoints, joules: the scale of energy errors.
+    pub(crate) energy: f64,
+    /// What it is and what it was compared with, in words.
+    pub(crate) source: String,
+    /// How fast neighbouring motions part.
+    pub(crate) growth: Option<Growth>,
+}
+
+/// Growth of a small difference at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Growth {
+    /// Largest distance of a vertex at the start, metres.
+    pub(crate) start: f64,
+    /// The largest at a checkpoint, metres.
+    pub(crate) end: f64,
+    /// Mean rate up to there, `ln(end / start) / time`, 1/s.
+    pub(crate) rate: f64,
+}
+
+/// Largest distance between the reference and its second opinion at which it is compared with, metres (sheets are 1 m).
+const TRUST: f64 = 1e-5;
+
+impl Reference {
+    /// Time between checkpoints, seconds.
+    pub(crate) fn interval(&self) -> f64 {
+        self.duration / CHECKPOINTS as f64
+    }
+
+    /// Number of checkpoints at which it can be trusted.
+    pub(crate) fn usable(&self) -> usize {
+        self.usable
+    }
+
+    /// The time over which it can be trusted, seconds.
+    pub(crate) fn meaningful(&self) -> f64 {
+        self.interval() * self.usable as f64
+    }
+
+    /// Positions at the checkpoints at which it can be trusted.
+    pub(crate) fn positions(&self) -> &[Vec<f64>] {
+        &self.states[..self.usable]
+    }
+
+    /// Largest distance between it and its second opinion at these checkpoints, metres.
+    pub(crate) fn doubt(&self) -> f64 {
+        self.doubts[..self.usable]
+            .iter()
+            .fold(1e-15, |m: f64, d| m.max(*d))
+    }
+}
+
+/// A motion sampled at the checkpoints.
+struct Track {
+    states: Vec<Vec<f64>>,
+    energy: f64,
+    /// Steps between checkpoints.
+    steps: usize,
+    /// Distance to the run with half as many steps, metres.
+    change: f64,
+}
+
+/// The reference of a problem; either half of the work may take `budget` seconds.
+pub(crate) fn compute(problem: Problem, budget: f64) -> Result<Reference> {
+    let duration = problem.duration();
+    let times: Vec<f64> = (1..=CHECKPOINTS)
+        .map(|k| duration * k as f64 / CHECKPOINTS as f64)
+        .collect();
+    let (fine, second) = rayon::join(
+        || refine(problem, &Scheme::reference(), budget, None),
+        || second_opinion(problem, budget),
+    );
+    let fine = fine?.with_context(|| format!("{problem}: the reference method refused it"))?;
+    let composition = format!(
+        "the fourth-order composition of RATTLE with steps of {:.1e} s (its last halving moved it by {:.0e} m)",
+        times[0] / fine.steps as f64,
+        fine.change
+    );
+    let (states, other, source) = match problem.exact(&times) {
+        Some(exact) => (
+            exact,
+            fine.states,
+            format!("Reference: the exact solution. Second opinion: {composition}"),
+        ),
+        None => {
+            let (name, second) = second?;
+            let source = format!(
+                "Reference: {composition}. Second opinion: {name}, steps of {:.1e} s",
+                times[0] / second.steps as f64
+            );
+            (fine.states, second.states, source)
+        }
+    };
+    let doubts: Vec<f64> = states
+        .iter()
+        .zip(&other)
+        .map(|(a, b)| max_difference(a, b))
+        .collect();
+    let usable = doubts.iter().take_while(|d| **d <= TRUST).count();
+    // Without a trusted checkpoint there is nothing to compare with.
+    anyhow::ensure!(
+        usable > 0,
+        "{problem}: the reference and its second opinion are {:e} m apart at the first checkpoint",
+        doubts.first().copied().unwrap_or(f64::INFINITY)
+    );
+    let growth = growth(problem, times[0], usable, fine.steps.div_ceil(4), budget)?;
+    Ok(Reference {
+        duration,
+        states,
+        doubts,
+        usable,
+        energy: fine.energy,
+        source,
+        growth,
+    })
+}
+
+/// Halves the steps until nothing changes any more or the budget in seconds is used up; with an `order`, the last two runs are
+/// then extrapolated to steps of zero. `None` when there are no two runs.
+fn refine(
+    problem: Problem,
+    scheme: &Scheme,
+    budget: f64,
+    order: Option<f64>,
+) -> Result<Option<Track>> {
+    let clock = Instant::now();
+    let mut tracks: Vec<Track> = Vec::new();
+    for k in 2..=14 {
+        let started = Instant::now();
+        let patience = if tracks.len() < 2 {
+            FIRST * budget
+        } else {
+            budget - clock.elapsed().as_secs_f64()
+        };
+        match sample(problem, scheme, 1 << k, patience)? {
+            Some(mut track) => {
+                if let Some(before) = tracks.last() {
+                    track.change = distance(&track.states, &before.states);
+                    // Once it grows again round-off has taken over.
+                    if before.change < ROUNDED && track.change > before.change {
+                        break;
+                    }
+                }
+                tracks.push(track);
+            }
+            // Steps too coarse for the method may be too coarse no longer.
+            None if tracks.is_empty() && clock.elapsed().as_secs_f64() < budget => continue,
+            None => break,
+        }
+        let left = budget - clock.elapsed().as_secs_f64();
+        let late = 2.0 * started.elapsed().as_secs_f64() > left;
+        let settled = tracks.last().is_some_and(|t| t.change < SETTLED);
+        if tracks.len() > 1 && (settled || late) {
+            break;
+        }
+    }
+    let (Some(mut fine), Some(coarse)) = (tracks.pop(), tracks.pop()) else {
+        return Ok(None);
+    };
+    if let Some(order) = order {
+        richardson(&mut fine, &coarse, order);
+    }
+    Ok(Some(fine))
+}
+
+/// Change by a halving of the steps at which nothing is left to gain, metres: round-off.
+const SETTLED: f64 = 1e-13;
+
+/// Change below which a growing one is due to round-off and not to coarse steps, metres.
+const ROUNDED: f64 = 1e-9;
+
+/// The first two runs may take so many times the budget: without them there is no reference at all.
+const FIRST: f64 = 10.0;
+
+/// `(2^p x(h/2) - x(h)) / (2^p - 1)`.
+fn richardson(fine: &mut Track, coarse: &Track, order: f64) {
+    let weight = 2f64.powf(order);
+    for (f, c) in fine.states.iter_mut().zip(&coarse.states) {
+        for (f, c) in f.iter_mut().zip(c) {
+            *f += (*f - c) / (weight - 1.0);
+        }
+    }
+}
+
+/// Runge-Kutta in a chart where it gets through, else the energy-momentum method, extrapolated.
+fn second_opinion(problem: Problem, budget: f64) -> Result<(&'static str, Track)> {
+    let chart = refine(problem, &Scheme::runge_kutta(), budget, None)?;
+    if let Some(track) = chart
+        && track.change < 1e-7
+    {
+        return Ok(("Runge-Kutta in a Cartesian chart", track));
+    }
+    let track = refine(problem, &Scheme::energy_momentum(), budget, Some(2.0))?;
+    let track = track.with_context(|| format!("{problem}: no second opinion on the reference"))?;
+    Ok((
+        "the energy-momentum method, its last two step sizes extrapolated to zero",
+        track,
+    ))
+}
+
+fn distance(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    a.iter()
+        .zip(b)
+        .fold(0.0, |m: f64, (a, b)| m.max(max_difference(a, b)))
+}
+
+fn sample(problem: Problem, scheme: &Scheme, steps: usize, patience: f64) -> Result<Option<Track>> {
+    let interval = problem.duration() / CHECKPOINTS as f64;
+    match scheme.start(problem, Fineness::Step(interval / steps as f64))? {
+        Ok(mut run) => follow(&mut run, interval, CHECKPOINTS, steps, patience),
+        Err(_) => Ok(None),
+    }
+}
+
+fn follow(
+    run: &mut Simulation,
+    interval: f64,
+    checkpoints: usize,
+    steps: usize,
+    patience: f64,
+) -> Result<Option<Track>> {
+    let clock = Instant::now();
+    let mut track = Track {
+        states: Vec::new(),
+        energy: run.model().kinetic_energy(&run.state().v),
+        steps,
+        change: f64::INFINITY,
+    };
+    for _ in 0..checkpoints {
+        for _ in 0..steps {
+            interrupt::check()?;
+            if run.step(interval / steps as f64).is_err()
+                || clock.elapsed().as_secs_f64() > patience
+            {
+                return Ok(None);
+            }
+        }
+        track.energy = track.energy.max(run.model().kinetic_energy(&run.state().v));
+        track.states.push(run.state().x.clone());
+    }
+    Ok(Some(track))
+}
+
+/// Random displacement of the perturbed start, mean edge lengths.
+const PERTURBATION: f64 = 1e-7;
+
+/// How a perturbed start parts from the unperturbed one, by the reference method at a moderate step.
+fn growth(
+    problem: Problem,
+    interval: f64,
+    usable: usize,
+    steps: usize,
+    budget: f64,
+) -> Result<Option<Growth>> {
+    let mut tracks = Vec::new();
+    let mut starts = Vec::new();
+    for amplitude in [0.0, PERTURBATION] {
+        let model = problem.model()?;
+        let State { mut x, v, .. } = problem.start()?;
+        leave_flat(&model, &mut x, amplitude, 1)?;
+        starts.push(x.clone());
+        let method = Method::RattleComposition(Default::default());
+        let Ok(mut run) = Simulation::new(model, State::moving(x, v), method) else {
+            return Ok(None);
+        };
+        match follow(&mut run, interval, usable, steps.max(1), budget)? {
+            Some(track) => tracks.push(track.states),
+            None => return Ok(None),
+        }
+    }
+    let start = max_difference(&starts[0], &starts[1]);
+    let parted = (1..).zip(tracks[0].iter().zip(&tracks[1]));
+    let largest = parted
+        .map(|(k, (a, b))| (k, max_difference(a, b)))
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(largest.map(|(k, end)| Growth {
+        start,
+        end,
+        rate: (end / start).ln() / (interval * f64::from(k)),
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_exact_pendulum_and_the_reference_method_agree() {
+        let reference = compute(Problem::Pendulum, 1.0).unwrap();
+        assert_eq!(reference.usable(), CHECKPOINTS);
+        assert!(reference.doubt() < 1e-8, "{:e}", reference.doubt());
+        let growth = reference.growth.unwrap();
+        // Neighbouring pendulums part in proportion to time only.
+        assert!((1.0..100.0).contains(&(growth.end / growth.start)));
+    }
+
+    #[test]
+    fn extrapolation_removes_the_leading_error() {
+        let track = |h: f64| Track {
+            states: vec![vec![1.0 + h * h]],
+            energy: 0.0,
+            steps: 1,
+            change: 0.0,
+        };
+        let mut fine = track(0.1);
+        richardson(&mut fine, &track(0.2), 2.0);
+        assert!((fine.states[0][0] - 1.0).abs() < 1e-15);
+    }
+}

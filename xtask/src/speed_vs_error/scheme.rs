@@ -1,0 +1,273 @@
+//! The methods that are compared.
+
+use super::problem::Problem;
+use anyhow::Result;
+use isosheet_coords::assignment::Degenerate;
+use isosheet_coords::{
+    AssignmentOptions, CartesianChart, Chart, ChartError, Choice, FrontChart, RodSystem,
+};
+use isosheet_dynamics::chart::{
+    ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind, PositionUpdate, Rebase,
+};
+use isosheet_dynamics::{Method, Simulation, SimulationError};
+
+/// A method, with everything but its step.
+#[derive(Clone, Debug)]
+pub(crate) struct Scheme {
+    /// Name for people and files; unique.
+    pub(crate) name: String,
+    pub(crate) kind: Kind,
+}
+
+/// What kind of method.
+#[derive(Clone, Debug)]
+pub(crate) enum Kind {
+    /// Without a chart.
+    Free(Method),
+    /// The full equations of motion in a chart with exact positions.
+    Chart {
+        chart: ChartKind,
+        method: ChartMethod,
+        solver: MassSolverKind,
+    },
+    /// The scheme of Liu, Tang and Joneja 2007: forward Euler, momenta carried over, positions to first order,
+    /// adaptive steps.
+    Paper(Degenerate),
+}
+
+/// Which coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ChartKind {
+    Front,
+    Cartesian,
+}
+
+/// How fine a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Fineness {
+    /// Fixed steps of so many seconds.
+    Step(f64),
+    /// Steps that change the Hamiltonian by less than so many joules.
+    Tolerance(f64),
+}
+
+/// Why a run could not start, which is a result.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum StartError {
+    #[error(transparent)]
+    Chart(#[from] ChartError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+/// Largest number of coordinates for which the paper's scheme uses Cramer's rule, as published; beyond, dense LU.
+const CRAMER: usize = 16;
+
+/// Name of the method that isosheet uses when none is asked for.
+pub(crate) const DEFAULT: &str = "BDF2 (default)";
+
+/// Methods that take any state, flat ones included.
+pub(crate) const ROBUST: [&str; 3] = ["implicit Euler", DEFAULT, "projection"];
+
+/// Whether a name is that of a variant of the paper's scheme.
+pub(crate) fn is_paper(name: &str) -> bool {
+    name.starts_with("published scheme")
+}
+
+impl Scheme {
+    fn free(name: &str, method: Method) -> Self {
+        Self {
+            name: name.into(),
+            kind: Kind::Free(method),
+        }
+    }
+
+    /// The fourth-order composition of RATTLE, by which references are computed.
+    pub(crate) fn reference() -> Self {
+        Self::free(
+            "RATTLE composition",
+            Method::RattleComposition(Default::default()),
+        )
+    }
+
+    /// The energy-momentum method, the second opinion on references where charts end.
+    pub(crate) fn energy_momentum() -> Self {
+        Self::free(
+            "energy-momentum",
+            Method::EnergyMomentum(Default::default()),
+        )
+    }
+
+    /// Runge-Kutta in a chart, the second opinion on references.
+    pub(crate) fn runge_kutta() -> Self {
+        chart(
+            ChartKind::Cartesian,
+            ChartMethod::RungeKutta4,
+            MassSolverKind::Saddle,
+        )
+    }
+
+    /// All methods: chart-free ones, the published scheme, and every method in every chart with every solver.
+    pub(crate) fn all() -> Vec<Self> {
+        let mut all = vec![
+            Self::free("implicit Euler", Method::ImplicitEuler(Default::default())),
+            Self::free(DEFAULT, Method::default()),
+            Self::free("projection", Method::Projection(Default::default())),
+            Self::energy_momentum(),
+            Self::free("RATTLE", Method::Rattle(Default::default())),
+            Self::reference(),
+            Self {
+                name: "published scheme".into(),
+                kind: Kind::Paper(Degenerate::Carry),
+            },
+            Self {
+                name: "published scheme, free creases".into(),
+                kind: Kind::Paper(Degenerate::Assign),
+            },
+        ];
+        for kind in [ChartKind::Cartesian, ChartKind::Front] {
+            for method in [
+                ChartMethod::RungeKutta4,
+                ChartMethod::SymplecticEuler,
+                ChartMethod::ForwardEuler,
+            ] {
+                for solver in [
+                    MassSolverKind::Saddle,
+                    MassSolverKind::Cholesky,
+                    MassSolverKind::DenseLu,
+                    MassSolverKind::Cramer,
+                ] {
+                    all.push(chart(kind, method, solver));
+                }
+            }
+        }
+        all
+    }
+
+    /// Whether the method adapts its steps to a tolerance.
+    pub(crate) fn is_adaptive(&self) -> bool {
+        matches!(self.kind, Kind::Paper(_))
+    }
+
+    /// Whether the method is one of the many in charts, of which only few are drawn.
+    pub(crate) fn is_chart(&self) -> bool {
+        matches!(self.kind, Kind::Chart { .. })
+    }
+
+    /// The problem at its start. The inner error is that of the method.
+    pub(crate) fn start(
+        &self,
+        problem: Problem,
+        fineness: Fineness,
+    ) -> Result<Result<Simulation, StartError>> {
+        let (model, state) = (problem.model()?, problem.start()?);
+        let control = match fineness {
+            Fineness::Step(h) => ChartStepControl::Fixed(h),
+            Fineness::Tolerance(tolerance) => ChartStepControl::Adaptive {
+                tolerance,
+                min: 1e-7,
+                // The paper's largest step.
+                max: 0.25,
+            },
+        };
+        let (kind, degenerate, options) = match &self.kind {
+            Kind::Free(method) => {
+                return Ok(Simulation::new(model, state, method.clone()).map_err(Into::into));
+            }
+            Kind::Chart {
+                chart,
+                method,
+                solver,
+            } => (
+                *chart,
+                Degenerate::Assign,
+                ChartOptions {
+                    method: *method,
+                    solver: *solver,
+                    control,
+                    ..Default::default()
+                },
+            ),
+            Kind::Paper(degenerate) => (
+                ChartKind::Front,
+                *degenerate,
+                ChartOptions {
+                    method: ChartMethod::ForwardEuler,
+                    equations: Equations::Published,
+                    position: PositionUpdate::Linear,
+                    control,
+                    solver: if freedoms(problem)? <= CRAMER {
+                        MassSolverKind::Cramer
+                    } else {
+                        MassSolverKind::DenseLu
+                    },
+                    rebase: Rebase::Never,
+                    ..Default::default()
+                },
+            ),
+        };
+        Ok(
+            build(problem, kind, degenerate, &state.x)?.and_then(|chart| {
+                Simulation::in_chart(model, state, chart, options).map_err(Into::into)
+            }),
+        )
+    }
+}
+
+fn freedoms(problem: Problem) -> Result<usize> {
+    Ok(RodSystem::new(&problem.sheet()?, &problem.pins())?.dof())
+}
+
+fn build(
+    problem: Problem,
+    kind: ChartKind,
+    degenerate: Degenerate,
+    x: &[f64],
+) -> Result<Result<Box<dyn Chart>, StartError>> {
+    let sheet = problem.sheet()?;
+    let pins = problem.pins();
+    Ok(match kind {
+        ChartKind::Cartesian => {
+            let system = RodSystem::new(&sheet, &pins)?;
+            CartesianChart::new(system, Choice::Auto, x)
+                .map(|c| Box::new(c) as Box<dyn Chart>)
+                .map_err(Into::into)
+        }
+        ChartKind::Front => {
+            let options = AssignmentOptions {
+                pins,
+                degenerate,
+                ..Default::default()
+            };
+            FrontChart::new(&sheet, &options, x)
+                .map(|c| Box::new(c) as Box<dyn Chart>)
+                .map_err(Into::into)
+        }
+    })
+}
+
+fn chart(chart: ChartKind, method: ChartMethod, solver: MassSolverKind) -> Scheme {
+    let steps = match method {
+        ChartMethod::RungeKutta4 => "Runge-Kutta 4",
+        ChartMethod::SymplecticEuler => "symplectic Euler",
+        ChartMethod::ForwardEuler => "forward Euler",
+    };
+    let coordinates = match chart {
+        ChartKind::Front => "front chart",
+        ChartKind::Cartesian => "Cartesian chart",
+    };
+    let solve = match solver {
+        MassSolverKind::Saddle => "saddle",
+        MassSolverKind::Cholesky => "Cholesky",
+        MassSolverKind::DenseLu => "dense LU",
+        MassSolverKind::Cramer => "Cramer",
+    };
+    Scheme {
+        name: format!("{steps}, {coordinates}, {solve}"),
+        kind: Kind::Chart {
+            chart,
+            method,
+            solver,
+        },
+    }
+}

@@ -1,0 +1,828 @@
+//! The linear solvers: time and backward error against size.
+
+use super::analysis::{exponent, short};
+use super::effort::Effort;
+use super::matrices::{Body, STIFFNESS, Sparse};
+use super::study::{axis, decades};
+use crate::draw::{Colour, Drawing, Legend, Line, Marker, Plot, Series, palette, row};
+use crate::figures::Table;
+use crate::interrupt;
+use crate::progress::Progress;
+use anyhow::Result;
+use isosheet_coords::linalg::{
+    LinalgError, SparseLdlt, SparseLlt, SparseLu, delay_multipliers, norm_inf,
+};
+use isosheet_coords::{CartesianChart, Chart, Choice, Linearised, mass_matrix};
+use isosheet_io::MatrixSymmetry;
+use isosheet_mesh::VertexId;
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+use std::fmt::Write;
+use std::time::Instant;
+
+/// What is measured, in words.
+pub(crate) const ABOUT: &str = "Free, bent sheets: two triangles (n = 7), then the squares M^0, M^1, ... The task is that of a step: velocities from \
+    momenta, C q' = p, in a Cartesian chart. The dense solvers need C, whose forming is timed by itself; the sparse ones solve \
+    [M G^T; G 0] [v; μ] = [S^T p; 0] for the same velocities. First: symbolic analysis and numeric factorisation; again: numeric factorisation of \
+    new values; solve: one right-hand side. Backward error: |b − A x| / (|A| |x| + |b|) in the largest-entry norm, for the sparse solvers of the \
+    whole saddle-point system, for the dense ones of C; velocity error: against the refined sparse LU. The primal matrix M + r G^T G is that of the \
+    damped methods, which correct its solution as they iterate: it solves the saddle-point system only in the limit, and its errors show what four \
+    steps of the method of multipliers leave. Each time is the minimum over repetitions. \
+    Two at once: how much more is done when two cores factorise one matrix each.";
+
+/// One solver on one matrix. Times in seconds.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct SolverRow {
+    pub(crate) solver: String,
+    pub(crate) mesh: String,
+    /// Degrees of freedom.
+    pub(crate) n: usize,
+    /// Order of the matrix that is factorised.
+    pub(crate) order: usize,
+    /// Forming C, for the dense solvers.
+    pub(crate) form: f64,
+    pub(crate) first: f64,
+    pub(crate) again: f64,
+    pub(crate) solve: f64,
+    /// `None` when the solver failed.
+    pub(crate) backward: Option<f64>,
+    pub(crate) velocity: Option<f64>,
+    /// Throughput of two cores with one factorisation each, relative to one core.
+    pub(crate) two: Option<f64>,
+    pub(crate) failure: Option<String>,
+}
+
+impl SolverRow {
+    /// What a step pays: forming, factorising again, solving.
+    fn step(&self) -> f64 {
+        self.form + self.again + self.solve
+    }
+}
+
+/// Names of the solvers, dense ones first.
+const SOLVERS: [&str; 8] = [
+    MINORS, CRAMER, DENSE_LU, CHOLESKY, SPARSE_LU, LDLT, SCHUR, PRIMAL,
+];
+const MINORS: &str = "Cramer, minors as published";
+const CRAMER: &str = "Cramer's rule";
+const DENSE_LU: &str = "dense LU";
+const CHOLESKY: &str = "dense Cholesky";
+const SPARSE_LU: &str = "sparse LU, saddle point";
+const LDLT: &str = "sparse LDL^T, saddle point";
+const SCHUR: &str = "sparse Cholesky, Schur complement";
+const PRIMAL: &str = "sparse Cholesky, primal";
+
+/// Runs all solvers on all sizes.
+pub(crate) fn make(effort: Effort) -> Result<Vec<SolverRow>> {
+    let bar = Progress::start("linear solvers", effort.solver_level() as usize + 2);
+    let limit = effort.solver();
+    let mut rows: Vec<SolverRow> = Vec::new();
+    for body in Body::all(effort.solver_level()) {
+        let body = body?;
+        let task = Task::new(&body)?;
+        // Forming C takes as many solves as there are coordinates; past the limit nothing dense is tried.
+        let slow = |name: &str, rows: &[SolverRow]| {
+            rows.iter()
+                .rfind(|r| r.solver == name)
+                .is_some_and(|r| r.form + r.first > 0.15 * limit)
+        };
+        let dense: Vec<&str> = SOLVERS[..4]
+            .iter()
+            .copied()
+            .filter(|s| !slow(s, &rows))
+            .collect();
+        if !dense.is_empty() {
+            rows.extend(task.dense(&dense, limit)?);
+        }
+        for name in &SOLVERS[4..] {
+            interrupt::check()?;
+            if !slow(name, &rows) {
+                rows.push(task.sparse(name, limit));
+            }
+        }
+        bar.step();
+    }
+    bar.finish(&format!("{} measurements", rows.len()));
+    Ok(rows)
+}
+
+/// What is to be solved on one body.
+struct Task<'a> {
+    body: &'a Body,
+    chart: Option<CartesianChart>,
+    /// `S^T p` over zeros: the right-hand side of the saddle-point system, and p.
+    rhs: Vec<f64>,
+    p: Vec<f64>,
+    whole: Sparse,
+    /// Velocities by the refined sparse LU.
+    exact: Vec<f64>,
+}
+
+impl<'a> Task<'a> {
+    fn new(body: &'a Body) -> Result<Self> {
+        let n = body.system.dof();
+        // Any numbers of the size of one.
+        let p: Vec<f64> = (0..n).map(|k| (1.7 * k as f64 + 0.3).sin()).collect();
+        let whole = body.saddle(MatrixSymmetry::General);
+        let mut rhs = vec![0.0; whole.pattern.cols()];
+        // Without a chart any force will do.
+        let chart = (n <= LARGEST_CHART)
+            .then(|| CartesianChart::new(body.system.clone(), Choice::Auto, body.sheet.positions()))
+            .transpose()?;
+        match &chart {
+            Some(chart) => {
+                let mut linear = Linearised::new(&body.system, chart)?;
+                linear.factorize(&body.system, chart, body.sheet.positions())?;
+                let top = &mut rhs[..body.system.unknowns()];
+                chart.pattern().add_transpose(linear.rows(), &p, top);
+            }
+            None => {
+                let stride = body.system.unknowns() / n;
+                for (k, p) in p.iter().enumerate() {
+                    rhs[k * stride] = *p;
+                }
+            }
+        }
+        let mut lu = SparseLu::new(whole.pattern.clone())?;
+        lu.values_mut().copy_from_slice(&whole.values);
+        lu.factorize()?;
+        let mut exact = rhs.clone();
+        lu.solve_refined(&mut exact)?;
+        Ok(Self {
+            body,
+            chart,
+            rhs,
+            p,
+            whole,
+            exact,
+        })
+    }
+
+    fn row(&self, solver: &str, order: usize) -> SolverRow {
+        SolverRow {
+            solver: solver.into(),
+            mesh: self.body.name.clone(),
+            n: self.body.system.dof(),
+            order,
+            form: 0.0,
+            first: 0.0,
+            again: 0.0,
+            solve: 0.0,
+            backward: None,
+            velocity: None,
+            two: None,
+            failure: None,
+        }
+    }
+
+    fn velocity_error(&self, v: &[f64]) -> f64 {
+        let unknowns = self.body.system.unknowns();
+        let exact = &self.exact[..unknowns];
+        let gap: Vec<f64> = v.iter().zip(exact).map(|(a, b)| a - b).collect();
+        norm_inf(&gap) / norm_inf(exact)
+    }
+
+    /// The solvers of `C q' = p`.
+    fn dense(&self, names: &[&str], limit: f64) -> Result<Vec<SolverRow>> {
+        let Some(chart) = &self.chart else {
+            return Ok(Vec::new());
+        };
+        let x = self.body.sheet.positions();
+        let system = &self.body.system;
+        let mut linear = Linearised::new(system, chart)?;
+        let mut formed: Result<(DMatrix<f64>, DMatrix<f64>), isosheet_coords::ChartError> =
+            Ok(Default::default());
+        let form = shortest(limit, || {
+            formed = linear
+                .factorize(system, chart, x)
+                .and_then(|()| chart.jacobian(system, &mut linear, x))
+                .map(|j| (mass_matrix(system, &self.body.mass, &j), j));
+        });
+        let (c, j) = formed?;
+        // Masses over their mean, as in the sparse matrices.
+        let c = c * (self.body.mass.vertex.len() as f64 / self.body.mass.total());
+        let p = DVector::from_column_slice(&self.p);
+        let norm = |m: &DMatrix<f64>| m.row_iter().map(|r| r.abs().sum()).fold(0.0, f64::max);
+        let mut rows = Vec::new();
+        for name in names {
+            interrupt::check()?;
+            let mut row = self.row(name, c.nrows());
+            row.form = form;
+            let mut q = None;
+            match *name {
+                MINORS => {
+                    let d = c.determinant();
+                    row.first = shortest(limit, || q = Some(minors(&c, d, &self.p)));
+                }
+                CRAMER => {
+                    let d = c.determinant();
+                    row.first = shortest(limit, || q = Some(cramer(&c, d, &self.p)));
+                }
+                DENSE_LU => {
+                    let mut factor = c.clone().lu();
+                    row.first = shortest(limit, || factor = c.clone().lu());
+                    row.solve = shortest(limit, || q = factor.solve(&p));
+                }
+                _ => {
+                    let mut factor = None;
+                    row.first = shortest(limit, || factor = c.clone().cholesky());
+                    row.solve = shortest(limit, || q = factor.as_ref().map(|f| f.solve(&p)));
+                }
+            }
+            row.again = row.first;
+            match q.filter(|q: &DVector<f64>| q.iter().all(|v| v.is_finite())) {
+                Some(q) => {
+                    let r = &p - &c * &q;
+                    row.backward = Some(r.amax() / (norm(&c) * q.amax() + p.amax()));
+                    row.velocity = Some(self.velocity_error((&j * q).as_slice()));
+                }
+                None => row.failure = Some("singular to working precision".into()),
+            }
+            rows.push(row);
+        }
+        Ok(rows)
+    }
+
+    /// The solvers of the saddle-point system.
+    fn sparse(&self, name: &str, limit: f64) -> SolverRow {
+        let row = self.row(name, 0);
+        let failed = row.clone();
+        self.measure(name, row, limit)
+            .unwrap_or_else(|error| SolverRow {
+                failure: Some(error.to_string()),
+                ..failed
+            })
+    }
+
+    fn measure(
+        &self,
+        name: &str,
+        mut row: SolverRow,
+        limit: f64,
+    ) -> Result<SolverRow, LinalgError> {
+        let matrix = match name {
+            SPARSE_LU => self.body.saddle(MatrixSymmetry::General),
+            LDLT => self.body.saddle(MatrixSymmetry::Symmetric),
+            SCHUR => self.body.schur(),
+            _ => self.body.primal(),
+        };
+        row.order = matrix.pattern.cols();
+        let order = (name == LDLT).then(|| elimination(self.body));
+        let fresh = || Factor::new(name, &matrix, order.as_deref());
+        let mut factor = fresh()?;
+        let mut outcome = Ok(());
+        row.first = shortest(limit, || {
+            outcome = fresh().and_then(|f| {
+                factor = f;
+                factor.factorize()
+            });
+        });
+        outcome?;
+        let mut outcome = Ok(());
+        row.again = shortest(limit, || outcome = factor.factorize());
+        outcome?;
+        let mut solution = Vec::new();
+        row.solve = shortest(limit, || solution = self.solve(&mut factor));
+        row.backward = Some(self.whole.backward_error(&solution, &self.rhs));
+        row.velocity = (name != SPARSE_LU)
+            .then(|| self.velocity_error(&solution[..self.body.system.unknowns()]));
+        let mut other = fresh()?;
+        let mut outcomes = (Ok(()), Ok(()));
+        let together = shortest(limit, || {
+            outcomes = rayon::join(|| factor.factorize(), || other.factorize());
+        });
+        outcomes.0.and(outcomes.1)?;
+        row.two = Some(2.0 * row.again / together);
+        Ok(row)
+    }
+
+    /// Solves the saddle-point system with a factor of any of the matrices.
+    fn solve(&self, factor: &mut Factor) -> Vec<f64> {
+        let unknowns = self.body.system.unknowns();
+        let mut x = self.rhs.clone();
+        match factor {
+            Factor::Lu(lu) => lu.solve(&mut x),
+            Factor::Ldlt(ldlt) => ldlt.solve(&mut x),
+            Factor::Schur(llt) => {
+                // S mu = G M^-1 f, v = M^-1 (f - G^T mu).
+                let (masses, rods) = (self.body.masses(), self.body.rods());
+                let (v, mu) = x.split_at_mut(unknowns);
+                mu.fill(0.0);
+                for &(e, u, g) in &rods {
+                    mu[e as usize] += g * v[u as usize] / masses[u as usize];
+                }
+                llt.solve(mu);
+                for &(e, u, g) in &rods {
+                    v[u as usize] -= g * mu[e as usize];
+                }
+                v.iter_mut().zip(&masses).for_each(|(v, m)| *v /= m);
+            }
+            Factor::Primal(llt) => {
+                // The method of multipliers: (M + r G^T G) v = f - G^T mu, mu += r G v.
+                let rods = self.body.rods();
+                let (v, mu) = x.split_at_mut(unknowns);
+                mu.fill(0.0);
+                for _ in 0..MULTIPLIER_STEPS {
+                    v.copy_from_slice(&self.rhs[..unknowns]);
+                    for &(e, u, g) in &rods {
+                        v[u as usize] -= g * mu[e as usize];
+                    }
+                    llt.solve(v);
+                    for &(e, u, g) in &rods {
+                        mu[e as usize] += STIFFNESS * g * v[u as usize];
+                    }
+                }
+            }
+        }
+        x
+    }
+}
+
+/// Steps of the method of multipliers that make up one solve with the primal matrix.
+const MULTIPLIER_STEPS: usize = 4;
+
+/// Most degrees of freedom for which a chart is chosen and the dense matrix formed: choosing coordinates is dense work too.
+const LARGEST_CHART: usize = 300;
+
+/// A factorised sparse matrix.
+enum Factor {
+    Lu(Box<SparseLu>),
+    Ldlt(Box<SparseLdlt>),
+    Schur(Box<SparseLlt>),
+    Primal(Box<SparseLlt>),
+}
+
+impl Factor {
+    fn new(name: &str, matrix: &Sparse, order: Option<&[usize]>) -> Result<Self, LinalgError> {
+        let pattern = matrix.pattern.clone();
+        let mut factor = match (name, order) {
+            (SPARSE_LU, _) => Self::Lu(Box::new(SparseLu::new(pattern)?)),
+            (_, Some(order)) => Self::Ldlt(Box::new(SparseLdlt::new(pattern, order)?)),
+            (SCHUR, _) => Self::Schur(Box::new(SparseLlt::new(pattern)?)),
+            _ => Self::Primal(Box::new(SparseLlt::new(pattern)?)),
+        };
+        let values = match &mut factor {
+            Self::Lu(f) => f.values_mut(),
+            Self::Ldlt(f) => f.values_mut(),
+            Self::Schur(f) | Self::Primal(f) => f.values_mut(),
+        };
+        values.copy_from_slice(&matrix.values);
+        Ok(factor)
+    }
+
+    fn factorize(&mut self) -> Result<(), LinalgError> {
+        match self {
+            Self::Lu(f) => f.factorize(),
+            Self::Ldlt(f) => f.factorize(),
+            Self::Schur(f) | Self::Primal(f) => f.factorize(),
+        }
+    }
+}
+
+/// `q_i = det(C with column i replaced by p) / det C`.
+fn cramer(c: &DMatrix<f64>, determinant: f64, p: &[f64]) -> DVector<f64> {
+    DVector::from_fn(p.len(), |i, _| {
+        let mut replaced = c.clone();
+        replaced.column_mut(i).copy_from_slice(p);
+        replaced.determinant() / determinant
+    })
+}
+
+/// `q_j = sum_i p_i (-1)^(i+j) M_ji / det C` with the minors of C (Liu, Tang and Joneja 2007, Sec. 4.1).
+fn minors(c: &DMatrix<f64>, determinant: f64, p: &[f64]) -> DVector<f64> {
+    DVector::from_fn(p.len(), |j, _| {
+        p.iter()
+            .enumerate()
+            .map(|(i, p)| {
+                let sign = if (i + j) % 2 == 0 { 1.0 } else { -1.0 };
+                let minor = c.clone().remove_row(i).remove_column(j).determinant();
+                p * sign * minor / determinant
+            })
+            .sum()
+    })
+}
+
+/// The shortest time of repeated runs, seconds: at most 20 of them, and no more once a tenth of the limit is used up.
+fn shortest(limit: f64, mut work: impl FnMut()) -> f64 {
+    let mut best = f64::INFINITY;
+    let clock = Instant::now();
+    for _ in 0..20 {
+        let started = Instant::now();
+        work();
+        best = best.min(started.elapsed().as_secs_f64());
+        if clock.elapsed().as_secs_f64() > 0.1 * limit {
+            break;
+        }
+    }
+    best
+}
+
+/// Elimination order of the saddle-point matrix: nested dissection of the vertices by their positions, every
+/// multiplier right after its last vertex.
+fn elimination(body: &Body) -> Vec<usize> {
+    let topology = body.sheet.topology();
+    let mut vertices: Vec<VertexId> = topology.vertex_ids().collect();
+    let mut order = Vec::with_capacity(vertices.len());
+    dissect(body, &mut vertices, &mut order);
+    let unknowns = body.system.unknowns();
+    let total = unknowns + body.system.equations();
+    let mut adjacency = vec![Vec::new(); total];
+    for (e, u) in body.system.jacobian_entries() {
+        adjacency[u as usize].push(unknowns as u32 + e);
+        adjacency[unknowns + e as usize].push(u);
+    }
+    let base: Vec<usize> = (unknowns..total)
+        .chain(order.iter().flat_map(|v| {
+            let first = 3 * v.index();
+            first..first + 3
+        }))
+        .collect();
+    delay_multipliers(&base, &adjacency, unknowns)
+}
+
+/// Vertices that are not cut further.
+const LEAF: usize = 12;
+
+/// Cuts the vertices in two halves along their longer side; the border of the second half comes last.
+fn dissect(body: &Body, vertices: &mut [VertexId], order: &mut Vec<VertexId>) {
+    if vertices.len() <= LEAF {
+        order.extend_from_slice(vertices);
+        return;
+    }
+    let at = |v: &VertexId, k: usize| body.sheet.position(*v)[k];
+    let extent = |k: usize| {
+        let (low, high) = vertices
+            .iter()
+            .map(|v| at(v, k))
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+                (l.min(x), h.max(x))
+            });
+        high - low
+    };
+    let k = usize::from(extent(1) > extent(0));
+    vertices.sort_by(|a, b| at(a, k).total_cmp(&at(b, k)).then(a.cmp(b)));
+    let half = vertices.len() / 2;
+    let mut side = vec![0u8; body.sheet.topology().vertex_count()];
+    vertices[..half].iter().for_each(|v| side[v.index()] = 1);
+    let (mut rest, border): (Vec<VertexId>, Vec<VertexId>) =
+        vertices[half..].iter().partition(|v| {
+            body.sheet
+                .topology()
+                .neighbours(**v)
+                .all(|w| side[w.index()] != 1)
+        });
+    dissect(body, &mut vertices[..half], order);
+    if rest.len() < vertices.len() - half {
+        dissect(body, &mut rest, order);
+    } else {
+        order.append(&mut rest);
+    }
+    order.extend(border);
+}
+
+/// All rows as CSV.
+pub(crate) fn csv(rows: &[SolverRow]) -> String {
+    let mut out = String::from(
+        "solver,mesh,degrees_of_freedom,order,form_s,first_s,again_s,solve_s,backward_error,velocity_error,two_cores,failure\n",
+    );
+    let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:e}"));
+    for r in rows {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            out,
+            "\"{}\",{},{},{},{:e},{:e},{:e},{:e},{},{},{},\"{}\"",
+            r.solver,
+            r.mesh,
+            r.n,
+            r.order,
+            r.form,
+            r.first,
+            r.again,
+            r.solve,
+            number(r.backward),
+            number(r.velocity),
+            number(r.two),
+            r.failure.as_deref().unwrap_or("").replace('"', "'")
+        );
+    }
+    out
+}
+
+/// Time in microseconds or milliseconds.
+fn time(seconds: f64) -> String {
+    match seconds {
+        0.0 => "–".into(),
+        s if s < 1e-3 => format!("{} µs", short(1e6 * s)),
+        s if s < 1.0 => format!("{} ms", short(1e3 * s)),
+        s => format!("{} s", short(s)),
+    }
+}
+
+/// The table for people.
+pub(crate) fn table(rows: &[SolverRow]) -> Table {
+    let number = |v: Option<f64>| v.map_or("–".into(), |v| format!("{v:.0e}"));
+    Table {
+        caption: "Linear solvers by size".into(),
+        head: [
+            "solver",
+            "mesh",
+            "n",
+            "order",
+            "forming C",
+            "first",
+            "again",
+            "solve",
+            "backward error",
+            "velocity error",
+            "two at once",
+            "remark",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: SOLVERS
+            .iter()
+            .flat_map(|s| rows.iter().filter(move |r| r.solver == *s))
+            .map(|r| {
+                vec![
+                    r.solver.clone(),
+                    r.mesh.clone(),
+                    r.n.to_string(),
+                    r.order.to_string(),
+                    time(r.form),
+                    time(r.first),
+                    time(r.again),
+                    time(r.solve),
+                    number(r.backward),
+                    number(r.velocity),
+                    r.two.map_or("–".into(), |t| format!("{t:.1}×")),
+                    r.failure.clone().unwrap_or_default(),
+                ]
+            })
+            .collect(),
+    }
+}
+
+/// Measurements that an exponent rests on: the largest sizes.
+const FITTED: usize = 3;
+
+/// Exponent of the time of a factorisation over n at the largest sizes.
+fn growth(rows: &[SolverRow], solver: &str) -> Option<(f64, [usize; 2])> {
+    let points: Vec<(usize, f64)> = of(rows, solver).map(|r| (r.n, r.again)).collect();
+    let last = &points[points.len().saturating_sub(FITTED)..];
+    let e = exponent(
+        &last
+            .iter()
+            .map(|(n, t)| [*n as f64, *t])
+            .collect::<Vec<_>>(),
+    )?;
+    (last.len() == FITTED).then(|| (e, [last[0].0, last[FITTED - 1].0]))
+}
+
+fn of<'a>(rows: &'a [SolverRow], solver: &'a str) -> impl Iterator<Item = &'a SolverRow> {
+    rows.iter()
+        .filter(move |r| r.solver == solver && r.failure.is_none())
+}
+
+/// The n from which on the second solver takes less time than the first, by interpolation of logarithms.
+fn crossing(rows: &[SolverRow], first: &str, second: &str) -> Option<f64> {
+    let pairs: Vec<(f64, f64)> = of(rows, first)
+        .filter_map(|a| {
+            let b = of(rows, second).find(|b| b.n == a.n)?;
+            Some((a.n as f64, (b.step() / a.step()).ln()))
+        })
+        .collect();
+    let k = pairs.iter().rposition(|(_, r)| *r > 0.0)?;
+    let ((n0, r0), (n1, r1)) = (pairs[k], *pairs.get(k + 1)?);
+    Some((n0.ln() + (n1 / n0).ln() * r0 / (r0 - r1)).exp())
+}
+
+/// What the rows say.
+pub(crate) fn conclusions(rows: &[SolverRow]) -> Vec<String> {
+    let mut all = Vec::new();
+    let growths: Vec<String> = SOLVERS
+        .iter()
+        .filter_map(|s| growth(rows, s).map(|(e, [a, b])| format!("{s} n^{e:.1} (n = {a} to {b})")))
+        .collect();
+    all.push(format!(
+        "Time of a factorisation at the largest sizes: {}. The order of the sparse matrices grows as n^2.",
+        growths.join("; ")
+    ));
+    let mut sizes: Vec<usize> = rows.iter().map(|r| r.n).collect();
+    sizes.sort_unstable();
+    sizes.dedup();
+    let mut winners: Vec<(String, [usize; 2])> = Vec::new();
+    for n in sizes {
+        let best = rows
+            .iter()
+            .filter(|r| r.n == n && r.failure.is_none())
+            .min_by(|a, b| a.step().total_cmp(&b.step()));
+        if let Some(best) = best {
+            match winners.last_mut() {
+                Some((name, range)) if *name == best.solver => range[1] = n,
+                _ => winners.push((best.solver.clone(), [n, n])),
+            }
+        }
+    }
+    let fastest: Vec<String> = winners
+        .iter()
+        .map(|(s, [a, b])| {
+            if a == b {
+                format!("{s} at n = {a}")
+            } else {
+                format!("{s} from n = {a} to {b}")
+            }
+        })
+        .collect();
+    all.push(format!(
+        "Fastest at forming, factorising and solving once: {}.",
+        fastest.join("; ")
+    ));
+    let crossings: Vec<String> = [
+        (MINORS, CHOLESKY),
+        (CRAMER, CHOLESKY),
+        (CHOLESKY, SPARSE_LU),
+        (CHOLESKY, LDLT),
+        (CHOLESKY, SCHUR),
+        (SPARSE_LU, LDLT),
+        (LDLT, SCHUR),
+    ]
+    .into_iter()
+    .filter_map(|(a, b)| {
+        let n = crossing(rows, a, b)?;
+        Some(format!("{b} passes {a} at n = {n:.0}"))
+    })
+    .collect();
+    if !crossings.is_empty() {
+        all.push(format!("Cross-over points: {}.", crossings.join("; ")));
+    }
+    let analysis: Vec<String> = SOLVERS[4..]
+        .iter()
+        .filter_map(|s| {
+            let last = of(rows, s).last()?;
+            Some(format!("{s} {}", short(last.first / last.again)))
+        })
+        .collect();
+    all.push(format!(
+        "A first factorisation, analysis included, takes so many times a later one, at the largest size of each: {}.",
+        analysis.join("; ")
+    ));
+    let worst: Vec<String> = SOLVERS
+        .iter()
+        .filter_map(|s| {
+            let of = |f: fn(&SolverRow) -> Option<f64>| of(rows, s).filter_map(f).reduce(f64::max);
+            let velocity = of(|r| r.velocity).map_or("–".into(), |v| format!("{v:.0e}"));
+            Some(format!("{s} {:.0e} / {velocity}", of(|r| r.backward)?))
+        })
+        .collect();
+    all.push(format!(
+        "Largest backward error / error of the velocities: {}.",
+        worst.join("; ")
+    ));
+    let two: Vec<String> = SOLVERS[4..]
+        .iter()
+        .filter_map(|s| {
+            let last = of(rows, s).last()?;
+            Some(format!("{s} {:.1}", last.two?))
+        })
+        .collect();
+    all.push(format!(
+        "Two cores with one factorisation each do so many times the work of one, at the largest size of each: {}. That means \
+         something only on a machine with two idle cores. Within one factorisation one core is used.",
+        two.join("; ")
+    ));
+    let failed: Vec<String> = rows
+        .iter()
+        .filter_map(|r| {
+            Some(format!(
+                "{} on {}: {}",
+                r.solver,
+                r.mesh,
+                r.failure.as_ref()?
+            ))
+        })
+        .collect();
+    if !failed.is_empty() {
+        all.push(format!("Failed: {}.", failed.join("; ")));
+    }
+    all
+}
+
+/// Time of a step's solve and backward error against n.
+pub(crate) fn plot(rows: &[SolverRow]) -> Drawing {
+    let looks: [(Colour, Marker, Line); 8] = [
+        (palette::BLACK, Marker::Square, Line::Dashed),
+        (palette::GREY, Marker::Square, Line::Dashed),
+        (palette::GREY, Marker::Disc, Line::Dashed),
+        (palette::BLACK, Marker::Disc, Line::Dashed),
+        (palette::VERMILION, Marker::Diamond, Line::Solid),
+        (palette::ORANGE, Marker::Triangle, Line::Solid),
+        (palette::BLUE, Marker::Disc, Line::Solid),
+        (palette::GREEN, Marker::Square, Line::Solid),
+    ];
+    let sizes = decades(rows.iter().map(|r| r.n as f64));
+    let panel = |label: &str, value: fn(&SolverRow) -> Option<f64>, legend| {
+        let good = || rows.iter().filter(|r| r.failure.is_none());
+        let series = SOLVERS
+            .iter()
+            .zip(looks)
+            .map(|(s, (colour, marker, line))| Series {
+                name: (*s).to_owned(),
+                points: of(rows, s)
+                    .filter_map(|r| Some([r.n as f64, value(r)?]))
+                    .collect(),
+                colour,
+                marker: Some(marker),
+                line,
+            })
+            .collect();
+        Plot {
+            x: axis("degrees of freedom ~n~", sizes),
+            y: axis(label, decades(good().filter_map(value))),
+            size: [150.0, 160.0],
+            series,
+            legend,
+        }
+        .draw()
+    };
+    row(
+        &[
+            panel(
+                "form ~C~, factorise again, solve (s)",
+                |r| Some(r.step()),
+                Legend::None,
+            ),
+            panel(
+                "velocity error",
+                |r| r.velocity.map(|v| v.max(1e-17)),
+                Legend::Right,
+            ),
+        ],
+        18.0,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All solvers give the same velocities, whatever system they solve.
+    #[test]
+    fn the_solvers_agree() {
+        let rows = make(Effort::Quick).unwrap();
+        for solver in SOLVERS {
+            let here: Vec<&SolverRow> = rows.iter().filter(|r| r.solver == solver).collect();
+            assert!(here.len() >= 2, "{solver} ran on {} sizes", here.len());
+            for r in here {
+                assert_eq!(r.failure, None);
+                let (backward, velocity) = (r.backward.unwrap(), r.velocity.unwrap_or(0.0));
+                // Four steps of the method of multipliers are exact on the smallest sheet only.
+                let exact = solver != PRIMAL || r.n == 7;
+                assert!(!exact || backward < 1e-12 && velocity < 1e-9, "{r:?}");
+            }
+        }
+        assert_eq!(rows[0].n, 7);
+        assert!(conclusions(&rows).len() >= 5);
+        assert!(plot(&rows).to_svg("t").unwrap().contains("dense Cholesky"));
+        assert!(!csv(&rows).contains("inf"));
+    }
+
+    #[test]
+    fn crossings_are_interpolated() {
+        let row = |solver: &str, n: usize, again: f64| SolverRow {
+            solver: solver.into(),
+            mesh: String::new(),
+            n,
+            order: n,
+            form: 0.0,
+            first: again,
+            again,
+            solve: 0.0,
+            backward: None,
+            velocity: None,
+            two: None,
+            failure: None,
+        };
+        let mut rows = Vec::new();
+        for n in [10, 40, 160, 640] {
+            rows.push(row(CHOLESKY, n, (n as f64).powi(3)));
+            rows.push(row(SCHUR, n, 8e3 * n as f64));
+        }
+        let n = crossing(&rows, CHOLESKY, SCHUR).unwrap();
+        assert!((n / 8e3f64.sqrt() - 1.0).abs() < 1e-12, "{n}");
+        assert_eq!(crossing(&rows, SCHUR, CHOLESKY), None);
+        let (e, range) = growth(&rows, CHOLESKY).unwrap();
+        assert!((e - 3.0).abs() < 1e-12 && range == [40, 640]);
+    }
+
+    #[test]
+    fn the_elimination_order_is_a_permutation() {
+        let body = Body::all(2).last().unwrap().unwrap();
+        let mut order = elimination(&body);
+        order.sort_unstable();
+        assert!(order.iter().copied().eq(0..order.len()));
+        assert_eq!(
+            order.len(),
+            body.system.unknowns() + body.system.equations()
+        );
+    }
+}
