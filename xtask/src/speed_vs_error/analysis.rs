@@ -30,6 +30,15 @@ impl Measure {
         }
     }
 
+    /// The largest error that is of use: coarser runs are cheap, but no motion. Position errors of sheets of 1 m.
+    pub(crate) fn useful(self) -> f64 {
+        match self {
+            Self::Position => 0.05,
+            Self::Energy => 0.1,
+            Self::Strain => 1e-2,
+        }
+    }
+
     pub(crate) fn unit(self) -> &'static str {
         match self {
             Self::Position => " m",
@@ -84,7 +93,7 @@ pub(crate) fn cheapest<'a>(
         .min_by(|a, b| a.wall.total_cmp(&b.wall))
 }
 
-/// The largest and smallest error of the points of a method that no other method reaches in less time (beyond noise)
+/// The largest and smallest useful error of the points of a method that no other method reaches in less time (beyond noise)
 /// with as small an error: its part of the front.
 pub(crate) fn on_front(points: &[Point], scheme: &str, measure: Measure) -> Option<[f64; 2]> {
     points
@@ -93,9 +102,8 @@ pub(crate) fn on_front(points: &[Point], scheme: &str, measure: Measure) -> Opti
         .filter_map(|p| {
             let level = measure.of(&p.errors?);
             let others = points.iter().filter(|q| q.scheme != scheme);
-            cheapest(others, measure, level)
-                .is_none_or(|q| q.wall * NOISE >= p.wall)
-                .then_some([level; 2])
+            let first = cheapest(others, measure, level).is_none_or(|q| q.wall * NOISE >= p.wall);
+            (first && level <= measure.useful()).then_some([level; 2])
         })
         .reduce(|a, b| [a[0].max(b[0]), a[1].min(b[1])])
 }
@@ -223,7 +231,10 @@ mod tests {
         assert_eq!(stretches[0].to, -1);
         assert_eq!(stretches[1].scheme, "four");
         let [high, low] = on_front(&points, "one", Measure::Position).unwrap();
-        assert!(high == 0.1 && low < 0.1);
+        assert!(
+            high == 0.05 && low < high,
+            "{high} is no more than what is of use"
+        );
         assert!(on_front(&points, "four", Measure::Position).is_some());
         assert_eq!(on_front(&points, "bad", Measure::Position), None);
         assert_eq!(on_front(&points, "absent", Measure::Position), None);

@@ -31,7 +31,8 @@ pub(crate) struct Point {
     pub(crate) errors: Option<Errors>,
     /// Errors up to the last checkpoint that was reached, of runs that did not come to the end.
     pub(crate) partial: Option<Errors>,
-    /// Simulated time, seconds.
+    /// Simulated time, seconds; of runs that did not come to the end that of the last checkpoint that was reached, if any, to which
+    /// the wall time belongs as well.
     pub(crate) reached: f64,
     /// Why a run did not come to the end.
     pub(crate) failure: Option<String>,
@@ -196,6 +197,7 @@ fn run(
     let h = reference.interval() / pieces as f64;
     let clock = Instant::now();
     let mut comparing = 0.0;
+    let mut arrived = None;
     'run: for want in reference.positions() {
         for _ in 0..pieces {
             interrupt::check()?;
@@ -222,10 +224,16 @@ fn run(
         let error = max_difference(&simulation.state().x, want);
         pass.errors.position = pass.errors.position.max(error);
         pass.checkpoints += 1;
+        let wall = clock.elapsed().as_secs_f64() - comparing;
+        arrived = Some((wall, simulation.state().t, pass.steps));
         comparing += before.elapsed().as_secs_f64();
     }
     pass.wall = clock.elapsed().as_secs_f64() - comparing;
     pass.reached = simulation.state().t;
+    // What a run spent on its way from the last checkpoint to its failure is not held against it.
+    if let (Some(_), Some(before)) = (&pass.failure, arrived) {
+        (pass.wall, pass.reached, pass.steps) = before;
+    }
     Ok(pass)
 }
 

@@ -87,7 +87,7 @@ pub(crate) fn words(study: &Study) -> String {
     let ended = matches.iter().filter(|m| m.paper.errors.is_some()).count();
     let furthest = matches.iter().map(|m| m.paper.reached).fold(0.0, f64::max);
     let mut text = format!(
-        "{title}: {ended} of {} runs of the published scheme came to the end{}; {} are compared up to where they stopped, the furthest at {} s \
+        "{title}: {ended} of {} runs of the published scheme came to the end{}; {} are compared up to the last checkpoint that they reached, the furthest at {} s \
          ({} to {} s/s).",
         paper.len(),
         if ended == 0 {
