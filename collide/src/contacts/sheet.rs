@@ -47,7 +47,13 @@ impl SelfContact {
         self.pairs.vertex_face.retain(|&[v, f]| {
             let vertices = vertex_face(v, mesh.faces()[f as usize]);
             let (places, steps) = (points(x, vertices), points(dx, vertices));
-            let nearest = point_triangle(&places).distance() - approach(&steps, 1);
+            let closer = approach(&steps, 1);
+            let [p, a, b, c] = places;
+            let directions = [(a - p) + (b - p) + (c - p), (b - a).cross(&(c - a))];
+            if are_apart(&places, 1, &directions, reach + closer) {
+                return false;
+            }
+            let nearest = point_triangle(&places).distance() - closer;
             if nearest <= half_way || nearest.is_nan() {
                 limit = ccd.point_triangle(&places, &steps, limit);
             }
@@ -56,7 +62,13 @@ impl SelfContact {
         self.pairs.edge_edge.retain(|&[e, g]| {
             let vertices = two_edges(mesh.edges()[e as usize], mesh.edges()[g as usize]);
             let (places, steps) = (points(x, vertices), points(dx, vertices));
-            let nearest = edge_edge(&places).distance() - approach(&steps, 2);
+            let closer = approach(&steps, 2);
+            let [a, b, c, d] = places;
+            let directions = [(c - a) + (d - b), (b - a).cross(&(d - c))];
+            if are_apart(&places, 2, &directions, reach + closer) {
+                return false;
+            }
+            let nearest = edge_edge(&places).distance() - closer;
             if nearest <= half_way || nearest.is_nan() {
                 limit = ccd.edge_edge(&places, &steps, limit);
             }
@@ -110,6 +122,26 @@ fn approach(steps: &[Vector3<f64>; 4], split: usize) -> f64 {
         squares.fold(0.0, f64::max).sqrt()
     };
     largest(&steps[..split]) + largest(&steps[split..])
+}
+
+/// Whether one of the directions alone shows that two primitives are further apart than `bound`: a
+/// tenth of the cost of their distance, and enough for most pairs whose boxes overlap.
+fn are_apart(
+    places: &[Vector3<f64>; 4],
+    split: usize,
+    directions: &[Vector3<f64>; 2],
+    bound: f64,
+) -> bool {
+    directions.iter().any(|n| {
+        let height = places.map(|p| n.dot(&(p - places[0])));
+        let range = |list: &[f64]| {
+            let low = list.iter().copied().fold(f64::INFINITY, f64::min);
+            (low, list.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+        };
+        let (first, second) = (range(&height[..split]), range(&height[split..]));
+        let between = (second.0 - first.1).max(first.0 - second.1);
+        between > 0.0 && between * between > bound * bound * n.norm_squared()
+    })
 }
 
 fn touch(

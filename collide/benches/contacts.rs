@@ -1,0 +1,108 @@
+//! Contact of the sheet M^3 as a step of the dynamics asks for it.
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_dynamics::contact::{Contact, CouplingSink};
+use isosheet_dynamics::{SheetModel, State};
+use isosheet_mesh::{MassKind, Sheet, generate};
+use nalgebra::{Isometry3, Matrix3};
+use std::hint::black_box;
+
+struct Sum(f64);
+
+impl CouplingSink for Sum {
+    fn add(&mut self, _: u32, _: u32, block: &Matrix3<f64>) {
+        self.0 += block[(0, 0)] + block[(2, 1)];
+    }
+}
+
+fn model(sheet: &Sheet) -> SheetModel {
+    SheetModel::new(sheet, 0.1, MassKind::Lumped)
+        .expect("a positive mass")
+        .with_gravity()
+}
+
+fn pieces(c: &mut Criterion, name: &str, mut contacts: Contacts, model: &SheetModel, x: &[f64]) {
+    contacts
+        .check_start(model, &State::at_rest(x.to_vec()))
+        .expect("a start without touch");
+    contacts.begin(0.0, 1.0 / 60.0, x);
+    let dx: Vec<f64> = (0..x.len())
+        .map(|i| 1e-5 * (7.0 * i as f64).sin())
+        .collect();
+    println!("{name}: safe {}", contacts.safe_fraction(x, &dx));
+    let mut points = Vec::new();
+    contacts.contact_points(x, &mut points);
+    println!("{name}: {} contacts, gap {}", points.len(), contacts.gap(x));
+    // Another place for every call, as in a line search; what comes after finds its contacts.
+    let y: Vec<f64> = x.iter().zip(&dx).map(|(x, d)| x + 0.1 * d).collect();
+    let mut group = c.benchmark_group(name);
+    let id = |what| BenchmarkId::from_parameter(what);
+    group.bench_function(id("safe fraction"), |b| {
+        b.iter(|| contacts.safe_fraction(black_box(x), &dx));
+    });
+    group.bench_function(id("two energies"), |b| {
+        b.iter(|| contacts.energy(black_box(x)) + contacts.energy(black_box(&y)));
+    });
+    contacts.energy(x);
+    group.bench_function(id("gradient"), |b| {
+        let mut out = vec![0.0; x.len()];
+        b.iter(|| contacts.add_gradient(black_box(x), 1.0, &mut out));
+    });
+    group.bench_function(id("Hessian"), |b| {
+        let mut sum = Sum(0.0);
+        b.iter(|| contacts.add_hessian(black_box(x), &mut sum));
+    });
+    group.bench_function(id("begin"), |b| {
+        b.iter(|| contacts.begin(0.0, 1.0 / 60.0, black_box(x)));
+    });
+    group.finish();
+}
+
+fn table(c: &mut Criterion) {
+    let sheet = generate::isotropic_square(3, 1.0).expect("a valid sheet");
+    let model = model(&sheet);
+    let options = ContactOptions::for_sheet(&model);
+    let half = Shape::Cuboid {
+        half: [0.25, 0.25, 0.1],
+    };
+    let pose = Isometry3::translation(0.5, 0.5, -0.1 - 0.5 * options.activation);
+    let body = Obstacle::still(half, pose).expect("a box");
+    for (name, coefficients) in [
+        ("table", Coefficients::FRICTIONLESS),
+        ("rough table", Coefficients::equal(0.3)),
+    ] {
+        let contacts = Contacts::new(&model, options)
+            .and_then(|c| c.with_body(body.clone(), coefficients))
+            .expect("valid options");
+        pieces(c, name, contacts, &model, sheet.positions());
+    }
+}
+
+fn rolled(c: &mut Criterion) {
+    let sheet = generate::isotropic_square(3, 1.0).expect("a valid sheet");
+    let model = model(&sheet);
+    let mut x = sheet.positions().to_vec();
+    for p in x.as_chunks_mut::<3>().0 {
+        let angle = 4.0 * std::f64::consts::PI * p[0];
+        let radius = 0.06 + 0.04 * p[0];
+        *p = [radius * angle.cos(), p[1], radius * angle.sin()];
+    }
+    for (name, activation) in [
+        ("rolled", None),
+        ("rolled, layers in contact", Some(0.0185)),
+    ] {
+        let defaults = ContactOptions::for_sheet(&model);
+        let options = ContactOptions {
+            activation: activation.unwrap_or(defaults.activation),
+            ..defaults
+        };
+        let contacts = Contacts::new(&model, options)
+            .and_then(|c| c.with_self_contact(Coefficients::FRICTIONLESS))
+            .expect("valid options");
+        pieces(c, name, contacts, &model, &x);
+    }
+}
+
+criterion_group!(benches, table, rolled);
+criterion_main!(benches);
