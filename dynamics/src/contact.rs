@@ -97,8 +97,10 @@ pub struct ContactWork {
     pub bodies: f64,
     /// Energy lost to friction, joules; not negative.
     pub friction: f64,
-    /// Change of the barrier potential `B`, joules.
+    /// Change of the barrier potential `B`, joules. Set by the integrator.
     pub stored: f64,
+    /// Energy that the tolerance of the lengths leaves open, joules. Set by the integrator.
+    pub play: f64,
 }
 
 /// What the sheet does to a body.

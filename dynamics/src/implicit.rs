@@ -170,6 +170,12 @@ impl Integrator for Bdf2 {
         RodDemand::Nothing
     }
 
+    fn restart(&mut self) -> bool {
+        let has_history = self.previous.t.is_finite();
+        self.previous.t = f64::NAN;
+        has_history
+    }
+
     fn takes_contact(&self) -> bool {
         true
     }

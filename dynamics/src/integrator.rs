@@ -31,6 +31,12 @@ pub trait Integrator: Send {
     /// What the method asks of the rods.
     fn demand(&self) -> RodDemand;
 
+    /// Forgets the steps before the last, for methods that look back further; whether there was anything
+    /// to forget.
+    fn restart(&mut self) -> bool {
+        false
+    }
+
     /// Whether the method has a place for contact.
     fn takes_contact(&self) -> bool {
         false

@@ -53,6 +53,8 @@
 pub mod chart;
 pub mod contact;
 #[cfg(test)]
+mod contact_tests;
+#[cfg(test)]
 mod derivative_tests;
 mod energy_momentum;
 mod implicit;

@@ -18,6 +18,10 @@ const SUFFICIENT_DECREASE: f64 = 0.1;
 /// A line search that has halved its step this often has stalled.
 const SMALLEST_STEP: f64 = 1e-2;
 
+/// Part of the tolerance that a projection with contact aims for. It keeps what round-off adds in later steps
+/// below the tolerance, and so a sheet at rest from having to fold.
+const RESERVE: f64 = 0.1;
+
 /// Growth of the displacement that opens a flat patch from one attempt to the next: the next
 /// one has to leave the basin that the last one fell back into.
 const OPENING_GROWTH: f64 = 4.0;
@@ -96,13 +100,19 @@ impl Projector {
             max_iterations,
         } = aim;
         let rods = model.rods();
+        // Where the sheet rests, what is left adds up from step to step.
+        let goal = if held.is_some() {
+            RESERVE * tolerance
+        } else {
+            tolerance
+        };
         let mut penalty = PROJECTION_PENALTY;
         let mut opening = 1.0;
         rods.residual_into(x, &mut self.c);
         let mut strain = rods.max_strain(x);
         for _ in 0..max_iterations {
             // The negation also stops at a strain that is not a number.
-            if strain <= tolerance || strain.is_nan() {
+            if strain <= goal || strain.is_nan() {
                 break;
             }
             effort.iterations += 1;
@@ -154,6 +164,10 @@ impl Projector {
                 }
                 length *= 0.5;
             };
+            if after > RESERVE * before && rods.max_strain(x) <= tolerance {
+                strain = rods.max_strain(x);
+                break;
+            }
             if length < SMALLEST_STEP {
                 // Stationary, but not solved: the error lies across the range of G, which
                 // happens where a patch is flat and asks for a fold. A displacement of order

@@ -99,6 +99,7 @@ impl Subdivided {
         let min_step = self.control.min_fraction * h;
         let (mut fraction, mut done) = (1.0, 0.0);
         let mut patience = 0;
+        let mut restarted = false;
         // The conservative methods keep the energy by themselves.
         let guarded = self.integrator.demand() == RodDemand::Nothing
             && self.model.moving_pins().next().is_none();
@@ -120,6 +121,18 @@ impl Subdivided {
                 state.clone_from(&self.before);
                 tried = Err(error);
             }
+            if let Err(StepError::EnergyGain { .. }) = tried
+                && self.contact.is_some()
+                && !restarted
+            {
+                // Contact came or went: the history of the motion does not continue.
+                restarted = self.integrator.restart();
+                if restarted {
+                    tally.rejected += 1;
+                    continue;
+                }
+            }
+            restarted = false;
             if let Err(cause) = tried {
                 tally.rejected += 1;
                 if 0.5 * fraction * h >= min_step {
@@ -217,7 +230,7 @@ fn energy_gain(
         1e-9 * (t0 + v0.abs() + v1.abs() + driven) + model.mass().total() * noise * noise;
     // The work of bodies is known to the accuracy of the trapezoidal rule only.
     let share = t0.max(t1) + 5.0 * contact.bodies.abs();
-    (gain > MAX_ENERGY_GAIN * share + round_off).then_some(StepError::EnergyGain {
+    (gain > MAX_ENERGY_GAIN * share + round_off + contact.play).then_some(StepError::EnergyGain {
         t: before.t,
         h: after.t - before.t,
         gain,
