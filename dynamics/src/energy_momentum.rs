@@ -248,7 +248,9 @@ impl Integrator for EnergyMomentum {
             return Err(not_converged(state.t, h, effort, residual, strain));
         }
         self.impulse.copy_from_slice(&self.trial);
-        self.impulse_step = h;
+        // Impulses of dependent rods are not unique, and what a regularised solve makes of round-off in their lengths would
+        // buckle the next step: they are found anew there.
+        self.impulse_step = if path == Path::Newton { h } else { 0.0 };
         let work = h * dot(&self.applied, &self.w);
         for i in 0..self.w.len() {
             state.v[i] = 2.0 * self.w[i] - state.v[i];

@@ -30,6 +30,11 @@ pub(crate) enum Command {
     /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG). What is already there and was made
     /// by the same program with the same effort is kept. Times are wall times on one core: leave the machine alone meanwhile.
     SpeedVsError(SpeedArgs),
+    /// Put the solvers through the cases that break others, and report what they do
+    ///
+    /// Writes DIR/index.html (self-contained), DIR/verdicts.csv, DIR/verdicts.json and DIR/figures, and prints a table. The exit code is
+    /// 0 unless a case fails that is not declared an open limitation. Finished cases are kept, as in `reproduce-figures`.
+    HardCases(HardCasesArgs),
 }
 
 /// Arguments of `speed-vs-error`.
@@ -55,6 +60,30 @@ pub(crate) struct SpeedArgs {
     /// Write the matrices of the solver study to this folder as Matrix Market files, and measure nothing
     #[arg(long, value_name = "DIR", conflicts_with = "problems")]
     pub(crate) matrices: Option<PathBuf>,
+}
+
+/// Arguments of `hard-cases`.
+#[derive(Debug, Args)]
+pub(crate) struct HardCasesArgs {
+    /// Cases to run, such as flat-start,slivers; all when left out
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = crate::hard_cases::parse)]
+    pub(crate) cases: Vec<&'static crate::hard_cases::Case>,
+
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
+    #[arg(long, value_name = "DIR", default_value = "out/hard-cases")]
+    pub(crate) out: PathBuf,
+
+    /// Short runs on small meshes: checks in seconds that everything works
+    #[arg(long, conflicts_with = "full")]
+    pub(crate) quick: bool,
+
+    /// Longer runs and finer meshes than fit into a few minutes
+    #[arg(long)]
+    pub(crate) full: bool,
+
+    /// Run everything that is asked for again, also what is up to date
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// Arguments of `condition-table`.

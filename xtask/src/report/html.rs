@@ -1,6 +1,6 @@
-//! The page: one file, pictures inside.
+//! The page: one file, pictures inside. Its parts serve other reports as well.
 
-use crate::figures::{Effort, Record, Table};
+use crate::figures::{Effort, PictureRef, Record, Table};
 use crate::store::StoreError;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -63,18 +63,8 @@ fn section(
         escape(&record.title)
     );
     for picture in &record.pictures {
-        let bytes = read(&picture.path)?;
         out.push_str("<figure>");
-        if picture.path.ends_with(".svg") {
-            out.push_str(&inline_svg(&String::from_utf8_lossy(&bytes)));
-        } else {
-            let _ = write!(
-                out,
-                "<img alt=\"{}\" src=\"data:image/png;base64,{}\">",
-                escape(&picture.alt),
-                STANDARD.encode(bytes)
-            );
-        }
+        image(out, picture, &read(&picture.path)?);
         out.push_str("</figure>");
     }
     let _ = write!(
@@ -88,6 +78,21 @@ fn section(
     }
     out.push_str("</section>\n");
     Ok(())
+}
+
+/// A picture of the page, inside it.
+pub(crate) fn image(out: &mut String, picture: &PictureRef, bytes: &[u8]) {
+    if picture.path.ends_with(".svg") {
+        out.push_str(&inline_svg(&String::from_utf8_lossy(bytes)));
+    } else {
+        // Writing to a string cannot fail.
+        let _ = write!(
+            out,
+            "<img alt=\"{}\" src=\"data:image/png;base64,{}\">",
+            escape(&picture.alt),
+            STANDARD.encode(bytes)
+        );
+    }
 }
 
 /// A table that scrolls when it is wide.
@@ -144,7 +149,6 @@ pub(crate) fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::PictureRef;
 
     #[test]
     fn the_page_holds_everything() {

@@ -1,0 +1,148 @@
+//! Methods as textbooks and games have them, to show where they break. Dense and short on purpose.
+
+use isosheet_dynamics::SheetModel;
+use nalgebra::{DMatrix, DVector};
+
+/// Lagrange multipliers from the second derivative of the constraints: `G M^-1 G^T lambda = -(G M^-1 f + gamma)` with
+/// `gamma_e = |v_a - v_b|^2`, solved by dense Cholesky, and symplectic Euler steps (e.g. Witkin and Baraff's course notes, without their
+/// feedback terms). Lumped masses only.
+pub(super) const TEXTBOOK: &str =
+    "Lagrange multipliers at acceleration level, dense Cholesky, symplectic Euler";
+
+/// Gauss-Seidel projection of one rod after the other, velocities from the change of position (position-based dynamics).
+pub(super) const GAUSS_SEIDEL: &str = "Gauss-Seidel projection of the rods (position-based dynamics), 50 sweeps a step";
+
+/// Sweeps of [`gauss_seidel_step`].
+const SWEEPS: usize = 50;
+
+fn inverse_masses(model: &SheetModel) -> Vec<f64> {
+    model
+        .topology()
+        .vertex_ids()
+        .map(|v| {
+            if model.is_pinned(v) {
+                0.0
+            } else {
+                1.0 / model.mass().vertex[v.index()]
+            }
+        })
+        .collect()
+}
+
+/// One step of the textbook method.
+///
+/// # Errors
+/// The reason in words, when the matrix is not positive definite or the result not finite.
+pub(super) fn textbook_step(
+    model: &SheetModel,
+    x: &mut [f64],
+    v: &mut [f64],
+    h: f64,
+) -> Result<(), String> {
+    let a = textbook_acceleration(model, x, v)?;
+    for i in 0..x.len() {
+        v[i] += h * a[i];
+        x[i] += h * v[i];
+    }
+    if x.iter().all(|x| x.is_finite()) && model.rods().max_strain(x) < 1e3 {
+        Ok(())
+    } else {
+        Err("the positions have run off".into())
+    }
+}
+
+fn textbook_acceleration(model: &SheetModel, x: &[f64], v: &[f64]) -> Result<Vec<f64>, String> {
+    let w = inverse_masses(model);
+    let rods: Vec<[usize; 2]> = model
+        .rods()
+        .edges()
+        .iter()
+        .copied()
+        .filter(|e| e.iter().any(|&k| w[k] > 0.0))
+        .collect();
+    let m = rods.len();
+    let mut g = DMatrix::zeros(m, x.len());
+    let mut gamma = DVector::zeros(m);
+    for (row, &[a, b]) in rods.iter().enumerate() {
+        for k in 0..3 {
+            let (i, j) = (3 * a + k, 3 * b + k);
+            g[(row, i)] = x[i] - x[j];
+            g[(row, j)] = x[j] - x[i];
+            gamma[row] += (v[i] - v[j]).powi(2);
+        }
+    }
+    let mut f = vec![0.0; x.len()];
+    model.potential_force(0.0, x, &mut f);
+    let free = DVector::from_iterator(x.len(), (0..x.len()).map(|i| w[i / 3] * f[i]));
+    let mut weighted = g.clone();
+    for (i, mut column) in weighted.column_iter_mut().enumerate() {
+        column *= w[i / 3];
+    }
+    let schur = &weighted * g.transpose();
+    let factor = schur.cholesky().ok_or_else(|| {
+        format!("Cholesky: the {m} x {m} matrix G M^-1 G^T is not positive definite")
+    })?;
+    let lambda = factor.solve(&-(&g * &free + gamma));
+    Ok((free + weighted.transpose() * lambda).as_slice().to_vec())
+}
+
+/// One step of Gauss-Seidel projection.
+pub(super) fn gauss_seidel_step(model: &SheetModel, x: &mut [f64], v: &mut [f64], h: f64) {
+    let w = inverse_masses(model);
+    let old = x.to_vec();
+    let mut f = vec![0.0; x.len()];
+    model.potential_force(0.0, x, &mut f);
+    for i in 0..x.len() {
+        x[i] += h * (v[i] + h * w[i / 3] * f[i]);
+    }
+    for _ in 0..SWEEPS {
+        for (&[a, b], &rest) in model.rods().edges().iter().zip(model.rods().lengths()) {
+            let d: [f64; 3] = std::array::from_fn(|k| x[3 * a + k] - x[3 * b + k]);
+            let length = d.iter().map(|d| d * d).sum::<f64>().sqrt();
+            let sum = w[a] + w[b];
+            if sum > 0.0 && length > 0.0 {
+                for k in 0..3 {
+                    let push = (length - rest) / (length * sum) * d[k];
+                    x[3 * a + k] -= w[a] * push;
+                    x[3 * b + k] += w[b] * push;
+                }
+            }
+        }
+    }
+    for i in 0..x.len() {
+        v[i] = (x[i] - old[i]) / h;
+    }
+}
+
+/// Runs the textbook method from rest; returns the largest strain and the positions, or when it broke and why.
+pub(super) fn textbook(
+    model: &SheetModel,
+    x: &[f64],
+    h: f64,
+    steps: usize,
+) -> Result<(f64, Vec<f64>), String> {
+    let (mut x, mut v) = (x.to_vec(), vec![0.0; x.len()]);
+    let mut strain = 0.0_f64;
+    for k in 0..steps {
+        textbook_step(model, &mut x, &mut v, h)
+            .map_err(|e| format!("step {} of {steps}: {e}", k + 1))?;
+        strain = strain.max(model.rods().max_strain(&x));
+    }
+    Ok((strain, x))
+}
+
+/// Runs Gauss-Seidel projection from rest; returns the largest strain and the positions.
+pub(super) fn gauss_seidel(
+    model: &SheetModel,
+    x: &[f64],
+    h: f64,
+    steps: usize,
+) -> (f64, Vec<f64>) {
+    let (mut x, mut v) = (x.to_vec(), vec![0.0; x.len()]);
+    let mut strain = 0.0_f64;
+    for _ in 0..steps {
+        gauss_seidel_step(model, &mut x, &mut v, h);
+        strain = strain.max(model.rods().max_strain(&x));
+    }
+    (strain, x)
+}

@@ -1,0 +1,159 @@
+//! Sheets, methods and ways to run them that several cases share.
+
+use crate::interrupt::{self, Interrupted};
+use anyhow::Result;
+use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepError, StepReport};
+use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
+use std::f64::consts::PI;
+
+/// The length of a step wherever a case does not say otherwise, seconds.
+pub(super) const FRAME: f64 = 1.0 / 60.0;
+
+/// What is promised of the relative edge length error of accepted steps, unless rounding of the coordinates is larger.
+pub(super) const STRAIN: f64 = 1e-12;
+
+/// What is promised at positions of the given sheet: [`STRAIN`], or four units in the last place of the largest coordinate over the
+/// shortest rod where that is larger.
+pub(super) fn strain_bound(sheet: &Sheet) -> f64 {
+    let size = sheet.positions().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let shortest = sheet.lengths().iter().fold(f64::INFINITY, |m, l| m.min(*l));
+    // Sheets that move about reach twice the size of their rest positions.
+    STRAIN.max(4.0 * f64::EPSILON * (2.0 * size / shortest + 1.0))
+}
+
+/// The union-jack square `M^level` of side 1 m with a sine bump of the given height, metres.
+pub(super) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
+    let flat = generate::isotropic_square(level, 1.0)?;
+    Ok(flat.map_positions(|[x, y, _]| [x, y, bump * (PI * x).sin() * (PI * y).sin()])?)
+}
+
+/// The corner (0, 1) of `M^level`.
+pub(super) fn corner(level: u32) -> VertexId {
+    let n = (2 << level) + 1;
+    VertexId(n * (n - 1))
+}
+
+/// A sheet of 0.1 kg under gravity, held at the given vertices.
+pub(super) fn held(sheet: &Sheet, pins: &[VertexId]) -> Result<SheetModel> {
+    Ok(SheetModel::new(sheet, 0.1, MassKind::Lumped)?
+        .with_gravity()
+        .with_pins(pins)?)
+}
+
+/// `M^level` with a bump, held at a corner, at rest.
+pub(super) fn hanging(level: u32, bump: f64, method: Method) -> Result<Simulation> {
+    let sheet = bumped(level, bump)?;
+    let model = held(&sheet, &[corner(level)])?;
+    at_rest(model, sheet.positions(), method)
+}
+
+/// A simulation from rest.
+pub(super) fn at_rest(model: SheetModel, x: &[f64], method: Method) -> Result<Simulation> {
+    Ok(Simulation::new(model, State::at_rest(x.to_vec()), method)?)
+}
+
+/// The damped methods.
+pub(super) fn damped() -> [(&'static str, Method); 3] {
+    [
+        ("BDF2", Method::Bdf2(Default::default())),
+        ("implicit Euler", Method::ImplicitEuler(Default::default())),
+        ("projection", Method::Projection(Default::default())),
+    ]
+}
+
+/// The conservative methods.
+pub(super) fn conservative() -> [(&'static str, Method); 3] {
+    [
+        (
+            "energy-momentum",
+            Method::EnergyMomentum(Default::default()),
+        ),
+        ("RATTLE", Method::Rattle(Default::default())),
+        (
+            "RATTLE composition",
+            Method::RattleComposition(Default::default()),
+        ),
+    ]
+}
+
+/// All chart-free methods.
+pub(super) fn methods() -> impl Iterator<Item = (&'static str, Method)> {
+    damped().into_iter().chain(conservative())
+}
+
+/// The energy-momentum method.
+pub(super) fn energy_momentum() -> Method {
+    Method::EnergyMomentum(Default::default())
+}
+
+/// What happened in a number of steps.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Course {
+    /// Steps taken.
+    pub(super) steps: usize,
+    pub(super) rejected: usize,
+    /// Largest relative edge length error.
+    pub(super) strain: f64,
+    /// Largest absolute energy error, joules.
+    pub(super) drift: f64,
+    /// Largest energy error of the sign of a gain, joules.
+    pub(super) gain: f64,
+    /// Largest kinetic energy, joules.
+    pub(super) kinetic: f64,
+    /// Why it ended early.
+    pub(super) refusal: Option<StepError>,
+}
+
+impl Course {
+    /// The error message of an early end, shortened to its first reason.
+    pub(super) fn said(&self) -> Option<String> {
+        self.refusal.as_ref().map(ToString::to_string)
+    }
+
+    /// NaN if the run ended early: no number of it is what was asked for.
+    pub(super) fn if_finished(&self, value: f64) -> f64 {
+        if self.refusal.is_none() { value } else { f64::NAN }
+    }
+}
+
+/// Takes `steps` steps or as many as are accepted.
+pub(super) fn course(
+    run: &mut Simulation,
+    h: f64,
+    steps: usize,
+    mut watch: impl FnMut(&StepReport, &State),
+) -> Result<Course, Interrupted> {
+    let mut course = Course::default();
+    for _ in 0..steps {
+        interrupt::check()?;
+        match run.step(h) {
+            Ok(report) => {
+                course.steps += 1;
+                course.rejected += report.rejected;
+                course.strain = course.strain.max(report.strain);
+                course.drift = course.drift.max(report.energy_drift.abs());
+                course.gain = course.gain.max(report.energy_drift);
+                course.kinetic = course.kinetic.max(report.kinetic);
+                watch(&report, run.state());
+            }
+            Err(error) => {
+                course.refusal = Some(error);
+                break;
+            }
+        }
+    }
+    Ok(course)
+}
+
+/// Largest distance of corresponding vertices, metres.
+pub(super) fn apart(a: &[f64], b: &[f64]) -> f64 {
+    a.chunks(3)
+        .zip(b.chunks(3))
+        .map(|(p, q)| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt())
+        .fold(0.0, f64::max)
+}
+
+/// The sheet turned upright: y becomes z.
+pub(super) fn upright(sheet: &Sheet) -> Result<Sheet> {
+    Ok(sheet.map_positions(|[x, y, _]| [x, 0.0, y])?)
+}
