@@ -7,7 +7,7 @@ use crate::primal::{dot, strain_floor, velocity_round_off};
 use crate::report::{Accepted, Effort, Path, StepError};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
-use isosheet_coords::linalg::LinalgError;
+use isosheet_coords::linalg::{LinalgError, norm_inf};
 
 /// Options of [`EnergyMomentum`].
 #[derive(Debug, Clone, PartialEq)]
@@ -129,6 +129,30 @@ impl EnergyMomentum {
         }
     }
 
+    /// Whether the forces alone leave the rods as they are, as in free fall: then the midpoint velocity is what they make of it, the
+    /// impulses are zero, and there is no system to solve, whose rods, dependent in a flat sheet, would answer round-off in their
+    /// lengths with impulses. Asked of lumped masses only.
+    fn falls_freely(&mut self, model: &SheetModel, state: &State, h: f64) -> bool {
+        if model.mass().edge.is_some() {
+            return false;
+        }
+        let t = state.t + 0.5 * h;
+        model.potential_force(t, &state.x, &mut self.force);
+        model.applied_force(t, &state.x, &state.v, &mut self.applied);
+        let mass = &model.mass().vertex;
+        for i in 0..self.w.len() {
+            self.w[i] = state.v[i] + 0.5 * h * (self.force[i] + self.applied[i]) / mass[i / 3];
+            self.xm[i] = state.x[i] + 0.5 * h * self.w[i];
+        }
+        let rods = model.rods();
+        rods.apply(&self.xm, &self.w, &mut self.rods);
+        let still = 16.0 * f64::EPSILON * norm_inf(&self.w);
+        self.rods
+            .iter()
+            .zip(rods.lengths())
+            .all(|(r, l)| r.abs() <= still * l)
+    }
+
     /// Sets the negative residuals; returns the relative momentum residual and the strain.
     fn residuals(&mut self, model: &SheetModel, state: &State, h: f64) -> (f64, f64) {
         for i in 0..self.w.len() {
@@ -195,7 +219,11 @@ impl Integrator for EnergyMomentum {
         for (t, i) in self.trial.iter_mut().zip(&self.impulse) {
             *t = ratio * i;
         }
-        self.w.copy_from_slice(&state.v);
+        if self.falls_freely(model, state, h) {
+            self.trial.fill(0.0);
+        } else {
+            self.w.copy_from_slice(&state.v);
+        }
         let (mut residual, mut strain) = self.residuals(model, state, h);
         let mut previous = f64::INFINITY;
         let mut path = Path::Newton;

@@ -61,13 +61,10 @@ pub(crate) static CASES: [&Case; 22] = [
 
 /// A case by its name on the command line.
 pub(crate) fn parse(name: &str) -> Result<&'static Case, String> {
-    CASES
-        .into_iter()
-        .find(|c| c.name == name)
-        .ok_or_else(|| {
-            let names: Vec<&str> = CASES.iter().map(|c| c.name).collect();
-            format!("there is no such case; the cases are {}", names.join(", "))
-        })
+    CASES.into_iter().find(|c| c.name == name).ok_or_else(|| {
+        let names: Vec<&str> = CASES.iter().map(|c| c.name).collect();
+        format!("there is no such case; the cases are {}", names.join(", "))
+    })
 }
 
 /// Runs the command.
@@ -78,7 +75,8 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<Outcome> {
         (_, true) => Effort::Full,
         _ => Effort::Standard,
     };
-    let wanted = |case: &Case| args.cases.is_empty() || args.cases.iter().any(|c| c.name == case.name);
+    let wanted =
+        |case: &Case| args.cases.is_empty() || args.cases.iter().any(|c| c.name == case.name);
     let results: Vec<Result<()>> = CASES
         .par_iter()
         .with_max_len(1)
@@ -105,7 +103,10 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<Outcome> {
         .map(|r| r.name.as_str())
         .collect();
     if !failed.is_empty() {
-        bail!("cases failed that are not open limitations: {}", failed.join(", "));
+        bail!(
+            "cases failed that are not open limitations: {}",
+            failed.join(", ")
+        );
     }
     Ok(outcome)
 }

@@ -155,7 +155,12 @@ impl Findings {
     }
 
     /// A number with an upper bound.
-    pub(super) fn at_most(&mut self, what: impl Into<String>, value: f64, bound: f64) -> &mut Check {
+    pub(super) fn at_most(
+        &mut self,
+        what: impl Into<String>,
+        value: f64,
+        bound: f64,
+    ) -> &mut Check {
         self.check(what.into(), value, Bound::AtMost(bound))
     }
 
@@ -268,8 +273,17 @@ mod tests {
         assert_eq!(f.at_most("a", 1.0, 2.0).verdict(), Verdict::Passed);
         assert_eq!(f.at_most("b", f64::NAN, 2.0).verdict(), Verdict::Failed);
         assert_eq!(f.at_least("c", 1.0, 2.0).verdict(), Verdict::Failed);
-        assert_eq!(f.at_least("c", 1.0, 2.0).limited("x").verdict(), Verdict::Limitation);
-        assert_eq!(f.at_least("d", 3.0, 2.0).limited("x").verdict(), Verdict::Cured);
-        assert_eq!([0.0, 12.0, 0.25, 1e-12, 123456.0].map(number), ["0", "12", "0.25", "1.0e-12", "1.2e5"]);
+        assert_eq!(
+            f.at_least("c", 1.0, 2.0).limited("x").verdict(),
+            Verdict::Limitation
+        );
+        assert_eq!(
+            f.at_least("d", 3.0, 2.0).limited("x").verdict(),
+            Verdict::Cured
+        );
+        assert_eq!(
+            [0.0, 12.0, 0.25, 1e-12, 123456.0].map(number),
+            ["0", "12", "0.25", "1.0e-12", "1.2e5"]
+        );
     }
 }

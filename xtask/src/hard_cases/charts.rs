@@ -9,8 +9,8 @@ use anyhow::Result;
 use isosheet_coords::assignment::Degenerate;
 use isosheet_coords::placement::{place_f, place_on_line};
 use isosheet_coords::{
-    AssignmentOptions, BentState, Branch, CartesianChart, Chart, Choice, ConditionRow, FrontChart, RodSystem, TableChart,
-    bent_square, condition_table,
+    AssignmentOptions, BentState, Branch, CartesianChart, Chart, Choice, ConditionRow, FrontChart,
+    RodSystem, TableChart, bent_square, condition_table,
 };
 use isosheet_dynamics::chart::{
     ChartMechanics, ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind,
@@ -55,7 +55,8 @@ fn condition(effort: Effort) -> Result<Findings> {
     for level in 0..=effort.pick(1, 3, 3) {
         interrupt::check()?;
         let (dense, _) = velocity_error(level, Coordinates::FrontCorner, MassSolverKind::DenseLu)?;
-        let (front, said) = velocity_error(level, Coordinates::FrontCorner, MassSolverKind::Saddle)?;
+        let (front, said) =
+            velocity_error(level, Coordinates::FrontCorner, MassSolverKind::Saddle)?;
         let (chosen, _) = velocity_error(level, Coordinates::Cartesian, MassSolverKind::Saddle)?;
         f.naive(
             &format!("Dense LU of the mass matrix in the paper's coordinates, M^{level}"),
@@ -65,12 +66,20 @@ fn condition(effort: Effort) -> Result<Findings> {
                     number(e),
                     worst(TableChart::FrontCorner, level)
                 ),
-                None => format!("Refused; condition number {:.0e}.", worst(TableChart::FrontCorner, level)),
+                None => format!(
+                    "Refused; condition number {:.0e}.",
+                    worst(TableChart::FrontCorner, level)
+                ),
             },
             dense.is_none_or(|e| e > 1e-4),
         );
         let show = |e: Option<f64>| e.map_or("refused".to_owned(), number);
-        table.push(vec![format!("M^{level}"), show(dense), show(front), show(chosen)]);
+        table.push(vec![
+            format!("M^{level}"),
+            show(dense),
+            show(front),
+            show(chosen),
+        ]);
         f.at_most(
             format!("M^{level}: relative error of velocities from momenta, saddle point in chosen coordinates"),
             chosen.unwrap_or(f64::NAN),
@@ -80,7 +89,12 @@ fn condition(effort: Effort) -> Result<Findings> {
     }
     f.table(
         "Relative error of the velocities v that belong to the momenta p = J^T M v",
-        &["mesh", "front, dense LU", "front, sparse saddle point", "chosen Cartesian, saddle point"],
+        &[
+            "mesh",
+            "front, dense LU",
+            "front, sparse saddle point",
+            "chosen Cartesian, saddle point",
+        ],
         table,
     );
     f.here = format!(
@@ -112,6 +126,18 @@ fn velocity_error(
     let pin = VertexId(0);
     let x = bent_square(&sheet, level, BentState::Noise);
     let bent = Sheet::new(x.clone(), &sheet.face_indices())?;
+    // Velocities with the right lengths: a smooth field, projected by a short step, at the positions that it leads to.
+    let field = x
+        .chunks(3)
+        .flat_map(|p| [0.3 * p[1], 0.5 * p[2], p[0] * p[1]])
+        .collect();
+    let mut settle = Simulation::new(
+        held(&bent, &[pin])?,
+        State::moving(x.clone(), field),
+        Method::Projection(Default::default()),
+    )?;
+    settle.step(1e-6)?;
+    let State { x, v: want, .. } = settle.state().clone();
     let model = held(&bent, &[pin])?;
     let chart: Box<dyn Chart> = match coordinates {
         Coordinates::FrontCorner => {
@@ -124,22 +150,12 @@ fn velocity_error(
                 Err(e) => return Ok((None, Some(e.to_string()))),
             }
         }
-        Coordinates::Cartesian => {
-            Box::new(CartesianChart::new(RodSystem::new(&bent, &[pin])?, Choice::Auto, &x)?)
-        }
+        Coordinates::Cartesian => Box::new(CartesianChart::new(
+            RodSystem::new(&bent, &[pin])?,
+            Choice::Auto,
+            &x,
+        )?),
     };
-    // Velocities with the right lengths: the projection of a smooth field by one short step.
-    let field = x
-        .chunks(3)
-        .flat_map(|p| [0.3 * p[1], 0.5 * p[2], p[0] * p[1]])
-        .collect();
-    let mut settle = Simulation::new(
-        held(&bent, &[pin])?,
-        State::moving(x.clone(), field),
-        Method::Projection(Default::default()),
-    )?;
-    settle.step(1e-9)?;
-    let want = settle.state().v.clone();
     let found = (|| {
         let mut mechanics = ChartMechanics::new(model, chart, solver)?;
         mechanics.at(&x)?;
@@ -153,7 +169,10 @@ fn velocity_error(
     Ok(match found {
         Ok(v) if v.iter().all(|v| v.is_finite()) => {
             let scale = want.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-            (Some(isosheet_tests::max_difference(&v, &want) / scale), None)
+            (
+                Some(isosheet_tests::max_difference(&v, &want) / scale),
+                None,
+            )
         }
         Ok(_) => (None, Some("the velocities are not finite".into())),
         Err(e) => (None, Some(e.to_string())),
@@ -172,7 +191,11 @@ fn literal(effort: Effort) -> Result<Findings> {
     const BUMP: f64 = 0.1;
     const END: f64 = 0.3;
     let mut f = Findings::default();
-    let steps: Vec<usize> = effort.pick(vec![75, 150, 300], vec![75, 150, 300, 600, 1200, 2400], vec![75, 150, 300, 600, 1200, 2400, 4800]);
+    let steps: Vec<usize> = effort.pick(
+        vec![75, 150, 300],
+        vec![75, 150, 300, 600, 1200, 2400],
+        vec![75, 150, 300, 600, 1200, 2400, 4800],
+    );
     let reference = {
         let mut run = hanging(0, BUMP, Method::RattleComposition(Default::default()))?;
         course(&mut run, 1e-4, 3000, |_, _| {})?;
@@ -190,25 +213,46 @@ fn literal(effort: Effort) -> Result<Findings> {
         let options = ChartOptions {
             method,
             equations,
-            position: if method == ChartMethod::RungeKutta4 { PositionUpdate::Exact } else { PositionUpdate::Linear },
+            position: if method == ChartMethod::RungeKutta4 {
+                PositionUpdate::Exact
+            } else {
+                PositionUpdate::Linear
+            },
             control: ChartStepControl::Fixed(END / n as f64),
             ..ChartOptions::default()
         };
         let start = State::at_rest(sheet.positions().to_vec());
-        let mut run = Simulation::in_chart(held(&sheet, &[corner(0)])?, start, Box::new(chart), options)?;
-        Ok(run.step(END).map_or(f64::NAN, |_| apart(&run.state().x, &reference)))
+        let mut run =
+            Simulation::in_chart(held(&sheet, &[corner(0)])?, start, Box::new(chart), options)?;
+        Ok(run
+            .step(END)
+            .map_or(f64::NAN, |_| apart(&run.state().x, &reference)))
     };
     let mut lines = Vec::new();
-    let mut all = |k: usize, name: &str, error: &dyn Fn(usize) -> Result<f64>| -> Result<Vec<f64>> {
-        let errors = steps.iter().map(|n| error(*n)).collect::<Result<Vec<f64>>>()?;
-        let points = steps.iter().zip(&errors).map(|(n, e)| [1e3 * END / *n as f64, *e]).collect();
-        lines.push(plot::series(k, name, points));
-        Ok(errors)
-    };
+    let mut all =
+        |k: usize, name: &str, error: &dyn Fn(usize) -> Result<f64>| -> Result<Vec<f64>> {
+            let errors = steps
+                .iter()
+                .map(|n| error(*n))
+                .collect::<Result<Vec<f64>>>()?;
+            let points = steps
+                .iter()
+                .zip(&errors)
+                .map(|(n, e)| [1e3 * END / *n as f64, *e])
+                .collect();
+            lines.push(plot::series(k, name, points));
+            Ok(errors)
+        };
     let euler = ChartMethod::ForwardEuler;
-    let published = all(1, "published", &|n| chart_error(euler, Equations::Published, n))?;
-    let reformed = all(3, "momenta re-formed", &|n| chart_error(euler, Equations::Reformed, n))?;
-    let full = all(2, "Hamilton, Runge–Kutta", &|n| chart_error(ChartMethod::RungeKutta4, Equations::Full, n))?;
+    let published = all(1, "published", &|n| {
+        chart_error(euler, Equations::Published, n)
+    })?;
+    let reformed = all(3, "momenta re-formed", &|n| {
+        chart_error(euler, Equations::Reformed, n)
+    })?;
+    let full = all(2, "Hamilton, Runge–Kutta", &|n| {
+        chart_error(ChartMethod::RungeKutta4, Equations::Full, n)
+    })?;
     let em = all(0, "energy-momentum", &|n| {
         let mut run = hanging(0, BUMP, Method::EnergyMomentum(Default::default()))?;
         let c = course(&mut run, END / n as f64, n, |_, _| {})?;
@@ -228,9 +272,17 @@ fn literal(effort: Effort) -> Result<Findings> {
         ),
         order(&published).abs() < 0.2 && published[last] > 0.05,
     );
-    f.at_least("momenta formed anew at every step: order (exact: 1)", order(&reformed), 0.9);
+    f.at_least(
+        "momenta formed anew at every step: order (exact: 1)",
+        order(&reformed),
+        0.9,
+    );
     f.at_least("energy-momentum: order (exact: 2)", order(&em), 1.9);
-    f.at_most("full Hamilton equations, Runge–Kutta: position error, m", full[last], 1e-7);
+    f.at_most(
+        "full Hamilton equations, Runge–Kutta: position error, m",
+        full[last],
+        1e-7,
+    );
     f.at_least(
         "error of the published scheme over that of energy-momentum at the same smallest step",
         published[last] / em[last],
@@ -240,7 +292,11 @@ fn literal(effort: Effort) -> Result<Findings> {
               without a chart (second order), against RATTLE's fourth-order composition at 0.1 ms."
         .into();
     let drawing = plot::log_log("step, ms", "position error after 0.3 s, m", lines);
-    f.drawing("literal-scheme", &drawing, "Position error of M^0 held at a corner against the step")?;
+    f.drawing(
+        "literal-scheme",
+        &drawing,
+        "Position error of M^0 held at a corner against the step",
+    )?;
     Ok(f)
 }
 
@@ -270,7 +326,12 @@ fn collinear(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
     let known = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.25, 0.0, 0.0]];
     let vertex: [f64; 3] = [0.5, 0.6, 0.2];
-    let length = |k: usize| (0..3).map(|i| (vertex[i] - known[k][i]).powi(2)).sum::<f64>().sqrt();
+    let length = |k: usize| {
+        (0..3)
+            .map(|i| (vertex[i] - known[k][i]).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
     let lengths = [length(0), length(1), length(2)];
     let points = known.map(Vector3::from);
     let place = trilateration(points, lengths);
@@ -292,14 +353,25 @@ fn collinear(effort: Effort) -> Result<Findings> {
     )
     .remark(refused.err().map(|e| e.to_string()));
     let near = [0.52, 0.58, 0.21];
-    let carried = place_on_line([&known[0], &known[1]], [lengths[0], lengths[1]], &near, 1e-9)?;
+    let carried = place_on_line(
+        [&known[0], &known[1]],
+        [lengths[0], lengths[1]],
+        &near,
+        1e-9,
+    )?;
     let error = (0..3)
         .map(|k| {
-            let d: f64 = (0..3).map(|i| (carried.position[i] - known[k][i]).powi(2)).sum();
+            let d: f64 = (0..3)
+                .map(|i| (carried.position[i] - known[k][i]).powi(2))
+                .sum();
             (d.sqrt() / lengths[k] - 1.0).abs()
         })
         .fold(0.0, f64::max);
-    f.at_most("carrying the angle over: relative error of the three lengths", error, 1e-14);
+    f.at_most(
+        "carrying the angle over: relative error of the three lengths",
+        error,
+        1e-14,
+    );
     // Every interior vertex of degree 4 keeps one straight crease: the bumped M^0 has four of them on its boundary side.
     let sheet = bumped(1, 0.1)?;
     let chart = |degenerate| {
@@ -328,7 +400,11 @@ fn collinear(effort: Effort) -> Result<Findings> {
         let flat = generate::isotropic_square(1, 1.0)?;
         let folded = flat.map_positions(|[x, y, _]| {
             let (s, c) = 0.7_f64.sin_cos();
-            if x > 0.5 { [0.5 + c * (x - 0.5), y, s * (x - 0.5)] } else { [x, y, 0.0] }
+            if x > 0.5 {
+                [0.5 + c * (x - 0.5), y, s * (x - 0.5)]
+            } else {
+                [x, y, 0.0]
+            }
         })?;
         folded
     };
@@ -345,10 +421,15 @@ fn collinear(effort: Effort) -> Result<Findings> {
                 ..ChartOptions::default()
             };
             let model = held(&square, &[corner(1)]).map_err(|e| e.to_string())?;
-            Simulation::in_chart(model, State::at_rest(square.positions().to_vec()), Box::new(chart), options)
-                .map_err(|e| e.to_string())?
-                .step(0.1)
-                .map_err(|e| e.to_string())
+            Simulation::in_chart(
+                model,
+                State::at_rest(square.positions().to_vec()),
+                Box::new(chart),
+                options,
+            )
+            .map_err(|e| e.to_string())?
+            .step(0.1)
+            .map_err(|e| e.to_string())
         });
     f.naive(
         "The paper's assignment on M^1 folded along its middle line",
@@ -366,14 +447,20 @@ fn collinear(effort: Effort) -> Result<Findings> {
                 .remark(result.err());
         }
         Err(e) => {
-            f.at_most("a coordinate for every free angle", f64::NAN, 1e-11).remark(Some(e.to_string()));
+            f.at_most("a coordinate for every free angle", f64::NAN, 1e-11)
+                .remark(Some(e.to_string()));
         }
     }
     for (name, method) in methods().take(effort.pick(2, 3, 3)) {
-        let mut run = super::scenes::at_rest(held(&square, &[corner(1)])?, square.positions(), method)?;
+        let mut run =
+            super::scenes::at_rest(held(&square, &[corner(1)])?, square.positions(), method)?;
         let c = course(&mut run, super::scenes::FRAME, 60, |_, _| {})?;
-        f.at_most(format!("M^1 folded along its middle line, {name}: edge strain in 1 s"), c.if_finished(c.strain), STRAIN)
-            .remark(c.said());
+        f.at_most(
+            format!("M^1 folded along its middle line, {name}: edge strain in 1 s"),
+            c.if_finished(c.strain),
+            STRAIN,
+        )
+        .remark(c.said());
     }
     f.here = "Placement has a typed refusal for the case and two ways on; the chart-free methods do not know it at all.".into();
     Ok(f)

@@ -62,13 +62,27 @@ fn start(effort: Effort) -> Result<Findings> {
             let model = held(&sheet, &[corner(level)])?;
             let mut run = super::scenes::at_rest(model, sheet.positions(), method)?;
             let mut potential = 0.0_f64;
-            let c = course(&mut run, super::scenes::FRAME, 60, |r, _| potential = potential.min(r.potential))?;
+            let c = course(&mut run, super::scenes::FRAME, 60, |r, _| {
+                potential = potential.min(r.potential)
+            })?;
             let what = format!("M^{level}, {name}");
-            f.at_most(format!("{what}: largest edge strain in a second"), c.if_finished(c.strain), STRAIN)
-                .remark(c.said());
-            f.at_most(format!("{what}: rejected steps"), c.if_finished(c.rejected as f64), 0.0)
-                .remark(c.said());
-            f.at_least(format!("{what}: largest energy released, J"), c.if_finished(-potential), 0.1);
+            f.at_most(
+                format!("{what}: largest edge strain in a second"),
+                c.if_finished(c.strain),
+                STRAIN,
+            )
+            .remark(c.said());
+            f.at_most(
+                format!("{what}: rejected steps"),
+                c.if_finished(c.rejected as f64),
+                0.0,
+            )
+            .remark(c.said());
+            f.at_least(
+                format!("{what}: largest energy released, J"),
+                c.if_finished(-potential),
+                0.1,
+            );
         }
     }
     let rank = rod_rank(&model, sheet.positions());
@@ -99,7 +113,9 @@ fn fall() -> Result<Picture> {
             states.push((run.state().t, run.state().x.clone()));
         }
     }
-    let points = states.iter().flat_map(|(_, x)| x.as_chunks::<3>().0.iter().copied());
+    let points = states
+        .iter()
+        .flat_map(|(_, x)| x.as_chunks::<3>().0.iter().copied());
     let view = Camera::new([0.0; 3], -62.0, 17.0, 1.0, 6.0);
     let aspect = view.aspect(points.clone());
     let camera = view.framing(points, aspect, 0.04);
@@ -159,7 +175,10 @@ fn crossing(start_angle: f64) -> Result<Crossing> {
         all
     };
     let State { x, v, .. } = flap.start();
-    let sheet = Sheet::new(with_middle(&x), &[[0, 2, 4], [4, 2, 1], [0, 4, 3], [4, 1, 3]])?;
+    let sheet = Sheet::new(
+        with_middle(&x),
+        &[[0, 2, 4], [4, 2, 1], [0, 4, 3], [4, 1, 3]],
+    )?;
     let (m, hinge) = (flap.apex_mass, flap.hinge_mass / 3.0);
     let mass = MassMatrix::from_vertex_masses(vec![hinge, hinge, m, m, hinge])?;
     Ok(Crossing {
@@ -179,7 +198,12 @@ const DURATION: f64 = 1.0;
 fn branch(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
     // In coordinates that do not change on the way.
-    let Crossing { model, start, sheet, .. } = crossing(FOLDED)?;
+    let Crossing {
+        model,
+        start,
+        sheet,
+        ..
+    } = crossing(FOLDED)?;
     let chart = CartesianChart::new(RodSystem::new(&sheet, &[])?, Choice::Auto, &start.x)?;
     let options = ChartOptions {
         rebase: Rebase::Never,
@@ -194,7 +218,8 @@ fn branch(effort: Effort) -> Result<Findings> {
             }
             Ok(run.state().x.clone())
         });
-    let crossing_at = |x: &[f64]| crossing(FOLDED).map(|c| apart(&x[..12], &c.flap.exact(DURATION)));
+    let crossing_at =
+        |x: &[f64]| crossing(FOLDED).map(|c| apart(&x[..12], &c.flap.exact(DURATION)));
     match outcome {
         Ok(x) => {
             let error = crossing_at(&x)?;
@@ -205,16 +230,26 @@ fn branch(effort: Effort) -> Result<Findings> {
             );
         }
         Err(e) => {
-            f.naive("Explicit steps of 1 ms in fixed coordinates", format!("{e}."), true);
+            f.naive(
+                "Explicit steps of 1 ms in fixed coordinates",
+                format!("{e}."),
+                true,
+            );
         }
     }
-    let counts = effort.pick(vec![50, 100], vec![50, 100, 200, 400, 800], vec![50, 100, 200, 400, 800, 1600]);
+    let counts = effort.pick(
+        vec![50, 100],
+        vec![50, 100, 200, 400, 800],
+        vec![50, 100, 200, 400, 800, 1600],
+    );
     let mut lines = Vec::new();
     for (k, (name, method)) in methods().enumerate() {
         let mut errors = Vec::new();
         let (mut rejected, mut strain, mut said) = (0, 0.0_f64, None);
         for &n in &counts {
-            let Crossing { flap, model, start, .. } = crossing(FOLDED)?;
+            let Crossing {
+                flap, model, start, ..
+            } = crossing(FOLDED)?;
             let mut run = Simulation::new(model, start, method.clone())?;
             let c = course(&mut run, DURATION / n as f64, n, |_, _| {})?;
             rejected += c.rejected;
@@ -230,22 +265,40 @@ fn branch(effort: Effort) -> Result<Findings> {
             _ => 2.0,
         };
         if name == "RATTLE composition" {
-            f.at_most(format!("{name}: error with {} steps, m", counts[counts.len() - 1]), last, 1e-7)
-                .remark(said.clone());
+            f.at_most(
+                format!("{name}: error with {} steps, m", counts[counts.len() - 1]),
+                last,
+                1e-7,
+            )
+            .remark(said.clone());
         } else {
-            f.at_least(format!("{name}: order of convergence (exact: {expected})"), order, expected - 0.2)
-                .remark(said.clone());
+            f.at_least(
+                format!("{name}: order of convergence (exact: {expected})"),
+                order,
+                expected - 0.2,
+            )
+            .remark(said.clone());
         }
-        f.at_most(format!("{name}: largest edge strain"), if last.is_nan() { last } else { strain }, STRAIN)
-            .remark(said);
+        f.at_most(
+            format!("{name}: largest edge strain"),
+            if last.is_nan() { last } else { strain },
+            STRAIN,
+        )
+        .remark(said);
         if conservative().iter().any(|c| c.0 == name) {
             f.at_most(format!("{name}: rejected steps"), rejected as f64, 0.0);
         }
-        let points = counts.iter().zip(&errors).map(|(n, e)| [1e3 * DURATION / *n as f64, *e]).collect();
+        let points = counts
+            .iter()
+            .zip(&errors)
+            .map(|(n, e)| [1e3 * DURATION / *n as f64, *e])
+            .collect();
         lines.push(plot::series(k, name, points));
     }
     // Started exactly there, with the velocities of one of the two ways.
-    let Crossing { model, start, flap, .. } = crossing(FRAC_PI_2)?;
+    let Crossing {
+        model, start, flap, ..
+    } = crossing(FRAC_PI_2)?;
     let (mut x, mut v) = (start.x.clone(), start.v.clone());
     let outcome = (1..=100).try_for_each(|k| {
         textbook_step(&model, &mut x, &mut v, 0.01 * DURATION).map_err(|e| format!("step {k}: {e}"))
@@ -253,16 +306,29 @@ fn branch(effort: Effort) -> Result<Findings> {
     let error = apart(&x[..12], &flap.exact(DURATION));
     f.naive(
         &format!("{TEXTBOOK}, started at the branch point"),
-        outcome.clone().map_or_else(|e| format!("{e}."), |()| format!("Ends {error:.0e} m from the exact motion.")),
+        outcome.clone().map_or_else(
+            |e| format!("{e}."),
+            |()| format!("Ends {error:.0e} m from the exact motion."),
+        ),
         outcome.is_err() || error > 0.05,
     );
     for (name, method) in methods() {
-        let Crossing { model, start, flap, .. } = crossing(FRAC_PI_2)?;
+        let Crossing {
+            model, start, flap, ..
+        } = crossing(FRAC_PI_2)?;
         let mut run = Simulation::new(model, start, method)?;
         let c = course(&mut run, DURATION / 200.0, 200, |_, _| {})?;
-        let bound = if ["implicit Euler", "projection"].contains(&name) { 2e-2 } else { 1e-3 };
-        f.at_most(format!("started exactly at the branch point, {name}, 200 steps: error, m"), c.if_finished(apart(&run.state().x[..12], &flap.exact(DURATION))), bound)
-            .remark(c.said());
+        let bound = if ["implicit Euler", "projection"].contains(&name) {
+            2e-2
+        } else {
+            1e-3
+        };
+        f.at_most(
+            format!("started exactly at the branch point, {name}, 200 steps: error, m"),
+            c.if_finished(apart(&run.state().x[..12], &flap.exact(DURATION))),
+            bound,
+        )
+        .remark(c.said());
     }
     let flat_at = {
         let c = crossing(FOLDED)?;
@@ -281,6 +347,10 @@ fn branch(effort: Effort) -> Result<Findings> {
         crossing(FOLDED)?.flap.start_angle
     );
     let drawing = plot::log_log("step, ms", "position error after 1 s, m", lines);
-    f.drawing("branch-point", &drawing, "Error against the closed form after passing through flat")?;
+    f.drawing(
+        "branch-point",
+        &drawing,
+        "Error against the closed form after passing through flat",
+    )?;
     Ok(f)
 }

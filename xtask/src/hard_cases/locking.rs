@@ -27,9 +27,18 @@ fn drape(effort: Effort) -> Result<Findings> {
     let cells = effort.pick(4, 8, 16);
     let spacing = 1.0 / cells as f64;
     let meshes: [(&str, Sheet); 3] = [
-        ("union jack", generate::grid(cells, cells, 1.0, 1.0, Diagonals::UnionJack)?),
-        ("one-way", generate::grid(cells, cells, 1.0, 1.0, Diagonals::Falling)?),
-        ("irregular", generate::delaunay_square(1.0, 1.08 * spacing, 5)?),
+        (
+            "union jack",
+            generate::grid(cells, cells, 1.0, 1.0, Diagonals::UnionJack)?,
+        ),
+        (
+            "one-way",
+            generate::grid(cells, cells, 1.0, 1.0, Diagonals::Falling)?,
+        ),
+        (
+            "irregular",
+            generate::delaunay_square(1.0, 1.08 * spacing, 5)?,
+        ),
     ];
     let mut rows = Vec::new();
     let mut ends: Vec<(Vec<f64>, VertexId)> = Vec::new();
@@ -50,10 +59,15 @@ fn drape(effort: Effort) -> Result<Findings> {
                     .unwrap_or(VertexId(0))
             };
             let pin = [find([0.0, 1.0]), find([0.5, 0.5])][k];
-            let model = SheetModel::new(sheet, 0.1, MassKind::Lumped)?.with_gravity().with_pins(&[pin])?.with_damping(1.0)?;
+            let model = SheetModel::new(sheet, 0.1, MassKind::Lumped)?
+                .with_gravity()
+                .with_pins(&[pin])?
+                .with_damping(1.0)?;
             let mut run = at_rest(model, sheet.positions(), Method::default())?;
             let mut kinetic = 0.0;
-            let c = course(&mut run, FRAME, effort.pick(60, 900, 1800), |r, _| kinetic = r.kinetic)?;
+            let c = course(&mut run, FRAME, effort.pick(60, 900, 1800), |r, _| {
+                kinetic = r.kinetic
+            })?;
             let x = run.state().x.clone();
             let (depth, shadow) = shape(sheet, &x, pin);
             let lines = CreasePattern::of(sheet, 1e-6);
@@ -61,23 +75,39 @@ fn drape(effort: Effort) -> Result<Findings> {
             rows.push(vec![
                 (*name).to_owned(),
                 held_at.to_owned(),
-                format!("{}/{}", sheet.topology().vertex_count(), sheet.topology().face_count()),
+                format!(
+                    "{}/{}",
+                    sheet.topology().vertex_count(),
+                    sheet.topology().face_count()
+                ),
                 directions.to_string(),
                 format!("{depth:.3}"),
                 format!("{shadow:.3}"),
                 number(kinetic / 0.98),
             ]);
-            f.at_most(format!("{name}, held at {held_at}: edge strain"), c.if_finished(c.strain), STRAIN)
-                .remark(c.said());
+            f.at_most(
+                format!("{name}, held at {held_at}: edge strain"),
+                c.if_finished(c.strain),
+                STRAIN,
+            )
+            .remark(c.said());
             if effort != Effort::Quick {
-                f.at_most(format!("{name}, held at {held_at}: kinetic energy at the end, of weight × 1 m"), kinetic / 0.98, REST);
+                f.at_most(
+                    format!(
+                        "{name}, held at {held_at}: kinetic energy at the end, of weight × 1 m"
+                    ),
+                    kinetic / 0.98,
+                    REST,
+                );
             }
             depths[k].push(depth);
             ends.push((x, pin));
         }
     }
     let spread = |d: &[f64]| {
-        let (low, high) = d.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), d| (l.min(*d), h.max(*d)));
+        let (low, high) = d
+            .iter()
+            .fold((f64::INFINITY, 0.0_f64), |(l, h), d| (l.min(*d), h.max(*d)));
         (high - low, low)
     };
     let (difference, _) = spread(&depths[0]);
@@ -93,7 +123,15 @@ fn drape(effort: Effort) -> Result<Findings> {
     );
     f.table(
         "Sheets at rest, damping 1/s, BDF2 at 1/60 s from flat",
-        &["mesh", "held at", "V/F", "directions of straight lines", "depth of the centre, m", "area of the shadow, m²", "kinetic energy left, of weight × 1 m"],
+        &[
+            "mesh",
+            "held at",
+            "V/F",
+            "directions of straight lines",
+            "depth of the centre, m",
+            "area of the shadow, m²",
+            "kinetic energy left, of weight × 1 m",
+        ],
         rows,
     );
     f.here = "Lengths are exact and the sheets at rest; what differs is the shape. A smooth sheet would bend about any line. Its triangulation bends \
@@ -118,7 +156,9 @@ fn shape(sheet: &Sheet, x: &[f64], pin: VertexId) -> (f64, f64) {
 }
 
 fn picture(meshes: &[(&str, Sheet)], ends: &[(Vec<f64>, VertexId)]) -> Result<Picture> {
-    let points = ends.iter().flat_map(|(x, _)| x.as_chunks::<3>().0.iter().copied());
+    let points = ends
+        .iter()
+        .flat_map(|(x, _)| x.as_chunks::<3>().0.iter().copied());
     let view = Camera::new([0.0; 3], -62.0, 12.0, 1.0, 6.0);
     let aspect = view.aspect(points.clone());
     let camera = view.framing(points, aspect, 0.04);

@@ -2,11 +2,14 @@
 
 use super::case::number;
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook, textbook_step};
-use super::scenes::{FRAME, apart, at_rest, course, energy_momentum, hanging, held, methods, upright};
+use super::scenes::{
+    FRAME, STRAIN, apart, at_rest, bumped, course, energy_momentum, hanging, held, methods, upright,
+};
 use super::{Case, Effort, Findings, plot};
+use crate::interrupt;
 use anyhow::Result;
-use isosheet_dynamics::StepControl;
-use isosheet_mesh::{VertexId, generate};
+use isosheet_dynamics::{Method, SheetModel, Simulation, State};
+use isosheet_mesh::{MassKind, VertexId, generate};
 
 pub(crate) const REST: Case = Case {
     name: "rest",
@@ -25,7 +28,11 @@ fn rest(effort: Effort) -> Result<Findings> {
     match textbook(&model()?, start, FRAME, 1000) {
         Ok((_, x)) => {
             let moved = apart(&x, start);
-            f.naive(TEXTBOOK, format!("Moves by {} m in 1000 steps.", number(moved)), moved > 1e-6)
+            f.naive(
+                TEXTBOOK,
+                format!("Moves by {} m in 1000 steps.", number(moved)),
+                moved > 1e-6,
+            )
         }
         Err(e) => f.naive(TEXTBOOK, format!("{e}."), true),
     };
@@ -33,12 +40,17 @@ fn rest(effort: Effort) -> Result<Findings> {
     let moved = apart(&x, start);
     f.naive(
         GAUSS_SEIDEL,
-        format!("Sags by {} m and stretches its edges by {} in 1000 steps.", number(moved), number(strain)),
+        format!(
+            "Sags by {} m and stretches its edges by {} in 1000 steps.",
+            number(moved),
+            number(strain)
+        ),
         moved > 1e-6,
     );
-    let steps = effort.pick(1000, 100_000, 1_000_000);
     let mut lines = Vec::new();
     for (k, (name, method)) in methods().enumerate() {
+        let long = ["BDF2", "energy-momentum"].contains(&name);
+        let steps = effort.pick(300, if long { 100_000 } else { 10_000 }, 100_000);
         let mut run = at_rest(model()?, start, method)?;
         let (mut worst, mut n, mut points) = (0.0_f64, 0_usize, Vec::new());
         let c = course(&mut run, FRAME, steps, |_, state| {
@@ -56,12 +68,14 @@ fn rest(effort: Effort) -> Result<Findings> {
         .remark(c.said());
         lines.push(plot::series(k, name, points));
     }
-    f.here = format!(
-        "{:.0} s of simulated time, vertex by vertex compared with the start.",
-        steps as f64 * FRAME
-    );
+    f.here =
+        "M^1, steps of 1/60 s, vertex by vertex compared with the start after every step.".into();
     let drawing = plot::log_log("steps", "largest displacement, m", lines);
-    f.drawing("rest", &drawing, "Displacement of a hanging sheet at rest (1e-18 stands for none)")?;
+    f.drawing(
+        "rest",
+        &drawing,
+        "Displacement of a hanging sheet at rest (1e-18 stands for none)",
+    )?;
     Ok(f)
 }
 
@@ -74,88 +88,154 @@ fn is_sample(n: usize) -> bool {
 pub(crate) const MILLION: Case = Case {
     name: "million-steps",
     title: "Energy over a million steps",
-    expected: "M^1 hangs from a corner and crumples without end; nothing takes energy out. A conservative method keeps the energy \
-               and the lengths to round-off that accumulates slowly, over any number of steps.",
+    expected: "A sheet that nothing takes energy from goes on for ever. A conservative method keeps its energy and its lengths to round-off, which adds up \
+               slowly, over any number of steps.",
     run: million,
 };
 
-/// Smallest sub-step of the long run, of a step: over so long a time the sheet comes very near to states with dependent rods.
-const MIN_FRACTION: f64 = 1.0 / (1_u64 << 30) as f64;
-
-/// Step of the long run, seconds.
+/// Step of the long runs, seconds.
 const STEP: f64 = 5e-3;
+
+/// Why a sheet held at a corner stops.
+const SINGULAR: &str = "Held at a corner the crumpled sheet comes, sooner or later, arbitrarily near to a loaded state with dependent rods, where rod forces are \
+                        unbounded: the smallest singular value of the rigidity matrix is given in the message. Shorter sub-steps do not help \
+                        (tried down to 5e-12 s); the damped methods go on.";
+
+/// `M^1` with a bump of 0.2 m, tumbling freely.
+fn free() -> Result<Simulation> {
+    let sheet = bumped(1, 0.2)?;
+    let model = || SheetModel::new(&sheet, 0.1, MassKind::Lumped);
+    let x = sheet.positions().to_vec();
+    let v = x
+        .chunks(3)
+        .flat_map(|p| {
+            [
+                0.3 - 2.0 * p[1] + p[2],
+                0.1 + 2.0 * p[0],
+                1.0 - p[0] + 0.8 * (p[0] - 0.5) * (p[1] - 0.3),
+            ]
+        })
+        .collect();
+    let mut settle = Simulation::new(
+        model()?,
+        State::moving(x, v),
+        Method::Projection(Default::default()),
+    )?;
+    settle.step(1e-6)?;
+    // At rest as a whole, so that coordinates and their rounding do not grow with time.
+    let State { x, mut v, .. } = settle.state().clone();
+    let mean = settle
+        .model()
+        .linear_momentum(&v)
+        .map(|p| p / settle.model().mass().total());
+    v.iter_mut()
+        .enumerate()
+        .for_each(|(i, v)| *v -= mean[i % 3]);
+    Ok(Simulation::new(
+        model()?,
+        State::moving(x, v),
+        energy_momentum(),
+    )?)
+}
+
+/// `M^1` with the same bump, swinging from its top side.
+fn swinging() -> Result<Simulation> {
+    let flat = bumped(1, 0.2)?;
+    let sheet = flat.map_positions(|[x, y, z]| [x, y, z + 0.2 * (3.0 * x).cos() * y])?;
+    let top: Vec<VertexId> = (20..25).map(VertexId).collect();
+    at_rest(held(&sheet, &top)?, sheet.positions(), energy_momentum())
+}
 
 fn million(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
-    let (mut x, mut v) = {
-        let run = hanging(1, 0.05, energy_momentum())?;
-        (run.state().x.clone(), run.state().v.clone())
-    };
-    let control = StepControl {
-        min_fraction: MIN_FRACTION,
-        ..StepControl::default()
-    };
-    let mut run = hanging(1, 0.05, energy_momentum())?.with_control(control)?;
+    let run = free()?;
+    let State { mut x, mut v, .. } = run.state().clone();
     let start = run.energy();
-    let released = 0.1 * 9.8 * 0.5_f64.sqrt();
-    // The textbook method at the same step.
     let mut naive = Vec::new();
-    let mut end = "reaches 20 000 steps".to_owned();
-    for n in 1..=effort.pick(500, 20_000, 20_000) {
+    let mut end = "reaches its last step".to_owned();
+    let count = effort.pick(2000, 20_000, 20_000);
+    for n in 1..=count {
+        if n % 100 == 0 {
+            interrupt::check()?;
+        }
         if let Err(e) = textbook_step(run.model(), &mut x, &mut v, STEP) {
             end = format!("stops at step {n}: {e}");
             break;
         }
-        let energy = run.model().kinetic_energy(&v) + run.model().potential_energy(0.0, &x);
         if is_sample(n) {
-            naive.push([n as f64, ((energy - start) / released).abs()]);
+            naive.push([
+                n as f64,
+                (run.model().kinetic_energy(&v) / start - 1.0).abs(),
+            ]);
         }
     }
     let last = naive.last().map_or(f64::NAN, |p| p[1]);
     f.naive(
         TEXTBOOK,
         format!(
-            "It {end}; its energy is then off by {} of the energy that the centre of mass can release, its edges strained by {}.",
+            "The free sheet, {count} steps: it {end}; its energy is off by {} of itself, its edges are strained by {}.",
             number(last),
             number(run.model().rods().max_strain(&x))
         ),
         last.is_nan() || last > 1e-2,
     );
-    let steps = effort.pick(2000, 1_000_000, 10_000_000);
-    let (mut n, mut worst, mut points, mut fastest) = (0_usize, 0.0_f64, Vec::new(), 0.0_f64);
-    let mut iterations = 0;
-    let c = course(&mut run, STEP, steps, |r, _| {
-        n += 1;
-        worst = worst.max(r.energy_drift.abs() / released);
-        fastest = fastest.max(r.kinetic);
-        iterations += r.iterations;
-        if is_sample(n) {
-            points.push([n as f64, worst]);
+    let mut lines = Vec::new();
+    let scenes = [
+        (
+            "tumbling freely",
+            free()?,
+            effort.pick(2000, 1_000_000, 1_000_000),
+            None,
+        ),
+        (
+            "swinging from its top side",
+            swinging()?,
+            effort.pick(1000, 100_000, 1_000_000),
+            None,
+        ),
+        (
+            "hanging from a corner",
+            hanging(1, 0.05, energy_momentum())?,
+            effort.pick(2000, 100_000, 1_000_000),
+            Some(SINGULAR),
+        ),
+    ];
+    for (k, (what, mut run, steps, limitation)) in scenes.into_iter().enumerate() {
+        let (mut n, mut worst, mut points, mut iterations) = (0_usize, 0.0_f64, Vec::new(), 0);
+        let c = course(&mut run, STEP, steps, |r, _| {
+            n += 1;
+            iterations += r.iterations;
+            worst = worst.max(r.energy_drift.abs());
+            if is_sample(n) {
+                points.push([n as f64, worst]);
+            }
+        })?;
+        points.iter_mut().for_each(|p| p[1] /= c.kinetic);
+        let check = f.at_least(
+            format!("M^1 {what}: steps taken of {steps}"),
+            c.steps as f64,
+            steps as f64,
+        );
+        check.remark(c.said());
+        if let Some(why) = limitation {
+            check.limited(why);
         }
-    })?;
-    f.at_least(format!("steps taken of {steps}"), c.steps as f64, steps as f64)
-        .remark(c.said());
-    f.at_most(
-        "largest energy error, of the energy that the centre of mass can release",
-        worst,
-        1e-8,
-    );
-    f.at_most("largest edge strain", c.strain, 1e-12);
-    f.at_least("largest kinetic energy, of the same", fastest / released, 0.3);
-    f.here = format!(
-        "{} steps of 5 ms of the energy-momentum method, {:.2} Newton iterations a step, {} sub-steps rejected on the way.",
-        c.steps,
-        iterations as f64 / c.steps.max(1) as f64,
-        c.rejected
-    );
-    let drawing = plot::log_log(
-        "steps",
-        "largest relative energy error so far",
-        vec![
-            plot::curve(0, "energy-momentum", points),
-            plot::curve(1, "textbook multipliers", naive),
-        ],
-    );
-    f.drawing("million-steps", &drawing, "Energy error of M^1 hanging from a corner, 5 ms steps")?;
+        f.at_most(
+            format!("M^1 {what}: largest energy error, of the largest kinetic energy"),
+            c.drift / c.kinetic,
+            1e-8,
+        );
+        f.at_most(format!("M^1 {what}: largest edge strain"), c.strain, STRAIN);
+        f.here.push_str(&format!(
+            "{what}: {} steps of 5 ms, {:.2} Newton iterations a step, {} sub-steps rejected. ",
+            c.steps,
+            iterations as f64 / c.steps.max(1) as f64,
+            c.rejected
+        ));
+        lines.push(plot::curve(k, what, points));
+    }
+    lines.push(plot::guide("textbook, tumbling", naive));
+    let drawing = plot::log_log("steps", "largest relative energy error so far", lines);
+    f.drawing("million-steps", &drawing, "Energy error of M^1 by the energy-momentum method, steps of 5 ms, relative to the largest kinetic energy")?;
     Ok(f)
 }

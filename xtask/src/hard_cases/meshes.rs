@@ -26,28 +26,55 @@ fn long(effort: Effort) -> Result<Findings> {
     let strip = generate::ladder(count + 1, 0.01, 1.0 / count as f64)?;
     let scenes: [(&str, &Sheet, Vec<VertexId>); 2] = [
         ("fan held at its apex", &fan, vec![VertexId(0)]),
-        ("strip held at an end", &strip, vec![VertexId(0), VertexId(1)]),
+        (
+            "strip held at an end",
+            &strip,
+            vec![VertexId(0), VertexId(1)],
+        ),
     ];
     for (what, sheet, pins) in &scenes {
         let model = held(sheet, pins)?;
         let (strain, _) = gauss_seidel(&model, sheet.positions(), FRAME, 30);
         f.naive(
             GAUSS_SEIDEL,
-            format!("{count} edges or links, {what}, 30 steps: largest edge strain {}.", number(strain)),
+            format!(
+                "{count} edges or links, {what}, 30 steps: largest edge strain {}.",
+                number(strain)
+            ),
             strain > 1e-2,
         );
         for (name, method) in damped() {
             let mut run = at_rest(held(sheet, pins)?, sheet.positions(), method)?;
-            let c = course(&mut run, FRAME, effort.pick(10, 60, 240), |_, _| {})?;
-            f.at_most(format!("{what}, {name}: edge strain"), c.if_finished(c.strain), STRAIN)
-                .remark(c.said());
+            let c = course(&mut run, FRAME, effort.pick(10, 10, 60), |_, _| {})?;
+            f.at_most(
+                format!(
+                    "{what}, {name}, {} steps: edge strain",
+                    effort.pick(10, 10, 60)
+                ),
+                c.if_finished(c.strain),
+                STRAIN,
+            )
+            .remark(c.said());
         }
         for (name, method) in conservative().into_iter().take(1) {
             let mut run = at_rest(held(sheet, pins)?, sheet.positions(), method)?;
-            let c = course(&mut run, effort.pick(1e-3, 1e-3, 1e-3), effort.pick(5, 30, 200), |_, _| {})?;
-            f.at_most(format!("{what}, {name}, from flat and horizontal, 1 ms: edge strain"), c.if_finished(c.strain), STRAIN)
-                .remark(c.said());
-            f.at_most(format!("{what}, {name}: energy error, of the largest kinetic energy"), c.if_finished(c.drift / c.kinetic), 1e-8);
+            let c = course(
+                &mut run,
+                effort.pick(1e-3, 1e-3, 1e-3),
+                effort.pick(5, 30, 200),
+                |_, _| {},
+            )?;
+            f.at_most(
+                format!("{what}, {name}, from flat and horizontal, 1 ms: edge strain"),
+                c.if_finished(c.strain),
+                STRAIN,
+            )
+            .remark(c.said());
+            f.at_most(
+                format!("{what}, {name}: energy error, of the largest kinetic energy"),
+                c.if_finished(c.drift / c.kinetic),
+                1e-8,
+            );
         }
     }
     // The slowest mode of the hanging chain, from a small displacement, over half a period.
@@ -95,7 +122,14 @@ fn irregular(effort: Effort) -> Result<Findings> {
     let delaunay = generate::delaunay_square(1.0, effort.pick(0.25, 0.12, 0.06), 7)?;
     let ring = generate::annulus(18, 3, 0.25, 0.5)?;
     let corner_shape = generate::delaunay(
-        &[[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.5, 0.5], [0.5, 1.0], [0.0, 1.0]],
+        &[
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [1.0, 0.5],
+            [0.5, 0.5],
+            [0.5, 1.0],
+            [0.0, 1.0],
+        ],
         0.15,
         3,
     )?;
@@ -108,7 +142,11 @@ fn irregular(effort: Effort) -> Result<Findings> {
         })?
     };
     let away = ring.map_positions(|[x, y, z]| [x + 3.0, y, z])?;
-    let pieces = Sheet::union(&[&delaunay, &away, &corner_shape.map_positions(|[x, y, z]| [x - 3.0, y, z])?])?;
+    let pieces = Sheet::union(&[
+        &delaunay,
+        &away,
+        &corner_shape.map_positions(|[x, y, z]| [x - 3.0, y, z])?,
+    ])?;
     let scenes: [(&str, &Sheet); 6] = [
         ("irregular square", &delaunay),
         ("ring", &ring),
@@ -123,7 +161,11 @@ fn irregular(effort: Effort) -> Result<Findings> {
         let dof = Dof::of(sheet.topology());
         rows.push(vec![
             what.to_owned(),
-            format!("{}/{}", sheet.topology().vertex_count(), sheet.topology().face_count()),
+            format!(
+                "{}/{}",
+                sheet.topology().vertex_count(),
+                sheet.topology().face_count()
+            ),
             sheet.topology().euler_characteristic().to_string(),
             dof.total.to_string(),
         ]);
@@ -141,14 +183,22 @@ fn irregular(effort: Effort) -> Result<Findings> {
                 );
             }
             Err(e) => {
-                f.naive(&format!("The paper's front on the {what}"), format!("{e}."), true);
+                f.naive(
+                    &format!("The paper's front on the {what}"),
+                    format!("{e}."),
+                    true,
+                );
             }
         }
         for (name, method) in damped() {
             let mut run = at_rest(held(sheet, &pins)?, sheet.positions(), method)?;
             let c = course(&mut run, FRAME, effort.pick(10, 60, 120), |_, _| {})?;
-            f.at_most(format!("{what}, {name}, from flat: edge strain"), c.if_finished(c.strain), STRAIN)
-                .remark(c.said());
+            f.at_most(
+                format!("{what}, {name}, from flat: edge strain"),
+                c.if_finished(c.strain),
+                STRAIN,
+            )
+            .remark(c.said());
         }
         let model = held(sheet, &pins)?;
         let mut x = sheet.positions().to_vec();
@@ -162,7 +212,11 @@ fn irregular(effort: Effort) -> Result<Findings> {
         )
         .remark(c.said());
     }
-    f.table("The meshes", &["mesh", "V/F", "Euler characteristic", "DOF by counting"], rows);
+    f.table(
+        "The meshes",
+        &["mesh", "V/F", "Euler characteristic", "DOF by counting"],
+        rows,
+    );
     f.here = "Topology is half-edges of any orientable manifold; every component keeps its own momentum.".into();
     Ok(f)
 }

@@ -10,7 +10,8 @@ pub(super) const TEXTBOOK: &str =
     "Lagrange multipliers at acceleration level, dense Cholesky, symplectic Euler";
 
 /// Gauss-Seidel projection of one rod after the other, velocities from the change of position (position-based dynamics).
-pub(super) const GAUSS_SEIDEL: &str = "Gauss-Seidel projection of the rods (position-based dynamics), 50 sweeps a step";
+pub(super) const GAUSS_SEIDEL: &str =
+    "Gauss-Seidel projection of the rods (position-based dynamics), 50 sweeps a step";
 
 /// Sweeps of [`gauss_seidel_step`].
 const SWEEPS: usize = 50;
@@ -132,12 +133,7 @@ pub(super) fn textbook(
 }
 
 /// Runs Gauss-Seidel projection from rest; returns the largest strain and the positions.
-pub(super) fn gauss_seidel(
-    model: &SheetModel,
-    x: &[f64],
-    h: f64,
-    steps: usize,
-) -> (f64, Vec<f64>) {
+pub(super) fn gauss_seidel(model: &SheetModel, x: &[f64], h: f64, steps: usize) -> (f64, Vec<f64>) {
     let (mut x, mut v) = (x.to_vec(), vec![0.0; x.len()]);
     let mut strain = 0.0_f64;
     for _ in 0..steps {

@@ -69,7 +69,9 @@ fn page(store: &Store, records: &[Record], effort: Effort) -> Result<String> {
          Unless stated otherwise: a square of side 1 m and 0.1 kg, lumped masses, gravity 9.8 m/s² along −z, steps of 1/60 s.</p>",
     );
     if effort == Effort::Quick {
-        out.push_str("<p class=\"note\">Made with <code>--quick</code>: short runs on small meshes.</p>");
+        out.push_str(
+            "<p class=\"note\">Made with <code>--quick</code>: short runs on small meshes.</p>",
+        );
     }
     summary(&mut out, records);
     for record in records {
@@ -159,7 +161,11 @@ fn section(out: &mut String, store: &Store, r: &Record) -> Result<()> {
     for picture in &r.pictures {
         out.push_str("<figure>");
         image(out, picture, &store.read(&picture.path)?);
-        let _ = write!(out, "<figcaption>{}</figcaption></figure>", escape(&picture.alt));
+        let _ = write!(
+            out,
+            "<figcaption>{}</figcaption></figure>",
+            escape(&picture.alt)
+        );
     }
     for t in &r.tables {
         html_table(out, t);
@@ -195,7 +201,11 @@ fn csv(records: &[Record]) -> String {
 /// The table on the terminal: every case, and every check that did not simply pass.
 pub(super) fn table(records: &[Record]) -> String {
     let mut out = String::new();
-    let _ = writeln!(out, "{:<16}{:<34}{:<15}{:>8}", "case", "isosheet", "naive method", "seconds");
+    let _ = writeln!(
+        out,
+        "{:<16}{:<34}{:<15}{:>8}",
+        "case", "isosheet", "naive method", "seconds"
+    );
     for r in records {
         let _ = writeln!(
             out,

@@ -50,9 +50,18 @@ fn decades(label: &str, values: impl Iterator<Item = f64>) -> Axis {
         low = low.min((v.log10() + 1e-9).floor() as i32);
         high = high.max((v.log10() - 1e-9).ceil() as i32);
     }
-    let (low, high) = if low > high { (0, 1) } else { (low, high.max(low + 1)) };
+    let (low, high) = if low > high {
+        (0, 1)
+    } else {
+        (low, high.max(low + 1))
+    };
     let every = ((high - low + 6) / 7).max(1);
-    Axis::decades(label, low, low + every * ((high - low + every - 1) / every), every as usize)
+    Axis::decades(
+        label,
+        low,
+        low + every * ((high - low + every - 1) / every),
+        every as usize,
+    )
 }
 
 fn positive(series: &mut [Series]) {

@@ -20,18 +20,36 @@ pub(crate) const CLOSED: Case = Case {
 };
 
 /// A tetrahedron without symmetry.
-const TETRAHEDRON: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.2, 0.8, 0.1], [0.3, 0.2, 0.9]];
+const TETRAHEDRON: [[f64; 3]; 4] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.1, 0.0],
+    [0.2, 0.8, 0.1],
+    [0.3, 0.2, 0.9],
+];
 
 fn tetrahedron() -> Result<Sheet> {
     let x = TETRAHEDRON.concat();
-    Ok(Sheet::new(x, &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])?)
+    Ok(Sheet::new(
+        x,
+        &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+    )?)
 }
 
 fn icosahedron() -> Result<Sheet> {
     let p = 0.5 * (1.0 + 5.0_f64.sqrt());
     let mut x = Vec::new();
     for (a, b) in [(1.0, p), (-1.0, p), (1.0, -p), (-1.0, -p)] {
-        x.extend([0.0, 0.3 * a, 0.3 * b, 0.3 * a, 0.3 * b, 0.0, 0.3 * b, 0.0, 0.3 * a]);
+        x.extend([
+            0.0,
+            0.3 * a,
+            0.3 * b,
+            0.3 * a,
+            0.3 * b,
+            0.0,
+            0.3 * b,
+            0.0,
+            0.3 * a,
+        ]);
     }
     // Faces: three vertices an edge length apart, oriented outwards.
     let at = |i: usize| Vector3::from_column_slice(&x[3 * i..3 * i + 3]);
@@ -55,7 +73,13 @@ fn icosahedron() -> Result<Sheet> {
 fn boxed() -> Result<Sheet> {
     let (size, mut x) = ([0.7, 0.9, 1.1], Vec::new());
     for k in 0..8 {
-        x.extend((0..3).map(|i| if k >> i & 1 == 1 { 0.5 * size[i] } else { -0.5 * size[i] }));
+        x.extend((0..3).map(|i| {
+            if k >> i & 1 == 1 {
+                0.5 * size[i]
+            } else {
+                -0.5 * size[i]
+            }
+        }));
     }
     let mut faces = Vec::new();
     for axis in 0..3 {
@@ -192,13 +216,20 @@ fn closed(effort: Effort) -> Result<Findings> {
     let mut rows = Vec::new();
     for (what, sheet, bound) in &solids {
         let masses = vec![0.1; sheet.topology().vertex_count()];
-        let model = || SheetModel::with_mass(sheet, MassMatrix::from_vertex_masses(masses.clone())?).map_err(anyhow::Error::from);
+        let model = || {
+            SheetModel::with_mass(sheet, MassMatrix::from_vertex_masses(masses.clone())?)
+                .map_err(anyhow::Error::from)
+        };
         let (tensor, centre, _) = inertia(&points(sheet, &masses));
         let start = spinning(sheet, centre);
         let dof = Dof::of(sheet.topology());
         rows.push(vec![
             (*what).to_owned(),
-            format!("{}/{}", sheet.topology().vertex_count(), sheet.topology().face_count()),
+            format!(
+                "{}/{}",
+                sheet.topology().vertex_count(),
+                sheet.topology().face_count()
+            ),
             dof.total.to_string(),
             dof.internal.to_string(),
         ]);
@@ -215,7 +246,12 @@ fn closed(effort: Effort) -> Result<Findings> {
         f.naive(
             &format!("{TEXTBOOK}, on the {what}"),
             ended.clone().map_or_else(
-                || format!("After {steps} steps of 2 ms the largest fold angle has changed by {} rad.", number(bent)),
+                || {
+                    format!(
+                        "After {steps} steps of 2 ms the largest fold angle has changed by {} rad.",
+                        number(bent)
+                    )
+                },
                 |e| format!("{e}."),
             ),
             ended.is_some() || bent > *bound,
@@ -240,8 +276,12 @@ fn closed(effort: Effort) -> Result<Findings> {
                     bent = bent.max(bending(sheet, &s.x));
                 }
             })?;
-            f.at_most(format!("{what}, {name}: largest change of a fold angle in {steps} steps, rad"), c.if_finished(bent), *bound)
-                .remark(c.said());
+            f.at_most(
+                format!("{what}, {name}: largest change of a fold angle in {steps} steps, rad"),
+                c.if_finished(bent),
+                *bound,
+            )
+            .remark(c.said());
             let dependent = what.starts_with("box") && conservative().iter().any(|m| m.0 == name);
             if dependent {
                 f.checks.last_mut().into_iter().for_each(|c| {
@@ -258,7 +298,11 @@ fn closed(effort: Effort) -> Result<Findings> {
                 .remark(c.said());
             }
             if name == "energy-momentum" {
-                f.at_most(format!("{what}, {name}: energy error, of the kinetic energy"), c.if_finished(c.drift / c.kinetic), 1e-10);
+                f.at_most(
+                    format!("{what}, {name}: energy error, of the kinetic energy"),
+                    c.if_finished(c.drift / c.kinetic),
+                    1e-10,
+                );
             }
             if dependent && name != "RATTLE" {
                 f.checks.last_mut().into_iter().for_each(|c| {
@@ -267,7 +311,11 @@ fn closed(effort: Effort) -> Result<Findings> {
             }
         }
     }
-    f.table("Closed meshes", &["mesh", "V/F", "3V − E", "internal DOF by counting"], rows);
+    f.table(
+        "Closed meshes",
+        &["mesh", "V/F", "3V − E", "internal DOF by counting"],
+        rows,
+    );
     f.here = "Free spin of 3.2 rad/s about no principal axis, steps of 2 ms. The reference integrates Euler's equations and a quaternion.".into();
     Ok(f)
 }
@@ -286,7 +334,17 @@ fn plate(effort: Effort) -> Result<Findings> {
     // A uniform triangle about its edge: a pendulum of half the altitude. Lumped: of the whole altitude.
     let altitude: f64 = 0.7;
     let (s, c) = 1.2_f64.sin_cos();
-    let x = vec![0.0, -0.3, 0.0, 0.0, 0.5, 0.0, altitude * s, 0.1, -altitude * c];
+    let x = vec![
+        0.0,
+        -0.3,
+        0.0,
+        0.0,
+        0.5,
+        0.0,
+        altitude * s,
+        0.1,
+        -altitude * c,
+    ];
     let sheet = Sheet::new(x.clone(), &[[0, 1, 2]])?;
     let exact = |length: f64, t: f64| {
         let k = 0.6_f64.sin();
@@ -295,10 +353,18 @@ fn plate(effort: Effort) -> Result<Findings> {
     };
     let end = 2.0;
     let angle = |kind, steps: usize| -> Result<(f64, Vec<[f64; 2]>)> {
-        let model = SheetModel::new(&sheet, 0.3, kind)?.with_gravity().with_pins(&[VertexId(0), VertexId(1)])?;
-        let mut run = Simulation::new(model, State::at_rest(x.clone()), Method::RattleComposition(Default::default()))?;
+        let model = SheetModel::new(&sheet, 0.3, kind)?
+            .with_gravity()
+            .with_pins(&[VertexId(0), VertexId(1)])?;
+        let mut run = Simulation::new(
+            model,
+            State::at_rest(x.clone()),
+            Method::RattleComposition(Default::default()),
+        )?;
         let mut curve = vec![[0.0, 1.2]];
-        course(&mut run, end / steps as f64, steps, |r, s| curve.push([r.t, s.x[6].atan2(-s.x[8])]))?;
+        course(&mut run, end / steps as f64, steps, |r, s| {
+            curve.push([r.t, s.x[6].atan2(-s.x[8])])
+        })?;
         Ok((curve[curve.len() - 1][1], curve))
     };
     let (lumped, lumped_curve) = angle(MassKind::Lumped, 400)?;
@@ -313,14 +379,26 @@ fn plate(effort: Effort) -> Result<Findings> {
         ),
         (lumped - plate).abs() > 0.1,
     );
-    f.at_most("held triangle, consistent mass: angle error after 2 s, rad", (consistent - plate).abs(), 1e-7);
-    f.at_most("held triangle, lumped mass: error against the pendulum of the whole altitude, rad", (lumped - exact(altitude, end)).abs(), 1e-7);
+    f.at_most(
+        "held triangle, consistent mass: angle error after 2 s, rad",
+        (consistent - plate).abs(),
+        1e-7,
+    );
+    f.at_most(
+        "held triangle, lumped mass: error against the pendulum of the whole altitude, rad",
+        (lumped - exact(altitude, end)).abs(),
+        1e-7,
+    );
     // A free shell: the products of inertia of a uniform one against those of its lumped masses.
     let sheet = tetrahedron()?;
     let mass = 0.4;
     let (tensor, centre, _) = inertia(&shell(&sheet, mass));
     let steps_of = |n: usize| 20 * n;
-    let counts = effort.pick(vec![100, 200], vec![100, 200, 400, 800], vec![100, 200, 400, 800, 1600]);
+    let counts = effort.pick(
+        vec![100, 200],
+        vec![100, 200, 400, 800],
+        vec![100, 200, 400, 800, 1600],
+    );
     let run = |kind: MassKind, method: Method, n: usize| -> Result<f64> {
         let model = SheetModel::new(&sheet, mass, kind)?;
         let mut run = Simulation::new(model, spinning(&sheet, centre), method)?;
@@ -331,8 +409,15 @@ fn plate(effort: Effort) -> Result<Findings> {
     let mut errors = Vec::new();
     let mut lines = Vec::new();
     for (k, (name, method)) in conservative().into_iter().enumerate() {
-        let list = counts.iter().map(|n| run(MassKind::Consistent, method.clone(), *n)).collect::<Result<Vec<f64>>>()?;
-        let points = counts.iter().zip(&list).map(|(n, e)| [1e3 * end / *n as f64, *e]).collect();
+        let list = counts
+            .iter()
+            .map(|n| run(MassKind::Consistent, method.clone(), *n))
+            .collect::<Result<Vec<f64>>>()?;
+        let points = counts
+            .iter()
+            .zip(&list)
+            .map(|(n, e)| [1e3 * end / *n as f64, *e])
+            .collect();
         lines.push(plot::series(k, &format!("consistent, {name}"), points));
         errors.push((name, list));
     }
@@ -340,7 +425,11 @@ fn plate(effort: Effort) -> Result<Findings> {
         .iter()
         .map(|n| run(MassKind::Lumped, conservative()[2].1.clone(), *n))
         .collect::<Result<_>>()?;
-    let points = counts.iter().zip(&lumped).map(|(n, e)| [1e3 * end / *n as f64, *e]).collect();
+    let points = counts
+        .iter()
+        .zip(&lumped)
+        .map(|(n, e)| [1e3 * end / *n as f64, *e])
+        .collect();
     lines.push(plot::series(3, "lumped, RATTLE composition", points));
     f.naive(
         "Lumped mass, a free tetrahedral shell",
@@ -351,7 +440,11 @@ fn plate(effort: Effort) -> Result<Findings> {
         lumped[lumped.len() - 1] > 1e-3,
     );
     for (name, list) in &errors {
-        let want = if *name == "RATTLE composition" { 4.0 } else { 2.0 };
+        let want = if *name == "RATTLE composition" {
+            4.0
+        } else {
+            2.0
+        };
         f.at_least(
             format!("free shell, consistent mass, {name}: order of convergence to Euler's rigid body (exact: {want})"),
             orders(list)[0],
@@ -363,11 +456,16 @@ fn plate(effort: Effort) -> Result<Findings> {
         errors[2].1.iter().copied().fold(f64::INFINITY, f64::min),
         effort.pick(1e-4, 1e-6, 1e-6),
     );
-    f.at_most("free shell, energy-momentum at 10 ms: edge strain", {
-        let model = SheetModel::new(&sheet, mass, MassKind::Consistent)?;
-        let mut run = Simulation::new(model, spinning(&sheet, centre), conservative()[0].1.clone())?;
-        course(&mut run, 1e-2, 100, |_, _| {})?.strain
-    }, STRAIN);
+    f.at_most(
+        "free shell, energy-momentum at 10 ms: edge strain",
+        {
+            let model = SheetModel::new(&sheet, mass, MassKind::Consistent)?;
+            let mut run =
+                Simulation::new(model, spinning(&sheet, centre), conservative()[0].1.clone())?;
+            course(&mut run, 1e-2, 100, |_, _| {})?.strain
+        },
+        STRAIN,
+    );
     f.here = "Both mass matrices are there; scenes say which one they use. The reference for the shell integrates Euler's equations with the inertia of \
               the uniform faces (a quadrature, not the mass matrix) and a quaternion."
         .into();
@@ -378,11 +476,29 @@ fn plate(effort: Effort) -> Result<Findings> {
         series: vec![
             plot::curve(1, "lumped", lumped_curve),
             plot::curve(0, "consistent", consistent_curve),
-            plot::guide("uniform plate", (0..=200).map(|k| [0.01 * f64::from(k), exact(0.5 * altitude, 0.01 * f64::from(k))]).collect()),
+            plot::guide(
+                "uniform plate",
+                (0..=200)
+                    .map(|k| {
+                        [
+                            0.01 * f64::from(k),
+                            exact(0.5 * altitude, 0.01 * f64::from(k)),
+                        ]
+                    })
+                    .collect(),
+            ),
         ],
         legend: crate::draw::Legend::Right,
     };
-    f.drawing("plate-held", &swing.draw(), "A triangle held at an edge: angle over time, and the exact motion of the uniform plate")?;
-    f.drawing("plate-free", &plot::log_log("step, ms", "position error after 2 s, m", lines), "A free tetrahedral shell against Euler's rigid body")?;
+    f.drawing(
+        "plate-held",
+        &swing.draw(),
+        "A triangle held at an edge: angle over time, and the exact motion of the uniform plate",
+    )?;
+    f.drawing(
+        "plate-free",
+        &plot::log_log("step, ms", "position error after 2 s, m", lines),
+        "A free tetrahedral shell against Euler's rigid body",
+    )?;
     Ok(f)
 }

@@ -2,7 +2,10 @@
 
 use super::case::number;
 use super::naive::{GAUSS_SEIDEL, gauss_seidel};
-use super::scenes::{FRAME, STRAIN, apart, at_rest, bumped, conservative, corner, course, damped, energy_momentum, held, methods, strain_bound};
+use super::scenes::{
+    FRAME, STRAIN, apart, at_rest, bumped, conservative, corner, course, damped, energy_momentum,
+    held, methods, strain_bound,
+};
 use super::{Case, Effort, Findings};
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
@@ -25,9 +28,15 @@ const ALTITUDE: &str = "The lengths determine the altitude only to their own err
 fn needle(base: f64, altitude: f64) -> Result<(SheetModel, Vec<f64>)> {
     let (s, c) = 1.0_f64.sin_cos();
     let x = vec![
-        0.0, -0.4 * base, 0.0,
-        0.0, 0.6 * base, 0.0,
-        altitude * s, 0.0, -altitude * c,
+        0.0,
+        -0.4 * base,
+        0.0,
+        0.0,
+        0.6 * base,
+        0.0,
+        altitude * s,
+        0.0,
+        -altitude * c,
     ];
     let sheet = Sheet::new(x.clone(), &[[0, 1, 2]])?;
     Ok((held(&sheet, &[VertexId(0), VertexId(1)])?, x))
@@ -48,10 +57,17 @@ fn squashed(level: u32, width: f64) -> Result<Sheet> {
 
 fn slivers(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
-    for (held_at, base, altitude) in [("short side", 1e-6, 1.0), ("long side", 1.0, 1e-3), ("long side", 1.0, 1e-6)] {
+    for (held_at, base, altitude) in [
+        ("short side", 1e-6, 1.0),
+        ("long side", 1.0, 1e-3),
+        ("long side", 1.0, 1e-6),
+    ] {
         let aspect = number(f64::max(base / altitude, altitude / base));
         let quarter = (altitude / 9.8_f64).sqrt() * complete_k(0.5_f64.sin().powi(2));
-        for (name, method) in [("BDF2", Method::default()), ("energy-momentum", energy_momentum())] {
+        for (name, method) in [
+            ("BDF2", Method::default()),
+            ("energy-momentum", energy_momentum()),
+        ] {
             let (model, x) = needle(base, altitude)?;
             let mut run = at_rest(model, &x, method)?;
             let n = 2000;
@@ -59,14 +75,22 @@ fn slivers(effort: Effort) -> Result<Findings> {
             let exact = swung(altitude, quarter);
             let error = apart(&run.state().x[6..], &exact) / altitude;
             let what = format!("one triangle of aspect {aspect} held at its {held_at}, {name}");
-            let check = f.at_most(format!("{what}: error after a quarter period, of its altitude"), c.if_finished(error), 1e-5);
+            let check = f.at_most(
+                format!("{what}: error after a quarter period, of its altitude"),
+                c.if_finished(error),
+                1e-5,
+            );
             check.remark(c.said());
             let known = held_at == "long side" && altitude < 1e-4 && name == "BDF2";
             if known {
                 check.limited(ALTITUDE);
             }
             let bound = strain_bound(&Sheet::new(x, &[[0, 1, 2]])?);
-            let check = f.at_most(format!("{what}: edge strain"), c.if_finished(c.strain), bound);
+            let check = f.at_most(
+                format!("{what}: edge strain"),
+                c.if_finished(c.strain),
+                bound,
+            );
             if known {
                 check.limited(ALTITUDE);
             }
@@ -76,7 +100,10 @@ fn slivers(effort: Effort) -> Result<Findings> {
     let (strain, _) = gauss_seidel(&held(&sheet, &[corner(1)])?, sheet.positions(), FRAME, 60);
     f.naive(
         GAUSS_SEIDEL,
-        format!("M^1 squashed to 1 m by 1 µm, 60 steps of 1/60 s: largest edge strain {}.", number(strain)),
+        format!(
+            "M^1 squashed to 1 m by 1 µm, 60 steps of 1/60 s: largest edge strain {}.",
+            number(strain)
+        ),
         strain > 1e-2,
     );
     let strip = generate::strip(20, 1.0, 1e-6 / 20.0, generate::Diagonals::UnionJack)?;
@@ -85,18 +112,32 @@ fn slivers(effort: Effort) -> Result<Findings> {
         let model = held(&strip, &[VertexId(0)])?;
         let mut run = at_rest(model, strip.positions(), method)?;
         let c = course(&mut run, FRAME, 60, |_, _| {})?;
-        f.at_most(format!("strip of 40 slivers (1 m by 50 nm) held at an end, {name}: edge strain in 1 s"), c.if_finished(c.strain), strain_bound(&strip))
-            .remark(c.said());
+        f.at_most(
+            format!(
+                "strip of 40 slivers (1 m by 50 nm) held at an end, {name}: edge strain in 1 s"
+            ),
+            c.if_finished(c.strain),
+            strain_bound(&strip),
+        )
+        .remark(c.said());
     }
-    let widths: &[f64] = effort.pick(&[1e-2, 1e-6], &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]);
+    let widths: &[f64] = effort.pick(
+        &[1e-2, 1e-6],
+        &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6],
+        &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6],
+    );
     for &width in widths {
         for (name, method) in damped() {
             let sheet = squashed(1, width)?;
             let mut run = at_rest(held(&sheet, &[corner(1)])?, sheet.positions(), method)?;
             let c = course(&mut run, FRAME, 60, |_, _| {})?;
             let strain = c.if_finished(c.strain);
-            let what = format!("M^1 squashed to 1 m by {} m, {name}: edge strain in 1 s", number(width));
-            f.at_most(what, strain, strain_bound(&sheet)).remark(c.said());
+            let what = format!(
+                "M^1 squashed to 1 m by {} m, {name}: edge strain in 1 s",
+                number(width)
+            );
+            f.at_most(what, strain, strain_bound(&sheet))
+                .remark(c.said());
             rows.push(vec![
                 number(width),
                 name.to_owned(),
@@ -109,7 +150,14 @@ fn slivers(effort: Effort) -> Result<Findings> {
     }
     f.table(
         "M^1 squashed in y, from flat, held at a corner, 60 steps of 1/60 s",
-        &["width, m", "method", "steps taken", "rejected", "edge strain", "energy gain, J"],
+        &[
+            "width, m",
+            "method",
+            "steps taken",
+            "rejected",
+            "edge strain",
+            "energy gain, J",
+        ],
         rows,
     );
     f.here = "Matrices are scaled by mean mass and rod length, lengths are relative rod by rod, and face areas are computed without cancellation; \
@@ -138,8 +186,15 @@ fn masses(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
     // Two triangles that open about their hinge, known in closed form.
     for (heavy, apex_mass, hinge_mass) in [("apexes", 1.0, 1e-8), ("hinge", 1e-8, 1.0)] {
-        let flap = Flap { apex_mass, hinge_mass, ..Flap::default() };
-        for (name, method) in conservative().into_iter().chain([("BDF2", Method::default())]) {
+        let flap = Flap {
+            apex_mass,
+            hinge_mass,
+            ..Flap::default()
+        };
+        for (name, method) in conservative()
+            .into_iter()
+            .chain([("BDF2", Method::default())])
+        {
             let mut run = Simulation::new(flap.model(), flap.start(), method)?;
             let what = format!("two hinged triangles, {heavy} 1e8 times heavier, {name}");
             let c = course(&mut run, 1e-3, 400, |_, _| {})?;
@@ -147,11 +202,19 @@ fn masses(effort: Effort) -> Result<Findings> {
                 "RATTLE composition" => 1e-8,
                 _ => 1e-4,
             };
-            f.at_most(format!("{what}: position error after 0.4 s, m"), c.if_finished(apart(&run.state().x, &flap.exact(0.4))), bound)
-                .remark(c.said());
+            f.at_most(
+                format!("{what}: position error after 0.4 s, m"),
+                c.if_finished(apart(&run.state().x, &flap.exact(0.4))),
+                bound,
+            )
+            .remark(c.said());
             if heavy == "apexes" {
                 let c = course(&mut run, 1e-3, 100, |_, _| {})?;
-                let check = f.at_most(format!("{what}: the same after another 0.1 s, through the snap"), c.if_finished(apart(&run.state().x, &flap.exact(0.5))), bound);
+                let check = f.at_most(
+                    format!("{what}: the same after another 0.1 s, through the snap"),
+                    c.if_finished(apart(&run.state().x, &flap.exact(0.5))),
+                    bound,
+                );
                 check.remark(c.said()).limited(SNAP);
             }
         }
@@ -159,7 +222,9 @@ fn masses(effort: Effort) -> Result<Findings> {
     // A checkerboard of light and heavy vertices.
     let board = |ratio: f64, bump: f64| -> Result<(SheetModel, Sheet)> {
         let sheet = bumped(1, bump)?;
-        let masses = (0..25).map(|i| if i % 2 == 0 { 0.004 } else { 0.004 * ratio }).collect();
+        let masses = (0..25)
+            .map(|i| if i % 2 == 0 { 0.004 } else { 0.004 * ratio })
+            .collect();
         let model = SheetModel::with_mass(&sheet, MassMatrix::from_vertex_masses(masses)?)?
             .with_gravity()
             .with_pins(&[VertexId(0)])?;
@@ -169,21 +234,31 @@ fn masses(effort: Effort) -> Result<Findings> {
     let (strain, _) = gauss_seidel(&model, sheet.positions(), FRAME, 60);
     f.naive(
         GAUSS_SEIDEL,
-        format!("Checkerboard of masses 1 : 1e8 on M^1, 60 steps of 1/60 s: largest edge strain {}.", number(strain)),
+        format!(
+            "Checkerboard of masses 1 : 1e8 on M^1, 60 steps of 1/60 s: largest edge strain {}.",
+            number(strain)
+        ),
         strain > 1e-2,
     );
     let ratios: &[f64] = effort.pick(&[1e2, 1e8], &[1e2, 1e4, 1e6, 1e8], &[1e2, 1e4, 1e6, 1e8]);
     let mut rows = Vec::new();
     for (state, bump) in [("flat", 0.0), ("bumped by 5 cm", 0.05)] {
         for &ratio in ratios {
-            let some = if bump > 0.0 { conservative().into_iter().take(1).collect() } else { Vec::new() };
+            let some = if bump > 0.0 {
+                conservative().into_iter().take(1).collect()
+            } else {
+                Vec::new()
+            };
             for (name, method) in damped().into_iter().chain(some) {
                 let (model, sheet) = board(ratio, bump)?;
                 let weight = 9.8 * model.mass().total();
                 let mut run = at_rest(model, sheet.positions(), method)?;
                 let c = course(&mut run, FRAME, 60, |_, _| {})?;
                 let check = f.at_most(
-                    format!("checkerboard 1 : {}, {state}, {name}: edge strain in 1 s", number(ratio)),
+                    format!(
+                        "checkerboard 1 : {}, {state}, {name}: edge strain in 1 s",
+                        number(ratio)
+                    ),
                     c.if_finished(c.strain),
                     STRAIN,
                 );
@@ -205,7 +280,15 @@ fn masses(effort: Effort) -> Result<Findings> {
     }
     f.table(
         "Checkerboard of light and heavy vertices on M^1, held at a corner, 60 steps of 1/60 s",
-        &["start", "ratio", "method", "steps taken", "rejected", "edge strain", "energy gain, of weight × 1 m"],
+        &[
+            "start",
+            "ratio",
+            "method",
+            "steps taken",
+            "rejected",
+            "edge strain",
+            "energy gain, of weight × 1 m",
+        ],
         rows,
     );
     f.here = "Residuals weigh light and heavy vertices alike, as accelerations.".into();
@@ -235,7 +318,11 @@ fn sizes(effort: Effort) -> Result<Findings> {
         Ok((run.state().x.iter().map(|x| x / length).collect(), c.said()))
     };
     for (name, method) in methods() {
-        let bump = if damped().iter().any(|d| d.0 == name) { 0.0 } else { 0.05 };
+        let bump = if damped().iter().any(|d| d.0 == name) {
+            0.0
+        } else {
+            0.05
+        };
         let (want, _) = run(bump, method.clone(), 0)?;
         let (mut worst, mut said) = (0.0_f64, None);
         for &power in powers {
@@ -244,7 +331,11 @@ fn sizes(effort: Effort) -> Result<Findings> {
             said = said.or(error);
         }
         f.at_most(
-            format!("{name}: largest difference after scaling back, sides {} m to {} m", number(4.0_f64.powi(powers[0])), number(4.0_f64.powi(powers[powers.len() - 1]))),
+            format!(
+                "{name}: largest difference after scaling back, sides {} m to {} m",
+                number(4.0_f64.powi(powers[0])),
+                number(4.0_f64.powi(powers[powers.len() - 1]))
+            ),
             if said.is_some() { f64::NAN } else { worst },
             0.0,
         )
@@ -258,13 +349,18 @@ fn sizes(effort: Effort) -> Result<Findings> {
         let strain = absolute(&model, sheet.positions(), FRAME * size.sqrt());
         parts.push((size, strain));
     }
-    let text: Vec<String> = parts.iter().map(|(s, e)| format!("{} at {} m", number(*e), number(*s))).collect();
+    let text: Vec<String> = parts
+        .iter()
+        .map(|(s, e)| format!("{} at {} m", number(*e), number(*s)))
+        .collect();
     f.naive(
         "Gauss-Seidel projection until every edge is right to 1 µm",
         format!("Largest edge strain in 20 steps: {}.", text.join(", ")),
         parts[2].1 > 1e3 * parts[0].1,
     );
-    f.here = format!("{steps} steps of M^1 at each size, damped methods from flat, conservative ones from a bump; no number in the solvers has a unit.");
+    f.here = format!(
+        "{steps} steps of M^1 at each size, damped methods from flat, conservative ones from a bump; no number in the solvers has a unit."
+    );
     Ok(f)
 }
 
@@ -286,7 +382,13 @@ fn absolute(model: &SheetModel, x: &[f64], h: f64) -> f64 {
                 let d: [f64; 3] = std::array::from_fn(|k| x[3 * a + k] - x[3 * b + k]);
                 let length = d.iter().map(|d| d * d).sum::<f64>().sqrt();
                 off = off.max((length - rest).abs());
-                let free = [a, b].map(|v| if model.is_pinned(VertexId(v as u32)) { 0.0 } else { 1.0 });
+                let free = [a, b].map(|v| {
+                    if model.is_pinned(VertexId(v as u32)) {
+                        0.0
+                    } else {
+                        1.0
+                    }
+                });
                 let sum: f64 = free.iter().sum();
                 for k in 0..3 {
                     let push = (length - rest) / (length * sum.max(1.0)) * d[k];

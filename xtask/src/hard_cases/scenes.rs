@@ -15,7 +15,10 @@ pub(super) const STRAIN: f64 = 1e-12;
 /// What is promised at positions of the given sheet: [`STRAIN`], or four units in the last place of the largest coordinate over the
 /// shortest rod where that is larger.
 pub(super) fn strain_bound(sheet: &Sheet) -> f64 {
-    let size = sheet.positions().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let size = sheet
+        .positions()
+        .iter()
+        .fold(0.0_f64, |m, x| m.max(x.abs()));
     let shortest = sheet.lengths().iter().fold(f64::INFINITY, |m, l| m.min(*l));
     // Sheets that move about reach twice the size of their rest positions.
     STRAIN.max(4.0 * f64::EPSILON * (2.0 * size / shortest + 1.0))
@@ -112,7 +115,11 @@ impl Course {
 
     /// NaN if the run ended early: no number of it is what was asked for.
     pub(super) fn if_finished(&self, value: f64) -> f64 {
-        if self.refusal.is_none() { value } else { f64::NAN }
+        if self.refusal.is_none() {
+            value
+        } else {
+            f64::NAN
+        }
     }
 }
 

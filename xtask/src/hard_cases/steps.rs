@@ -20,7 +20,11 @@ fn sizes(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
     let problem = Pendulum::default();
     let end = 0.1;
-    let counts: &[usize] = effort.pick(&[1, 10, 100, 1000], &[1, 3, 10, 30, 100, 1000, 10_000, 100_000], &[1, 3, 10, 30, 100, 1000, 10_000, 100_000]);
+    let counts: &[usize] = effort.pick(
+        &[1, 10, 100, 1000],
+        &[1, 3, 10, 30, 100, 1000, 10_000, 100_000],
+        &[1, 3, 10, 30, 100, 1000, 10_000, 100_000],
+    );
     let mut lines = Vec::new();
     for (k, (name, method)) in methods().enumerate() {
         let mut points = Vec::new();
@@ -38,7 +42,10 @@ fn sizes(effort: Effort) -> Result<Findings> {
             points.push([h, error]);
         }
         f.at_most(
-            format!("pendulum, {name}: edge strain, steps {} s to 0.1 s", number(end / counts[counts.len() - 1] as f64)),
+            format!(
+                "pendulum, {name}: edge strain, steps {} s to 0.1 s",
+                number(end / counts[counts.len() - 1] as f64)
+            ),
             if said.is_some() { f64::NAN } else { strain },
             STRAIN,
         )
@@ -48,11 +55,18 @@ fn sizes(effort: Effort) -> Result<Findings> {
             ("implicit Euler" | "projection", _) => 1e-6,
             _ => 1e-9,
         };
-        f.at_most(format!("pendulum, {name}: position error at the shortest step, m"), shortest, bound);
+        f.at_most(
+            format!("pendulum, {name}: position error at the shortest step, m"),
+            shortest,
+            bound,
+        );
         lines.push(plot::series(k, name, points));
     }
     // The sheet at its extremes.
-    for (h, steps) in [(1e-6, effort.pick(100, 2000, 10_000)), (0.1, effort.pick(10, 30, 300))] {
+    for (h, steps) in [
+        (1e-6, effort.pick(100, 2000, 10_000)),
+        (0.1, effort.pick(10, 30, 300)),
+    ] {
         for (name, method) in methods() {
             let damping = damped().iter().any(|d| d.0 == name);
             let mut run = hanging(1, if damping { 0.0 } else { 0.05 }, method)?;
@@ -61,13 +75,31 @@ fn sizes(effort: Effort) -> Result<Findings> {
                 last = r.potential + r.kinetic;
                 v = s.v.iter().fold(v, |m, v| m.max(v.abs()));
             })?;
-            f.at_most(format!("M^1, {name}, {steps} steps of {} s: edge strain", number(h)), c.if_finished(c.strain), STRAIN)
-                .remark(c.said());
+            f.at_most(
+                format!("M^1, {name}, {steps} steps of {} s: edge strain", number(h)),
+                c.if_finished(c.strain),
+                STRAIN,
+            )
+            .remark(c.said());
             let scale = c.kinetic.max(1e-12);
             if damping {
-                f.at_most(format!("M^1, {name}, steps of {} s: energy gained, of the largest kinetic energy", number(h)), c.if_finished(c.gain / scale), 0.15);
+                f.at_most(
+                    format!(
+                        "M^1, {name}, steps of {} s: energy gained, of the largest kinetic energy",
+                        number(h)
+                    ),
+                    c.if_finished(c.gain / scale),
+                    0.15,
+                );
             } else if name == "energy-momentum" && h > 1e-3 {
-                f.at_most(format!("M^1, {name}, steps of {} s: energy error, of the largest kinetic energy", number(h)), c.if_finished(c.drift / scale), 1e-8);
+                f.at_most(
+                    format!(
+                        "M^1, {name}, steps of {} s: energy error, of the largest kinetic energy",
+                        number(h)
+                    ),
+                    c.if_finished(c.drift / scale),
+                    1e-8,
+                );
             }
         }
     }
@@ -84,7 +116,12 @@ fn sizes(effort: Effort) -> Result<Findings> {
         }
         f.naive(
             TEXTBOOK,
-            format!("The pendulum for 10 s at {} s: edge strain {}{}.", number(h), number(strain), ended.map_or(String::new(), |e| format!("; {e}"))),
+            format!(
+                "The pendulum for 10 s at {} s: edge strain {}{}.",
+                number(h),
+                number(strain),
+                ended.map_or(String::new(), |e| format!("; {e}"))
+            ),
             strain > 1e-2,
         );
     }
@@ -92,7 +129,11 @@ fn sizes(effort: Effort) -> Result<Findings> {
               rounding of the positions takes over."
         .into();
     let drawing = plot::log_log("step, s", "position error after 0.1 s, m", lines);
-    f.drawing("step-sizes", &drawing, "A triangle held at an edge (exact pendulum): error against the step")?;
+    f.drawing(
+        "step-sizes",
+        &drawing,
+        "A triangle held at an edge (exact pendulum): error against the step",
+    )?;
     Ok(f)
 }
 
@@ -109,14 +150,19 @@ fn free_fall(effort: Effort) -> Result<Findings> {
     let (h, steps) = (1e-2, 100);
     for (state, displaced) in [("exactly flat", 0.0), ("crumpled", 0.3)] {
         let sheet = bumped(level, 0.0)?;
-        let model = || -> Result<SheetModel> { Ok(SheetModel::new(&sheet, 0.1, MassKind::Lumped)?.with_gravity()) };
+        let model = || -> Result<SheetModel> {
+            Ok(SheetModel::new(&sheet, 0.1, MassKind::Lumped)?.with_gravity())
+        };
         let mut x = sheet.positions().to_vec();
         if displaced > 0.0 {
             leave_flat(&model()?, &mut x, displaced, 2)?;
         }
         let outcome = textbook(&model()?, &x, h, steps);
         let (text, failed) = match outcome {
-            Ok((strain, _)) => (format!("M^{level}, {state}: edge strain {}.", number(strain)), strain > 1e-6),
+            Ok((strain, _)) => (
+                format!("M^{level}, {state}: edge strain {}.", number(strain)),
+                strain > 1e-6,
+            ),
             Err(e) => (format!("M^{level}, {state}, {e}."), true),
         };
         f.naive(TEXTBOOK, text, failed);
@@ -140,7 +186,9 @@ fn free_fall(effort: Effort) -> Result<Findings> {
                 }
                 before.clone_from(&s.v);
             })?;
-            let centre = |x: &[f64]| [0, 1, 2].map(|k| x.iter().skip(k).step_by(3).sum::<f64>() * 3.0 / x.len() as f64);
+            let centre = |x: &[f64]| {
+                [0, 1, 2].map(|k| x.iter().skip(k).step_by(3).sum::<f64>() * 3.0 / x.len() as f64)
+            };
             let (now, start) = (centre(&run.state().x), centre(&x));
             let shape = run
                 .state()
@@ -151,9 +199,17 @@ fn free_fall(effort: Effort) -> Result<Findings> {
                 .map(|(i, (a, b))| ((a - now[i % 3]) - (b - start[i % 3])).abs())
                 .fold(0.0, f64::max);
             let what = format!("M^{level} {state}, {name}");
-            f.at_most(format!("{what}: largest net rod force on a vertex, of its weight"), c.if_finished(force), 1e-9)
-                .remark(c.said());
-            f.at_most(format!("{what}: change of shape after 1 s, m"), c.if_finished(shape), 1e-9);
+            f.at_most(
+                format!("{what}: largest net rod force on a vertex, of its weight"),
+                c.if_finished(force),
+                1e-9,
+            )
+            .remark(c.said());
+            f.at_most(
+                format!("{what}: change of shape after 1 s, m"),
+                c.if_finished(shape),
+                1e-9,
+            );
             let t = h * steps as f64;
             let first = ["implicit Euler", "projection"].contains(&name);
             // Backward Euler falls by g h^2 n (n + 1) / 2 in its own discrete time; BDF2 starts with one such step.
@@ -165,9 +221,15 @@ fn free_fall(effort: Effort) -> Result<Findings> {
             let off = (0..3)
                 .map(|k| now[k] - start[k] - throw[k] * t + if k == 2 { fall } else { 0.0 })
                 .fold(0.0_f64, |m, d| m.max(d.abs()));
-            f.at_most(format!("{what}: centre off the method's parabola, m"), c.if_finished(off), 1e-9);
+            f.at_most(
+                format!("{what}: centre off the method's parabola, m"),
+                c.if_finished(off),
+                1e-9,
+            );
         }
     }
-    f.here = format!("M^{level} thrown with 3.2 m/s, {steps} steps of 10 ms. The parabola of the first-order methods is that of their discrete time.");
+    f.here = format!(
+        "M^{level} thrown with 3.2 m/s, {steps} steps of 10 ms. The parabola of the first-order methods is that of their discrete time."
+    );
     Ok(f)
 }
