@@ -342,7 +342,7 @@ fn collinear(effort: Effort) -> Result<Findings> {
             "With three known vertices on the x axis the place is ({}, {}, {}).",
             place.x, place.y, place.z
         ),
-        !(off < 1e-6),
+        off.is_nan() || off > 1e-6,
     );
     let refs = [&known[0], &known[1], &known[2]];
     let refused = place_f(refs, lengths, Branch::Above, 1e-9);
@@ -398,15 +398,14 @@ fn collinear(effort: Effort) -> Result<Findings> {
     let square = {
         // Exactly folded along one crease, so that all others are straight.
         let flat = generate::isotropic_square(1, 1.0)?;
-        let folded = flat.map_positions(|[x, y, _]| {
+        flat.map_positions(|[x, y, _]| {
             let (s, c) = 0.7_f64.sin_cos();
             if x > 0.5 {
                 [0.5 + c * (x - 0.5), y, s * (x - 0.5)]
             } else {
                 [x, y, 0.0]
             }
-        })?;
-        folded
+        })?
     };
     let options = AssignmentOptions {
         pins: vec![corner(1)],

@@ -63,7 +63,7 @@ fn start(effort: Effort) -> Result<Findings> {
             let mut run = super::scenes::at_rest(model, sheet.positions(), method)?;
             let mut potential = 0.0_f64;
             let c = course(&mut run, super::scenes::FRAME, 60, |r, _| {
-                potential = potential.min(r.potential)
+                potential = potential.min(r.potential);
             })?;
             let what = format!("M^{level}, {name}");
             f.at_most(

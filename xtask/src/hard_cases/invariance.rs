@@ -145,12 +145,15 @@ pub(crate) const SYMMETRY: Case = Case {
 /// Twin runs start this far apart, metres.
 const TWIN: f64 = 1e-10;
 
+/// A map of positions onto those of the reference.
+type Back = Box<dyn Fn(&[f64]) -> Vec<f64>>;
+
 /// A scene that moves like the reference: its sheet, pin, gravity, and the map of its positions onto those of the reference.
 struct Image {
     sheet: Sheet,
     pin: VertexId,
     gravity: [f64; 3],
-    back: Box<dyn Fn(&[f64]) -> Vec<f64>>,
+    back: Back,
 }
 
 impl Image {

@@ -66,7 +66,7 @@ fn drape(effort: Effort) -> Result<Findings> {
             let mut run = at_rest(model, sheet.positions(), Method::default())?;
             let mut kinetic = 0.0;
             let c = course(&mut run, FRAME, effort.pick(60, 900, 1800), |r, _| {
-                kinetic = r.kinetic
+                kinetic = r.kinetic;
             })?;
             let x = run.state().x.clone();
             let (depth, shadow) = shape(sheet, &x, pin);

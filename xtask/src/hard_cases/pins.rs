@@ -22,6 +22,15 @@ pub(crate) const OVER_PINNED: Case = Case {
 const NO_ROOM: &str = "Rods pulled straight between pins leave a vertex no room: displacements d across the line change lengths by d² only, rod forces are \
                     unbounded, and the iteration closes in linearly.";
 
+/// What is held, the sheet, its pins, the largest displacement allowed, and why it is known to fail.
+type Scene<'a> = (
+    &'a str,
+    &'a isosheet_mesh::Sheet,
+    &'a [VertexId],
+    f64,
+    Option<&'a str>,
+);
+
 fn over_pinned(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
     let level = 1;
@@ -73,7 +82,7 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
         isosheet_coords::bent_square(&flat, level, isosheet_coords::BentState::Cylinder),
         &flat.face_indices(),
     )?;
-    let scenes: [(&str, &isosheet_mesh::Sheet, &[VertexId], f64, Option<&str>); 9] = [
+    let scenes: [Scene<'_>; 9] = [
         ("everything held", &flat, &all, 0.0, None),
         (
             "bumped, held all around",

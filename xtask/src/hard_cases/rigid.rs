@@ -363,7 +363,7 @@ fn plate(effort: Effort) -> Result<Findings> {
         )?;
         let mut curve = vec![[0.0, 1.2]];
         course(&mut run, end / steps as f64, steps, |r, s| {
-            curve.push([r.t, s.x[6].atan2(-s.x[8])])
+            curve.push([r.t, s.x[6].atan2(-s.x[8])]);
         })?;
         Ok((curve[curve.len() - 1][1], curve))
     };

@@ -263,7 +263,7 @@ fn masses(effort: Effort) -> Result<Findings> {
                     STRAIN,
                 );
                 check.remark(c.said());
-                if ratio > 1e7 {
+                if ratio > 1e7 || (ratio > 1e5 && bump == 0.0) {
                     check.limited(FLUTTER);
                 }
                 rows.push(vec![

@@ -16,6 +16,14 @@ pub(crate) const SIZES: Case = Case {
     run: sizes,
 };
 
+/// What tiny steps meet near the flat state.
+const TINY_AND_FLAT: &str = "While the folds are still so small that the displacement of a step is near the tolerance of the lengths, the minimisation of a \
+                             damped step does not get below its start and refuses it.";
+
+/// Why RATTLE refuses some falls of exactly flat sheets.
+const ROUND_OFF: &str = "RATTLE solves for the rods' impulses also where they are zero; dependent rods answer round-off in their lengths with impulses that \
+                         buckle the sheet. The energy-momentum method asks first whether the forces alone leave the rods as they are.";
+
 fn sizes(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
     let problem = Pendulum::default();
@@ -53,6 +61,8 @@ fn sizes(effort: Effort) -> Result<Findings> {
         let bound = match (name, effort) {
             (_, Effort::Quick) => 1e-3,
             ("implicit Euler" | "projection", _) => 1e-6,
+            // Lengths that err by 1e-12 over a step of 1e-6 s leave velocities of 1e-6 m/s open, for 0.1 s.
+            ("BDF2", _) => 1e-7,
             _ => 1e-9,
         };
         f.at_most(
@@ -69,7 +79,7 @@ fn sizes(effort: Effort) -> Result<Findings> {
     ] {
         for (name, method) in methods() {
             let damping = damped().iter().any(|d| d.0 == name);
-            let mut run = hanging(1, if damping { 0.0 } else { 0.05 }, method)?;
+            let mut run = hanging(1, 0.05, method)?;
             let (mut v, mut last) = (0.0_f64, 0.0);
             let c = course(&mut run, h, steps, |r, s| {
                 last = r.potential + r.kinetic;
@@ -100,6 +110,29 @@ fn sizes(effort: Effort) -> Result<Findings> {
                     c.if_finished(c.drift / scale),
                     1e-8,
                 );
+            }
+        }
+    }
+    for (name, method) in damped() {
+        for h in [1e-6, 0.1] {
+            let mut run = hanging(1, 0.0, method.clone())?;
+            let c = course(
+                &mut run,
+                h,
+                effort.pick(30, if h < 1e-3 { 2000 } else { 30 }, 2000),
+                |_, _| {},
+            )?;
+            let check = f.at_most(
+                format!(
+                    "M^1 from exactly flat, {name}, steps of {} s: edge strain",
+                    number(h)
+                ),
+                c.if_finished(c.strain),
+                STRAIN,
+            );
+            check.remark(c.said());
+            if h < 1e-3 {
+                check.limited(TINY_AND_FLAT);
             }
         }
     }
@@ -202,7 +235,8 @@ fn free_fall(effort: Effort) -> Result<Findings> {
             f.at_most(
                 format!("{what}: largest net rod force on a vertex, of its weight"),
                 c.if_finished(force),
-                1e-9,
+                // Lengths good to 1e-12 leave accelerations of 1e-12 m / h^2 open, more along weak directions.
+                1e-6,
             )
             .remark(c.said());
             f.at_most(
@@ -218,6 +252,7 @@ fn free_fall(effort: Effort) -> Result<Findings> {
                 "BDF2" => 4.9 * (t * t + 1.5 * h * h),
                 _ => 4.9 * t * t,
             };
+            let known = displaced == 0.0 && name.starts_with("RATTLE");
             let off = (0..3)
                 .map(|k| now[k] - start[k] - throw[k] * t + if k == 2 { fall } else { 0.0 })
                 .fold(0.0_f64, |m, d| m.max(d.abs()));
@@ -226,6 +261,12 @@ fn free_fall(effort: Effort) -> Result<Findings> {
                 c.if_finished(off),
                 1e-9,
             );
+            if known {
+                let from = f.checks.len() - 3;
+                f.checks[from..].iter_mut().for_each(|c| {
+                    c.limited(ROUND_OFF);
+                });
+            }
         }
     }
     f.here = format!(
