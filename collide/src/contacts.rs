@@ -61,8 +61,10 @@ use touch::Touch;
 ///   closer than the true cylinder by up to `radius (1 - cos(pi / segments))`.
 /// * triangle surface, open or closed: vertices and its faces, faces and its vertices, edges and its
 ///   edges. An open one has two sides.
-/// * the sheet itself: vertices and faces, edges and edges without a common vertex, with the factor of
-///   [`crate::ParallelMollifier`] for edges.
+/// * the sheet itself: vertices and faces, edges and edges without a common vertex.
+///
+/// Two edges have the factor of [`crate::ParallelMollifier`], without which their energy has a kink where
+/// they are parallel.
 ///
 /// A gap next to an edge of the mesh belongs to several pairs at once, and counts for each: that
 /// stiffens the barrier there by a small factor and keeps it smooth.
@@ -81,7 +83,8 @@ pub struct Contacts {
     options: ContactOptions,
     ccd: CcdOptions,
     mesh: ContactMesh,
-    lengths: Vec<f64>,
+    /// Squared rest lengths of the edges.
+    lengths2: Vec<f64>,
     /// The face with the smallest height, and that height.
     lowest: (u32, f64),
     mean_mass: f64,
@@ -135,7 +138,7 @@ impl Contacts {
             options,
             ccd: options.ccd(),
             mesh: ContactMesh::from_topology(model.topology()),
-            lengths: model.rods().lengths().to_vec(),
+            lengths2: model.rods().lengths().iter().map(|l| l * l).collect(),
             lowest: smallest_height(model),
             mean_mass: model.mean_mass(),
             law: GapPotential::new(Barrier::new(options.activation, 0.0)?, 1.0),
@@ -192,7 +195,7 @@ impl Contacts {
                 reach,
             });
         }
-        self.itself = Some(SelfContact::new(coefficients, &self.lengths));
+        self.itself = Some(SelfContact::new(coefficients));
         Ok(self)
     }
 
@@ -227,6 +230,7 @@ impl Contacts {
             dx: &self.still,
             reach: self.options.reach(),
             ccd: &self.ccd,
+            lengths2: &self.lengths2,
         }
     }
 
@@ -269,6 +273,7 @@ impl Contacts {
             dx,
             reach,
             ccd: &self.ccd,
+            lengths2: &self.lengths2,
         };
         let mut limit = 1.0;
         for body in &mut self.bodies {
@@ -330,7 +335,8 @@ impl Contacts {
         let body_touches = touched.list.iter().filter_map(|touch| {
             let body = &self.bodies[touch.key.body? as usize];
             let velocity = body.step_velocity(&touch.foot);
-            Some(touch.force(&self.law) * touch.normal.dot(&velocity))
+            let pushed = touch.force(&self.law) * touch.normal.dot(&velocity);
+            Some(pushed - touch.couple(&self.law).dot(&body.step_turn()))
         });
         body_touches.sum()
     }
@@ -425,11 +431,7 @@ impl Contact for Contacts {
             let Some(b) = touch.key.body else { continue };
             let body = &self.bodies[b as usize];
             let to_come = (1.0 - self.step.s) * body.step_velocity(&touch.foot);
-            let [_, _, curvature] = self.law.derivatives(touch.gap);
-            let change = -scale * curvature * touch.normal.dot(&to_come) * touch.normal;
-            for (v, w) in touch.vertices.into_iter().zip(touch.weights) {
-                add(out, v, w * change);
-            }
+            touch.shift(&self.law, &to_come, |v, g| add(out, v, scale * g));
         }
     }
 
@@ -525,6 +527,11 @@ impl Contact for Contacts {
             if let Some(b) = r.key.body {
                 let place = self.bodies[b as usize].material_place(&r.point);
                 push(b, r.force(&self.step.x0, x, &self.bodies), place);
+            }
+        }
+        for touch in &self.touches(x).list {
+            if let Some(b) = touch.key.body {
+                loads[b as usize].torque += touch.couple(&self.law);
             }
         }
         loads

@@ -2,11 +2,11 @@
 
 use super::options::Coefficients;
 use super::path::{Course, RestOfStep, StepMotion};
-use super::touch::{Key, Kind, Touch};
+use super::touch::{Key, Kind, Parallel, Touch};
 use crate::distance::{Closest, edge_edge, point_triangle};
 use crate::{
     BroadPhase, CcdOptions, ContactGeometry, ContactMesh, CrossCandidates, Obstacle, ObstacleError,
-    Shape,
+    ParallelMollifier, Shape,
 };
 use nalgebra::{Isometry3, Matrix3, Point3, UnitQuaternion, Vector3};
 
@@ -66,6 +66,8 @@ pub(super) struct SheetMotion<'a> {
     /// Distance below which the barrier acts, metres.
     pub(super) reach: f64,
     pub(super) ccd: &'a CcdOptions,
+    /// Squared rest lengths of the edges.
+    pub(super) lengths2: &'a [f64],
 }
 
 /// The vertex with a number.
@@ -261,6 +263,11 @@ impl Body {
     /// Velocity of the surface now at a place in space times the duration of the step, metres.
     pub(super) fn step_velocity(&self, place: &Vector3<f64>) -> Vector3<f64> {
         self.form.velocity(&(place - self.origin))
+    }
+
+    /// Rotation vector of the step, radians.
+    pub(super) fn step_turn(&self) -> Vector3<f64> {
+        self.form.turn()
     }
 
     /// A point of the form in its own frame, from its place now.
@@ -486,7 +493,12 @@ impl Body {
                 let foot = -wc * c - wd * d;
                 let vertices = [edge[0], edge[1], edge[0], edge[0]];
                 let key = key(Kind::EdgeEdge, [e, g]);
-                out.push(make(key, vertices, [wp, wq, 0.0, 0.0], n, foot, gap));
+                let touch = make(key, vertices, [wp, wq, 0.0, 0.0], n, foot, gap);
+                let (u, v) = (self.frame * (q - p), self.frame * (d - c));
+                let length2 = sheet.lengths2[e as usize];
+                let mollifier = ParallelMollifier::new(length2, v.norm_squared());
+                let parallel = Parallel::new(u, v, &mollifier);
+                out.push(Touch { parallel, ..touch });
             }
         }
     }

@@ -47,6 +47,10 @@ impl StepMotion {
         self.shift + self.turn.cross(arm)
     }
 
+    pub(super) fn turn(&self) -> Vector3<f64> {
+        self.turn
+    }
+
     pub(super) fn pose(&self, s: f64) -> Isometry3<f64> {
         if s >= 1.0 {
             return self.end;

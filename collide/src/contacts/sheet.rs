@@ -11,16 +11,13 @@ use nalgebra::Vector3;
 #[derive(Debug, Clone)]
 pub(super) struct SelfContact {
     pub(super) coefficients: Coefficients,
-    /// Squared rest length of each edge.
-    lengths2: Vec<f64>,
     pub(super) pairs: Candidates,
 }
 
 impl SelfContact {
-    pub(super) fn new(coefficients: Coefficients, lengths: &[f64]) -> Self {
+    pub(super) fn new(coefficients: Coefficients) -> Self {
         Self {
             coefficients,
-            lengths2: lengths.iter().map(|l| l * l).collect(),
             pairs: Candidates::default(),
         }
     }
@@ -41,6 +38,7 @@ impl SelfContact {
             dx,
             reach,
             ccd,
+            ..
         } = sheet;
         let half_way = ccd.separation + 0.5 * (reach - ccd.separation);
         let mut limit = limit;
@@ -92,9 +90,10 @@ impl SelfContact {
             let places = points(x, vertices);
             let closest = edge_edge(&places);
             if let Some(touch) = touch(sheet, Kind::EdgeEdge, [e, g], vertices, &closest) {
-                let lengths2 = [e, g].map(|e| self.lengths2[e as usize]);
+                let lengths2 = [e, g].map(|e| sheet.lengths2[e as usize]);
                 let mollifier = ParallelMollifier::new(lengths2[0], lengths2[1]);
-                let parallel = Parallel::new(&places, &mollifier);
+                let [a, b, c, d] = places;
+                let parallel = Parallel::new(b - a, d - c, &mollifier);
                 out.push(Touch { parallel, ..touch });
             }
         }

@@ -41,7 +41,7 @@ pub(super) struct Touch {
     pub(super) gap: f64,
     /// Closest point of the body, in space, metres; zero for the sheet with itself.
     pub(super) foot: Vector3<f64>,
-    /// For two edges of the sheet that are nearly parallel.
+    /// For two edges that are nearly parallel.
     pub(super) parallel: Option<Parallel>,
 }
 
@@ -56,12 +56,20 @@ pub(super) struct Parallel {
 }
 
 impl Parallel {
-    /// `None` where the factor is one.
-    pub(super) fn new(x: &[Vector3<f64>; 4], mollifier: &ParallelMollifier) -> Option<Self> {
-        let (u, v) = (x[1] - x[0], x[3] - x[2]);
+    /// Of two edge vectors in space; `None` where the factor is one.
+    pub(super) fn new(
+        u: Vector3<f64>,
+        v: Vector3<f64>,
+        mollifier: &ParallelMollifier,
+    ) -> Option<Self> {
         let threshold = mollifier.threshold();
         let y = u.cross(&v).norm_squared() / threshold;
         (y < 1.0).then_some(Self { u, v, threshold, y })
+    }
+
+    /// Derivative of the factor by `|u x v|^2`, times two: `dm/dx = rate J^T (u x v)`.
+    fn rate(&self) -> f64 {
+        4.0 * (1.0 - self.y) / self.threshold
     }
 
     /// The factor `m`.
@@ -102,21 +110,89 @@ impl Touch {
         let along = self.factor() * slope * self.normal;
         let mut parts = self.weights.map(|w| w * along);
         if let Some(p) = &self.parallel {
-            let rate = 4.0 * (1.0 - p.y) / p.threshold * value;
             let turned = p.pull_back(&p.u.cross(&p.v));
-            for (part, t) in parts.iter_mut().zip(turned) {
-                *part += rate * t;
+            for (part, t) in parts.iter_mut().zip(turned).take(self.points()) {
+                *part += p.rate() * value * t;
             }
         }
-        for (i, part) in parts.into_iter().enumerate() {
-            if self.takes_part(i) {
-                add(self.vertices[i], part);
-            }
+        for (i, part) in parts.into_iter().enumerate().take(self.points()) {
+            add(self.vertices[i], part);
         }
     }
 
-    fn takes_part(&self, i: usize) -> bool {
-        self.weights[i] != 0.0 || self.parallel.is_some()
+    /// Number of vertices of the sheet that take part; others have weight zero.
+    fn points(&self) -> usize {
+        match (self.key.kind, self.key.body) {
+            (Kind::Vertex, _) | (Kind::VertexFace, Some(_)) => 1,
+            (Kind::EdgeEdge, Some(_)) => 2,
+            (Kind::FaceVertex, _) => 3,
+            (Kind::VertexFace | Kind::EdgeEdge, None) => 4,
+        }
+    }
+
+    /// Couple on the body besides the force at the foot, newton metres: that of the mollifier, which
+    /// turns the edges of sheet and body towards each other.
+    pub(super) fn couple(&self, law: &GapPotential) -> Vector3<f64> {
+        match &self.parallel {
+            Some(p) if self.key.body.is_some() => {
+                let [_, _, _, pull] = p.pull_back(&p.u.cross(&p.v));
+                -p.rate() * law.value(self.gap) * p.v.cross(&pull)
+            }
+            _ => Vector3::zeros(),
+        }
+    }
+
+    /// Minus the Hessian times a common displacement `u` of the sheet's vertices: calls `add` with vertices
+    /// and forces (newtons).
+    pub(super) fn shift(
+        &self,
+        law: &GapPotential,
+        u: &Vector3<f64>,
+        mut add: impl FnMut(u32, Vector3<f64>),
+    ) {
+        let along = self.normal.dot(u);
+        let stiffness = self.stiffness(law);
+        let turn = stiffness.turned_along();
+        for i in 0..self.points() {
+            let mut change = stiffness.normal * self.weights[i] * self.normal;
+            if let Some(turn) = &turn {
+                change += stiffness.mixed * turn[i];
+            }
+            add(self.vertices[i], -along * change);
+        }
+    }
+
+    fn stiffness(&self, law: &GapPotential) -> Stiffness {
+        let [value, slope, curvature] = law.derivatives(self.gap);
+        let normal = self.factor() * curvature;
+        let Some(p) = self.parallel else {
+            return Stiffness {
+                normal,
+                mixed: 0.0,
+                turning: 0.0,
+                rest: 0.0,
+                parallel: None,
+            };
+        };
+        let across = p.u.cross(&p.v);
+        let size = across.norm();
+        let axis = if size > 0.0 {
+            across / size
+        } else {
+            self.normal
+        };
+        let [second, third] = complement(&axis);
+        let stiff = 4.0 * value / p.threshold;
+        // The directions p and J^T axis are coupled.
+        let [normal, mixed, turning] =
+            nearest_semidefinite(normal, slope * p.rate() * size, stiff * (1.0 - 3.0 * p.y));
+        Stiffness {
+            normal,
+            mixed,
+            turning,
+            rest: stiff * (1.0 - p.y),
+            parallel: Some((p, [axis, second, third])),
+        }
     }
 
     /// The Hessian of the energy without the curvature of the distance: `m phi'' p p^T` with
@@ -127,31 +203,24 @@ impl Touch {
     /// add the derivatives of the mollifier, `m = (2 - y) y` with `y = |u x v|^2 / e`, in the four
     /// directions `p` and `J^T z`, `J = d(u x v)/dx`, with the same omission.
     pub(super) fn hessian(&self, law: &GapPotential, sink: &mut dyn CouplingSink) {
-        let [value, slope, curvature] = law.derivatives(self.gap);
-        let normal = self.factor() * curvature;
-        let Some(p) = &self.parallel else {
-            let block = normal * self.normal * self.normal.transpose();
+        let stiffness = self.stiffness(law);
+        let Some((p, [axis, second, third])) = &stiffness.parallel else {
+            let block = stiffness.normal * self.normal * self.normal.transpose();
             add_weighted(&self.vertices, &self.weights, &block, sink);
             return;
         };
-        let across = p.u.cross(&p.v);
-        let size = across.norm();
-        let axis = if size > 0.0 {
-            across / size
-        } else {
-            self.normal
-        };
-        let (second, third) = complement(&axis);
-        let stiff = 4.0 * value / p.threshold;
-        // The directions p and J^T axis are coupled.
-        let (a, c) = (normal, stiff * (1.0 - 3.0 * p.y));
-        let b = 4.0 * slope * (1.0 - p.y) * size / p.threshold;
-        let [a, b, c] = nearest_semidefinite(a, b, c);
-        let rest = stiff * (1.0 - p.y);
+        let Stiffness {
+            normal: a,
+            mixed: b,
+            turning: c,
+            rest,
+            ..
+        } = stiffness;
         let along = self.weights.map(|w| w * self.normal);
-        let turns = [axis, second, third].map(|z| p.pull_back(&z));
-        for i in 0..4 {
-            for j in i..4 {
+        let turns = [axis, second, third].map(|z| p.pull_back(z));
+        let points = self.points();
+        for i in 0..points {
+            for j in i..points {
                 let block = a * along[i] * along[j].transpose()
                     + b * (along[i] * turns[0][j].transpose() + turns[0][i] * along[j].transpose())
                     + c * turns[0][i] * turns[0][j].transpose()
@@ -164,12 +233,34 @@ impl Touch {
     }
 }
 
+/// The coefficients of a Hessian.
+struct Stiffness {
+    /// Of `p p^T`.
+    normal: f64,
+    /// Of `p t^T + t p^T` with `t = J^T axis`.
+    mixed: f64,
+    /// Of `t t^T`.
+    turning: f64,
+    /// Of the same with the second and third axis.
+    rest: f64,
+    /// The axes: that of `u x v` and two across.
+    parallel: Option<(Parallel, [Vector3<f64>; 3])>,
+}
+
+impl Stiffness {
+    fn turned_along(&self) -> Option<[Vector3<f64>; 4]> {
+        self.parallel
+            .as_ref()
+            .map(|(p, [axis, _, _])| p.pull_back(axis))
+    }
+}
+
 /// Two unit vectors that make a basis with a unit vector.
-fn complement(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+fn complement(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let mut other = Vector3::zeros();
     other[axis.iamin()] = 1.0;
     let second = axis.cross(&other).normalize();
-    (second, axis.cross(&second))
+    [second, axis.cross(&second)]
 }
 
 /// The positive part of the symmetric matrix `[a b; b c]`.

@@ -175,6 +175,51 @@ fn bodies_match_differences() {
     }
 }
 
+/// A sheet whose edges lie along those of a box below, up to a twist.
+fn aligned(twist: f64, friction: Coefficients) -> (Contacts, Vec<f64>) {
+    let sheet = sheet(1);
+    let model = model(&sheet);
+    let half = [0.25, 0.25, 0.1];
+    let pose = Isometry3::translation(0.5, 0.5, -0.12);
+    let mut x = waves(&sheet, 0.0, twist);
+    for (p, flat) in x.chunks_mut(3).zip(sheet.positions().chunks(3)) {
+        p[0] = flat[0] + twist * p[2];
+        p[1] = flat[1] + twist * p[0] - 0.3 * p[2];
+    }
+    let mut contacts = Contacts::new(&model, options(&model, 0.1))
+        .unwrap()
+        .with_body(still(Shape::Cuboid { half }, pose), friction)
+        .unwrap();
+    contacts
+        .check_start(&model, &State::at_rest(x.clone()))
+        .unwrap();
+    contacts.begin(0.0, H, &x);
+    let touched = contacts.touches(&x);
+    assert!(touched.list.iter().any(|t| t.parallel.is_some()));
+    drop(touched);
+    (contacts, x)
+}
+
+#[test]
+fn parallel_edges_of_sheet_and_body_match_differences() {
+    for twist in [0.02, 1e-3] {
+        let (mut contacts, x) = aligned(twist, Coefficients::FRICTIONLESS);
+        check_gradient("aligned", &contacts, &x);
+        check_hessian("aligned", &mut contacts, &x, 0.3);
+    }
+    // Exactly parallel: no kink.
+    let (contacts, x) = aligned(0.0, Coefficients::FRICTIONLESS);
+    let before = gradient(&contacts, &x);
+    let scale = largest(&before);
+    for i in 0..x.len() {
+        let mut y = x.clone();
+        y[i] += 1e-7;
+        let after = gradient(&contacts, &y);
+        let jump = after.iter().zip(&before).map(|(a, b)| (a - b).abs());
+        assert!(jump.fold(0.0, f64::max) < 1e-3 * scale);
+    }
+}
+
 /// A strip folded over itself, all pairs within reach at once.
 fn folded(gap: f64, friction: Coefficients, skew: f64) -> (Contacts, Vec<f64>) {
     let sheet = sheet(1);
@@ -287,8 +332,12 @@ fn check_friction(name: &str, contacts: &Contacts, x0: &[f64], y: &[f64], smooth
 /// The loads balance the gradient, in force and torque.
 #[test]
 fn action_is_reaction() {
-    for (name, shape) in shapes() {
-        let (contacts, x) = over(shape, Coefficients::equal(0.5), 0.02);
+    let mut scenes: Vec<_> = shapes()
+        .into_iter()
+        .map(|(name, shape)| (name, over(shape, Coefficients::equal(0.5), 0.02)))
+        .collect();
+    scenes.push(("aligned", aligned(0.02, Coefficients::equal(0.5))));
+    for (name, (contacts, x)) in scenes {
         let y: Vec<f64> = (0..x.len())
             .map(|i| x[i] + 1e-4 * (3.0 * i as f64).sin())
             .collect();
@@ -300,7 +349,7 @@ fn action_is_reaction() {
             for (p, g) in x.as_chunks::<3>().0.iter().zip(g.as_chunks::<3>().0) {
                 let (p, g) = (Vector3::from(*p), Vector3::from(*g));
                 force += g;
-                torque += p.cross(&g);
+                torque += (p - contacts.bodies[0].origin()).cross(&g);
             }
             let scale = load.force.norm();
             assert!(scale > 0.0);
