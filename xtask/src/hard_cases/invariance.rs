@@ -288,7 +288,7 @@ fn symmetry(effort: Effort) -> Result<Findings> {
             }
         }
         let mut lines = vec![plot::guide(
-            "unit × measured growth",
+            "error of a step × growth",
             growth
                 .iter()
                 .enumerate()

@@ -66,7 +66,7 @@ fn rest(effort: Effort) -> Result<Findings> {
             1e-9,
         )
         .remark(c.said());
-        lines.push(plot::series(k, name, points));
+        lines.push(plot::curve(k, name, points));
     }
     f.here =
         "M^1, steps of 1/60 s, vertex by vertex compared with the start after every step.".into();
