@@ -238,6 +238,7 @@ fn saddle_matrix_is_the_jacobian_of_the_momentum_and_length_equations() {
             left: &x,
             right: &right,
             potentials: Some((0.0, &x, scale)),
+            constraints: &[],
         };
         let (got, got_rods) = matrix.product(&model, &system, &direction, &other);
         let error = got
@@ -250,7 +251,14 @@ fn saddle_matrix_is_the_jacobian_of_the_momentum_and_length_equations() {
         let (mut momentum, mut lengths) = (got, got_rods);
         let mut effort = crate::Effort::default();
         matrix
-            .solve(&model, &system, &mut momentum, &mut lengths, &mut effort)
+            .solve(
+                &model,
+                &system,
+                &mut momentum,
+                &mut lengths,
+                &mut [],
+                &mut effort,
+            )
             .expect("regular");
         for (solved, given) in momentum.iter().zip(&direction) {
             assert!((solved - given).abs() < 1e-9);

@@ -1,9 +1,11 @@
 //! The energy-momentum integrator.
 
+use crate::constraint::conservative::ConservativeRows;
 use crate::contact::ContactWork;
 use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
 use crate::minimiser::not_converged;
 use crate::primal::{dot, strain_floor, velocity_round_off};
+use crate::reaction::{Balance, ForceTime};
 use crate::report::{Accepted, Effort, Path, StepError};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
@@ -80,6 +82,8 @@ pub struct EnergyMomentum {
     momentum: Vec<f64>,
     difference: Vec<f64>,
     rods: Vec<f64>,
+    constraints: ConservativeRows,
+    balance: Balance,
 }
 
 impl EnergyMomentum {
@@ -104,6 +108,8 @@ impl EnergyMomentum {
             momentum: vec![0.0; n],
             difference: vec![0.0; n],
             rods: vec![0.0; m],
+            constraints: ConservativeRows::new(model),
+            balance: Balance::new(model, ForceTime::Mean),
         })
     }
 
@@ -133,7 +139,7 @@ impl EnergyMomentum {
     /// impulses are zero, and there is no system to solve, whose rods, dependent in a flat sheet, would answer round-off in their
     /// lengths with impulses. Asked of lumped masses only.
     fn falls_freely(&mut self, model: &SheetModel, state: &State, h: f64) -> bool {
-        if model.mass().edge.is_some() {
+        if model.mass().edge.is_some() || model.has_drives() || !model.constraints().is_empty() {
             return false;
         }
         let t = state.t + 0.5 * h;
@@ -153,12 +159,29 @@ impl EnergyMomentum {
             .all(|(r, l)| r.abs() <= still * l)
     }
 
+    /// Mean forces of the supports over the step.
+    fn set_balance(&mut self, model: &SheetModel, state: &State, h: f64) {
+        let (w, v) = (&self.w, &state.v);
+        if !self.balance.begin(model, |i| 2.0 * (w[i] - v[i]) / h) {
+            return;
+        }
+        let t = state.t + 0.5 * h;
+        self.balance.add_potentials(model, t, &self.xm, 1.0);
+        self.balance.add_applied(model, t, &self.xm, &self.w, 1.0);
+        self.balance
+            .add_rods(model, &self.xm, &self.trial, -1.0 / h);
+        self.balance
+            .add_loads(self.constraints.loads(&self.constraints.impulses, 1.0 / h));
+        self.balance.finish(model);
+    }
+
     /// Sets the negative residuals; returns the relative momentum residual and the strain.
     fn residuals(&mut self, model: &SheetModel, state: &State, h: f64) -> (f64, f64) {
         for i in 0..self.w.len() {
             self.x1[i] = state.x[i] + h * self.w[i];
             self.xm[i] = state.x[i] + 0.5 * h * self.w[i];
         }
+        model.place_pins(state.t + h, &mut self.x1);
         self.discrete_force(model, state, h);
         model.applied_force(state.t + 0.5 * h, &self.xm, &self.w, &mut self.applied);
         for i in 0..self.w.len() {
@@ -175,6 +198,16 @@ impl EnergyMomentum {
         model
             .rods()
             .apply_transpose_add(&self.xm, &self.trial, &mut self.momentum);
+        self.constraints.push_between(
+            model,
+            state.t + 0.5 * h,
+            (&state.x, &self.xm, &self.x1),
+            -0.5 * h,
+        );
+        self.constraints
+            .add_impulses(model, &self.constraints.impulses, &mut self.momentum);
+        self.constraints
+            .linearise(model, state.t + h, &self.x1, 1.0 / h);
         model.clear_pinned(&mut self.momentum);
         let worst = model.largest_acceleration(&self.momentum);
         model.rods().residual_into(&self.x1, &mut self.rods);
@@ -190,13 +223,32 @@ impl EnergyMomentum {
         } else {
             0.0
         };
-        (relative, model.rods().max_strain(&self.x1))
+        let strain = model.rods().max_strain(&self.x1);
+        (relative, self.constraints.worst(strain))
+    }
+}
+
+/// Sets the mean velocities over a step of pins in prescribed motion; uses `x` for room.
+pub(crate) fn mean_pin_velocities(
+    model: &SheetModel,
+    state: &State,
+    h: f64,
+    x: &mut [f64],
+    w: &mut [f64],
+) {
+    model.place_pins(state.t + h, x);
+    for i in model.moving_pins().flat_map(|v| 3 * v..3 * v + 3) {
+        w[i] = (x[i] - state.x[i]) / h;
     }
 }
 
 impl Integrator for EnergyMomentum {
     fn demand(&self) -> RodDemand {
         RodDemand::Independent
+    }
+
+    fn balance(&self) -> &Balance {
+        &self.balance
     }
 
     fn step(
@@ -219,11 +271,13 @@ impl Integrator for EnergyMomentum {
         for (t, i) in self.trial.iter_mut().zip(&self.impulse) {
             *t = ratio * i;
         }
+        self.constraints.begin(model, state.t, &state.x, ratio);
         if self.falls_freely(model, state, h) {
             self.trial.fill(0.0);
         } else {
             self.w.copy_from_slice(&state.v);
         }
+        mean_pin_velocities(model, state, h, &mut self.x1, &mut self.w);
         let (mut residual, mut strain) = self.residuals(model, state, h);
         let mut previous = f64::INFINITY;
         let mut path = Path::Newton;
@@ -257,10 +311,18 @@ impl Integrator for EnergyMomentum {
                 left: &self.xm,
                 right: &self.x1,
                 potentials: Some((state.t + 0.5 * h, &self.xm, 0.5 * h * h)),
+                constraints: &self.constraints.entries,
             };
             let used = self
                 .matrix
-                .solve(model, &system, &mut self.momentum, &mut self.rods, effort)
+                .solve(
+                    model,
+                    &system,
+                    &mut self.momentum,
+                    &mut self.rods,
+                    &mut self.constraints.rhs,
+                    effort,
+                )
                 .map_err(|source| StepError::Linalg { t: state.t, source })?;
             path = path.max(used);
             for (w, d) in self.w.iter_mut().zip(&self.momentum) {
@@ -269,6 +331,7 @@ impl Integrator for EnergyMomentum {
             for (l, d) in self.trial.iter_mut().zip(&self.rods) {
                 *l += d;
             }
+            self.constraints.correct();
             (residual, strain) = self.residuals(model, state, h);
         };
         if !converged {
@@ -279,15 +342,19 @@ impl Integrator for EnergyMomentum {
         // Impulses of dependent rods are not unique, and what a regularised solve makes of round-off in their lengths would
         // buckle the next step: they are found anew there.
         self.impulse_step = if path == Path::Newton { h } else { 0.0 };
+        self.constraints.keep();
+        self.set_balance(model, state, h);
         let work = h * dot(&self.applied, &self.w);
         for i in 0..self.w.len() {
             state.v[i] = 2.0 * self.w[i] - state.v[i];
         }
+        model.set_pin_velocities(state.t + h, h, &mut state.v);
         state.x.copy_from_slice(&self.x1);
         state.t += h;
         Ok(Accepted {
             residual,
             work,
+            driven: 0.0,
             path,
             contact: ContactWork::default(),
         })

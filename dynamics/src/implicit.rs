@@ -2,6 +2,7 @@
 
 use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
 use crate::minimiser::Minimiser;
+use crate::reaction::Balance;
 use crate::report::{Accepted, Effort, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
@@ -92,6 +93,10 @@ impl Integrator for ImplicitEuler {
         true
     }
 
+    fn balance(&self) -> &Balance {
+        &self.minimiser.balance
+    }
+
     fn step(
         &mut self,
         scene: Scene<'_>,
@@ -118,6 +123,7 @@ impl Integrator for ImplicitEuler {
         Ok(Accepted {
             residual,
             work,
+            driven: 0.0,
             path,
             contact,
         })
@@ -180,6 +186,10 @@ impl Integrator for Bdf2 {
         true
     }
 
+    fn balance(&self) -> &Balance {
+        &self.minimiser.balance
+    }
+
     fn step(
         &mut self,
         scene: Scene<'_>,
@@ -224,6 +234,7 @@ impl Integrator for Bdf2 {
         Ok(Accepted {
             residual,
             work,
+            driven: 0.0,
             path,
             contact,
         })

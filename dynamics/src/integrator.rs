@@ -1,6 +1,7 @@
 //! What all integrators have in common.
 
 use crate::contact::Contact;
+use crate::reaction::Balance;
 use crate::report::{Accepted, Effort, StepError};
 use crate::{SheetModel, State};
 
@@ -35,6 +36,14 @@ pub trait Integrator: Send {
     /// to forget.
     fn restart(&mut self) -> bool {
         false
+    }
+
+    /// The forces of the supports in the last accepted step. Meaningless before.
+    fn balance(&self) -> &Balance;
+
+    /// Whether the method has a place for one-sided vertex constraints.
+    fn takes_one_sided(&self) -> bool {
+        self.demand() == RodDemand::Nothing
     }
 
     /// Whether the method has a place for contact.

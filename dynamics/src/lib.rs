@@ -51,12 +51,14 @@
 //! methods. [`StepReport::gap`] is there for it.
 
 pub mod chart;
+pub mod constraint;
 pub mod contact;
 #[cfg(test)]
 mod contact_tests;
 #[cfg(test)]
 mod derivative_tests;
 mod energy_momentum;
+mod feasibility;
 mod implicit;
 mod integrator;
 mod method;
@@ -68,6 +70,7 @@ mod project;
 mod projection_step;
 mod rank;
 mod rattle;
+mod reaction;
 mod report;
 mod saddle;
 mod simulation;
@@ -75,15 +78,18 @@ mod start;
 mod state;
 mod subdivide;
 
+pub use constraint::VertexConstraint;
 pub use energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
+pub use feasibility::Excess;
 pub use implicit::{Bdf2, ImplicitEuler, ImplicitOptions};
 pub use integrator::{Integrator, OptionsError, RodDemand, Scene};
-pub use method::{Fallback, Method, StepControl};
+pub use method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use model::{ModelError, SheetModel};
 pub use potential::{Force, Gravity, HessianSink, Potential, PotentialShape, STANDARD_GRAVITY};
 pub use projection_step::{ProjectionStep, ProjectionStepOptions};
 pub use rank::{RodRank, rod_rank};
 pub use rattle::{Rattle, RattleComposition, RattleOptions};
+pub use reaction::{Balance, Reaction, Support};
 pub use report::{Accepted, Effort, Path, StepError, StepReport};
 pub use simulation::{Simulation, SimulationError};
 pub use start::{leave_flat, project_positions};

@@ -72,6 +72,19 @@ pub struct StepControl {
     pub min_fraction: f64,
     /// What to do when even that is rejected. Default [`Fallback::Refuse`].
     pub fallback: Fallback,
+    /// What to do when moving supports ask for more than the rods allow. Default [`Unsatisfiable::Refuse`].
+    pub unsatisfiable: Unsatisfiable,
+}
+
+/// What to do when moving supports ask for more than the rods allow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Unsatisfiable {
+    /// Return [`StepError::Unsatisfiable`](crate::StepError::Unsatisfiable).
+    #[default]
+    Refuse,
+    /// Stop at the taut state, the last one accepted: [`Simulation::step`](crate::Simulation::step) succeeds,
+    /// time stands still, and the report says so ([`StepReport::taut`](crate::StepReport::taut)).
+    StopTaut,
 }
 
 /// What to do when an integrator rejects even the smallest sub-step.
@@ -91,6 +104,7 @@ impl Default for StepControl {
         Self {
             min_fraction: 2.0_f64.powi(-14),
             fallback: Fallback::Refuse,
+            unsatisfiable: Unsatisfiable::Refuse,
         }
     }
 }

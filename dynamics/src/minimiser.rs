@@ -1,11 +1,13 @@
 //! Minimisation of an implicit step's incremental potential under the length constraints.
 
 use crate::ImplicitOptions;
+use crate::constraint::rows::{Bending, VertexRows};
 use crate::contact::{Contact, ContactWork};
 use crate::integrator::Scene;
 use crate::model::PINNED;
 use crate::primal::{PrimalMatrix, dot, penalties, strain_floor};
 use crate::project::{Aim, Held, Projector};
+use crate::reaction::{Balance, ForceTime};
 use crate::report::{Effort, Path, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
@@ -70,6 +72,8 @@ pub(crate) struct Minimiser {
     c: Vec<f64>,
     /// Edge strain from which the projection takes over where there is contact.
     ready: f64,
+    /// Vertices on curves and surfaces.
+    vertex_rows: VertexRows,
     /// Where inertia alone would take the sheet.
     pub(crate) target: Vec<f64>,
     force: Vec<f64>,
@@ -84,6 +88,7 @@ pub(crate) struct Minimiser {
     start: Vec<f64>,
     /// Where prescribed motions end, at the pinned vertices.
     end: Vec<f64>,
+    pub(crate) balance: Balance,
 }
 
 /// The problem of one step.
@@ -139,6 +144,7 @@ impl Minimiser {
             density: vec![0.0; m],
             c: vec![0.0; m],
             ready: READY,
+            vertex_rows: VertexRows::new(model, options.stiffness),
             target: vec![0.0; n],
             force: vec![0.0; n],
             applied: vec![0.0; n],
@@ -149,6 +155,7 @@ impl Minimiser {
             x: vec![0.0; n],
             start: vec![0.0; n],
             end: vec![0.0; n],
+            balance: Balance::new(model, ForceTime::End),
             options,
         })
     }
@@ -162,9 +169,11 @@ impl Minimiser {
         let inertia = model.kinetic_energy(&self.difference);
         let work = dot(&self.applied, &self.difference);
         model.rods().residual_into(&self.x, &mut self.c);
+        self.vertex_rows.evaluate(model, t, &self.x);
         let rods: f64 = (0..self.c.len())
             .map(|e| (self.multipliers[e] + 0.5 * self.penalty[e] * self.c[e]) * self.c[e])
-            .sum();
+            .sum::<f64>()
+            + self.vertex_rows.value();
         // Round-off of c is that of the squared lengths.
         let rod_scale: f64 = self
             .multipliers
@@ -181,6 +190,8 @@ impl Minimiser {
             .zip(model.rods().lengths())
             .map(|(p, l)| p * (f64::EPSILON * l * (size + l)).powi(2))
             .sum();
+        let (load, vertex_still) = self.vertex_rows.scales(model, size);
+        let (rod_scale, still) = (rod_scale + load, still + vertex_still);
         let mut potential = model.potential_energy(t, &self.x);
         if let Some(contact) = step.contact() {
             potential += contact.energy(&self.x);
@@ -215,6 +226,7 @@ impl Minimiser {
         model
             .rods()
             .apply_transpose_add(&self.x, &self.density, &mut self.gradient);
+        self.vertex_rows.add_gradient(model, &mut self.gradient);
         if let Some(contact) = step.contact() {
             contact.add_gradient(&self.x, h * h, &mut self.gradient);
         }
@@ -256,7 +268,7 @@ impl Minimiser {
         self.along.copy_from_slice(&self.penalty);
         self.across.copy_from_slice(&self.density);
         effort.factorisations += 1;
-        self.assemble(step);
+        self.assemble(step, Bending::Full);
         self.add_potentials(step);
         if self.matrix.factorize().is_ok() {
             return Ok(false);
@@ -272,23 +284,25 @@ impl Minimiser {
             }
         }
         effort.factorisations += 1;
-        self.assemble(step);
+        self.assemble(step, Bending::Positive);
         self.add_potentials(step);
         if self.matrix.factorize().is_ok() {
             return Ok(true);
         }
         // The potentials are concave here: leave their curvature out.
         effort.factorisations += 1;
-        self.assemble(step);
+        self.assemble(step, Bending::Positive);
         self.matrix.factorize()?;
         Ok(true)
     }
 
-    /// Masses, rods and contact.
-    fn assemble(&mut self, step: &Step<'_, '_>) {
+    /// Masses, rods, vertex constraints and contact.
+    fn assemble(&mut self, step: &Step<'_, '_>, bending: Bending) {
         let model = step.scene.model;
         self.matrix
             .assemble(model, &self.x, &self.along, &self.across);
+        self.vertex_rows
+            .add_hessian(model, &mut self.matrix, bending);
         if let Some(contact) = step.contact() {
             self.matrix
                 .add_contact(model, contact, &self.x, step.h * step.h);
@@ -336,8 +350,9 @@ impl Minimiser {
         let ratio = (h / self.multiplier_step).powi(2);
         if MULTIPLIER_RATIOS.contains(&ratio) {
             self.multipliers.iter_mut().for_each(|m| *m *= ratio);
+            self.vertex_rows.scale(ratio);
         } else {
-            self.multipliers.fill(0.0);
+            self.forget();
         }
         self.multiplier_step = h;
         let mut step = Step {
@@ -348,13 +363,13 @@ impl Minimiser {
         };
         let stored = self.begin(&mut step, span);
         self.x.copy_from_slice(&state.x);
-        let driven = self.is_driven(&step);
+        let driven = self.is_driven(&step) || step.scene.model.has_drives();
         let bound = (!driven).then(|| self.merit(&step));
         self.predict(&mut step);
         self.ready = READY;
         let mut result = self.descend(&mut step, effort);
         if !(result.is_ok() && self.is_below(bound.as_ref(), &step)) {
-            self.multipliers.fill(0.0);
+            self.forget();
             self.ready = self.options.strain_tolerance;
             self.begin(&mut step, span);
             self.x.copy_from_slice(&state.x);
@@ -363,7 +378,7 @@ impl Minimiser {
             }
             let (residual, path) = self.descend(&mut step, effort)?;
             if !self.is_below(bound.as_ref(), &step) {
-                self.multipliers.fill(0.0);
+                self.forget();
                 let strain = step.scene.model.rods().max_strain(&self.x);
                 return Err(not_converged(state.t, span, effort, residual, strain));
             }
@@ -378,7 +393,7 @@ impl Minimiser {
             work.play = play;
             let gap = contact.gap(&self.x);
             if gap <= 0.0 || gap.is_nan() {
-                self.multipliers.fill(0.0);
+                self.forget();
                 return Err(StepError::Contact {
                     t: state.t,
                     h: span,
@@ -387,6 +402,33 @@ impl Minimiser {
             }
         }
         Ok((residual, path, work))
+    }
+
+    /// Forces of the supports at the minimum of the augmented Lagrangian, where momentum is in balance. (The projection that
+    /// follows moves the sheet by as much as the multipliers changed over the penalty.)
+    fn set_balance(&mut self, step: &Step<'_, '_>) {
+        let (model, state, per) = (step.scene.model, step.state, 1.0 / (step.h * step.h));
+        let (x, target) = (&self.x, &self.target);
+        if !self.balance.begin(model, |i| per * (x[i] - target[i])) {
+            return;
+        }
+        self.balance.add_potentials(model, step.t, &self.x, 1.0);
+        self.balance
+            .add_applied(model, state.t, &state.x, &state.v, 1.0);
+        if let Some(contact) = step.contact() {
+            self.balance.add_contact(contact, &self.x);
+        }
+        self.balance
+            .add_rods(model, &self.x, &self.multipliers, per);
+        let rows = &self.vertex_rows;
+        self.balance.add_constraints(rows, &rows.multipliers, per);
+        self.balance.finish(model);
+    }
+
+    /// Drops the multipliers.
+    fn forget(&mut self) {
+        self.multipliers.fill(0.0);
+        self.vertex_rows.clear();
     }
 
     /// Puts pins' ends and bodies in place for a step; returns the barrier's energy.
@@ -486,6 +528,8 @@ impl Minimiser {
             for e in 0..self.c.len() {
                 self.multipliers[e] += self.penalty[e] * self.c[e];
             }
+            self.vertex_rows.update();
+            self.set_balance(step);
             if !converged {
                 strain = f64::INFINITY;
                 break;
@@ -506,6 +550,8 @@ impl Minimiser {
                 Aim {
                     tolerance,
                     max_iterations: self.options.max_projections,
+                    t: step.t,
+                    loads: &self.vertex_rows.multipliers,
                 },
                 effort,
             );
@@ -513,11 +559,12 @@ impl Minimiser {
                 return Ok((residual, path));
             }
             model.rods().residual_into(&self.x, &mut self.c);
+            self.vertex_rows.evaluate(model, step.t, &self.x);
         }
         if strain == f64::INFINITY {
             strain = model.rods().max_strain(&self.x);
         }
-        self.multipliers.fill(0.0);
+        self.forget();
         let (t, h) = (step.state.t, step.t - step.state.t);
         Err(not_converged(t, h, effort, residual, strain))
     }
@@ -552,7 +599,7 @@ impl Minimiser {
             self.matrix.solve(model, &self.gradient, &mut self.dx);
             let slope = -dot(&self.dx, &self.gradient);
             if !slope.is_finite() {
-                self.multipliers.fill(0.0);
+                self.forget();
                 let (t, h) = (step.state.t, step.t - step.state.t);
                 return Err(not_converged(t, h, effort, *residual, f64::NAN));
             }

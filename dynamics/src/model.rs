@@ -1,9 +1,13 @@
 //! The mechanical system: rods, masses, pins, potentials and forces.
 
+use crate::constraint::VertexConstraint;
+use crate::constraint::rows::point;
 use crate::potential::{Force, Gravity, Potential, PotentialShape, STANDARD_GRAVITY};
+use crate::reaction::Support;
 use isosheet_mesh::{
     LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
 };
+use nalgebra::Vector3;
 use std::fmt;
 
 /// Why a model cannot be built.
@@ -77,9 +81,22 @@ pub struct SheetModel {
     free_index: Vec<u32>,
     free_count: usize,
     moving_pins: Vec<MovingPin>,
+    constraints: Vec<VertexConstraint>,
     mean_length: f64,
     mean_mass: f64,
     shortest_rods: Vec<f64>,
+}
+
+/// Spacing of the differences in time, relative to the step: their truncation error is 1e-8 of the fifth
+/// derivative's part in the motion over a step.
+const TIME_SPACING: f64 = 1e-2;
+
+/// Derivative of a motion by five-point differences.
+fn time_derivative(at: impl Fn(f64) -> Vector3<f64>, t: f64, span: f64) -> Vector3<f64> {
+    let d = TIME_SPACING * span.abs();
+    let near = at(t + d) - at(t - d);
+    let far = at(t + 2.0 * d) - at(t - 2.0 * d);
+    (8.0 * near - far) / (12.0 * d)
 }
 
 impl SheetModel {
@@ -135,6 +152,7 @@ impl SheetModel {
             free_index: (0..n as u32).collect(),
             free_count: n,
             moving_pins: Vec::new(),
+            constraints: Vec::new(),
             topology,
         })
     }
@@ -224,6 +242,94 @@ impl SheetModel {
             position: Box::new(position),
         });
         Ok(model)
+    }
+
+    /// Holds a vertex on a curve or surface. The start state has to have it there.
+    ///
+    /// # Errors
+    /// [`ModelError::NoSuchVertex`].
+    pub fn with_constraint(mut self, constraint: VertexConstraint) -> Result<Self, ModelError> {
+        if constraint.vertex().index() >= self.free_index.len() {
+            return Err(ModelError::NoSuchVertex {
+                vertex: constraint.vertex(),
+                vertex_count: self.free_index.len(),
+            });
+        }
+        self.constraints.push(constraint);
+        Ok(self)
+    }
+
+    /// The vertices on curves and surfaces.
+    pub fn constraints(&self) -> &[VertexConstraint] {
+        &self.constraints
+    }
+
+    /// Largest distance by which a vertex constraint is broken, metres; `None` if there is none.
+    pub fn largest_violation(&self, t: f64, x: &[f64]) -> Option<f64> {
+        self.constraints
+            .iter()
+            .map(|c| c.violation(t, &point(x, c.vertex())))
+            // `max` would pass over a value that is not a number.
+            .reduce(|m, v| if v.is_nan() { v } else { m.max(v) })
+    }
+
+    /// The first support whose motion is not finite at time `t`, and the value.
+    pub(crate) fn find_bad_motion(&self, t: f64) -> Option<(Support, f64)> {
+        let pins = self.moving_pins.iter().flat_map(|pin| {
+            let at = (pin.position)(t);
+            at.map(|c| (Support::Pin(VertexId(pin.vertex as u32)), c))
+        });
+        let constraints = self.constraints.iter().enumerate().flat_map(|(index, c)| {
+            let vertex = c.vertex();
+            c.bad_pose(t)
+                .map(|value| (Support::Constraint { index, vertex }, value))
+        });
+        pins.chain(constraints).find(|(_, c)| !c.is_finite())
+    }
+
+    /// The first support other than a fixed pin.
+    pub(crate) fn first_beyond_fixed_pins(&self) -> Option<Support> {
+        let pin = self.moving_pins.first();
+        let pin = pin.map(|p| Support::Pin(VertexId(p.vertex as u32)));
+        pin.or(self.constraints.first().map(|c| Support::Constraint {
+            index: 0,
+            vertex: c.vertex(),
+        }))
+    }
+
+    /// Whether pins or vertex constraints move.
+    pub(crate) fn has_drives(&self) -> bool {
+        !self.moving_pins.is_empty() || self.constraints.iter().any(VertexConstraint::moves)
+    }
+
+    /// Whether anything holds the sheet.
+    pub(crate) fn has_supports(&self) -> bool {
+        self.free_count < self.free_index.len() || !self.constraints.is_empty()
+    }
+
+    /// Sets the velocities of pins at time `t`, those in prescribed motion by differences over a
+    /// part of the time `span`.
+    pub(crate) fn set_pin_velocities(&self, t: f64, span: f64, v: &mut [f64]) {
+        for pin in &self.moving_pins {
+            let at = |s: f64| Vector3::from((pin.position)(s));
+            let rate = time_derivative(at, t, span);
+            v[3 * pin.vertex..3 * pin.vertex + 3].copy_from_slice(rate.as_slice());
+        }
+    }
+
+    /// Rates `dc/dt` of the vertex constraints at fixed positions, metres per second.
+    pub(crate) fn constraint_rates(&self, t: f64, span: f64, x: &[f64]) -> Vec<Vector3<f64>> {
+        self.constraints
+            .iter()
+            .map(|c| {
+                let p = point(x, c.vertex());
+                if c.moves() {
+                    time_derivative(|s| c.at(s, &p).value, t, span)
+                } else {
+                    Vector3::zeros()
+                }
+            })
+            .collect()
     }
 
     /// Moves the pins in prescribed motion to where they are at time `t`.

@@ -222,6 +222,16 @@ impl PrimalMatrix {
         }
     }
 
+    /// Adds a symmetric block at a vertex.
+    pub(crate) fn add_block(&mut self, model: &SheetModel, v: VertexId, block: &Matrix3<f64>) {
+        let mut sink = Sink {
+            matrix: self,
+            model,
+            scale: 1.0,
+        };
+        sink.add_vertex(v, block);
+    }
+
     pub(crate) fn factorize(&mut self) -> Result<(), LinalgError> {
         self.llt.factorize()
     }

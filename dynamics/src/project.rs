@@ -1,9 +1,11 @@
 //! Projection of positions onto the rest lengths and of velocities onto their rates.
 
 use crate::SheetModel;
+use crate::constraint::rows::VertexRows;
 use crate::contact::Contact;
 use crate::primal::{PrimalMatrix, penalties};
 use crate::report::Effort;
+use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -21,6 +23,8 @@ const SMALLEST_STEP: f64 = 1e-2;
 /// Part of the tolerance that a projection with contact aims for. It keeps what round-off adds in later steps
 /// below the tolerance, and so a sheet at rest from having to fold.
 const RESERVE: f64 = 0.1;
+/// Passes of the method of multipliers: each contracts by the penalty, except along rods that are dependent.
+const PASSES: usize = 3;
 
 /// Growth of the displacement that opens a flat patch from one attempt to the next: the next
 /// one has to leave the basin that the last one fell back into.
@@ -50,15 +54,23 @@ pub(crate) struct Projector {
     rhs: Vec<f64>,
     dx: Vec<f64>,
     start: Vec<f64>,
+    /// Multipliers of the rods found by [`Projector::balance`]; newtons per metre.
+    pub(crate) multipliers: Vec<f64>,
+    /// Vertices on curves and surfaces.
+    pub(crate) vertex_rows: VertexRows,
     rng: ChaCha8Rng,
 }
 
 /// When a projection stops.
 #[derive(Clone, Copy)]
-pub(crate) struct Aim {
+pub(crate) struct Aim<'a> {
     /// Largest edge strain wanted.
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: usize,
+    /// Time of the vertex constraints, seconds.
+    pub(crate) t: f64,
+    /// What loads the vertex constraints already: one-sided ones under load are kept as equalities. May be empty.
+    pub(crate) loads: &'a [Vector3<f64>],
 }
 
 /// Contact that a projection has to keep.
@@ -80,6 +92,8 @@ impl Projector {
             rhs: vec![0.0; n],
             dx: vec![0.0; n],
             start: vec![0.0; n],
+            multipliers: vec![0.0; m],
+            vertex_rows: VertexRows::new(model, 1.0),
             rng: ChaCha8Rng::seed_from_u64(0),
         }
     }
@@ -92,12 +106,14 @@ impl Projector {
         matrix: &mut PrimalMatrix,
         mut held: Option<Held<'_>>,
         x: &mut [f64],
-        aim: Aim,
+        aim: Aim<'_>,
         effort: &mut Effort,
     ) -> f64 {
         let Aim {
             tolerance,
             max_iterations,
+            t,
+            loads,
         } = aim;
         let rods = model.rods();
         // Where the sheet rests, what is left adds up from step to step.
@@ -109,7 +125,13 @@ impl Projector {
         let mut penalty = PROJECTION_PENALTY;
         let mut opening = 1.0;
         rods.residual_into(x, &mut self.c);
-        let mut strain = rods.max_strain(x);
+        for (i, c) in model.constraints().iter().enumerate() {
+            let pressed = loads.get(i).is_some_and(|l| l.x < 0.0);
+            self.vertex_rows.bound[i] = pressed || !c.is_one_sided();
+        }
+        self.vertex_rows.mended.fill(false);
+        self.vertex_rows.evaluate(model, t, x);
+        let mut strain = self.worst(model, x);
         for _ in 0..max_iterations {
             // The negation also stops at a strain that is not a number.
             if strain <= goal || strain.is_nan() {
@@ -128,6 +150,9 @@ impl Projector {
                 break;
             }
             matrix.assemble(model, x, &self.along, &self.across);
+            self.rhs.fill(0.0);
+            self.vertex_rows
+                .add_projection(model, penalty, matrix, &mut self.rhs);
             if let Some(held) = &held {
                 matrix.add_contact(model, held.contact, x, held.scale);
             }
@@ -138,7 +163,6 @@ impl Projector {
                 penalty = (penalty * 1e-2).max(PENALTY_RANGE.0);
                 continue;
             }
-            self.rhs.fill(0.0);
             rods.apply_transpose_add(x, &self.w, &mut self.rhs);
             matrix.solve(model, &self.rhs, &mut self.dx);
             let before = self.error(model);
@@ -157,6 +181,7 @@ impl Projector {
                     *xi = self.start[i] + length * self.dx[i];
                 }
                 rods.residual_into(x, &mut self.c);
+                self.vertex_rows.evaluate(model, t, x);
                 let after = self.error(model);
                 if after <= (1.0 - SUFFICIENT_DECREASE * length) * before || length < SMALLEST_STEP
                 {
@@ -164,8 +189,8 @@ impl Projector {
                 }
                 length *= 0.5;
             };
-            if after > RESERVE * before && rods.max_strain(x) <= tolerance {
-                strain = rods.max_strain(x);
+            strain = self.worst(model, x);
+            if after > RESERVE * before && strain <= tolerance {
                 break;
             }
             if length < SMALLEST_STEP {
@@ -177,15 +202,31 @@ impl Projector {
                 self.unfold(model, held.as_mut(), x, size);
                 opening *= OPENING_GROWTH;
                 rods.residual_into(x, &mut self.c);
+                self.vertex_rows.evaluate(model, t, x);
             } else if length < limit {
                 penalty *= 0.1;
             } else if limit == 1.0 && after > 0.1 * before {
                 penalty *= 10.0;
             }
             penalty = penalty.clamp(PENALTY_RANGE.0, PENALTY_RANGE.1);
-            strain = rods.max_strain(x);
+            strain = self.worst(model, x);
         }
         strain
+    }
+
+    /// Largest strain or relative violation of a vertex constraint, those being evaluated.
+    fn worst(&self, model: &SheetModel, x: &[f64]) -> f64 {
+        let strain = model.rods().max_strain(x);
+        if model.constraints().is_empty() {
+            return strain;
+        }
+        let violation = self.vertex_rows.largest_violation(model);
+        // `max` would pass over a value that is not a number.
+        if violation.is_nan() {
+            violation
+        } else {
+            strain.max(violation)
+        }
     }
 
     /// Displaces every free vertex by up to `relative` lengths of its shortest rod.
@@ -210,7 +251,47 @@ impl Projector {
         }
     }
 
-    /// Projects `v` in place onto `G(x) v = 0`, nearest in the sense of the mass matrix, by
+    /// Releases one-sided constraints that the last projection of positions did not press on.
+    pub(crate) fn release(&mut self, model: &SheetModel) {
+        for (i, c) in model.constraints().iter().enumerate() {
+            self.vertex_rows.bound[i] = !c.is_one_sided() || self.vertex_rows.mended[i];
+        }
+    }
+
+    /// Sets the multipliers of rods and bound vertex constraints that balance the forces `imbalance` (`3V`, overwritten) best, in the
+    /// sense of the inverse mass matrix: `imbalance + G^T multipliers` is smallest. Uses the factor of
+    /// [`Projector::velocities`], at the same positions.
+    pub(crate) fn balance(
+        &mut self,
+        model: &SheetModel,
+        matrix: &mut PrimalMatrix,
+        x: &[f64],
+        imbalance: &mut [f64],
+    ) {
+        self.multipliers.fill(0.0);
+        self.vertex_rows.clear();
+        self.rhs.copy_from_slice(imbalance);
+        for _ in 0..PASSES {
+            model.clear_pinned(&mut self.rhs);
+            matrix.solve(model, &self.rhs, &mut self.dx);
+            model.rods().apply(x, &self.dx, &mut self.w);
+            for e in 0..self.w.len() {
+                self.multipliers[e] -= self.along[e] * self.w[e];
+            }
+            self.vertex_rows.answer(model, PROJECTION_PENALTY, &self.dx);
+            self.rhs.copy_from_slice(imbalance);
+            model
+                .rods()
+                .apply_transpose_add(x, &self.multipliers, &mut self.rhs);
+            let multipliers = &self.vertex_rows.multipliers;
+            self.vertex_rows
+                .add_loads(model, multipliers, &mut self.rhs);
+        }
+        imbalance.copy_from_slice(&self.rhs);
+    }
+
+    /// Projects `v` in place onto `G(x) v = 0` (and, at vertex constraints, those last evaluated being
+    /// bound, `J v + rate = 0`), nearest in the sense of the mass matrix, by
     /// the method of multipliers: each solve with `M + r G^T G` is followed by the update of
     /// the multipliers, all with one factor.
     ///
@@ -221,6 +302,7 @@ impl Projector {
         matrix: &mut PrimalMatrix,
         x: &[f64],
         v: &mut [f64],
+        rates: &[Vector3<f64>],
         effort: &mut Effort,
     ) -> f64 {
         let rods = model.rods();
@@ -229,28 +311,32 @@ impl Projector {
         }
         self.across.fill(0.0);
         matrix.assemble(model, x, &self.along, &self.across);
+        self.vertex_rows
+            .add_bound(model, PROJECTION_PENALTY, matrix);
         effort.factorisations += 1;
         if matrix.factorize().is_err() {
             return f64::INFINITY;
         }
-        // Three passes: each contracts by the penalty, except along rods that are dependent.
         let mut rate = f64::INFINITY;
-        for _ in 0..3 {
+        for _ in 0..PASSES {
             rods.apply(x, v, &mut self.c);
             let speed = v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             rate = self
                 .c
                 .iter()
                 .zip(rods.lengths())
-                .fold(0.0_f64, |m, (c, l)| m.max(c.abs() / l))
-                / speed.max(f64::MIN_POSITIVE);
+                .fold(0.0_f64, |m, (c, l)| m.max(c.abs() / l));
+            self.rhs.fill(0.0);
+            let slip =
+                self.vertex_rows
+                    .add_rates(model, PROJECTION_PENALTY, rates, v, &mut self.rhs);
+            rate = rate.max(slip) / speed.max(f64::MIN_POSITIVE);
             if rate < 1e-15 {
                 break;
             }
             for e in 0..rods.len() {
                 self.w[e] = -self.along[e] * self.c[e];
             }
-            self.rhs.fill(0.0);
             rods.apply_transpose_add(x, &self.w, &mut self.rhs);
             matrix.solve(model, &self.rhs, &mut self.dx);
             for (vi, d) in v.iter_mut().zip(&self.dx) {
@@ -262,11 +348,12 @@ impl Projector {
 
     /// Euclidean norm of the relative length errors.
     fn error(&self, model: &SheetModel) -> f64 {
-        self.c
+        let rods = self
+            .c
             .iter()
             .zip(model.rods().lengths())
             .map(|(c, l)| (c / (l * l)).powi(2))
-            .sum::<f64>()
-            .sqrt()
+            .sum::<f64>();
+        (rods + self.vertex_rows.squared_error(model)).sqrt()
     }
 }

@@ -5,6 +5,7 @@ use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
 use crate::minimiser::not_converged;
 use crate::primal::{PrimalMatrix, strain_floor};
 use crate::project::{Aim, Projector};
+use crate::reaction::{Balance, ForceTime};
 use crate::report::{Accepted, Effort, Path, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
@@ -55,6 +56,7 @@ pub struct ProjectionStep {
     x: Vec<f64>,
     v: Vec<f64>,
     none: Vec<f64>,
+    balance: Balance,
 }
 
 impl ProjectionStep {
@@ -75,7 +77,27 @@ impl ProjectionStep {
             x: vec![0.0; n],
             v: vec![0.0; n],
             none: vec![0.0; model.rods().len()],
+            balance: Balance::new(model, ForceTime::End),
         })
+    }
+
+    /// Forces of the supports over the step: the multipliers at its end that balance the change of velocity best.
+    fn set_balance(&mut self, model: &SheetModel, state: &State, h: f64) {
+        let v = &self.v;
+        if !self.balance.begin(model, |i| (v[i] - state.v[i]) / h) {
+            return;
+        }
+        self.balance.add_potentials(model, state.t, &state.x, 1.0);
+        self.balance
+            .add_applied(model, state.t, &state.x, &state.v, 1.0);
+        self.force.copy_from_slice(&self.balance.pins);
+        self.projector
+            .balance(model, &mut self.matrix, &self.x, &mut self.force);
+        self.balance
+            .add_rods(model, &self.x, &self.projector.multipliers, 1.0);
+        let rows = &self.projector.vertex_rows;
+        self.balance.add_constraints(rows, &rows.multipliers, 1.0);
+        self.balance.finish(model);
     }
 
     /// `acceleration = M^-1 force`.
@@ -100,6 +122,10 @@ impl Integrator for ProjectionStep {
         RodDemand::Nothing
     }
 
+    fn balance(&self) -> &Balance {
+        &self.balance
+    }
+
     fn step(
         &mut self,
         scene: Scene<'_>,
@@ -113,12 +139,27 @@ impl Integrator for ProjectionStep {
         for (f, a) in self.force.iter_mut().zip(&self.applied) {
             *f += a;
         }
+        let end = state.t + h;
+        if model.moving_pins().next().is_some() {
+            // The accelerations of the pins load their neighbours through a consistent mass matrix.
+            self.x.copy_from_slice(&state.x);
+            model.place_pins(end, &mut self.x);
+            self.acceleration.fill(0.0);
+            for i in model.moving_pins().flat_map(|v| 3 * v..3 * v + 3) {
+                self.acceleration[i] = ((self.x[i] - state.x[i]) / h - state.v[i]) / h;
+            }
+            model.apply_mass(&self.acceleration, &mut self.v);
+            for (f, m) in self.force.iter_mut().zip(&self.v) {
+                *f -= m;
+            }
+        }
         self.x.copy_from_slice(&state.x);
         self.accelerate(model, effort)
             .map_err(|source| StepError::Linalg { t: state.t, source })?;
         for i in 0..self.x.len() {
             self.x[i] = state.x[i] + h * (state.v[i] + h * self.acceleration[i]);
         }
+        model.place_pins(end, &mut self.x);
         self.predicted.copy_from_slice(&self.x);
         let tolerance = self
             .options
@@ -132,13 +173,15 @@ impl Integrator for ProjectionStep {
             Aim {
                 tolerance,
                 max_iterations: self.options.max_projections,
+                t: end,
+                loads: &[],
             },
             effort,
         );
         if strain > tolerance || strain.is_nan() {
             return Err(not_converged(state.t, h, effort, 0.0, strain));
         }
-        // The start has the rest lengths too: a projection that ends further away than it is not
+        // Where nothing moves that holds it, the start has the rest lengths too: a projection that ends further away than it is not
         // the nearest point, and would create energy.
         let distance = |x: &[f64], v: &mut Vec<f64>, predicted: &[f64]| {
             for i in 0..x.len() {
@@ -148,7 +191,7 @@ impl Integrator for ProjectionStep {
         };
         let to_result = distance(&self.x, &mut self.v, &self.predicted);
         let to_start = distance(&state.x, &mut self.v, &self.predicted);
-        if to_result > to_start * (1.0 + DISTANCE_SLACK) {
+        if !model.has_drives() && to_result > to_start * (1.0 + DISTANCE_SLACK) {
             return Err(not_converged(state.t, h, effort, 0.0, strain));
         }
         let mut work = 0.0;
@@ -157,18 +200,28 @@ impl Integrator for ProjectionStep {
             work += self.applied[i] * dx;
             self.v[i] = dx / h;
         }
-        let residual =
-            self.projector
-                .velocities(model, &mut self.matrix, &self.x, &mut self.v, effort);
+        model.set_pin_velocities(end, h, &mut self.v);
+        let rates = model.constraint_rates(end, h, &self.x);
+        self.projector.release(model);
+        let residual = self.projector.velocities(
+            model,
+            &mut self.matrix,
+            &self.x,
+            &mut self.v,
+            &rates,
+            effort,
+        );
         if !residual.is_finite() {
             return Err(not_converged(state.t, h, effort, residual, strain));
         }
+        self.set_balance(model, state, h);
         state.x.copy_from_slice(&self.x);
         state.v.copy_from_slice(&self.v);
         state.t += h;
         Ok(Accepted {
             residual,
             work,
+            driven: 0.0,
             path: Path::Newton,
             contact: ContactWork::default(),
         })

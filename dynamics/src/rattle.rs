@@ -1,13 +1,17 @@
 //! RATTLE and its fourth-order composition.
 
+use crate::constraint::conservative::ConservativeRows;
 use crate::contact::ContactWork;
+use crate::energy_momentum::mean_pin_velocities;
 use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
 use crate::minimiser::not_converged;
 use crate::primal::{dot, strain_floor, velocity_round_off};
+use crate::reaction::{Balance, ForceTime};
 use crate::report::{Accepted, Effort, Path, StepError};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
+use nalgebra::Vector2;
 
 /// Options of [`Rattle`] and [`RattleComposition`].
 #[derive(Debug, Clone, PartialEq)]
@@ -64,6 +68,10 @@ pub struct Rattle {
     difference: Vec<f64>,
     change: Vec<f64>,
     rods: Vec<f64>,
+    constraints: ConservativeRows,
+    /// Impulses of the vertex constraints on the velocity.
+    pushes: Vec<Vector2<f64>>,
+    balance: Balance,
 }
 
 impl Rattle {
@@ -89,6 +97,9 @@ impl Rattle {
             difference: vec![0.0; n],
             change: vec![0.0; n],
             rods: vec![0.0; m],
+            constraints: ConservativeRows::new(model),
+            pushes: Vec::new(),
+            balance: Balance::new(model, ForceTime::Mean),
         })
     }
 
@@ -99,6 +110,7 @@ impl Rattle {
             self.x1[i] = state.x[i] + h * self.u[i];
             self.difference[i] = self.u[i] - state.v[i];
         }
+        model.place_pins(state.t + h, &mut self.x1);
         model.apply_mass(&self.difference, &mut self.momentum);
         let mass = &model.mass().vertex;
         // The speed sets the scale, not the impulses: those of nearly dependent rods can be as
@@ -114,6 +126,10 @@ impl Rattle {
         model
             .rods()
             .apply_transpose_add(&state.x, &self.trial, &mut self.momentum);
+        self.constraints
+            .add_impulses(model, &self.constraints.impulses, &mut self.momentum);
+        self.constraints
+            .linearise(model, state.t + h, &self.x1, 1.0 / h);
         model.clear_pinned(&mut self.momentum);
         let worst = model.largest_acceleration(&self.momentum);
         model.rods().residual_into(&self.x1, &mut self.rods);
@@ -123,7 +139,8 @@ impl Rattle {
         } else {
             0.0
         };
-        (relative, model.rods().max_strain(&self.x1))
+        let strain = model.rods().max_strain(&self.x1);
+        (relative, self.constraints.worst(strain))
     }
 
     /// Finds `u`, `L` and `x1`.
@@ -147,7 +164,10 @@ impl Rattle {
         for (t, i) in self.trial.iter_mut().zip(&self.impulse) {
             *t = ratio * i;
         }
+        self.constraints.begin(model, state.t, &state.x, ratio);
+        self.constraints.push_at(model, state.t, &state.x);
         self.u.copy_from_slice(&state.v);
+        mean_pin_velocities(model, state, h, &mut self.x1, &mut self.u);
         let (mut residual, mut strain) = self.residuals(model, state, h);
         let mut path = Path::Newton;
         let mut iterations = 0;
@@ -170,10 +190,18 @@ impl Rattle {
                 left: &state.x,
                 right: &self.x1,
                 potentials: None,
+                constraints: &self.constraints.entries,
             };
             let used = self
                 .matrix
-                .solve(model, &system, &mut self.momentum, &mut self.rods, effort)
+                .solve(
+                    model,
+                    &system,
+                    &mut self.momentum,
+                    &mut self.rods,
+                    &mut self.constraints.rhs,
+                    effort,
+                )
                 .map_err(|source| StepError::Linalg { t: state.t, source })?;
             path = path.max(used);
             for (u, d) in self.u.iter_mut().zip(&self.momentum) {
@@ -182,10 +210,12 @@ impl Rattle {
             for (l, d) in self.trial.iter_mut().zip(&self.rods) {
                 *l += d;
             }
+            self.constraints.correct();
             (residual, strain) = self.residuals(model, state, h);
         }
         self.impulse.copy_from_slice(&self.trial);
         self.impulse_step = h;
+        self.constraints.keep();
         Ok((residual, path))
     }
 
@@ -206,7 +236,8 @@ impl Rattle {
             .trial
             .iter()
             .zip(rods.lengths())
-            .fold(0.0_f64, |m, (r, l)| m.max(r.abs() / l));
+            .fold(0.0_f64, |m, (r, l)| m.max(r.abs() / l))
+            .max(self.constraint_rate(model, state.t + h, h));
         for i in 0..self.u.len() {
             self.difference[i] = self.momentum[i] - self.u[i];
         }
@@ -220,8 +251,71 @@ impl Rattle {
             .zip(&self.rods)
             .for_each(|(t, r)| *t = -r);
         rods.apply_transpose_add(&self.x1, &self.trial, &mut self.kick);
+        self.pushes.iter_mut().for_each(|p| *p = -*p);
+        self.constraints
+            .add_impulses(model, &self.pushes, &mut self.kick);
+        self.pushes.iter_mut().for_each(|p| *p = -*p);
         model.clear_pinned(&mut self.kick);
         (rate / speed, model.largest_acceleration(&self.kick) / speed)
+    }
+
+    /// Largest rate of a vertex constraint with the velocity in `momentum`.
+    fn constraint_rate(&mut self, model: &SheetModel, t: f64, h: f64) -> f64 {
+        if model.constraints().is_empty() {
+            return 0.0;
+        }
+        let rates = model.constraint_rates(t, h, &self.x1);
+        self.constraints.ask_rates(model, &self.momentum, &rates);
+        self.constraints.largest_rate(model)
+    }
+
+    /// Right-hand sides of the rods' rates, the velocities of moving pins at the end being given.
+    fn ask_rod_rates(&mut self, model: &SheetModel, t: f64, h: f64) {
+        if model.moving_pins().next().is_some() {
+            self.difference.fill(0.0);
+            model.set_pin_velocities(t, h, &mut self.difference);
+            for i in model.moving_pins().flat_map(|v| 3 * v..3 * v + 3) {
+                self.difference[i] -= self.u[i];
+            }
+            model.apply_mass(&self.difference, &mut self.change);
+            for (m, c) in self.momentum.iter_mut().zip(&self.change) {
+                *m -= c;
+            }
+        }
+        self.difference.copy_from_slice(&self.u);
+        model.set_pin_velocities(t, h, &mut self.difference);
+        model
+            .rods()
+            .apply(&self.x1, &self.difference, &mut self.rods);
+    }
+
+    /// Mean forces of the supports over the step, up to the velocity `u`.
+    fn begin_balance(&mut self, model: &SheetModel, state: &State, h: f64) {
+        let (u, v) = (&self.u, &state.v);
+        if !self.balance.begin(model, |i| (u[i] - v[i]) / h) {
+            return;
+        }
+        let (t, end) = (state.t, state.t + h);
+        let balance = &mut self.balance;
+        balance.add_potentials(model, t, &state.x, 0.5);
+        balance.add_potentials(model, end, &self.x1, 0.5);
+        balance.add_applied(model, t, &state.x, &state.v, 0.5);
+        balance.add_applied(model, end, &self.x1, &self.u, 0.5);
+        balance.add_rods(model, &state.x, &self.trial, -1.0 / h);
+        balance.add_loads(self.constraints.loads(&self.constraints.impulses, 1.0 / h));
+    }
+
+    /// The rest of them, up to the velocity in `momentum`.
+    fn finish_balance(&mut self, model: &SheetModel, h: f64) {
+        let (u, v) = (&self.u, &self.momentum);
+        let balance = &mut self.balance;
+        balance.add_inertia(model, |i| (v[i] - u[i]) / h);
+        if !model.has_supports() {
+            return;
+        }
+        balance.add_rods(model, &self.x1, &self.rods, -1.0 / h);
+        balance.add_loads(self.constraints.loads(&self.pushes, 1.0 / h));
+        balance.finish(model);
     }
 
     /// One step of any sign.
@@ -246,7 +340,11 @@ impl Rattle {
         for i in 0..self.u.len() {
             self.momentum[i] = 0.5 * h * (self.force[i] + self.applied[i]);
         }
-        model.rods().apply(&self.x1, &self.u, &mut self.rods);
+        self.begin_balance(model, state, h);
+        self.ask_rod_rates(model, state.t + h, h);
+        let rates = model.constraint_rates(state.t + h, h, &self.x1);
+        self.constraints.push_at(model, state.t + h, &self.x1);
+        self.constraints.ask_rates(model, &self.u, &rates);
         self.rods.iter_mut().for_each(|r| *r = -*r);
         let system = System {
             mass: 1.0,
@@ -254,14 +352,24 @@ impl Rattle {
             left: &self.x1,
             right: &self.x1,
             potentials: None,
+            constraints: &self.constraints.entries,
         };
         let projected = self
             .matrix
-            .solve(model, &system, &mut self.momentum, &mut self.rods, effort)
+            .solve(
+                model,
+                &system,
+                &mut self.momentum,
+                &mut self.rods,
+                &mut self.constraints.rhs,
+                effort,
+            )
             .map_err(|source| StepError::Linalg { t: state.t, source })?;
         for (m, u) in self.momentum.iter_mut().zip(&self.u) {
             *m += u;
         }
+        model.set_pin_velocities(state.t + h, h, &mut self.momentum);
+        self.pushes.clone_from(&self.constraints.rhs);
         let (rate, balance) = self.velocity_errors(model, state, h);
         if rate > VELOCITY_TOLERANCE || balance > VELOCITY_TOLERANCE || rate.is_nan() {
             self.impulse_step = 0.0;
@@ -269,12 +377,14 @@ impl Rattle {
             return Err(not_converged(state.t, h, effort, rate.max(balance), strain));
         }
         work += 0.5 * h * dot(&self.applied, &self.momentum);
+        self.finish_balance(model, h);
         state.x.copy_from_slice(&self.x1);
         state.v.copy_from_slice(&self.momentum);
         state.t += h;
         Ok(Accepted {
             residual,
             work,
+            driven: 0.0,
             path: path.max(projected),
             contact: ContactWork::default(),
         })
@@ -298,6 +408,10 @@ impl Integrator for Rattle {
         RodDemand::Independent
     }
 
+    fn balance(&self) -> &Balance {
+        &self.balance
+    }
+
     fn step(
         &mut self,
         scene: Scene<'_>,
@@ -315,6 +429,7 @@ impl Integrator for Rattle {
 pub struct RattleComposition {
     rattle: Rattle,
     saved: State,
+    total: Balance,
 }
 
 impl RattleComposition {
@@ -325,6 +440,7 @@ impl RattleComposition {
     pub fn new(model: &SheetModel, options: RattleOptions) -> Result<Self, LinalgError> {
         Ok(Self {
             rattle: Rattle::new(model, options)?,
+            total: Balance::new(model, ForceTime::Mean),
             saved: State::at_rest(vec![0.0; model.coordinate_count()]),
         })
     }
@@ -333,6 +449,10 @@ impl RattleComposition {
 impl Integrator for RattleComposition {
     fn demand(&self) -> RodDemand {
         RodDemand::Independent
+    }
+
+    fn balance(&self) -> &Balance {
+        &self.total
     }
 
     fn step(
@@ -346,9 +466,11 @@ impl Integrator for RattleComposition {
         let a = 1.0 / (4.0 - 4.0_f64.cbrt());
         let t0 = state.t;
         self.saved.clone_from(state);
+        self.total.clear();
         let mut total = Accepted {
             residual: 0.0,
             work: 0.0,
+            driven: 0.0,
             path: Path::Newton,
             contact: ContactWork::default(),
         };
@@ -358,6 +480,7 @@ impl Integrator for RattleComposition {
                     total.residual = total.residual.max(done.residual);
                     total.work += done.work;
                     total.path = total.path.max(done.path);
+                    self.total.add_share(&self.rattle.balance, part);
                 }
                 Err(error) => {
                     state.clone_from(&self.saved);

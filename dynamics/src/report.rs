@@ -2,6 +2,8 @@
 
 use crate::chart::ChartDynamicsError;
 use crate::contact::ContactWork;
+use crate::feasibility::Excess;
+use crate::reaction::Support;
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::{EdgeId, VertexId};
 
@@ -50,7 +52,8 @@ pub struct StepReport {
     pub kinetic: f64,
     /// Potential energy at the end, contact included, joules.
     pub potential: f64,
-    /// Work done since the start by the non-conservative forces and by moving bodies, joules.
+    /// Work done since the start by the non-conservative forces and by moving bodies, pins and vertex constraints,
+    /// joules.
     pub work: f64,
     /// Energy taken out by velocity damping since the start, joules.
     pub dissipated: f64,
@@ -64,6 +67,10 @@ pub struct StepReport {
     pub strain: f64,
     /// Smallest gap to an obstacle or between parts of the sheet, metres; `None` without contact.
     pub gap: Option<f64>,
+    /// Largest distance by which a vertex constraint is broken at the end, metres; `None` without constraints.
+    pub violation: Option<f64>,
+    /// Set where the step stopped at a taut state (see [`Unsatisfiable`](crate::Unsatisfiable)).
+    pub taut: Option<Excess>,
     /// How the hardest sub-step was obtained.
     pub path: Path,
 }
@@ -126,6 +133,28 @@ pub enum StepError {
         vertex: VertexId,
         /// The value found.
         value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// A prescribed motion is not finite.
+    #[error("the prescribed motion of {support} gives {value} at t = {t} s; check the function")]
+    NonFiniteMotion {
+        /// What moves.
+        support: Support,
+        /// A coordinate, metres.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// The start state is not where a support has it.
+    #[error(
+        "{support} is {distance} m away from its vertex at t = {t} s; start with the vertex in place"
+    )]
+    OffSupport {
+        /// The support.
+        support: Support,
+        /// The distance, metres.
+        distance: f64,
         /// Time, seconds.
         t: f64,
     },
@@ -216,6 +245,18 @@ pub enum StepError {
         /// if the matrix has fewer unknowns than rods.
         smallest_singular_value: f64,
     },
+    /// Moving supports ask for more than the rods allow.
+    #[error(
+        "{} asks for {} m more than the rods allow at t = {} s; the taut state at t = {t} s is kept. Stop its \
+         motion before that, or allow `Unsatisfiable::StopTaut`",
+        excess.support, excess.distance, excess.t
+    )]
+    Unsatisfiable {
+        /// Time of the last state, seconds.
+        t: f64,
+        /// Which support, by how much and when.
+        excess: Excess,
+    },
     /// Even the smallest step allowed was rejected.
     #[error("no step of at least {min_step} s was accepted at t = {t} s; last reason: {cause}")]
     StepTooSmall {
@@ -260,6 +301,8 @@ pub struct Accepted {
     pub residual: f64,
     /// Work done by the non-conservative forces, joules.
     pub work: f64,
+    /// Work done by moving pins and vertex constraints, joules; filled in by the step control.
+    pub driven: f64,
     /// How it was obtained.
     pub path: Path,
     /// What contact did; zero without.

@@ -1,12 +1,13 @@
 //! The unsymmetric saddle-point matrix of the conservative integrators.
 
+use crate::constraint::conservative::Entry;
 use crate::model::PINNED;
 use crate::primal::{gather, scatter};
 use crate::report::{Effort, Path};
 use crate::{HessianSink, SheetModel};
 use isosheet_coords::linalg::{LinalgError, Pattern, SparseLu};
 use isosheet_mesh::{EdgeId, VertexId};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector2};
 
 /// The matrix
 ///
@@ -29,6 +30,8 @@ pub(crate) struct SaddleMatrix {
     rod_slots: Vec<Option<RodSlots>>,
     /// Row of each rod after the momenta.
     rod_index: Vec<u32>,
+    /// Slots of each equation of a vertex constraint.
+    constraint_slots: Vec<[Option<EquationSlots>; 2]>,
     width: usize,
     primal: usize,
     rhs: Vec<f64>,
@@ -48,6 +51,8 @@ pub(crate) struct System<'a> {
     pub(crate) right: &'a [f64],
     /// Time, positions and factor `s` of the Hessians of the potentials.
     pub(crate) potentials: Option<(f64, &'a [f64], f64)>,
+    /// The vertex constraints.
+    pub(crate) constraints: &'a [Entry],
 }
 
 /// Regularisation of the rod rows that replaces a singular saddle-point matrix, relative to
@@ -60,14 +65,27 @@ struct RodSlots {
     diagonal: u32,
 }
 
+/// Slots of an equation at one vertex.
+struct EquationSlots {
+    column: [u32; 3],
+    row: [u32; 3],
+    diagonal: u32,
+    /// Its row after those of the rods.
+    own: u32,
+}
+
 /// Marks an end of a rod that has no unknowns.
 const NO_SLOT: u32 = u32::MAX;
 
 impl SaddleMatrix {
     pub(crate) fn new(model: &SheetModel) -> Result<Self, LinalgError> {
         let free = model.free_index();
-        // Scalar blocks suffice unless a potential may bring a Hessian.
-        let width = if model.has_constant_forces() { 3 } else { 9 };
+        // Scalar blocks suffice unless a potential or a constraint may bring a Hessian.
+        let width = if model.has_constant_forces() && model.constraints().is_empty() {
+            3
+        } else {
+            9
+        };
         let primal = 3 * model.free_count();
         let mut entries = Vec::new();
         let block = |entries: &mut Vec<(u32, u32)>, i: u32, j: u32| {
@@ -103,6 +121,18 @@ impl SaddleMatrix {
                 }
             }
             entries.push((own, own));
+        }
+        for c in model.constraints() {
+            let v = free[c.vertex().index()];
+            for _ in 0..if v == PINNED { 0 } else { c.equations() } {
+                let own = primal as u32 + rods;
+                rods += 1;
+                for k in 0..3 {
+                    entries.push((3 * v + k, own));
+                    entries.push((own, 3 * v + k));
+                }
+                entries.push((own, own));
+            }
         }
         let order = primal + rods as usize;
         let (pattern, slots) = Pattern::from_entries(order, order, &entries);
@@ -155,7 +185,41 @@ impl SaddleMatrix {
             rod.diagonal = take();
             rod_slots.push(Some(rod));
         }
+        let mut own = order as u32;
+        for c in model.constraints() {
+            if !model.is_pinned(c.vertex()) {
+                own -= c.equations() as u32;
+            }
+        }
+        let constraint_slots = model
+            .constraints()
+            .iter()
+            .map(|c| {
+                let count = if model.is_pinned(c.vertex()) {
+                    0
+                } else {
+                    c.equations()
+                };
+                let mut slots = [None, None];
+                for equation in &mut slots[..count] {
+                    let (mut column, mut row) = ([0; 3], [0; 3]);
+                    for k in 0..3 {
+                        column[k] = take();
+                        row[k] = take();
+                    }
+                    *equation = Some(EquationSlots {
+                        column,
+                        row,
+                        diagonal: take(),
+                        own,
+                    });
+                    own += 1;
+                }
+                slots
+            })
+            .collect();
         Ok(Self {
+            constraint_slots,
             lu: SparseLu::new(pattern)?,
             vertex_slots,
             edge_slots,
@@ -169,7 +233,7 @@ impl SaddleMatrix {
         })
     }
 
-    /// Assembles, factorises and solves. `momentum` (`3V`) and `rods` hold the right-hand sides
+    /// Assembles, factorises and solves. `momentum` (`3V`), `rods` and `constraints` hold the right-hand sides
     /// and, on success, the solution.
     ///
     /// Where the matrix is singular, the rods being dependent, a regularised one takes its
@@ -180,13 +244,14 @@ impl SaddleMatrix {
         system: &System<'_>,
         momentum: &mut [f64],
         rods: &mut [f64],
+        constraints: &mut [Vector2<f64>],
         effort: &mut Effort,
     ) -> Result<Path, LinalgError> {
         let mut attempt = |delta: f64| {
             effort.factorisations += 1;
             self.assemble(model, system, delta);
             self.lu.factorize()?;
-            self.back_substitute(model, momentum, rods)
+            self.back_substitute(model, momentum, rods, constraints)
         };
         match attempt(0.0) {
             Ok(()) => Ok(Path::Newton),
@@ -254,6 +319,26 @@ impl SaddleMatrix {
             }
             values[rod.diagonal as usize] = -delta;
         }
+        for (c, (slots, entry)) in model
+            .constraints()
+            .iter()
+            .zip(self.constraint_slots.iter().zip(system.constraints))
+        {
+            for (i, slots) in slots.iter().enumerate() {
+                let Some(slots) = slots else { continue };
+                for k in 0..3 {
+                    values[slots.column[k] as usize] = -entry.left[(i, k)];
+                    values[slots.row[k] as usize] = entry.right[(i, k)];
+                }
+                values[slots.diagonal as usize] = -delta;
+            }
+            let block = self.vertex_slots[c.vertex().index()];
+            if block[0] != NO_SLOT {
+                for k in 0..9 {
+                    values[block[k] as usize] += entry.block[(k / 3, k % 3)] * per_mass;
+                }
+            }
+        }
         if self.width == 3 {
             return;
         }
@@ -309,6 +394,7 @@ impl SaddleMatrix {
         model: &SheetModel,
         momentum: &mut [f64],
         rods: &mut [f64],
+        constraints: &mut [Vector2<f64>],
     ) -> Result<(), LinalgError> {
         gather(model, momentum, &mut self.rhs[..self.primal]);
         self.rhs[..self.primal]
@@ -319,7 +405,21 @@ impl SaddleMatrix {
                 self.rhs[i as usize] = r / self.length_scale;
             }
         }
+        for (slots, c) in self.constraint_slots.iter().zip(constraints.iter()) {
+            for (slots, c) in slots.iter().zip(c.iter()) {
+                if let Some(slots) = slots {
+                    self.rhs[slots.own as usize] = *c;
+                }
+            }
+        }
         self.lu.solve_refined(&mut self.rhs)?;
+        for (slots, c) in self.constraint_slots.iter().zip(constraints.iter_mut()) {
+            for (slots, c) in slots.iter().zip(c.iter_mut()) {
+                *c = slots
+                    .as_ref()
+                    .map_or(0.0, |s| self.rhs[s.own as usize] * self.mass_scale);
+            }
+        }
         scatter(model, &self.rhs[..self.primal], momentum);
         for (&i, r) in self.rod_index.iter().zip(rods.iter_mut()) {
             *r = if i == PINNED {

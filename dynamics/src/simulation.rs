@@ -3,8 +3,9 @@
 use crate::chart::{ChartDynamicsError, ChartOptions, ChartSimulation};
 use crate::contact::{BodyLoad, Contact, ContactError};
 use crate::integrator::OptionsError;
+use crate::reaction::{Reaction, Support};
 use crate::report::{Path, StepError, StepReport};
-use crate::start::{check_finite, check_state};
+use crate::start::{check_finite, check_motions, check_state};
 use crate::subdivide::{Subdivided, Tally};
 use crate::{Method, SheetModel, State, StepControl};
 use isosheet_coords::Chart;
@@ -42,6 +43,23 @@ pub enum SimulationError {
     /// Contact cannot start here.
     #[error(transparent)]
     Contact(#[from] ContactError),
+    /// A one-sided constraint is in a scene of a conservative method.
+    #[error(
+        "vertex constraint {index} is one-sided, which the conservative methods have no place for: an \
+         impact loses energy. Use BDF2, implicit Euler or projection"
+    )]
+    OneSided {
+        /// Place in the order in which the constraints were added.
+        index: usize,
+    },
+    /// A chart has no place for vertex constraints and moving pins.
+    #[error(
+        "{support} moves or is a curve or surface, which charts have no place for: use a chart-free method"
+    )]
+    ChartSupport {
+        /// The support.
+        support: Support,
+    },
     /// Step control by subdivision was asked for a chart, which has its own.
     #[error(
         "a simulation in a chart controls its steps by `ChartOptions::control`; leave `StepControl` out"
@@ -85,7 +103,7 @@ enum Engine {
 impl Simulation {
     /// A simulation of `model` from `state` by one of the chart-free methods.
     ///
-    /// Velocities of pinned vertices are set to zero.
+    /// Velocities of pinned vertices are set to zero, or to those of their motion.
     ///
     /// # Errors
     /// [`SimulationError`] if the options or the state make no sense, or the state does not
@@ -96,7 +114,9 @@ impl Simulation {
         method: Method,
     ) -> Result<Self, SimulationError> {
         check_length(&model, &state)?;
+        check_motions(&model, &state)?;
         model.clear_pinned(&mut state.v);
+        model.set_pin_velocities(state.t, MOTION_SPAN, &mut state.v);
         check_state(&model, &state)?;
         let engine = Engine::Subdivided(Box::new(Subdivided::new(model, method)?));
         Ok(Self::start(engine, state))
@@ -117,6 +137,9 @@ impl Simulation {
         options: ChartOptions,
     ) -> Result<Self, SimulationError> {
         check_length(&model, &state)?;
+        if let Some(support) = model.first_beyond_fixed_pins() {
+            return Err(SimulationError::ChartSupport { support });
+        }
         check_state(&model, &state)?;
         let mut simulation =
             ChartSimulation::new(model, chart, options, &state.x, &state.v)?.starting_at(state.t);
@@ -181,6 +204,18 @@ impl Simulation {
             .map_or_else(Vec::new, |c| c.loads(&self.state.x))
     }
 
+    /// Forces of the pins and vertex constraints on the sheet in the last accepted sub-step, pins first; empty before the first step
+    /// and in charts. See [`Balance`](crate::Balance) for when in the step they act.
+    pub fn reactions(&self) -> Vec<Reaction> {
+        match &self.engine {
+            Engine::Subdivided(engine) => engine
+                .balance
+                .as_ref()
+                .map_or_else(Vec::new, |b| b.reactions(&engine.model)),
+            Engine::Chart(_) => Vec::new(),
+        }
+    }
+
     /// The model.
     pub fn model(&self) -> &SheetModel {
         match &self.engine {
@@ -238,7 +273,10 @@ impl Simulation {
         self.dissipated += tally.dissipated;
         self.friction += tally.friction;
         done?;
-        self.state.t = end;
+        if tally.taut.is_none() {
+            self.state.t = end;
+        }
+        let end = self.state.t;
         let model = self.model();
         let kinetic = model.kinetic_energy(&self.state.v);
         let potential = self.potential_energy();
@@ -271,6 +309,8 @@ impl Simulation {
             energy_drift: kinetic + potential - self.work + self.dissipated + self.friction
                 - self.start_energy,
             strain: model.rods().max_strain(&self.state.x),
+            taut: tally.taut,
+            violation: model.largest_violation(self.state.t, &self.state.x),
             gap: self.contact().map(|c| c.gap(&self.state.x)),
             path: tally.path,
         })
@@ -298,6 +338,9 @@ impl Simulation {
         result
     }
 }
+
+/// Over parts of this time (seconds) the velocities of moving pins at the start are taken by differences.
+const MOTION_SPAN: f64 = 1e-2;
 
 /// Sub-steps shorter than this fraction of the time reached are round-off, not time.
 const TIME_ROUND_OFF: f64 = 4.0 * f64::EPSILON;

@@ -1,8 +1,10 @@
 //! Making and checking states to start from.
 
+use crate::constraint::rows::point;
 use crate::integrator::OptionsError;
 use crate::primal::PrimalMatrix;
 use crate::project::{Aim, Projector};
+use crate::reaction::Support;
 use crate::report::{Effort, StepError};
 use crate::{SheetModel, SimulationError, State};
 use isosheet_mesh::{EdgeId, VertexId};
@@ -40,6 +42,8 @@ pub fn project_positions(
         Aim {
             tolerance,
             max_iterations: MAX_ITERATIONS,
+            t: 0.0,
+            loads: &[],
         },
         &mut effort,
     );
@@ -108,6 +112,37 @@ pub(crate) fn check_finite(state: &State) -> Result<(), StepError> {
                 vertex: VertexId((i / 3) as u32),
                 value: values[i],
                 t: state.t,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses prescribed motions that are not finite or do not start where the state is.
+pub(crate) fn check_motions(model: &SheetModel, state: &State) -> Result<(), StepError> {
+    let t = state.t;
+    if let Some((support, value)) = model.find_bad_motion(t) {
+        return Err(StepError::NonFiniteMotion { support, value, t });
+    }
+    let mut placed = state.x.clone();
+    model.place_pins(t, &mut placed);
+    let pins = model.moving_pins().map(|v| {
+        let v = VertexId(v as u32);
+        let distance = (point(&placed, v) - point(&state.x, v)).norm();
+        (Support::Pin(v), distance, v)
+    });
+    let constraints = model.constraints().iter().enumerate().map(|(index, c)| {
+        let vertex = c.vertex();
+        let distance = c.violation(t, &point(&state.x, vertex));
+        (Support::Constraint { index, vertex }, distance, vertex)
+    });
+    for (support, distance, v) in pins.chain(constraints) {
+        let allowed = START_STRAIN * model.shortest_rod(v.index());
+        if distance.is_nan() || distance > allowed {
+            return Err(StepError::OffSupport {
+                support,
+                distance,
+                t,
             });
         }
     }

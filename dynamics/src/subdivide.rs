@@ -1,11 +1,13 @@
 //! Steps of an integrator, subdivided where it rejects them.
 
 use crate::contact::{Contact, ContactError};
+use crate::feasibility::{Excess, excess};
 use crate::implicit::ImplicitEuler;
 use crate::integrator::{Integrator, RodDemand, Scene};
 use crate::rank::rod_rank;
+use crate::reaction::Balance;
 use crate::report::{Accepted, Effort, Path, StepError};
-use crate::{Fallback, Method, SheetModel, SimulationError, State, StepControl};
+use crate::{Fallback, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable};
 use isosheet_coords::linalg::norm_inf;
 
 /// What was done on the way to the end of a step, kept also if it fails half-way.
@@ -19,6 +21,7 @@ pub(crate) struct Tally {
     pub(crate) work: f64,
     pub(crate) dissipated: f64,
     pub(crate) friction: f64,
+    pub(crate) taut: Option<Excess>,
 }
 
 impl Default for Tally {
@@ -32,6 +35,7 @@ impl Default for Tally {
             work: 0.0,
             dissipated: 0.0,
             friction: 0.0,
+            taut: None,
         }
     }
 }
@@ -48,16 +52,25 @@ pub(crate) struct Subdivided {
     fallback: Option<ImplicitEuler>,
     before: State,
     pub(crate) contact: Option<Box<dyn Contact>>,
+    /// Forces of the supports in the last accepted sub-step.
+    pub(crate) balance: Option<Balance>,
 }
 
 impl Subdivided {
     pub(crate) fn new(model: SheetModel, method: Method) -> Result<Self, SimulationError> {
+        let integrator = method.build(&model)?;
+        if !integrator.takes_one_sided()
+            && let Some(index) = model.constraints().iter().position(|c| c.is_one_sided())
+        {
+            return Err(SimulationError::OneSided { index });
+        }
         Ok(Self {
-            integrator: method.build(&model)?,
+            integrator,
             control: StepControl::default(),
             fallback: None,
             before: State::at_rest(vec![0.0; model.coordinate_count()]),
             contact: None,
+            balance: None,
             model,
         })
     }
@@ -101,19 +114,26 @@ impl Subdivided {
         let mut patience = 0;
         let mut restarted = false;
         // The conservative methods keep the energy by themselves.
-        let guarded = self.integrator.demand() == RodDemand::Nothing
-            && self.model.moving_pins().next().is_none();
+        let guarded = self.integrator.demand() == RodDemand::Nothing;
+        let driven = self.model.has_drives();
         while done < 1.0 {
             let effort = &mut tally.effort;
-            if guarded {
+            if guarded || driven {
                 self.before.clone_from(state);
             }
+            self.check_pins(state.t + fraction * h)?;
             let mut tried = self.integrator.step(
                 scene(&self.model, &mut self.contact),
                 state,
                 fraction * h,
                 effort,
             );
+            if let Ok(accepted) = &mut tried
+                && driven
+            {
+                let (now, kept) = (self.integrator.balance(), self.balance.as_ref());
+                accepted.driven = drive_work(&self.model, now, kept, &self.before, state);
+            }
             if guarded
                 && let Ok(accepted) = &tried
                 && let Some(error) = energy_gain(&self.model, &self.before, state, accepted)
@@ -133,6 +153,7 @@ impl Subdivided {
                 }
             }
             restarted = false;
+            let mut fell_back = false;
             if let Err(cause) = tried {
                 tally.rejected += 1;
                 if 0.5 * fraction * h >= min_step {
@@ -141,7 +162,7 @@ impl Subdivided {
                     continue;
                 }
                 let Some(fallback) = &mut self.fallback else {
-                    return Err(self.diagnose(state, min_step, cause));
+                    return self.stop(state, start + h, min_step, cause, tally);
                 };
                 fraction = largest_fraction(done);
                 tried = fallback.step(
@@ -150,19 +171,36 @@ impl Subdivided {
                     fraction * h,
                     effort,
                 );
+                if let Ok(accepted) = &mut tried
+                    && driven
+                {
+                    let (now, kept) = (fallback.balance(), self.balance.as_ref());
+                    accepted.driven = drive_work(&self.model, now, kept, &self.before, state);
+                }
+                fell_back = true;
                 tally.path = Path::Fallback;
             }
             let accepted = match tried {
                 Ok(accepted) => accepted,
-                Err(cause) => return Err(self.diagnose(state, min_step, cause)),
+                Err(cause) => return self.stop(state, start + h, min_step, cause, tally),
             };
+            if self.model.has_supports() {
+                let balance = match &self.fallback {
+                    Some(fallback) if fell_back => fallback.balance(),
+                    _ => self.integrator.balance(),
+                };
+                match &mut self.balance {
+                    Some(kept) => kept.clone_from(balance),
+                    none => *none = Some(balance.clone()),
+                }
+            }
             done += fraction;
             // The end of the step is set by the caller, free of accumulated round-off.
             state.t = start + done * h;
             tally.substeps += 1;
             tally.residual = tally.residual.max(accepted.residual);
             tally.path = tally.path.max(accepted.path);
-            tally.work += accepted.work + accepted.contact.bodies;
+            tally.work += accepted.work + accepted.driven + accepted.contact.bodies;
             tally.friction += accepted.contact.friction;
             tally.dissipated += damp(&self.model, state, fraction * h);
             patience = patience.saturating_sub(1);
@@ -170,6 +208,37 @@ impl Subdivided {
             fraction = largest_fraction(done).min(growth * fraction);
         }
         Ok(())
+    }
+
+    /// Refuses prescribed motions that are not finite.
+    fn check_pins(&self, t: f64) -> Result<(), StepError> {
+        match self.model.find_bad_motion(t) {
+            None => Ok(()),
+            Some((support, value)) => Err(StepError::NonFiniteMotion { support, value, t }),
+        }
+    }
+
+    /// Ends a step that no sub-step was accepted in: at a taut state, or with the reason.
+    fn stop(
+        &self,
+        state: &State,
+        end: f64,
+        min_step: f64,
+        cause: StepError,
+        tally: &mut Tally,
+    ) -> Result<(), StepError> {
+        if self.model.has_drives()
+            && let Some(excess) = excess(&self.model, state, end)
+        {
+            return match self.control.unsatisfiable {
+                Unsatisfiable::Refuse => Err(StepError::Unsatisfiable { t: state.t, excess }),
+                Unsatisfiable::StopTaut => {
+                    tally.taut = Some(excess);
+                    Ok(())
+                }
+            };
+        }
+        Err(self.diagnose(state, min_step, cause))
     }
 
     /// Says why no step was accepted: dependent rods, if that is what they are.
@@ -190,6 +259,17 @@ impl Subdivided {
             cause: Box::new(cause),
         }
     }
+}
+
+/// Work of the moving supports in the sub-step between two states, `kept` being the forces in the one before.
+fn drive_work(
+    model: &SheetModel,
+    balance: &Balance,
+    kept: Option<&Balance>,
+    before: &State,
+    after: &State,
+) -> f64 {
+    balance.drive_work(model, kept, (before.t, &before.x), (after.t, &after.x))
 }
 
 fn scene<'a>(model: &'a SheetModel, contact: &'a mut Option<Box<dyn Contact>>) -> Scene<'a> {
@@ -223,13 +303,15 @@ fn energy_gain(
         model.potential_energy(after.t, &after.x),
     );
     let contact = &accepted.contact;
-    let driven = accepted.work.abs() + contact.bodies.abs();
-    let gain = t1 + v1 + contact.stored - t0 - v0 - accepted.work - contact.bodies;
+    let drives = contact.bodies.abs() + accepted.driven.abs();
+    let driven = accepted.work.abs() + drives;
+    let gain =
+        t1 + v1 + contact.stored - t0 - v0 - accepted.work - accepted.driven - contact.bodies;
     let noise = POSITION_NOISE * norm_inf(&after.x) / (after.t - before.t);
     let round_off =
         1e-9 * (t0 + v0.abs() + v1.abs() + driven) + model.mass().total() * noise * noise;
-    // The work of bodies is known to the accuracy of the trapezoidal rule only.
-    let share = t0.max(t1) + 5.0 * contact.bodies.abs();
+    // The work of bodies, pins and moving constraints is known to the accuracy of the trapezoidal rule only.
+    let share = t0.max(t1) + 5.0 * drives;
     (gain > MAX_ENERGY_GAIN * share + round_off + contact.play).then_some(StepError::EnergyGain {
         t: before.t,
         h: after.t - before.t,

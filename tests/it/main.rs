@@ -2,6 +2,7 @@
 
 mod charts;
 mod conservation;
+mod constraints;
 mod flat;
 mod forces;
 mod orders;

@@ -1,0 +1,321 @@
+//! Vertices held on curves and surfaces.
+
+pub(crate) mod conservative;
+mod curve;
+mod polyline;
+pub(crate) mod rows;
+mod spline;
+mod surface;
+#[cfg(test)]
+mod tests;
+
+pub use curve::{Circle, Curve, CurvePoint, Line};
+pub use polyline::Polyline;
+pub use spline::Spline;
+pub use surface::{Cylinder, Plane, SignedDistanceField, Sphere, Surface, SurfacePoint};
+
+use isosheet_mesh::VertexId;
+use nalgebra::{Isometry3, Matrix2x3, Matrix3, Vector3};
+use std::fmt;
+
+/// A curve or surface that makes no constraint.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ConstraintError {
+    /// A number is not one that makes sense.
+    #[error("{what} is {value}; give a finite number{condition}")]
+    Number {
+        /// Which one.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What else is asked of it.
+        condition: &'static str,
+    },
+    /// A direction has no length.
+    #[error("{what} has no direction; give a vector that is not zero")]
+    NoDirection {
+        /// Which one.
+        what: &'static str,
+    },
+    /// Too few points.
+    #[error("{found} points make no {what}; give at least {needed}")]
+    TooFewPoints {
+        /// The curve.
+        what: &'static str,
+        /// Points given.
+        found: usize,
+        /// Points needed.
+        needed: usize,
+    },
+    /// Two neighbouring points coincide.
+    #[error("points {first} and {second} coincide; leave one out")]
+    Coincident {
+        /// The first.
+        first: usize,
+        /// The one after it.
+        second: usize,
+    },
+    /// A corner cannot be rounded.
+    #[error(
+        "the corner at point {point} cannot be rounded with radius {radius} m between the sides \
+         beside it: at most {largest} m fit"
+    )]
+    Corner {
+        /// The point.
+        point: usize,
+        /// The radius asked for, metres.
+        radius: f64,
+        /// The largest that fits, metres.
+        largest: f64,
+    },
+}
+
+impl ConstraintError {
+    pub(crate) fn check_vector(what: &'static str, v: &[f64; 3]) -> Result<Vector3<f64>, Self> {
+        match v.iter().find(|c| !c.is_finite()) {
+            Some(&value) => Err(Self::Number {
+                what,
+                value,
+                condition: "",
+            }),
+            None => Ok(Vector3::from(*v)),
+        }
+    }
+
+    pub(crate) fn check_direction(what: &'static str, v: &[f64; 3]) -> Result<Vector3<f64>, Self> {
+        Self::check_vector(what, v)?
+            .try_normalize(0.0)
+            .ok_or(Self::NoDirection { what })
+    }
+
+    pub(crate) fn check_positive(what: &'static str, value: f64) -> Result<f64, Self> {
+        if value.is_finite() && value > 0.0 {
+            Ok(value)
+        } else {
+            Err(Self::Number {
+                what,
+                value,
+                condition: " above 0",
+            })
+        }
+    }
+}
+
+/// On which side of a surface a vertex may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// On it: it holds both ways.
+    On,
+    /// On it or where its level is positive: it pushes, and does not pull.
+    Outside,
+    /// On it or where its level is negative.
+    Inside,
+}
+
+#[derive(Debug)]
+enum Shape {
+    Surface(Box<dyn Surface>, Side),
+    Curve(Box<dyn Curve>),
+}
+
+/// A vertex held on a curve or surface, without friction.
+///
+/// A constraint is up to three equations `c(x_v, t) = 0` (metres) at one vertex:
+///
+/// * a surface, its level (a signed distance, or near the surface like one): one equation;
+/// * a curve, the vector from its closest point, `r(p) = p - q(s(p))`: three equations of rank two on the
+///   curve. Its Jacobian there is the projector across the curve, so the two equations that count are perfectly
+///   conditioned, and it is as smooth as the curve: no frame has to be carried along, none
+///   is missing where a curve closes or is straight, and no unknown is added.
+///
+/// A constraint so touches its vertex's own 3x3 block of the matrices and nothing else.
+///
+/// One-sided constraints ask `c >= 0` (outside) or `c <= 0` (inside).
+pub struct VertexConstraint {
+    vertex: VertexId,
+    shape: Shape,
+    pose: Option<Box<Pose>>,
+}
+
+type Pose = dyn Fn(f64) -> Isometry3<f64> + Send + Sync;
+
+impl fmt::Debug for VertexConstraint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("VertexConstraint")
+            .field("vertex", &self.vertex)
+            .field("shape", &self.shape)
+            .field("moves", &self.moves())
+            .finish()
+    }
+}
+
+impl VertexConstraint {
+    /// Holds a vertex on a surface, or on one side of it.
+    pub fn on_surface(vertex: VertexId, surface: impl Surface + 'static, side: Side) -> Self {
+        Self {
+            vertex,
+            shape: Shape::Surface(Box::new(surface), side),
+            pose: None,
+        }
+    }
+
+    /// Holds a vertex on a curve.
+    pub fn on_curve(vertex: VertexId, curve: impl Curve + 'static) -> Self {
+        Self {
+            vertex,
+            shape: Shape::Curve(Box::new(curve)),
+            pose: None,
+        }
+    }
+
+    /// Moves the curve or surface: `pose(t)` takes its frame to space at time `t` (seconds). Velocities are taken by
+    /// differences, for which the motion has to be defined a little before the start too.
+    #[must_use]
+    pub fn moving(mut self, pose: impl Fn(f64) -> Isometry3<f64> + Send + Sync + 'static) -> Self {
+        self.pose = Some(Box::new(pose));
+        self
+    }
+
+    /// The vertex.
+    pub fn vertex(&self) -> VertexId {
+        self.vertex
+    }
+
+    /// Whether it moves.
+    pub fn moves(&self) -> bool {
+        self.pose.is_some()
+    }
+
+    /// A number of the pose at time `t` that is not finite, if there is one.
+    pub(crate) fn bad_pose(&self, t: f64) -> Option<f64> {
+        let pose = self.pose.as_ref()?(t);
+        let parts = pose
+            .translation
+            .vector
+            .iter()
+            .chain(pose.rotation.coords.iter());
+        parts.copied().find(|c| !c.is_finite())
+    }
+
+    /// Whether it only pushes.
+    pub fn is_one_sided(&self) -> bool {
+        matches!(self.shape, Shape::Surface(_, Side::Outside | Side::Inside))
+    }
+
+    /// Number of independent equations: 1 for a surface, 2 for a curve.
+    pub(crate) fn equations(&self) -> usize {
+        match self.shape {
+            Shape::Surface(..) => 1,
+            Shape::Curve(_) => 2,
+        }
+    }
+
+    /// The equations at a point (metres) and time (seconds).
+    pub(crate) fn at(&self, t: f64, p: &Vector3<f64>) -> Local {
+        let Some(pose) = &self.pose else {
+            return self.shape.at(p);
+        };
+        let pose = pose(t);
+        let rotation = pose.rotation.to_rotation_matrix().into_inner();
+        let body = rotation.transpose() * (p - pose.translation.vector);
+        self.shape.at(&body).turned(&rotation)
+    }
+
+    /// Distance by which the constraint is broken at a point, metres.
+    pub fn violation(&self, t: f64, p: &Vector3<f64>) -> f64 {
+        let value = self.at(t, p).value;
+        let broken = if self.is_one_sided() {
+            (-value.x).max(0.0)
+        } else {
+            value.norm()
+        };
+        // `max` passes over a value that is not a number.
+        if value.x.is_nan() { f64::NAN } else { broken }
+    }
+}
+
+impl Shape {
+    fn at(&self, p: &Vector3<f64>) -> Local {
+        match self {
+            Self::Surface(surface, side) => {
+                // One-sided constraints are written c >= 0.
+                let sign = if *side == Side::Inside { -1.0 } else { 1.0 };
+                let at = surface.at(p);
+                let mut jacobian = Matrix3::zeros();
+                jacobian.set_row(0, &(sign * at.gradient).transpose());
+                Local {
+                    value: Vector3::new(sign * at.level, 0.0, 0.0),
+                    jacobian,
+                    curvature: Curvature::Surface(sign * at.hessian),
+                }
+            }
+            Self::Curve(curve) => {
+                let at = curve.closest(p);
+                let value = p - at.position;
+                let d = at.denominator(&value);
+                Local {
+                    value,
+                    jacobian: Matrix3::identity() - at.first * at.first.transpose() / d,
+                    curvature: Curvature::Curve(at, Matrix3::identity()),
+                }
+            }
+        }
+    }
+}
+
+/// The equations of a constraint at a point: `value + jacobian dp + (dp^T hessian_i dp)_i / 2`.
+#[derive(Debug, Clone)]
+pub(crate) struct Local {
+    /// Metres; a surface fills the first entry only.
+    pub(crate) value: Vector3<f64>,
+    /// One equation a row.
+    pub(crate) jacobian: Matrix3<f64>,
+    curvature: Curvature,
+}
+
+#[derive(Debug, Clone)]
+enum Curvature {
+    Surface(Matrix3<f64>),
+    /// The closest point in the curve's frame, and the rotation from there to space.
+    Curve(CurvePoint, Matrix3<f64>),
+}
+
+impl Local {
+    fn turned(mut self, rotation: &Matrix3<f64>) -> Self {
+        self.jacobian *= rotation.transpose();
+        match &mut self.curvature {
+            Curvature::Surface(h) => *h = rotation * *h * rotation.transpose(),
+            Curvature::Curve(_, r) => *r = *rotation,
+        }
+        self
+    }
+
+    /// `sum_i w_i hessian_i`, one over metres.
+    pub(crate) fn hessian(&self, w: &Vector3<f64>) -> Matrix3<f64> {
+        match &self.curvature {
+            Curvature::Surface(h) => w.x * h,
+            Curvature::Curve(at, rotation) => {
+                rotation * at.hessian(&self.value, w) * rotation.transpose()
+            }
+        }
+    }
+
+    /// Rows that pick the independent equations: the level, or two directions across the curve.
+    pub(crate) fn independent(&self) -> Matrix2x3<f64> {
+        match &self.curvature {
+            Curvature::Surface(_) => Matrix2x3::new(1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+            Curvature::Curve(at, _) => {
+                let [a, b] = across(&at.first.normalize());
+                Matrix2x3::from_rows(&[a.transpose(), b.transpose()])
+            }
+        }
+    }
+}
+
+/// Two unit vectors across a unit vector and each other.
+pub(crate) fn across(t: &Vector3<f64>) -> [Vector3<f64>; 2] {
+    let mut axis = Vector3::zeros();
+    axis[t.iamin()] = 1.0;
+    let a = (axis - t * t.dot(&axis)).normalize();
+    [a, t.cross(&a)]
+}

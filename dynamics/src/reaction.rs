@@ -1,0 +1,272 @@
+//! Forces of pins, curves and surfaces on the sheet.
+
+use crate::SheetModel;
+use crate::constraint::rows::{VertexRows, point};
+use crate::contact::Contact;
+use isosheet_mesh::VertexId;
+use nalgebra::Vector3;
+use std::fmt;
+
+/// Something that holds the sheet, by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Support {
+    /// A pinned vertex.
+    Pin(VertexId),
+    /// A vertex on a curve or surface.
+    Constraint {
+        /// Place in the order in which the constraints were added, from 0.
+        index: usize,
+        /// The vertex.
+        vertex: VertexId,
+    },
+}
+
+impl serde::Serialize for Support {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl fmt::Display for Support {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pin(v) => write!(f, "the pin at {v}"),
+            Self::Constraint { index, vertex } => write!(f, "constraint {index} at {vertex}"),
+        }
+    }
+}
+
+/// The force of a support on the sheet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reaction {
+    /// What holds the sheet.
+    pub support: Support,
+    /// Its force on the sheet, newtons: at rest the sum over all supports is minus the weight.
+    pub force: Vector3<f64>,
+}
+
+/// At what time of a step forces are known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ForceTime {
+    /// At its end.
+    End,
+    /// Their mean over it.
+    Mean,
+}
+
+/// Forces of all supports in the last accepted step, from the integrator's own balance of momentum: at a pin
+/// `R = M a - f + G^T lambda` with the discrete acceleration and multipliers (tension positive) of the
+/// step, at a vertex constraint `R = -J^T mu`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Balance {
+    /// At pinned vertices the force of the pin, elsewhere zero; `3V`, newtons.
+    pub pins: Vec<f64>,
+    /// Of each vertex constraint the multipliers of its equations, newtons.
+    pub multipliers: Vec<Vector3<f64>>,
+    /// Of each vertex constraint its force on the vertex, newtons.
+    pub constraints: Vec<Vector3<f64>>,
+    /// When.
+    pub time: ForceTime,
+    work: Vec<f64>,
+}
+
+impl Balance {
+    pub(crate) fn new(model: &SheetModel, time: ForceTime) -> Self {
+        let n = if model.has_supports() {
+            model.coordinate_count()
+        } else {
+            0
+        };
+        let m = model.constraints().len();
+        Self {
+            pins: vec![0.0; n],
+            multipliers: vec![Vector3::zeros(); m],
+            constraints: vec![Vector3::zeros(); m],
+            time,
+            work: vec![0.0; n],
+        }
+    }
+
+    /// Starts with the inertia `M a`; returns false where there is nothing to balance.
+    pub(crate) fn begin(&mut self, model: &SheetModel, a: impl Fn(usize) -> f64) -> bool {
+        for (i, w) in self.work.iter_mut().enumerate() {
+            *w = a(i);
+        }
+        if self.pins.is_empty() {
+            return false;
+        }
+        model
+            .mass()
+            .apply(model.topology(), &self.work, &mut self.pins);
+        self.multipliers.fill(Vector3::zeros());
+        self.constraints.fill(Vector3::zeros());
+        true
+    }
+
+    /// Adds more inertia.
+    pub(crate) fn add_inertia(&mut self, model: &SheetModel, a: impl Fn(usize) -> f64) {
+        for (i, w) in self.work.iter_mut().enumerate() {
+            *w = a(i);
+        }
+        if !self.pins.is_empty() {
+            let mut inertia = vec![0.0; self.work.len()];
+            model
+                .mass()
+                .apply(model.topology(), &self.work, &mut inertia);
+            self.work = inertia;
+            self.add_work(1.0);
+        }
+    }
+
+    /// Sets all forces to zero.
+    pub(crate) fn clear(&mut self) {
+        self.pins.fill(0.0);
+        self.multipliers.fill(Vector3::zeros());
+        self.constraints.fill(Vector3::zeros());
+    }
+
+    /// Adds a share of other forces.
+    pub(crate) fn add_share(&mut self, other: &Balance, share: f64) {
+        for (p, q) in self.pins.iter_mut().zip(&other.pins) {
+            *p += share * q;
+        }
+        for (p, q) in self.multipliers.iter_mut().zip(&other.multipliers) {
+            *p += share * q;
+        }
+        for (p, q) in self.constraints.iter_mut().zip(&other.constraints) {
+            *p += share * q;
+        }
+    }
+
+    /// Takes off `share` of the potentials' forces.
+    pub(crate) fn add_potentials(&mut self, model: &SheetModel, t: f64, x: &[f64], share: f64) {
+        self.work.fill(0.0);
+        for p in model.potentials() {
+            p.add_gradient(t, x, &mut self.work);
+        }
+        self.add_work(share);
+    }
+
+    /// Takes off `share` of the non-conservative forces.
+    pub(crate) fn add_applied(
+        &mut self,
+        model: &SheetModel,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        share: f64,
+    ) {
+        self.work.fill(0.0);
+        for force in model.forces() {
+            force.add_force(t, x, v, &mut self.work);
+        }
+        self.add_work(-share);
+    }
+
+    /// Takes off the forces of contact.
+    pub(crate) fn add_contact(&mut self, contact: &dyn Contact, x: &[f64]) {
+        contact.add_gradient(x, 1.0, &mut self.pins);
+    }
+
+    /// Takes off the forces of the rods, `-share G(x)^T multipliers`.
+    pub(crate) fn add_rods(
+        &mut self,
+        model: &SheetModel,
+        x: &[f64],
+        multipliers: &[f64],
+        share: f64,
+    ) {
+        self.work.fill(0.0);
+        model
+            .rods()
+            .apply_transpose_add(x, multipliers, &mut self.work);
+        self.add_work(share);
+    }
+
+    /// Adds a share of the vertex constraints' multipliers with their equations as last evaluated.
+    pub(crate) fn add_constraints(
+        &mut self,
+        rows: &VertexRows,
+        multipliers: &[Vector3<f64>],
+        share: f64,
+    ) {
+        for (i, m) in multipliers.iter().enumerate() {
+            self.multipliers[i] += share * m;
+            self.constraints[i] -= rows.local(i).jacobian.tr_mul(&(share * m));
+        }
+    }
+
+    /// Adds loads of vertex constraints: multipliers and forces.
+    pub(crate) fn add_loads(&mut self, loads: impl Iterator<Item = (Vector3<f64>, Vector3<f64>)>) {
+        for (i, (multiplier, force)) in loads.enumerate() {
+            self.multipliers[i] += multiplier;
+            self.constraints[i] += force;
+        }
+    }
+
+    fn add_work(&mut self, share: f64) {
+        for (p, w) in self.pins.iter_mut().zip(&self.work) {
+            *p += share * w;
+        }
+    }
+
+    /// Leaves only what is at pins.
+    pub(crate) fn finish(&mut self, model: &SheetModel) {
+        for v in model
+            .topology()
+            .vertex_ids()
+            .filter(|&v| !model.is_pinned(v))
+        {
+            self.pins[3 * v.index()..3 * v.index() + 3].fill(0.0);
+        }
+    }
+
+    pub(crate) fn reactions(&self, model: &SheetModel) -> Vec<Reaction> {
+        let pins = model.pins().into_iter().map(|v| Reaction {
+            support: Support::Pin(v),
+            force: point(&self.pins, v),
+        });
+        let constraints = model
+            .constraints()
+            .iter()
+            .zip(&self.constraints)
+            .enumerate()
+            .map(|(index, (c, f))| Reaction {
+                support: Support::Constraint {
+                    index,
+                    vertex: c.vertex(),
+                },
+                force: *f,
+            });
+        pins.chain(constraints).collect()
+    }
+
+    /// Work that moving pins and vertex constraints do on the sheet in a step from `x0` at `t0` to `x1` at `t1`, joules: with the
+    /// mean forces or, where they are known at the end, by the trapezoidal rule with those of the step before.
+    pub(crate) fn drive_work(
+        &self,
+        model: &SheetModel,
+        before: Option<&Balance>,
+        (t0, x0): (f64, &[f64]),
+        (t1, x1): (f64, &[f64]),
+    ) -> f64 {
+        let before = before.filter(|_| self.time == ForceTime::End);
+        let mut work = 0.0;
+        for v in model.moving_pins() {
+            for i in 3 * v..3 * v + 3 {
+                let force = before.map_or(self.pins[i], |b| 0.5 * (self.pins[i] + b.pins[i]));
+                work += force * (x1[i] - x0[i]);
+            }
+        }
+        for (i, c) in model.constraints().iter().enumerate() {
+            if c.moves() {
+                let p = 0.5 * (point(x0, c.vertex()) + point(x1, c.vertex()));
+                let change = c.at(t1, &p).value - c.at(t0, &p).value;
+                let own = self.multipliers[i];
+                let load = before.map_or(own, |b| 0.5 * (own + b.multipliers[i]));
+                work += load.dot(&change);
+            }
+        }
+        work
+    }
+}
