@@ -189,8 +189,8 @@ impl Projector {
                 }
                 length *= 0.5;
             };
-            strain = self.worst(model, x);
-            if after > RESERVE * before && strain <= tolerance {
+            if after > RESERVE * before && self.worst(model, x) <= tolerance {
+                strain = self.worst(model, x);
                 break;
             }
             if length < SMALLEST_STEP {

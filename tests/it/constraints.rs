@@ -120,15 +120,19 @@ fn a_sheet_slides_down_a_line_at_g_sin() {
     for method in every() {
         let name = format!("{method:?}");
         let order_one = matches!(method, Method::ImplicitEuler(_) | Method::Projection(_));
+        let projected = matches!(method, Method::Projection(_));
         let (sheet, mut model) = triangle(0.3);
-        // All three vertices on parallel lines: the triangle slides without turning.
-        for v in 0..3 {
-            let p = sheet.position(VertexId(v));
-            let line = Line::new([p[0], p[1], p[2]], along).expect("valid");
+        // Two vertices on parallel lines and one on the plane through them: the triangle slides without turning, and no
+        // equation depends on the others.
+        for v in 0..2 {
+            let line = Line::new(sheet.position(VertexId(v)), along).expect("valid");
             model = model
                 .with_constraint(VertexConstraint::on_curve(VertexId(v), line))
                 .expect("exists");
         }
+        let plane = Plane::new(sheet.position(VertexId(2)), [slope.sin(), 0.0, slope.cos()]);
+        let plane = VertexConstraint::on_surface(VertexId(2), plane.expect("valid"), Side::On);
+        model = model.with_constraint(plane).expect("exists");
         let model = model.with_gravity();
         let start = State::at_rest(sheet.positions().to_vec());
         let mut simulation = Simulation::new(model, start, method).expect("valid");
@@ -142,7 +146,9 @@ fn a_sheet_slides_down_a_line_at_g_sin() {
         for v in 0..3 {
             let speed = simulation.state().v[3 * v] / slope.cos();
             let error = (speed / (a * h * f64::from(steps)) - 1.0).abs();
-            assert!(error < 1e-9, "{name}: {error:e}");
+            // A penalty of 1e9 leaves the projection of velocities that much less of the mantissa.
+            let allowed = if projected { 1e-7 } else { 1e-9 };
+            assert!(error < allowed, "{name}: {error:e}");
         }
         let moved = (simulation.state().x[0] - sheet.positions()[0]) / slope.cos();
         let exact = 0.5 * a * (h * f64::from(steps)).powi(2);

@@ -84,7 +84,7 @@ fn samples() -> Vec<(&'static str, VertexConstraint)> {
 
 #[test]
 fn derivatives_are_those_of_the_values() {
-    let h = 1e-5;
+    let h = 1e-6;
     let w = v(0.7, -0.4, 1.3);
     for (name, c) in samples() {
         for p in [
