@@ -63,6 +63,9 @@ pub(crate) struct Minimiser {
     /// Impulse multipliers of the rods (h^2 times force densities), kept from step to step.
     multipliers: Vec<f64>,
     multiplier_step: f64,
+    /// Those of the first round, whose penalty is the one that the next step begins with. (In a nearly flat sheet
+    /// the ones of later rounds grow without bound.)
+    first_multipliers: Vec<f64>,
     penalty: Vec<f64>,
     /// The penalty that every step begins with.
     first_penalty: Vec<f64>,
@@ -136,6 +139,7 @@ impl Minimiser {
             matrix: PrimalMatrix::new(model)?,
             projector: Projector::new(model),
             multipliers: vec![0.0; m],
+            first_multipliers: vec![0.0; m],
             multiplier_step: 0.0,
             penalty: penalties(model, options.stiffness),
             first_penalty: penalties(model, options.stiffness),
@@ -534,6 +538,9 @@ impl Minimiser {
                 strain = f64::INFINITY;
                 break;
             }
+            if round == 0 {
+                self.first_multipliers.copy_from_slice(&self.multipliers);
+            }
             if round + 1 < rounds && model.rods().max_strain(&self.x) > self.ready {
                 self.penalty.iter_mut().for_each(|p| *p *= GROWTH);
                 continue;
@@ -556,6 +563,7 @@ impl Minimiser {
                 effort,
             );
             if strain <= tolerance {
+                self.multipliers.copy_from_slice(&self.first_multipliers);
                 return Ok((residual, path));
             }
             model.rods().residual_into(&self.x, &mut self.c);
