@@ -2,8 +2,11 @@
 
 use crate::Barrier;
 
-/// Part of the activation distance that a vertex under its weight keeps.
+/// Part of the activation distance that a loaded contact keeps.
 const REST: f64 = 0.5;
+
+/// Vertices whose weight it carries.
+const LOAD: f64 = 100.0;
 
 /// The potential `phi(g) = kappa b(g^2)` of a gap `g`: distance less thickness, and less the radius
 /// of a round body. A function of the gap rather than of the distance, so that balls, capsules and
@@ -20,12 +23,12 @@ impl GapPotential {
         Self { barrier, stiffness }
     }
 
-    /// With the stiffness at which a mass at rest under an acceleration keeps half the activation
-    /// distance.
+    /// With the stiffness at which the weight of a hundred masses under an acceleration keeps half the
+    /// activation distance.
     pub(super) fn for_weight(barrier: Barrier, mass: f64, acceleration: f64) -> Self {
         let unit = Self::new(barrier, 1.0);
         let force = unit.force(REST * barrier.activation());
-        Self::new(barrier, mass * acceleration / force)
+        Self::new(barrier, LOAD * mass * acceleration / force)
     }
 
     /// Joules; infinite at and below zero, and if the gap is not a number.

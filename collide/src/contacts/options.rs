@@ -34,10 +34,13 @@ pub struct ContactOptions {
 /// Stiffness `kappa` of the barrier potential `kappa b`, constant over a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stiffness {
-    /// A vertex of mean mass at rest under the largest acceleration that the potentials cause at the
-    /// start keeps half the activation distance: `kappa = m a d_hat / |b'(1/2)|`, the slope taken
-    /// by the gap over `d_hat`. The acceleration is that of gravity, 9.8 m/s2, if there are no
-    /// potentials.
+    /// A contact that carries a hundred vertices of mean mass under the largest acceleration that the
+    /// potentials cause at the start keeps half the activation distance: `kappa = 100 m a d_hat /
+    /// |b'(1/2)|`, the slope taken by the gap over `d_hat`; one that carries its own vertex only keeps
+    /// 95 %. A draped sheet hangs on a few contacts. Ten times less and they close to where the
+    /// barrier is steep, ten times more and light contacts become hard: on draped
+    /// sheets of 81 and 289 vertices either costs up to five times the Newton iterations. The acceleration is that of
+    /// gravity, 9.8 m/s2, if there are no potentials.
     Automatic,
     /// A given value, joules.
     Joules(f64),

@@ -92,7 +92,7 @@ pub(super) struct Course {
     offset: Vector3<f64>,
     rate: Vector3<f64>,
     /// Bound on the acceleration in the body's frame.
-    bend: f64,
+    pub(super) bend: f64,
 }
 
 impl RestOfStep {

@@ -186,3 +186,34 @@ fn options_that_make_no_sense_are_named() {
         Err(ContactsError::Obstacle(_))
     ));
 }
+
+/// The automatic stiffness: one contact carries a hundred vertices at half the activation distance, whatever
+/// the gravity, and without any.
+#[test]
+fn automatic_stiffness_carries_a_hundred_vertices() {
+    let sheet = sheet(2);
+    let plain = || SheetModel::new(&sheet, 0.1, MassKind::Lumped).unwrap();
+    for (model, acceleration) in [
+        (plain().with_gravity(), 9.8),
+        (plain().with_acceleration([0.0, 3.0, -4.0]), 5.0),
+        (plain(), 9.8),
+    ] {
+        let options = ContactOptions::for_sheet(&model);
+        let mut contacts = Contacts::new(&model, options)
+            .unwrap()
+            .with_body(
+                still(Shape::HalfSpace, Isometry3::identity()),
+                Coefficients::FRICTIONLESS,
+            )
+            .unwrap();
+        let mut x = sheet.positions().to_vec();
+        x.iter_mut().skip(2).step_by(3).for_each(|z| *z = 1.0);
+        x[2] = 0.5 * options.activation;
+        contacts
+            .check_start(&model, &State::at_rest(x.clone()))
+            .unwrap();
+        let weight = 100.0 * 0.1 / 81.0 * acceleration;
+        assert!((contacts.loads(&x)[0].force.z + weight).abs() < 1e-11);
+        assert!((contacts.gap(&x) - x[2]).abs() < 1e-18);
+    }
+}
