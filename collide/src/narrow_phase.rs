@@ -194,12 +194,23 @@ fn pierced(
     found
 }
 
+/// Round-off of a triple product over the product of the lengths.
+const VOLUME_ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+
 /// Whether the open segment `pq` runs through the open triangle `abc`.
 pub(crate) fn pierces([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
+    // Zero in one plane: what is left there is round-off of arbitrary sign.
     let volume = |a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>, d: Vector3<f64>| {
-        (b - a).cross(&(c - a)).dot(&(d - a))
+        let (b, c, d) = (b - a, c - a, d - a);
+        let volume = b.cross(&c).dot(&d);
+        if volume.abs() <= VOLUME_ROUND_OFF * b.norm() * c.norm() * d.norm() {
+            0.0
+        } else {
+            volume
+        }
     };
-    if volume(a, b, c, p) * volume(a, b, c, q) >= 0.0 {
+    let (first, second) = (volume(a, b, c, p), volume(a, b, c, q));
+    if !(first < 0.0 && second > 0.0 || first > 0.0 && second < 0.0) {
         return false;
     }
     let sides = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];

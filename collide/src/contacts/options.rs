@@ -19,9 +19,9 @@ pub struct ContactOptions {
     pub thickness: f64,
     /// Stiffness of the barrier. Default [`Stiffness::Automatic`].
     pub stiffness: Stiffness,
-    /// Speed below which sliding counts as rest, metres per second. For a sheet: 1 % of a mean rod
-    /// length per second, at which a sheet needs minutes to creep over an edge of its mesh; a
-    /// hundredth of the speed of a fall from the height of a few rods.
+    /// Speed below which sliding counts as rest, metres per second: friction at rest is a creep below
+    /// it. For a sheet: 1 % of a mean rod length per second, so that minutes pass before a sheet at
+    /// rest has crept over one edge of its mesh.
     pub rest_speed: f64,
     /// Sides of the prism that stands for a cylinder against edges and faces, see
     /// [`crate::Shape::contact_geometry`]. Default 64: they come closer to the true cylinder by at

@@ -120,3 +120,18 @@ fn no_pairs_mean_no_limit_and_no_distance() {
     };
     assert_eq!(pair.safe_fraction(moving, &CcdOptions::default(), 1.0), 0.0);
 }
+
+/// A flat sheet crosses nothing, in whatever plane round-off leaves it.
+#[test]
+fn tilted_planes_do_not_cross() {
+    let sheet = generate::isotropic_square(2, 1.0).unwrap();
+    let mesh = ContactMesh::from_topology(sheet.topology());
+    for k in 0..20 {
+        let turn = nalgebra::Rotation3::new(Vector3::new(0.3, 0.1 * f64::from(k), -0.7));
+        let mut x = sheet.positions().to_vec();
+        for p in x.as_chunks_mut::<3>().0 {
+            *p = (turn * Vector3::from(*p) + Vector3::new(0.1, 0.2, 0.3)).into();
+        }
+        assert!(crossings(&mesh, &x).is_empty());
+    }
+}
