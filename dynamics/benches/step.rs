@@ -36,11 +36,21 @@ fn simulation(sheet: &Sheet, level: u32, start: State, method: Method) -> Simula
 
 fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
-    for (level, size) in [(1, "25/32"), (2, "81/128"), (3, "289/512")] {
+    for (level, size) in [
+        (1, "25/32"),
+        (2, "81/128"),
+        (3, "289/512"),
+        (4, "1089/2048"),
+    ] {
         let (sheet, state) = falling(level);
         // Conservative methods at a step that they accept whole next to singular states.
         let cases = [
             ("BDF2 1/60 s", Method::default(), 1.0 / 60.0),
+            (
+                "implicit Euler 1/60 s",
+                Method::ImplicitEuler(Default::default()),
+                1.0 / 60.0,
+            ),
             (
                 "projection 1/60 s",
                 Method::Projection(Default::default()),

@@ -465,7 +465,7 @@ impl Integrator for RattleComposition {
         let model = scene.model;
         let a = 1.0 / (4.0 - 4.0_f64.cbrt());
         let t0 = state.t;
-        self.saved.clone_from(state);
+        self.saved.copy_from(state);
         self.total.clear();
         let mut total = Accepted {
             residual: 0.0,
@@ -483,7 +483,7 @@ impl Integrator for RattleComposition {
                     self.total.add_share(&self.rattle.balance, part);
                 }
                 Err(error) => {
-                    state.clone_from(&self.saved);
+                    state.copy_from(&self.saved);
                     return Err(error);
                 }
             }

@@ -12,6 +12,13 @@ pub struct State {
 }
 
 impl State {
+    /// Takes over another state of the same sheet, in place.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.t = other.t;
+        self.x.copy_from_slice(&other.x);
+        self.v.copy_from_slice(&other.v);
+    }
+
     /// The given positions at rest, at time zero.
     pub fn at_rest(x: Vec<f64>) -> Self {
         let v = vec![0.0; x.len()];

@@ -119,7 +119,7 @@ impl Subdivided {
         while done < 1.0 {
             let effort = &mut tally.effort;
             if guarded || driven {
-                self.before.clone_from(state);
+                self.before.copy_from(state);
             }
             self.check_pins(state.t + fraction * h)?;
             let mut tried = self.integrator.step(
@@ -138,7 +138,7 @@ impl Subdivided {
                 && let Ok(accepted) = &tried
                 && let Some(error) = energy_gain(&self.model, &self.before, state, accepted)
             {
-                state.clone_from(&self.before);
+                state.copy_from(&self.before);
                 tried = Err(error);
             }
             if let Err(StepError::EnergyGain { .. }) = tried

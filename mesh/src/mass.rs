@@ -168,9 +168,22 @@ impl MassMatrix {
     /// # Panics
     /// If `v` is not of length 3V.
     pub fn kinetic_energy(&self, topology: &Topology, v: &[f64]) -> f64 {
-        let mut p = vec![0.0; v.len()];
-        self.apply(topology, v, &mut p);
-        0.5 * p.iter().zip(v).map(|(p, v)| p * v).sum::<f64>()
+        assert_eq!(v.len(), 3 * self.vertex.len(), "three numbers per vertex");
+        let mut twice = 0.0;
+        for (m, v) in self.vertex.iter().zip(v.chunks_exact(3)) {
+            for vk in v {
+                twice += m * vk * vk;
+            }
+        }
+        if let Some(edge) = &self.edge {
+            for (&[a, b], m) in topology.edges().iter().zip(edge) {
+                let (a, b) = (3 * a.index(), 3 * b.index());
+                for k in 0..3 {
+                    twice += 2.0 * m * v[a + k] * v[b + k];
+                }
+            }
+        }
+        0.5 * twice
     }
 }
 
