@@ -30,6 +30,10 @@ pub(crate) enum Command {
     /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG). What is already there and was made
     /// by the same program with the same effort is kept. Times are wall times on one core: leave the machine alone meanwhile.
     SpeedVsError(SpeedArgs),
+    /// Measure what a step costs as the mesh is refined: time, memory, fill, fitted powers
+    ///
+    /// Writes DIR/scale.csv, DIR/scale.svg and DIR/scale.html and prints the table.
+    Scale(ScaleArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///
     /// Writes DIR/index.html (self-contained), DIR/verdicts.csv, DIR/verdicts.json and DIR/figures, and prints a table. The exit code is
@@ -96,6 +100,22 @@ pub(crate) struct ConditionArgs {
     /// Folder to write to: a new or empty one, or one of an earlier run of this program
     #[arg(long, value_name = "DIR", default_value = "out/condition-table")]
     pub(crate) out: PathBuf,
+}
+
+/// Arguments of `scale`.
+#[derive(Debug, Args)]
+pub(crate) struct ScaleArgs {
+    /// Finest mesh, M^LEVEL
+    #[arg(long, value_name = "LEVEL", default_value_t = 7, value_parser = clap::value_parser!(u32).range(3..=8))]
+    pub(crate) level: u32,
+
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
+    #[arg(long, value_name = "DIR", default_value = "out/scale")]
+    pub(crate) out: PathBuf,
+
+    /// Small meshes only: checks that everything works in seconds, and shows no result
+    #[arg(long)]
+    pub(crate) quick: bool,
 }
 
 /// Arguments of `reproduce-figures`.

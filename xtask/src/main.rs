@@ -3,6 +3,7 @@
 //! * `reproduce-figures`: the figures and the table of Liu, Tang and Joneja 2007, made with this workspace.
 //! * `condition-table`: the condition numbers of the system coordinates.
 //! * `speed-vs-error`: time against errors of all methods and solvers.
+//! * `scale`: time, memory and fill of a step against the size of the mesh.
 //! * `hard-cases`: what the solvers do where others break.
 //!
 //! The exit code is 0 when everything was made, 1 on failure, 2 for a command line that makes no sense and 130 when
@@ -19,6 +20,7 @@ mod render;
 mod report;
 mod reproduce;
 mod runs;
+mod scale;
 mod selection;
 mod speed_vs_error;
 mod store;
@@ -41,6 +43,7 @@ fn main() -> ExitCode {
         cli::Command::ReproduceFigures(args) => reproduce::run(&args),
         cli::Command::ConditionTable(args) => condition::run(&args),
         cli::Command::SpeedVsError(args) => speed_vs_error::run(&args),
+        cli::Command::Scale(args) => scale::run(&args),
         cli::Command::HardCases(args) => hard_cases::run(&args),
     });
     match result {
