@@ -73,7 +73,7 @@ fn charts(c: &mut Criterion) {
             b.iter(|| {
                 linear
                     .factorize(&system, &chart, black_box(&x))
-                    .expect("regular")
+                    .expect("regular");
             });
         });
         let mass = MassMatrix::from_total(&sheet, 0.1, MassKind::Lumped).expect("valid");

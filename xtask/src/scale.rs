@@ -55,6 +55,5 @@ pub(crate) fn rows(levels: impl Iterator<Item = u32>) -> Result<Option<Vec<Row>>
     Ok(Some(rows))
 }
 
-/// Steps that are timed. The same at every size, and few: the finer the mesh, the sooner a sheet that starts all but flat
-/// comes to states that its length equations barely determine, where steps take tens to hundreds of factorisations.
+/// Steps that are timed, see [`measure::STEP`].
 const STEPS: usize = 3;
