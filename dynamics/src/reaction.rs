@@ -118,6 +118,14 @@ impl Balance {
         }
     }
 
+    /// Takes over the forces of another balance, in place.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.pins.clone_from(&other.pins);
+        self.multipliers.clone_from(&other.multipliers);
+        self.constraints.clone_from(&other.constraints);
+        self.time = other.time;
+    }
+
     /// Sets all forces to zero.
     pub(crate) fn clear(&mut self) {
         self.pins.fill(0.0);

@@ -190,7 +190,7 @@ impl Subdivided {
                     _ => self.integrator.balance(),
                 };
                 match &mut self.balance {
-                    Some(kept) => kept.clone_from(balance),
+                    Some(kept) => kept.copy_from(balance),
                     none => *none = Some(balance.clone()),
                 }
             }
