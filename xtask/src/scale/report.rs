@@ -296,19 +296,19 @@ fn plot(rows: &[Row]) -> Drawing {
         vec![
             series("step", step.clone(), palette::BLUE, Some(Marker::Disc)),
             series(
-                "factorisation, minimum degree",
+                "factor, min. degree",
                 of(|r| r.orders[0].numeric),
                 palette::ORANGE,
                 Some(Marker::Square),
             ),
             series(
-                "factorisation, nested dissection",
+                "factor, dissection",
                 of(|r| r.orders[1].numeric),
                 palette::GREEN,
                 Some(Marker::Triangle),
             ),
             series(
-                "finding that order",
+                "order, dissection",
                 of(|r| r.orders[1].order),
                 palette::PURPLE,
                 Some(Marker::Diamond),
