@@ -1,6 +1,7 @@
 //! The figures, one module each, and what is kept about them.
 
 mod crumple;
+mod drape;
 mod fig01;
 mod fig02;
 mod fig03;
@@ -10,8 +11,12 @@ mod fig06;
 mod fig07;
 mod fig08;
 mod fig09;
+mod folds;
+mod marks;
 mod performance;
+mod sequence;
 mod softness;
+mod stamping;
 
 pub(crate) use performance::{machine, rounded};
 
@@ -109,6 +114,9 @@ pub(crate) fn make(figure: u8, context: &Context<'_>) -> Result<Made> {
         10 => performance::make(context),
         11 => crumple::make(11, 1, context),
         12 => crumple::make(12, 2, context),
+        13 => stamping::make(context),
+        14 => drape::fig14(context),
+        15 => drape::fig15(context),
         _ => anyhow::bail!("figure {figure} cannot be made"),
     }
 }
@@ -144,6 +152,15 @@ fn caption(drawing: &mut Drawing, at: [f64; 2], size: f64, lines: &[String]) {
             Vertical::Below,
             palette::INK,
         );
+    }
+}
+
+/// A smallest gap in words.
+fn gap(gap: Option<f64>) -> String {
+    match gap {
+        None => "none (nothing came within reach)".into(),
+        Some(metres) if metres < 1e-3 => format!("{:.1} µm", 1e6 * metres),
+        Some(metres) => format!("{:.2} mm", 1e3 * metres),
     }
 }
 

@@ -6,8 +6,10 @@ mod glyphs;
 mod montage;
 mod occlusion;
 mod sheet;
+mod solid;
 
 pub(crate) use camera::Camera;
 pub(crate) use canvas::png;
 pub(crate) use montage::{Labelled, montage};
 pub(crate) use sheet::{Look, SheetPicture, render};
+pub(crate) use solid::Solid;

@@ -2,7 +2,7 @@
 
 use super::{Context, Effort, Picture, Table, crumple};
 use crate::draw::{Axis, Colour, Legend, Line, Marker, Plot, Series, palette, row};
-use crate::runs::{self, Member, Scene};
+use crate::runs::{self, Member, Scene, Staged};
 use anyhow::Result;
 use isosheet_mesh::Dof;
 use serde_json::{Value, json};
@@ -93,7 +93,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Softness> {
     };
     let mut all = Vec::new();
     for level in levels {
-        let scene = crumple::scene(level, context.effort);
+        let scene = crumple::without_contact(level, context.effort);
         let sheet = scene.sheet()?;
         let t = sheet.topology();
         all.push(Level {

@@ -131,6 +131,7 @@ fn fall() -> Result<Picture> {
                     topology: sheet.topology(),
                     positions: x,
                     pins: &[corner(2)],
+                    solids: &[],
                 },
                 &camera,
                 &look,

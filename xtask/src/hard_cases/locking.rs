@@ -175,6 +175,7 @@ fn picture(meshes: &[(&str, Sheet)], ends: &[(Vec<f64>, VertexId)]) -> Result<Pi
                     topology: meshes[k % meshes.len()].1.topology(),
                     positions: x,
                     pins: &[*pin],
+                    solids: &[],
                 },
                 &camera,
                 &look,

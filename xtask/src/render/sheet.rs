@@ -3,6 +3,7 @@
 use super::camera::{Camera, normal};
 use super::canvas::{Corner, Depth, Image, light};
 use super::occlusion::openness;
+use super::solid::Solid;
 use crate::draw::spatial::{axpy, dot};
 use isosheet_mesh::{Topology, VertexId};
 
@@ -17,6 +18,8 @@ pub(crate) struct SheetPicture<'a> {
     pub(crate) positions: &'a [f64],
     /// Vertices marked with a dot.
     pub(crate) pins: &'a [VertexId],
+    /// Bodies that the sheet meets.
+    pub(crate) solids: &'a [Solid],
 }
 
 /// How it is drawn.
@@ -26,6 +29,8 @@ pub(crate) struct Look {
     pub(crate) size: [usize; 2],
     /// Colours of the upper and the lower side of the sheet as it lies flat.
     pub(crate) sides: [[u8; 3]; 2],
+    /// Colour of bodies.
+    pub(crate) body: [u8; 3],
     /// Width of the wires, pixels.
     pub(crate) wire: f64,
 }
@@ -36,6 +41,7 @@ impl Default for Look {
         Self {
             size: [480, 480],
             sides: [[250, 240, 214], [120, 172, 214]],
+            body: [186, 186, 182],
             wire: 0.7,
         }
     }
@@ -45,13 +51,22 @@ impl Default for Look {
 pub(crate) fn render(picture: &SheetPicture<'_>, camera: &Camera, look: &Look) -> Image {
     let [width, height] = look.size.map(|s| s * SUPERSAMPLING);
     let mut depth = Depth::new(width, height);
-    let x: Vec<[f64; 3]> = picture.positions.as_chunks::<3>().0.to_vec();
-    let faces: Vec<[usize; 3]> = picture
+    let mut x: Vec<[f64; 3]> = picture.positions.as_chunks::<3>().0.to_vec();
+    let extent = extent(&x);
+    let mut faces: Vec<[usize; 3]> = picture
         .topology
         .faces()
         .iter()
         .map(|f| f.map(VertexId::index))
         .collect();
+    let own = faces.len();
+    let mut ridges = Vec::new();
+    for solid in picture.solids {
+        let first = x.len();
+        x.extend(&solid.points);
+        faces.extend(solid.faces.iter().map(|f| f.map(|v| v + first)));
+        ridges.extend(solid.edges.iter().map(|e| e.map(|v| v + first)));
+    }
     let place = |p: &[f64; 3], shade: f64| {
         let q = camera.project(p);
         Corner {
@@ -61,7 +76,6 @@ pub(crate) fn render(picture: &SheetPicture<'_>, camera: &Camera, look: &Look) -
             shade,
         }
     };
-    let extent = extent(&x);
     let open = openness(&faces, &x, 0.35 * extent);
     // A key light from the upper left, and the surroundings, brighter from above.
     let key = camera.direction([-0.55, 0.75, 0.65]);
@@ -77,17 +91,19 @@ pub(crate) fn render(picture: &SheetPicture<'_>, camera: &Camera, look: &Look) -
             let o = open[k][back][i];
             place(&corners[i], sky * o + sun * (0.4 + 0.6 * o))
         });
-        depth.triangle(&shaded, light(look.sides[back]));
+        let colour = if k < own { look.sides[back] } else { look.body };
+        depth.triangle(&shaded, light(colour));
     }
     let ink = light([38, 42, 48]);
     // Wires lie a little nearer than the faces that they bound.
     let lift = 0.004 * extent;
     let wire = look.wire * SUPERSAMPLING as f64;
+    let raised = |p: &[f64; 3]| place(&axpy(p, lift, &camera.viewer(p)), 1.0);
+    for [a, b] in ridges {
+        depth.line(&raised(&x[a]), &raised(&x[b]), wire, ink, 0.8);
+    }
     for e in picture.topology.edge_ids() {
-        let [a, b] = picture.topology.edges()[e.index()].map(|v| {
-            let p = x[v.index()];
-            place(&axpy(&p, lift, &camera.viewer(&p)), 1.0)
-        });
+        let [a, b] = picture.topology.edges()[e.index()].map(|v| raised(&x[v.index()]));
         let (width, cover) = if picture.topology.is_boundary_edge(e) {
             (1.7 * wire, 0.9)
         } else {
@@ -140,6 +156,7 @@ mod tests {
             topology: sheet.topology(),
             positions: sheet.positions(),
             pins: &[],
+            solids: &[],
         };
         let middle = |elevation: f64| {
             let camera = Camera::new([0.5, 0.5, 0.0], -90.0, elevation, 1.5, 100.0);

@@ -1,6 +1,6 @@
 //! The paper's own scheme on the same sheet: forward Euler in system coordinates, with the published step control.
 
-use super::Scene;
+use super::{Scene, Staged};
 use crate::interrupt;
 use crate::progress::Progress;
 use anyhow::Result;

@@ -1,6 +1,6 @@
 //! The same fall many times, each from another slightly uneven start.
 
-use super::{Scene, Shape};
+use super::{Scene, Shape, Staged};
 use crate::interrupt;
 use crate::progress::Progress;
 use anyhow::Result;

@@ -1,6 +1,6 @@
 //! The first moments of the fall, between two limits: a rigid plate and matter that nothing holds together.
 
-use super::{Scene, Shape};
+use super::{Scene, Shape, Staged};
 use crate::interrupt;
 use anyhow::Result;
 use isosheet_mesh::{MassKind, MassMatrix};

@@ -1,21 +1,33 @@
 //! Running a scene and keeping what it did.
 
-use super::{Scene, Shape};
+use super::Staged;
 use crate::interrupt::{self, Interrupted};
 use crate::progress::{self, Progress};
 use crate::store::{Draft, Extent, Store};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use isosheet_dynamics::{Path as SolverPath, Simulation, StepReport};
-use isosheet_io::{HistoryRow, HistoryWriter, Trajectory, frame_path, write_json, write_obj};
+use isosheet_io::{
+    HistoryRow, HistoryWriter, Trajectory, frame_path, write_atomically, write_json, write_obj,
+};
 use isosheet_mesh::Sheet;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::Path;
 use std::time::Instant;
+
+/// A run with an edge strain from here on is an error: what every figure promises is that nothing stretches.
+const STRAIN: f64 = 1e-10;
+
+/// A sheet with less kinetic energy than this part of the potential energy released is at rest.
+const REST: f64 = 1e-6;
 
 /// What a run did, as in its summary.json.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct RunSummary {
-    pub(crate) scene: Scene,
+    /// The scene, for programs.
+    pub(crate) scene: Value,
     pub(crate) extent: Extent,
     pub(crate) vertices: usize,
     pub(crate) faces: usize,
@@ -37,35 +49,67 @@ pub(crate) struct RunSummary {
     pub(crate) step_range: Option<[f64; 2]>,
     /// Largest relative edge length error.
     pub(crate) max_strain: f64,
+    /// Smallest gap between the sheet and a body or itself at the end of a frame, metres; `None` without contact or if nothing
+    /// ever came within reach.
+    pub(crate) smallest_gap: Option<f64>,
+    /// The energy balance at the end.
+    pub(crate) energy: Energy,
+    /// Time from which the kinetic energy stays below [`REST`] of the potential energy released, seconds.
+    pub(crate) at_rest_from: Option<f64>,
     /// Frames by the path that their hardest sub-step took: Newton alone, globalised, seeded, other.
     pub(crate) paths: [usize; 4],
     /// Kinetic energy at the end as part of the potential energy released.
     pub(crate) motion_left: f64,
-    /// The shape at the end.
-    pub(crate) shape: Shape,
 }
 
-fn unit(scene: &Scene) -> String {
-    format!("run-{}", scene.name)
+/// Where the energy went, joules.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Energy {
+    /// Potential energy at the start less that at the end.
+    pub(crate) released: f64,
+    /// Work of moving bodies and applied forces.
+    pub(crate) work: f64,
+    /// Taken out by velocity damping.
+    pub(crate) damped: f64,
+    /// Lost to friction.
+    pub(crate) friction: f64,
+    /// What the balance lacks: the error of the integrator.
+    pub(crate) drift: f64,
 }
 
-fn folder(scene: &Scene) -> String {
-    format!("runs/{}", scene.name)
+impl RunSummary {
+    /// Wall time over simulated time: below one is faster than real time.
+    pub(crate) fn slowness(&self) -> f64 {
+        self.wall / self.time.max(1e-12)
+    }
+
+    /// Linear systems solved per second of wall time.
+    pub(crate) fn solves_per_second(&self) -> f64 {
+        self.iterations as f64 / self.wall.max(1e-9)
+    }
+}
+
+fn unit(scene: &impl Staged) -> String {
+    format!("run-{}", scene.name())
+}
+
+fn folder(scene: &impl Staged) -> String {
+    format!("runs/{}", scene.name())
 }
 
 /// The summary of an up-to-date run of the scene, which is made now when there is none.
 ///
 /// # Errors
 /// [`Interrupted`] after Ctrl-C; the frames made so far are kept and readable.
-pub(crate) fn ensure(store: &Store, scene: &Scene) -> Result<RunSummary> {
+pub(crate) fn ensure(store: &Store, scene: &impl Staged) -> Result<RunSummary> {
     let options = serde_json::to_value(scene)?;
     if let Some(stamp) = store.current(&unit(scene), &options) {
-        progress::note(&format!("run {}", scene.name), "up to date");
+        progress::note(&format!("run {}", scene.name()), "up to date");
         return Ok(serde_json::from_value(stamp.facts)?);
     }
     let mut draft = store.draft()?;
     let summary = run(scene, &mut draft, interrupt::requested)
-        .with_context(|| format!("run {}", scene.name))?;
+        .with_context(|| format!("run {}", scene.name()))?;
     let extent = summary.extent;
     store.commit(
         draft,
@@ -81,9 +125,44 @@ pub(crate) fn ensure(store: &Store, scene: &Scene) -> Result<RunSummary> {
 }
 
 /// The frames of a run that [`ensure`] has made.
-pub(crate) fn trajectory(store: &Store, scene: &Scene) -> Result<Trajectory> {
+pub(crate) fn trajectory(store: &Store, scene: &impl Staged) -> Result<Trajectory> {
     let path = store.root().join(folder(scene)).join("trajectory.npz");
     Ok(Trajectory::read(&path)?)
+}
+
+/// Columns of loads.csv: time (s), body, force (N) and torque about the body's origin (N m) of the sheet on the body.
+const LOADS: &str = "t,body,fx,fy,fz,mx,my,mz";
+
+/// Time and force of the sheet on a body in a run that [`ensure`] has made: seconds, newtons.
+pub(crate) fn forces(store: &Store, scene: &impl Staged, body: usize) -> Result<Vec<[f64; 4]>> {
+    let text = store.read(&format!("{}/loads.csv", folder(scene)))?;
+    let text = String::from_utf8_lossy(&text);
+    let mut rows = Vec::new();
+    for line in text.lines().skip(1) {
+        let numbers = line.split(',').map(str::parse);
+        let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().context("loads.csv")?;
+        if let [t, number, fx, fy, fz, ..] = numbers[..]
+            && number == body as f64
+        {
+            rows.push([t, fx, fy, fz]);
+        }
+    }
+    Ok(rows)
+}
+
+/// What every run has to keep at every frame.
+fn check(report: &StepReport) -> Result<()> {
+    let StepReport { t, strain, gap, .. } = *report;
+    ensure!(
+        strain < STRAIN,
+        "at t = {t} s an edge is strained by {strain:e}, {STRAIN:e} is the limit"
+    );
+    // Not a number is no gap either.
+    ensure!(
+        gap.is_none_or(|g| g > 0.0),
+        "at t = {t} s the smallest gap is {gap:?} m: something touches"
+    );
+    Ok(())
 }
 
 struct Recorder<'a> {
@@ -92,6 +171,8 @@ struct Recorder<'a> {
     history: HistoryWriter,
     folder: &'a Path,
     start: f64,
+    /// Rows of loads.csv.
+    loads: String,
 }
 
 impl Recorder<'_> {
@@ -107,7 +188,7 @@ impl Recorder<'_> {
         let model = simulation.model();
         let (kinetic, potential) = (
             model.kinetic_energy(&state.v),
-            model.potential_energy(state.t, &state.x),
+            simulation.energy() - model.kinetic_energy(&state.v),
         );
         if report.is_none() {
             self.start = kinetic + potential;
@@ -121,14 +202,21 @@ impl Recorder<'_> {
             total: kinetic + potential,
             drift: kinetic + potential - self.start,
             strain: report.map_or(0.0, |r| r.strain),
-            gap: report.and_then(|r| r.gap),
+            // An infinite gap means that nothing is within reach.
+            gap: report.and_then(|r| r.gap).filter(|g| g.is_finite()),
         })?;
+        for (body, load) in simulation.body_loads().iter().enumerate() {
+            let ([fx, fy, fz], [mx, my, mz]): ([f64; 3], [f64; 3]) =
+                (load.force.into(), load.torque.into());
+            let t = state.t;
+            writeln!(self.loads, "{t},{body},{fx},{fy},{fz},{mx},{my},{mz}")?;
+        }
         Ok(())
     }
 }
 
 /// Runs a scene into a draft until it ends or `stop` says so.
-fn run(scene: &Scene, draft: &mut Draft, stop: impl Fn() -> bool) -> Result<RunSummary> {
+fn run(scene: &impl Staged, draft: &mut Draft, stop: impl Fn() -> bool) -> Result<RunSummary> {
     let folder = draft.folder(&folder(scene))?;
     let sheet = scene.sheet()?;
     let mut simulation = scene.simulation(&sheet)?;
@@ -138,10 +226,11 @@ fn run(scene: &Scene, draft: &mut Draft, stop: impl Fn() -> bool) -> Result<RunS
         history: HistoryWriter::create(&folder.join("history.csv"))?,
         folder: &folder,
         start: 0.0,
+        loads: String::new(),
     };
     recorder.frame(&simulation, None)?;
     let mut s = RunSummary {
-        scene: scene.clone(),
+        scene: serde_json::to_value(scene)?,
         extent: Extent::Complete,
         vertices: sheet.topology().vertex_count(),
         faces: sheet.topology().face_count(),
@@ -157,20 +246,23 @@ fn run(scene: &Scene, draft: &mut Draft, stop: impl Fn() -> bool) -> Result<RunS
         max_strain: 0.0,
         paths: [0; 4],
         motion_left: 0.0,
-        shape: Shape::of(scene, &sheet, sheet.positions())?,
+        smallest_gap: None,
+        energy: Energy::default(),
+        at_rest_from: None,
     };
-    let before = simulation
-        .model()
-        .potential_energy(0.0, &simulation.state().x);
-    let bar = Progress::start(format!("run {}", scene.name), scene.frames);
-    for _ in 0..scene.frames {
+    // The sheet starts at rest.
+    let before = simulation.energy();
+    let (frame, frames) = (scene.frame(), scene.frames());
+    let bar = Progress::start(format!("run {}", scene.name()), frames);
+    for _ in 0..frames {
         if stop() {
             s.extent = Extent::Partial;
             break;
         }
         let clock = Instant::now();
-        let report = simulation.step(scene.frame)?;
+        let report = simulation.step(frame)?;
         s.wall += clock.elapsed().as_secs_f64();
+        check(&report)?;
         s.count(&report);
         recorder.frame(&simulation, Some(&report))?;
         bar.step();
@@ -180,14 +272,26 @@ fn run(scene: &Scene, draft: &mut Draft, stop: impl Fn() -> bool) -> Result<RunS
         } else {
             0.0
         };
+        s.at_rest_from =
+            (s.motion_left < REST && released > 0.0).then(|| s.at_rest_from.unwrap_or(report.t));
+        s.energy = Energy {
+            released,
+            work: report.work,
+            damped: report.dissipated,
+            friction: report.friction,
+            drift: report.energy_drift,
+        };
     }
     recorder.trajectory.write(&folder.join("trajectory.npz"))?;
-    s.shape = Shape::of(scene, &sheet, &simulation.state().x)?;
+    if !recorder.loads.is_empty() {
+        let text = format!("{LOADS}\n{}", recorder.loads);
+        write_atomically(&folder.join("loads.csv"), |w| w.write_all(text.as_bytes()))?;
+    }
     s.frames_per_second = s.frames as f64 / s.wall.max(1e-9);
     write_json(&folder.join("summary.json"), &s)?;
     let how = format!(
         "{} of {} frames, {:.1} frames/s",
-        s.frames, scene.frames, s.frames_per_second
+        s.frames, frames, s.frames_per_second
     );
     bar.finish(&how);
     Ok(s)
@@ -205,6 +309,9 @@ impl RunSummary {
         let [low, high] = self.step_range.unwrap_or([step, step]);
         self.step_range = Some([low.min(step), high.max(step)]);
         self.max_strain = self.max_strain.max(r.strain);
+        if let Some(gap) = r.gap.filter(|g| g.is_finite()) {
+            self.smallest_gap = Some(self.smallest_gap.map_or(gap, |g| g.min(gap)));
+        }
         self.paths[match r.path {
             SolverPath::Newton => 0,
             SolverPath::Globalised => 1,
@@ -217,6 +324,7 @@ impl RunSummary {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::runs::Scene;
     use std::cell::Cell;
 
     #[test]

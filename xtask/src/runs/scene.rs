@@ -1,6 +1,8 @@
 //! A sheet of paper held at its left-upper corner.
 
+use super::Staged;
 use anyhow::Result;
+use isosheet_collide::{Coefficients, ContactOptions, Contacts};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{MassKind, Sheet, VertexId};
@@ -23,7 +25,34 @@ pub(crate) struct Scene {
     pub(crate) frame: f64,
     /// Number of frames after the first.
     pub(crate) frames: usize,
+    pub(crate) contact: SelfContact,
 }
+
+/// Whether a sheet meets itself.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum SelfContact {
+    /// It passes through itself.
+    None,
+    /// With this coefficient of friction.
+    Friction(f64),
+}
+
+impl SelfContact {
+    /// Adds it to the contacts of a scene.
+    ///
+    /// # Errors
+    /// A coefficient that makes no sense.
+    pub(crate) fn add_to(self, contacts: Contacts) -> Result<Contacts> {
+        Ok(match self {
+            Self::None => contacts,
+            Self::Friction(mu) => contacts.with_self_contact(Coefficients::equal(mu))?,
+        })
+    }
+}
+
+/// Friction of paper on paper.
+pub(crate) const PAPER_FRICTION: f64 = 0.3;
 
 impl Scene {
     /// The scene of Figs. 11 and 12 at a level: office paper (80 g/m2) of the width of an A4 sheet.
@@ -36,12 +65,17 @@ impl Scene {
             damping: 2.0,
             frame: 1.0 / 60.0,
             frames,
+            contact: SelfContact::None,
         }
     }
 
-    /// The sheet at rest, `[0, side] x [0, side]` at height 0.
-    pub(crate) fn sheet(&self) -> Result<Sheet> {
-        Ok(isotropic_square(self.level, self.side)?)
+    /// The same with contact of the sheet with itself.
+    pub(crate) fn with_self_contact(self) -> Self {
+        Self {
+            name: format!("{}-contact", self.name),
+            contact: SelfContact::Friction(PAPER_FRICTION),
+            ..self
+        }
     }
 
     /// The vertex that is held: the left-upper corner as seen from above.
@@ -75,15 +109,42 @@ impl Scene {
             Method::RattleComposition(_) => "fourth-order RATTLE",
         }
     }
+}
 
-    /// The simulation with the default method.
-    pub(crate) fn simulation(&self, sheet: &Sheet) -> Result<Simulation> {
+impl Staged for Scene {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn frame(&self) -> f64 {
+        self.frame
+    }
+
+    fn frames(&self) -> usize {
+        self.frames
+    }
+
+    /// The sheet at rest, `[0, side] x [0, side]` at height 0.
+    fn sheet(&self) -> Result<Sheet> {
+        Ok(isotropic_square(self.level, self.side)?)
+    }
+
+    /// With the default method.
+    fn simulation(&self, sheet: &Sheet) -> Result<Simulation> {
+        let model = self.model(sheet)?;
+        let contacts = match self.contact {
+            SelfContact::None => None,
+            contact => {
+                let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?;
+                Some(contact.add_to(contacts)?)
+            }
+        };
         let state = State::at_rest(sheet.positions().to_vec());
-        Ok(Simulation::new(
-            self.model(sheet)?,
-            state,
-            Method::default(),
-        )?)
+        let simulation = Simulation::new(model, state, Method::default())?;
+        Ok(match contacts {
+            None => simulation,
+            Some(contacts) => simulation.with_contact(contacts)?,
+        })
     }
 }
 

@@ -67,6 +67,7 @@ impl Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::runs::Staged;
 
     #[test]
     fn a_plate_that_hangs_flat() {

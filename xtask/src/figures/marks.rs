@@ -1,0 +1,202 @@
+//! Crescent marks: how far the folds of a crumpled sheet concentrate in few edges.
+
+use super::Table;
+use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, palette, row};
+use isosheet_io::Trajectory;
+use isosheet_mesh::{EdgeId, Sheet, fold_angle};
+use serde::Serialize;
+
+/// Part of the inner edges that counts as marks.
+const SHARPEST: f64 = 0.05;
+
+/// What this part of the edges would carry if fold angles were normally distributed: E(|x|; |x| > 1.96 s) / E|x| = exp(-1.96^2 / 2).
+const NORMAL: f64 = 0.146_5;
+
+/// The concentration of folds over a run.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Marks {
+    pub(super) name: String,
+    /// Inner edges, and how many of them are the sharpest.
+    pub(super) edges: usize,
+    pub(super) sharpest: usize,
+    /// Time, part of the sum of all sizes of fold angles that the sharpest edges carry then, and the part of the sharpest edges
+    /// at the end that are among the sharpest already.
+    pub(super) shares: Vec<[f64; 3]>,
+}
+
+impl Marks {
+    pub(super) fn of(name: &str, sheet: &Sheet, trajectory: &Trajectory) -> Self {
+        let t = sheet.topology();
+        let inner: Vec<EdgeId> = t.edge_ids().filter(|e| !t.is_boundary_edge(*e)).collect();
+        let count = ((SHARPEST * inner.len() as f64).round() as usize).max(1);
+        let mut frames = Vec::new();
+        for k in 0..trajectory.len() {
+            let Some(x) = trajectory.frame(k) else {
+                continue;
+            };
+            let fold = |e: &EdgeId| (fold_angle(t, x, *e).unwrap_or(0.0).abs(), *e);
+            let mut folds: Vec<(f64, EdgeId)> = inner.iter().map(fold).collect();
+            folds.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let all: f64 = folds.iter().map(|f| f.0).sum();
+            let top: f64 = folds[..count].iter().map(|f| f.0).sum();
+            let sharp: Vec<EdgeId> = folds[..count].iter().map(|f| f.1).collect();
+            // The sheet starts flat, where there is nothing to share.
+            if all > 1e-6 {
+                frames.push((trajectory.times()[k], top / all, sharp));
+            }
+        }
+        let last = frames.last().map_or(Vec::new(), |f| f.2.clone());
+        let kept = |sharp: &[EdgeId]| {
+            sharp.iter().filter(|e| last.contains(e)).count() as f64 / count as f64
+        };
+        Self {
+            name: name.to_owned(),
+            edges: inner.len(),
+            sharpest: count,
+            shares: frames
+                .iter()
+                .map(|(t, share, sharp)| [*t, *share, kept(sharp)])
+                .collect(),
+        }
+    }
+
+    /// Mean of a column from the middle of the run on.
+    fn late(&self, column: usize) -> f64 {
+        let end = self.shares.last().map_or(0.0, |s| s[0]);
+        let late: Vec<f64> = self
+            .shares
+            .iter()
+            .filter(|s| s[0] >= 0.5 * end)
+            .map(|s| s[column])
+            .collect();
+        late.iter().sum::<f64>() / late.len().max(1) as f64
+    }
+
+    fn at(&self, t: f64, column: usize) -> f64 {
+        let nearest = self
+            .shares
+            .iter()
+            .min_by(|a, b| (a[0] - t).abs().total_cmp(&(b[0] - t).abs()));
+        nearest.map_or(f64::NAN, |s| s[column])
+    }
+}
+
+const LOOKS: [(Colour, Marker); 3] = [
+    (palette::VERMILION, Marker::Square),
+    (palette::GREEN, Marker::Triangle),
+    (palette::BLUE, Marker::Disc),
+];
+
+/// The shares over time, and how many of the final marks are there already.
+pub(super) fn plot(all: &[Marks]) -> Drawing {
+    let end = all
+        .iter()
+        .filter_map(|m| m.shares.last())
+        .map(|s| s[0])
+        .fold(0.0, f64::max);
+    let panel = |label: &str, column: usize, legend: Legend| {
+        let mut series: Vec<Series> = Vec::new();
+        for (m, (colour, _)) in all.iter().zip(LOOKS) {
+            let points = m.shares.iter().map(|s| [s[0], 100.0 * s[column]]).collect();
+            series.push(Series {
+                name: m.name.clone(),
+                points,
+                colour,
+                marker: None,
+                line: Line::Solid,
+            });
+        }
+        if column == 1 {
+            let points = vec![[0.0, 100.0 * NORMAL], [end, 100.0 * NORMAL]];
+            series.push(Series {
+                name: "normal".into(),
+                points,
+                colour: palette::GREY,
+                marker: None,
+                line: Line::Dashed,
+            });
+        }
+        let x = Axis::round("time (s)", [0.0, end], 4);
+        Plot {
+            x,
+            y: Axis::round(label, [0.0, 100.0], 5),
+            size: [165.0, 118.0],
+            series,
+            legend,
+        }
+    };
+    let left = panel("share of fold angle (%)", 1, Legend::Right);
+    let right = panel("final marks present (%)", 2, Legend::None);
+    row(&[left.draw(), right.draw()], 26.0)
+}
+
+pub(super) fn table(all: &[Marks]) -> Table {
+    let percent = |v: f64| format!("{:.0} %", 100.0 * v);
+    let rows = all.iter().map(|m| {
+        vec![
+            m.name.clone(),
+            format!("{} of {}", m.sharpest, m.edges),
+            percent(m.at(0.2, 1)),
+            percent(m.at(0.6, 1)),
+            percent(m.late(1)),
+            percent(m.at(0.6, 2)),
+            percent(m.late(2)),
+        ]
+    });
+    Table {
+        caption: format!(
+            "Marks: the part of the sum of all sizes of fold angles that the sharpest {:.0} % of the inner edges carry ({:.0} % if all \
+             folds were equal, {:.0} % if they were normally distributed), and how many of the edges that are sharpest at the end are among \
+             the sharpest earlier. Late: mean over the second half of the run.",
+            100.0 * SHARPEST,
+            100.0 * SHARPEST,
+            100.0 * NORMAL
+        ),
+        head: [
+            "mesh",
+            "edges",
+            "share at 0.2 s",
+            "share at 0.6 s",
+            "share, late",
+            "final marks present at 0.6 s",
+            "late",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isosheet_mesh::generate::strip;
+
+    #[test]
+    fn one_sharp_fold_carries_everything() {
+        // A strip of twenty cells has 39 inner edges, of which two count; it is folded at two rungs.
+        let sheet = strip(20, 1.0, 0.1, isosheet_mesh::generate::Diagonals::Rising).unwrap();
+        let mut trajectory = Trajectory::new(&sheet);
+        let fold = |a: f64| -> Vec<f64> {
+            let bend = |s: f64| {
+                let (first, second) = (s.min(0.5), (s - 0.5).max(0.0));
+                [first + second * a.cos(), second * a.sin()]
+            };
+            sheet
+                .positions()
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .flat_map(|p| {
+                    let [x, z] = bend(p[0]);
+                    [x, p[1], z]
+                })
+                .collect()
+        };
+        trajectory.push(0.0, sheet.positions()).unwrap();
+        trajectory.push(1.0, &fold(1.0)).unwrap();
+        let m = Marks::of("strip", &sheet, &trajectory);
+        assert_eq!((m.edges, m.sharpest, m.shares.len()), (39, 2, 1));
+        assert!((m.shares[0][1] - 1.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,101 @@
+//! The frames of a run as a grid of shaded pictures.
+
+use super::Effort;
+use crate::interrupt;
+use crate::render::{Camera, Labelled, Look, SheetPicture, Solid, montage, render};
+use crate::runs::Staged;
+use anyhow::{Context as _, Result};
+use isosheet_io::Trajectory;
+use isosheet_mesh::VertexId;
+
+/// How a run is shown.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View<'a> {
+    /// Where the viewer is, degrees.
+    pub(super) azimuth: f64,
+    pub(super) elevation: f64,
+    /// Distance of the viewer, metres.
+    pub(super) distance: f64,
+    /// Pictures in a row.
+    pub(super) columns: usize,
+    /// Vertices marked with a dot.
+    pub(super) pins: &'a [VertexId],
+    /// Bodies to draw, by number.
+    pub(super) bodies: &'a [usize],
+    /// Bodies are framed down to this depth below the start of the sheet, metres.
+    pub(super) depth: f64,
+}
+
+/// Frames nearest to the wanted times; a run that ends before half of the last shows four evenly spread.
+pub(super) fn choose(trajectory: &Trajectory, wanted: &[f64]) -> Vec<usize> {
+    let times = trajectory.times();
+    let end = times.last().copied().unwrap_or(0.0);
+    let nearest = |t: f64| {
+        let distance = |k: &usize| (times[*k] - t).abs();
+        (0..times.len())
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            .unwrap_or(0)
+    };
+    let last = wanted.last().copied().unwrap_or(0.0);
+    if end < 0.5 * last {
+        return (0..4).map(|k| nearest(end * f64::from(k) / 3.0)).collect();
+    }
+    wanted.iter().map(|t| nearest(*t)).collect()
+}
+
+/// The chosen frames, seen by one camera that holds them all, as a PNG file.
+pub(super) fn sequence(
+    scene: &impl Staged,
+    trajectory: &Trajectory,
+    frames: &[usize],
+    view: &View<'_>,
+    effort: Effort,
+) -> Result<Vec<u8>> {
+    let sheet = scene.sheet()?;
+    let bodies = scene.bodies()?;
+    let height = match effort {
+        Effort::Full => 470,
+        Effort::Quick => 170,
+    };
+    let states: Vec<&[f64]> = frames
+        .iter()
+        .map(|k| trajectory.frame(*k).context("frame"))
+        .collect::<Result<_>>()?;
+    let mut solids = Vec::new();
+    for k in frames {
+        let t = trajectory.times()[*k];
+        let shown = view.bodies.iter().map(|b| Solid::of(&bodies[*b], t));
+        solids.push(shown.collect::<Result<Vec<_>>>()?);
+    }
+    let of_sheet = states
+        .iter()
+        .flat_map(|x| x.as_chunks::<3>().0.iter().copied());
+    let of_bodies = solids
+        .iter()
+        .flatten()
+        .flat_map(|s| s.points.iter().copied());
+    let of_bodies = of_bodies.map(|[x, y, z]| [x, y, z.max(-view.depth)]);
+    let points = of_sheet.chain(of_bodies);
+    let camera = Camera::new([0.0; 3], view.azimuth, view.elevation, 1.0, view.distance);
+    let aspect = camera.aspect(points.clone());
+    let camera = camera.framing(points, aspect, 0.04);
+    let look = Look {
+        size: [(height as f64 * aspect).round().max(1.0) as usize, height],
+        ..Look::default()
+    };
+    let mut labelled = Vec::new();
+    for ((k, x), solids) in frames.iter().zip(&states).zip(&solids) {
+        interrupt::check()?;
+        let picture = SheetPicture {
+            topology: sheet.topology(),
+            positions: x,
+            pins: view.pins,
+            solids,
+        };
+        labelled.push(Labelled {
+            image: render(&picture, &camera, &look),
+            label: format!("{:.2} s", trajectory.times()[*k]),
+        });
+    }
+    montage(&labelled, view.columns).to_png()
+}
