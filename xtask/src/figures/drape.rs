@@ -191,7 +191,7 @@ fn profiles(all: &[Draped]) -> Plot {
             [0.0, far],
             6,
         ),
-        y: Axis::round("bending, mean of the overhang = 1", [0.0, top], 4),
+        y: Axis::round("bending (mean = 1)", [0.0, top], 4),
         size: [230.0, 130.0],
         series: all
             .iter()
@@ -288,9 +288,9 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
     let effort = context.effort;
     let fine = if effort == Effort::Full { 0.045 } else { 0.2 };
     let octagons = vec![
-        drape("octagon 244/440", octagon(effort), context)?,
+        drape("244/440", octagon(effort), context)?,
         drape(
-            "octagon, finer",
+            "finer",
             polygon("drape-octagon-fine", 8, fine, 1, effort),
             context,
         )?,

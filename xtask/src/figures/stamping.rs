@@ -125,7 +125,7 @@ fn plot(curve: &[[f64; 2]], weight: f64, stroke: f64, peak: f64) -> Plot {
                 line: Line::Solid,
             },
             Series {
-                name: "weight of the blank".into(),
+                name: "weight".into(),
                 points: vec![[0.0, weight], [stroke, weight]],
                 colour: palette::GREY,
                 marker: None,
