@@ -109,8 +109,10 @@ fn creases(sheet: &Sheet, x: &[f64], table: &Outline, cloth: &Outline) -> Vec<Cr
                 let s = (from[0] * along[0] + from[1] * along[1]) / (size * size);
                 let s = s.clamp(0.0, 1.0);
                 let distance = (from[0] - s * along[0]).hypot(from[1] - s * along[1]);
-                let cos = ((q[0] - p[0]) * along[0] + (q[1] - p[1]) * along[1]) / (length * size);
-                (distance, cos.abs().min(1.0).acos().to_degrees())
+                let edge = [q[0] - p[0], q[1] - p[1]];
+                let dot = edge[0] * along[0] + edge[1] * along[1];
+                let cross = edge[0] * along[1] - edge[1] * along[0];
+                (distance, cross.abs().atan2(dot.abs()).to_degrees())
             })
             .min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some(Crease {

@@ -218,13 +218,13 @@ mod tests {
             radius: 1.0,
         };
         let apothem = (TAU / 16.0).cos();
-        assert!((octagon.outside([0.0, 0.0]) + apothem).abs() < 1e-15);
-        assert!((octagon.outside([2.0, 0.0]) - (2.0 - apothem)).abs() < 1e-15);
+        assert!((octagon.outside([0.0, 0.0]) + apothem).abs() < 1e-14);
+        assert!((octagon.outside([2.0, 0.0]) - (2.0 - apothem)).abs() < 1e-14);
         assert!(
             octagon
                 .corners()
                 .iter()
-                .all(|c| octagon.outside(*c).abs() < 1e-15)
+                .all(|c| octagon.outside(*c).abs() < 1e-14)
         );
     }
 
