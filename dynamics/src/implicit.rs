@@ -197,7 +197,7 @@ impl Integrator for Bdf2 {
         h: f64,
         effort: &mut Effort,
     ) -> Result<Accepted, StepError> {
-        // Velocity damping between the steps changes `v` but not `x`.
+        // Velocity damping after the steps changes `v` but not `x`.
         let continued = self.last.x == state.x && self.previous.t < state.t;
         let w = if continued {
             h / (state.t - self.previous.t)
@@ -217,6 +217,9 @@ impl Integrator for Bdf2 {
             let (x, v) = (state.x[i], state.v[i]);
             m.target[i] = x + b * (x - before.x[i]) + k * h * (v + b * (v - before.v[i]));
         }
+        // The damping that follows the step acts on the whole history, or a rate `gamma` would act as
+        // `3/2 gamma`: `v1 = 4/3 v0 - 1/3 v_` amplifies what is taken from `v0` alone.
+        let damping = (-scene.model.damping() * h).exp();
         let (residual, path, contact) = m.minimise(scene, state, h, k * h, effort)?;
         let mut work = 0.0;
         for i in 0..m.x.len() {
@@ -226,6 +229,7 @@ impl Integrator for Bdf2 {
             self.previous.v[i] = ((m.x[i] - x) - b * (x - self.previous.x[i])) / (k * h);
         }
         std::mem::swap(&mut self.previous.v, &mut state.v);
+        self.previous.v.iter_mut().for_each(|v| *v *= damping);
         self.previous.x.copy_from_slice(&state.x);
         self.previous.t = state.t;
         state.x.copy_from_slice(&m.x);

@@ -168,3 +168,30 @@ fn damping_is_accounted_for() {
         report.energy_drift
     );
 }
+
+#[test]
+fn damping_slows_a_flight_at_its_rate() {
+    // Every velocity decays as exp(-gamma t), whatever the steps, in every method.
+    let (gamma, speed) = (1.3, [0.4, -0.2, 0.7]);
+    for (name, method) in methods() {
+        let sheet = bumped(1, 0.05);
+        let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
+            .and_then(|m| m.with_damping(gamma))
+            .expect("valid");
+        let start = State {
+            v: speed.repeat(sheet.topology().vertex_count()),
+            ..State::at_rest(sheet.positions().to_vec())
+        };
+        let mut simulation = Simulation::new(model, start, method).expect("valid");
+        for _ in 0..30 {
+            simulation.step(0.01).expect("free flight");
+        }
+        let decay = (-gamma * simulation.state().t).exp();
+        for v in simulation.state().v.chunks(3) {
+            for (found, start) in v.iter().zip(speed) {
+                let ratio = found / (start * decay);
+                assert!((ratio - 1.0).abs() < 1e-9, "{name}: {ratio}");
+            }
+        }
+    }
+}

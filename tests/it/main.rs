@@ -3,8 +3,11 @@
 mod charts;
 mod conservation;
 mod constraints;
+mod contact;
 mod flat;
 mod forces;
 mod orders;
 mod robust;
 mod scenes;
+mod stress;
+mod watch;
