@@ -46,7 +46,7 @@ const ACTIVATION: f64 = 5e-3;
 
 /// Stiffness of the contact barrier, joules: the few vertices at the table's edge carry all that hangs over it, so the barrier is
 /// an order of magnitude stiffer than one that is chosen for the mean weight of a vertex.
-const STIFFNESS: f64 = 3e-3;
+const STIFFNESS: f64 = 1e-3;
 
 /// The scene of Fig. 14 on M^level.
 pub(super) fn rectangle(level: u32, effort: Effort) -> Drape {
