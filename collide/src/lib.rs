@@ -8,7 +8,8 @@
 //!   these pairs, and [`crossings`] as a check that uses none of them.
 //! * [`Barrier`] and [`Friction`]: the energies of contact, as functions of these distances.
 //! * [`Contacts`]: all of it together, as a step of `isosheet_dynamics` asks for it.
-//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a prescribed [`Motion`].
+//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a prescribed [`Motion`];
+//!   [`Obstacle::constraint`] holds a vertex on one.
 //!
 //! A sheet falls on a table and rests with every gap open:
 //!
@@ -44,6 +45,7 @@
 mod barrier;
 mod broad_phase;
 mod ccd;
+mod constraint;
 mod contact_mesh;
 mod contacts;
 pub mod distance;

@@ -25,7 +25,8 @@ pub struct TriangleSurface {
     positions: Vec<Vector3<f64>>,
     face_edges: Vec<[u32; 3]>,
     tree: Bvh,
-    normals: Option<Normals>,
+    closed: bool,
+    normals: Normals,
 }
 
 /// Directions of which the sign of the offset from the closest point says inside or outside.
@@ -74,6 +75,9 @@ pub enum SurfaceError {
 
 /// Sine of the smallest angle below which a face has no usable normal: 1e4 units of round-off.
 const FLAT_SINE: f64 = 1e4 * f64::EPSILON;
+
+/// Distance from an edge or corner, over the size of the coordinates, that is round-off: its direction says nothing.
+const ON_SURFACE: f64 = 4.0 * f64::EPSILON;
 
 impl std::fmt::Debug for TriangleSurface {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -155,7 +159,8 @@ impl TriangleSurface {
             .collect();
         Ok(Self {
             tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes),
-            normals: closed.then(|| Normals::new(&mesh, &points, &face_edges, normals)),
+            normals: Normals::new(&mesh, &points, &face_edges, normals),
+            closed,
             face_edges,
             positions: points,
             mesh,
@@ -174,7 +179,7 @@ impl TriangleSurface {
 
     /// Whether the surface encloses a solid, so that distances have a sign.
     pub fn is_closed(&self) -> bool {
-        self.normals.is_some()
+        self.closed
     }
 
     /// The face closest to `p` and where on it; `None` if `p` is not a number.
@@ -204,6 +209,23 @@ impl TriangleSurface {
     /// Distance of `p` with derivatives, signed if the surface is closed. Not a number if `p` is
     /// not.
     pub fn signed_distance(&self, p: &Vector3<f64>) -> SignedDistance {
+        let distance = self.oriented_distance(p);
+        if self.closed || distance.value > 0.0 || distance.value.is_nan() {
+            return distance;
+        }
+        // On an open surface: any of its sides.
+        let side = if distance.value < 0.0 { -1.0 } else { 1.0 };
+        SignedDistance {
+            value: side * distance.value,
+            normal: side * distance.normal,
+            hessian: side * distance.hessian,
+        }
+    }
+
+    /// Distance of `p` with derivatives, negative on the side that the face normals point away from, of an open
+    /// surface too. Smooth across the faces; beyond the rim of an open surface it is the distance from the rim, and
+    /// changes sign with a jump where the surface would go on. Not a number if `p` is not.
+    pub fn oriented_distance(&self, p: &Vector3<f64>) -> SignedDistance {
         let Some((face, closest)) = self.closest(p) else {
             return SignedDistance {
                 value: f64::NAN,
@@ -211,29 +233,37 @@ impl TriangleSurface {
                 hessian: Matrix3::repeat(f64::NAN),
             };
         };
-        let direction = self.normals.as_ref().map(|normals| match closest.feature {
+        let direction = match closest.feature {
             Feature::PointPoint { second, .. } => {
-                normals.vertices[self.mesh.faces()[face as usize][second - 1] as usize]
+                self.normals.vertices[self.mesh.faces()[face as usize][second - 1] as usize]
             }
             Feature::PointEdge { edge, .. } => {
-                normals.edges[self.face_edges[face as usize][edge[0] - 1] as usize]
+                self.normals.edges[self.face_edges[face as usize][edge[0] - 1] as usize]
             }
-            _ => normals.faces[face as usize],
-        });
-        let d = closest.distance();
-        if d == 0.0 {
-            // On the surface: the normal of the feature, any side of an open surface.
-            let [_, a, b, c] = self.stencil(p, face);
-            let normal = direction.unwrap_or_else(|| (b - a).cross(&(c - a)));
+            _ => self.normals.faces[face as usize],
+        };
+        if closest.feature == Feature::PointTriangle {
+            // Without a division by the distance, which may be zero.
+            let corner = self.positions[self.mesh.faces()[face as usize][0] as usize];
             return SignedDistance {
-                value: 0.0,
-                normal: normal.normalize(),
+                value: direction.dot(&(p - corner)),
+                normal: direction,
                 hessian: Matrix3::zeros(),
             };
         }
-        let sign = match direction {
-            Some(n) if n.dot(&closest.difference) < 0.0 => -1.0,
-            _ => 1.0,
+        let d = closest.distance();
+        if d <= ON_SURFACE * p.amax() {
+            // The offset is round-off: the normal of the feature.
+            return SignedDistance {
+                value: 0.0,
+                normal: direction.normalize(),
+                hessian: Matrix3::zeros(),
+            };
+        }
+        let sign = if direction.dot(&closest.difference) < 0.0 {
+            -1.0
+        } else {
+            1.0
         };
         let n = closest.difference / d;
         let square = closest.jet(&self.stencil(p, face)).hessian[0][0];

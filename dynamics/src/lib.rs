@@ -44,11 +44,13 @@
 //! -z. Length constraints are `c_e = (|x_a - x_b|^2 - l_e^2) / 2` with Jacobian `G`; a positive
 //! rod multiplier in [`chart`] and in the implicit methods is a tension.
 //!
-//! # Room for contact and further constraints
+//! # Contact, constraints and reactions
 //!
-//! Contact enters as a potential whose Hessian couples more vertices than the mesh does, and as a
-//! bound on the length of every Newton step; both have one place each, the minimiser of the damped
-//! methods. [`StepReport::gap`] is there for it.
+//! [`Simulation::with_contact`] takes a [`contact::Contact`]: a barrier potential whose Hessian couples more vertices
+//! than the mesh does, and a bound on every displacement. BDF2 and implicit Euler take it. Every method without a chart
+//! takes moving pins ([`SheetModel::with_moving_pin`]) and vertices on curves and surfaces
+//! ([`SheetModel::with_constraint`]). [`Simulation::reactions`] are the forces of pins and constraints on the sheet,
+//! [`Simulation::body_loads`] those of the sheet on the bodies.
 
 pub mod chart;
 pub mod constraint;
