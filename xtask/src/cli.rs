@@ -25,7 +25,7 @@ pub(crate) enum Command {
     ///
     /// Writes DIR/condition.csv and DIR/condition.svg and prints the table.
     ConditionTable(ConditionArgs),
-    /// Measure time against errors: every method on every problem, the hanging sheet of other programs, the linear solvers
+    /// Measure time against errors: every method on every problem, the hanging sheet and the tablecloth of other programs, the linear solvers
     ///
     /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG). What is already there and was made
     /// by the same program with the same effort is kept. Times are wall times on one core: leave the machine alone meanwhile.
@@ -56,7 +56,7 @@ pub(crate) struct SpeedArgs {
     #[arg(long)]
     pub(crate) full: bool,
 
-    /// What to measure, separated by commas: problems (pendulum, triangle, strip-2, ..., sheet-3), hanging, solvers; all
+    /// What to measure, separated by commas: problems (pendulum, triangle, strip-2, ..., sheet-3), hanging, tablecloth, solvers; all
     /// when left out
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub(crate) problems: Vec<Part>,

@@ -10,7 +10,7 @@ use crate::{Outcome, interrupt};
 use anyhow::Result;
 use measure::measure;
 
-pub(crate) use measure::Row;
+pub(crate) use measure::{Row, factorisation_time};
 pub(crate) use report::section;
 
 /// Levels of a run that only shows that everything works.

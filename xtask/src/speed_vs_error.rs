@@ -1,4 +1,4 @@
-//! `speed-vs-error`: time against errors of every method on problems with known motion, on a work that other programs have
+//! `speed-vs-error`: time against errors of every method on problems with known motion, on two works that other programs have
 //! been measured on, and of the linear solvers.
 //!
 //! Every part is kept in the output folder with what it found, so that an interrupted run continues where it stopped, and
@@ -16,6 +16,7 @@ mod reference;
 mod scheme;
 mod solvers;
 mod study;
+mod tablecloth;
 mod verdict;
 
 use crate::cli::SpeedArgs;
@@ -38,6 +39,8 @@ pub(crate) enum Part {
     Problem(Problem),
     /// The hanging sheet of other programs.
     Hanging,
+    /// The tablecloth of other programs.
+    Tablecloth,
     /// The linear solvers.
     Solvers,
 }
@@ -51,7 +54,7 @@ impl Part {
             .filter(|p| effort != Effort::Quick || !costly.contains(p))
             .map(Self::Problem)
             .collect();
-        all.extend([Self::Hanging, Self::Solvers]);
+        all.extend([Self::Hanging, Self::Tablecloth, Self::Solvers]);
         all
     }
 }
@@ -61,6 +64,7 @@ impl fmt::Display for Part {
         match self {
             Self::Problem(p) => p.fmt(f),
             Self::Hanging => f.write_str("hanging"),
+            Self::Tablecloth => f.write_str("tablecloth"),
             Self::Solvers => f.write_str("solvers"),
         }
     }
@@ -72,10 +76,11 @@ impl FromStr for Part {
     fn from_str(text: &str) -> Result<Self> {
         match text {
             "hanging" => Ok(Self::Hanging),
+            "tablecloth" => Ok(Self::Tablecloth),
             "solvers" => Ok(Self::Solvers),
             _ => match text.parse() {
                 Ok(problem) => Ok(Self::Problem(problem)),
-                Err(error) => anyhow::bail!("{error}, hanging, solvers"),
+                Err(error) => anyhow::bail!("{error}, hanging, tablecloth, solvers"),
             },
         }
     }
@@ -149,6 +154,10 @@ fn make(store: &Store, part: Part, effort: Effort) -> Result<()> {
             let rows = hanging::make(effort)?;
             keep(store, part, effort, &hanging::csv(&rows), &[], &rows)
         }
+        Part::Tablecloth => {
+            let rows = tablecloth::make(effort)?;
+            keep(store, part, effort, &tablecloth::csv(&rows), &[], &rows)
+        }
         Part::Solvers => {
             let rows = solvers::make(effort)?;
             let plots = vec![(
@@ -207,6 +216,9 @@ mod tests {
             assert_eq!(part.to_string().parse::<Part>().unwrap(), part);
         }
         let error = "sun".parse::<Part>().unwrap_err().to_string();
-        assert!(error.contains("sheet-3, hanging, solvers"), "{error}");
+        assert!(
+            error.contains("sheet-3, hanging, tablecloth, solvers"),
+            "{error}"
+        );
     }
 }

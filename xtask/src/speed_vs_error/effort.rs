@@ -2,6 +2,7 @@
 
 use super::problem::Problem;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// How much time the study may take, with the limits that follow. Times are wall times in seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -48,6 +49,16 @@ impl Effort {
     /// Finest mesh of the hanging sheet.
     pub(crate) fn hanging_level(self) -> u32 {
         self.of([1, 4, 4])
+    }
+
+    /// Longest run of the tablecloth, one for each mesh and kind of contact.
+    pub(crate) fn tablecloth(self) -> f64 {
+        self.of([0.5, 30.0, 240.0])
+    }
+
+    /// Meshes of the tablecloth.
+    pub(crate) fn tablecloth_levels(self) -> RangeInclusive<u32> {
+        self.of([1..=1, 2..=4, 2..=4])
     }
 
     /// Longest measurement of one solver on one matrix, all repetitions together.

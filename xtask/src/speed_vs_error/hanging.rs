@@ -20,7 +20,7 @@ pub(crate) const ABOUT: &str = "Square sheet, side 1 m, union-jack mesh M^k, mas
     damping, 1.0 s.";
 
 /// Height of the bump, metres: nearly flat, so that the length constraints are nearly dependent.
-const BUMP: f64 = 1e-3;
+pub(super) const BUMP: f64 = 1e-3;
 
 /// Simulated time, seconds.
 const DURATION: f64 = 1.0;
@@ -194,7 +194,7 @@ pub(crate) fn csv(rows: &[Hanging]) -> String {
 }
 
 /// A signed part as a percentage with the digits that matter.
-fn percent(part: f64) -> String {
+pub(super) fn percent(part: f64) -> String {
     let p = 100.0 * part;
     let text = if p.abs() >= 0.1 {
         format!("{p:.1} %")

@@ -7,6 +7,7 @@ use super::problem::Problem;
 use super::scheme::DEFAULT;
 use super::solvers::{self, SolverRow};
 use super::study::Study;
+use super::tablecloth::{self, Tablecloth};
 use super::{Part, options, peers, stamp, verdict};
 use crate::figures::machine;
 use crate::report::html::{STYLE, escape, inline_svg, table};
@@ -18,6 +19,7 @@ use std::fmt::Write;
 struct Results {
     studies: Vec<Study>,
     hanging: Option<Vec<Hanging>>,
+    tablecloth: Option<Vec<Tablecloth>>,
     solvers: Option<Vec<SolverRow>>,
 }
 
@@ -48,6 +50,9 @@ fn read(store: &Store, effort: Effort) -> Result<Results> {
     Ok(Results {
         studies,
         hanging: facts(Part::Hanging)
+            .map(serde_json::from_value)
+            .transpose()?,
+        tablecloth: facts(Part::Tablecloth)
             .map(serde_json::from_value)
             .transpose()?,
         solvers: facts(Part::Solvers)
@@ -87,6 +92,16 @@ fn page(
         list(&mut out, &hanging::conclusions(rows));
         table(&mut out, &hanging::table(rows));
         table(&mut out, &peers::table());
+        paragraph(&mut out, peers::REMARK);
+        out.push_str("</section>");
+    }
+    if let Some(rows) = &results.tablecloth {
+        out.push_str(
+            "<section id=\"tablecloth\"><h2>The tablecloth, as other programs did it</h2>",
+        );
+        paragraph(&mut out, tablecloth::ABOUT);
+        table(&mut out, &tablecloth::table(rows));
+        table(&mut out, &peers::tablecloth());
         paragraph(&mut out, peers::REMARK);
         out.push_str("</section>");
     }
@@ -152,6 +167,9 @@ fn conclusions(results: &Results) -> Vec<String> {
             .filter(|s| verdict::concerns(s.problem))
             .map(verdict::words),
     );
+    if let Some(rows) = &results.tablecloth {
+        all.extend(tablecloth::conclusions(rows));
+    }
     all
 }
 
