@@ -528,7 +528,12 @@ impl Minimiser {
         };
         let (mut residual, mut strain) = (f64::INFINITY, f64::INFINITY);
         for round in 0..rounds {
-            let loose = if round > 0 { LOOSE } else { 0.0 };
+            // The second attempt is careful throughout.
+            let loose = if round > 0 && self.ready == READY {
+                LOOSE
+            } else {
+                0.0
+            };
             let converged = self.newton(step, loose, &mut residual, &mut path, effort)?;
             for e in 0..self.c.len() {
                 self.multipliers[e] += self.penalty[e] * self.c[e];
