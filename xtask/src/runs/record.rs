@@ -124,7 +124,7 @@ pub(crate) fn ensure(store: &Store, scene: &impl Staged) -> Result<RunSummary> {
     Ok(summary)
 }
 
-/// The frames of a run that [`ensure`] has made.
+/// The frames of a run that [`ensure()`] has made.
 pub(crate) fn trajectory(store: &Store, scene: &impl Staged) -> Result<Trajectory> {
     let path = store.root().join(folder(scene)).join("trajectory.npz");
     Ok(Trajectory::read(&path)?)
@@ -133,7 +133,7 @@ pub(crate) fn trajectory(store: &Store, scene: &impl Staged) -> Result<Trajector
 /// Columns of loads.csv: time (s), body, force (N) and torque about the body's origin (N m) of the sheet on the body.
 const LOADS: &str = "t,body,fx,fy,fz,mx,my,mz";
 
-/// Time and force of the sheet on a body in a run that [`ensure`] has made: seconds, newtons.
+/// Time and force of the sheet on a body in a run that [`ensure()`] has made: seconds, newtons.
 pub(crate) fn forces(store: &Store, scene: &impl Staged, body: usize) -> Result<Vec<[f64; 4]>> {
     let text = store.read(&format!("{}/loads.csv", folder(scene)))?;
     let text = String::from_utf8_lossy(&text);
