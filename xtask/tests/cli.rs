@@ -291,7 +291,7 @@ fn speed_vs_error_measures_parts_and_keeps_them() {
     assert!(!page.contains("<script") && !page.contains("<link") && !page.contains("NaN"));
     let (code, text) = run("moon");
     assert_eq!(code, Some(2), "{text}");
-    assert!(text.contains("sheet-3, hanging, solvers"), "{text}");
+    assert!(text.contains("hanging, tablecloth, solvers"), "{text}");
 }
 
 #[test]
