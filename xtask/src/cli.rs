@@ -56,7 +56,7 @@ pub(crate) struct SpeedArgs {
     #[arg(long)]
     pub(crate) full: bool,
 
-    /// What to measure, separated by commas: problems (pendulum, triangle, strip-2, ..., sheet-3), hanging, tablecloth, solvers; all
+    /// What to measure, separated by commas: problems (pendulum, triangle, strip-2, ..., sheet-3, cloth-2), hanging, tablecloth, solvers; all
     /// when left out
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub(crate) problems: Vec<Part>,

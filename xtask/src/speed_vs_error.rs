@@ -5,6 +5,7 @@
 //! the page is written from what is there.
 
 mod analysis;
+mod barrier;
 mod effort;
 mod hanging;
 mod matrices;
@@ -217,7 +218,7 @@ mod tests {
         }
         let error = "sun".parse::<Part>().unwrap_err().to_string();
         assert!(
-            error.contains("sheet-3, hanging, tablecloth, solvers"),
+            error.contains("sheet-3, cloth-2, hanging, tablecloth, solvers"),
             "{error}"
         );
     }

@@ -37,8 +37,12 @@ impl Effort {
 
     /// Longest computation of one reference and of its second opinion, each.
     pub(crate) fn reference(self, problem: Problem) -> f64 {
-        let large = matches!(problem, Problem::Sheet(2..));
-        self.of([0.1, if large { 15.0 } else { 5.0 }, 60.0])
+        match problem {
+            // Steps that are too coarse for contact are not taken at all.
+            Problem::Cloth(_) => self.of([1.0, 15.0, 60.0]),
+            Problem::Sheet(2..) => self.of([0.1, 15.0, 60.0]),
+            _ => self.of([0.1, 5.0, 60.0]),
+        }
     }
 
     /// Longest run of the hanging sheet, one for each mesh and method.

@@ -1,11 +1,14 @@
 //! The problems of the study.
 
+use super::barrier::Barrier;
 use anyhow::{Result, bail};
-use isosheet_dynamics::{SheetModel, State};
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_dynamics::contact::ContactError;
+use isosheet_dynamics::{Method, SheetModel, Simulation, SimulationError, State};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId};
 use isosheet_tests::{FreeTriangle, Pendulum};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::fmt;
@@ -22,6 +25,8 @@ pub(crate) enum Problem {
     Strip(u32),
     /// The square sheet M^k held at a corner, released from a bumped, not flat state.
     Sheet(u32),
+    /// The square sheet M^k, free and bumped, dropped onto a table smaller than itself.
+    Cloth(u32),
 }
 
 /// Points of time at which positions are compared.
@@ -29,7 +34,7 @@ pub(crate) const CHECKPOINTS: usize = 8;
 
 impl Problem {
     /// All of them, easy ones first.
-    pub(crate) const ALL: [Self; 9] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::Pendulum,
         Self::Triangle,
         Self::Strip(2),
@@ -39,6 +44,7 @@ impl Problem {
         Self::Sheet(1),
         Self::Sheet(2),
         Self::Sheet(3),
+        Self::Cloth(2),
     ];
 
     /// Title for people, with the mark-up of drawings.
@@ -48,6 +54,7 @@ impl Problem {
             Self::Triangle => "Free triangle".into(),
             Self::Strip(n) => format!("Hanging strip of {n} links"),
             Self::Sheet(k) => format!("Sheet M^{k} held at a corner"),
+            Self::Cloth(k) => format!("Tablecloth M^{k}"),
         }
     }
 
@@ -72,6 +79,13 @@ impl Problem {
                 "The union-jack square M^{k}, 1 m, 0.1 kg, lumped, horizontal with z = {BUMP} sin(πx) sin(πy) as the rest shape, held at the corner \
                  (0, 1), released at rest. {time}"
             ),
+            Self::Cloth(k) => format!(
+                "The same bumped square M^{k}, free, dropped onto a square table of side {} m whose top is at z = {TABLE_TOP} m, without friction. \
+                 {time} Implicit Euler and BDF2 take contact, and check every motion for collisions. All other methods know the barrier as a \
+                 potential like any other: the same energy, but no check, so that they pass through the table where their steps are too long. \
+                 Reference and second opinion are of that kind, and not of the methods whose contact is measured.",
+                2.0 * TABLE[0]
+            ),
         }
     }
 
@@ -87,6 +101,7 @@ impl Problem {
             Self::Sheet(1) => 0.4,
             Self::Sheet(2) => 0.24,
             Self::Sheet(_) => 0.08,
+            Self::Cloth(_) => 0.16,
         }
     }
 
@@ -96,7 +111,7 @@ impl Problem {
             Self::Pendulum => Sheet::new(Pendulum::default().start().x, &[[0, 1, 2]])?,
             Self::Triangle => Sheet::new(FreeTriangle::default().start().x, &[[0, 1, 2]])?,
             Self::Strip(links) => strip(links)?,
-            Self::Sheet(level) => bumped(level, BUMP)?,
+            Self::Sheet(level) | Self::Cloth(level) => bumped(level, BUMP)?,
         })
     }
 
@@ -104,25 +119,66 @@ impl Problem {
     pub(crate) fn pins(self) -> Vec<VertexId> {
         match self {
             Self::Pendulum | Self::Strip(_) => vec![VertexId(0), VertexId(1)],
-            Self::Triangle => Vec::new(),
+            Self::Triangle | Self::Cloth(_) => Vec::new(),
             Self::Sheet(level) => vec![corner(level)],
         }
     }
 
-    /// The mechanical system.
-    pub(crate) fn model(self) -> Result<SheetModel> {
+    /// The mechanical system, contact left out.
+    fn without_contact(self) -> Result<SheetModel> {
         Ok(match self {
             Self::Pendulum => Pendulum::default().model(),
             Self::Triangle => {
                 let masses = vec![FreeTriangle::default().vertex_mass; 3];
                 SheetModel::with_mass(&self.sheet()?, MassMatrix::from_vertex_masses(masses)?)?
             }
-            Self::Strip(_) | Self::Sheet(_) => {
+            Self::Strip(_) | Self::Sheet(_) | Self::Cloth(_) => {
                 SheetModel::new(&self.sheet()?, 0.1, MassKind::Lumped)?
                     .with_gravity()
                     .with_pins(&self.pins())?
             }
         })
+    }
+
+    /// Contact, where there is any.
+    pub(super) fn contacts(self) -> Result<Option<Contacts>> {
+        if !matches!(self, Self::Cloth(_)) {
+            return Ok(None);
+        }
+        let model = self.without_contact()?;
+        let pose = Isometry3::translation(0.5, 0.5, TABLE_TOP - TABLE[2]);
+        let table = Obstacle::still(Shape::Cuboid { half: TABLE }, pose)?;
+        let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?;
+        Ok(Some(contacts.with_body(table, Coefficients::FRICTIONLESS)?))
+    }
+
+    /// The mechanical system as methods without a place for contact see it: the barrier is a potential.
+    pub(crate) fn model(self) -> Result<SheetModel> {
+        let model = self.without_contact()?;
+        Ok(match self.contacts()? {
+            None => model,
+            Some(contacts) => {
+                let topology = model.topology().clone();
+                model.with_potential(Barrier::new(contacts, topology))
+            }
+        })
+    }
+
+    /// The problem at a state by a method without a chart; with contact where the method takes it. The inner error is
+    /// that of the method.
+    pub(crate) fn simulation(
+        self,
+        method: &Method,
+        state: State,
+    ) -> Result<std::result::Result<Simulation, SimulationError>> {
+        if let Some(contacts) = self.contacts()? {
+            let run = Simulation::new(self.without_contact()?, state.clone(), method.clone())
+                .and_then(|run| run.with_contact(contacts));
+            if !matches!(run, Err(SimulationError::Contact(ContactError::Method))) {
+                return Ok(run);
+            }
+        }
+        Ok(Simulation::new(self.model()?, state, method.clone()))
     }
 
     /// Positions and velocities at the start.
@@ -141,7 +197,7 @@ impl Problem {
                 Some(times.iter().map(|t| problem.exact(*t)).collect())
             }
             Self::Triangle => Some(tumbling(times)),
-            Self::Strip(_) | Self::Sheet(_) => None,
+            Self::Strip(_) | Self::Sheet(_) | Self::Cloth(_) => None,
         }
     }
 }
@@ -151,6 +207,12 @@ const STRIP_ANGLE: f64 = 0.5;
 
 /// Height of the bump of the released sheets, metres.
 const BUMP: f64 = 0.1;
+
+/// Half of the sides of the table, metres. Its corners are below no vertex and no edge of the cloths.
+const TABLE: [f64; 3] = [0.26, 0.26, 0.1];
+
+/// Height of the table's top, metres: some millimetres below the lowest part of the cloth above it.
+pub(super) const TABLE_TOP: f64 = 0.04;
 
 fn strip(links: u32) -> Result<Sheet> {
     let (s, c) = STRIP_ANGLE.sin_cos();
@@ -228,6 +290,7 @@ impl fmt::Display for Problem {
             Self::Triangle => f.write_str("triangle"),
             Self::Strip(n) => write!(f, "strip-{n}"),
             Self::Sheet(k) => write!(f, "sheet-{k}"),
+            Self::Cloth(k) => write!(f, "cloth-{k}"),
         }
     }
 }
@@ -252,15 +315,18 @@ impl FromStr for Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isosheet_dynamics::{Method, Simulation};
     use isosheet_tests::max_difference;
 
     #[test]
     fn names_read_back_and_starts_fit_their_models() {
         for problem in Problem::ALL {
             assert_eq!(problem.to_string().parse::<Problem>().unwrap(), problem);
-            let (model, start) = (problem.model().unwrap(), problem.start().unwrap());
-            Simulation::new(model, start, Method::default()).unwrap();
+            let run = problem.simulation(&Method::default(), problem.start().unwrap());
+            let run = run.unwrap().unwrap();
+            assert_eq!(
+                run.contact().is_some(),
+                matches!(problem, Problem::Cloth(_))
+            );
         }
         assert!("moon".parse::<Problem>().is_err());
     }

@@ -274,12 +274,11 @@ fn growth(
     let mut tracks = Vec::new();
     let mut starts = Vec::new();
     for amplitude in [0.0, PERTURBATION] {
-        let model = problem.model()?;
         let State { mut x, v, .. } = problem.start()?;
-        leave_flat(&model, &mut x, amplitude, 1)?;
+        leave_flat(&problem.model()?, &mut x, amplitude, 1)?;
         starts.push(x.clone());
         let method = Method::RattleComposition(Default::default());
-        let Ok(mut run) = Simulation::new(model, State::moving(x, v), method) else {
+        let Ok(mut run) = problem.simulation(&method, State::moving(x, v))? else {
             return Ok(None);
         };
         match follow(&mut run, interval, usable, steps.max(1), budget)? {

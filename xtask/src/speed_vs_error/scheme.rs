@@ -160,7 +160,7 @@ impl Scheme {
         problem: Problem,
         fineness: Fineness,
     ) -> Result<Result<Simulation, StartError>> {
-        let (model, state) = (problem.model()?, problem.start()?);
+        let state = problem.start()?;
         let control = match fineness {
             Fineness::Step(h) => ChartStepControl::Fixed(h),
             Fineness::Tolerance(tolerance) => ChartStepControl::Adaptive {
@@ -172,7 +172,7 @@ impl Scheme {
         };
         let (kind, degenerate, options) = match &self.kind {
             Kind::Free(method) => {
-                return Ok(Simulation::new(model, state, method.clone()).map_err(Into::into));
+                return Ok(problem.simulation(method, state)?.map_err(Into::into));
             }
             Kind::Chart {
                 chart,
@@ -206,6 +206,7 @@ impl Scheme {
                 },
             ),
         };
+        let model = problem.model()?;
         Ok(
             build(problem, kind, degenerate, &state.x)?.and_then(|chart| {
                 Simulation::in_chart(model, state, chart, options).map_err(Into::into)
