@@ -161,6 +161,11 @@ impl RodSystem {
         self.first_unknown[v.index()].map(|u| u as usize)
     }
 
+    /// The edge that each length equation belongs to.
+    pub fn edges(&self) -> impl ExactSizeIterator<Item = EdgeId> + '_ {
+        self.rods.iter().map(|rod| rod.edge)
+    }
+
     pub(crate) fn rods(&self) -> &[Rod] {
         &self.rods
     }

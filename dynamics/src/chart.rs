@@ -5,10 +5,13 @@
 //!   sparse saddle-point solve;
 //! * [`ChartMechanics`]: p, H and their derivatives at a state;
 //! * [`ChartSimulation`]: forward Euler with the published step control, symplectic Euler and
-//!   Runge-Kutta in a chart, in the published, re-formed and full equations of motion.
+//!   Runge-Kutta in a chart, in the published, re-formed and full equations of motion. A chart eliminates the pins it was
+//!   built with; more pins, moving ones, curves and surfaces are closure equations
+//!   ([`ChartSimulation::from_state`]).
 
 mod error;
 mod mechanics;
+mod mobility;
 mod options;
 mod simulation;
 mod solver;

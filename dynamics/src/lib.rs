@@ -47,9 +47,9 @@
 //! # Contact, constraints and reactions
 //!
 //! [`Simulation::with_contact`] takes a [`contact::Contact`]: a barrier potential whose Hessian couples more vertices
-//! than the mesh does, and a bound on every displacement. BDF2 and implicit Euler take it. Every method without a chart
+//! than the mesh does, and a bound on every displacement. BDF2 and implicit Euler take it. Every method
 //! takes moving pins ([`SheetModel::with_moving_pin`]) and vertices on curves and surfaces
-//! ([`SheetModel::with_constraint`]). [`Simulation::reactions`] are the forces of pins and constraints on the sheet,
+//! ([`SheetModel::with_constraint`]), one-sided ones the damped methods only. [`Simulation::reactions`] are the forces of pins and constraints on the sheet,
 //! [`Simulation::body_loads`] those of the sheet on the bodies.
 
 pub mod chart;

@@ -99,6 +99,22 @@ fn time_derivative(at: impl Fn(f64) -> Vector3<f64>, t: f64, span: f64) -> Vecto
     (8.0 * near - far) / (12.0 * d)
 }
 
+/// Spacing of second differences in time, relative to the step: round-off is 1e-14 of a motion over its squared step,
+/// truncation 1e-6 of the sixth derivative's part.
+const SECOND_SPACING: f64 = 0.1;
+
+/// Second derivative of a motion by five-point differences.
+pub(crate) fn second_time_derivative(
+    at: impl Fn(f64) -> Vector3<f64>,
+    t: f64,
+    span: f64,
+) -> Vector3<f64> {
+    let d = SECOND_SPACING * span.abs();
+    let near = at(t + d) + at(t - d);
+    let far = at(t + 2.0 * d) + at(t - 2.0 * d);
+    (16.0 * near - far - 30.0 * at(t)) / (12.0 * d * d)
+}
+
 impl SheetModel {
     /// A free sheet of the given total mass (kilograms), spread evenly, without gravity.
     ///
@@ -287,16 +303,6 @@ impl SheetModel {
         pins.chain(constraints).find(|(_, c)| !c.is_finite())
     }
 
-    /// The first support other than a fixed pin.
-    pub(crate) fn first_beyond_fixed_pins(&self) -> Option<Support> {
-        let pin = self.moving_pins.first();
-        let pin = pin.map(|p| Support::Pin(VertexId(p.vertex as u32)));
-        pin.or(self.constraints.first().map(|c| Support::Constraint {
-            index: 0,
-            vertex: c.vertex(),
-        }))
-    }
-
     /// Whether pins or vertex constraints move.
     pub(crate) fn has_drives(&self) -> bool {
         !self.moving_pins.is_empty() || self.constraints.iter().any(VertexConstraint::moves)
@@ -337,6 +343,12 @@ impl SheetModel {
         for pin in &self.moving_pins {
             x[3 * pin.vertex..3 * pin.vertex + 3].copy_from_slice(&(pin.position)(t));
         }
+    }
+
+    /// The motion of a pin, if it moves.
+    pub(crate) fn pin_motion(&self, v: VertexId) -> Option<impl Fn(f64) -> Vector3<f64> + '_> {
+        let pin = self.moving_pins.iter().find(|p| p.vertex == v.index())?;
+        Some(|t| Vector3::from((pin.position)(t)))
     }
 
     /// The vertices in prescribed motion.
@@ -430,21 +442,31 @@ impl SheetModel {
 
     /// Conservative force `f = -dV/dx`, overwriting `f`; zero at pinned vertices.
     pub fn potential_force(&self, t: f64, x: &[f64], f: &mut [f64]) {
+        self.whole_potential_force(t, x, f);
+        self.clear_pinned(f);
+    }
+
+    /// As [`SheetModel::potential_force`], at pinned vertices too.
+    pub(crate) fn whole_potential_force(&self, t: f64, x: &[f64], f: &mut [f64]) {
         f.fill(0.0);
         for p in &self.potentials {
             p.add_gradient(t, x, f);
         }
         f.iter_mut().for_each(|v| *v = -*v);
-        self.clear_pinned(f);
     }
 
     /// Sum of the non-conservative forces, overwriting `f`; zero at pinned vertices.
     pub fn applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.whole_applied_force(t, x, v, f);
+        self.clear_pinned(f);
+    }
+
+    /// As [`SheetModel::applied_force`], at pinned vertices too.
+    pub(crate) fn whole_applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         f.fill(0.0);
         for force in &self.forces {
             force.add_force(t, x, v, f);
         }
-        self.clear_pinned(f);
     }
 
     /// Whether every potential is linear, so that its force is constant.

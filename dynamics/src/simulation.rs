@@ -3,7 +3,7 @@
 use crate::chart::{ChartDynamicsError, ChartOptions, ChartSimulation};
 use crate::contact::{BodyLoad, Contact, ContactError};
 use crate::integrator::OptionsError;
-use crate::reaction::{Reaction, Support};
+use crate::reaction::Reaction;
 use crate::report::{Path, StepError, StepReport};
 use crate::start::{check_finite, check_motions, check_state};
 use crate::subdivide::{Subdivided, Tally};
@@ -52,14 +52,6 @@ pub enum SimulationError {
         /// Place in the order in which the constraints were added.
         index: usize,
     },
-    /// A chart has no place for vertex constraints and moving pins.
-    #[error(
-        "{support} moves or is a curve or surface, which charts have no place for: use a chart-free method"
-    )]
-    ChartSupport {
-        /// The support.
-        support: Support,
-    },
     /// Step control by subdivision was asked for a chart, which has its own.
     #[error(
         "a simulation in a chart controls its steps by `ChartOptions::control`; leave `StepControl` out"
@@ -97,7 +89,13 @@ pub struct Simulation {
 
 enum Engine {
     Subdivided(Box<Subdivided>),
-    Chart(Box<ChartSimulation>),
+    Chart(Box<ChartEngine>),
+}
+
+struct ChartEngine {
+    simulation: ChartSimulation,
+    /// At the end of the last step.
+    reactions: Vec<Reaction>,
 }
 
 impl Simulation {
@@ -125,7 +123,8 @@ impl Simulation {
     /// A simulation of `model` from `state` in system coordinates: the paper's scheme and its
     /// relatives (see [`chart`](crate::chart)).
     ///
-    /// Of the velocities only the part that keeps the lengths is used.
+    /// Of the velocities only the part that keeps the lengths is used. Supports that the chart does not eliminate are held by
+    /// closure equations, see [`ChartSimulation::from_state`].
     ///
     /// # Errors
     /// [`SimulationError`] if the options or the state make no sense, or the chart is singular or
@@ -137,14 +136,16 @@ impl Simulation {
         options: ChartOptions,
     ) -> Result<Self, SimulationError> {
         check_length(&model, &state)?;
-        if let Some(support) = model.first_beyond_fixed_pins() {
-            return Err(SimulationError::ChartSupport { support });
-        }
+        check_motions(&model, &state)?;
         check_state(&model, &state)?;
-        let mut simulation =
-            ChartSimulation::new(model, chart, options, &state.x, &state.v)?.starting_at(state.t);
+        let mut simulation = ChartSimulation::from_state(model, chart, options, &state)?;
         state.v = simulation.velocities()?;
-        Ok(Self::start(Engine::Chart(Box::new(simulation)), state))
+        let reactions = Vec::new();
+        let engine = Engine::Chart(Box::new(ChartEngine {
+            simulation,
+            reactions,
+        }));
+        Ok(Self::start(engine, state))
     }
 
     fn start(engine: Engine, state: State) -> Self {
@@ -204,15 +205,15 @@ impl Simulation {
             .map_or_else(Vec::new, |c| c.loads(&self.state.x))
     }
 
-    /// Forces of the pins and vertex constraints on the sheet in the last accepted sub-step, pins first; empty before the first step
-    /// and in charts. See [`Balance`](crate::Balance) for when in the step they act.
+    /// Forces of the pins and vertex constraints on the sheet in the last accepted sub-step, pins first; empty before the first
+    /// step. In charts those at the end of the step. See [`Balance`](crate::Balance) for when in the step they act.
     pub fn reactions(&self) -> Vec<Reaction> {
         match &self.engine {
             Engine::Subdivided(engine) => engine
                 .balance
                 .as_ref()
                 .map_or_else(Vec::new, |b| b.reactions(&engine.model)),
-            Engine::Chart(_) => Vec::new(),
+            Engine::Chart(chart) => chart.reactions.clone(),
         }
     }
 
@@ -220,7 +221,7 @@ impl Simulation {
     pub fn model(&self) -> &SheetModel {
         match &self.engine {
             Engine::Subdivided(engine) => &engine.model,
-            Engine::Chart(chart) => chart.mechanics().model(),
+            Engine::Chart(chart) => chart.simulation.mechanics().model(),
         }
     }
 
@@ -228,7 +229,7 @@ impl Simulation {
     pub fn chart(&self) -> Option<&ChartSimulation> {
         match &self.engine {
             Engine::Subdivided(_) => None,
-            Engine::Chart(chart) => Some(chart),
+            Engine::Chart(chart) => Some(&chart.simulation),
         }
     }
 
@@ -347,11 +348,12 @@ const TIME_ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
 /// Advances a simulation in a chart to `end`.
 fn advance_chart(
-    chart: &mut ChartSimulation,
+    engine: &mut ChartEngine,
     state: &mut State,
     end: f64,
     tally: &mut Tally,
 ) -> Result<(), StepError> {
+    let chart = &mut engine.simulation;
     tally.path = Path::Chart;
     let failed = |t: f64, source: ChartDynamicsError| StepError::Chart {
         t,
@@ -380,6 +382,7 @@ fn advance_chart(
         };
         tally.substeps += 1;
         tally.rejected += report.rejected as usize;
+        tally.work += report.driven;
         tally.dissipated += before + report.energy_change - chart.hamiltonian();
         tally.path = tally.path.max(if report.rebased {
             Path::Rebased
@@ -397,6 +400,9 @@ fn advance_chart(
     state.t = chart.time();
     state.x.copy_from_slice(chart.positions());
     state.v = chart.velocities().map_err(|e| failed(state.t, e))?;
+    if chart.mechanics().model().has_supports() {
+        engine.reactions = chart.reactions().map_err(|e| failed(state.t, e))?;
+    }
     outcome
 }
 

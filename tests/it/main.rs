@@ -1,6 +1,7 @@
 //! Tests that span several crates.
 
 mod charts;
+mod closures;
 mod conservation;
 mod constraints;
 mod contact;

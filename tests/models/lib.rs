@@ -3,12 +3,14 @@
 
 mod elliptic;
 mod flap;
+mod linkage;
 mod pendulum;
 mod strip;
 mod triangle;
 
 pub use elliptic::{agm, complete_k, jacobi};
 pub use flap::Flap;
+pub use linkage::Linkage;
 pub use pendulum::Pendulum;
 pub use strip::{HangingStrip, laguerre, laguerre_zeros};
 pub use triangle::FreeTriangle;

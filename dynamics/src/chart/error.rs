@@ -1,5 +1,6 @@
 //! Why mechanics in a chart fails.
 
+use crate::reaction::Support;
 use isosheet_coords::ChartError;
 use isosheet_mesh::VertexId;
 use thiserror::Error;
@@ -66,13 +67,45 @@ pub enum ChartDynamicsError {
         /// Values needed.
         expected: usize,
     },
-    /// The chart was built for other pins than those of the model.
+    /// The chart holds a vertex that the model leaves free.
     #[error(
-        "the chart was built for other pins than the model's: {vertex} is held in one and free in the other; build the chart with the pins of the model"
+        "the chart was built for other pins than the model's: {vertex} is held in the chart and free in the model; build the chart with some or all of the pins of the model"
     )]
     OtherPins {
-        /// The first vertex that differs.
+        /// The first such vertex.
         vertex: VertexId,
+    },
+    /// The chart holds a vertex that the model moves.
+    #[error(
+        "the chart holds {vertex} where it is, and the model moves it: build the chart with that vertex free"
+    )]
+    MovingPin {
+        /// The vertex.
+        vertex: VertexId,
+    },
+    /// A one-sided constraint makes no closure equation.
+    #[error(
+        "vertex constraint {index} is one-sided; a chart holds vertices both ways only. Use contact with a body, or a damped method without a chart"
+    )]
+    OneSided {
+        /// Place in the order in which the constraints were added.
+        index: usize,
+    },
+    /// Closure equations cannot be met.
+    #[error(
+        "at t = {t} s {support} is {distance} m off: the {equations} closure equations, of rank {rank}, cannot be met together with the edge lengths. Start closer to them, remove or move one, or take a smaller step"
+    )]
+    Closure {
+        /// Time, seconds.
+        t: f64,
+        /// The support that is furthest off, relative to the shortest rod at its vertex.
+        support: Support,
+        /// By how much, metres.
+        distance: f64,
+        /// Independent closure equations where the search ended.
+        rank: usize,
+        /// Closure equations.
+        equations: usize,
     },
     /// The step control went below its smallest step.
     #[error(

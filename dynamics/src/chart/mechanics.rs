@@ -44,19 +44,19 @@ struct Work {
 impl ChartMechanics {
     /// The mechanics of a model in a chart.
     ///
+    /// Pins that the chart eliminates have to be fixed pins of the model. The model's other pins are free in the
+    /// chart; [`ChartSimulation`](super::ChartSimulation) holds them by closure equations.
+    ///
     /// # Errors
     /// [`ChartDynamicsError::Chart`], [`ChartDynamicsError::TooManyCoordinates`]; and
-    /// [`ChartDynamicsError::WrongLength`] or [`ChartDynamicsError::OtherPins`] when the chart belongs to
-    /// another sheet or to other pins.
+    /// [`ChartDynamicsError::WrongLength`], [`ChartDynamicsError::OtherPins`] or [`ChartDynamicsError::MovingPin`] when
+    /// the chart belongs to another sheet or to other pins.
     pub fn new(
         model: SheetModel,
         chart: Box<dyn Chart>,
         kind: MassSolverKind,
     ) -> Result<Self, ChartDynamicsError> {
-        let system = RodSystem::from_parts(model.topology(), model.rods().lengths(), &model.pins())
-            .map_err(isosheet_coords::ChartError::from)?;
-        let pinned = |of: &RodSystem, v| of.unknown(v).is_none();
-        let vertices = system.vertex_count();
+        let vertices = model.topology().vertex_count();
         if chart.system().vertex_count() != vertices {
             return Err(ChartDynamicsError::WrongLength {
                 what: "the vertices of the chart's sheet",
@@ -64,10 +64,16 @@ impl ChartMechanics {
                 expected: vertices,
             });
         }
-        let other = |v: &VertexId| pinned(&system, *v) != pinned(chart.system(), *v);
-        if let Some(vertex) = (0..vertices as u32).map(VertexId).find(other) {
+        let held = |v: &VertexId| chart.system().unknown(*v).is_none();
+        let pins: Vec<VertexId> = model.topology().vertex_ids().filter(held).collect();
+        if let Some(&vertex) = pins.iter().find(|v| !model.is_pinned(**v)) {
             return Err(ChartDynamicsError::OtherPins { vertex });
         }
+        if let Some(&vertex) = pins.iter().find(|v| model.pin_motion(**v).is_some()) {
+            return Err(ChartDynamicsError::MovingPin { vertex });
+        }
+        let system = RodSystem::from_parts(model.topology(), model.rods().lengths(), &pins)
+            .map_err(isosheet_coords::ChartError::from)?;
         if chart.dimension() != system.dof() {
             return Err(ChartDynamicsError::WrongLength {
                 what: "the chart (built for this sheet and these pins)",
@@ -153,7 +159,8 @@ impl ChartMechanics {
     /// [`ChartDynamicsError::Chart`] where the chart is singular.
     pub fn momenta(&mut self, v: &[f64], p: &mut [f64]) -> Result<(), ChartDynamicsError> {
         let w = &mut self.work;
-        self.model.apply_mass(v, &mut w.full);
+        let mass = self.model.mass();
+        mass.apply(self.model.topology(), v, &mut w.full);
         self.system.gather(&w.full, &mut w.reduced);
         self.linear.pull(&w.reduced, &mut w.mu, p)?;
         Ok(())
@@ -234,7 +241,8 @@ impl ChartMechanics {
         let w = &mut self.work;
         let mut force = vec![0.0; self.system.unknowns()];
         if equations == Equations::Full {
-            self.model.apply_mass(v, &mut w.full);
+            let mass = self.model.mass();
+            mass.apply(self.model.topology(), v, &mut w.full);
             self.system.gather(&w.full, &mut w.reduced);
             self.linear.pull(&w.reduced, &mut w.mu, &mut w.p)?;
             self.system.add_transpose(v, &w.mu, &mut force);
@@ -245,20 +253,26 @@ impl ChartMechanics {
                 .add_transpose(&w.rates, &w.p, &mut force);
             force.iter_mut().for_each(|f| *f = -*f);
         }
-        self.model.potential_force(t, x, &mut w.full);
+        self.add_forces(t, x, v, &mut force);
+        self.linear.pull(&force, &mut self.work.mu, pdot)?;
+        Ok(())
+    }
+
+    /// Adds potential and applied forces on the unknowns.
+    pub(super) fn add_forces(&mut self, t: f64, x: &[f64], v: &[f64], force: &mut [f64]) {
+        let w = &mut self.work;
+        self.model.whole_potential_force(t, x, &mut w.full);
         self.system.gather(&w.full, &mut w.reduced);
         for (f, r) in force.iter_mut().zip(&w.reduced) {
             *f += r;
         }
         if !self.model.forces().is_empty() {
-            self.model.applied_force(t, x, v, &mut w.full);
+            self.model.whole_applied_force(t, x, v, &mut w.full);
             self.system.gather(&w.full, &mut w.reduced);
             for (f, r) in force.iter_mut().zip(&w.reduced) {
                 *f += r;
             }
         }
-        self.linear.pull(&force, &mut w.mu, pdot)?;
-        Ok(())
     }
 
     /// One power iteration on C at the state given to [`ChartMechanics::at`]: replaces `w` by `C w / |w|`

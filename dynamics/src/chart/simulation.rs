@@ -2,7 +2,8 @@
 
 use super::stepping::{Stepper, Trial};
 use super::{ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, Rebase};
-use crate::SheetModel;
+use crate::reaction::{Balance, ForceTime, Reaction};
+use crate::{SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
 
 /// What one step did.
@@ -22,6 +23,8 @@ pub struct ChartStepReport {
     pub energy_change: f64,
     /// Largest edge strain after the step.
     pub strain: f64,
+    /// Work done over the step by moving pins and vertex constraints, joules.
+    pub driven: f64,
     /// Whether the chart was rebased before the step.
     pub rebased: bool,
 }
@@ -49,15 +52,16 @@ pub struct ChartSimulation {
     since_check: u32,
     growth: f64,
     fresh: bool,
+    /// Forces of the supports now, in scenes where they move.
+    balance: Option<Balance>,
 }
 
 impl ChartSimulation {
-    /// Start at positions x with velocities v, three values per vertex. Only the part of v that keeps the
-    /// edge lengths is used.
+    /// Start at time zero at positions x with velocities v, three values per vertex. See
+    /// [`ChartSimulation::from_state`].
     ///
     /// # Errors
-    /// Invalid options; a state with the wrong edge lengths; [`ChartDynamicsError::Chart`] for states
-    /// where the chart is singular (flat sheets) or too ill-conditioned.
+    /// As [`ChartSimulation::from_state`].
     pub fn new(
         model: SheetModel,
         chart: Box<dyn Chart>,
@@ -65,6 +69,28 @@ impl ChartSimulation {
         x: &[f64],
         v: &[f64],
     ) -> Result<Self, ChartDynamicsError> {
+        let start = State::moving(x.to_vec(), v.to_vec());
+        Self::from_state(model, chart, options, &start)
+    }
+
+    /// Start from a state. Only the part of the velocities that keeps edge lengths and closures is used.
+    ///
+    /// The chart eliminates all fixed pins of the model or some of them. The others, moving pins and vertices on curves and
+    /// surfaces are held by closure equations `Phi(x(q), t) = 0`: multipliers in the equations of motion from their second
+    /// derivative in time, and after every step positions and momenta are brought back onto them, the nearest ones in the mass metric.
+    /// Equations that depend on others, as for two pins at the ends of one rod, are met by least squares.
+    ///
+    /// # Errors
+    /// Invalid options; a state with the wrong edge lengths or off its supports; [`ChartDynamicsError::Chart`] for states
+    /// where the chart is singular (flat sheets) or too ill-conditioned; [`ChartDynamicsError::OneSided`].
+    pub fn from_state(
+        model: SheetModel,
+        chart: Box<dyn Chart>,
+        options: ChartOptions,
+        start: &State,
+    ) -> Result<Self, ChartDynamicsError> {
+        let State { t, x, v } = start;
+        let t = *t;
         options.validate()?;
         for (what, slice) in [("x", x), ("v", v)] {
             if slice.len() != model.coordinate_count() {
@@ -75,8 +101,11 @@ impl ChartSimulation {
                 });
             }
         }
-        if !x.iter().chain(v).all(|c| c.is_finite()) {
-            return Err(ChartDynamicsError::NotFinite { t: 0.0 });
+        if !(t.is_finite() && x.iter().chain(v).all(|c| c.is_finite())) {
+            return Err(ChartDynamicsError::NotFinite { t });
+        }
+        if let Some(index) = model.constraints().iter().position(|c| c.is_one_sided()) {
+            return Err(ChartDynamicsError::OneSided { index });
         }
         let mut mechanics = ChartMechanics::new(model, chart, options.solver)?;
         let strain = mechanics.system().max_strain(x);
@@ -93,11 +122,22 @@ impl ChartSimulation {
         let mut tangent = v.to_vec();
         mechanics.model().clear_pinned(&mut tangent);
         mechanics.momenta(&tangent, &mut p)?;
-        let hamiltonian = mechanics.hamiltonian(0.0, x, &p)?;
+        let mut stepper = Stepper::new(mechanics, &options, x)?;
+        if stepper.mobility.is_closed() {
+            stepper
+                .mobility
+                .check(&stepper.mechanics, t, x, options.strain_limit)?;
+        }
+        let step = match options.control {
+            ChartStepControl::Fixed(h) => h,
+            ChartStepControl::Adaptive { max, .. } => max,
+        };
+        stepper.close_momenta((t, step), x, &mut p)?;
+        let hamiltonian = stepper.mechanics.hamiltonian(t, x, &p)?;
         let mut simulation = Self {
-            stepper: Stepper::new(mechanics, &options)?,
+            stepper,
             options,
-            t: 0.0,
+            t,
             state: Trial {
                 x: x.to_vec(),
                 q,
@@ -105,10 +145,7 @@ impl ChartSimulation {
                 hamiltonian,
             },
             hamiltonian,
-            next_step: match options.control {
-                ChartStepControl::Fixed(h) => h,
-                ChartStepControl::Adaptive { max, .. } => max,
-            },
+            next_step: step,
             range: StepRange {
                 min: f64::INFINITY,
                 max: 0.0,
@@ -117,22 +154,36 @@ impl ChartSimulation {
             since_check: 0,
             growth: 1.0,
             fresh: true,
+            balance: None,
         };
         simulation.check_condition()?;
         simulation.stepper.set_reference()?;
+        if simulation.mechanics().model().has_drives() {
+            simulation.balance = Some(simulation.new_balance(step)?);
+        }
         Ok(simulation)
     }
 
-    /// Sets the time of the start, by default zero: what potentials and forces that depend on time see.
-    #[must_use]
-    pub fn starting_at(mut self, t: f64) -> Self {
-        let x = &self.state.x;
-        let model = self.stepper.mechanics.model();
-        let change = model.potential_energy(t, x) - model.potential_energy(self.t, x);
-        self.hamiltonian += change;
-        self.state.hamiltonian += change;
-        self.t = t;
-        self
+    /// Forces of the supports at the present state, motions differentiated over parts of the time `span`.
+    fn new_balance(&mut self, span: f64) -> Result<Balance, ChartDynamicsError> {
+        let mut balance = Balance::new(self.stepper.mechanics.model(), ForceTime::End);
+        self.stepper
+            .balance((self.t, span), &self.state, &mut balance)?;
+        Ok(balance)
+    }
+
+    /// Forces of the pins and vertex constraints on the sheet at the present state, pins first, from Hamilton's equations with all
+    /// multipliers. Where closures depend on each other how they share a force is arbitrary (the shortest multipliers in
+    /// the mass metric); the sums are not.
+    ///
+    /// # Errors
+    /// [`ChartDynamicsError::Chart`] where the chart is singular.
+    pub fn reactions(&mut self) -> Result<Vec<Reaction>, ChartDynamicsError> {
+        let balance = match &self.balance {
+            Some(balance) => balance.clone(),
+            None => self.new_balance(self.next_step)?,
+        };
+        Ok(balance.reactions(self.stepper.mechanics.model()))
     }
 
     /// Time, seconds.
@@ -299,20 +350,12 @@ impl ChartSimulation {
         }
         self.growth = self.stepper.growth()?;
         let energy_change = trial.hamiltonian - self.hamiltonian;
-        self.state = trial;
+        let start = (self.t, std::mem::replace(&mut self.state, trial));
         self.t += h;
         self.fresh = false;
         self.since_check += 1;
-        let potential = {
-            let model = self.stepper.mechanics.model();
-            let damping = (-model.damping() * h).exp();
-            let potential = model.potential_energy(self.t, &self.state.x);
-            let kinetic = self.state.hamiltonian - potential;
-            self.state.p.iter_mut().for_each(|p| *p *= damping);
-            self.hamiltonian = potential + kinetic * damping * damping;
-            self.state.hamiltonian = self.hamiltonian;
-            potential
-        };
+        let driven = self.drive_work((start.0, &start.1.x), h)?;
+        let potential = self.damp(h)?;
         if !cut_short || rejected > 0 {
             self.range.min = self.range.min.min(h);
             self.range.max = self.range.max.max(h);
@@ -326,7 +369,40 @@ impl ChartSimulation {
             potential,
             energy_change,
             strain,
+            driven,
             rebased,
         })
+    }
+
+    /// Velocity damping over `h`; returns the potential energy.
+    fn damp(&mut self, h: f64) -> Result<f64, ChartDynamicsError> {
+        let model = self.stepper.mechanics.model();
+        let damping = (-model.damping() * h).exp();
+        let potential = model.potential_energy(self.t, &self.state.x);
+        let kinetic = self.state.hamiltonian - potential;
+        let driven = model.has_drives();
+        self.state.p.iter_mut().for_each(|p| *p *= damping);
+        self.hamiltonian = potential + kinetic * damping * damping;
+        if driven && damping < 1.0 {
+            // Moving supports keep their velocities.
+            let Trial { x, p, .. } = &mut self.state;
+            self.stepper.close_momenta((self.t, h), x, p)?;
+            self.hamiltonian = self.stepper.mechanics.hamiltonian(self.t, x, p)?;
+        }
+        self.state.hamiltonian = self.hamiltonian;
+        Ok(potential)
+    }
+
+    /// Work of moving supports over the step that ends now.
+    fn drive_work(&mut self, start: (f64, &[f64]), h: f64) -> Result<f64, ChartDynamicsError> {
+        let Some(before) = self.balance.take() else {
+            return Ok(0.0);
+        };
+        let after = self.new_balance(h)?;
+        let model = self.stepper.mechanics.model();
+        let end = (self.t, &*self.state.x);
+        let work = after.drive_work(model, Some(&before), start, end);
+        self.balance = Some(after);
+        Ok(work)
     }
 }

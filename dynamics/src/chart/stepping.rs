@@ -1,20 +1,15 @@
 //! One step of each method.
 
+use super::mobility::Mobility;
 use super::{ChartDynamicsError, ChartMechanics, Equations};
 use super::{ChartMethod, ChartOptions, PositionUpdate};
-use isosheet_coords::{ChartError, SaddlePoint};
+use crate::reaction::Balance;
 
 /// Relative change of the momenta at which the implicit part of symplectic Euler has converged.
 const MOMENTA_TOLERANCE: f64 = 1e-13;
 
 /// Most iterations for it; it contracts with the step size, and four to eight are usual.
 const MOMENTA_ITERATIONS: u32 = 60;
-
-/// Strain at which a projection onto the lengths has converged.
-const PROJECTION_TOLERANCE: f64 = 1e-13;
-
-/// Most Newton iterations of a projection.
-const PROJECTION_ITERATIONS: usize = 20;
 
 /// Power iterations after a rebase; later ones start from the last vector, one per step.
 const POWER_STEPS: usize = 6;
@@ -34,33 +29,28 @@ pub(super) struct Stepper {
     method: ChartMethod,
     equations: Equations,
     position: PositionUpdate,
-    saddle: Option<SaddlePoint>,
+    pub(super) mobility: Mobility,
     /// Power iteration vector on C, and the eigenvalue found at the reference state of the chart.
     power: Vec<f64>,
     reference: f64,
 }
 
 impl Stepper {
+    /// With the fixed pins where they are at `x`.
     pub(super) fn new(
         mechanics: ChartMechanics,
         options: &ChartOptions,
+        x: &[f64],
     ) -> Result<Self, ChartDynamicsError> {
-        let saddle = match options.position {
-            PositionUpdate::Projected => Some(SaddlePoint::new(
-                mechanics.system(),
-                mechanics.model().mass(),
-            )?),
-            _ => None,
-        };
         let n = mechanics.dimension();
         Ok(Self {
             power: (0..n).map(|k| 1.0 + (1.3 * k as f64).sin()).collect(),
             reference: f64::NAN,
+            mobility: Mobility::new(&mechanics, x)?,
             mechanics,
             method: options.method,
             equations: options.equations,
             position: options.position,
-            saddle,
         })
     }
 
@@ -96,6 +86,79 @@ impl Stepper {
         Ok(self.mechanics.power_step(&mut self.power)? / self.reference)
     }
 
+    /// Factorise what the rates at a state need.
+    fn open(&mut self, t: f64, x: &[f64]) -> Result<(), ChartDynamicsError> {
+        self.mechanics.at(x)?;
+        if self.mobility.is_closed() {
+            self.mobility.at(&self.mechanics, t, x)?;
+        }
+        Ok(())
+    }
+
+    /// `pdot` with the multipliers of the closures, at the state given to [`Stepper::open`]. Motions of supports are
+    /// differentiated over parts of the time `span`.
+    fn momentum_rate(
+        &mut self,
+        time: (f64, f64),
+        x: &[f64],
+        v: &[f64],
+        pdot: &mut [f64],
+    ) -> Result<(), ChartDynamicsError> {
+        let m = &mut self.mechanics;
+        m.momentum_rate(time.0, x, v, self.equations, pdot)?;
+        if self.mobility.is_closed() {
+            let force = self.mobility.closure_forces(m, time, x, v)?;
+            let mut share = vec![0.0; pdot.len()];
+            m.generalised_force(&force, &mut share)?;
+            add(1.0, &share, pdot);
+        }
+        Ok(())
+    }
+
+    /// Brings positions onto closures and, where that is asked for, lengths, and leaves the mechanics there.
+    fn land(&mut self, t: f64, x: &mut [f64]) -> Result<(), ChartDynamicsError> {
+        if self.position == PositionUpdate::Projected || self.mobility.is_closed() {
+            self.mobility
+                .project(&self.mechanics, t, self.position, x)?;
+        }
+        self.mechanics.at(x)
+    }
+
+    /// Brings momenta onto the closures: the nearest velocities in the mass metric that keep them. The mechanics has to be at
+    /// the state.
+    pub(super) fn close_momenta(
+        &mut self,
+        time: (f64, f64),
+        x: &[f64],
+        p: &mut [f64],
+    ) -> Result<(), ChartDynamicsError> {
+        if !self.mobility.is_closed() {
+            return Ok(());
+        }
+        let mut qdot = vec![0.0; p.len()];
+        let mut v = vec![0.0; x.len()];
+        self.mechanics.velocity(p, &mut qdot, &mut v)?;
+        self.mobility.at(&self.mechanics, time.0, x)?;
+        let change = self.mobility.velocity_change(&self.mechanics, time, x, &v);
+        self.mechanics.system().scatter(&change, &mut v);
+        self.mechanics.momenta(&v, &mut qdot)?;
+        add(1.0, &qdot, p);
+        Ok(())
+    }
+
+    /// Forces of all supports at a state.
+    pub(super) fn balance(
+        &mut self,
+        time: (f64, f64),
+        s: &Trial,
+        balance: &mut Balance,
+    ) -> Result<(), ChartDynamicsError> {
+        let v = self.velocities(s)?;
+        self.mobility.at(&self.mechanics, time.0, &s.x)?;
+        self.mobility
+            .balance(&mut self.mechanics, time, &s.x, &v, balance)
+    }
+
     /// Try a step of length h from time t.
     pub(super) fn attempt(
         &mut self,
@@ -120,27 +183,25 @@ impl Stepper {
     fn forward_euler(&mut self, t: f64, s: &Trial, h: f64) -> Result<Trial, ChartDynamicsError> {
         let (mut qdot, mut pdot) = (vec![0.0; s.q.len()], vec![0.0; s.q.len()]);
         let mut v = vec![0.0; s.x.len()];
-        self.mechanics.at(&s.x)?;
+        self.open(t, &s.x)?;
         self.mechanics.velocity(&s.p, &mut qdot, &mut v)?;
-        self.mechanics
-            .momentum_rate(t, &s.x, &v, self.equations, &mut pdot)?;
+        self.momentum_rate((t, h), &s.x, &v, &mut pdot)?;
         let mut trial = s.clone();
         add(h, &pdot, &mut trial.p);
-        self.finish(s, &qdot, &v, h, &mut trial)?;
+        self.finish((t, h), s, &qdot, &v, &mut trial)?;
         Ok(trial)
     }
 
     fn symplectic_euler(&mut self, t: f64, s: &Trial, h: f64) -> Result<Trial, ChartDynamicsError> {
         let (mut qdot, mut pdot) = (vec![0.0; s.q.len()], vec![0.0; s.q.len()]);
         let mut v = vec![0.0; s.x.len()];
-        self.mechanics.at(&s.x)?;
+        self.open(t, &s.x)?;
         let mut trial = s.clone();
         // p1 = p0 - h dH/dq(q0, p1): fixed point; explicit when dT/dq is left out.
         let mut change = f64::INFINITY;
         for _ in 0..MOMENTA_ITERATIONS {
             self.mechanics.velocity(&trial.p, &mut qdot, &mut v)?;
-            self.mechanics
-                .momentum_rate(t, &s.x, &v, self.equations, &mut pdot)?;
+            self.momentum_rate((t, h), &s.x, &v, &mut pdot)?;
             let (mut size, mut moved) = (0.0f64, 0.0f64);
             for k in 0..pdot.len() {
                 let p = s.p[k] + h * pdot[k];
@@ -158,7 +219,7 @@ impl Stepper {
             return Err(ChartDynamicsError::Momenta { h, change });
         }
         self.mechanics.velocity(&trial.p, &mut qdot, &mut v)?;
-        self.finish(s, &qdot, &v, h, &mut trial)?;
+        self.finish((t, h), s, &qdot, &v, &mut trial)?;
         Ok(trial)
     }
 
@@ -166,10 +227,10 @@ impl Stepper {
     /// mechanics at the new state.
     fn finish(
         &mut self,
+        (t, h): (f64, f64),
         s: &Trial,
         qdot: &[f64],
         v: &[f64],
-        h: f64,
         trial: &mut Trial,
     ) -> Result<(), ChartDynamicsError> {
         let mut new_velocity = Vec::new();
@@ -182,52 +243,17 @@ impl Stepper {
         }
         trial.x.copy_from_slice(&s.x);
         add(h, v, &mut trial.x);
-        match self.position {
-            PositionUpdate::Linear => {}
-            PositionUpdate::Exact => {
-                trial.q.copy_from_slice(&s.q);
-                add(h, qdot, &mut trial.q);
-                let near = trial.x.clone();
-                self.mechanics.realise(&trial.q, &near, &mut trial.x)?;
-            }
-            PositionUpdate::Projected => self.project(&mut trial.x)?,
+        if self.position == PositionUpdate::Exact {
+            trial.q.copy_from_slice(&s.q);
+            add(h, qdot, &mut trial.q);
+            let near = trial.x.clone();
+            self.mechanics.realise(&trial.q, &near, &mut trial.x)?;
         }
-        self.mechanics.at(&trial.x)?;
+        self.land(t + h, &mut trial.x)?;
         if self.equations == Equations::Reformed {
             self.mechanics.momenta(&new_velocity, &mut trial.p)?;
         }
-        Ok(())
-    }
-
-    fn project(&mut self, x: &mut [f64]) -> Result<(), ChartDynamicsError> {
-        let system = self.mechanics.system();
-        let Some(saddle) = self.saddle.as_mut() else {
-            return Ok(());
-        };
-        let mut c = vec![0.0; system.equations()];
-        let zero = vec![0.0; system.unknowns()];
-        let (mut step, mut mu) = (zero.clone(), c.clone());
-        let mut strain = f64::INFINITY;
-        for _ in 0..PROJECTION_ITERATIONS {
-            strain = system.max_strain(x);
-            if strain <= PROJECTION_TOLERANCE {
-                return Ok(());
-            }
-            system.residual(x, &mut c);
-            saddle.factorize(system, x)?;
-            saddle.solve(&zero, &c, &mut step, &mut mu)?;
-            system.add_scaled(-1.0, &step, x);
-        }
-        // The last correction may have reached the rounding level of a large sheet.
-        if strain <= 100.0 * PROJECTION_TOLERANCE {
-            return Ok(());
-        }
-        Err(ChartError::NotConverged {
-            iterations: PROJECTION_ITERATIONS,
-            residual: strain,
-            tolerance: PROJECTION_TOLERANCE,
-        }
-        .into())
+        self.close_momenta((t + h, h), &trial.x, &mut trial.p)
     }
 
     fn runge_kutta(&mut self, t: f64, s: &Trial, h: f64) -> Result<Trial, ChartDynamicsError> {
@@ -242,10 +268,9 @@ impl Stepper {
             .enumerate()
         {
             let time = t + h * [0.0, 0.5, 0.5, 1.0][k];
-            self.mechanics.at(&stage.x)?;
+            self.open(time, &stage.x)?;
             self.mechanics.velocity(&stage.p, &mut qdot, &mut v)?;
-            self.mechanics
-                .momentum_rate(time, &stage.x, &v, self.equations, &mut pdot)?;
+            self.momentum_rate((time, h), &stage.x, &v, &mut pdot)?;
             add(weight, &qdot, &mut dq);
             add(weight, &pdot, &mut dp);
             let ahead = h * [0.5, 0.5, 1.0, 0.0][k];
@@ -264,7 +289,8 @@ impl Stepper {
         add(h, &dq, &mut trial.q);
         add(h, &dp, &mut trial.p);
         self.mechanics.realise(&trial.q, &stage.x, &mut trial.x)?;
-        self.mechanics.at(&trial.x)?;
+        self.land(t + h, &mut trial.x)?;
+        self.close_momenta((t + h, h), &trial.x, &mut trial.p)?;
         Ok(trial)
     }
 }
