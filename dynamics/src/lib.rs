@@ -57,6 +57,7 @@ pub mod constraint;
 pub mod contact;
 #[cfg(test)]
 mod contact_tests;
+mod crease;
 #[cfg(test)]
 mod derivative_tests;
 mod energy_momentum;
@@ -81,6 +82,7 @@ mod state;
 mod subdivide;
 
 pub use constraint::VertexConstraint;
+pub use crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
 pub use energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
 pub use feasibility::Excess;
 pub use implicit::{Bdf2, ImplicitEuler, ImplicitOptions};

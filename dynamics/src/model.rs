@@ -435,6 +435,21 @@ impl SheetModel {
         self.potentials.iter().map(|p| p.energy(t, x)).sum()
     }
 
+    /// Whether a potential depends on time.
+    pub(crate) fn has_driven_potentials(&self) -> bool {
+        self.potentials.iter().any(|p| p.is_driven())
+    }
+
+    /// Work of changing the driven potentials while the sheet moves from `x0` at `t0` to `x1` at `t1`, joules: the integral of
+    /// dV/dt at fixed positions, by the mean of the changes at both.
+    pub(crate) fn potential_work(&self, (t0, x0): (f64, &[f64]), (t1, x1): (f64, &[f64])) -> f64 {
+        let driven = self.potentials.iter().filter(|p| p.is_driven());
+        let change = |p: &dyn Potential, x: &[f64]| p.energy(t1, x) - p.energy(t0, x);
+        driven
+            .map(|p| 0.5 * (change(p.as_ref(), x0) + change(p.as_ref(), x1)))
+            .sum()
+    }
+
     /// Kinetic energy `v^T M v / 2` (Eq. 2), joules.
     pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
         self.mass.kinetic_energy(&self.topology, v)

@@ -20,6 +20,18 @@ pub trait Potential: Debug + Send + Sync {
     /// Adds second derivatives to `hessian`. The default adds none.
     fn add_hessian(&self, _t: f64, _x: &[f64], _hessian: &mut dyn HessianSink) {}
 
+    /// The pairs of vertices without a common edge that [`Potential::add_hessian`] couples by
+    /// [`HessianSink::add_pair`]; they have to be the same at all times and positions. The default names none.
+    fn couplings(&self) -> Vec<[VertexId; 2]> {
+        Vec::new()
+    }
+
+    /// Whether the energy depends on time at fixed positions. If it says so, the work of changing it enters the energy
+    /// balance; the default says no.
+    fn is_driven(&self) -> bool {
+        false
+    }
+
     /// How the energy depends on the positions.
     fn shape(&self) -> PotentialShape {
         PotentialShape::General
@@ -38,15 +50,18 @@ pub enum PotentialShape {
 
 /// Receives the 3 x 3 blocks of a potential's Hessian.
 ///
-/// Blocks exist where the rods have them: at every vertex and along every edge. Couplings
-/// between vertices that share no edge have to be left out, which costs iterations, not
-/// accuracy.
+/// Blocks exist where the rods have them, at every vertex and along every edge, and for the pairs that
+/// [`Potential::couplings`] names. Other couplings have to be left out, which costs iterations, not accuracy.
 pub trait HessianSink {
     /// Adds `d2V / dx_v dx_v`, symmetric.
     fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>);
 
     /// Adds `d2V / dx_a dx_b` for the edge `a -> b`; the transposed block is implied.
     fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>);
+
+    /// Adds `d2V / dx_a dx_b` for a pair named by [`Potential::couplings`], rows at `a`; the transposed block is
+    /// implied.
+    fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>);
 }
 
 /// Uniform gravity, `V = -sum_i w_i g . x_i` with the weights `w_i` (kilograms) of the vertices.

@@ -61,7 +61,8 @@ impl PrimalMatrix {
                 }
             }
         }
-        for &[row, col] in &extra {
+        let coupled = potential_pairs(model);
+        for &[row, col] in coupled.iter().chain(&extra) {
             for r in 0..3 {
                 for c in 0..3 {
                     entries.push((3 * row + r, 3 * col + c));
@@ -296,6 +297,21 @@ impl HessianSink for Sink<'_> {
             }
         }
     }
+
+    fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
+        CouplingSink::add(self, a.0, b.0, block);
+    }
+}
+
+/// Pairs of free vertices (in free numbers, larger first) that the potentials couple beyond the mesh's edges.
+fn potential_pairs(model: &SheetModel) -> Vec<[u32; 2]> {
+    let free = model.free_index();
+    let pairs = model.potentials().iter().flat_map(|p| p.couplings());
+    pairs
+        .map(|[a, b]| [free[a.index()], free[b.index()]])
+        .filter(|[i, j]| *i != PINNED && *j != PINNED && i != j)
+        .map(|[i, j]| [i.max(j), i.min(j)])
+        .collect()
 }
 
 impl CouplingSink for Sink<'_> {
@@ -311,7 +327,7 @@ impl CouplingSink for Sink<'_> {
         }
         let llt = &mut self.matrix.llt;
         let start = block_start(llt.pattern(), i.max(j), i.min(j))
-            .expect("make_room was called for these pairs");
+            .expect("the pair was named before: by a potential, or by contact in make_room");
         let values = llt.values_mut();
         for c in 0..3 {
             for r in 0..3 {

@@ -52,16 +52,15 @@ pub struct StepReport {
     pub kinetic: f64,
     /// Potential energy at the end, contact included, joules.
     pub potential: f64,
-    /// Work done since the start by the non-conservative forces and by moving bodies, pins and vertex constraints,
-    /// joules.
+    /// Work done since the start by the non-conservative forces, by moving bodies, pins and vertex constraints, and by
+    /// changing driven potentials ([`Potential::is_driven`](crate::Potential::is_driven)), joules.
     pub work: f64,
     /// Energy taken out by velocity damping since the start, joules.
     pub dissipated: f64,
     /// Energy lost to friction since the start, joules.
     pub friction: f64,
     /// `T + V - work + dissipated + friction` minus its value at the start, joules: the error of the
-    /// integrator, zero for the exact motion. Of potentials that depend on time the work done by
-    /// changing them, the integral of dV/dt at fixed positions, is not accounted for.
+    /// integrator, zero for the exact motion.
     pub energy_drift: f64,
     /// Largest relative edge length error at the end.
     pub strain: f64,

@@ -8,6 +8,7 @@ use crate::{HessianSink, SheetModel};
 use isosheet_coords::linalg::{LinalgError, Pattern, SparseLu};
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector2};
+use std::collections::BTreeMap;
 
 /// The matrix
 ///
@@ -26,6 +27,8 @@ pub(crate) struct SaddleMatrix {
     vertex_slots: Vec<[u32; 9]>,
     /// Slots of the blocks (a, b) and (b, a) of each edge.
     edge_slots: Vec<Option<[[u32; 9]; 2]>>,
+    /// Slots of the blocks (a, b) and (b, a) of the other pairs of vertices that potentials couple.
+    pair_slots: BTreeMap<[VertexId; 2], [[u32; 9]; 2]>,
     /// Slots of the multiplier column and row of each rod: `[end][axis][column or row]`.
     rod_slots: Vec<Option<RodSlots>>,
     /// Row of each rod after the momenta.
@@ -134,6 +137,17 @@ impl SaddleMatrix {
                 entries.push((own, own));
             }
         }
+        let pairs: Vec<[VertexId; 2]> = model
+            .potentials()
+            .iter()
+            .flat_map(|p| p.couplings())
+            .collect();
+        let both_free = |[a, b]: &[VertexId; 2]| !model.is_pinned(*a) && !model.is_pinned(*b);
+        for [a, b] in pairs.iter().copied().filter(|p| both_free(p)) {
+            let (i, j) = (free[a.index()], free[b.index()]);
+            block(&mut entries, i, j);
+            block(&mut entries, j, i);
+        }
         let order = primal + rods as usize;
         let (pattern, slots) = Pattern::from_entries(order, order, &entries);
         let mut next = slots.iter().copied();
@@ -218,8 +232,14 @@ impl SaddleMatrix {
                 slots
             })
             .collect();
+        let pair_slots = pairs
+            .into_iter()
+            .filter(both_free)
+            .map(|p| (p, [take_block(&mut take), take_block(&mut take)]))
+            .collect();
         Ok(Self {
             constraint_slots,
+            pair_slots,
             lu: SparseLu::new(pattern)?,
             vertex_slots,
             edge_slots,
@@ -450,12 +470,25 @@ impl HessianSink for Sink<'_> {
     }
 
     fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>) {
-        if let Some([ab, ba]) = self.matrix.edge_slots[e.index()] {
-            let values = self.matrix.lu.values_mut();
-            for k in 0..9 {
-                values[ab[k] as usize] += self.scale * block[(k / 3, k % 3)];
-                values[ba[k] as usize] += self.scale * block[(k % 3, k / 3)];
-            }
+        if let Some(slots) = self.matrix.edge_slots[e.index()] {
+            self.add_both(&slots, block);
+        }
+    }
+
+    fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
+        if let Some(slots) = self.matrix.pair_slots.get(&[a, b]).copied() {
+            self.add_both(&slots, block);
+        }
+    }
+}
+
+impl Sink<'_> {
+    /// Adds a block and its transpose.
+    fn add_both(&mut self, [ab, ba]: &[[u32; 9]; 2], block: &Matrix3<f64>) {
+        let values = self.matrix.lu.values_mut();
+        for k in 0..9 {
+            values[ab[k] as usize] += self.scale * block[(k / 3, k % 3)];
+            values[ba[k] as usize] += self.scale * block[(k % 3, k / 3)];
         }
     }
 }

@@ -116,9 +116,10 @@ impl Subdivided {
         // The conservative methods keep the energy by themselves.
         let guarded = self.integrator.demand() == RodDemand::Nothing;
         let driven = self.model.has_drives();
+        let pumped = self.model.has_driven_potentials();
         while done < 1.0 {
             let effort = &mut tally.effort;
-            if guarded || driven {
+            if guarded || driven || pumped {
                 self.before.copy_from(state);
             }
             self.check_pins(state.t + fraction * h)?;
@@ -195,6 +196,11 @@ impl Subdivided {
                 }
             }
             done += fraction;
+            if pumped {
+                let (before, after) = (&self.before, &*state);
+                let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
+                tally.work += self.model.potential_work(ends.0, ends.1);
+            }
             // The end of the step is set by the caller, free of accumulated round-off.
             state.t = start + done * h;
             tally.substeps += 1;

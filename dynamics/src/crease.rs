@@ -1,0 +1,286 @@
+//! Springs at the edges: creases that fold by driven angles, and the bending stiffness of the material.
+
+use crate::{HessianSink, Potential};
+use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId};
+use nalgebra::Vector3;
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+/// The fold angle that a spring is at rest at, radians: positive for a valley as seen from the side from which faces are
+/// counter-clockwise, negative for a mountain (the sign of [`isosheet_mesh::fold_angle`]).
+pub enum RestAngle {
+    /// Always the same.
+    Fixed(f64),
+    /// A prescribed function of time (seconds): the crease is driven.
+    Driven(Box<dyn Fn(f64) -> f64 + Send + Sync>),
+}
+
+impl RestAngle {
+    /// The angle at time `t`, radians.
+    pub fn at(&self, t: f64) -> f64 {
+        match self {
+            Self::Fixed(angle) => *angle,
+            Self::Driven(angle) => angle(t),
+        }
+    }
+}
+
+impl fmt::Debug for RestAngle {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fixed(angle) => write!(f, "Fixed({angle})"),
+            Self::Driven(_) => write!(f, "Driven"),
+        }
+    }
+}
+
+/// A torsion spring at an interior edge.
+#[derive(Debug)]
+pub struct CreaseSpring {
+    /// The edge.
+    pub edge: EdgeId,
+    /// Torsional stiffness `k` of the whole edge, newton metres per radian.
+    pub stiffness: f64,
+    /// The angle at which it is at rest.
+    pub rest: RestAngle,
+}
+
+/// Why springs cannot be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CreaseError {
+    /// An edge does not exist or has one face only.
+    #[error("{edge} has no fold angle: springs belong on edges between two faces")]
+    NotInterior {
+        /// The edge.
+        edge: EdgeId,
+    },
+    /// A stiffness makes no sense.
+    #[error("the spring at {edge} has stiffness {stiffness} N m; give a finite one of at least 0")]
+    Stiffness {
+        /// The edge.
+        edge: EdgeId,
+        /// The stiffness given, N m/rad.
+        stiffness: f64,
+    },
+    /// A fixed rest angle makes no sense.
+    #[error("the spring at {edge} rests at {angle} rad; give an angle from -pi to pi")]
+    Angle {
+        /// The edge.
+        edge: EdgeId,
+        /// The angle given, radians.
+        angle: f64,
+    },
+    /// A flexural rigidity makes no sense.
+    #[error("the flexural rigidity is {rigidity} N m; give a finite one of at least 0")]
+    Rigidity {
+        /// The rigidity given, N m.
+        rigidity: f64,
+    },
+}
+
+/// Torsion springs at edges, with the energy
+///
+/// ```text
+/// V(t, x) = sum_e k_e / 2 [theta_e(x) - rest_e(t)]^2,
+/// ```
+///
+/// `theta_e` the fold angle of edge `e` in radians. The difference is taken the short way round, so an angle that passes pi
+/// (a fold shut) stays continuous; the energy has a kink only half a turn away from the rest angle.
+///
+/// In a flat sheet the force is normal to it, upwards or downwards by the sign of the rest angle: the assignment of mountains
+/// and valleys chooses the branch, no perturbation is needed.
+///
+/// The work of driving a rest angle, the integral of `dV/dt` at fixed positions, enters the energy balance. The
+/// derivatives of the angle are those of Bridson, Marino and Fedkiw, *Simulation of clothing with folds and wrinkles* (2003),
+/// Eq. 3; of the Hessian the semidefinite part `k grad theta grad theta^T` is given, exact where the spring is at rest.
+#[derive(Debug)]
+pub struct CreaseSprings {
+    hinges: Vec<Hinge>,
+}
+
+#[derive(Debug)]
+struct Hinge {
+    /// First and second end, opposite vertex of the left and of the right face.
+    vertices: [VertexId; 4],
+    /// The edges between pairs of these, with the places of their first and second end.
+    edges: [(EdgeId, usize, usize); 5],
+    stiffness: f64,
+    rest: RestAngle,
+}
+
+impl CreaseSprings {
+    /// Springs on a mesh.
+    ///
+    /// # Errors
+    /// [`CreaseError`] naming the first edge that has no fold angle, or whose stiffness or angle makes no sense.
+    pub fn new(topology: &Topology, springs: Vec<CreaseSpring>) -> Result<Self, CreaseError> {
+        let hinges = springs.into_iter().map(|s| Hinge::new(topology, s));
+        Ok(Self {
+            hinges: hinges.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The bending stiffness of a uniform material on all interior edges, at rest when flat: `k_e = D l_e^2 / A_e` with the
+    /// flexural rigidity `D` (newton metres; office paper has about 5e-4) and the area `A_e` of the two faces.
+    ///
+    /// On a union-jack grid of squares a bend along grid lines has exactly the energy `D kappa^2 / 2` per area, one along
+    /// diagonals twice that. A sheet of rigid rods bends at its edges only: how stiff it is in other directions depends
+    /// on the mesh.
+    ///
+    /// # Errors
+    /// [`CreaseError::Rigidity`].
+    pub fn bending(sheet: &Sheet, rigidity: f64) -> Result<Self, CreaseError> {
+        if !(rigidity.is_finite() && rigidity >= 0.0) {
+            return Err(CreaseError::Rigidity { rigidity });
+        }
+        let t = sheet.topology();
+        let mut springs = Vec::new();
+        for edge in t.edge_ids() {
+            if let [Some(left), Some(right)] = t.edge_faces(edge) {
+                let area = sheet.face_areas()[left.index()] + sheet.face_areas()[right.index()];
+                springs.push(CreaseSpring {
+                    edge,
+                    stiffness: rigidity * sheet.lengths()[edge.index()].powi(2) / area,
+                    rest: RestAngle::Fixed(0.0),
+                });
+            }
+        }
+        Self::new(t, springs)
+    }
+
+    /// Moments `k (rest - theta)` of the springs at time `t` and positions `x`, newton metres, in the order given: positive
+    /// where a spring folds towards a valley.
+    pub fn moments(&self, t: f64, x: &[f64]) -> Vec<f64> {
+        let moment = |h: &Hinge| -h.stiffness * h.excess(t, Angle::at(x, &h.vertices).value);
+        self.hinges.iter().map(moment).collect()
+    }
+}
+
+impl Hinge {
+    fn new(topology: &Topology, spring: CreaseSpring) -> Result<Self, CreaseError> {
+        let CreaseSpring {
+            edge,
+            stiffness,
+            rest,
+        } = spring;
+        if edge.index() >= topology.edge_count() {
+            return Err(CreaseError::NotInterior { edge });
+        }
+        let [Some(left), Some(right)] = topology.opposite_vertices(edge) else {
+            return Err(CreaseError::NotInterior { edge });
+        };
+        if !(stiffness.is_finite() && stiffness >= 0.0) {
+            return Err(CreaseError::Stiffness { edge, stiffness });
+        }
+        if let RestAngle::Fixed(angle) = rest
+            && !(-PI..=PI).contains(&angle)
+        {
+            return Err(CreaseError::Angle { edge, angle });
+        }
+        let [a, b] = topology.edges()[edge.index()];
+        let vertices = [a, b, left, right];
+        let between = |i: usize, j: usize| {
+            let e = topology.find_edge(vertices[i], vertices[j]);
+            let e = e.expect("two corners of a face share an edge");
+            if topology.edges()[e.index()][0] == vertices[i] {
+                (e, i, j)
+            } else {
+                (e, j, i)
+            }
+        };
+        Ok(Self {
+            vertices,
+            edges: [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3)].map(|(i, j)| between(i, j)),
+            stiffness,
+            rest,
+        })
+    }
+
+    /// `theta - rest`, the short way round.
+    fn excess(&self, t: f64, theta: f64) -> f64 {
+        let d = theta - self.rest.at(t);
+        d - TAU * (d / TAU).round()
+    }
+}
+
+/// A fold angle and its derivatives by the two ends and the two opposite vertices.
+struct Angle {
+    value: f64,
+    gradient: [Vector3<f64>; 4],
+}
+
+impl Angle {
+    fn at(x: &[f64], vertices: &[VertexId; 4]) -> Self {
+        let [a, b, l, r] = vertices.map(|v| Vector3::from_column_slice(&x[3 * v.index()..][..3]));
+        let (along, to_l, to_r) = (b - a, l - a, r - a);
+        let (n_l, n_r) = (along.cross(&to_l), to_r.cross(&along));
+        let squared = along.norm_squared();
+        let length = squared.sqrt();
+        // Per unit of height of an opposite vertex the angle grows by the inverse of its distance from the edge.
+        let (g_l, g_r) = (
+            n_l * (length / n_l.norm_squared()),
+            n_r * (length / n_r.norm_squared()),
+        );
+        let (s_l, s_r) = (to_l.dot(&along) / squared, to_r.dot(&along) / squared);
+        Self {
+            value: (n_r.cross(&n_l).dot(&along) / length).atan2(n_l.dot(&n_r)),
+            gradient: [
+                (s_l - 1.0) * g_l + (s_r - 1.0) * g_r,
+                -s_l * g_l - s_r * g_r,
+                g_l,
+                g_r,
+            ],
+        }
+    }
+}
+
+impl Potential for CreaseSprings {
+    fn energy(&self, t: f64, x: &[f64]) -> f64 {
+        let energy = |h: &Hinge| {
+            let excess = h.excess(t, Angle::at(x, &h.vertices).value);
+            0.5 * h.stiffness * excess * excess
+        };
+        self.hinges.iter().map(energy).sum()
+    }
+
+    fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
+        for h in &self.hinges {
+            let angle = Angle::at(x, &h.vertices);
+            let moment = h.stiffness * h.excess(t, angle.value);
+            for (v, g) in h.vertices.iter().zip(&angle.gradient) {
+                for k in 0..3 {
+                    gradient[3 * v.index() + k] += moment * g[k];
+                }
+            }
+        }
+    }
+
+    fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+        for h in &self.hinges {
+            let g = Angle::at(x, &h.vertices).gradient;
+            let block = |i: usize, j: usize| h.stiffness * g[i] * g[j].transpose();
+            for (i, &v) in h.vertices.iter().enumerate() {
+                hessian.add_vertex(v, &block(i, i));
+            }
+            for &(e, i, j) in &h.edges {
+                hessian.add_edge(e, &block(i, j));
+            }
+            hessian.add_pair(h.vertices[2], h.vertices[3], &block(2, 3));
+        }
+    }
+
+    fn couplings(&self) -> Vec<[VertexId; 2]> {
+        self.hinges
+            .iter()
+            .map(|h| [h.vertices[2], h.vertices[3]])
+            .collect()
+    }
+
+    fn is_driven(&self) -> bool {
+        let driven = |h: &Hinge| matches!(h.rest, RestAngle::Driven(_));
+        self.hinges.iter().any(driven)
+    }
+}
+
+#[cfg(test)]
+mod tests;
