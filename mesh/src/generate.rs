@@ -6,6 +6,7 @@ mod delaunay;
 mod error;
 mod grid;
 mod octagon;
+mod origami;
 mod refine;
 mod round;
 
@@ -15,6 +16,7 @@ pub use grid::{
     Diagonals, anisotropic_grid, grid, isotropic_rectangle, isotropic_square, ladder, strip,
 };
 pub use octagon::{octagon_244, octagon_249};
+pub use origami::{Assignment, FoldPattern, degree_four, miura};
 pub use refine::{refine_isotropic, split_1_4};
 pub use round::{annulus, disk, fan, regular_polygon};
 

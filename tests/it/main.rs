@@ -8,6 +8,7 @@ mod contact;
 mod flat;
 mod forces;
 mod orders;
+mod origami;
 mod robust;
 mod scenes;
 mod stress;

@@ -4,6 +4,7 @@
 mod elliptic;
 mod flap;
 mod linkage;
+mod origami;
 mod pendulum;
 mod strip;
 mod triangle;
@@ -11,6 +12,7 @@ mod triangle;
 pub use elliptic::{agm, complete_k, jacobi};
 pub use flap::Flap;
 pub use linkage::Linkage;
+pub use origami::{DegreeFour, FoldingMode, Miura};
 pub use pendulum::Pendulum;
 pub use strip::{HangingStrip, laguerre, laguerre_zeros};
 pub use triangle::FreeTriangle;

@@ -28,6 +28,24 @@ pub enum GenerateError {
         /// Its value.
         value: f64,
     },
+    /// An angle is out of range.
+    #[error("{name} is {value} rad; it must lie between {min} and {max}")]
+    Angle {
+        /// The name of the argument.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// It has to be larger than this.
+        min: f64,
+        /// It has to be smaller than this.
+        max: f64,
+    },
+    /// Mountains and valleys are assigned in a way that cannot be folded.
+    #[error("the assignment of mountains and valleys cannot be folded: {problem}")]
+    Assignment {
+        /// What is wrong.
+        problem: &'static str,
+    },
     /// Two lengths are in the wrong order.
     #[error("{small} is {small_value} and {large} is {large_value}; the first must be smaller")]
     Order {
@@ -91,6 +109,23 @@ pub(crate) fn check_size(name: &'static str, value: f64) -> Result<(), GenerateE
         Ok(())
     } else {
         Err(GenerateError::Size { name, value })
+    }
+}
+
+pub(crate) fn check_angle(
+    name: &'static str,
+    value: f64,
+    [min, max]: [f64; 2],
+) -> Result<(), GenerateError> {
+    if min < value && value < max {
+        Ok(())
+    } else {
+        Err(GenerateError::Angle {
+            name,
+            value,
+            min,
+            max,
+        })
     }
 }
 

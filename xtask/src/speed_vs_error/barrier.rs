@@ -115,6 +115,11 @@ mod tests {
             self.add(a, b, block);
             self.add(b, a, &block.transpose());
         }
+
+        fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
+            self.add(a, b, block);
+            self.add(b, a, &block.transpose());
+        }
     }
 
     /// A cloth laid into the reach of the table: slopes of the energy, and the part of the Hessian that a push straight
