@@ -1,7 +1,10 @@
 //! `scale`: what a step costs as the mesh is refined.
 
+mod drape;
 mod measure;
+mod plot;
 mod report;
+mod timed;
 
 use crate::cli::ScaleArgs;
 use crate::progress::Progress;
@@ -10,14 +13,14 @@ use crate::{Outcome, interrupt};
 use anyhow::Result;
 use measure::measure;
 
+pub(crate) use drape::DrapeRow;
 pub(crate) use measure::{Row, factorisation_time};
-pub(crate) use report::section;
 
 /// Levels of a run that only shows that everything works.
 const QUICK: std::ops::RangeInclusive<u32> = 1..=3;
 
 /// Coarsest level of a full run.
-const COARSEST: u32 = 3;
+const COARSEST: u32 = 2;
 
 /// Runs the command.
 pub(crate) fn run(args: &ScaleArgs) -> Result<Outcome> {
@@ -27,33 +30,50 @@ pub(crate) fn run(args: &ScaleArgs) -> Result<Outcome> {
     } else {
         COARSEST..=args.level
     };
-    let Some(rows) = rows(levels)? else {
+    let Some(results) = measured(levels)? else {
         return Ok(Outcome::Interrupted);
     };
-    for (path, bytes) in section(&rows)?.files {
+    for (path, bytes) in report::files(&results)? {
         store.write(&path, &bytes)?;
     }
-    store.write("scale.html", report::page(&rows)?.as_bytes())?;
-    print!("{}", report::text(&rows));
-    for name in ["scale.csv", "scale.svg", "scale.html"] {
+    store.write("scale.html", report::page(&results)?.as_bytes())?;
+    print!("{}", report::text(&results));
+    for name in ["scale.csv", "draping.csv", "scale.svg", "scale.html"] {
         println!("{}", store.root().join(name).display());
     }
     Ok(Outcome::Complete)
 }
 
-/// One row for each level, coarse to fine, so that the peak of the memory is that of the level; `None` when stopped.
-pub(crate) fn rows(levels: impl Iterator<Item = u32>) -> Result<Option<Vec<Row>>> {
-    let mut rows = Vec::new();
+/// Everything measured.
+pub(crate) struct Results {
+    pub(crate) hanging: Vec<Row>,
+    pub(crate) draping: Vec<DrapeRow>,
+}
+
+/// One row of each kind for each level, coarse to fine, so that the peak of the memory is that of the level; `None` when
+/// stopped.
+fn measured(levels: impl Iterator<Item = u32>) -> Result<Option<Results>> {
+    let mut results = Results {
+        hanging: Vec::new(),
+        draping: Vec::new(),
+    };
     for level in levels {
         if interrupt::requested() {
             return Ok(None);
         }
-        let bar = Progress::start(format!("hanging sheet M^{level}"), 1);
-        rows.push(measure(level, STEPS)?);
-        bar.finish("measured");
+        let bar = Progress::start(format!("M^{level}"), 2);
+        results.hanging.push(measure(level, STEPS)?);
+        bar.step();
+        results
+            .draping
+            .push(drape::measure(level, STEPS, PATIENCE)?);
+        bar.finish("hanging and draping measured");
     }
-    Ok(Some(rows))
+    Ok(Some(results))
 }
 
 /// Steps that are timed, see [`measure::STEP`].
 const STEPS: usize = 3;
+
+/// Longest time for the steps of a draping sheet, seconds.
+const PATIENCE: f64 = 120.0;

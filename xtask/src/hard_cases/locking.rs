@@ -4,11 +4,13 @@ use super::case::number;
 use super::scenes::{FRAME, STRAIN, at_rest, course};
 use super::{Case, Effort, Findings};
 use crate::figures::Picture;
-use crate::render::{Camera, Labelled, Look, SheetPicture, montage, render};
+use crate::render::{Camera, Labelled, Look, SheetPicture, Solid, montage, render};
 use anyhow::Result;
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Method, SheetModel};
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{CreasePattern, MassKind, Sheet, VertexId};
+use nalgebra::Isometry3;
 
 pub(crate) const DRAPE: Case = Case {
     name: "locking",
@@ -21,6 +23,45 @@ pub(crate) const DRAPE: Case = Case {
 
 /// Largest kinetic energy of a sheet that hangs at rest, of its weight times 1 m.
 const REST: f64 = 1e-4;
+
+/// What holds a sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Support {
+    /// The vertex next to a point of the sheet is pinned.
+    Pin([f64; 2]),
+    /// A round table, with contact and friction.
+    Table,
+}
+
+/// The supports in the order of the report.
+const SUPPORTS: [(&str, Support); 3] = [
+    ("held at a corner", Support::Pin([0.0, 1.0])),
+    ("held in the middle", Support::Pin([0.5, 0.5])),
+    ("on a round table", Support::Table),
+];
+
+/// Radius and height of the table, metres: round, so that it prefers no direction of the mesh.
+const TABLE: [f64; 2] = [0.25, 0.1];
+
+/// Friction that keeps an uneven cloth from sliding off.
+const FRICTION: f64 = 0.5;
+
+/// The table below a sheet in the plane z = 0, its top half an activation distance lower.
+fn table(activation: f64) -> Result<Obstacle> {
+    let shape = Shape::Cylinder {
+        radius: TABLE[0],
+        half_height: 0.5 * TABLE[1],
+    };
+    let pose = Isometry3::translation(0.5, 0.5, -0.5 * (TABLE[1] + activation));
+    Ok(Obstacle::still(shape, pose)?)
+}
+
+/// A sheet at rest.
+struct End {
+    x: Vec<f64>,
+    pins: Vec<VertexId>,
+    body: Option<Obstacle>,
+}
 
 fn drape(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
@@ -41,40 +82,48 @@ fn drape(effort: Effort) -> Result<Findings> {
         ),
     ];
     let mut rows = Vec::new();
-    let mut ends: Vec<(Vec<f64>, VertexId)> = Vec::new();
-    let mut depths = [Vec::new(), Vec::new()];
-    for (held_at, k) in [("a corner", 0), ("the middle", 1)] {
+    let mut ends = Vec::new();
+    let mut depths = Vec::new();
+    for (how, support) in SUPPORTS {
+        let mut of_meshes = [f64::INFINITY, 0.0];
         for (name, sheet) in &meshes {
-            let find = |target: [f64; 2]| {
-                sheet
-                    .topology()
-                    .vertex_ids()
-                    .min_by(|a, b| {
-                        let d = |v: VertexId| {
-                            let p = sheet.position(v);
-                            (p[0] - target[0]).hypot(p[1] - target[1])
-                        };
-                        d(*a).total_cmp(&d(*b))
-                    })
-                    .unwrap_or(VertexId(0))
-            };
-            let pin = [find([0.0, 1.0]), find([0.5, 0.5])][k];
-            let model = SheetModel::new(sheet, 0.1, MassKind::Lumped)?
+            let mut model = SheetModel::new(sheet, 0.1, MassKind::Lumped)?
                 .with_gravity()
-                .with_pins(&[pin])?
                 .with_damping(1.0)?;
+            let mut pins = Vec::new();
+            if let Support::Pin(target) = support {
+                pins.push(nearest(sheet, target));
+                model = model.with_pins(&pins)?;
+            }
+            let contact = match support {
+                Support::Pin(_) => None,
+                Support::Table => {
+                    let options = ContactOptions::for_sheet(&model);
+                    let body = table(options.activation)?;
+                    let contacts = Contacts::new(&model, options)?
+                        .with_body(body.clone(), Coefficients::equal(FRICTION))?;
+                    Some((body, contacts))
+                }
+            };
             let mut run = at_rest(model, sheet.positions(), Method::default())?;
-            let mut kinetic = 0.0;
+            let mut body = None;
+            if let Some((table, contacts)) = contact {
+                run = run.with_contact(contacts)?;
+                body = Some(table);
+            }
+            let (mut kinetic, mut gap) = (0.0, f64::INFINITY);
             let c = course(&mut run, FRAME, effort.pick(60, 900, 1800), |r, _| {
                 kinetic = r.kinetic;
+                gap = gap.min(r.gap.unwrap_or(f64::INFINITY));
             })?;
             let x = run.state().x.clone();
-            let (depth, shadow) = shape(sheet, &x, pin);
+            let top = pins.first().map_or(0.0, |p| x[3 * p.index() + 2]);
+            let (depth, shadow) = shape(sheet, &x, top);
             let lines = CreasePattern::of(sheet, 1e-6);
             let directions = lines.folding_directions().len();
             rows.push(vec![
                 (*name).to_owned(),
-                held_at.to_owned(),
+                how.to_owned(),
                 format!(
                     "{}/{}",
                     sheet.topology().vertex_count(),
@@ -86,46 +135,49 @@ fn drape(effort: Effort) -> Result<Findings> {
                 number(kinetic / 0.98),
             ]);
             f.at_most(
-                format!("{name}, held at {held_at}: edge strain"),
+                format!("{name}, {how}: edge strain"),
                 c.if_finished(c.strain),
                 STRAIN,
             )
             .remark(c.said());
+            if support == Support::Table {
+                f.at_least(
+                    format!("{name}, {how}: smallest gap, m"),
+                    c.if_finished(gap),
+                    f64::MIN_POSITIVE,
+                );
+            }
             if effort != Effort::Quick {
                 f.at_most(
-                    format!(
-                        "{name}, held at {held_at}: kinetic energy at the end, of weight × 1 m"
-                    ),
+                    format!("{name}, {how}: kinetic energy at the end, of weight × 1 m"),
                     kinetic / 0.98,
                     REST,
                 );
             }
-            depths[k].push(depth);
-            ends.push((x, pin));
+            of_meshes = [of_meshes[0].min(depth), of_meshes[1].max(depth)];
+            ends.push(End { x, pins, body });
         }
+        depths.push(of_meshes);
     }
-    let spread = |d: &[f64]| {
-        let (low, high) = d
-            .iter()
-            .fold((f64::INFINITY, 0.0_f64), |(l, h), d| (l.min(*d), h.max(*d)));
-        (high - low, low)
-    };
-    let (difference, _) = spread(&depths[0]);
-    let (difference2, _) = spread(&depths[1]);
+    let differences: Vec<f64> = depths.iter().map(|[low, high]| high - low).collect();
+    let listed: Vec<String> = SUPPORTS
+        .iter()
+        .zip(&differences)
+        .map(|((how, _), d)| format!("{} m {how}", number(*d)))
+        .collect();
     f.naive(
         "Taking one triangulation for the sheet",
         format!(
-            "The centre of mass hangs up to {} m higher or lower on another mesh of the same size (held at a corner), {} m (held in the middle).",
-            number(difference),
-            number(difference2)
+            "The centre of mass hangs higher or lower on another mesh of the same size, by up to {}.",
+            listed.join(", ")
         ),
-        difference > 1e-3,
+        differences.iter().any(|d| *d > 1e-3),
     );
     f.table(
-        "Sheets at rest, damping 1/s, BDF2 at 1/60 s from flat",
+        "Sheets at rest, damping 1/s, BDF2 at 1/60 s from flat; on the table with contact and friction",
         &[
             "mesh",
-            "held at",
+            "support",
             "V/F",
             "directions of straight lines",
             "depth of the centre, m",
@@ -135,7 +187,8 @@ fn drape(effort: Effort) -> Result<Findings> {
         rows,
     );
     f.here = "Lengths are exact and the sheets at rest; what differs is the shape. A smooth sheet would bend about any line. Its triangulation bends \
-              about lines of edges; where they do not run through, bending needs crumpling of the triangles on the way, or does not take place."
+              about lines of edges; where they do not run through, bending needs crumpling of the triangles on the way, or does not take place. The \
+              round table prefers no direction: the folds of the overhang are where the lines of the mesh let them be."
         .into();
     if effort != Effort::Quick {
         f.pictures.push(picture(&meshes, &ends)?);
@@ -143,10 +196,22 @@ fn drape(effort: Effort) -> Result<Findings> {
     Ok(f)
 }
 
-/// Depth of the centre of area below the first pin, and the area of the shadow straight below (overlaps counted once for each layer).
-fn shape(sheet: &Sheet, x: &[f64], pin: VertexId) -> (f64, f64) {
+/// The vertex nearest to a point of the sheet.
+fn nearest(sheet: &Sheet, target: [f64; 2]) -> VertexId {
+    let distance = |v: VertexId| {
+        let p = sheet.position(v);
+        (p[0] - target[0]).hypot(p[1] - target[1])
+    };
+    sheet
+        .topology()
+        .vertex_ids()
+        .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+        .unwrap_or(VertexId(0))
+}
+
+/// Depth of the centre of area below a height, and the area of the shadow straight below (overlaps counted once for each layer).
+fn shape(sheet: &Sheet, x: &[f64], top: f64) -> (f64, f64) {
     let (mut depth, mut shadow) = (0.0, 0.0);
-    let top = x[3 * pin.index() + 2];
     for (face, area) in sheet.topology().faces().iter().zip(sheet.face_areas()) {
         let [a, b, c] = face.map(|v| &x[3 * v.index()..3 * v.index() + 3]);
         depth += area * (top - (a[2] + b[2] + c[2]) / 3.0);
@@ -155,10 +220,10 @@ fn shape(sheet: &Sheet, x: &[f64], pin: VertexId) -> (f64, f64) {
     (depth / sheet.area(), shadow)
 }
 
-fn picture(meshes: &[(&str, Sheet)], ends: &[(Vec<f64>, VertexId)]) -> Result<Picture> {
+fn picture(meshes: &[(&str, Sheet)], ends: &[End]) -> Result<Picture> {
     let points = ends
         .iter()
-        .flat_map(|(x, _)| x.as_chunks::<3>().0.iter().copied());
+        .flat_map(|end| end.x.as_chunks::<3>().0.iter().copied());
     let view = Camera::new([0.0; 3], -62.0, 12.0, 1.0, 6.0);
     let aspect = view.aspect(points.clone());
     let camera = view.framing(points, aspect, 0.04);
@@ -166,26 +231,24 @@ fn picture(meshes: &[(&str, Sheet)], ends: &[(Vec<f64>, VertexId)]) -> Result<Pi
         size: [(420.0 * aspect).round() as usize, 420],
         ..Look::default()
     };
-    let frames: Vec<Labelled> = ends
-        .iter()
-        .enumerate()
-        .map(|(k, (x, pin))| Labelled {
-            image: render(
-                &SheetPicture {
-                    topology: meshes[k % meshes.len()].1.topology(),
-                    positions: x,
-                    pins: &[*pin],
-                    solids: &[],
-                },
-                &camera,
-                &look,
-            ),
+    let mut frames = Vec::new();
+    for (k, end) in ends.iter().enumerate() {
+        let solids = end.body.iter().map(|b| Solid::of(b, 0.0));
+        let solids = solids.collect::<Result<Vec<_>>>()?;
+        let picture = SheetPicture {
+            topology: meshes[k % meshes.len()].1.topology(),
+            positions: &end.x,
+            pins: &end.pins,
+            solids: &solids,
+        };
+        frames.push(Labelled {
+            image: render(&picture, &camera, &look),
             label: String::new(),
-        })
-        .collect();
+        });
+    }
     Ok(Picture {
         file: "locking.png".into(),
-        alt: "At rest, held at a corner (above) and in the middle (below): union jack, one-way grid, irregular mesh.".into(),
+        alt: "At rest, held at a corner (above), in the middle, and on a round table (below): union jack, one-way grid, irregular mesh.".into(),
         bytes: montage(&frames, 3).to_png()?,
     })
 }

@@ -6,6 +6,7 @@ use isosheet_coords::linalg::{Fill, Ordering, Pattern, SparseLlt, elimination_or
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use std::f64::consts::PI;
+use std::num::NonZeroUsize;
 use std::time::Instant;
 
 /// Length of a step, seconds. The finer the mesh, the sooner a sheet that starts all but flat comes to states that its
@@ -15,6 +16,8 @@ pub(crate) const STEP: f64 = 2.5e-4;
 
 /// Stiffness of the rods relative to the masses in the matrices that the orders are compared on.
 const STIFFNESS: f64 = 1e4;
+
+const TWO: NonZeroUsize = NonZeroUsize::new(2).expect("two");
 
 /// One elimination order of the matrix of a step.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +31,9 @@ pub(crate) struct OrderRow {
     pub(crate) symbolic: f64,
     pub(crate) numeric: f64,
     pub(crate) solve: f64,
+    /// Seconds for a numeric factorisation on two threads, and whether it gives the same bits.
+    pub(crate) two_threads: f64,
+    pub(crate) same_bits: bool,
 }
 
 /// A few steps of the hanging sheet at one mesh size.
@@ -54,6 +60,13 @@ pub(crate) struct Row {
 }
 
 impl Row {
+    /// Parts of a step's time, seconds: factorisations and solves, their numbers times what one of each takes alone.
+    pub(super) fn linear(&self) -> [f64; 2] {
+        let best = self.best();
+        let solves = self.iterations.max(self.factorisations);
+        [self.factorisations * best.numeric, solves * best.solve]
+    }
+
     /// The order that a simulation uses: the one with fewer operations.
     pub(crate) fn best(&self) -> &OrderRow {
         let [a, b] = &self.orders;
@@ -65,12 +78,15 @@ impl Row {
     }
 }
 
-/// A sheet of 1 m and 0.1 kg, flat but for a bump of 1 mm, in the isotropic mesh of a level.
-fn sheet(level: u32) -> Result<Sheet> {
+/// Height of the bump of the hanging sheet, metres: all but flat.
+const BUMP: f64 = 1e-3;
+
+/// A sheet of 1 m, flat but for a bump of the given height (metres), in the isotropic mesh of a level.
+pub(super) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
     let flat = generate::isotropic_square(level, 1.0)?;
     let mut x = flat.positions().to_vec();
     for p in x.chunks_mut(3) {
-        p[2] = 1e-3 * (PI * p[0]).sin() * (PI * p[1]).sin();
+        p[2] = bump * (PI * p[0]).sin() * (PI * p[1]).sin();
     }
     Ok(Sheet::new(x, &flat.face_indices())?)
 }
@@ -84,7 +100,7 @@ fn corner(level: u32) -> VertexId {
 /// Measures one level: orders of elimination, and `steps` steps of the hanging sheet after a first one that is not
 /// timed.
 pub(crate) fn measure(level: u32, steps: usize) -> Result<Row> {
-    let sheet = sheet(level)?;
+    let sheet = bumped(level, BUMP)?;
     let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)?
         .with_gravity()
         .with_pins(&[corner(level)])?;
@@ -151,6 +167,15 @@ fn order(sheet: &Sheet, ordering: Ordering) -> Result<OrderRow> {
         llt.solve(&mut rhs);
         solve = solve.min(clock.elapsed().as_secs_f64());
     }
+    let one = llt.factor().to_vec();
+    let (mut two_threads, mut same_bits) = (f64::INFINITY, true);
+    for _ in 0..3 {
+        let clock = Instant::now();
+        llt.factorize_on(TWO)?;
+        two_threads = two_threads.min(clock.elapsed().as_secs_f64());
+        let mut pairs = llt.factor().iter().zip(&one);
+        same_bits &= pairs.all(|(a, b)| a.to_bits() == b.to_bits());
+    }
     Ok(OrderRow {
         ordering,
         fill,
@@ -159,6 +184,8 @@ fn order(sheet: &Sheet, ordering: Ordering) -> Result<OrderRow> {
         symbolic,
         numeric,
         solve,
+        two_threads,
+        same_bits,
     })
 }
 
@@ -205,7 +232,7 @@ fn stiff_sheet(sheet: &Sheet) -> Result<(Pattern, Vec<f64>)> {
 }
 
 /// Most resident memory of this process so far, bytes; `None` where the system does not tell.
-fn peak_memory() -> Option<f64> {
+pub(super) fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
     let kibibytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;

@@ -1,134 +1,189 @@
-//! Tables, plots and words of the scaling study.
+//! Tables and words of the scaling study.
 
 use super::measure::{OrderRow, Row, STEP, exponent};
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, column, palette};
+use super::{DrapeRow, Results, drape, plot};
+use crate::figures::{Table, machine};
+use crate::report::html::{STYLE, escape, inline_svg, table};
 use anyhow::Result;
 use std::fmt::Write;
 
-/// The part of a page that tells about scale, and the files that belong to it.
-pub(crate) struct Section {
-    /// HTML, with its pictures inside.
-    pub(crate) html: String,
-    /// Names and contents.
-    pub(crate) files: Vec<(String, Vec<u8>)>,
+/// What the picture shows, for those who do not see it.
+const PICTURE: &str = "Time, memory and fill of a step against the number of vertices";
+
+/// All files but the page: names and contents.
+pub(super) fn files(results: &Results) -> Result<Vec<(String, Vec<u8>)>> {
+    Ok(vec![
+        (
+            "scale.svg".into(),
+            plot::plot(results).to_svg(PICTURE)?.into_bytes(),
+        ),
+        ("scale.csv".into(), csv(&results.hanging).into_bytes()),
+        (
+            "draping.csv".into(),
+            draping_csv(&results.draping).into_bytes(),
+        ),
+    ])
 }
 
-/// The section of some measured rows.
-pub(crate) fn section(rows: &[Row]) -> Result<Section> {
-    let title = "Time, memory and fill of a step against the number of vertices";
-    let svg = plot(rows).to_svg(title)?;
-    let inline = svg.find("<svg").map_or(svg.as_str(), |k| &svg[k..]);
-    let mut html = String::from("<section id=\"scale\"><h2>Scale</h2>");
+/// The page.
+pub(super) fn page(results: &Results) -> Result<String> {
+    let svg = plot::plot(results).to_svg(PICTURE)?;
+    let mut out = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>isosheet: scale</title><style>{STYLE}</style></head>\
+         <body><h1>Scale</h1>"
+    );
+    paragraph(
+        &mut out,
+        &format!(
+            "A square sheet of 1 m and 0.1 kg hangs by a corner from a start that is flat but for a bump of 1 mm; steps of {} ms by the default \
+             method, the first {} after one of warm-up at each mesh size, without contact. Later steps of the fine meshes cost more: near the \
+             flat state the length equations are all but dependent. Machine: {}.",
+            1e3 * STEP,
+            results.hanging.first().map_or(0, |r| r.steps),
+            machine()
+        ),
+    );
+    let _ = write!(out, "<figure>{}</figure>", inline_svg(&svg));
+    paragraph(&mut out, &conclusion(&results.hanging));
+    table(&mut out, &steps(&results.hanging));
+    paragraph(&mut out, &threads(&results.hanging));
+    table(&mut out, &orders(&results.hanging));
+    out.push_str("<h2>With contact</h2>");
+    paragraph(
+        &mut out,
+        &format!(
+            "The same sheet with a bump of {} m, all vertices free, above a square table of half its side that its lowest part touches at once; \
+             contact with the table and of the sheet with itself. Steps as above. (A nearly flat cloth on a table needs so many iterations from \
+             16 641 vertices on that they would hide the price of the size.)",
+            drape::BUMP
+        ),
+    );
+    paragraph(&mut out, &draping_conclusion(results));
+    table(&mut out, &draping(&results.draping));
+    out.push_str("</body></html>\n");
+    Ok(out)
+}
+
+fn paragraph(out: &mut String, text: &str) {
     // Writing to a string cannot fail.
-    let _ = write!(
-        html,
-        "<p>A square sheet of 1 m and 0.1 kg hangs by a corner from a start that is flat but for a bump of 1 mm; steps of \
-         {} ms by the default method, the first {} after one of warm-up at each mesh size, without contact. \
-         Later steps of the fine meshes cost more: near the flat state the length equations are all but dependent.</p><figure>{inline}</figure><p>{}</p>",
-        1e3 * STEP,
-        rows.first().map_or(0, |r| r.steps),
-        conclusion(rows)
-    );
-    let steps = [
-        "mesh",
-        "V/F",
-        "set-up, s",
-        "step, s",
-        "iterations",
-        "factorisations",
-        "strain",
-        "energy error",
-        "factor, MB",
-        "peak, MB",
-    ];
-    table(
-        &mut html,
-        "Per step of the hanging sheet; the energy error is relative to the potential energy released, the memory is that \
-         of the Cholesky factor and the peak of the process.",
-        &steps,
-        rows.iter().map(|r| {
-            vec![
-                format!("M<sup>{}</sup>", r.level),
-                format!("{}/{}", r.vertices, r.faces),
-                format!("{:.3}", r.setup),
-                format!("{:.2e}", r.per_step),
-                format!("{:.1}", r.iterations),
-                format!("{:.1}", r.factorisations),
-                format!("{:.0e}", r.strain),
-                format!("{:.0e}", r.balance),
-                format!("{:.1}", factor_bytes(r.best()) / 1e6),
-                r.peak
-                    .map_or("unknown".into(), |p| format!("{:.0}", p / 1e6)),
-            ]
-        }),
-    );
-    let orders = [
-        "mesh",
-        "order",
-        "found in, ms",
-        "symbolic, ms",
-        "numeric, ms",
-        "solve, ms",
-        "entries of L",
-        "stored",
-        "operations",
-    ];
-    table(
-        &mut html,
-        "Elimination orders of the matrix of a step.",
-        &orders,
-        rows.iter().flat_map(|r| {
-            r.orders.iter().map(|o| {
+    let _ = write!(out, "<p>{}</p>", escape(text));
+}
+
+fn head(names: &[&str]) -> Vec<String> {
+    names.iter().map(|n| (*n).to_owned()).collect()
+}
+
+fn megabytes(bytes: Option<f64>) -> String {
+    bytes.map_or("unknown".into(), |b| format!("{:.0}", b / 1e6))
+}
+
+fn percent(part: f64, whole: f64) -> String {
+    format!("{:.0} %", 100.0 * part / whole)
+}
+
+fn steps(rows: &[Row]) -> Table {
+    Table {
+        caption: "Per step of the hanging sheet. Factorisations, solves: their numbers times what one takes alone, parts of the step; the rest is \
+                  assembly, gradients and vectors. The energy error is relative to the potential energy released, the memory is that of the \
+                  Cholesky factor and the peak of the process."
+            .into(),
+        head: head(&[
+            "mesh", "V/F", "set-up, s", "step, s", "iterations", "factorisations", "factorising", "solving", "rest", "strain", "energy error",
+            "factor, MB", "peak, MB",
+        ]),
+        rows: rows
+            .iter()
+            .map(|r| {
+                let [factor, solve] = r.linear();
                 vec![
-                    format!("M<sup>{}</sup>", r.level),
-                    name(o).into(),
-                    format!("{:.2}", 1e3 * o.order),
-                    format!("{:.2}", 1e3 * o.symbolic),
-                    format!("{:.2}", 1e3 * o.numeric),
-                    format!("{:.2}", 1e3 * o.solve),
-                    format!("{:.3e}", o.fill.entries),
-                    format!("{:.3e}", o.stored as f64),
-                    format!("{:.3e}", o.fill.operations),
+                    format!("M^{}", r.level),
+                    format!("{}/{}", r.vertices, r.faces),
+                    format!("{:.3}", r.setup),
+                    format!("{:.2e}", r.per_step),
+                    format!("{:.1}", r.iterations),
+                    format!("{:.1}", r.factorisations),
+                    percent(factor, r.per_step),
+                    percent(solve, r.per_step),
+                    percent(r.per_step - factor - solve, r.per_step),
+                    format!("{:.0e}", r.strain),
+                    format!("{:.0e}", r.balance),
+                    format!("{:.1}", factor_bytes(r.best()) / 1e6),
+                    megabytes(r.peak),
                 ]
             })
-        }),
-    );
-    html.push_str("</section>\n");
-    Ok(Section {
-        html,
-        files: vec![
-            ("scale.svg".into(), svg.into_bytes()),
-            ("scale.csv".into(), csv(rows).into_bytes()),
-        ],
-    })
+            .collect(),
+    }
 }
 
-/// The section as a page of its own.
-pub(super) fn page(rows: &[Row]) -> Result<String> {
-    Ok(format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>isosheet: scale</title><style>\
-         body{{font:16px/1.5 Helvetica,Arial,sans-serif;color:#222;margin:2.5rem auto;max-width:64rem;padding:0 1.5rem}}\
-         figure{{margin:1rem 0}}figure svg{{max-width:100%;height:auto}}table{{border-collapse:collapse;font-size:.88rem;\
-         margin:1rem 0}}caption{{text-align:left;color:#666}}th,td{{border-bottom:1px solid #ddd;padding:.25rem .8rem .25rem 0;\
-         text-align:left}}</style></head><body>{}</body></html>\n",
-        section(rows)?.html
-    ))
+fn orders(rows: &[Row]) -> Table {
+    Table {
+        caption: "Elimination orders of the matrix of a step.".into(),
+        head: head(&[
+            "mesh",
+            "order",
+            "found in, ms",
+            "symbolic, ms",
+            "numeric, ms",
+            "on two threads, ms",
+            "solve, ms",
+            "entries of L",
+            "stored",
+            "operations",
+        ]),
+        rows: rows
+            .iter()
+            .flat_map(|r| {
+                r.orders.iter().map(|o| {
+                    vec![
+                        format!("M^{}", r.level),
+                        name(o).into(),
+                        format!("{:.2}", 1e3 * o.order),
+                        format!("{:.2}", 1e3 * o.symbolic),
+                        format!("{:.2}", 1e3 * o.numeric),
+                        format!("{:.2}", 1e3 * o.two_threads),
+                        format!("{:.2}", 1e3 * o.solve),
+                        format!("{:.3e}", o.fill.entries),
+                        format!("{:.3e}", o.stored as f64),
+                        format!("{:.3e}", o.fill.operations),
+                    ]
+                })
+            })
+            .collect(),
+    }
 }
 
-fn table(html: &mut String, caption: &str, head: &[&str], rows: impl Iterator<Item = Vec<String>>) {
-    let _ = write!(html, "<table><caption>{caption}</caption><tr>");
-    for h in head {
-        let _ = write!(html, "<th>{h}</th>");
+fn draping(rows: &[DrapeRow]) -> Table {
+    Table {
+        caption: "Per step of the draping sheet. Detection: pairs within reach and the safe part of every motion; derivatives: energies, gradients \
+                  and Hessians of contact. Couplings: pairs of vertices that contact adds to the pattern of the matrix."
+            .into(),
+        head: head(&[
+            "mesh", "V", "steps", "step, s", "iterations", "factorisations", "rejected", "detection", "derivatives", "contacts", "couplings",
+            "strain", "gap, µm", "peak, MB", "remark",
+        ]),
+        rows: rows
+            .iter()
+            .map(|r| {
+                vec![
+                    format!("M^{}", r.level),
+                    r.vertices.to_string(),
+                    r.steps.to_string(),
+                    format!("{:.2e}", r.per_step),
+                    format!("{:.1}", r.iterations),
+                    format!("{:.1}", r.factorisations),
+                    r.rejected.to_string(),
+                    percent(r.detection, r.per_step),
+                    percent(r.evaluation, r.per_step),
+                    r.contacts.to_string(),
+                    r.couplings.to_string(),
+                    format!("{:.0e}", r.strain),
+                    format!("{:.1}", 1e6 * r.gap),
+                    megabytes(r.peak),
+                    r.stopped.clone().unwrap_or_default(),
+                ]
+            })
+            .collect(),
     }
-    html.push_str("</tr>");
-    for row in rows {
-        html.push_str("<tr>");
-        for cell in row {
-            let _ = write!(html, "<td>{cell}</td>");
-        }
-        html.push_str("</tr>");
-    }
-    html.push_str("</table>");
 }
 
 fn name(o: &OrderRow) -> &'static str {
@@ -140,30 +195,31 @@ fn name(o: &OrderRow) -> &'static str {
     }
 }
 
-fn factor_bytes(o: &OrderRow) -> f64 {
+pub(super) fn factor_bytes(o: &OrderRow) -> f64 {
     8.0 * o.stored as f64
 }
 
-/// Points of a quantity against the number of vertices.
-fn points(rows: &[Row], value: impl Fn(&Row) -> Option<f64>) -> Vec<[f64; 2]> {
-    rows.iter()
-        .filter_map(|r| value(r).map(|y| [r.vertices as f64, y]))
-        .collect()
+/// Points of a plot.
+pub(super) fn points<R>(rows: &[R], point: impl Fn(&R) -> [f64; 2]) -> Vec<[f64; 2]> {
+    rows.iter().map(point).collect()
+}
+
+/// The fitted power of V, for people.
+fn power(points: &[[f64; 2]]) -> String {
+    exponent(points).map_or("?".into(), |p| format!("{p:.2}"))
 }
 
 /// What the measurements say.
 fn conclusion(rows: &[Row]) -> String {
-    let power = |value: &dyn Fn(&Row) -> Option<f64>| {
-        exponent(&points(rows, value)).map_or("?".into(), |p| format!("{p:.2}"))
-    };
+    let power = |value: fn(&Row) -> f64| power(&points(rows, |r| [r.vertices as f64, value(r)]));
     let mut out = format!(
         "Fitted powers of V: time per step {}, factorisations per step {}, one numeric factorisation {}, its operations {}, \
          entries of the factor {}.",
-        power(&|r| Some(r.per_step)),
-        power(&|r| Some(r.factorisations)),
-        power(&|r| Some(r.best().numeric)),
-        power(&|r| Some(r.best().fill.operations)),
-        power(&|r| Some(r.best().fill.entries)),
+        power(|r| r.per_step),
+        power(|r| r.factorisations),
+        power(|r| r.best().numeric),
+        power(|r| r.best().fill.operations),
+        power(|r| r.best().fill.entries),
     );
     if let Some(last) = rows.last() {
         let [degree, dissection] = &last.orders;
@@ -181,12 +237,86 @@ fn conclusion(rows: &[Row]) -> String {
     out
 }
 
-/// The rows for people.
-pub(super) fn text(rows: &[Row]) -> String {
+/// What two threads in one factorisation do.
+fn threads(rows: &[Row]) -> String {
+    let all: Vec<&OrderRow> = rows.iter().flat_map(|r| &r.orders).collect();
+    let faster: Vec<String> = rows
+        .iter()
+        .filter(|r| r.best().two_threads < PAYS * r.best().numeric)
+        .map(|r| format!("M^{}", r.level))
+        .collect();
+    let ratios = rows
+        .iter()
+        .map(|r| r.best().two_threads / r.best().numeric)
+        .fold([f64::INFINITY, 0.0_f64], |[l, h], r| [l.min(r), h.max(r)]);
+    format!(
+        "Two threads within one factorisation take {:.1} to {:.1} times as long as one, and {}; they {}. On a machine without two idle cores they \
+         can only lose. The simulations use one.",
+        ratios[0],
+        ratios[1],
+        if faster.is_empty() {
+            "pay at no size".to_owned()
+        } else {
+            format!("pay on {}", faster.join(", "))
+        },
+        if all.iter().all(|o| o.same_bits) {
+            "give the same bits in every factor"
+        } else {
+            "do not give the same bits in every factor"
+        }
+    )
+}
+
+/// Two threads pay where they save a tenth.
+const PAYS: f64 = 0.9;
+
+fn draping_conclusion(results: &Results) -> String {
+    let rows = &results.draping;
+    let power =
+        |value: fn(&DrapeRow) -> f64| power(&points(rows, |r| [r.vertices as f64, value(r)]));
+    let mut out = format!(
+        "Fitted powers of V with contact: time per step {}, factorisations per step {}, detection {}, derivatives of contact {}.",
+        power(|r| r.per_step),
+        power(|r| r.factorisations),
+        power(|r| r.detection),
+        power(|r| r.evaluation),
+    );
+    let shares = rows
+        .iter()
+        .map(|r| r.detection / r.per_step)
+        .fold([f64::INFINITY, 0.0_f64], |[l, h], s| [l.min(s), h.max(s)]);
+    let couplings = rows.iter().map(|r| r.couplings).max().unwrap_or(0);
+    let _ = write!(
+        out,
+        " Detection takes {:.0} to {:.0} % of a step. ",
+        100.0 * shares[0],
+        100.0 * shares[1]
+    );
+    out.push_str(&if couplings == 0 {
+        "Contact adds no couplings here: with a body it has none but those of the mesh, and the layers do not touch; the factor is the one of \
+         the hanging sheet."
+            .to_owned()
+    } else {
+        format!("Contact adds up to {couplings} couplings, which the factor has to be analysed and filled for.")
+    });
+    for r in rows.iter().filter(|r| r.stopped.is_some()) {
+        let _ = write!(
+            out,
+            " M^{}: {} steps only ({}).",
+            r.level,
+            r.steps,
+            r.stopped.as_deref().unwrap_or("")
+        );
+    }
+    out
+}
+
+/// The results for people.
+pub(super) fn text(results: &Results) -> String {
     let mut out = String::from(
         "mesh  vertices   step, s  iterations  factorisations  factor, MB  peak, MB\n",
     );
-    for r in rows {
+    for r in &results.hanging {
         let _ = writeln!(
             out,
             "M^{:<3} {:>8} {:>9.2e} {:>11.1} {:>15.1} {:>11.1} {:>9}",
@@ -196,24 +326,44 @@ pub(super) fn text(rows: &[Row]) -> String {
             r.iterations,
             r.factorisations,
             factor_bytes(r.best()) / 1e6,
-            r.peak.map_or("?".into(), |p| format!("{:.0}", p / 1e6))
+            megabytes(r.peak)
         );
     }
-    let _ = writeln!(out, "{}", conclusion(rows));
+    let _ = writeln!(
+        out,
+        "{}\n{}\nwith contact:   step, s  factorisations  detection  derivatives  contacts  peak, MB",
+        conclusion(&results.hanging),
+        threads(&results.hanging)
+    );
+    for r in &results.draping {
+        let _ = writeln!(
+            out,
+            "M^{:<3} {:>8} {:>9.2e} {:>15.1} {:>10} {:>12} {:>9} {:>9}",
+            r.level,
+            r.vertices,
+            r.per_step,
+            r.factorisations,
+            percent(r.detection, r.per_step),
+            percent(r.evaluation, r.per_step),
+            r.contacts,
+            megabytes(r.peak)
+        );
+    }
+    let _ = writeln!(out, "{}", draping_conclusion(results));
     out
 }
 
 fn csv(rows: &[Row]) -> String {
     let mut out = String::from(
         "level,vertices,faces,step_size_s,steps,setup_s,step_s,iterations,factorisations,strain,energy_error,peak_bytes,\
-         ordering,order_s,symbolic_s,numeric_s,solve_s,factor_entries,factor_stored,factor_operations\n",
+         ordering,order_s,symbolic_s,numeric_s,two_threads_s,same_bits,solve_s,factor_entries,factor_stored,factor_operations\n",
     );
     for r in rows {
         for o in &r.orders {
             let peak = r.peak.map_or(String::new(), |p| format!("{p:.0}"));
             let _ = writeln!(
                 out,
-                "{},{},{},{STEP},{},{:e},{:e},{},{},{:e},{:e},{peak},{},{:e},{:e},{:e},{:e},{},{},{}",
+                "{},{},{},{STEP},{},{:e},{:e},{},{},{:e},{:e},{peak},{},{:e},{:e},{:e},{:e},{},{:e},{},{},{}",
                 r.level,
                 r.vertices,
                 r.faces,
@@ -228,6 +378,8 @@ fn csv(rows: &[Row]) -> String {
                 o.order,
                 o.symbolic,
                 o.numeric,
+                o.two_threads,
+                o.same_bits,
                 o.solve,
                 o.fill.entries,
                 o.stored,
@@ -238,121 +390,33 @@ fn csv(rows: &[Row]) -> String {
     out
 }
 
-/// A decade axis that holds all values.
-fn decades(label: &str, values: impl Iterator<Item = f64> + Clone) -> Axis {
-    let low = values.clone().fold(f64::INFINITY, f64::min).log10().floor() as i32;
-    let high = values.fold(0.0, f64::max).log10().ceil() as i32;
-    Axis::decades(label, low, high.max(low + 1), 1)
-}
-
-/// A law through the last point of a series.
-fn law(name: &str, of: &[[f64; 2]], f: impl Fn(f64) -> f64) -> Series {
-    let scale = of.last().map_or(1.0, |p| p[1] / f(p[0]));
-    series(
-        name,
-        of.iter().map(|p| [p[0], scale * f(p[0])]).collect(),
-        palette::GREY,
-        None,
-    )
-}
-
-fn series(name: &str, points: Vec<[f64; 2]>, colour: Colour, marker: Option<Marker>) -> Series {
-    Series {
-        name: name.into(),
-        points,
-        colour,
-        marker,
-        line: if marker.is_some() {
-            Line::Solid
-        } else {
-            Line::Dashed
-        },
+fn draping_csv(rows: &[DrapeRow]) -> String {
+    let mut out = String::from(
+        "level,vertices,step_size_s,steps,step_s,detection_s,derivatives_s,iterations,factorisations,rejected,contacts,couplings,strain,gap_m,\
+         peak_bytes,stopped\n",
+    );
+    for r in rows {
+        let peak = r.peak.map_or(String::new(), |p| format!("{p:.0}"));
+        let _ = writeln!(
+            out,
+            "{},{},{STEP},{},{:e},{:e},{:e},{},{},{},{},{},{:e},{:e},{peak},\"{}\"",
+            r.level,
+            r.vertices,
+            r.steps,
+            r.per_step,
+            r.detection,
+            r.evaluation,
+            r.iterations,
+            r.factorisations,
+            r.rejected,
+            r.contacts,
+            r.couplings,
+            r.strain,
+            r.gap,
+            r.stopped.as_deref().unwrap_or("").replace('"', "'")
+        );
     }
-}
-
-fn panel(label: &str, series: Vec<Series>) -> Drawing {
-    let all = |k: usize| {
-        series
-            .iter()
-            .flat_map(move |s| s.points.iter().map(move |p| p[k]))
-    };
-    Plot {
-        x: decades("vertices", all(0)),
-        y: decades(label, all(1)),
-        size: [230.0, 130.0],
-        legend: Legend::Right,
-        series: series.clone(),
-    }
-    .draw()
-}
-
-fn plot(rows: &[Row]) -> Drawing {
-    let of = |f: fn(&Row) -> f64| points(rows, |r| Some(f(r)));
-    let step = of(|r| r.per_step);
-    let stored = of(|r| factor_bytes(r.best()) / 1e6);
-    let dissection = of(|r| r.orders[1].fill.operations);
-    let time = panel(
-        "seconds",
-        vec![
-            series("step", step.clone(), palette::BLUE, Some(Marker::Disc)),
-            series(
-                "factor, min. degree",
-                of(|r| r.orders[0].numeric),
-                palette::ORANGE,
-                Some(Marker::Square),
-            ),
-            series(
-                "factor, dissection",
-                of(|r| r.orders[1].numeric),
-                palette::GREEN,
-                Some(Marker::Triangle),
-            ),
-            series(
-                "order, dissection",
-                of(|r| r.orders[1].order),
-                palette::PURPLE,
-                Some(Marker::Diamond),
-            ),
-            law("~V~^{1.5}", &step, |v| v.powf(1.5)),
-        ],
-    );
-    let memory = panel(
-        "megabytes",
-        vec![
-            series(
-                "process, peak",
-                points(rows, |r| r.peak.map(|p| p / 1e6)),
-                palette::BLUE,
-                Some(Marker::Disc),
-            ),
-            series(
-                "Cholesky factor",
-                stored.clone(),
-                palette::GREEN,
-                Some(Marker::Triangle),
-            ),
-            law("~V~ log ~V~", &stored, |v| v * v.ln()),
-        ],
-    );
-    let operations = panel(
-        "operations",
-        vec![
-            series(
-                "minimum degree",
-                of(|r| r.orders[0].fill.operations),
-                palette::ORANGE,
-                Some(Marker::Square),
-            ),
-            series(
-                "nested dissection",
-                dissection.clone(),
-                palette::GREEN,
-                Some(Marker::Triangle),
-            ),
-            law("~V~^{1.5}", &dissection, |v| v.powf(1.5)),
-        ],
-    );
-    column(&[time, memory, operations], 26.0)
+    out
 }
 
 #[cfg(test)]
@@ -360,17 +424,54 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_section_is_whole() {
-        let rows: Vec<Row> = [0, 1]
-            .map(|level| super::super::measure(level, 2).expect("small sheets move"))
-            .to_vec();
-        let section = section(&rows).expect("drawn");
-        assert!(section.html.contains("<svg") && section.html.contains("nested dissection"));
-        let csv = &section.files[1].1;
-        let lines: Vec<&[u8]> = csv.split(|b| *b == b'\n').collect();
-        assert_eq!(lines.len(), 1 + 2 * 2 + 1);
-        let fields = |l: &[u8]| l.split(|b| *b == b',').count();
-        assert!(lines[1..5].iter().all(|l| fields(l) == fields(lines[0])));
-        assert!(text(&rows).contains("M^1"));
+    fn the_page_is_whole() {
+        let results = Results {
+            hanging: [0, 1]
+                .map(|level| super::super::measure(level, 2).expect("small sheets move"))
+                .to_vec(),
+            draping: [0, 1]
+                .map(|level| drape::measure(level, 2, 10.0).expect("small cloths move"))
+                .to_vec(),
+        };
+        let page = page(&results).expect("drawn");
+        for part in [
+            "<svg",
+            "nested dissection",
+            "With contact",
+            "give the same bits",
+        ] {
+            assert!(page.contains(part), "{part}");
+        }
+        assert!(!page.contains("NaN"));
+        let files = files(&results).expect("drawn");
+        for (k, rows) in [(1, 4), (2, 2)] {
+            let csv = &files[k].1;
+            let lines: Vec<&[u8]> = csv.split(|b| *b == b'\n').collect();
+            assert_eq!(lines.len(), 1 + rows + 1, "{}", files[k].0);
+            let fields = |l: &[u8]| l.split(|b| *b == b',').count();
+            assert!(
+                lines[1..=rows]
+                    .iter()
+                    .all(|l| fields(l) == fields(lines[0]))
+            );
+        }
+        assert!(text(&results).contains("M^1"));
+    }
+
+    #[test]
+    fn words_follow_the_numbers() {
+        let mut row = super::super::measure(1, 1).expect("a small sheet moves");
+        for o in &mut row.orders {
+            o.two_threads = 2.0 * o.numeric;
+        }
+        let rows = [row];
+        assert!(threads(&rows).contains(
+            "2.0 to 2.0 times as long as one, and pay at no size; they give the same bits"
+        ));
+        let [mut row] = rows;
+        for o in &mut row.orders {
+            (o.two_threads, o.same_bits) = (0.5 * o.numeric, false);
+        }
+        assert!(threads(&[row]).contains("pay on M^1; they do not give the same bits"));
     }
 }

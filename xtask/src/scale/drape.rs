@@ -1,0 +1,151 @@
+//! What a step with contact costs at one mesh size.
+
+use super::measure::{STEP, bumped, peak_memory};
+use super::timed::{Spent, Timed};
+use crate::interrupt;
+use anyhow::Result;
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_dynamics::{Method, SheetModel, Simulation, State};
+use isosheet_mesh::{MassKind, VertexId};
+use nalgebra::Isometry3;
+use std::time::Instant;
+
+/// Height of the bump of the cloth, metres. Ten centimetres keep the length equations independent; of a nearly flat cloth on a table
+/// they are not, and from 16 641 vertices on the number of iterations would hide the price of the size.
+pub(super) const BUMP: f64 = 0.1;
+
+/// Half of the table's side, half of its thickness, metres.
+const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
+
+/// Part of the activation distance between the table and the lowest part of the cloth above it at the start: the gap at which
+/// a contact carries its own vertex.
+const START: f64 = 0.95;
+
+/// A few steps of the draping sheet at one mesh size. Means are over the steps that were timed.
+#[derive(Clone, Debug)]
+pub(crate) struct DrapeRow {
+    pub(crate) level: u32,
+    pub(crate) vertices: usize,
+    /// Steps that were timed.
+    pub(crate) steps: usize,
+    /// Wall seconds per step.
+    pub(crate) per_step: f64,
+    /// Parts of it, seconds: finding pairs and safe motions; energies and derivatives of contact.
+    pub(crate) detection: f64,
+    pub(crate) evaluation: f64,
+    pub(crate) iterations: f64,
+    pub(crate) factorisations: f64,
+    pub(crate) rejected: usize,
+    /// Contacts within reach at the end.
+    pub(crate) contacts: usize,
+    /// Pairs of vertices that contact couples at the end and the mesh does not: they would cost fill.
+    pub(crate) couplings: usize,
+    /// Largest relative edge length error.
+    pub(crate) strain: f64,
+    /// Smallest gap, metres.
+    pub(crate) gap: f64,
+    /// Most memory the process has used so far, bytes, where the system tells.
+    pub(crate) peak: Option<f64>,
+    /// Why there are no more steps.
+    pub(crate) stopped: Option<String>,
+}
+
+/// Measures up to `steps` steps after a first one that is not timed, or as many as begin within `patience` seconds.
+pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRow> {
+    let sheet = bumped(level, BUMP)?;
+    let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)?.with_gravity();
+    let options = ContactOptions::for_sheet(&model);
+    // The bump is at half its height above the corners of the table, where the cloth is lowest.
+    let top = 0.5 * BUMP - START * options.activation;
+    let pose = Isometry3::translation(0.5, 0.5, top - TABLE[2]);
+    let table = Obstacle::still(Shape::Cuboid { half: TABLE }, pose)?;
+    let contacts = Contacts::new(&model, options)?
+        .with_body(table, Coefficients::FRICTIONLESS)?
+        .with_self_contact(Coefficients::FRICTIONLESS)?;
+    let (contacts, watch) = Timed::new(contacts);
+    let start = State::at_rest(sheet.positions().to_vec());
+    let mut run = Simulation::new(model, start, Method::default())?.with_contact(contacts)?;
+    let mut row = DrapeRow {
+        level,
+        vertices: sheet.topology().vertex_count(),
+        steps: 0,
+        per_step: 0.0,
+        detection: 0.0,
+        evaluation: 0.0,
+        iterations: 0.0,
+        factorisations: 0.0,
+        rejected: 0,
+        contacts: 0,
+        couplings: 0,
+        strain: 0.0,
+        gap: f64::INFINITY,
+        peak: None,
+        stopped: None,
+    };
+    let (mut iterations, mut factorisations) = (0, 0);
+    let (mut clock, mut before) = (Instant::now(), Spent::default());
+    for k in 0..=steps {
+        interrupt::check()?;
+        if clock.elapsed().as_secs_f64() > patience {
+            row.stopped = Some(format!("{patience} s of wall time were over"));
+            break;
+        }
+        match run.step(STEP) {
+            Ok(_) if k == 0 => (clock, before) = (Instant::now(), watch.read()),
+            Ok(report) => {
+                row.steps += 1;
+                iterations += report.iterations;
+                factorisations += report.factorisations;
+                row.rejected += report.rejected;
+                row.strain = row.strain.max(report.strain);
+                row.gap = row.gap.min(report.gap.unwrap_or(f64::INFINITY));
+            }
+            Err(error) => {
+                row.stopped = Some(error.to_string());
+                break;
+            }
+        }
+    }
+    let n = row.steps.max(1) as f64;
+    let spent = watch.read().since(before);
+    row.per_step = clock.elapsed().as_secs_f64() / n;
+    row.detection = spent.detection / n;
+    row.evaluation = spent.evaluation / n;
+    row.iterations = iterations as f64 / n;
+    row.factorisations = factorisations as f64 / n;
+    row.peak = peak_memory();
+    if let Some(contact) = run.contact() {
+        let x = &run.state().x;
+        let mut points = Vec::new();
+        contact.contact_points(x, &mut points);
+        row.contacts = points.len();
+        let mut pairs = Vec::new();
+        contact.couplings(x, &mut pairs);
+        pairs.sort_unstable();
+        pairs.dedup();
+        let edge = |[a, b]: &[u32; 2]| sheet.topology().find_edge(VertexId(*a), VertexId(*b));
+        row.couplings = pairs.iter().filter(|p| edge(p).is_none()).count();
+    }
+    Ok(row)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_cloth_is_measured() {
+        let row = measure(1, 3, 10.0).expect("a small cloth moves");
+        assert_eq!((row.vertices, row.steps, row.couplings), (25, 3, 0));
+        assert!(
+            row.contacts >= 4 && row.gap > 0.0 && row.strain < 1e-12,
+            "{row:?}"
+        );
+        let contact = row.detection + row.evaluation;
+        assert!(
+            row.detection > 0.0 && row.evaluation > 0.0 && contact < row.per_step,
+            "{row:?}"
+        );
+        assert!(measure(1, 3, 0.0).expect("stopped").stopped.is_some());
+    }
+}
