@@ -30,9 +30,9 @@ pub(crate) enum Command {
     /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG). What is already there and was made
     /// by the same program with the same effort is kept. Times are wall times on one core: leave the machine alone meanwhile.
     SpeedVsError(SpeedArgs),
-    /// Measure what a step costs as the mesh is refined: time, memory, fill, fitted powers
+    /// Measure what a step costs as the mesh is refined, without and with contact: time, memory, fill, fitted powers
     ///
-    /// Writes DIR/scale.csv, DIR/scale.svg and DIR/scale.html and prints the table.
+    /// Writes DIR/scale.html (self-contained), DIR/scale.csv, DIR/draping.csv, DIR/scale.svg and DIR/scale.png and prints the tables.
     Scale(ScaleArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///

@@ -38,7 +38,13 @@ pub(crate) fn run(args: &ScaleArgs) -> Result<Outcome> {
     }
     store.write("scale.html", report::page(&results)?.as_bytes())?;
     print!("{}", report::text(&results));
-    for name in ["scale.csv", "draping.csv", "scale.svg", "scale.html"] {
+    for name in [
+        "scale.csv",
+        "draping.csv",
+        "scale.svg",
+        "scale.png",
+        "scale.html",
+    ] {
         println!("{}", store.root().join(name).display());
     }
     Ok(Outcome::Complete)
@@ -71,6 +77,25 @@ fn measured(levels: impl Iterator<Item = u32>) -> Result<Option<Results>> {
     }
     Ok(Some(results))
 }
+
+/// The fastest of some runs, or of one where that takes long.
+fn draping(level: u32) -> Result<DrapeRow> {
+    let mut best = drape::measure(level, STEPS, PATIENCE)?;
+    for _ in 1..REPETITIONS {
+        if best.per_step * best.steps as f64 > LONG {
+            break;
+        }
+        let row = drape::measure(level, STEPS, PATIENCE)?;
+        if row.per_step < best.per_step {
+            best = row;
+        }
+    }
+    Ok(best)
+}
+
+/// Runs of a draping sheet, and the time of one from which it is not repeated, seconds.
+const REPETITIONS: usize = 5;
+const LONG: f64 = 1.0;
 
 /// Steps that are timed, see [`measure::STEP`].
 const STEPS: usize = 3;

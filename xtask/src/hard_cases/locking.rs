@@ -82,10 +82,10 @@ fn drape(effort: Effort) -> Result<Findings> {
         ),
     ];
     let mut rows = Vec::new();
-    let mut ends = Vec::new();
     let mut depths = Vec::new();
     for (how, support) in SUPPORTS {
         let mut of_meshes = [f64::INFINITY, 0.0];
+        let mut ends = Vec::new();
         for (name, sheet) in &meshes {
             let mut model = SheetModel::new(sheet, 0.1, MassKind::Lumped)?
                 .with_gravity()
@@ -158,6 +158,9 @@ fn drape(effort: Effort) -> Result<Findings> {
             ends.push(End { x, pins, body });
         }
         depths.push(of_meshes);
+        if effort != Effort::Quick {
+            f.pictures.push(picture(how, &meshes, &ends)?);
+        }
     }
     let differences: Vec<f64> = depths.iter().map(|[low, high]| high - low).collect();
     let listed: Vec<String> = SUPPORTS
@@ -190,9 +193,6 @@ fn drape(effort: Effort) -> Result<Findings> {
               about lines of edges; where they do not run through, bending needs crumpling of the triangles on the way, or does not take place. The \
               round table prefers no direction: the folds of the overhang are where the lines of the mesh let them be."
         .into();
-    if effort != Effort::Quick {
-        f.pictures.push(picture(&meshes, &ends)?);
-    }
     Ok(f)
 }
 
@@ -220,23 +220,24 @@ fn shape(sheet: &Sheet, x: &[f64], top: f64) -> (f64, f64) {
     (depth / sheet.area(), shadow)
 }
 
-fn picture(meshes: &[(&str, Sheet)], ends: &[End]) -> Result<Picture> {
+/// The three ends on one support.
+fn picture(how: &str, meshes: &[(&str, Sheet)], ends: &[End]) -> Result<Picture> {
     let points = ends
         .iter()
         .flat_map(|end| end.x.as_chunks::<3>().0.iter().copied());
-    let view = Camera::new([0.0; 3], -62.0, 12.0, 1.0, 6.0);
+    let view = Camera::new([0.0; 3], -62.0, 18.0, 1.0, 6.0);
     let aspect = view.aspect(points.clone());
     let camera = view.framing(points, aspect, 0.04);
     let look = Look {
-        size: [(420.0 * aspect).round() as usize, 420],
+        size: [360, (360.0 / aspect).round() as usize],
         ..Look::default()
     };
     let mut frames = Vec::new();
-    for (k, end) in ends.iter().enumerate() {
+    for ((_, sheet), end) in meshes.iter().zip(ends) {
         let solids = end.body.iter().map(|b| Solid::of(b, 0.0));
         let solids = solids.collect::<Result<Vec<_>>>()?;
         let picture = SheetPicture {
-            topology: meshes[k % meshes.len()].1.topology(),
+            topology: sheet.topology(),
             positions: &end.x,
             pins: &end.pins,
             solids: &solids,
@@ -247,8 +248,8 @@ fn picture(meshes: &[(&str, Sheet)], ends: &[End]) -> Result<Picture> {
         });
     }
     Ok(Picture {
-        file: "locking.png".into(),
-        alt: "At rest, held at a corner (above), in the middle, and on a round table (below): union jack, one-way grid, irregular mesh.".into(),
+        file: format!("locking-{}.png", how.replace(' ', "-")),
+        alt: format!("At rest, {how}: union jack, one-way grid, irregular mesh."),
         bytes: montage(&frames, 3).to_png()?,
     })
 }

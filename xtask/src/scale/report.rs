@@ -12,11 +12,10 @@ const PICTURE: &str = "Time, memory and fill of a step against the number of ver
 
 /// All files but the page: names and contents.
 pub(super) fn files(results: &Results) -> Result<Vec<(String, Vec<u8>)>> {
+    let plot = plot::plot(results);
     Ok(vec![
-        (
-            "scale.svg".into(),
-            plot::plot(results).to_svg(PICTURE)?.into_bytes(),
-        ),
+        ("scale.svg".into(), plot.to_svg(PICTURE)?.into_bytes()),
+        ("scale.png".into(), plot.to_png(PICTURE)?),
         ("scale.csv".into(), csv(&results.hanging).into_bytes()),
         (
             "draping.csv".into(),
@@ -444,7 +443,7 @@ mod tests {
         }
         assert!(!page.contains("NaN"));
         let files = files(&results).expect("drawn");
-        for (k, rows) in [(1, 4), (2, 2)] {
+        for (k, rows) in [(2, 4), (3, 2)] {
             let csv = &files[k].1;
             let lines: Vec<&[u8]> = csv.split(|b| *b == b'\n').collect();
             assert_eq!(lines.len(), 1 + rows + 1, "{}", files[k].0);
