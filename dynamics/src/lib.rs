@@ -80,6 +80,7 @@ mod simulation;
 mod start;
 mod state;
 mod subdivide;
+mod trail;
 
 pub use constraint::VertexConstraint;
 pub use crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};

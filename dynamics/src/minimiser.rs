@@ -159,7 +159,7 @@ impl Minimiser {
             x: vec![0.0; n],
             start: vec![0.0; n],
             end: vec![0.0; n],
-            balance: Balance::new(model, ForceTime::End),
+            balance: Balance::with_trail(model, ForceTime::End),
             options,
         })
     }
@@ -408,8 +408,7 @@ impl Minimiser {
         Ok((residual, path, work))
     }
 
-    /// Forces of the supports at the minimum of the augmented Lagrangian, where momentum is in balance. (The projection that
-    /// follows moves the sheet by as much as the multipliers changed over the penalty.)
+    /// Forces of the supports at the minimum of the augmented Lagrangian, with what it left unbalanced.
     fn set_balance(&mut self, step: &Step<'_, '_>) {
         let (model, state, per) = (step.scene.model, step.state, 1.0 / (step.h * step.h));
         let (x, target) = (&self.x, &self.target);
@@ -426,7 +425,7 @@ impl Minimiser {
             .add_rods(model, &self.x, &self.multipliers, per);
         let rows = &self.vertex_rows;
         self.balance.add_constraints(rows, &rows.multipliers, per);
-        self.balance.finish(model);
+        self.balance.leave(model, &self.x, &rows.active);
     }
 
     /// Drops the multipliers.
@@ -569,6 +568,8 @@ impl Minimiser {
                 effort,
             );
             if strain <= tolerance {
+                let per = 1.0 / (step.h * step.h);
+                self.balance.trail.append(&self.projector.trail, per);
                 self.multipliers.copy_from_slice(&self.first_multipliers);
                 return Ok((residual, path));
             }

@@ -5,6 +5,7 @@ use crate::constraint::rows::VertexRows;
 use crate::contact::Contact;
 use crate::primal::{PrimalMatrix, penalties};
 use crate::report::Effort;
+use crate::trail::Trail;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -54,8 +55,8 @@ pub(crate) struct Projector {
     rhs: Vec<f64>,
     dx: Vec<f64>,
     start: Vec<f64>,
-    /// Multipliers of the rods found by [`Projector::balance`]; newtons per metre.
-    pub(crate) multipliers: Vec<f64>,
+    /// Momentum that the iterations of the last projection of positions gave, kilogram metres.
+    pub(crate) trail: Trail,
     /// Vertices on curves and surfaces.
     pub(crate) vertex_rows: VertexRows,
     rng: ChaCha8Rng,
@@ -92,7 +93,7 @@ impl Projector {
             rhs: vec![0.0; n],
             dx: vec![0.0; n],
             start: vec![0.0; n],
-            multipliers: vec![0.0; m],
+            trail: Trail::new(model),
             vertex_rows: VertexRows::new(model, 1.0),
             rng: ChaCha8Rng::seed_from_u64(0),
         }
@@ -124,6 +125,7 @@ impl Projector {
         };
         let mut penalty = PROJECTION_PENALTY;
         let mut opening = 1.0;
+        self.trail.clear();
         rods.residual_into(x, &mut self.c);
         for (i, c) in model.constraints().iter().enumerate() {
             let pressed = loads.get(i).is_some_and(|l| l.x < 0.0);
@@ -189,6 +191,7 @@ impl Projector {
                 }
                 length *= 0.5;
             };
+            self.keep_momentum(model, held.as_ref(), x);
             if after > RESERVE * before && self.worst(model, x) <= tolerance {
                 strain = self.worst(model, x);
                 break;
@@ -258,36 +261,25 @@ impl Projector {
         }
     }
 
-    /// Sets the multipliers of rods and bound vertex constraints that balance the forces `imbalance` (`3V`, overwritten) best, in the
-    /// sense of the inverse mass matrix: `imbalance + G^T multipliers` is smallest. Uses the factor of
-    /// [`Projector::velocities`], at the same positions.
-    pub(crate) fn balance(
-        &mut self,
-        model: &SheetModel,
-        matrix: &mut PrimalMatrix,
-        x: &[f64],
-        imbalance: &mut [f64],
-    ) {
-        self.multipliers.fill(0.0);
-        self.vertex_rows.clear();
-        self.rhs.copy_from_slice(imbalance);
-        for _ in 0..PASSES {
-            model.clear_pinned(&mut self.rhs);
-            matrix.solve(model, &self.rhs, &mut self.dx);
-            model.rods().apply(x, &self.dx, &mut self.w);
-            for e in 0..self.w.len() {
-                self.multipliers[e] -= self.along[e] * self.w[e];
-            }
-            self.vertex_rows.answer(model, PROJECTION_PENALTY, &self.dx);
-            self.rhs.copy_from_slice(imbalance);
-            model
-                .rods()
-                .apply_transpose_add(x, &self.multipliers, &mut self.rhs);
-            let multipliers = &self.vertex_rows.multipliers;
-            self.vertex_rows
-                .add_loads(model, multipliers, &mut self.rhs);
+    /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to `x`.
+    fn keep_momentum(&mut self, model: &SheetModel, held: Option<&Held<'_>>, x: &[f64]) {
+        if !self.trail.has_room() {
+            return;
         }
-        imbalance.copy_from_slice(&self.rhs);
+        for ((d, x), x0) in self.dx.iter_mut().zip(x).zip(&self.start) {
+            *d = x - x0;
+        }
+        model
+            .mass()
+            .apply(model.topology(), &self.dx, &mut self.rhs);
+        let active = &self.vertex_rows.active;
+        let sum = self
+            .trail
+            .push(&self.start, active, self.rhs.iter().copied());
+        if let Some(held) = held {
+            held.contact.add_gradient(&self.start, -held.scale, sum);
+            held.contact.add_gradient(x, held.scale, sum);
+        }
     }
 
     /// Projects `v` in place onto `G(x) v = 0` (and, at vertex constraints, those last evaluated being

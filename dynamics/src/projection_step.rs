@@ -3,6 +3,7 @@
 use crate::contact::ContactWork;
 use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
 use crate::minimiser::not_converged;
+use crate::model::PINNED;
 use crate::primal::{PrimalMatrix, strain_floor};
 use crate::project::{Aim, Projector};
 use crate::reaction::{Balance, ForceTime};
@@ -77,27 +78,46 @@ impl ProjectionStep {
             x: vec![0.0; n],
             v: vec![0.0; n],
             none: vec![0.0; model.rods().len()],
-            balance: Balance::new(model, ForceTime::End),
+            balance: Balance::with_trail(model, ForceTime::End),
         })
     }
 
-    /// Forces of the supports over the step: the multipliers at its end that balance the change of velocity best.
+    /// Mean forces of the supports over the step: what forces and inertia, up to the prediction, ask for at the supports
+    /// themselves, and their share in the projections. Pins move at the speed that they end with.
     fn set_balance(&mut self, model: &SheetModel, state: &State, h: f64) {
-        let v = &self.v;
-        if !self.balance.begin(model, |i| (v[i] - state.v[i]) / h) {
+        let (free, v) = (model.free_index(), &self.v);
+        let predicted = |i: usize| (self.predicted[i] - state.x[i]) / h;
+        let end = |i: usize| {
+            if free[i / 3] == PINNED {
+                v[i]
+            } else {
+                predicted(i)
+            }
+        };
+        if !self.balance.begin(model, |i| (end(i) - state.v[i]) / h) {
             return;
         }
         self.balance.add_potentials(model, state.t, &state.x, 1.0);
         self.balance
             .add_applied(model, state.t, &state.x, &state.v, 1.0);
-        self.force.copy_from_slice(&self.balance.pins);
-        self.projector
-            .balance(model, &mut self.matrix, &self.x, &mut self.force);
-        self.balance
-            .add_rods(model, &self.x, &self.projector.multipliers, 1.0);
-        let rows = &self.projector.vertex_rows;
-        self.balance.add_constraints(rows, &rows.multipliers, 1.0);
         self.balance.finish(model);
+        let trail = &mut self.balance.trail;
+        trail.append(&self.projector.trail, 1.0 / (h * h));
+        for i in 0..self.x.len() {
+            self.acceleration[i] = if free[i / 3] == PINNED {
+                0.0
+            } else {
+                (v[i] - (self.x[i] - state.x[i]) / h) / h
+            };
+        }
+        let mass = model.mass();
+        mass.apply(model.topology(), &self.acceleration, &mut self.force);
+        let bound = &self.projector.vertex_rows.bound;
+        trail.push(&self.x, bound, self.force.iter().copied());
+        if model.has_drives() {
+            // The work of what moves needs them.
+            self.balance.settle(model, state.t + h);
+        }
     }
 
     /// `acceleration = M^-1 force`.

@@ -1,8 +1,9 @@
 //! Forces of pins, curves and surfaces on the sheet.
 
 use crate::SheetModel;
-use crate::constraint::rows::{VertexRows, point};
+use crate::constraint::rows::{VertexRows, add, point};
 use crate::contact::Contact;
+use crate::trail::Trail;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use std::fmt;
@@ -57,16 +58,35 @@ pub enum ForceTime {
 /// Forces of all supports in the last accepted step, from the integrator's own balance of momentum: at a pin
 /// `R = M a - f + G^T lambda` with the discrete acceleration and multipliers (tension positive) of the
 /// step, at a vertex constraint `R = -J^T mu`.
+///
+/// The reactions of a step of `h` seconds ([`crate::Simulation::reactions`]), the forces of bodies on the sheet and the weight add up to the
+/// rate of change of the momentum `p = sum M v` that belongs to the method (before velocity damping, which acts after the step):
+///
+/// | method | rate of `p` | weight and other forces |
+/// |---|---|---|
+/// | BDF2 | `(3/2 p1 - 2 p0 + 1/2 p_) / h`; after a restart as implicit Euler | at the end |
+/// | implicit Euler | `(p1 - p0) / h` | at the end |
+/// | projection, energy-momentum, RATTLE | `(p1 - p0) / h` | over the step |
+///
+/// (for BDF2 with steps in the ratio `w`: `(p1 - (1 + b) p0 + b p_) / (k h)`, `b = w^2 / (1 + 2w)`, `k = (1 + w) / (1 + 2w)`.) The difference
+/// quotient `(p1 - p0) / h` of a BDF2 step is another number, and misses the forces by as much as they change.
+///
+/// The conservative methods keep this balance to round-off. In the damped ones two things are left over: what Newton's method leaves at free
+/// vertices, which shrinks with its tolerance, and, where there is contact, the change of its forces by the projection that
+/// ends a step, beyond first order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Balance {
     /// At pinned vertices the force of the pin, elsewhere zero; `3V`, newtons.
     pub pins: Vec<f64>,
-    /// Of each vertex constraint the multipliers of its equations, newtons.
+    /// Of each vertex constraint the multipliers of its equations, newtons. Of the damped methods, here and in the other two, without
+    /// the share that supports have in projections.
     pub multipliers: Vec<Vector3<f64>>,
     /// Of each vertex constraint its force on the vertex, newtons.
     pub constraints: Vec<Vector3<f64>>,
     /// When.
     pub time: ForceTime,
+    /// Newtons that are not shared out between the supports yet.
+    pub(crate) trail: Trail,
     work: Vec<f64>,
 }
 
@@ -83,7 +103,16 @@ impl Balance {
             multipliers: vec![Vector3::zeros(); m],
             constraints: vec![Vector3::zeros(); m],
             time,
+            trail: Trail::default(),
             work: vec![0.0; n],
+        }
+    }
+
+    /// With room for what is shared out later.
+    pub(crate) fn with_trail(model: &SheetModel, time: ForceTime) -> Self {
+        Self {
+            trail: Trail::new(model),
+            ..Self::new(model, time)
         }
     }
 
@@ -100,6 +129,7 @@ impl Balance {
             .apply(model.topology(), &self.work, &mut self.pins);
         self.multipliers.fill(Vector3::zeros());
         self.constraints.fill(Vector3::zeros());
+        self.trail.clear();
         true
     }
 
@@ -124,6 +154,7 @@ impl Balance {
         self.multipliers.clone_from(&other.multipliers);
         self.constraints.clone_from(&other.constraints);
         self.time = other.time;
+        self.trail.copy_from(&other.trail);
     }
 
     /// Sets all forces to zero.
@@ -218,6 +249,18 @@ impl Balance {
         }
     }
 
+    /// Leaves only what is at pins; what is at free vertices at positions `x` goes to the trail,
+    /// for the rods and the vertex constraints `active`.
+    pub(crate) fn leave(&mut self, model: &SheetModel, x: &[f64], active: &[bool]) {
+        self.work.copy_from_slice(&self.pins);
+        for (c, f) in model.constraints().iter().zip(&self.constraints) {
+            add(&mut self.work, c.vertex(), &-f);
+        }
+        model.clear_pinned(&mut self.work);
+        self.trail.push(x, active, self.work.iter().copied());
+        self.finish(model);
+    }
+
     /// Leaves only what is at pins.
     pub(crate) fn finish(&mut self, model: &SheetModel) {
         for v in model
@@ -229,23 +272,33 @@ impl Balance {
         }
     }
 
-    pub(crate) fn reactions(&self, model: &SheetModel) -> Vec<Reaction> {
+    /// Adds the shares of the trail of a step that ended at time `t`.
+    pub(crate) fn settle(&mut self, model: &SheetModel, t: f64) {
+        let shares = self.trail.shares(model, t);
+        self.trail.clear();
+        for (p, share) in self.pins.iter_mut().zip(&shares.pins) {
+            *p += share;
+        }
+        self.add_loads(shares.loads.into_iter());
+        self.finish(model);
+    }
+
+    /// The forces, with the shares of the trail of a step that ended at time `t`.
+    pub(crate) fn reactions(&self, model: &SheetModel, t: f64) -> Vec<Reaction> {
+        let shares = self.trail.shares(model, t);
         let pins = model.pins().into_iter().map(|v| Reaction {
             support: Support::Pin(v),
-            force: point(&self.pins, v),
+            force: point(&self.pins, v) + point(&shares.pins, v),
         });
-        let constraints = model
-            .constraints()
-            .iter()
-            .zip(&self.constraints)
-            .enumerate()
-            .map(|(index, (c, f))| Reaction {
-                support: Support::Constraint {
-                    index,
-                    vertex: c.vertex(),
-                },
-                force: *f,
-            });
+        let forces = self.constraints.iter().zip(&shares.loads);
+        let constraints = model.constraints().iter().zip(forces).enumerate();
+        let constraints = constraints.map(|(index, (c, (own, (_, share))))| Reaction {
+            support: Support::Constraint {
+                index,
+                vertex: c.vertex(),
+            },
+            force: own + share,
+        });
         pins.chain(constraints).collect()
     }
 

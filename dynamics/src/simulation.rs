@@ -206,13 +206,17 @@ impl Simulation {
     }
 
     /// Forces of the pins and vertex constraints on the sheet in the last accepted sub-step, pins first; empty before the first
-    /// step. In charts those at the end of the step. See [`Balance`](crate::Balance) for when in the step they act.
+    /// step. In charts those at the end of the step. See [`Balance`](crate::Balance) for when in the step they act and what they
+    /// balance.
+    ///
+    /// For the damped methods this factorises a matrix of the size of a step's for every iteration of the last projection: ask only
+    /// when the forces are wanted.
     pub fn reactions(&self) -> Vec<Reaction> {
         match &self.engine {
-            Engine::Subdivided(engine) => engine
-                .balance
-                .as_ref()
-                .map_or_else(Vec::new, |b| b.reactions(&engine.model)),
+            Engine::Subdivided(engine) => {
+                let balance = engine.balance.as_ref();
+                balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, self.state.t))
+            }
             Engine::Chart(chart) => chart.reactions.clone(),
         }
     }

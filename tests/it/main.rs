@@ -1,5 +1,6 @@
 //! Tests that span several crates.
 
+mod balance;
 mod charts;
 mod closures;
 mod conservation;

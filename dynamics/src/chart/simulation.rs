@@ -183,7 +183,7 @@ impl ChartSimulation {
             Some(balance) => balance.clone(),
             None => self.new_balance(self.next_step)?,
         };
-        Ok(balance.reactions(self.stepper.mechanics.model()))
+        Ok(balance.reactions(self.stepper.mechanics.model(), self.t))
     }
 
     /// Time, seconds.

@@ -21,6 +21,8 @@ pub(crate) struct VertexRows {
     local: Vec<Local>,
     /// Whether a one-sided equation had to be mended since it was cleared.
     pub(crate) mended: Vec<bool>,
+    /// Whether the equation took part in the last system of a projection or the last update of the multipliers.
+    pub(crate) active: Vec<bool>,
     /// Whether the equation holds as an equality: always, unless it is one-sided.
     pub(crate) bound: Vec<bool>,
 }
@@ -52,6 +54,7 @@ impl VertexRows {
             multipliers: vec![Vector3::zeros(); constraints.len()],
             local: Vec::with_capacity(constraints.len()),
             mended: vec![false; constraints.len()],
+            active: vec![false; constraints.len()],
             bound: constraints.iter().map(|c| !c.is_one_sided()).collect(),
         }
     }
@@ -146,6 +149,7 @@ impl VertexRows {
     /// Takes the densities for new multipliers.
     pub(crate) fn update(&mut self) {
         for i in 0..self.multipliers.len() {
+            self.active[i] = self.presses(i);
             self.multipliers[i] = self.density(i);
         }
     }
@@ -200,7 +204,8 @@ impl VertexRows {
         rhs: &mut [f64],
     ) {
         for (i, c) in model.constraints().iter().enumerate() {
-            if !self.is_broken_or_bound(i) {
+            self.active[i] = self.is_broken_or_bound(i);
+            if !self.active[i] {
                 continue;
             }
             self.mended[i] = true;
@@ -214,7 +219,7 @@ impl VertexRows {
         self.bound[i] || self.local[i].value.x < 0.0
     }
 
-    /// Adds what the equations bound answer to a displacement `y` to the multipliers, `-p J y`.
+    /// Adds what the bound equations answer to a displacement `y` to the multipliers, `-p J y`.
     pub(crate) fn answer(&mut self, model: &SheetModel, penalty: f64, y: &[f64]) {
         for (i, c) in model.constraints().iter().enumerate() {
             if self.bound[i] {
