@@ -1,12 +1,13 @@
-//! Contact of the sheet M^3 as a step of the dynamics asks for it.
+//! Contact as a step of the dynamics asks for it, at the paper's mesh sizes and the next.
 
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::contact::{Contact, CouplingSink};
-use isosheet_dynamics::{SheetModel, State};
+use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Matrix3};
 use std::hint::black_box;
+use std::time::Duration;
 
 struct Sum(f64);
 
@@ -22,7 +23,20 @@ fn model(sheet: &Sheet) -> SheetModel {
         .with_gravity()
 }
 
-fn pieces(c: &mut Criterion, name: &str, mut contacts: Contacts, model: &SheetModel, x: &[f64]) {
+const SIZES: [(u32, &str); 4] = [
+    (1, "25/32"),
+    (2, "81/128"),
+    (3, "289/512"),
+    (4, "1089/2048"),
+];
+
+fn pieces(
+    c: &mut Criterion,
+    [name, size]: [&str; 2],
+    mut contacts: Contacts,
+    model: &SheetModel,
+    x: &[f64],
+) {
     contacts
         .check_start(model, &State::at_rest(x.to_vec()))
         .expect("a start without touch");
@@ -30,14 +44,18 @@ fn pieces(c: &mut Criterion, name: &str, mut contacts: Contacts, model: &SheetMo
     let dx: Vec<f64> = (0..x.len())
         .map(|i| 1e-5 * (7.0 * i as f64).sin())
         .collect();
-    println!("{name}: safe {}", contacts.safe_fraction(x, &dx));
+    println!("{name}, {size}: safe {}", contacts.safe_fraction(x, &dx));
     let mut points = Vec::new();
     contacts.contact_points(x, &mut points);
-    println!("{name}: {} contacts, gap {}", points.len(), contacts.gap(x));
+    println!(
+        "{name}, {size}: {} contacts, gap {}",
+        points.len(),
+        contacts.gap(x)
+    );
     // Another place for every call, as in a line search; what comes after finds its contacts.
     let y: Vec<f64> = x.iter().zip(&dx).map(|(x, d)| x + 0.1 * d).collect();
     let mut group = c.benchmark_group(name);
-    let id = |what| BenchmarkId::from_parameter(what);
+    let id = |what: &str| BenchmarkId::new(what, size);
     group.bench_function(id("safe fraction"), |b| {
         b.iter(|| contacts.safe_fraction(black_box(x), &dx));
     });
@@ -59,8 +77,14 @@ fn pieces(c: &mut Criterion, name: &str, mut contacts: Contacts, model: &SheetMo
     group.finish();
 }
 
-fn table(c: &mut Criterion) {
-    let sheet = generate::isotropic_square(3, 1.0).expect("a valid sheet");
+fn tables(c: &mut Criterion) {
+    for (level, size) in SIZES {
+        table(c, level, size);
+    }
+}
+
+fn table(c: &mut Criterion, level: u32, size: &str) {
+    let sheet = generate::isotropic_square(level, 1.0).expect("a valid sheet");
     let model = model(&sheet);
     let options = ContactOptions::for_sheet(&model);
     let half = Shape::Cuboid {
@@ -75,12 +99,19 @@ fn table(c: &mut Criterion) {
         let contacts = Contacts::new(&model, options)
             .and_then(|c| c.with_body(body.clone(), coefficients))
             .expect("valid options");
-        pieces(c, name, contacts, &model, sheet.positions());
+        pieces(c, [name, size], contacts, &model, sheet.positions());
     }
 }
 
-fn rolled(c: &mut Criterion) {
-    let sheet = generate::isotropic_square(3, 1.0).expect("a valid sheet");
+fn rolls(c: &mut Criterion) {
+    // The spiral of the coarser meshes passes through itself.
+    for (level, size) in &SIZES[2..] {
+        rolled(c, *level, size);
+    }
+}
+
+fn rolled(c: &mut Criterion, level: u32, size: &str) {
+    let sheet = generate::isotropic_square(level, 1.0).expect("a valid sheet");
     let model = model(&sheet);
     let mut x = sheet.positions().to_vec();
     for p in x.as_chunks_mut::<3>().0 {
@@ -100,9 +131,60 @@ fn rolled(c: &mut Criterion) {
         let contacts = Contacts::new(&model, options)
             .and_then(|c| c.with_self_contact(Coefficients::FRICTIONLESS))
             .expect("valid options");
-        pieces(c, name, contacts, &model, &x);
+        pieces(c, [name, size], contacts, &model, &x);
     }
 }
 
-criterion_group!(benches, table, rolled);
+/// Five steps of a cloth on a table, from rest within reach of it, by the methods that take contact.
+fn steps(c: &mut Criterion) {
+    let mut group = c.benchmark_group("five steps on a table");
+    for (level, size) in SIZES {
+        let sheet = generate::isotropic_square(level, 1.0).expect("a valid sheet");
+        let start = || {
+            let model = model(&sheet);
+            let options = ContactOptions::for_sheet(&model);
+            let half = Shape::Cuboid {
+                half: [0.25, 0.25, 0.1],
+            };
+            let pose = Isometry3::translation(0.5, 0.5, -0.1 - 0.95 * options.activation);
+            let body = Obstacle::still(half, pose).expect("a box");
+            let contacts = Contacts::new(&model, options)
+                .and_then(|c| c.with_body(body, Coefficients::FRICTIONLESS))
+                .expect("valid options");
+            (model, contacts)
+        };
+        for (name, method) in [
+            ("BDF2", Method::default()),
+            ("implicit Euler", Method::ImplicitEuler(Default::default())),
+        ] {
+            group.bench_function(BenchmarkId::new(name, size), |b| {
+                b.iter_batched(
+                    || {
+                        let (model, contacts) = start();
+                        let state = State::at_rest(sheet.positions().to_vec());
+                        Simulation::new(model, state, method.clone())
+                            .and_then(|s| s.with_contact(contacts))
+                            .expect("a start without touch")
+                    },
+                    |mut run| {
+                        for _ in 0..5 {
+                            black_box(run.step(1.0 / 240.0).ok());
+                        }
+                    },
+                    BatchSize::LargeInput,
+                );
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(100))
+        .measurement_time(Duration::from_millis(300));
+    targets = tables, rolls, steps
+}
 criterion_main!(benches);

@@ -9,6 +9,7 @@ use isosheet_collide::{
 use isosheet_mesh::generate;
 use nalgebra::Vector3;
 use std::hint::black_box;
+use std::time::Duration;
 
 type Stencil = [Vector3<f64>; 4];
 
@@ -88,7 +89,8 @@ fn rolled(level: u32) -> (ContactMesh, Vec<f64>, Vec<f64>) {
 
 fn broad_phase(c: &mut Criterion) {
     let mut group = c.benchmark_group("rolled sheet");
-    for level in [2, 3, 6] {
+    // The paper's sizes, the next, and one where the price of the size shows.
+    for level in [1, 2, 3, 4, 6] {
         let (mesh, flat, x) = rolled(level);
         let faces = mesh.faces().len();
         let h = 1.0 / f64::from(2_u32 << level);
@@ -152,5 +154,12 @@ fn obstacles(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, queries, broad_phase, obstacles);
+criterion_group! {
+    name = benches;
+    config = Criterion::default()
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_millis(500));
+    targets = queries, broad_phase, obstacles
+}
 criterion_main!(benches);

@@ -149,6 +149,16 @@ fn cholesky(c: &mut Criterion) {
                 }
             });
         });
+        group.bench_function(BenchmarkId::new("assemble", size), |b| {
+            b.iter(|| {
+                let (_, terms) = stiff(&sheet, black_box(&x));
+                let values = llt.values_mut();
+                values.fill(0.0);
+                for (slot, term) in slots.iter().zip(&terms) {
+                    values[*slot as usize] += term;
+                }
+            });
+        });
         group.bench_function(BenchmarkId::new("factorise", size), |b| {
             b.iter(|| llt.factorize().expect("positive definite"));
         });

@@ -1,11 +1,14 @@
-//! One step of each integrator at the paper's mesh sizes: a sheet of 1 m and 0.1 kg held at a
-//! corner, in mid-fall.
+//! Steps of each integrator, and what they assemble, at the paper's mesh sizes and the next: a sheet of 1 m and 0.1 kg held
+//! at a corner, in mid-fall.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use isosheet_coords::{CartesianChart, Choice, RodSystem};
+use isosheet_dynamics::chart::{ChartMethod, ChartOptions, ChartStepControl, MassSolverKind};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use std::f64::consts::PI;
 use std::hint::black_box;
+use std::time::Duration;
 
 /// A state in mid-fall: a quarter of a second after release from a bumped sheet.
 fn falling(level: u32) -> (Sheet, State) {
@@ -24,24 +27,97 @@ fn falling(level: u32) -> (Sheet, State) {
     (sheet, state)
 }
 
-fn simulation(sheet: &Sheet, level: u32, start: State, method: Method) -> Simulation {
+const SIZES: [(u32, &str); 4] = [
+    (1, "25/32"),
+    (2, "81/128"),
+    (3, "289/512"),
+    (4, "1089/2048"),
+];
+
+fn corner(level: u32) -> VertexId {
     let n = (1 << (level + 1)) + 1;
-    let model = SheetModel::new(sheet, 0.1, MassKind::Lumped)
+    VertexId(n * (n - 1))
+}
+
+fn model(sheet: &Sheet, level: u32, kind: MassKind) -> SheetModel {
+    SheetModel::new(sheet, 0.1, kind)
         .expect("valid")
         .with_gravity()
-        .with_pins(&[VertexId(n * (n - 1))])
-        .expect("the corner exists");
+        .with_pins(&[corner(level)])
+        .expect("the corner exists")
+}
+
+fn simulation(sheet: &Sheet, level: u32, start: State, method: Method) -> Simulation {
+    let model = model(sheet, level, MassKind::Lumped);
     Simulation::new(model, start, method).expect("valid")
+}
+
+/// What is summed over the mesh in every iteration of a step; the matrix and its factorisation are in the benches of the
+/// coordinates.
+fn assembly(c: &mut Criterion) {
+    let mut group = c.benchmark_group("assembly");
+    for (level, size) in SIZES {
+        let (sheet, state) = falling(level);
+        for (name, kind) in [
+            ("lumped", MassKind::Lumped),
+            ("consistent", MassKind::Consistent),
+        ] {
+            let model = model(&sheet, level, kind);
+            let mut residual = vec![0.0; model.rods().len()];
+            let (mut force, mut weighted) = (vec![0.0; state.x.len()], vec![0.0; state.x.len()]);
+            let name = format!("gradient, {name} mass");
+            group.bench_function(BenchmarkId::new(name, size), |b| {
+                b.iter(|| {
+                    let x = black_box(&state.x);
+                    model.rods().residual_into(x, &mut residual);
+                    model.potential_force(state.t, x, &mut force);
+                    model.rods().apply_transpose_add(x, &residual, &mut force);
+                    model.apply_mass(&state.v, &mut weighted);
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+/// Explicit steps in a chart of well-chosen Cartesian coordinates. The choice is dense and takes seconds at the largest size.
+fn chart_steps(c: &mut Criterion) {
+    let mut group = c.benchmark_group("step in a chart");
+    let h = 1e-5;
+    for (level, size) in &SIZES[..3] {
+        let (sheet, state) = falling(*level);
+        for (name, method) in [
+            ("Runge-Kutta 4", ChartMethod::RungeKutta4),
+            ("symplectic Euler", ChartMethod::SymplecticEuler),
+            ("forward Euler", ChartMethod::ForwardEuler),
+        ] {
+            for (solver, kind) in [
+                ("saddle", MassSolverKind::Saddle),
+                ("Cholesky", MassSolverKind::Cholesky),
+            ] {
+                let system = RodSystem::new(&sheet, &[corner(*level)]).expect("valid");
+                let chart = CartesianChart::new(system, Choice::Auto, &state.x).expect("a chart");
+                let options = ChartOptions {
+                    method,
+                    solver: kind,
+                    control: ChartStepControl::Fixed(h),
+                    ..Default::default()
+                };
+                let model = model(&sheet, *level, MassKind::Lumped);
+                let run = Simulation::in_chart(model, state.clone(), Box::new(chart), options);
+                let mut run = run.expect("a regular state");
+                let id = BenchmarkId::new(format!("{name}, {solver}"), size);
+                // So short that thousands of them stay in mid-fall.
+                group.bench_function(id, |b| b.iter(|| black_box(run.step(h).ok())));
+            }
+        }
+    }
+    group.finish();
 }
 
 fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
-    for (level, size) in [
-        (1, "25/32"),
-        (2, "81/128"),
-        (3, "289/512"),
-        (4, "1089/2048"),
-    ] {
+    for (level, size) in SIZES {
         let (sheet, state) = falling(level);
         // Conservative methods at a step that they accept whole next to singular states.
         let cases = [
@@ -62,6 +138,11 @@ fn steps(c: &mut Criterion) {
                 1e-3,
             ),
             ("RATTLE 1 ms", Method::Rattle(Default::default()), 1e-3),
+            (
+                "RATTLE composition 1 ms",
+                Method::RattleComposition(Default::default()),
+                1e-3,
+            ),
         ];
         for (name, method, h) in cases {
             group.bench_with_input(BenchmarkId::new(name, size), &h, |b, &h| {
@@ -83,7 +164,10 @@ fn steps(c: &mut Criterion) {
 
 criterion_group! {
     name = benches;
-    config = Criterion::default().sample_size(10).measurement_time(std::time::Duration::from_secs(2));
-    targets = steps
+    config = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_secs(1));
+    targets = assembly, steps, chart_steps
 }
 criterion_main!(benches);

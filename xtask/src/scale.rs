@@ -70,9 +70,7 @@ fn measured(levels: impl Iterator<Item = u32>) -> Result<Option<Results>> {
         let bar = Progress::start(format!("M^{level}"), 2);
         results.hanging.push(measure(level, STEPS)?);
         bar.step();
-        results
-            .draping
-            .push(drape::measure(level, STEPS, PATIENCE)?);
+        results.draping.push(draping(level)?);
         bar.finish("hanging and draping measured");
     }
     Ok(Some(results))

@@ -81,7 +81,7 @@ pub(crate) fn point(
         }
         Asked::Tolerance(part) => (Fineness::Tolerance(part * reference.energy), part, 1),
     };
-    let pieces = if scheme.is_chart() { 1 } else { pieces };
+    let pieces = if scheme.steps_itself() { 1 } else { pieces };
     let mut best: Option<Pass> = None;
     let mut repetitions = 0;
     let clock = Instant::now();
@@ -135,7 +135,7 @@ pub(crate) fn point(
         Asked::Tolerance(_) => pass.steps,
     };
     // Round-off may leave a rest of a step at every checkpoint.
-    let rests = if scheme.is_chart() {
+    let rests = if scheme.steps_itself() {
         reference.usable()
     } else {
         0
@@ -246,7 +246,7 @@ const HALVINGS: u32 = 14;
 /// All runs of a method together may take so many times the longest.
 const MOST: f64 = 5.0;
 
-/// Runs that fail in a row after which finer ones are not tried.
+/// Runs that fail in a row, before the first checkpoint, after which finer ones are not tried.
 const FAILURES: usize = 5;
 
 /// Measures a method over its steps or tolerances, coarse to fine, until a run takes longer than `limit` seconds or
@@ -270,7 +270,7 @@ pub(crate) fn sweep(
         // A run costs about twice the one before.
         let point = point(problem, scheme, reference, asked, 2.0 * limit)?;
         let spent = clock.elapsed().as_secs_f64() / point.repetitions.max(1) as f64;
-        failures = if point.errors.is_some() {
+        failures = if point.errors.or(point.partial).is_some() {
             0
         } else {
             failures + 1

@@ -30,9 +30,20 @@ pub(crate) enum Kind {
         method: ChartMethod,
         solver: MassSolverKind,
     },
-    /// The scheme of Liu, Tang and Joneja 2007: forward Euler, momenta carried over, positions to first order,
-    /// adaptive steps.
-    Paper(Degenerate),
+    /// The scheme of Liu, Tang and Joneja 2007: forward Euler, momenta carried over, positions to first order.
+    Paper {
+        degenerate: Degenerate,
+        stepping: Stepping,
+    },
+}
+
+/// How the published scheme chooses its steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stepping {
+    /// As published: the largest step that changes the Hamiltonian by less than a tolerance.
+    Adaptive,
+    /// All alike.
+    Fixed,
 }
 
 /// Which coordinates.
@@ -116,14 +127,17 @@ impl Scheme {
             Self::energy_momentum(),
             Self::free("RATTLE", Method::Rattle(Default::default())),
             Self::reference(),
-            Self {
-                name: "published scheme".into(),
-                kind: Kind::Paper(Degenerate::Carry),
-            },
-            Self {
-                name: "published scheme, free creases".into(),
-                kind: Kind::Paper(Degenerate::Assign),
-            },
+            paper("published scheme", Degenerate::Carry, Stepping::Adaptive),
+            paper(
+                "published scheme, free creases",
+                Degenerate::Assign,
+                Stepping::Adaptive,
+            ),
+            paper(
+                "published scheme, free creases, fixed steps",
+                Degenerate::Assign,
+                Stepping::Fixed,
+            ),
         ];
         for kind in [ChartKind::Cartesian, ChartKind::Front] {
             for method in [
@@ -146,7 +160,22 @@ impl Scheme {
 
     /// Whether the method adapts its steps to a tolerance.
     pub(crate) fn is_adaptive(&self) -> bool {
-        matches!(self.kind, Kind::Paper(_))
+        matches!(
+            self.kind,
+            Kind::Paper {
+                stepping: Stepping::Adaptive,
+                ..
+            }
+        )
+    }
+
+    /// Whether the method, asked to go on for some time, takes fixed steps of its own on the way.
+    pub(crate) fn steps_itself(&self) -> bool {
+        match self.kind {
+            Kind::Free(_) => false,
+            Kind::Chart { .. } => true,
+            Kind::Paper { stepping, .. } => stepping == Stepping::Fixed,
+        }
     }
 
     /// Whether the method is one of the many in charts, of which only few are drawn.
@@ -188,7 +217,7 @@ impl Scheme {
                     ..Default::default()
                 },
             ),
-            Kind::Paper(degenerate) => (
+            Kind::Paper { degenerate, .. } => (
                 ChartKind::Front,
                 *degenerate,
                 ChartOptions {
@@ -245,6 +274,16 @@ fn build(
                 .map_err(Into::into)
         }
     })
+}
+
+fn paper(name: &str, degenerate: Degenerate, stepping: Stepping) -> Scheme {
+    Scheme {
+        name: name.into(),
+        kind: Kind::Paper {
+            degenerate,
+            stepping,
+        },
+    }
 }
 
 fn chart(chart: ChartKind, method: ChartMethod, solver: MassSolverKind) -> Scheme {

@@ -343,7 +343,12 @@ impl Study {
                 } else {
                     palette::BLACK
                 };
-                drawn.push((name, colour, Some(Marker::Square), Line::Dashed));
+                let marker = if name.ends_with("fixed steps") {
+                    Marker::Diamond
+                } else {
+                    Marker::Square
+                };
+                drawn.push((name, colour, Some(marker), Line::Dashed));
             } else if name.ends_with("Cartesian chart, saddle") {
                 let (colour, marker) = if name.starts_with("Runge") {
                     (palette::INK, Marker::Triangle)
