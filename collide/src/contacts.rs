@@ -537,6 +537,10 @@ impl Contact for Contacts {
         loads
     }
 
+    fn activation(&self) -> f64 {
+        self.options.activation
+    }
+
     fn contact_points(&self, x: &[f64], out: &mut Vec<ContactPoint>) {
         out.clear();
         let t = self.step.t0 + self.step.s * self.step.h;

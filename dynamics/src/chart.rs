@@ -7,9 +7,10 @@
 //! * [`ChartSimulation`]: forward Euler with the published step control, symplectic Euler and
 //!   Runge-Kutta in a chart, in the published, re-formed and full equations of motion. A chart eliminates the pins it was
 //!   built with; more pins, moving ones, curves and surfaces are closure equations
-//!   ([`ChartSimulation::from_state`]).
+//!   ([`ChartSimulation::from_state`]). Contact acts by impulses ([`ChartSimulation::with_contact`]).
 
 mod error;
+mod impact;
 mod mechanics;
 mod mobility;
 mod options;
@@ -18,6 +19,7 @@ mod solver;
 mod stepping;
 
 pub use error::ChartDynamicsError;
+pub use impact::ContactImpulse;
 pub use mechanics::{ChartMechanics, Equations};
 pub use options::{ChartMethod, ChartOptions, ChartStepControl, PositionUpdate, Rebase};
 pub use simulation::{ChartSimulation, ChartStepReport, StepRange};

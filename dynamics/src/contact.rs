@@ -71,6 +71,9 @@ pub trait Contact: Send {
     /// Forces and torques on the bodies at `x`, in the order of the bodies: barrier and friction.
     fn loads(&self, x: &[f64]) -> Vec<BodyLoad>;
 
+    /// Gap below which [`Contact::contact_points`] names a contact, metres.
+    fn activation(&self) -> f64;
+
     /// Contacts within reach at `x`, for methods that use impulses in place of the barrier. Clears
     /// `out` first.
     fn contact_points(&self, x: &[f64], out: &mut Vec<ContactPoint>);

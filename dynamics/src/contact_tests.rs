@@ -137,6 +137,10 @@ impl Contact for Floor {
         }]
     }
 
+    fn activation(&self) -> f64 {
+        self.reach
+    }
+
     fn contact_points(&self, _: &[f64], out: &mut Vec<ContactPoint>) {
         out.clear();
     }

@@ -47,7 +47,8 @@
 //! # Contact, constraints and reactions
 //!
 //! [`Simulation::with_contact`] takes a [`contact::Contact`]: a barrier potential whose Hessian couples more vertices
-//! than the mesh does, and a bound on every displacement. BDF2 and implicit Euler take it. Every method
+//! than the mesh does, and a bound on every displacement. BDF2 and implicit Euler take it; in a chart contact acts by impulses
+//! ([`ChartSimulation::with_contact`](chart::ChartSimulation::with_contact)). Every method
 //! takes moving pins ([`SheetModel::with_moving_pin`]) and vertices on curves and surfaces
 //! ([`SheetModel::with_constraint`]), one-sided ones the damped methods only. [`Simulation::reactions`] are the forces of pins and constraints on the sheet,
 //! [`Simulation::body_loads`] those of the sheet on the bodies.

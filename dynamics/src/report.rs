@@ -57,7 +57,7 @@ pub struct StepReport {
     pub work: f64,
     /// Energy taken out by velocity damping since the start, joules.
     pub dissipated: f64,
-    /// Energy lost to friction since the start, joules.
+    /// Energy lost to friction since the start, in charts to impacts, joules.
     pub friction: f64,
     /// `T + V - work + dissipated + friction` minus its value at the start, joules: the error of the
     /// integrator, zero for the exact motion.

@@ -175,7 +175,7 @@ impl Simulation {
     }
 
     /// Adds contact with bodies and of the sheet with itself: a barrier that keeps every gap positive at every
-    /// accepted step.
+    /// accepted step; in a chart impulses, see [`ChartSimulation::with_contact`].
     ///
     /// # Errors
     /// [`SimulationError::Contact`] if the method has no place for contact or something touches already.
@@ -185,7 +185,7 @@ impl Simulation {
     ) -> Result<Self, SimulationError> {
         match &mut self.engine {
             Engine::Subdivided(engine) => engine.set_contact(Box::new(contact), &self.state)?,
-            Engine::Chart(_) => return Err(ContactError::Method.into()),
+            Engine::Chart(chart) => chart.simulation.set_contact(Box::new(contact))?,
         }
         self.start_energy = self.energy();
         Ok(self)
@@ -195,14 +195,23 @@ impl Simulation {
     pub fn contact(&self) -> Option<&dyn Contact> {
         match &self.engine {
             Engine::Subdivided(engine) => engine.contact.as_deref(),
-            Engine::Chart(_) => None,
+            Engine::Chart(chart) => chart.simulation.contact(),
         }
     }
 
-    /// What the sheet does to the bodies, in the order in which they were added; empty without contact.
+    /// What the sheet does to the bodies, in the order in which they were added; empty without contact, and in charts, where
+    /// impulses act ([`ChartSimulation::impulses`]).
     pub fn body_loads(&self) -> Vec<BodyLoad> {
-        self.contact()
+        self.barrier()
             .map_or_else(Vec::new, |c| c.loads(&self.state.x))
+    }
+
+    /// Contact that acts by its barrier.
+    fn barrier(&self) -> Option<&dyn Contact> {
+        match &self.engine {
+            Engine::Subdivided(engine) => engine.contact.as_deref(),
+            Engine::Chart(_) => None,
+        }
     }
 
     /// Forces of the pins and vertex constraints on the sheet in the last accepted sub-step, pins first; empty before the first
@@ -250,7 +259,7 @@ impl Simulation {
     fn potential_energy(&self) -> f64 {
         let State { t, x, .. } = &self.state;
         let potential = self.model().potential_energy(*t, x);
-        match self.contact() {
+        match self.barrier() {
             None => potential,
             Some(contact) => potential + contact.potential(x),
         }
@@ -379,7 +388,6 @@ fn advance_chart(
             model.applied_force(chart.time(), chart.positions(), &v, &mut applied);
             state.x.copy_from_slice(chart.positions());
         }
-        let before = chart.hamiltonian();
         let report = match chart.step_within(left) {
             Ok(report) => report,
             Err(error) => break Err(failed(chart.time(), error)),
@@ -387,7 +395,8 @@ fn advance_chart(
         tally.substeps += 1;
         tally.rejected += report.rejected as usize;
         tally.work += report.driven;
-        tally.dissipated += before + report.energy_change - chart.hamiltonian();
+        tally.dissipated += report.damped;
+        tally.friction += report.impact;
         tally.path = tally.path.max(if report.rebased {
             Path::Rebased
         } else {

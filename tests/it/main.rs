@@ -8,6 +8,7 @@ mod constraints;
 mod contact;
 mod flat;
 mod forces;
+mod impacts;
 mod orders;
 mod origami;
 mod robust;

@@ -107,6 +107,16 @@ pub enum ChartDynamicsError {
         /// Closure equations.
         equations: usize,
     },
+    /// The way on is closed by contact.
+    #[error(
+        "at t = {t} s no step above {h:e} s keeps the sheet out of contact: it is held between bodies or pins that move into each other, or the explicit scheme has become unstable; take smaller steps"
+    )]
+    Contact {
+        /// Time, seconds.
+        t: f64,
+        /// The last step tried, seconds.
+        h: f64,
+    },
     /// The step control went below its smallest step.
     #[error(
         "at t = {t} s no step above {minimum:e} s keeps the change of the energy below {tolerance:e} J (it is {change:e} J): {cause}"

@@ -237,6 +237,19 @@ impl Mobility {
         }
     }
 
+    /// Velocities on the unknowns that impulses on the unknowns cause where rods and closures hold. At the state of
+    /// [`Mobility::at`].
+    pub(super) fn respond(
+        &mut self,
+        impulse: &[f64],
+        v: &mut [f64],
+    ) -> Result<(), ChartDynamicsError> {
+        self.saddle.solve(impulse, &self.still, v, &mut self.mu)?;
+        let lambda = self.multipliers(self.rows.iter().map(|r| r.apply(v)));
+        self.give_way(&lambda, v);
+        Ok(())
+    }
+
     /// Changes velocities `v` (full) to the nearest in the mass metric that keep the closures: the change, on the unknowns.
     /// Motions are differentiated over parts of the time `span`. At the state of [`Mobility::at`].
     pub(super) fn velocity_change(

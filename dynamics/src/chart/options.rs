@@ -86,6 +86,9 @@ pub struct ChartOptions {
     pub margin_limit: f64,
     /// Largest edge strain of the initial state, default 1e-6.
     pub strain_limit: f64,
+    /// Coefficient of restitution `e` of impacts, see [`ChartSimulation::with_contact`](super::ChartSimulation::with_contact):
+    /// a single contact that approaches at a speed parts at `e` times that speed. From 0, the default, to 1.
+    pub restitution: f64,
     /// Edge strain at which a run is given up as diverged, default 0.5. Only the linear position update
     /// ever strains edges.
     pub failure_strain: f64,
@@ -105,6 +108,7 @@ impl Default for ChartOptions {
             growth_limit: 4.0,
             margin_limit: 0.1,
             strain_limit: 1e-6,
+            restitution: 0.0,
             failure_strain: 0.5,
         }
     }
@@ -174,6 +178,13 @@ impl ChartOptions {
             interval,
             "check at least every so many steps",
         )?;
+        if !(0.0..=1.0).contains(&self.restitution) {
+            return Err(ChartDynamicsError::Option {
+                option: "restitution",
+                value: self.restitution,
+                remedy: "give a value from 0 to 1",
+            });
+        }
         if !(0.0..1.0).contains(&self.margin_limit) {
             return Err(ChartDynamicsError::Option {
                 option: "margin limit",

@@ -1,5 +1,6 @@
 //! Solvers against each other, derivatives against differences, orders against closed forms, refusals.
 
+mod impacts;
 mod orders;
 
 use super::*;

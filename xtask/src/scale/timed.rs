@@ -130,6 +130,10 @@ impl<C: Contact> Contact for Timed<C> {
         self.evaluate(|c| c.loads(x))
     }
 
+    fn activation(&self) -> f64 {
+        self.inner.activation()
+    }
+
     fn contact_points(&self, x: &[f64], out: &mut Vec<ContactPoint>) {
         self.evaluate(|c| c.contact_points(x, out));
     }
