@@ -138,7 +138,6 @@ fn imbalance(held: Held, method: &Method, mass: MassKind) -> Imbalance {
         }
         (older, old) = (Some(old), new);
     }
-    println!("{held:?} {mass:?} {method:?}\n    {worst:?}");
     worst
 }
 

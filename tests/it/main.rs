@@ -13,5 +13,6 @@ mod orders;
 mod origami;
 mod robust;
 mod scenes;
+mod statics;
 mod stress;
 mod watch;

@@ -252,6 +252,61 @@ fn a_sheet_is_pulled_through_a_ring() {
 }
 
 #[test]
+fn a_strip_is_pulled_through_a_ring() {
+    let (width, hole, thick) = (0.05, 0.03, 0.01);
+    let flat = generate::strip(24, 0.3, width, generate::Diagonals::UnionJack).expect("valid");
+    // Hangs below the ring; drawn up by a corner, which goes to the axis first.
+    let places = flat.positions().as_chunks::<3>().0.iter();
+    let x = places
+        .flat_map(|p| [0.0, p[1] - 0.5 * width, -p[0]])
+        .collect();
+    let ring = torus(hole + thick, thick, [16, 6]);
+    let ring = Obstacle::still(ring, Isometry3::translation(0.0, 0.0, 0.02)).expect("valid");
+    let path = move |t: f64| [0.0, 0.5 * width * ((t / 0.1).min(1.0) - 1.0), 0.25 * t];
+    let model = model(&flat)
+        .with_moving_pin(VertexId(0), path)
+        .and_then(|m| m.with_damping(2.0))
+        .expect("valid");
+    let mut scene = Scene::new(model, State::at_rest(x), vec![ring], 0.1);
+    scene.run(1.6, 2.0 * H, |_, _| ());
+    let [low, _] = extent(scene.x(), 2);
+    assert!(
+        low > 0.03,
+        "the last vertex is at {low} m, the ring ends at 0.03 m"
+    );
+}
+
+#[test]
+fn a_sheet_is_crumpled_between_closing_spheres() {
+    // Weightless, from exactly flat: they pass each other with little between them, and the sheet goes round both.
+    let (radius, margin) = (0.06, 2e-3);
+    for (between, mu) in [(0.01, 0.0), (0.004, 0.2), (0.003, 0.3)] {
+        let sheet = square(2);
+        let ball = |side: f64| {
+            let at = |height: f64| {
+                let aside = side * (radius + 0.5 * between);
+                Isometry3::translation(0.5 * SIDE + aside, 0.5 * SIDE, side * height)
+            };
+            mover(
+                Shape::Sphere { radius },
+                at(radius + margin),
+                at(0.0),
+                [0.0, 0.4],
+            )
+        };
+        let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)
+            .and_then(|m| m.with_damping(2.0))
+            .expect("valid");
+        let start = State::at_rest(sheet.positions().to_vec());
+        let mut scene = Scene::new(model, start, vec![ball(1.0), ball(-1.0)], mu);
+        scene.run(0.45, H, |_, _| ());
+        let ([left, right], [low, high]) = (extent(scene.x(), 0), extent(scene.x(), 2));
+        assert!(right - left < 0.8 * SIDE, "from {left} to {right} m");
+        assert!(high - low > 0.8 * SIDE, "from {low} to {high} m");
+    }
+}
+
+#[test]
 fn a_strip_is_wrapped_round_a_cylinder_and_unrolled() {
     let (radius, width, length, cells) = (0.03, 0.04, 0.3, 24);
     let flat =

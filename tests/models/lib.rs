@@ -1,6 +1,7 @@
 //! Mechanical problems with exact solutions, shared by the tests that span several crates and by
 //! reports. Each model gives a sheet, a start state and the exact motion.
 
+mod catenary;
 mod elliptic;
 mod flap;
 mod linkage;
@@ -9,6 +10,7 @@ mod pendulum;
 mod strip;
 mod triangle;
 
+pub use catenary::Catenary;
 pub use elliptic::{agm, complete_k, jacobi};
 pub use flap::Flap;
 pub use linkage::Linkage;
