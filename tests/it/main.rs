@@ -1,6 +1,7 @@
 //! Tests that span several crates.
 
 mod balance;
+mod buckling;
 mod charts;
 mod closures;
 mod conservation;

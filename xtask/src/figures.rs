@@ -12,7 +12,9 @@ mod fig07;
 mod fig08;
 mod fig09;
 mod folds;
+mod jam;
 mod marks;
+mod origami;
 mod performance;
 mod sequence;
 mod softness;
@@ -117,6 +119,8 @@ pub(crate) fn make(figure: u8, context: &Context<'_>) -> Result<Made> {
         13 => stamping::make(context),
         14 => drape::fig14(context),
         15 => drape::fig15(context),
+        16 => jam::make(context),
+        17 => origami::make(context),
         _ => anyhow::bail!("figure {figure} cannot be made"),
     }
 }

@@ -1,6 +1,7 @@
 //! The page: one file, pictures inside. Its parts serve other reports as well.
 
 use crate::figures::{Effort, PictureRef, Record, Table};
+use crate::selection::PAPER;
 use crate::store::StoreError;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -56,10 +57,15 @@ fn section(
     } else {
         ""
     };
+    let kind = if n > PAPER {
+        "Beyond the paper,"
+    } else {
+        "Fig."
+    };
     // Writing to a string cannot fail.
     let _ = write!(
         out,
-        "<section id=\"fig{n}\"><h2>Fig. {n}. {}{quick}</h2>",
+        "<section id=\"fig{n}\"><h2>{kind} {n}. {}{quick}</h2>",
         escape(&record.title)
     );
     for picture in &record.pictures {

@@ -10,6 +10,7 @@ use isosheet_io::{
     HistoryRow, HistoryWriter, Trajectory, frame_path, write_atomically, write_json, write_obj,
 };
 use isosheet_mesh::Sheet;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -135,19 +136,32 @@ const LOADS: &str = "t,body,fx,fy,fz,mx,my,mz";
 
 /// Time and force of the sheet on a body in a run that [`ensure()`] has made: seconds, newtons.
 pub(crate) fn forces(store: &Store, scene: &impl Staged, body: usize) -> Result<Vec<[f64; 4]>> {
-    let text = store.read(&format!("{}/loads.csv", folder(scene)))?;
+    let rows = table(store, scene, "loads.csv")?;
+    let of_body = rows.iter().filter_map(|row| match row[..] {
+        [t, number, fx, fy, fz, ..] if number == body as f64 => Some([t, fx, fy, fz]),
+        _ => None,
+    });
+    Ok(of_body.collect())
+}
+
+/// Columns of supports.csv: time (s) and the sum of the forces (N) of all pins and vertex constraints on the sheet.
+const SUPPORTS: &str = "t,fx,fy,fz";
+
+/// Time and force of all supports on the sheet in a run that [`ensure()`] has made: seconds, newtons.
+pub(crate) fn supports(store: &Store, scene: &impl Staged) -> Result<Vec<[f64; 4]>> {
+    let rows = table(store, scene, "supports.csv")?;
+    let rows = rows.into_iter();
+    rows.map(|row| <[f64; 4]>::try_from(row).ok().context("supports.csv"))
+        .collect()
+}
+
+/// The numbers of a file of a run, row by row, without its header.
+fn table(store: &Store, scene: &impl Staged, file: &'static str) -> Result<Vec<Vec<f64>>> {
+    let text = store.read(&format!("{}/{file}", folder(scene)))?;
     let text = String::from_utf8_lossy(&text);
-    let mut rows = Vec::new();
-    for line in text.lines().skip(1) {
-        let numbers = line.split(',').map(str::parse);
-        let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().context("loads.csv")?;
-        if let [t, number, fx, fy, fz, ..] = numbers[..]
-            && number == body as f64
-        {
-            rows.push([t, fx, fy, fz]);
-        }
-    }
-    Ok(rows)
+    let numbers = |line: &str| line.split(',').map(str::parse).collect::<Result<_, _>>();
+    let rows = text.lines().skip(1).map(numbers);
+    rows.collect::<Result<_, _>>().context(file)
 }
 
 /// What every run has to keep at every frame.
@@ -173,6 +187,8 @@ struct Recorder<'a> {
     start: f64,
     /// Rows of loads.csv.
     loads: String,
+    /// Rows of supports.csv.
+    supports: String,
 }
 
 impl Recorder<'_> {
@@ -211,6 +227,12 @@ impl Recorder<'_> {
             let t = state.t;
             writeln!(self.loads, "{t},{body},{fx},{fy},{fz},{mx},{my},{mz}")?;
         }
+        // Their forces are known after the first step.
+        let forces: Vec<_> = simulation.reactions().iter().map(|r| r.force).collect();
+        if !forces.is_empty() {
+            let [fx, fy, fz]: [f64; 3] = forces.iter().sum::<Vector3<f64>>().into();
+            writeln!(self.supports, "{},{fx},{fy},{fz}", state.t)?;
+        }
         Ok(())
     }
 }
@@ -227,6 +249,7 @@ fn run(scene: &impl Staged, draft: &mut Draft, stop: impl Fn() -> bool) -> Resul
         folder: &folder,
         start: 0.0,
         loads: String::new(),
+        supports: String::new(),
     };
     recorder.frame(&simulation, None)?;
     let mut s = RunSummary {
@@ -281,11 +304,19 @@ fn run(scene: &impl Staged, draft: &mut Draft, stop: impl Fn() -> bool) -> Resul
             friction: report.friction,
             drift: report.energy_drift,
         };
+        if scene.ends(&simulation) {
+            break;
+        }
     }
     recorder.trajectory.write(&folder.join("trajectory.npz"))?;
-    if !recorder.loads.is_empty() {
-        let text = format!("{LOADS}\n{}", recorder.loads);
-        write_atomically(&folder.join("loads.csv"), |w| w.write_all(text.as_bytes()))?;
+    for (file, head, rows) in [
+        ("loads.csv", LOADS, &recorder.loads),
+        ("supports.csv", SUPPORTS, &recorder.supports),
+    ] {
+        if !rows.is_empty() {
+            let text = format!("{head}\n{rows}");
+            write_atomically(&folder.join(file), |w| w.write_all(text.as_bytes()))?;
+        }
     }
     s.frames_per_second = s.frames as f64 / s.wall.max(1e-9);
     write_json(&folder.join("summary.json"), &s)?;

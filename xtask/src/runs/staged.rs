@@ -31,6 +31,11 @@ pub(crate) trait Staged: Serialize {
         Ok(Vec::new())
     }
 
+    /// Whether the run is over after a frame, before its last one.
+    fn ends(&self, _simulation: &Simulation) -> bool {
+        false
+    }
+
     /// The simulation at its start.
     ///
     /// # Errors

@@ -1,0 +1,439 @@
+//! Beyond the paper: a strip of paper is fed into a bent guide, and passes or jams.
+
+use super::sequence::{View, choose, sequence};
+use super::{Context, Effort, Made, Picture, Table};
+use crate::draw::{
+    Anchor, Axis, Colour, Drawing, Legend, Line, Plot, Series, Stroke, TEXT, Vertical, column,
+    palette, row,
+};
+use crate::runs::{self, Feed, Guide, Outlet, RunSummary, SelfContact};
+use anyhow::{Context as _, Result};
+use serde_json::{Value, json};
+use std::f64::consts::PI;
+
+/// Radii of the bends, metres, and their outlets: three that let the strip through, and the second one again with something
+/// stuck in it.
+const CASES: [(f64, Outlet); 4] = [
+    (0.045, Outlet::Open),
+    (0.02, Outlet::Open),
+    (0.008, Outlet::Open),
+    (0.02, Outlet::Blocked),
+];
+
+/// The case that jams, and the same guide with nothing in the way.
+const JAM: usize = 3;
+const OPEN: usize = 1;
+
+const COLOURS: [Colour; 4] = [
+    palette::BLUE,
+    palette::GREEN,
+    palette::ORANGE,
+    palette::VERMILION,
+];
+
+fn scene((radius, outlet): (f64, Outlet), effort: Effort) -> Feed {
+    let (cells, frames) = match effort {
+        Effort::Full => ([30, 2], 320),
+        Effort::Quick => ([12, 2], 12),
+    };
+    let (ending, after) = match outlet {
+        Outlet::Open => ("", 0.1),
+        Outlet::Blocked => ("-blocked", 0.025),
+    };
+    Feed {
+        name: format!("feed-{:.0}mm{ending}", 1e3 * radius),
+        guide: Guide {
+            radius,
+            channel: 0.01,
+            width: 0.05,
+            straight: [0.13, after],
+            outlet,
+        },
+        size: [0.12, 0.04],
+        cells,
+        weight: 0.08,
+        rigidity: 5e-4,
+        speed: 0.15,
+        ramp: 0.1,
+        limit: 1.0,
+        friction: 0.3,
+        contact: SelfContact::Friction(0.3),
+        activation: 8e-4,
+        stiffness: 2e-6,
+        damping: 2.0,
+        frame: 1.0 / 400.0,
+        frames,
+    }
+}
+
+/// A run and what it says.
+struct Fed {
+    scene: Feed,
+    run: RunSummary,
+    /// Way of the nip (metres) and force of the nip on the strip along its way (newtons), mean over [`WINDOW`] frames.
+    force: Vec<[f64; 2]>,
+    /// Whether the nip slipped.
+    jammed: bool,
+    /// The middle line of the strip at every frame: x and z, from the nip on.
+    profiles: Vec<Vec<[f64; 2]>>,
+}
+
+/// The force is drawn as the mean over this many frames: contact of single vertices with single facets makes it rough.
+const WINDOW: usize = 5;
+
+impl Fed {
+    fn of(scene: Feed, context: &Context<'_>) -> Result<Self> {
+        let run = runs::ensure(context.store, &scene)?;
+        let forces = runs::supports(context.store, &scene)?;
+        let trajectory = runs::trajectory(context.store, &scene)?;
+        let force = forces
+            .windows(WINDOW)
+            .map(|w| {
+                let mean = w.iter().map(|f| f[1]).sum::<f64>() / WINDOW as f64;
+                [scene.way(w[WINDOW / 2][0]), mean]
+            })
+            .collect();
+        let [along, across] = scene.cells;
+        let profile = |x: &[f64]| -> Vec<[f64; 2]> {
+            // The nip holds the first two.
+            let first = (across / 2) * (along + 1) + 1;
+            let at = |v: usize| [x[3 * v], x[3 * v + 2]];
+            (first..first + along).map(at).collect()
+        };
+        let frames = (0..trajectory.len()).map(|k| trajectory.frame(k).context("frame"));
+        Ok(Self {
+            profiles: frames.map(|x| x.map(profile)).collect::<Result<_>>()?,
+            jammed: forces.last().is_some_and(|f| f[1] > scene.limit),
+            force,
+            run,
+            scene,
+        })
+    }
+
+    fn label(&self) -> String {
+        let open = match self.scene.guide.outlet {
+            Outlet::Open => "",
+            Outlet::Blocked => ", blocked",
+        };
+        format!("{:.0} mm{open}", 1e3 * self.scene.guide.radius)
+    }
+
+    fn peak(&self) -> [f64; 2] {
+        let largest = self.force.iter().max_by(|a, b| a[1].total_cmp(&b[1]));
+        largest.copied().unwrap_or_default()
+    }
+
+    fn way_at(&self, frame: usize) -> f64 {
+        self.scene.way(frame as f64 * self.scene.frame)
+    }
+
+    /// The frame in which the leading edge first feels the plate.
+    fn arrival(&self) -> Option<usize> {
+        let [[_, plate], _] = self.scene.guide.plate()?;
+        let near = plate + self.scene.activation;
+        self.profiles
+            .iter()
+            .position(|p| p.last().is_some_and(|end| end[1] < near))
+    }
+
+    /// The first buckle: the frame in which a force larger than `passing` stops growing for the first time after the strip has
+    /// reached the plate, and the force.
+    fn buckle(&self, passing: f64) -> Option<(usize, f64)> {
+        let first = self.arrival()?;
+        // Means are dated at the middle of their window, supports are known from frame 1 on.
+        let of_frame = |k: usize| k + 1 + WINDOW / 2;
+        let peaks = self.force.windows(3).enumerate();
+        peaks
+            .filter(|(k, w)| of_frame(k + 1) > first && w[1][1] > w[0][1] && w[1][1] > w[2][1])
+            .map(|(k, w)| (of_frame(k + 1), w[1][1]))
+            .find(|(_, force)| *force > passing)
+    }
+
+    /// Length of the straight part of the channel that is left between nip and bend at a frame, metres.
+    fn column(&self, frame: usize) -> f64 {
+        self.profiles.get(frame).map_or(0.0, |p| -p[0][0])
+    }
+
+    /// The fold angle at each rung in the straight part of the channel: x (metres), turn (radians, positive upwards).
+    fn turns(&self, frame: usize) -> Vec<[f64; 2]> {
+        let Some(line) = self.profiles.get(frame) else {
+            return Vec::new();
+        };
+        line.windows(3)
+            .filter(|w| w[1][0] < 0.0)
+            .map(|w| {
+                let (u, v) = (
+                    [w[1][0] - w[0][0], w[1][1] - w[0][1]],
+                    [w[2][0] - w[1][0], w[2][1] - w[1][1]],
+                );
+                let turn = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
+                [w[1][0], turn]
+            })
+            .collect()
+    }
+
+    /// Where the strip is bent most in the straight part at a frame: x (metres) and turn of the rung (radians).
+    fn sharpest(&self, frame: usize) -> [f64; 2] {
+        let turns = self.turns(frame);
+        let largest = turns
+            .iter()
+            .max_by(|a, b| a[1].abs().total_cmp(&b[1].abs()));
+        largest.copied().unwrap_or_default()
+    }
+
+    /// How often the strip changes from one curvature to the other in the straight part at a frame.
+    fn inflections(&self, frame: usize) -> usize {
+        let turns = self.turns(frame);
+        // Turns below this are straight.
+        let bent: Vec<f64> = turns
+            .iter()
+            .map(|t| t[1])
+            .filter(|t| t.abs() > 0.02)
+            .collect();
+        bent.windows(2).filter(|w| w[0] * w[1] < 0.0).count()
+    }
+
+    /// Buckling loads of a straight strip of a length between clamps, and between a clamp and a hinge, newtons.
+    fn euler(&self, length: f64) -> [f64; 2] {
+        let bending = self.scene.rigidity * self.scene.size[1] * (PI / length).powi(2);
+        // The root of tan z = z over pi, squared.
+        [4.0 * bending, 2.0457 * bending]
+    }
+
+    fn facts(&self, passing: f64) -> Value {
+        json!({
+            "run": self.run, "jammed": self.jammed, "way_m_and_force_n": self.force,
+            "arrival": self.arrival().map(|k| self.way_at(k)),
+            "buckle": self.buckle(passing).map(|(k, force)| json!({ "way": self.way_at(k), "force": force, "column": self.column(k), "euler": self.euler(self.column(k)) })),
+        })
+    }
+}
+
+fn newtons(force: f64) -> String {
+    if force < 0.1 {
+        format!("{:.0} mN", 1e3 * force)
+    } else {
+        format!("{force:.2} N")
+    }
+}
+
+/// What happens in front of the plate, in words; `passing` is a force that the strip never needs to pass.
+fn describe(jam: &Fed, passing: f64) -> String {
+    let (Some(arrival), Some((k, force))) = (jam.arrival(), jam.buckle(passing)) else {
+        return "The run is too short for the strip to reach the plate.".into();
+    };
+    let mm = |frame: usize| 1e3 * jam.way_at(frame);
+    let column = jam.column(k);
+    let [clamped, hinged] = jam.euler(column);
+    let last = jam.profiles.len() - 1;
+    let [x, turn] = jam.sharpest(last);
+    let fate = if jam.jammed {
+        format!(
+            "At {:.1} mm the force passes {} N, at which the nip is taken to slip: there the run ends",
+            mm(last),
+            jam.scene.limit
+        )
+    } else {
+        format!("The nip stops at {:.1} mm", mm(last))
+    };
+    format!(
+        "With the outlet blocked, the leading edge reaches the plate when the nip has moved {:.1} mm. The strip then settles against the outer wall all \
+         along the bend, and the force grows until the straight part between nip and bend buckles at {:.1} mm and {}. It is {:.0} mm long there; Euler's load is \
+         {} with both ends clamped and {} with one hinged, and the bend is something between. The walls stop the buckle, which folds \
+         into shorter waves by jumps in the force. {fate}, with {} inflections in the straight part and the sharpest bend, {:.0}° over {:.0} mm, \
+         {:.0} mm before the bend of the guide.",
+        mm(arrival),
+        mm(k),
+        newtons(force),
+        1e3 * column,
+        newtons(clamped),
+        newtons(hinged),
+        jam.inflections(last),
+        turn.abs().to_degrees(),
+        1e3 * jam.scene.size[0] / jam.scene.cells[0] as f64,
+        -1e3 * x,
+    )
+}
+
+fn table(all: &[Fed]) -> Table {
+    let joules = |e: f64| format!("{:.2}", 1e3 * e);
+    let rows = all.iter().map(|f| {
+        let e = &f.run.energy;
+        let [way, peak] = f.peak();
+        vec![
+            f.label(),
+            format!("{:.0} mm", 1e3 * f.way_at(f.run.frames)),
+            format!("{} at {:.0} mm", newtons(peak), 1e3 * way),
+            joules(e.work),
+            joules(-e.released),
+            joules(e.friction),
+            joules(e.damped),
+            joules(e.drift),
+            format!("{:.0e}", f.run.max_strain),
+            super::gap(f.run.smallest_gap),
+            format!("{}", f.run.rejected),
+            format!("{:.1} s", f.run.wall),
+        ]
+    });
+    Table {
+        caption: "Energies at the end in millijoules. Stored: in bending, weight and contact. Missing: what the balance lacks; negative is taken out by the \
+                  integrator, which damps what it does not resolve; positive is the error of the work of the nip, by the trapezoidal rule \
+                  between forces that jump."
+            .into(),
+        head: [
+            "bend", "way", "largest force", "work of the nip", "stored", "friction", "damping", "missing", "strain", "gap",
+            "rejected", "wall time",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+    }
+}
+
+/// Parts of the run at which the jam is shown: the fold-up happens at its end.
+const SHOWN: [f64; 6] = [0.0, 0.5, 0.84, 0.91, 0.95, 1.0];
+
+pub(super) fn make(context: &Context<'_>) -> Result<Made> {
+    let effort = context.effort;
+    let all: Vec<Fed> = CASES
+        .iter()
+        .map(|case| Fed::of(scene(*case, effort), context))
+        .collect::<Result<_>>()?;
+    let jam = &all[JAM];
+    let passing = 2.0 * all[OPEN].peak()[1];
+    let trajectory = runs::trajectory(context.store, &jam.scene)?;
+    let times = SHOWN.map(|s| s * jam.run.time);
+    let view = View {
+        azimuth: -72.0,
+        elevation: 12.0,
+        distance: 0.8,
+        columns: 2,
+        pins: &[],
+        bodies: &[0, 2],
+        depth: 0.08,
+    };
+    let alt_force = "Force of the nip over its way in four guides";
+    let alt_side = "The strip from the side at five times in each of the four guides";
+    let s = &jam.scene;
+    let through = all.iter().take(JAM).map(|f| {
+        let [way, peak] = f.peak();
+        format!(
+            "{:.0} mm: {} at {:.0} mm",
+            1e3 * f.scene.guide.radius,
+            newtons(peak),
+            1e3 * way
+        )
+    });
+    let through: Vec<String> = through.collect();
+    let side: Vec<Drawing> = all.iter().map(side_view).collect();
+    Ok(Made {
+        title: "Paper jam",
+        paper: "The simulation of a paper jam is named as an application for the design of printers (Sec. 1); none is shown.",
+        measured: format!(
+            "A strip of office paper ({:.0} mm x {:.0} mm, {:.0} g/m², flexural rigidity {:.0e} N m, {}/{} vertices/faces) starts flat between two walls \
+             {:.0} mm apart that turn downwards by 90°. A nip holds its last two rungs straight and moves along at {} m/s; friction {} with the walls and \
+             itself. The walls are drawn without the outer one. Bends let the strip through with a largest force of (radius of the middle line: force) {}: even where \
+             the strip meets the outer wall steeply, it bows and slips past. {} Every frame of all runs has a strain below 1e-10 and a positive gap.",
+            1e3 * s.size[0],
+            1e3 * s.size[1],
+            1e3 * s.weight,
+            s.rigidity,
+            jam.run.vertices,
+            jam.run.faces,
+            1e3 * s.guide.channel,
+            s.speed,
+            s.friction,
+            through.join(", "),
+            describe(jam, passing),
+        ),
+        pictures: vec![
+            Picture {
+                file: "fig16.png".into(),
+                alt:
+                    "A strip of paper is pushed round a bend against a plate, buckles and folds up"
+                        .into(),
+                bytes: sequence(
+                    &jam.scene,
+                    &trajectory,
+                    &choose(&trajectory, &times),
+                    &view,
+                    effort,
+                )?,
+            },
+            Picture {
+                file: "fig16-force.svg".into(),
+                alt: alt_force.into(),
+                bytes: force_plot(&all).draw().to_svg(alt_force)?.into_bytes(),
+            },
+            Picture {
+                file: "fig16-side.svg".into(),
+                alt: alt_side.into(),
+                bytes: column(&[row(&side[..2], 30.0), row(&side[2..], 30.0)], 24.0)
+                    .to_svg(alt_side)?
+                    .into_bytes(),
+            },
+        ],
+        tables: vec![table(&all)],
+        facts: json!(all.iter().map(|f| f.facts(passing)).collect::<Vec<_>>()),
+    })
+}
+
+fn force_plot(all: &[Fed]) -> Plot {
+    let ways = all.iter().flat_map(|f| &f.force).map(|p| 1e3 * p[0]);
+    let top = all.iter().map(|f| f.peak()[1]).fold(1e-6, f64::max);
+    Plot {
+        x: Axis::round("way of the nip (mm)", [0.0, ways.fold(1e-3, f64::max)], 6),
+        y: Axis::round("force of the nip (N)", [0.0, 1.05 * top], 5),
+        size: [250.0, 140.0],
+        series: all
+            .iter()
+            .zip(COLOURS)
+            .map(|(f, colour)| Series {
+                name: f.label(),
+                points: f.force.iter().map(|p| [1e3 * p[0], p[1]]).collect(),
+                colour,
+                marker: None,
+                line: Line::Solid,
+            })
+            .collect(),
+        legend: Legend::Right,
+    }
+}
+
+/// Points of a drawing for a metre.
+const SCALE: f64 = 1300.0;
+
+/// Times of the side views as parts of the run; the last are closest.
+const MOMENTS: [f64; 5] = [0.0, 0.5, 0.8, 0.91, 1.0];
+
+/// The walls and the strip from the side, from light to dark in the order of time.
+fn side_view(fed: &Fed) -> Drawing {
+    let mut d = Drawing::new();
+    let scaled = |line: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        line.iter().map(|p| p.map(|c| SCALE * c)).collect()
+    };
+    let guide = &fed.scene.guide;
+    let half = 0.5 * guide.channel;
+    let wall = Stroke::new(palette::GREY, 1.6);
+    for line in [guide.wall(-half), guide.wall(half)] {
+        d.line(&scaled(&line), wall);
+    }
+    if let Some(plate) = guide.plate() {
+        d.line(&scaled(&plate), wall);
+    }
+    let last = (fed.profiles.len() - 1) as f64;
+    for (k, part) in MOMENTS.into_iter().enumerate() {
+        let colour = palette::SKY.mix(palette::VERMILION, k as f64 / 4.0);
+        let frame = (part * last).round() as usize;
+        d.line(&scaled(&fed.profiles[frame]), Stroke::new(colour, 1.0));
+    }
+    d.text(
+        [-SCALE * guide.straight[0], SCALE * (half + 0.004)],
+        &fed.label(),
+        TEXT,
+        Anchor::Start,
+        Vertical::Centre,
+        palette::INK,
+    );
+    d
+}

@@ -1,0 +1,378 @@
+//! Beyond the paper: crease patterns folded by driven angles.
+
+use super::sequence::{View, choose, sequence};
+use super::{Context, Effort, Made, Picture, degrees};
+use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
+use crate::runs::{self, Alike, Creases, Fold, RunSummary, Staged};
+use anyhow::{Context as _, Result};
+use isosheet_mesh::generate::Assignment;
+use isosheet_mesh::{VertexId, fold_angle};
+use isosheet_tests::DegreeFour;
+use serde_json::json;
+
+/// Rest angle of the driven creases in the end, radians: 150 degrees.
+const FULL: f64 = 150.0 * std::f64::consts::PI / 180.0;
+
+/// Sectors of the vertex of degree four, radians.
+const SECTORS: [f64; 2] = [1.0, 1.5];
+
+fn scene(name: &str, creases: Creases, effort: Effort) -> Fold {
+    let frames = match effort {
+        Effort::Full => 150,
+        Effort::Quick => 15,
+    };
+    Fold {
+        name: name.into(),
+        creases,
+        weight: 0.08,
+        full: FULL,
+        duration: 2.0,
+        drive: 5e-3,
+        panel: 10.0,
+        hint: match creases {
+            Creases::Miura { .. } => 0.0,
+            Creases::Vertex { .. } => 0.01,
+        },
+        damping: 5.0,
+        frame: 2.5 / frames as f64,
+        frames,
+    }
+}
+
+/// The Miura pattern of the figure.
+pub(super) fn miura(effort: Effort) -> Fold {
+    let n = if effort == Effort::Full { 10 } else { 4 };
+    let creases = Creases::Miura {
+        panels: [n, n],
+        sides: [0.02, 0.02],
+        angle: std::f64::consts::FRAC_PI_3,
+    };
+    scene("origami-miura", creases, effort)
+}
+
+fn vertex(mode: Alike, effort: Effort) -> Fold {
+    let (name, radius) = match mode {
+        Alike::Odd => ("origami-vertex-odd", 0.05),
+        Alike::Even => ("origami-vertex-even", 0.05),
+    };
+    let creases = Creases::Vertex {
+        sectors: SECTORS,
+        radius,
+        mode,
+    };
+    scene(name, creases, effort)
+}
+
+/// A folded Miura pattern at a frame, in numbers.
+struct Folded {
+    /// Mean fold of the zigzags, and mean of the straight creases, radians; mountains count as positive.
+    zigzag: f64,
+    straight: f64,
+    /// Mean width and depth of the panels over those when flat.
+    size: [f64; 2],
+    /// Largest difference of a straight crease from its exact fold, of any panel from flat (radians), of any distance of two
+    /// vertices from the exact one (metres).
+    errors: [f64; 3],
+}
+
+impl Folded {
+    fn of(scene: &Fold, x: &[f64]) -> Result<Self> {
+        let pattern = scene.pattern()?;
+        let exact = scene.miura().context("a Miura pattern")?;
+        let Creases::Miura { panels, .. } = scene.creases else {
+            anyhow::bail!("a Miura pattern")
+        };
+        let t = pattern.sheet.topology();
+        let (mut zigzags, mut straights, mut flats) = (Vec::new(), Vec::new(), Vec::new());
+        for e in t.edge_ids() {
+            let Some(fold) = fold_angle(t, x, e) else {
+                continue;
+            };
+            match pattern.assignment(e) {
+                Assignment::Flat => flats.push(fold),
+                a if scene.is_driven(&pattern, e) => zigzags.push(a.sign() * fold),
+                a => straights.push(a.sign() * fold),
+            }
+        }
+        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
+        let off = |v: &[f64], about: f64| v.iter().fold(0.0f64, |m, a| m.max((a - about).abs()));
+        let zigzag = mean(&zigzags);
+        let theta = 0.5 * zigzag;
+        let at = |x: &[f64], v: usize| -> [f64; 3] { [x[3 * v], x[3 * v + 1], x[3 * v + 2]] };
+        let distance = |x: &[f64], a: usize, b: usize| {
+            let (p, q) = (at(x, a), at(x, b));
+            (p[0] - q[0]).hypot(p[1] - q[1]).hypot(p[2] - q[2])
+        };
+        let [columns, rows] = panels;
+        let rigid = exact.positions(columns, rows, theta);
+        let n = t.vertex_count();
+        let mut apart: f64 = 0.0;
+        for a in 0..n {
+            for b in 0..a {
+                apart = apart.max((distance(x, a, b) - distance(&rigid, a, b)).abs());
+            }
+        }
+        // Between vertices two panels apart, which lie in the plane of the folded sheet.
+        let vertex = |i: usize, j: usize| i + j * (columns + 1);
+        let flat = exact.panel(0.0);
+        let size = [
+            distance(x, vertex(0, 0), vertex(columns, 0)) / (columns as f64 * flat[0]),
+            distance(x, vertex(0, 0), vertex(0, rows)) / (rows as f64 * flat[1]),
+        ];
+        Ok(Self {
+            zigzag,
+            straight: mean(&straights),
+            size,
+            errors: [
+                off(&straights, exact.straight_fold(theta)),
+                off(&flats, 0.0),
+                apart,
+            ],
+        })
+    }
+}
+
+/// The fold angles of the four creases of a vertex at every frame, with the first crease a valley.
+fn vertex_angles(scene: &Fold, context: &Context<'_>) -> Result<Vec<[f64; 4]>> {
+    let trajectory = runs::trajectory(context.store, scene)?;
+    let pattern = scene.pattern()?;
+    let t = pattern.sheet.topology();
+    (0..trajectory.len())
+        .map(|k| {
+            let x = trajectory.frame(k).context("frame")?;
+            let mut angles = [0.0; 4];
+            for (c, angle) in angles.iter_mut().enumerate() {
+                let e = t.find_edge(VertexId(0), VertexId::from_index(c + 1));
+                *angle = e.and_then(|e| fold_angle(t, x, e)).context("a crease")?;
+            }
+            Ok(angles)
+        })
+        .collect()
+}
+
+/// Folds below this say more about round-off than about kinematics: the lengths, kept to 1e-12, fix an angle to that over the angle.
+const LEAST: f64 = 0.05;
+
+fn lines(name: &str, points: Vec<[f64; 2]>) -> Series {
+    Series {
+        name: name.into(),
+        points,
+        colour: palette::GREY,
+        marker: None,
+        line: Line::Solid,
+    }
+}
+
+fn marks(name: &str, points: Vec<[f64; 2]>, colour: crate::draw::Colour, marker: Marker) -> Series {
+    Series {
+        name: name.into(),
+        points,
+        colour,
+        marker: Some(marker),
+        line: Line::None,
+    }
+}
+
+/// Every so many frames are marked in plots.
+const EVERY: usize = 6;
+
+pub(super) fn make(context: &Context<'_>) -> Result<Made> {
+    let effort = context.effort;
+    let scene = miura(effort);
+    let run = runs::ensure(context.store, &scene)?;
+    let exact = scene.miura().context("a Miura pattern")?;
+    let trajectory = runs::trajectory(context.store, &scene)?;
+    let folded: Vec<Folded> = (0..trajectory.len())
+        .map(|k| Folded::of(&scene, trajectory.frame(k).context("frame")?))
+        .collect::<Result<_>>()?;
+    let beyond = || folded.iter().filter(|f| f.zigzag > LEAST);
+    let worst = |k: usize| beyond().fold(0.0f64, |m, f| m.max(f.errors[k]));
+    let errors = [worst(0), worst(1), worst(2)];
+    let last = folded.last().context("frames")?;
+
+    let thetas: Vec<f64> = (0..=80).map(|k| 0.5 * FULL * f64::from(k) / 80.0).collect();
+    let curve = |f: &dyn Fn(f64) -> f64| -> Vec<[f64; 2]> {
+        thetas
+            .iter()
+            .map(|t| [2.0 * t.to_degrees(), f(*t)])
+            .collect()
+    };
+    let measured = |f: &dyn Fn(&Folded) -> f64| -> Vec<[f64; 2]> {
+        folded
+            .iter()
+            .step_by(EVERY)
+            .map(|m| [m.zigzag.to_degrees(), f(m)])
+            .collect()
+    };
+    let flat = exact.panel(0.0);
+    let angles = Plot {
+        x: Axis::round("fold of the zigzags (°)", [0.0, 150.0], 5),
+        y: Axis::round("fold of the straight creases (°)", [0.0, 150.0], 5),
+        size: [190.0, 150.0],
+        series: vec![
+            lines("exact", curve(&|t| exact.straight_fold(t).to_degrees())),
+            marks(
+                "simulated",
+                measured(&|m| m.straight.to_degrees()),
+                palette::BLUE,
+                Marker::Disc,
+            ),
+        ],
+        legend: Legend::Right,
+    };
+    let sizes = Plot {
+        x: Axis::round("fold of the zigzags (°)", [0.0, 150.0], 5),
+        y: Axis::round("size (flat = 1)", [0.0, 1.0], 5),
+        size: [190.0, 150.0],
+        series: vec![
+            lines("exact", curve(&|t| exact.panel(t)[0] / flat[0])),
+            lines("", curve(&|t| exact.panel(t)[1] / flat[1])),
+            marks(
+                "along zigzags",
+                measured(&|m| m.size[0]),
+                palette::VERMILION,
+                Marker::Square,
+            ),
+            marks(
+                "across",
+                measured(&|m| m.size[1]),
+                palette::GREEN,
+                Marker::Triangle,
+            ),
+        ],
+        legend: Legend::Right,
+    };
+
+    let mut series = Vec::new();
+    let mut vertices = Vec::new();
+    let vertex_exact = DegreeFour { sectors: SECTORS };
+    for (mode, name, colour, marker) in [
+        (Alike::Odd, "1 and 3 alike", palette::BLUE, Marker::Disc),
+        (
+            Alike::Even,
+            "2 and 4 alike",
+            palette::VERMILION,
+            Marker::Square,
+        ),
+    ] {
+        let scene = vertex(mode, effort);
+        let run = runs::ensure(context.store, &scene)?;
+        let found = vertex_angles(&scene, context)?;
+        let error = found
+            .iter()
+            .filter(|a| a[mode.lead()].abs() > LEAST)
+            .flat_map(|a| {
+                let e = vertex_exact.angles(mode.mode(), a[0]);
+                (0..4).map(move |k| (a[k] - e[k]).abs())
+            })
+            .fold(0.0, f64::max);
+        let end = found.last().context("frames")?;
+        let to = end[0];
+        let points = (0..=80).map(|k| {
+            let first = to * f64::from(k) / 80.0;
+            let angles = vertex_exact.angles(mode.mode(), first);
+            [first.to_degrees(), angles[1].to_degrees()]
+        });
+        let exact_name = if series.is_empty() { "exact" } else { "" };
+        series.push(lines(exact_name, points.collect()));
+        let points = found
+            .iter()
+            .step_by(EVERY)
+            .map(|a| [a[0].to_degrees(), a[1].to_degrees()]);
+        series.push(marks(name, points.collect(), colour, marker));
+        vertices.push((run, error, *end));
+    }
+    let branches = Plot {
+        x: Axis::round("fold of crease 1 (°)", [0.0, 160.0], 4),
+        y: Axis::round("fold of crease 2 (°)", [-160.0, 0.0], 4),
+        size: [190.0, 150.0],
+        series,
+        legend: Legend::Right,
+    };
+
+    let times: Vec<f64> = [0.0, 30.0, 60.0, 90.0, 120.0, 150.0f64]
+        .iter()
+        .map(|angle| {
+            let near = |m: &&(usize, &Folded)| (m.1.zigzag.to_degrees() - angle).abs();
+            let frames: Vec<(usize, &Folded)> = folded.iter().enumerate().collect();
+            let best = frames.iter().min_by(|a, b| near(a).total_cmp(&near(b)));
+            best.map_or(0.0, |(k, _)| trajectory.times()[*k])
+        })
+        .collect();
+    let view = View {
+        azimuth: -62.0,
+        elevation: 38.0,
+        distance: 1.2,
+        columns: 3,
+        pins: &[],
+        bodies: &[],
+        depth: 0.0,
+    };
+    let alt_folds = "Fold of the straight creases, and size of the sheet, over the fold of the zigzags: simulated and exact";
+    let alt_vertex = "Fold of the second crease of a vertex over that of the first in its two modes: simulated and exact";
+    let describe = |r: &RunSummary| {
+        format!(
+            "{} frames, {} rejected sub-steps, {:.2} s of wall time, largest strain {:.0e}, work of the drive {:.2e} J, of which the balance lacks {:.1e} J",
+            r.frames, r.rejected, r.wall, r.max_strain, r.energy.work, r.energy.drift
+        )
+    };
+    Ok(Made {
+        title: "Origami: crease patterns folded by driven angles",
+        paper: "Origami is named as an application (Sec. 1): how can a model be folded from one sheet of paper? No crease pattern is folded.",
+        measured: format!(
+            "A Miura pattern ({}/{} vertices/faces, panels of 20 mm with an angle of 60°, 80 g/m², no gravity) starts exactly flat. Springs \
+             drive the zigzag creases alone, to 150° in 2 s, valleys and mountains by their sign; the straight creases are free hinges, and springs ten times \
+             as stiff keep the panels flat. Geometry folds the rest: once the zigzags are folded by more than {}, every straight crease has the \
+             fold tan(s/2) = cos 60° tan(z/2) to {:.0e} rad, the panels are flat to {:.0e} rad, and every distance between two vertices is that of \
+             the rigid pattern to {:.0e} m: the inertia of the moving panels. Half a second after the drive has stopped the zigzags are folded by {}, the straight creases by {}, {:.0e} rad from the exact angle. {}. A vertex of degree four with \
+             sectors of 1 and 1.5 rad has two ways to leave the flat state: the same crease pattern goes one way or the other by its assignment of \
+             mountains and valleys. One crease is driven; on the others a spring a hundred times as weak pulls to the right side by the wrong angle. All \
+             angles are those of the closed form to {:.0e} rad (creases 1 and 3 alike) and {:.0e} rad (2 and 4 alike). There is no self-contact: both patterns fold flat, and nothing touches before.",
+            run.vertices,
+            run.faces,
+            degrees(LEAST),
+            errors[0],
+            errors[1],
+            errors[2],
+            degrees(last.zigzag),
+            degrees(last.straight),
+            last.errors[0],
+            describe(&run),
+            vertices[0].1,
+            vertices[1].1,
+        ),
+        pictures: vec![
+            Picture {
+                file: "fig17.png".into(),
+                alt: "A flat sheet with a Miura pattern folds up".into(),
+                bytes: sequence(
+                    &scene,
+                    &trajectory,
+                    &choose(&trajectory, &times),
+                    &view,
+                    effort,
+                )?,
+            },
+            Picture {
+                file: "fig17-folds.svg".into(),
+                alt: alt_folds.into(),
+                bytes: row(&[angles.draw(), sizes.draw()], 24.0)
+                    .to_svg(alt_folds)?
+                    .into_bytes(),
+            },
+            Picture {
+                file: "fig17-vertex.svg".into(),
+                alt: alt_vertex.into(),
+                bytes: branches.draw().to_svg(alt_vertex)?.into_bytes(),
+            },
+        ],
+        tables: Vec::new(),
+        facts: json!({
+            "run": run,
+            "errors": { "straight_rad": errors[0], "panels_rad": errors[1], "distances_m": errors[2] },
+            "folds": folded.iter().map(|f| [f.zigzag, f.straight, f.size[0], f.size[1]]).collect::<Vec<_>>(),
+            "vertices": vertices.iter().map(|(run, error, end)| json!({ "run": run, "error_rad": error, "end_rad": end })).collect::<Vec<_>>(),
+            "name": scene.name(),
+        }),
+    })
+}
