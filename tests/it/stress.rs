@@ -382,11 +382,11 @@ fn a_sheet_is_thrown_at_an_edge() {
         .step_by(3)
         .for_each(|v| *v = -10.0);
     let mut scene = Scene::new(model(&sheet), start, vec![bar], 0.2);
-    // The vertex over the edge stays above it.
+    // The middle lies a fiftieth of the side beside the edge, and can hang below it by no more than that.
     scene.run(0.05, H, |report, x| {
         let z = x[3 * 40 + 2];
         assert!(
-            z > -0.03,
+            z > -0.03 - 0.02 * SIDE,
             "the middle is at {z} m, below the edge, at t = {}",
             report.t
         );

@@ -1,0 +1,121 @@
+//! The augmented Lagrangian of a step and its gradient.
+
+use super::{Minimiser, Step};
+use crate::model::PINNED;
+use crate::primal::dot;
+use nalgebra::Vector3;
+
+/// The augmented Lagrangian at an iterate.
+pub(super) struct Merit {
+    /// Its inertia term.
+    pub(super) inertia: f64,
+    /// Without the rods: the incremental potential.
+    pub(super) potential: f64,
+    /// Size of the multipliers' terms, `sum |L| l^2`.
+    pub(super) rod_scale: f64,
+    /// Its value.
+    pub(super) value: f64,
+    /// Round-off in the value.
+    pub(super) round_off: f64,
+}
+
+impl Minimiser {
+    /// The augmented Lagrangian at `self.x`; sets `self.c`.
+    pub(super) fn merit(&mut self, step: &Step<'_, '_>) -> Merit {
+        let (model, t, h) = (step.scene.model, step.t, step.h);
+        for i in 0..self.x.len() {
+            self.difference[i] = self.x[i] - self.target[i];
+        }
+        let inertia = model.kinetic_energy(&self.difference);
+        let work = dot(&self.applied, &self.difference);
+        model.rods().residual_into(&self.x, &mut self.c);
+        self.vertex_rows.evaluate(model, t, &self.x);
+        let rods: f64 = (0..self.c.len())
+            .map(|e| (self.multipliers[e] + 0.5 * self.penalty[e] * self.c[e]) * self.c[e])
+            .sum::<f64>()
+            + self.vertex_rows.value();
+        // Round-off of c is that of the squared lengths.
+        let rod_scale: f64 = self
+            .multipliers
+            .iter()
+            .zip(model.rods().lengths())
+            .map(|(m, l)| m.abs() * l * l)
+            .sum();
+        // And where inertia alone has the right lengths already, nothing but the round-off of the
+        // positions is left to minimise.
+        let size = self.x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let still: f64 = self
+            .penalty
+            .iter()
+            .zip(model.rods().lengths())
+            .map(|(p, l)| p * (f64::EPSILON * l * (size + l)).powi(2))
+            .sum();
+        let (load, vertex_still) = self.vertex_rows.scales(model, size);
+        let (rod_scale, still) = (rod_scale + load, still + vertex_still);
+        let mut potential = model.potential_energy(t, &self.x);
+        if let Some(contact) = step.contact() {
+            potential += contact.energy(&self.x);
+        }
+        Merit {
+            inertia,
+            value: inertia + h * h * (potential - work) + rods,
+            potential: inertia + h * h * (potential - work),
+            rod_scale,
+            round_off: 8.0
+                * f64::EPSILON
+                * (inertia + h * h * (potential.abs() + work.abs()) + rods.abs() + rod_scale)
+                + 64.0 * still,
+        }
+    }
+
+    /// Gradient of the augmented Lagrangian at `self.x`, with `self.c` current; sets the
+    /// force densities of the rods.
+    pub(super) fn gradient(&mut self, step: &Step<'_, '_>) {
+        let (model, t, h) = (step.scene.model, step.t, step.h);
+        for i in 0..self.x.len() {
+            self.difference[i] = self.x[i] - self.target[i];
+        }
+        model.apply_mass(&self.difference, &mut self.weighted);
+        model.potential_force(t, &self.x, &mut self.force);
+        for i in 0..self.x.len() {
+            self.gradient[i] = self.weighted[i] - h * h * (self.force[i] + self.applied[i]);
+        }
+        for e in 0..self.c.len() {
+            self.density[e] = self.multipliers[e] + self.penalty[e] * self.c[e];
+        }
+        model
+            .rods()
+            .apply_transpose_add(&self.x, &self.density, &mut self.gradient);
+        self.vertex_rows.add_gradient(model, &mut self.gradient);
+        if let Some(contact) = step.contact() {
+            contact.add_gradient(&self.x, h * h, &mut self.gradient);
+        }
+        model.clear_pinned(&mut self.gradient);
+    }
+
+    /// Adds to the gradient what the rest of the prescribed motions will change it by, to first order.
+    pub(super) fn add_drive(&mut self, step: &Step<'_, '_>) {
+        let model = step.scene.model;
+        if let Some(contact) = step.contact() {
+            contact.add_drive(&self.x, step.h * step.h, &mut self.gradient);
+        }
+        let free = model.free_index();
+        for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
+            let (pin, end) = match (free[a] == PINNED, free[b] == PINNED) {
+                (true, false) => (a, b),
+                (false, true) => (b, a),
+                _ => continue,
+            };
+            let at = |x: &[f64], v: usize| Vector3::new(x[3 * v], x[3 * v + 1], x[3 * v + 2]);
+            let (d, u) = (
+                at(&self.x, end) - at(&self.x, pin),
+                at(&self.end, pin) - at(&self.x, pin),
+            );
+            let change = self.density[e] * u + self.penalty[e] * d.dot(&u) * d;
+            for k in 0..3 {
+                self.gradient[3 * end + k] -= change[k];
+            }
+        }
+        model.clear_pinned(&mut self.gradient);
+    }
+}
