@@ -87,7 +87,7 @@ impl Minimiser {
             self.start.copy_from_slice(&self.x);
             let limit = self.limit(step);
             let promised = -0.5 * slope;
-            let trifle = promised <= (NOISE * play).max(WORTHWHILE * (first - before.potential));
+            let trifle = promised <= (NOISE * play).max(WORTHWHILE * (first - before.potential).min(before.inertia));
             let halvings = if trifle { 0 } else { MAX_HALVINGS };
             let Some((now, length)) = self.retract(step, limit, slope, halvings, &before, effort)
             else {
