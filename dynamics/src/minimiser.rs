@@ -59,6 +59,7 @@ pub(crate) struct Minimiser {
     across: Vec<f64>,
     density: Vec<f64>,
     c: Vec<f64>,
+    change: Vec<f64>,
     /// Edge strain from which the projection takes over where there is contact.
     ready: f64,
     /// Vertices on curves and surfaces.
@@ -129,6 +130,7 @@ impl Minimiser {
             across: vec![0.0; m],
             density: vec![0.0; m],
             c: vec![0.0; m],
+            change: vec![0.0; m],
             ready: READY,
             vertex_rows: VertexRows::new(model, options.stiffness),
             target: vec![0.0; n],
@@ -227,7 +229,7 @@ impl Minimiser {
         Ok((residual, path, work))
     }
 
-    /// Tangent steps from the positions at the start. In contact, where motions are small or blocked, they need a third of the
+    /// Tangent steps from the positions at the start. In contact, where motions are small or blocked, they need a fraction of the
     /// factorisations of the other ways, and come to rest; without contact they are for what the prediction misses.
     fn go_along_manifold(
         &mut self,
