@@ -25,10 +25,6 @@ const NEAR: f64 = 1e-2;
 const MAX_RETRACTION: usize = 12;
 /// Times that a step is halved which does not descend.
 const MAX_HALVINGS: usize = 2;
-/// Part of all gain below which the gain of a further step is not worth it: the projection of the other path is less exact.
-const WORTHWHILE: f64 = 3e-3;
-/// Part of the energy that the tolerance of the lengths leaves open below which a decrease is noise.
-const NOISE: f64 = 0.1;
 /// Part of the promised decrease that has to come true.
 const ARMIJO: f64 = 1e-4;
 
@@ -72,10 +68,8 @@ impl Minimiser {
     }
 
     fn walk(&mut self, step: &mut Step<'_, '_>, effort: &mut Effort) -> Option<f64> {
-        let first = self.merit(step).potential;
+        self.merit(step);
         let (mut left, mut updates) = (MAX_STEPS, 0);
-        // Factor by which the last step lowered the square of the Newton decrement, as far as known.
-        let mut rate = Rate::default();
         while left > 0 {
             left -= 1;
             if !self.tangent(step, effort) {
@@ -87,36 +81,26 @@ impl Minimiser {
             if !slope.is_finite() {
                 return None;
             }
-            let play = step.h * step.h * self.play(step);
-            let still = -slope <= before.round_off;
+            let still = slope.abs() <= before.round_off;
             let residual = if still {
                 0.0
             } else {
-                (-slope / before.inertia).sqrt()
+                (slope.abs() / before.inertia).sqrt()
             };
             self.start.copy_from_slice(&self.x);
             let limit = self.limit(step);
-            let promised = -0.5 * slope;
-            let gained = (first - before.potential).min(before.inertia);
-            let trifle = promised <= (NOISE * play).max(WORTHWHILE * gained);
-            let halvings = if trifle { 0 } else { MAX_HALVINGS };
-            let Some((now, length)) = self.retract(step, limit, slope, halvings, &before, effort)
-            else {
-                // A trifle is lost in the projection.
-                let found = (trifle || still) && self.arrive(step, effort);
-                return found.then_some(residual);
+            let Some(length) = self.retract(step, limit, slope, &before, effort) else {
+                return (still && self.arrive(step, effort)).then_some(residual);
             };
-            let next = -slope * rate.update(-slope);
-            let is_converged = still || next <= self.options.tolerance * before.inertia;
-            let is_lost = trifle && before.value - now.value < 0.5 * promised;
-            if !(length == 1.0 && is_converged || is_lost) {
+            let is_converged = still || slope.abs() <= self.options.tolerance * before.inertia;
+            if !(length == 1.0 && is_converged) {
                 continue;
             }
             if let Some(contact) = &mut step.scene.contact
                 && updates < self.options.max_friction_updates
                 && contact.relag(&self.x) > SETTLED
             {
-                (left, updates, rate) = (MAX_STEPS, updates + 1, Rate::default());
+                (left, updates) = (MAX_STEPS, updates + 1);
                 continue;
             }
             return self.arrive(step, effort).then_some(residual);
@@ -188,19 +172,18 @@ impl Minimiser {
         self.matrix.factorize().is_ok()
     }
 
-    /// Goes on by up to `limit` of the tangent step, not far from the manifold; the merit there and the part of the step, or
+    /// Goes on by up to `limit` of the tangent step, not far from the manifold; the part of the step, or
     /// nothing if it does not descend.
     fn retract(
         &mut self,
         step: &mut Step<'_, '_>,
         limit: f64,
         slope: f64,
-        halvings: usize,
         before: &Merit,
         effort: &mut Effort,
-    ) -> Option<(Merit, f64)> {
+    ) -> Option<f64> {
         let mut length = limit;
-        for _ in 0..=halvings {
+        for _ in 0..=MAX_HALVINGS {
             for i in 0..self.x.len() {
                 self.x[i] = self.start[i] - length * self.dx[i];
             }
@@ -208,7 +191,7 @@ impl Minimiser {
                 let now = self.merit(step);
                 let promised = before.value + ARMIJO * length * slope;
                 if now.value <= promised + before.round_off {
-                    return Some((now, length));
+                    return Some(length);
                 }
             }
             length *= 0.5;
@@ -239,21 +222,5 @@ impl Minimiser {
         let (model, x) = (step.scene.model, &mut self.x);
         self.projector
             .positions(model, &mut self.matrix, held, x, aim, effort)
-    }
-}
-
-/// How fast a sequence falls.
-#[derive(Default)]
-struct Rate {
-    last: Option<f64>,
-}
-
-impl Rate {
-    /// The factor from the value before to this one, at most one: an estimate of the next factor from above, where convergence is linear or
-    /// faster (Hairer and Wanner, "Solving Ordinary Differential Equations II", 1996, sec. IV.8).
-    fn update(&mut self, value: f64) -> f64 {
-        let factor = self.last.map_or(1.0, |last| value / last);
-        self.last = Some(value);
-        factor.min(1.0)
     }
 }
