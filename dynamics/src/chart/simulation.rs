@@ -197,6 +197,10 @@ impl ChartSimulation {
     /// below its activation distance: choose that small. Gaps that the curvature of the path has closed to a tenth of it are
     /// opened to that again.
     ///
+    /// A sheet that lies on a body keeps still in forward Euler, the paper's method, which moves with the momenta that the impulses
+    /// left. The other methods move with what forces make of them in the step, and creep by the acceleration along the body
+    /// times the squared step, each step, against friction too.
+    ///
     /// Reactions do not contain the impulses that supports answer impacts with, nor does the work of moving pins.
     ///
     /// # Errors
