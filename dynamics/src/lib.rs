@@ -27,8 +27,9 @@
 //!
 //! Every accepted step has the rest lengths to the tolerance of its method (a relative 1e-12 or better by
 //! default, or the round-off of the coordinates where that is larger), finite energies, and, with a
-//! damped method, an energy gain of at most a tenth of the kinetic energy: compressed rods that
-//! snap through can feed any implicit method, and such steps are shortened.
+//! damped method, an energy gain of at most a tenth of the kinetic energy in a step and a fiftieth of the largest
+//! kinetic energy in all steps together: compressed rods that
+//! snap through can feed any implicit method. Such steps are taken with implicit Euler, or shortened.
 //!
 //! # Limits
 //!
@@ -61,6 +62,7 @@ mod contact_tests;
 mod crease;
 #[cfg(test)]
 mod derivative_tests;
+mod energy_account;
 mod energy_momentum;
 mod feasibility;
 mod implicit;

@@ -1,14 +1,14 @@
 //! Steps of an integrator, subdivided where it rejects them.
 
 use crate::contact::{Contact, ContactError};
+use crate::energy_account::EnergyAccount;
 use crate::feasibility::{Excess, excess};
 use crate::implicit::ImplicitEuler;
 use crate::integrator::{Integrator, RodDemand, Scene};
 use crate::rank::rod_rank;
 use crate::reaction::Balance;
-use crate::report::{Accepted, Effort, Path, StepError};
+use crate::report::{Effort, Path, StepError};
 use crate::{Fallback, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable};
-use isosheet_coords::linalg::norm_inf;
 
 /// What was done on the way to the end of a step, kept also if it fails half-way.
 #[derive(Debug)]
@@ -54,6 +54,7 @@ pub(crate) struct Subdivided {
     pub(crate) contact: Option<Box<dyn Contact>>,
     /// Forces of the supports in the last accepted sub-step.
     pub(crate) balance: Option<Balance>,
+    account: EnergyAccount,
 }
 
 impl Subdivided {
@@ -71,6 +72,7 @@ impl Subdivided {
             before: State::at_rest(vec![0.0; model.coordinate_count()]),
             contact: None,
             balance: None,
+            account: EnergyAccount::default(),
             model,
         })
     }
@@ -137,16 +139,17 @@ impl Subdivided {
             }
             if guarded
                 && let Ok(accepted) = &tried
-                && let Some(error) = energy_gain(&self.model, &self.before, state, accepted)
+                && let Err(error) = self
+                    .account
+                    .enter(&self.model, &self.before, state, accepted)
             {
                 state.copy_from(&self.before);
                 tried = Err(error);
             }
             if let Err(StepError::EnergyGain { .. }) = tried
-                && self.contact.is_some()
                 && !restarted
             {
-                // Contact came or went: the history of the motion does not continue.
+                // Contact came or went, or rods snapped through: the history of the motion does not continue.
                 restarted = self.integrator.restart();
                 if restarted {
                     tally.rejected += 1;
@@ -208,7 +211,9 @@ impl Subdivided {
             tally.path = tally.path.max(accepted.path);
             tally.work += accepted.work + accepted.driven + accepted.contact.bodies;
             tally.friction += accepted.contact.friction;
-            tally.dissipated += damp(&self.model, state, fraction * h);
+            let dissipated = damp(&self.model, state, fraction * h);
+            tally.dissipated += dissipated;
+            self.account.spend(dissipated);
             patience = patience.saturating_sub(1);
             let growth = if patience == 0 { 2.0 } else { 1.0 };
             fraction = largest_fraction(done).min(growth * fraction);
@@ -283,47 +288,6 @@ fn scene<'a>(model: &'a SheetModel, contact: &'a mut Option<Box<dyn Contact>>) -
         model,
         contact: contact.as_deref_mut(),
     }
-}
-
-/// Share of the kinetic energy that a damped method may gain in one step. Compressed rods that snap
-/// through can feed implicit methods; shorter steps do not let them.
-const MAX_ENERGY_GAIN: f64 = 0.1;
-
-/// Relative displacement that the tolerance of the lengths leaves open: over a short step it looks
-/// like a velocity.
-const POSITION_NOISE: f64 = 1e-11;
-
-/// The error of a step that created energy, if it did.
-fn energy_gain(
-    model: &SheetModel,
-    before: &State,
-    after: &State,
-    accepted: &Accepted,
-) -> Option<StepError> {
-    let (t0, t1) = (
-        model.kinetic_energy(&before.v),
-        model.kinetic_energy(&after.v),
-    );
-    let (v0, v1) = (
-        model.potential_energy(after.t, &before.x),
-        model.potential_energy(after.t, &after.x),
-    );
-    let contact = &accepted.contact;
-    let drives = contact.bodies.abs() + accepted.driven.abs();
-    let driven = accepted.work.abs() + drives;
-    let gain =
-        t1 + v1 + contact.stored - t0 - v0 - accepted.work - accepted.driven - contact.bodies;
-    let noise = POSITION_NOISE * norm_inf(&after.x) / (after.t - before.t);
-    let round_off =
-        1e-9 * (t0 + v0.abs() + v1.abs() + driven) + model.mass().total() * noise * noise;
-    // The work of bodies, pins and moving constraints is known to the accuracy of the trapezoidal rule only.
-    let share = t0.max(t1) + 5.0 * drives;
-    (gain > MAX_ENERGY_GAIN * share + round_off + contact.play).then_some(StepError::EnergyGain {
-        t: before.t,
-        h: after.t - before.t,
-        gain,
-        kinetic: t1,
-    })
 }
 
 /// Applies velocity damping over a step; returns the energy taken out.
