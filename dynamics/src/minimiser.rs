@@ -230,13 +230,14 @@ impl Minimiser {
     }
 
     /// Tangent steps from the positions at the start. In contact, where motions are small or blocked, they need a fraction of the
-    /// factorisations of the other ways, and come to rest; without contact they are for what the prediction misses.
+    /// factorisations of the other ways, and come to rest; without contact they are for what the prediction misses. Bodies in motion
+    /// advance with the iterates; supports in motion are left to the other ways.
     fn go_along_manifold(
         &mut self,
         step: &mut Step<'_, '_>,
         effort: &mut Effort,
     ) -> Option<(f64, Path)> {
-        if self.is_driven(step) || step.scene.model.has_drives() {
+        if step.scene.model.has_drives() {
             return None;
         }
         self.tangent_steps(step, effort)

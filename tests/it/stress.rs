@@ -301,7 +301,9 @@ fn a_sheet_is_crumpled_between_closing_spheres() {
         let mut scene = Scene::new(model, start, vec![ball(1.0), ball(-1.0)], mu);
         scene.run(0.45, H, |_, _| ());
         let ([left, right], [low, high]) = (extent(scene.x(), 0), extent(scene.x(), 2));
-        assert!(right - left < 0.8 * SIDE, "from {left} to {right} m");
+        // A sheet that is turned by its spheres but not wrapped round them keeps its width to a few percent; which way it folds, along
+        // its sides or a diagonal, is left to round-off.
+        assert!(right - left < 0.85 * SIDE, "from {left} to {right} m");
         assert!(high - low > 0.8 * SIDE, "from {low} to {high} m");
     }
 }

@@ -226,7 +226,7 @@ impl Minimiser {
     }
 
     /// Moves sheet, pins and bodies on together.
-    fn drive(&mut self, step: &mut Step<'_, '_>, part: f64) {
+    pub(super) fn drive(&mut self, step: &mut Step<'_, '_>, part: f64) {
         for i in 0..self.x.len() {
             self.x[i] = self.start[i] - part * self.dx[i];
         }

@@ -72,6 +72,7 @@ impl Minimiser {
         let (mut left, mut updates) = (MAX_STEPS, 0);
         while left > 0 {
             left -= 1;
+            let is_driven = self.is_driven(step);
             if !self.tangent(step, effort) {
                 return None;
             }
@@ -89,6 +90,14 @@ impl Minimiser {
             };
             self.start.copy_from_slice(&self.x);
             let limit = self.limit(step);
+            if is_driven {
+                if limit == 0.0 {
+                    return None;
+                }
+                self.drive(step, limit);
+                self.merit(step);
+                continue;
+            }
             let Some(length) = self.retract(step, limit, slope, &before, effort) else {
                 return (still && self.arrive(step, effort)).then_some(residual);
             };
@@ -132,8 +141,12 @@ impl Minimiser {
             }
         }
         self.penalty.copy_from_slice(&self.along);
+        let is_driven = self.is_driven(step);
         for _ in 0..MAX_PASSES {
             self.gradient(step);
+            if is_driven {
+                self.add_drive(step);
+            }
             self.matrix.solve(model, &self.gradient, &mut self.dx);
             model.rods().apply(&self.x, &self.dx, &mut self.change);
             let (mut largest, mut most) = (0.0_f64, 0.0_f64);
