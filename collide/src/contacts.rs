@@ -505,7 +505,8 @@ impl Contact for Contacts {
             if let Some(b) = r.key.body.filter(|_| moving) {
                 let displacement = self.bodies[b as usize].displacement(&r.point);
                 let force = r.force(&self.step.x0, x1, &self.bodies);
-                work.bodies += force.dot(&displacement);
+                // The sheet pulls the body by this force; the body works against it.
+                work.bodies -= force.dot(&displacement);
             }
         }
         work

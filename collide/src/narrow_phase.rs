@@ -143,7 +143,7 @@ impl CrossCandidates {
 
 /// The minimum, or not a number if one of the two is not: a broken state must not pass for a wide
 /// gap.
-fn smaller(a: f64, b: f64) -> f64 {
+pub(crate) fn smaller(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {
         f64::NAN
     } else {

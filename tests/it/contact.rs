@@ -1,7 +1,7 @@
 //! The mechanics of contact against closed forms.
 
 use crate::watch::Watch;
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Motion, Obstacle, Shape};
 use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
@@ -253,4 +253,39 @@ fn a_dropped_sheet_loses_what_friction_and_damping_take() {
         assert!(ratios.clone().all(|r| r > 1.5), "{drifts:?}");
         assert!(drifts[3][0] < 0.0 && drifts[3][0] > -2e-3, "{drifts:?}");
     }
+}
+
+/// A floor that slides away at a constant speed takes a plate along: of its work half is lost to friction and half is
+/// kinetic energy in the end, `W = m v^2`.
+#[test]
+fn a_conveyor_does_work_by_friction() {
+    const SPEED: f64 = 0.5;
+    let flat = generate::isotropic_square(1, 0.2).expect("valid");
+    let model = SheetModel::new(&flat, MASS, MassKind::Lumped)
+        .expect("valid")
+        .with_gravity();
+    let options = ContactOptions::for_sheet(&model);
+    let key = |t: f64| Keyframe {
+        t,
+        pose: Isometry3::translation(SPEED * t, 0.0, -0.95 * options.activation),
+    };
+    let motion = Motion::new(vec![key(0.0), key(1.0)]).expect("in order");
+    let belt = Obstacle::new(Shape::HalfSpace, motion).expect("valid");
+    let contacts = Contacts::new(&model, options)
+        .and_then(|c| c.with_body(belt, Coefficients::equal(0.5)))
+        .expect("valid");
+    let mut watch = Watch::new(&model, &contacts);
+    let start = State::at_rest(flat.positions().to_vec());
+    let mut simulation = Simulation::new(model, start, Method::default())
+        .and_then(|s| s.with_contact(contacts))
+        .expect("valid");
+    let mut last = watch.step(&mut simulation, 1.0 / 480.0);
+    while last.t < 0.3 {
+        last = watch.step(&mut simulation, 1.0 / 480.0);
+    }
+    let work = MASS * SPEED * SPEED;
+    assert!((last.work / work - 1.0).abs() < 0.02, "{last:?}");
+    assert!((last.friction / work - 0.5).abs() < 0.02, "{last:?}");
+    assert!((last.kinetic / work - 0.5).abs() < 0.01, "{last:?}");
+    assert!(last.energy_drift.abs() < 0.02 * work, "{last:?}");
 }

@@ -4,6 +4,7 @@ use super::options::Coefficients;
 use super::path::{Course, RestOfStep, StepMotion};
 use super::touch::{Key, Kind, Parallel, Touch};
 use crate::distance::{Closest, edge_edge, point_triangle};
+use crate::narrow_phase::smaller;
 use crate::{
     BroadPhase, CcdOptions, ContactGeometry, ContactMesh, CrossCandidates, Obstacle, ObstacleError,
     ParallelMollifier, Shape,
@@ -545,7 +546,8 @@ impl Check<'_> {
         let (n, height) = support(&places);
         // The distance from the separating plane is not more than that of the primitives.
         let lowest = places.iter().map(|p| n.dot(p) - height);
-        let distance = lowest.fold(f64::INFINITY, f64::min);
+        // Not a number where the closest points coincide: a pair that touches.
+        let distance = lowest.fold(f64::INFINITY, smaller);
         let moved = courses.iter().map(|c| c.reach(self.rest));
         let nearest = distance - moved.fold(0.0, f64::max);
         if nearest > self.sheet.reach {

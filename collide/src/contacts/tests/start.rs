@@ -109,6 +109,35 @@ fn starts_that_pass_through_are_refused() {
     ));
 }
 
+/// The closest points of the sheet and the body coincide, so that there is no direction between them.
+#[test]
+fn starts_without_any_distance_are_refused() {
+    let sheet = sheet(1);
+    let model = model(&sheet);
+    let flat = State::at_rest(sheet.positions().to_vec());
+    let patch = [0.4, 0.4, 0.0, 0.63, 0.41, 0.0, 0.52, 0.64, 0.0];
+    let patch = TriangleSurface::new(&patch, &[[0, 1, 2]]).unwrap();
+    // A ball whose centre lies in a face far from its edges, and an open surface that lies in the sheet.
+    for (shape, expected) in [
+        (Shape::Sphere { radius: 1e-3 }, -1e-3),
+        (Shape::Surface(Arc::new(patch)), 0.0),
+    ] {
+        let place = match shape {
+            Shape::Sphere { .. } => Isometry3::translation(0.45, 0.57, 0.0),
+            _ => Isometry3::identity(),
+        };
+        let mut contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))
+            .unwrap()
+            .with_body(still(shape, place), Coefficients::FRICTIONLESS)
+            .unwrap();
+        let error = contacts.check_start(&model, &flat).unwrap_err();
+        assert!(
+            matches!(error, ContactError::Touching { gap, .. } if gap == expected),
+            "{error}"
+        );
+    }
+}
+
 #[test]
 fn options_that_make_no_sense_are_named() {
     let sheet = sheet(1);
