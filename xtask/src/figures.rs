@@ -1,5 +1,6 @@
 //! The figures, one module each, and what is kept about them.
 
+mod crescent;
 mod crumple;
 mod drape;
 mod fig01;

@@ -5,6 +5,7 @@ mod canvas;
 mod glyphs;
 mod montage;
 mod occlusion;
+mod pieces;
 mod sheet;
 mod solid;
 

@@ -93,7 +93,7 @@ pub(super) fn decode(svg: &str) -> String {
     out
 }
 
-/// Estimated width in points, from the widths of Helvetica in thousandths of an em.
+/// Estimated width in points: enough for whichever font the viewer has.
 pub(super) fn width(text: &str, size: f64) -> f64 {
     let mut scale = 1.0;
     let mut sum = 0.0;
@@ -115,16 +115,18 @@ pub(super) fn extent(text: &str, size: f64) -> (f64, f64) {
     (low * size, high * size)
 }
 
+/// The widest of the font families that the files name, em.
 fn advance(c: char) -> f64 {
     match c {
-        'i' | 'j' | 'l' | '\'' | '|' => 0.23,
-        ' ' | '.' | ',' | ':' | ';' | 'f' | 't' | 'I' | '/' | '!' => 0.28,
-        'r' | '-' | '(' | ')' | '°' => 0.34,
-        'm' | 'M' | 'W' | '%' => 0.86,
-        'w' | 'C' | 'D' | 'G' | 'H' | 'N' | 'O' | 'Q' | 'R' | 'U' => 0.73,
-        'A' | 'B' | 'E' | 'K' | 'P' | 'S' | 'V' | 'X' | 'Y' | 'T' | 'F' | 'L' | 'Z' => 0.65,
-        '=' | '+' | '−' | '≤' | '<' | '>' | '×' => 0.60,
-        _ => 0.56,
+        'i' | 'j' | 'l' | '\'' | 'I' => 0.28,
+        ' ' | '.' | ',' | ':' | ';' | '/' | '|' => 0.33,
+        'f' | 't' | 'r' | '-' | '(' | ')' | '!' => 0.40,
+        '°' => 0.50,
+        'm' | 'M' | 'W' | '%' => 0.96,
+        '=' | '+' | '−' | '≤' | '<' | '>' | '×' => 0.84,
+        'w' | 'C' | 'D' | 'G' | 'H' | 'N' | 'O' | 'Q' | 'R' | 'U' => 0.78,
+        'A' | 'B' | 'E' | 'K' | 'P' | 'S' | 'V' | 'X' | 'Y' | 'T' | 'F' | 'L' | 'Z' => 0.68,
+        _ => 0.63,
     }
 }
 

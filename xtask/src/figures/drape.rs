@@ -6,6 +6,7 @@ use super::{Context, Effort, Made, Picture, Table};
 use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
 use crate::runs::{self, Cloth, Drape, Outline, RunSummary, SelfContact, Staged};
 use anyhow::{Context as _, Result};
+use isosheet_mesh::{Dof, Sheet};
 use serde_json::{Value, json};
 
 /// Times of the pictures, seconds.
@@ -95,6 +96,11 @@ struct Draped {
     run: RunSummary,
     folds: Folds,
     hem: Hem,
+    /// How far the hem hangs below the table, as part of its distance from the table in the flat cloth (means over the vertices of
+    /// the hem): 1 for a cloth that hangs straight down.
+    drop: f64,
+    /// Internal degrees of freedom.
+    internal: i64,
 }
 
 fn drape(label: &str, scene: Drape, context: &Context<'_>) -> Result<Draped> {
@@ -109,9 +115,23 @@ fn drape(label: &str, scene: Drape, context: &Context<'_>) -> Result<Draped> {
         label: label.into(),
         folds: Folds::of(&sheet, x, &scene.table, &outline),
         hem: Hem::of(&sheet, x),
+        drop: drop(&sheet, x, &scene),
+        internal: Dof::of(sheet.topology()).internal,
         run,
         scene,
     })
+}
+
+fn drop(sheet: &Sheet, x: &[f64], scene: &Drape) -> f64 {
+    let t = sheet.topology();
+    let hem = || t.vertex_ids().filter(|v| t.is_boundary_vertex(*v));
+    // The table's top is below the start of the cloth.
+    let depth: f64 = hem().map(|v| -scene.drop - x[3 * v.index() + 2]).sum();
+    let reach = |v| {
+        let [a, b, _] = sheet.position(v);
+        scene.table.outside([a, b])
+    };
+    depth / hem().map(reach).sum::<f64>()
 }
 
 impl Draped {
@@ -138,7 +158,7 @@ impl Draped {
     }
 
     fn facts(&self) -> Value {
-        json!({ "run": self.run, "folds": self.folds, "hem": {
+        json!({ "run": self.run, "folds": self.folds, "drop": self.drop, "internal_dof": self.internal, "hem": {
             "folds": self.hem.folds, "spacing_spread": self.hem.spacing_spread, "size_spread": self.hem.size_spread, "wave": self.hem.wave,
         } })
     }
@@ -159,19 +179,66 @@ fn fold_table(all: &[Draped]) -> Table {
             format!("{:.1}", f.density_at_corners),
             format!("{} of {}", f.strongest[1], f.strongest[0]),
             format!("{:.0}° ({:.0}°)", f.angle[0], f.angle[1]),
+            d.internal.to_string(),
+            percent(d.drop),
         ]
     });
     Table {
         caption: "Principal folds at rest, in the part of the cloth that hangs beyond the first row of cells at the table's edge. Bending is edge length \
                   times size of the fold angle. At the corners: within one mean edge of a line from a table corner to its cloth \
                   corner. Strongest edges: the fewest that carry half of the bending. Angle with the nearest of these \
-                  lines: weighted by bending (in brackets: of all edges, what the mesh alone gives)."
+                  lines: weighted by bending (in brackets: of all edges, what the mesh alone gives). Drop: how far the hem hangs below the table, of its distance \
+                  from the table in the flat cloth."
             .into(),
-        head: ["cloth", "V/F", "bending at the corners", "edges there", "density, all = 1", "strongest edges there", "angle"]
+        head: ["cloth", "V/F", "bending at the corners", "edges there", "density, all = 1", "strongest edges there", "angle", "internal DOF", "drop"]
             .map(str::to_owned)
             .to_vec(),
         rows: rows.collect(),
     }
+}
+
+/// Bending at the corner lines that is this many times as dense as on the mean of the overhang makes principal folds.
+const PRINCIPAL: f64 = 1.25;
+
+/// Whether folds gather at the corners, in words.
+fn at_corners(all: &[Draped]) -> String {
+    let list = |principal: bool| {
+        let with = all
+            .iter()
+            .filter(|d| (d.folds.density_at_corners >= PRINCIPAL) == principal);
+        let names: Vec<String> = with
+            .map(|d| format!("{} ({:.1})", d.label, d.folds.density_at_corners))
+            .collect();
+        names.join(", ")
+    };
+    let (yes, no) = (list(true), list(false));
+    let none = "none of them".to_owned();
+    let gathered = if yes.is_empty() { &none } else { &yes };
+    let rest = if no.is_empty() {
+        String::new()
+    } else {
+        format!("; hardly so: {no}")
+    };
+    format!(
+        "Principal folds from table corners to cloth corners, with bending at least {PRINCIPAL} times as dense as on the mean of the overhang: {gathered}{rest}."
+    )
+}
+
+/// Why these cloths hang less steeply than woven ones, in words.
+fn locking<'a>(all: impl Iterator<Item = &'a Draped>) -> String {
+    let (mut dof, mut drop) = ([i64::MAX, 0], [f64::INFINITY, 0.0_f64]);
+    for d in all {
+        dof = [dof[0].min(d.internal), dof[1].max(d.internal)];
+        drop = [drop[0].min(d.drop), drop[1].max(d.drop)];
+    }
+    format!(
+        "Triangles whose edges keep their lengths leave a cloth only as many internal degrees of freedom as it has boundary edges less three, here {} to {}: \
+         it cannot shear as woven cloth does, and its hem hangs by {} to {} of what it could.",
+        dof[0],
+        dof[1],
+        percent(drop[0]),
+        percent(drop[1])
+    )
 }
 
 /// Bending density by distance from the corner lines.
@@ -263,7 +330,9 @@ pub(super) fn fig14(context: &Context<'_>) -> Result<Made> {
                 table corners to the cloth corners.",
         measured: format!(
             "{CONDITIONS}The cloth is 1.2 m x 0.9 m, the table 0.58 m x 0.435 m. The diagonals of M^k lead through the corners of the table, so the \
-             mesh could favour what is to be shown: an irregular triangulation, which has no such lines, is the check. {}",
+             mesh could favour what is to be shown: an irregular triangulation, which has no such lines, is the check. {} {} {}",
+            at_corners(&all),
+            locking(all.iter()),
             words.join(" ")
         ),
         pictures: vec![
@@ -325,8 +394,10 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
         paper: "An octagonal plastic tablecloth (244/440) draped over an octagonal table, with two resolutions: principal folds from table corners to cloth corners. For n-gonal \
                 cloths on n-gonal tables with more and more corners the paper infers that uniform folding patterns will occur.",
         measured: format!(
-            "{CONDITIONS}Cloths of circumscribed radius 0.6 m on tables of 0.33 m. Folds of the hem are outward bulges of its distance from the axis, divided by that of the flat cloth, that stand out by more than 0.02. {} {}",
+            "{CONDITIONS}Cloths of circumscribed radius 0.6 m on tables of 0.33 m. Folds of the hem are outward bulges of its distance from the axis, divided by that of the flat cloth, that stand out by more than 0.02. {} {} {} {}",
+            at_corners(&octagons),
             uniform(&polygons),
+            locking(octagons.iter().chain(&polygons)),
             words.join(" ")
         ),
         pictures: vec![
@@ -416,6 +487,8 @@ fn hem_table(all: &[Draped]) -> Table {
             percent(h.spacing_spread),
             percent(h.size_spread),
             format!("{} ({})", h.wave.0, percent(h.wave.1)),
+            d.internal.to_string(),
+            percent(d.drop),
             d.run
                 .at_rest_from
                 .map_or("–".into(), |t| format!("{t:.1} s")),
@@ -426,7 +499,7 @@ fn hem_table(all: &[Draped]) -> Table {
                   the angles between neighbouring folds and of how far the folds stand out: both are 0 for a uniform pattern. Wave: the wave number with the \
                   largest part of the variance of the hem's relative distance from the axis, and that part."
             .into(),
-        head: ["cloth", "V/F", "folds", "spread of spacing", "spread of size", "wave", "at rest from"]
+        head: ["cloth", "V/F", "folds", "spread of spacing", "spread of size", "wave", "internal DOF", "drop", "at rest from"]
             .map(str::to_owned)
             .to_vec(),
         rows: rows.collect(),

@@ -1,6 +1,7 @@
 //! Crescent marks: how far the folds of a crumpled sheet concentrate in few edges.
 
 use super::Table;
+use super::crescent::Crescent;
 use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, palette, row};
 use isosheet_io::Trajectory;
 use isosheet_mesh::{EdgeId, Sheet, fold_angle};
@@ -8,6 +9,10 @@ use serde::Serialize;
 
 /// Part of the inner edges that counts as marks.
 const SHARPEST: f64 = 0.05;
+
+/// An edge counts as one of the sharpest if its fold angle is at least this part of the last one's: a symmetric sheet has folds that
+/// are equal but for round-off.
+const TIE: f64 = 0.99;
 
 /// What this part of the edges would carry if fold angles were normally distributed: E(|x|; |x| > 1.96 s) / E|x| = exp(-1.96^2 / 2).
 const NORMAL: f64 = 0.146_5;
@@ -22,6 +27,8 @@ pub(super) struct Marks {
     /// Time, part of the sum of all sizes of fold angles that the sharpest edges carry then, and the part of the sharpest edges
     /// at the end that are among the sharpest already.
     pub(super) shares: Vec<[f64; 3]>,
+    /// Shape of the largest connected mark at the end, if it has any.
+    pub(super) shape: Option<Crescent>,
 }
 
 impl Marks {
@@ -30,24 +37,34 @@ impl Marks {
         let inner: Vec<EdgeId> = t.edge_ids().filter(|e| !t.is_boundary_edge(*e)).collect();
         let count = ((SHARPEST * inner.len() as f64).round() as usize).max(1);
         let mut frames = Vec::new();
+        let mut shape = None;
         for k in 0..trajectory.len() {
             let Some(x) = trajectory.frame(k) else {
                 continue;
             };
             let fold = |e: &EdgeId| (fold_angle(t, x, *e).unwrap_or(0.0).abs(), *e);
             let mut folds: Vec<(f64, EdgeId)> = inner.iter().map(fold).collect();
+            let in_order: Vec<f64> = folds.iter().map(|f| f.0).collect();
             folds.sort_by(|a, b| b.0.total_cmp(&a.0));
             let all: f64 = folds.iter().map(|f| f.0).sum();
             let top: f64 = folds[..count].iter().map(|f| f.0).sum();
-            let sharp: Vec<EdgeId> = folds[..count].iter().map(|f| f.1).collect();
             // The sheet starts flat, where there is nothing to share.
             if all > 1e-6 {
-                frames.push((trajectory.times()[k], top / all, sharp));
+                shape = Crescent::largest(sheet, &folds[..count]);
+                let least = folds[count - 1].0;
+                frames.push((trajectory.times()[k], top / all, least, in_order));
             }
         }
-        let last = frames.last().map_or(Vec::new(), |f| f.2.clone());
-        let kept = |sharp: &[EdgeId]| {
-            sharp.iter().filter(|e| last.contains(e)).count() as f64 / count as f64
+        // The sharpest edges at the end, by their places among the inner ones.
+        let last: Vec<usize> = frames.last().map_or(Vec::new(), |(_, _, _, folds)| {
+            let mut order: Vec<usize> = (0..folds.len()).collect();
+            order.sort_by(|a, b| folds[*b].total_cmp(&folds[*a]));
+            order.truncate(count);
+            order
+        });
+        let kept = |least: f64, folds: &[f64]| {
+            let sharp = |e: &&usize| folds[**e] >= TIE * least;
+            last.iter().filter(sharp).count() as f64 / count as f64
         };
         Self {
             name: name.to_owned(),
@@ -55,8 +72,9 @@ impl Marks {
             sharpest: count,
             shares: frames
                 .iter()
-                .map(|(t, share, sharp)| [*t, *share, kept(sharp)])
+                .map(|(t, share, least, folds)| [*t, *share, kept(*least, folds)])
                 .collect(),
+            shape,
         }
     }
 
@@ -131,8 +149,11 @@ pub(super) fn plot(all: &[Marks]) -> Drawing {
 }
 
 pub(super) fn table(all: &[Marks]) -> Table {
-    let percent = |v: f64| format!("{:.0} %", 100.0 * v);
+    fn percent(v: f64) -> String {
+        format!("{:.0} %", 100.0 * v)
+    }
     let rows = all.iter().map(|m| {
+        let shape = |f: fn(&Crescent) -> String| m.shape.as_ref().map_or("–".into(), f);
         vec![
             m.name.clone(),
             format!("{} of {}", m.sharpest, m.edges),
@@ -141,13 +162,18 @@ pub(super) fn table(all: &[Marks]) -> Table {
             percent(m.late(1)),
             percent(m.at(0.6, 2)),
             percent(m.late(2)),
+            shape(|c| c.edges.to_string()),
+            shape(|c| format!("{:.0}°", c.opening.to_degrees())),
+            shape(|c| percent(c.straightness)),
         ]
     });
     Table {
         caption: format!(
             "Marks: the part of the sum of all sizes of fold angles that the sharpest {:.0} % of the inner edges carry ({:.0} % if all \
              folds were equal, {:.0} % if they were normally distributed), and how many of the edges that are sharpest at the end are among \
-             the sharpest earlier. Late: mean over the second half of the run.",
+             the sharpest earlier (to 1 %, as symmetric folds are equal). Late: mean over the second half of the run. The largest connected mark at the end is compared, in the flat \
+             sheet, with the arc of a crescent: the angle in which the centre of the best circle sees it (a straight fold: near zero), and \
+             what is left of its mean square distance from the best line when the line is bent to the circle (an arc: 0 %).",
             100.0 * SHARPEST,
             100.0 * SHARPEST,
             100.0 * NORMAL
@@ -160,6 +186,9 @@ pub(super) fn table(all: &[Marks]) -> Table {
             "share, late",
             "final marks present at 0.6 s",
             "late",
+            "edges of the largest mark",
+            "opening",
+            "left by the arc",
         ]
         .map(str::to_owned)
         .to_vec(),

@@ -252,7 +252,13 @@ fn default_row(mesh: &str, s: &RunSummary) -> Vec<String> {
 
 /// What the paper does not report of its runs.
 fn contact_row(figure: u8, mesh: &str, s: &RunSummary, free: &RunSummary) -> Vec<String> {
-    let joules = |v: f64| format!("{v:.2e}").replace('-', "−");
+    let joules = |v: f64| {
+        if v == 0.0 {
+            "0".to_owned()
+        } else {
+            format!("{v:.2e}").replace('-', "−")
+        }
+    };
     let e = &s.energy;
     let step = 1e3 * s.wall / s.frames.max(1) as f64;
     vec![

@@ -62,7 +62,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
         &scene,
         &trajectory,
         &frames,
-        &view(&[0, 1, 2, 3, 4]),
+        &view(&[runs::DIE, runs::DIE + 1]),
         context.effort,
     )?;
     let alt = "Force of the sheet on the die over its stroke";

@@ -1,6 +1,7 @@
 //! Ambient occlusion: how much of the surroundings a point of the sheet sees.
 
 use super::camera::normal;
+use super::pieces::Piece;
 use crate::draw::spatial::{axpy, cross, dot, sub, unit};
 
 /// Rays sent from every point, on a fixed spiral: pictures are the same at every run.
@@ -10,16 +11,22 @@ const RAYS: usize = 40;
 /// neighbouring face as touching.
 const INSET: f64 = 0.25;
 
-/// Openness (0 dark to 1 free) at the three corners of every face, on its front (index 0) and back (index 1) side.
+/// Openness (0 dark to 1 free) at the three corners of every piece, on its front (index 0) and back (index 1) side. A piece is a face or
+/// a part of one.
 ///
 /// Rays are distributed by the cosine law; a face hides what is behind it out to `reach`, less and less with distance.
-pub(super) fn openness(faces: &[[usize; 3]], x: &[[f64; 3]], reach: f64) -> Vec<[[f64; 3]; 2]> {
+pub(super) fn openness(
+    pieces: &[Piece],
+    faces: &[[usize; 3]],
+    x: &[[f64; 3]],
+    reach: f64,
+) -> Vec<[[f64; 3]; 2]> {
     let corners: Vec<[[f64; 3]; 3]> = faces.iter().map(|f| f.map(|v| x[v])).collect();
     let directions = spiral();
-    corners
+    pieces
         .iter()
-        .enumerate()
-        .map(|(own, c)| {
+        .map(|piece| {
+            let (own, c) = (piece.face, &piece.corners.map(|v| x[v]));
             let n = normal(c);
             let centroid = [0, 1, 2].map(|k| (c[0][k] + c[1][k] + c[2][k]) / 3.0);
             [1.0, -1.0].map(|side| {
@@ -91,11 +98,22 @@ mod tests {
     #[test]
     fn a_lone_face_is_open_and_a_covered_one_is_not() {
         let floor = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        let lone = openness(&[[0, 1, 2]], &floor, 1.0);
+        let whole = |faces: &[[usize; 3]], x: &[[f64; 3]]| {
+            let pieces: Vec<Piece> = faces
+                .iter()
+                .enumerate()
+                .map(|(face, corners)| Piece {
+                    corners: *corners,
+                    face,
+                })
+                .collect();
+            openness(&pieces, faces, x, 1.0)
+        };
+        let lone = whole(&[[0, 1, 2]], &floor);
         assert!(lone[0].iter().flatten().all(|o| (o - 1.0).abs() < 1e-12));
         let mut x = floor.to_vec();
         x.extend([[-20.0, -20.0, 0.25], [20.0, -20.0, 0.25], [0.0, 30.0, 0.25]]);
-        let covered = openness(&[[0, 1, 2], [3, 4, 5]], &x, 1.0);
+        let covered = whole(&[[0, 1, 2], [3, 4, 5]], &x);
         // Above everything is hidden at 0.25 / cos, below nothing.
         assert!(
             covered[0][0].iter().all(|o| (0.5..0.75).contains(o)),

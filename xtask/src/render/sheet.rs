@@ -3,12 +3,20 @@
 use super::camera::{Camera, normal};
 use super::canvas::{Corner, Depth, Image, light};
 use super::occlusion::openness;
+use super::pieces::{Piece, cut};
 use super::solid::Solid;
 use crate::draw::spatial::{axpy, dot};
 use isosheet_mesh::{Topology, VertexId};
+use std::collections::BTreeMap;
 
 /// Pixels rendered for each pixel of the picture, each way.
 const SUPERSAMPLING: usize = 3;
+
+/// How far faces darken each other, as part of the extent of the sheet.
+const REACH: f64 = 0.35;
+
+/// Largest edge over which the shade of a body is interpolated, as part of that reach.
+const GRAIN: f64 = 0.15;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -76,11 +84,27 @@ pub(crate) fn render(picture: &SheetPicture<'_>, camera: &Camera, look: &Look) -
             shade,
         }
     };
-    let open = openness(&faces, &x, 0.35 * extent);
+    let reach = REACH * extent;
+    // The faces of the sheet as they are; those of bodies are large, and their shade changes within.
+    let mut pieces: Vec<Piece> = Vec::new();
+    let mut halves = BTreeMap::new();
+    for (face, corners) in faces.iter().enumerate() {
+        let piece = Piece {
+            corners: *corners,
+            face,
+        };
+        if face < own {
+            pieces.push(piece);
+        } else {
+            pieces.extend(cut(piece, GRAIN * reach, &mut x, &mut halves));
+        }
+    }
+    let mut open = openness(&pieces, &faces, &x, reach);
+    smooth(&pieces[own..], &x, &mut open[own..]);
     // A key light from the upper left, and the surroundings, brighter from above.
     let key = camera.direction([-0.55, 0.75, 0.65]);
-    for (k, face) in faces.iter().enumerate() {
-        let corners = face.map(|v| x[v]);
+    for (k, piece) in pieces.iter().enumerate() {
+        let corners = piece.corners.map(|v| x[v]);
         let n = normal(&corners);
         let centre = [0, 1, 2].map(|i| (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0);
         let back = usize::from(dot(&n, &camera.viewer(&centre)) < 0.0);
@@ -91,7 +115,11 @@ pub(crate) fn render(picture: &SheetPicture<'_>, camera: &Camera, look: &Look) -
             let o = open[k][back][i];
             place(&corners[i], sky * o + sun * (0.4 + 0.6 * o))
         });
-        let colour = if k < own { look.sides[back] } else { look.body };
+        let colour = if piece.face < own {
+            look.sides[back]
+        } else {
+            look.body
+        };
         depth.triangle(&shaded, light(colour));
     }
     let ink = light([38, 42, 48]);
@@ -128,6 +156,30 @@ pub(crate) fn render(picture: &SheetPicture<'_>, camera: &Camera, look: &Look) -
         );
     }
     depth.image.reduced(SUPERSAMPLING)
+}
+
+/// Replaces the openness of the corners of coplanar pieces that meet in a point by its mean there.
+fn smooth(pieces: &[Piece], x: &[[f64; 3]], open: &mut [[[f64; 3]; 2]]) {
+    let key = |piece: &Piece, corner: usize| {
+        let n = normal(&piece.corners.map(|v| x[v]));
+        (piece.corners[corner], n.map(|c| (1e6 * c).round() as i64))
+    };
+    let mut sums: BTreeMap<_, ([f64; 2], f64)> = BTreeMap::new();
+    for (piece, open) in pieces.iter().zip(&*open) {
+        for corner in 0..3 {
+            let (sum, count) = sums.entry(key(piece, corner)).or_default();
+            *sum = [0, 1].map(|side| sum[side] + open[side][corner]);
+            *count += 1.0;
+        }
+    }
+    for (piece, open) in pieces.iter().zip(open) {
+        for corner in 0..3 {
+            let (sum, count) = sums[&key(piece, corner)];
+            for side in 0..2 {
+                open[side][corner] = sum[side] / count;
+            }
+        }
+    }
 }
 
 /// Largest side of the box around the points.

@@ -5,12 +5,14 @@ use super::scene::SelfContact;
 use anyhow::Result;
 use isosheet_collide::{
     Coefficients, ContactOptions, Contacts, Keyframe, Motion, Obstacle, Shape, Stiffness,
+    TriangleSurface,
 };
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{MassKind, Sheet};
 use nalgebra::Isometry3;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Everything that decides how a run goes: the blank starts flat and at rest on the frame, its middle at the origin, the die just
 /// below it.
@@ -51,7 +53,7 @@ pub(crate) struct Stamping {
     pub(crate) frames: usize,
 }
 
-/// The number of the die among the bodies; frame and holders follow, four each.
+/// The number of the die among the bodies; the frame follows, then the four holders.
 pub(crate) const DIE: usize = 0;
 
 /// Thickness of frame and holders, and height of the die, metres.
@@ -71,23 +73,72 @@ impl Stamping {
         }
     }
 
-    /// Four bars around the opening, from its edge outwards, `half` as wide, at height `z` of their middle.
-    fn ring(&self, half: [f64; 2], z: f64) -> Result<Vec<Obstacle>> {
-        let outer = 0.5 * (1.0 + MARGIN) * self.side;
-        let width = 0.5 * (outer - self.opening);
+    /// Half the side of what frame and holders reach to.
+    fn outer(&self) -> f64 {
+        0.5 * (1.0 + MARGIN) * self.side
+    }
+
+    /// The four holders, from the edge of the opening outwards, at height `z` of their middle.
+    fn holders(&self, z: f64) -> Result<Vec<Obstacle>> {
+        let width = 0.5 * (self.outer() - self.opening);
         let middle = self.opening + width;
         let bar = |x: f64, y: f64, hx: f64, hy: f64| {
             let half = [hx, hy, 0.5 * PLATE];
             Obstacle::still(Shape::Cuboid { half }, Isometry3::translation(x, y, z))
         };
-        let [across, along] = half;
         Ok(vec![
-            bar(middle, 0.0, width, across)?,
-            bar(-middle, 0.0, width, across)?,
-            bar(0.0, middle, along, width)?,
-            bar(0.0, -middle, along, width)?,
+            bar(middle, 0.0, width, self.holder)?,
+            bar(-middle, 0.0, width, self.holder)?,
+            bar(0.0, middle, self.holder, width)?,
+            bar(0.0, -middle, self.holder, width)?,
         ])
     }
+}
+
+/// Surface of a square plate with a square hole in it about the z axis: half the sides of plate and hole, heights of its lower and upper
+/// face.
+fn frame([outer, inner]: [f64; 2], heights: [f64; 2]) -> Result<TriangleSurface> {
+    // Vertex 8 level + 4 ring + corner: below and above, outside and inside, counter-clockwise.
+    let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+    let rings =
+        heights.map(|z| [outer, inner].map(|half| corners.map(|[x, y]| [half * x, half * y, z])));
+    let positions = rings.as_flattened().as_flattened().as_flattened();
+    let faces: Vec<[u32; 3]> = (0..4)
+        .flat_map(|k| {
+            let next = (k + 1) % 4;
+            let vertex = |level: u32, ring: u32, corner: u32| 8 * level + 4 * ring + corner;
+            let quads = [
+                [
+                    vertex(1, 0, k),
+                    vertex(1, 0, next),
+                    vertex(1, 1, next),
+                    vertex(1, 1, k),
+                ],
+                [
+                    vertex(0, 1, k),
+                    vertex(0, 1, next),
+                    vertex(0, 0, next),
+                    vertex(0, 0, k),
+                ],
+                [
+                    vertex(0, 0, k),
+                    vertex(0, 0, next),
+                    vertex(1, 0, next),
+                    vertex(1, 0, k),
+                ],
+                [
+                    vertex(1, 1, k),
+                    vertex(1, 1, next),
+                    vertex(0, 1, next),
+                    vertex(0, 1, k),
+                ],
+            ];
+            quads
+                .into_iter()
+                .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
+        })
+        .collect();
+    Ok(TriangleSurface::new(positions, &faces)?)
 }
 
 impl Staged for Stamping {
@@ -124,9 +175,10 @@ impl Staged for Stamping {
         ])?;
         let half = [self.die, self.die, 0.5 * BLOCK];
         let mut bodies = vec![Obstacle::new(Shape::Cuboid { half }, motion)?];
-        let outer = 0.5 * (1.0 + MARGIN) * self.side;
-        bodies.extend(self.ring([outer, self.opening], low - 0.5 * PLATE)?);
-        bodies.extend(self.ring([self.holder; 2], low + self.clearance + 0.5 * PLATE)?);
+        let surface = frame([self.outer(), self.opening], [low - PLATE, low])?;
+        let shape = Shape::Surface(Arc::new(surface));
+        bodies.push(Obstacle::still(shape, Isometry3::identity())?);
+        bodies.extend(self.holders(low + self.clearance + 0.5 * PLATE)?);
         Ok(bodies)
     }
 
@@ -146,5 +198,32 @@ impl Staged for Stamping {
         contacts = self.contact.add_to(contacts)?;
         let state = State::at_rest(sheet.positions().to_vec());
         Ok(Simulation::new(model, state, Method::default())?.with_contact(contacts)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_frame_is_closed_and_has_its_volume() {
+        let surface = frame([0.3, 0.14], [-0.5, -0.2]).unwrap();
+        assert!(surface.is_closed());
+        let geometry = Shape::Surface(Arc::new(surface))
+            .contact_geometry(1)
+            .unwrap()
+            .unwrap();
+        let at = |v: u32| {
+            let i = 3 * v as usize;
+            nalgebra::Vector3::from_column_slice(&geometry.positions[i..i + 3])
+        };
+        let faces = geometry.mesh.faces().iter();
+        let volume: f64 = faces
+            .map(|f| at(f[0]).dot(&at(f[1]).cross(&at(f[2]))) / 6.0)
+            .sum();
+        assert!(
+            (volume - 0.3 * (0.6f64.powi(2) - 0.28f64.powi(2))).abs() < 1e-15,
+            "{volume}"
+        );
     }
 }
