@@ -9,6 +9,8 @@ pub(super) struct Piece {
     pub(super) corners: [usize; 3],
     /// The number of the face that it is part of.
     pub(super) face: usize,
+    /// Whether it is seen from behind.
+    pub(super) back: bool,
 }
 
 /// Halves a piece at its longest edge until no edge is longer than `limit`, and adds the new points to `x`.
@@ -64,10 +66,15 @@ mod tests {
             [2.0, 1.0, 0.0],
             [0.0, 1.0, 0.0],
         ];
+        let piece = |face: usize, corners: [usize; 3]| Piece {
+            corners,
+            face,
+            back: false,
+        };
         let mut halves = BTreeMap::new();
         let mut pieces = Vec::new();
         for (face, corners) in [[0, 1, 2], [0, 2, 3]].into_iter().enumerate() {
-            pieces.extend(cut(Piece { corners, face }, 0.3, &mut x, &mut halves));
+            pieces.extend(cut(piece(face, corners), 0.3, &mut x, &mut halves));
         }
         let mut sides: BTreeMap<[usize; 2], usize> = BTreeMap::new();
         let mut area = 0.0;

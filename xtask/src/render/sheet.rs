@@ -84,19 +84,30 @@ pub(crate) fn render(picture: &SheetPicture<'_>, camera: &Camera, look: &Look) -
             shade,
         }
     };
+    // Whether some of the box around a piece is in the picture.
+    let inside = |corners: &[Corner; 3]| {
+        let meets = |of: fn(&Corner) -> f64, size: usize| {
+            corners.iter().any(|c| of(c) >= 0.0) && corners.iter().any(|c| of(c) <= size as f64)
+        };
+        meets(|c| c.x, width) && meets(|c| c.y, height)
+    };
     let reach = REACH * extent;
     // The faces of the sheet as they are; those of bodies are large, and their shade changes within.
     let mut pieces: Vec<Piece> = Vec::new();
     let mut halves = BTreeMap::new();
     for (face, corners) in faces.iter().enumerate() {
+        let points = corners.map(|v| x[v]);
         let piece = Piece {
             corners: *corners,
             face,
+            back: dot(&normal(&points), &camera.viewer(&centre(&points))) < 0.0,
         };
         if face < own {
             pieces.push(piece);
         } else {
-            pieces.extend(cut(piece, GRAIN * reach, &mut x, &mut halves));
+            let mut parts = cut(piece, GRAIN * reach, &mut x, &mut halves);
+            parts.retain(|part| inside(&part.corners.map(|v| place(&x[v], 1.0))));
+            pieces.extend(parts);
         }
     }
     let mut open = openness(&pieces, &faces, &x, reach);
@@ -106,17 +117,15 @@ pub(crate) fn render(picture: &SheetPicture<'_>, camera: &Camera, look: &Look) -
     for (k, piece) in pieces.iter().enumerate() {
         let corners = piece.corners.map(|v| x[v]);
         let n = normal(&corners);
-        let centre = [0, 1, 2].map(|i| (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0);
-        let back = usize::from(dot(&n, &camera.viewer(&centre)) < 0.0);
-        let n = if back == 1 { n.map(|c| -c) } else { n };
-        let sky = 0.56 + 0.10 * n[2] + 0.12 * dot(&n, &camera.viewer(&centre));
+        let n = if piece.back { n.map(|c| -c) } else { n };
+        let sky = 0.56 + 0.10 * n[2] + 0.12 * dot(&n, &camera.viewer(&centre(&corners)));
         let sun = 0.42 * dot(&n, &key).max(0.0);
         let shaded = [0, 1, 2].map(|i| {
-            let o = open[k][back][i];
+            let o = open[k][i];
             place(&corners[i], sky * o + sun * (0.4 + 0.6 * o))
         });
         let colour = if piece.face < own {
-            look.sides[back]
+            look.sides[usize::from(piece.back)]
         } else {
             look.body
         };
@@ -159,27 +168,30 @@ pub(crate) fn render(picture: &SheetPicture<'_>, camera: &Camera, look: &Look) -
 }
 
 /// Replaces the openness of the corners of coplanar pieces that meet in a point by its mean there.
-fn smooth(pieces: &[Piece], x: &[[f64; 3]], open: &mut [[[f64; 3]; 2]]) {
+fn smooth(pieces: &[Piece], x: &[[f64; 3]], open: &mut [[f64; 3]]) {
     let key = |piece: &Piece, corner: usize| {
         let n = normal(&piece.corners.map(|v| x[v]));
-        (piece.corners[corner], n.map(|c| (1e6 * c).round() as i64))
+        let n = n.map(|c| (1e6 * c).round() as i64);
+        (piece.corners[corner], n, piece.back)
     };
-    let mut sums: BTreeMap<_, ([f64; 2], f64)> = BTreeMap::new();
+    let mut sums: BTreeMap<_, [f64; 2]> = BTreeMap::new();
     for (piece, open) in pieces.iter().zip(&*open) {
         for corner in 0..3 {
-            let (sum, count) = sums.entry(key(piece, corner)).or_default();
-            *sum = [0, 1].map(|side| sum[side] + open[side][corner]);
+            let [sum, count] = sums.entry(key(piece, corner)).or_default();
+            *sum += open[corner];
             *count += 1.0;
         }
     }
     for (piece, open) in pieces.iter().zip(open) {
         for corner in 0..3 {
-            let (sum, count) = sums[&key(piece, corner)];
-            for side in 0..2 {
-                open[side][corner] = sum[side] / count;
-            }
+            let [sum, count] = sums[&key(piece, corner)];
+            open[corner] = sum / count;
         }
     }
+}
+
+fn centre(corners: &[[f64; 3]; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0)
 }
 
 /// Largest side of the box around the points.
