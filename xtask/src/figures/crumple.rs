@@ -54,7 +54,8 @@ pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made
         });
         tables.push(marks::table(&all));
         measured += " Permanent marks: the model has neither bending stiffness nor memory, so that no fold is permanent by itself; what it \
-                     shows is where folds gather and whether they stay there (last plot and table).";
+                     shows is where folds gather and whether they stay there (last plot and table). ";
+        measured += &marks::crescents(&all);
         facts["softness"] = part.facts;
         facts["marks"] = json!(all);
     }

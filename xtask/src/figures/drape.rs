@@ -89,6 +89,21 @@ fn polygon(name: &str, sides: u32, spacing: f64, seed: u64, effort: Effort) -> D
     )
 }
 
+/// A polygon with a mesh of rings.
+fn ringed(sides: u32, rings: u32, effort: Effort) -> Drape {
+    let [radius, table] = RADII;
+    let cloth = Cloth::Rings {
+        sides,
+        radius,
+        rings,
+    };
+    let table = Outline::Regular {
+        sides,
+        radius: table,
+    };
+    scene(&format!("drape-{sides}-gon-rings"), cloth, table, effort)
+}
+
 /// A cloth at the end of its run.
 struct Draped {
     label: String,
@@ -350,7 +365,10 @@ pub(super) fn fig14(context: &Context<'_>) -> Result<Made> {
     })
 }
 
-/// Corners of the polygons of the study; the last stands for the circle.
+/// Corners and rings of the polygons with about as many faces as the octagon, whose rings are as wide as the cells of M³.
+const RINGS: [(u32, u32); 5] = [(4, 11), (6, 9), (8, 8), (12, 7), (16, 6)];
+
+/// Corners of the irregular polygons of the study; the last stands for the circle.
 const SIDES: [u32; 6] = [4, 6, 8, 12, 16, 48];
 
 pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
@@ -363,6 +381,7 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
             polygon("drape-octagon-fine", 8, fine, 1, effort),
             context,
         )?,
+        drape("rings", ringed(8, RINGS[2].1, effort), context)?,
     ];
     let mut polygons = Vec::new();
     let (sides, spacing): (&[u32], f64) = match effort {
@@ -381,6 +400,15 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
             context,
         )?);
     }
+    let round = polygons.len() - 1;
+    let of_rings = match effort {
+        Effort::Full => &RINGS[..],
+        Effort::Quick => &RINGS[2..3],
+    };
+    for &(n, rings) in of_rings {
+        let label = format!("~n~ = {n}, rings");
+        polygons.push(drape(&label, ringed(n, rings, effort), context)?);
+    }
     let hem = hems(&polygons);
     let alt = "Distance of the hem from the axis, that of the flat cloth = 1, by angle, for polygons with more and more corners";
     let folds_alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
@@ -394,7 +422,8 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
         paper: "An octagonal plastic tablecloth (244/440) draped over an octagonal table, with two resolutions: principal folds from table corners to cloth corners. For n-gonal \
                 cloths on n-gonal tables with more and more corners the paper infers that uniform folding patterns will occur.",
         measured: format!(
-            "{CONDITIONS}Cloths of circumscribed radius 0.6 m on tables of 0.33 m. Folds of the hem are outward bulges of its distance from the axis, divided by that of the flat cloth, that stand out by more than 0.02. {} {} {} {}",
+            "{CONDITIONS}Cloths of circumscribed radius 0.6 m on tables of 0.33 m. Folds of the hem are outward bulges of its distance from the axis, divided by that of the flat cloth, that stand out by more than 0.02. Mesh lines decide where a cloth can fold: the irregular triangulations, 244/440 among them, \
+             have no straight ones; the last mesh, concentric rings of triangles, has the lines from the middle to the corners. {} {} {} {}",
             at_corners(&octagons),
             uniform(&polygons),
             locking(octagons.iter().chain(&polygons)),
@@ -408,7 +437,8 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
                 alt: folds_alt.into(),
                 bytes: profiles(&octagons).draw().to_svg(folds_alt)?.into_bytes(),
             },
-            polygons[polygons.len() - 1].picture("fig15-round.png", context)?,
+            octagons[2].picture("fig15-rings.png", context)?,
+            polygons[round].picture("fig15-round.png", context)?,
             Picture {
                 file: "fig15-hems.svg".into(),
                 alt: alt.into(),
@@ -495,7 +525,7 @@ fn hem_table(all: &[Draped]) -> Table {
         ]
     });
     Table {
-        caption: "Polygonal cloths on polygonal tables, irregular meshes of one spacing: folds of the hem at rest. Spreads are standard deviations over means, of \
+        caption: "Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are standard deviations over means, of \
                   the angles between neighbouring folds and of how far the folds stand out: both are 0 for a uniform pattern. Wave: the wave number with the \
                   largest part of the variance of the hem's relative distance from the axis, and that part."
             .into(),

@@ -148,6 +148,32 @@ pub(super) fn plot(all: &[Marks]) -> Drawing {
     row(&[left.draw(), right.draw()], 26.0)
 }
 
+/// A mark is an arc if the circle leaves at most this part of the mean square distance from the line.
+const ARC: f64 = 0.5;
+
+/// Whether the largest mark on the finest mesh is a crescent, in words.
+pub(super) fn crescents(all: &[Marks]) -> String {
+    let largest = all
+        .iter()
+        .rev()
+        .find_map(|m| Some((&m.name, m.shape.as_ref()?)));
+    let Some((name, c)) = largest else {
+        return "No connected mark is large enough to have a shape.".to_owned();
+    };
+    let verdict = if c.straightness <= ARC {
+        "is an arc, as of a crescent"
+    } else {
+        "is no clear arc, so that crescents are not what this mesh shows"
+    };
+    format!(
+        "The largest connected mark on {name} has {} edges and {verdict}: a circle, seen from its centre over {:.0}°, leaves {:.0} % of the mean \
+         square distance from the best line.",
+        c.edges,
+        c.opening.to_degrees(),
+        100.0 * c.straightness
+    )
+}
+
 pub(super) fn table(all: &[Marks]) -> Table {
     fn percent(v: f64) -> String {
         format!("{:.0} %", 100.0 * v)

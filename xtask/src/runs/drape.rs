@@ -94,6 +94,8 @@ pub(crate) enum Cloth {
     },
     /// The octagon with the paper's counts 244/440.
     Octagon { radius: f64 },
+    /// A regular polygon in concentric rings of triangles: the lines from the middle to the corners are edges.
+    Rings { sides: u32, radius: f64, rings: u32 },
 }
 
 impl Cloth {
@@ -103,6 +105,7 @@ impl Cloth {
             Self::UnionJack { half, .. } => Outline::Rectangle { half },
             Self::Irregular { outline, .. } => outline,
             Self::Octagon { radius } => Outline::Regular { sides: 8, radius },
+            Self::Rings { sides, radius, .. } => Outline::Regular { sides, radius },
         }
     }
 }
@@ -159,6 +162,7 @@ impl Staged for Drape {
                 seed,
             } => delaunay(&outline.corners(), spacing, seed)?,
             Cloth::Octagon { radius } => octagon_244(radius)?,
+            Cloth::Rings { rings: count, .. } => rings(&self.cloth.outline().corners(), count)?,
         })
     }
 
@@ -184,6 +188,37 @@ impl Staged for Drape {
         let state = State::at_rest(sheet.positions().to_vec());
         Ok(Simulation::new(model, state, Method::default())?.with_contact(contacts)?)
     }
+}
+
+/// A polygon about the origin in concentric rings; every side of ring r has r edges.
+fn rings(corners: &[[f64; 2]], count: u32) -> Result<Sheet> {
+    let n = u32::try_from(corners.len())?;
+    let mut positions = vec![0.0; 3];
+    let mut faces = Vec::new();
+    // Point j of side k of ring r; the last of a side is the first of the next one.
+    let vertex = |r: u32, k: u32, j: u32| match r {
+        0 => 0,
+        _ => 1 + n * (r * (r - 1) / 2) + (k * r + j) % (n * r),
+    };
+    for r in 1..=count {
+        for k in 0..n {
+            let [a, b] = [k, (k + 1) % n].map(|c| corners[c as usize]);
+            for j in 0..r {
+                let (size, s) = (f64::from(r) / f64::from(count), f64::from(j) / f64::from(r));
+                let point = [0, 1].map(|axis| size * (a[axis] + s * (b[axis] - a[axis])));
+                positions.extend([point[0], point[1], 0.0]);
+                faces.push([vertex(r - 1, k, j), vertex(r, k, j), vertex(r, k, j + 1)]);
+                if j > 0 {
+                    faces.push([
+                        vertex(r - 1, k, j - 1),
+                        vertex(r, k, j),
+                        vertex(r - 1, k, j),
+                    ]);
+                }
+            }
+        }
+    }
+    Ok(Sheet::new(positions, &faces)?)
 }
 
 /// Positions and faces of an upright prism over a convex outline, `half_height` up and down.
@@ -226,6 +261,36 @@ mod tests {
                 .iter()
                 .all(|c| octagon.outside(*c).abs() < 1e-14)
         );
+    }
+
+    #[test]
+    fn rings_fill_the_polygon_and_have_its_corner_lines() {
+        let outline = Outline::Regular {
+            sides: 8,
+            radius: 2.0,
+        };
+        let sheet = rings(&outline.corners(), 5).unwrap();
+        let t = sheet.topology();
+        assert_eq!((t.vertex_count(), t.face_count()), (1 + 8 * 15, 8 * 25));
+        assert!((sheet.area() - 8.0 * 2.0 * (TAU / 8.0).sin()).abs() < 1e-12);
+        let hem = t.vertex_ids().filter(|v| t.is_boundary_vertex(*v)).count();
+        assert_eq!(hem, 40);
+        // Five edges from the middle to each corner.
+        let along = |p: [f64; 3]| {
+            outline
+                .corners()
+                .iter()
+                .any(|c| (p[0] * c[1] - p[1] * c[0]).abs() < 1e-12)
+        };
+        let lines = t
+            .edges()
+            .iter()
+            .filter(|e| e.iter().all(|v| along(sheet.position(*v))));
+        let radial = lines.filter(|e| {
+            let [p, q] = e.map(|v| sheet.position(v));
+            (p[0] * q[1] - p[1] * q[0]).abs() < 1e-12
+        });
+        assert_eq!(radial.count(), 40);
     }
 
     #[test]
