@@ -422,8 +422,8 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
         paper: "An octagonal plastic tablecloth (244/440) draped over an octagonal table, with two resolutions: principal folds from table corners to cloth corners. For n-gonal \
                 cloths on n-gonal tables with more and more corners the paper infers that uniform folding patterns will occur.",
         measured: format!(
-            "{CONDITIONS}Cloths of circumscribed radius 0.6 m on tables of 0.33 m. Folds of the hem are outward bulges of its distance from the axis, divided by that of the flat cloth, that stand out by more than 0.02. Mesh lines decide where a cloth can fold: the irregular triangulations, 244/440 among them, \
-             have no straight ones; the last mesh, concentric rings of triangles, has the lines from the middle to the corners. {} {} {} {}",
+            "{CONDITIONS}Cloths of circumscribed radius 0.6 m on tables of 0.33 m. Folds of the hem are outward bulges of its distance from the axis, divided by that of the flat cloth, that stand out by more than 0.02. A cloth folds along mesh lines: in the irregular triangulations and in 244/440, \
+             a lattice of triangles, none runs from a table corner to its cloth corner; the last mesh, concentric rings of triangles, has these lines among its edges. {} {} {} {}",
             at_corners(&octagons),
             uniform(&polygons),
             locking(octagons.iter().chain(&polygons)),

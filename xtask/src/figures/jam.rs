@@ -136,17 +136,24 @@ impl Fed {
             .position(|p| p.last().is_some_and(|end| end[1] < near))
     }
 
-    /// The first buckle: the frame in which a force larger than `passing` stops growing for the first time after the strip has
-    /// reached the plate, and the force.
-    fn buckle(&self, passing: f64) -> Option<(usize, f64)> {
-        let first = self.arrival()?;
+    /// Frames in which a force larger than `passing` stops growing after the strip has reached the plate, and the forces.
+    fn buckles(&self, passing: f64) -> Vec<(usize, f64)> {
+        let Some(first) = self.arrival() else {
+            return Vec::new();
+        };
         // Means are dated at the middle of their window, supports are known from frame 1 on.
         let of_frame = |k: usize| k + 1 + WINDOW / 2;
         let peaks = self.force.windows(3).enumerate();
         peaks
             .filter(|(k, w)| of_frame(k + 1) > first && w[1][1] > w[0][1] && w[1][1] > w[2][1])
             .map(|(k, w)| (of_frame(k + 1), w[1][1]))
-            .find(|(_, force)| *force > passing)
+            .filter(|(_, force)| *force > passing)
+            .collect()
+    }
+
+    /// The first of them.
+    fn buckle(&self, passing: f64) -> Option<(usize, f64)> {
+        self.buckles(passing).first().copied()
     }
 
     /// Length of the straight part of the channel that is left between nip and bend at a frame, metres.
@@ -225,6 +232,14 @@ fn describe(jam: &Fed, passing: f64) -> String {
     let mm = |frame: usize| 1e3 * jam.way_at(frame);
     let column = jam.column(k);
     let [clamped, hinged] = jam.euler(column);
+    let again = match jam.buckles(passing).len() - 1 {
+        0 => "the force grows again".to_owned(),
+        1 => "the force grows again, and falls once more as the strip folds into shorter waves"
+            .to_owned(),
+        more => format!(
+            "the force grows again, and falls {more} more times as the strip folds into shorter waves"
+        ),
+    };
     let last = jam.profiles.len() - 1;
     let [x, turn] = jam.sharpest(last);
     let fate = if jam.jammed {
@@ -239,8 +254,7 @@ fn describe(jam: &Fed, passing: f64) -> String {
     format!(
         "With the outlet blocked, the leading edge reaches the plate when the nip has moved {:.1} mm. The strip then settles against the outer wall all \
          along the bend, and the force grows until the straight part between nip and bend buckles at {:.1} mm and {}. It is {:.0} mm long there; Euler's load is \
-         {} with both ends clamped and {} with one hinged, and the bend is something between. The walls stop the buckle, which folds \
-         into shorter waves by jumps in the force. {fate}, with {} inflections in the straight part and the sharpest bend, {:.0}° over {:.0} mm, \
+         {} with both ends clamped and {} with one hinged, and the bend is something between. The walls stop the buckle; {again}. {fate}, with {} inflections in the straight part and the sharpest bend, {:.0}° over {:.0} mm, \
          {:.0} mm before the bend of the guide.",
         mm(arrival),
         mm(k),
@@ -333,7 +347,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
             "A strip of office paper ({:.0} mm x {:.0} mm, {:.0} g/m², flexural rigidity {:.0e} N m, {}/{} vertices/faces) starts flat between two walls \
              {:.0} mm apart that turn downwards by 90°. A nip holds its last two rungs straight and moves along at {} m/s; friction {} with the walls and \
              itself. The walls are drawn without the outer one. Bends let the strip through with a largest force of (radius of the middle line: force) {}: even where \
-             the strip meets the outer wall steeply, it bows and slips past. {} Every frame of all runs has a strain below 1e-10 and a positive gap.",
+             the strip meets the outer wall steeply, it bows and slips past. {} In the side view time goes from blue to vermilion. Every frame of all runs has a strain below 1e-10 and a positive gap.",
             1e3 * s.size[0],
             1e3 * s.size[1],
             1e3 * s.weight,
