@@ -147,14 +147,17 @@ fn steps(c: &mut Criterion) {
         for (name, method, h) in cases {
             group.bench_with_input(BenchmarkId::new(name, size), &h, |b, &h| {
                 b.iter_batched(
-                    || simulation(&sheet, level, state.clone(), method.clone()),
-                    |mut run| {
-                        // Five steps, so that multipliers are warm as they are in a run.
-                        for _ in 0..5 {
-                            black_box(run.step(h).ok());
-                        }
+                    || {
+                        // After a first step, so that multipliers are warm as they are in a run.
+                        let mut run = simulation(&sheet, level, state.clone(), method.clone());
+                        run.step(h).ok();
+                        run
                     },
-                    BatchSize::LargeInput,
+                    |mut run| {
+                        black_box(run.step(h).ok());
+                        run
+                    },
+                    BatchSize::PerIteration,
                 );
             });
         }
@@ -166,8 +169,8 @@ criterion_group! {
     name = benches;
     config = Criterion::default()
         .sample_size(10)
-        .warm_up_time(Duration::from_millis(200))
-        .measurement_time(Duration::from_secs(1));
+        .warm_up_time(Duration::from_millis(100))
+        .measurement_time(Duration::from_millis(500));
     targets = assembly, steps, chart_steps
 }
 criterion_main!(benches);

@@ -233,7 +233,48 @@ fn conclusion(rows: &[Row]) -> String {
             let _ = write!(out, " The process used at most {:.2} GB.", peak / 1e9);
         }
     }
+    let _ = write!(out, " {}", goals(rows));
     out
+}
+
+/// Largest power of V that the time of a step without contact is to grow with.
+const POWER: f64 = 1.5;
+
+/// Memory for the sheet of 66 049 vertices, bytes: 8 GiB.
+const MEMORY: (u32, f64) = (7, 8.0 * 1024.0 * 1024.0 * 1024.0);
+
+/// Whether the goals are reached: time per step, memory of the factor, memory of the process.
+fn goals(rows: &[Row]) -> String {
+    let verdict = |met: bool| if met { "met" } else { "missed" };
+    let [of_v, of_v_log_v] = [
+        points(rows, |r| [r.vertices as f64, r.per_step]),
+        points(rows, |r| {
+            let v = r.vertices as f64;
+            [v * v.ln(), factor_bytes(r.best())]
+        }),
+    ]
+    .map(|p| exponent(&p));
+    let mut parts = Vec::new();
+    if let Some(p) = of_v {
+        parts.push(format!(
+            "a step takes at most V^{POWER}: {}",
+            verdict(p <= POWER)
+        ));
+    }
+    if let Some(p) = of_v_log_v {
+        parts.push(format!(
+            "the factor takes at most V log V: {} (fitted power of V log V {p:.2})",
+            verdict(p <= 1.0)
+        ));
+    }
+    let (level, memory) = MEMORY;
+    if let Some(peak) = rows.iter().find(|r| r.level == level).and_then(|r| r.peak) {
+        parts.push(format!(
+            "M^{level} takes less than 8 GiB: {}",
+            verdict(peak < memory)
+        ));
+    }
+    format!("Goals: {}.", parts.join("; "))
 }
 
 /// What two threads in one factorisation do.

@@ -167,6 +167,9 @@ fn conclusions(results: &Results) -> Vec<String> {
             .filter(|s| verdict::concerns(s.problem))
             .map(verdict::words),
     );
+    if let Some(rows) = &results.hanging {
+        all.extend(hanging::targets(rows));
+    }
     if let Some(rows) = &results.tablecloth {
         all.extend(tablecloth::conclusions(rows));
     }
