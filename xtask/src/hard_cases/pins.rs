@@ -124,7 +124,7 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
             &flat,
             &two,
             f64::INFINITY,
-            Some(NO_ROOM),
+            None,
         ),
         (
             "flat, held at two opposite corners",
@@ -143,6 +143,8 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
     ];
     for (what, sheet, pins, room, limitation) in scenes {
         for (name, method) in damped() {
+            // Where all of the boundary is held nothing has far to go, which minimisers get by with.
+            let limitation = limitation.filter(|_| room == f64::INFINITY || name == "projection");
             let mut run = at_rest(held(sheet, pins)?, sheet.positions(), method)?;
             let c = course(&mut run, FRAME, steps, |_, _| {})?;
             let check = f.at_most(

@@ -159,9 +159,25 @@ pub(crate) fn advice(points: &[Point], measure: Measure) -> String {
     text
 }
 
-/// A positive number with two digits.
+/// The first clause of an error message, without what to do about it: up to the first semicolon outside brackets.
+pub(crate) fn first_clause(message: &str) -> &str {
+    let mut depth = 0;
+    let end = message.find(|c| {
+        match c {
+            '[' | '(' => depth += 1,
+            ']' | ')' => depth -= 1,
+            _ => {}
+        }
+        c == ';' && depth == 0
+    });
+    &message[..end.unwrap_or(message.len())]
+}
+
+/// A number with two digits.
 pub(crate) fn short(value: f64) -> String {
-    if !value.is_finite() {
+    if value < 0.0 {
+        format!("−{}", short(-value))
+    } else if !value.is_finite() {
         "–".into()
     } else if (0.01..100.0).contains(&value) {
         let digits = (1 - value.log10().floor() as i32).max(0) as usize;
@@ -254,5 +270,15 @@ mod tests {
         assert_eq!(short(1234.0), "1234");
         assert_eq!(short(12_345.0), "1.2e4");
         assert_eq!(short(f64::INFINITY), "–");
+        assert_eq!(short(-1.26), "−1.3");
+    }
+
+    #[test]
+    fn clauses_end_at_semicolons_outside_brackets() {
+        assert_eq!(
+            first_clause("[G; S] is singular; move it"),
+            "[G; S] is singular"
+        );
+        assert_eq!(first_clause("no advice"), "no advice");
     }
 }

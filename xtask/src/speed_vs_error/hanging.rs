@@ -400,9 +400,9 @@ impl Target {
         if r.wall >= goal {
             let _ = write!(
                 text,
-                " Where the time goes: {} factorisations in {} steps of which {} were rejected, {} ms for a factorisation and what belongs to it",
+                " Where the time goes: {} factorisations for {} steps taken and {} rejected, {} ms for a factorisation and what belongs to it",
                 r.factorisations,
-                r.steps + r.rejected,
+                r.steps,
                 r.rejected,
                 short(1e3 * r.wall * r.reached / r.factorisations.max(1) as f64)
             );

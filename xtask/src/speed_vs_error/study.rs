@@ -1,6 +1,6 @@
 //! The study of one problem: all methods, all steps; its table, its plot, its words.
 
-use super::analysis::{Measure, advice, cheapest, on_front, order, short};
+use super::analysis::{Measure, advice, cheapest, first_clause, on_front, order, short};
 use super::effort::Effort;
 use super::measure::{Point, sweep};
 use super::problem::{CHECKPOINTS, Problem};
@@ -149,7 +149,13 @@ impl Study {
             .into_iter()
             .map(|measure| {
                 let unit = measure.unit();
-                let range = |[high, low]: [f64; 2]| format!("from {high:.0e} to {low:.0e}{unit}");
+                let range = |[high, low]: [f64; 2]| {
+                    if low < high {
+                        format!("from {high:.0e} to {low:.0e}{unit}")
+                    } else {
+                        format!("at {high:.0e}{unit}")
+                    }
+                };
                 let words = match self.default_on_front(measure) {
                     [Some(all), _] => format!("on the front {}", range(all)),
                     [None, Some(robust)] => format!(
@@ -262,7 +268,7 @@ impl Study {
             Some(p) => {
                 let reason = p.failure.as_deref().unwrap_or("not finished");
                 // What to do about it is not asked here.
-                let reason = reason.split(';').next().unwrap_or(reason);
+                let reason = first_clause(reason);
                 format!(
                     "{} of {runs} runs not finished, the last: {}",
                     failed.len(),

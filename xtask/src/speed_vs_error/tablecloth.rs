@@ -397,11 +397,11 @@ fn target_words(r: &Tablecloth) -> String {
     if !ended || r.wall >= goal {
         let _ = write!(
             text,
-            " Where the time goes: {} iterations and {} factorisations in {} steps of which {} were rejected, {} ms for a factorisation and what \
+            " Where the time goes: {} iterations and {} factorisations for {} steps taken and {} rejected, {} ms for a factorisation and what \
              belongs to it; one factorisation of the matrix without contact takes {} ms, which makes {:.0} % of the time.",
             r.iterations,
             r.factorisations,
-            r.steps + r.rejected,
+            r.steps,
             r.rejected,
             short(1e3 * r.wall * r.reached / r.factorisations.max(1) as f64),
             short(1e3 * r.factorisation),

@@ -1,6 +1,6 @@
 //! The default against the published scheme at equal wall time.
 
-use super::analysis::short;
+use super::analysis::{first_clause, short};
 use super::measure::{Errors, Point};
 use super::problem::Problem;
 use super::scheme::{DEFAULT, is_paper};
@@ -135,7 +135,7 @@ fn reasons(paper: &[&Point]) -> String {
     let mut last: Vec<(&str, String)> = Vec::new();
     for p in paper {
         let Some(failure) = &p.failure else { continue };
-        let reason = rounded(failure.split(';').next().unwrap_or(failure));
+        let reason = rounded(first_clause(failure));
         match last.last_mut() {
             Some((name, text)) if *name == p.scheme => *text = reason,
             _ => last.push((&p.scheme, reason)),
