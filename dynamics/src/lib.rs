@@ -35,7 +35,8 @@
 //!
 //! Constraints that leave a vertex no room at all, such as two pins that stretch a straight line of
 //! rods taut, are approached only as far as the square root of round-off allows: a step may be
-//! refused there ([`StepError::StepTooSmall`]). So may one on meshes graded over many orders of
+//! refused there ([`StepError::StepTooSmall`]); with pins at rest the line is held, and costs nothing. A banner of 81 vertices that hangs by
+//! two corners may still be refused when it comes to hang straight, exactly flat and taut. So may one on meshes graded over many orders of
 //! magnitude. Conservative runs on fine, nearly flat sheets are slow: the exact motion flutters on
 //! ever smaller scales there.
 //!
@@ -83,6 +84,7 @@ mod simulation;
 mod start;
 mod state;
 mod subdivide;
+mod taut;
 mod trail;
 
 pub use constraint::VertexConstraint;

@@ -50,7 +50,7 @@ pub(crate) struct Minimiser {
     /// Those of the first round, whose penalty is the one that the next step begins with. (In a nearly flat sheet
     /// the ones of later rounds grow without bound.)
     first_multipliers: Vec<f64>,
-    /// Those of the last tangent step.
+    /// Room for those of the tangent steps, which begin with none.
     tangent_multipliers: Vec<f64>,
     penalty: Vec<f64>,
     /// The penalty that every step begins with.

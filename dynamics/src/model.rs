@@ -230,13 +230,25 @@ impl SheetModel {
                 }
             }
         }
+        self.number_free();
+        Ok(self)
+    }
+
+    /// Pins vertices of the sheet.
+    pub(crate) fn hold(&mut self, vertices: &[VertexId]) {
+        for v in vertices {
+            self.free_index[v.index()] = PINNED;
+        }
+        self.number_free();
+    }
+
+    fn number_free(&mut self) {
         let mut next = 0;
         for i in self.free_index.iter_mut().filter(|i| **i != PINNED) {
             *i = next;
             next += 1;
         }
         self.free_count = next as usize;
-        Ok(self)
     }
 
     /// Pins a vertex to a prescribed motion: a function of time (seconds) that returns its position (metres).

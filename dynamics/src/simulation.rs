@@ -7,6 +7,7 @@ use crate::reaction::Reaction;
 use crate::report::{Path, StepError, StepReport};
 use crate::start::{check_finite, check_motions, check_state};
 use crate::subdivide::{Subdivided, Tally};
+use crate::taut::held_by_lines;
 use crate::{Method, SheetModel, State, StepControl};
 use isosheet_coords::Chart;
 use isosheet_coords::linalg::LinalgError;
@@ -101,13 +102,15 @@ struct ChartEngine {
 impl Simulation {
     /// A simulation of `model` from `state` by one of the chart-free methods.
     ///
-    /// Velocities of pinned vertices are set to zero, or to those of their motion.
+    /// Velocities of pinned vertices are set to zero, or to those of their motion. Vertices on a straight line of rods between two pins at
+    /// rest cannot move either, and become pins: the upper edge of a banner that hangs by its corners. (The tension that would hold them against a
+    /// force across the line is infinite; as pins they have a share of the reactions.)
     ///
     /// # Errors
     /// [`SimulationError`] if the options or the state make no sense, or the state does not
     /// have the rest lengths to 1e-8 (see [`project_positions`](crate::project_positions)).
     pub fn new(
-        model: SheetModel,
+        mut model: SheetModel,
         mut state: State,
         method: Method,
     ) -> Result<Self, SimulationError> {
@@ -116,6 +119,10 @@ impl Simulation {
         model.clear_pinned(&mut state.v);
         model.set_pin_velocities(state.t, MOTION_SPAN, &mut state.v);
         check_state(&model, &state)?;
+        let held = held_by_lines(&model, &state.x);
+        model.hold(&held);
+        held.iter()
+            .for_each(|v| state.v[3 * v.index()..3 * v.index() + 3].fill(0.0));
         let engine = Engine::Subdivided(Box::new(Subdivided::new(model, method)?));
         Ok(Self::start(engine, state))
     }

@@ -194,6 +194,42 @@ fn a_ball_rests_in_a_hammock_that_hangs_by_its_pins() {
     assert!(worst < 1e-6, "{worst:e}");
 }
 
+/// The upper edge of a banner is a straight line of rods between two pins: it cannot move, and is held as they are.
+#[test]
+fn a_banner_hangs_by_two_corners() {
+    for level in 0..=1 {
+        for method in [
+            Method::Bdf2(Default::default()),
+            Method::ImplicitEuler(Default::default()),
+        ] {
+            let sheet = generate::isotropic_square(level, 0.2).expect("valid");
+            let n = (1 << (level + 1)) + 1;
+            let corners = [VertexId(n * (n - 1)), VertexId(n * n - 1)];
+            let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)
+                .and_then(|m| m.with_pins(&corners))
+                .and_then(|m| m.with_gravity().with_damping(5.0))
+                .expect("valid");
+            let start = sheet.positions().to_vec();
+            let mut simulation =
+                Simulation::new(model, State::at_rest(start.clone()), method).expect("valid");
+            for _ in 0..240 {
+                let report = simulation.step(1.0 / 60.0).expect("accepted");
+                assert!(report.strain < 1e-11, "{}", report.strain);
+            }
+            let x = &simulation.state().x;
+            let edge = 3 * (n * (n - 1)) as usize;
+            assert_eq!(x[edge..], start[edge..]);
+            // Straight down, and its weight on the edge.
+            let lowest = x.iter().skip(2).step_by(3).fold(0.0_f64, |m, z| m.min(*z));
+            assert!((lowest / -0.2 - 1.0).abs() < 1e-3, "{lowest} m");
+            let reactions = simulation.reactions();
+            assert_eq!(reactions.len(), n as usize);
+            let lift: f64 = reactions.iter().map(|r| r.force.z).sum();
+            assert!((lift / (3.5e-3 * 9.8) - 1.0).abs() < 1e-2, "{lift} N");
+        }
+    }
+}
+
 /// Two opposite corners of a square sheet lie at the ends of a straight line of rods; one of them is pulled outwards from there.
 #[test]
 fn a_straight_line_of_rods_does_not_give() {

@@ -208,8 +208,10 @@ impl Minimiser {
                 }
             }
             length *= 0.5;
+            // Back to where contact knows the motion that the next trial is part of.
+            self.x.copy_from_slice(&self.start);
+            self.limit(step);
         }
-        self.x.copy_from_slice(&self.start);
         None
     }
 
