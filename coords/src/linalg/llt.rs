@@ -4,7 +4,7 @@ use super::{LinalgError, Ordering, Pattern, elimination_order};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::perm::PermRef;
 use faer::sparse::linalg::{SupernodalThreshold, cholesky as ch};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 use std::num::NonZeroUsize;
 
@@ -14,6 +14,7 @@ pub struct SparseLlt {
     pattern: Pattern,
     values: Vec<f64>,
     symbolic: ch::SymbolicCholesky<usize>,
+    permuted: Permuted,
     factor: Vec<f64>,
     factor_scratch: MemBuffer,
     solve_scratch: MemBuffer,
@@ -59,6 +60,7 @@ impl SparseLlt {
                 symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default()),
             ),
             solve_scratch: MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, par)),
+            permuted: Permuted::new(&pattern, &symbolic),
             symbolic,
             pattern,
         })
@@ -121,12 +123,15 @@ impl SparseLlt {
     }
 
     fn factorize_with(&mut self, par: Par, scratch: &mut MemBuffer) -> Result<(), LinalgError> {
-        let a = SparseColMatRef::new(view(&self.pattern), self.values.as_slice());
-        match self.symbolic.factorize_numeric_llt::<f64>(
+        let a = self.permuted.fill(&self.values);
+        let ch::SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else {
+            unreachable!("the analysis asks for supernodes");
+        };
+        match ch::supernodal::factorize_supernodal_numeric_llt(
             &mut self.factor,
             a,
-            Side::Lower,
             Default::default(),
+            symbolic,
             par,
             MemStack::new(scratch),
             Default::default(),
@@ -150,6 +155,52 @@ impl SparseLlt {
             Par::Seq,
             MemStack::new(&mut self.solve_scratch),
         );
+    }
+}
+
+/// The lower triangle in elimination order. faer permutes a matrix anew before each factorisation, a tenth of the time of small
+/// ones; here its values are gathered.
+struct Permuted {
+    pattern: SymbolicSparseColMat<usize>,
+    /// Place of each value in the pattern that was given.
+    from: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Permuted {
+    fn new(pattern: &Pattern, symbolic: &ch::SymbolicCholesky<usize>) -> Self {
+        let n = pattern.cols();
+        let place: Vec<usize> = match symbolic.perm() {
+            Some(perm) => perm.arrays().1.to_vec(),
+            None => (0..n).collect(),
+        };
+        let mut columns = vec![Vec::new(); n];
+        for (j, ends) in pattern.col_ptr().windows(2).enumerate() {
+            for k in ends[0]..ends[1] {
+                let (a, b) = (place[pattern.row_idx()[k]], place[j]);
+                columns[a.min(b)].push((a.max(b), k));
+            }
+        }
+        let mut col_ptr = vec![0];
+        let (mut row_idx, mut from) = (Vec::new(), Vec::new());
+        for mut column in columns {
+            column.sort_unstable();
+            row_idx.extend(column.iter().map(|c| c.0));
+            from.extend(column.iter().map(|c| c.1));
+            col_ptr.push(row_idx.len());
+        }
+        Self {
+            pattern: SymbolicSparseColMat::new_checked(n, n, col_ptr, None, row_idx),
+            values: vec![0.0; from.len()],
+            from,
+        }
+    }
+
+    fn fill(&mut self, values: &[f64]) -> SparseColMatRef<'_, usize, f64> {
+        for (v, k) in self.values.iter_mut().zip(&self.from) {
+            *v = values[*k];
+        }
+        SparseColMatRef::new(self.pattern.as_ref(), &self.values)
     }
 }
 
