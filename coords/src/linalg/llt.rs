@@ -123,20 +123,36 @@ impl SparseLlt {
     }
 
     fn factorize_with(&mut self, par: Par, scratch: &mut MemBuffer) -> Result<(), LinalgError> {
-        let a = self.permuted.fill(&self.values);
-        let ch::SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else {
-            unreachable!("the analysis asks for supernodes");
+        let stack = MemStack::new(scratch);
+        let result = match self.symbolic.raw() {
+            ch::SymbolicCholeskyRaw::Supernodal(symbolic) => {
+                ch::supernodal::factorize_supernodal_numeric_llt(
+                    &mut self.factor,
+                    self.permuted.fill(&self.values),
+                    Default::default(),
+                    symbolic,
+                    par,
+                    stack,
+                    Default::default(),
+                )
+                .map(|_| ())
+            }
+            // Matrices without couplings.
+            ch::SymbolicCholeskyRaw::Simplicial(_) => self
+                .symbolic
+                .factorize_numeric_llt::<f64>(
+                    &mut self.factor,
+                    SparseColMatRef::new(view(&self.pattern), self.values.as_slice()),
+                    Side::Lower,
+                    Default::default(),
+                    par,
+                    stack,
+                    Default::default(),
+                )
+                .map(|_| ()),
         };
-        match ch::supernodal::factorize_supernodal_numeric_llt(
-            &mut self.factor,
-            a,
-            Default::default(),
-            symbolic,
-            par,
-            MemStack::new(scratch),
-            Default::default(),
-        ) {
-            Ok(_) => Ok(()),
+        match result {
+            Ok(()) => Ok(()),
             Err(faer::linalg::cholesky::llt::factor::LltError::NonPositivePivot { index }) => {
                 Err(LinalgError::NotPositiveDefinite {
                     order: self.pattern.cols(),
@@ -328,5 +344,24 @@ mod tests {
             laplacian(10, -2.0).factorize(),
             Err(LinalgError::NotPositiveDefinite { order: 10, .. })
         ));
+    }
+
+    #[test]
+    fn matrices_without_couplings_or_unknowns() {
+        let mut none = SparseLlt::new(Pattern::from_entries(0, 0, &[]).0).unwrap();
+        none.factorize().unwrap();
+        none.solve(&mut []);
+        for n in [1, 7, 500] {
+            let entries: Vec<(u32, u32)> = (0..n).map(|i| (i, i)).collect();
+            let (pattern, slots) = Pattern::from_entries(n as usize, n as usize, &entries);
+            let mut diagonal = SparseLlt::new(pattern).unwrap();
+            for (i, slot) in slots.iter().enumerate() {
+                diagonal.values_mut()[*slot as usize] = 1.0 + i as f64;
+            }
+            diagonal.factorize().unwrap();
+            let mut x: Vec<f64> = (0..n).map(|i| 1.0 + f64::from(i)).collect();
+            diagonal.solve(&mut x);
+            assert!(x.iter().all(|x| (x - 1.0).abs() < 1e-15));
+        }
     }
 }
