@@ -381,10 +381,15 @@ fn advance_chart(
     };
     let has_forces = !chart.mechanics().model().forces().is_empty();
     let mut applied = vec![0.0; if has_forces { state.x.len() } else { 0 }];
+    let limit = chart.options().max_steps;
     let outcome = loop {
         let left = end - chart.time();
         if left <= TIME_ROUND_OFF * end.abs() {
             break Ok(());
+        }
+        if tally.substeps + tally.rejected >= limit {
+            let t = chart.time();
+            break Err(failed(t, ChartDynamicsError::TooManySteps { t, limit }));
         }
         if has_forces {
             let v = match chart.velocities() {

@@ -117,6 +117,16 @@ pub enum ChartDynamicsError {
         /// The last step tried, seconds.
         h: f64,
     },
+    /// One call of [`Simulation::step`](crate::Simulation::step) takes too long.
+    #[error(
+        "{limit} steps, with those rejected, went no further than t = {t} s (near a singularity of the chart a step control crawls): ask for less time at once, take longer steps, loosen the tolerance or use a method without a chart"
+    )]
+    TooManySteps {
+        /// Time reached, seconds.
+        t: f64,
+        /// The limit.
+        limit: usize,
+    },
     /// The step control went below its smallest step.
     #[error(
         "at t = {t} s no step above {minimum:e} s keeps the change of the energy below {tolerance:e} J (it is {change:e} J): {cause}"

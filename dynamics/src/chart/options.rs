@@ -92,6 +92,9 @@ pub struct ChartOptions {
     /// Edge strain at which a run is given up as diverged, default 0.5. Only the linear position update
     /// ever strains edges.
     pub failure_strain: f64,
+    /// Most steps, rejected ones included, in one call of [`Simulation::step`](crate::Simulation::step), default 2^20: a
+    /// step control that crawls along a singularity ends with an error instead of taking hours.
+    pub max_steps: usize,
 }
 
 impl Default for ChartOptions {
@@ -110,6 +113,7 @@ impl Default for ChartOptions {
             strain_limit: 1e-6,
             restitution: 0.0,
             failure_strain: 0.5,
+            max_steps: 1 << 20,
         }
     }
 }
@@ -178,6 +182,7 @@ impl ChartOptions {
             interval,
             "check at least every so many steps",
         )?;
+        positive("most steps", self.max_steps as f64, "allow at least one")?;
         if !(0.0..=1.0).contains(&self.restitution) {
             return Err(ChartDynamicsError::Option {
                 option: "restitution",

@@ -293,6 +293,12 @@ impl ChartSimulation {
         self.range
     }
 
+    /// The options.
+    #[must_use]
+    pub fn options(&self) -> &ChartOptions {
+        &self.options
+    }
+
     /// The mechanics.
     #[must_use]
     pub fn mechanics(&self) -> &ChartMechanics {

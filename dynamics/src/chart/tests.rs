@@ -4,7 +4,7 @@ mod impacts;
 mod orders;
 
 use super::*;
-use crate::SheetModel;
+use crate::{SheetModel, Simulation, State};
 use isosheet_coords::assignment::{AssignmentOptions, Degenerate};
 use isosheet_coords::{CartesianChart, Chart, ChartError, Choice, FrontChart, RodSystem};
 use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId};
@@ -218,6 +218,26 @@ fn adaptive_step_bounds_the_energy_change() {
         s.step(),
         Err(ChartDynamicsError::StepTooSmall { .. })
     ));
+}
+
+#[test]
+fn one_call_takes_no_more_than_so_many_steps() {
+    let sheet = bumped(1, 0.1);
+    let pins = [VertexId(0)];
+    let options = ChartOptions {
+        control: ChartStepControl::Fixed(1e-3),
+        max_steps: 5,
+        ..Default::default()
+    };
+    let m = model(&sheet, &pins, MassKind::Lumped);
+    let start = State::at_rest(sheet.positions().to_vec());
+    let mut s = Simulation::in_chart(m, start, cartesian(&sheet, &pins), options).unwrap();
+    assert_eq!(s.step(4e-3).unwrap().substeps, 4);
+    let error = s.step(8e-3).unwrap_err().to_string();
+    assert!(error.contains("5 steps"), "{error}");
+    // What was reached stays, and the way on is open.
+    assert!((s.state().t - 9e-3).abs() < 1e-15);
+    assert_eq!(s.step(4e-3).unwrap().substeps, 4);
 }
 
 #[test]

@@ -42,7 +42,7 @@ impl Effort {
             Problem::Cloth(_) => self.of([1.0, 15.0, 60.0]),
             Problem::Sheet(2..) => self.of([0.1, 15.0, 60.0]),
             // Runs in charts, whose steps cost the cube of its links, take most of what they may.
-            Problem::Strip(64..) => self.of([0.1, 1.5, 60.0]),
+            Problem::Strip(64..) => self.of([0.1, 3.0, 60.0]),
             _ => self.of([0.1, 5.0, 60.0]),
         }
     }

@@ -122,7 +122,7 @@ pub(crate) fn compute(problem: Problem, budget: f64) -> Result<Reference> {
         "{problem}: the reference and its second opinion are {:e} m apart at the first checkpoint",
         doubts.first().copied().unwrap_or(f64::INFINITY)
     );
-    let growth = growth(problem, times[0], usable, fine.steps.div_ceil(4), budget)?;
+    let growth = growth(problem, times[0], usable, fine.steps.div_ceil(2), budget)?;
     Ok(Reference {
         duration,
         states,

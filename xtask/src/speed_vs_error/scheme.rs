@@ -74,6 +74,9 @@ pub(crate) enum StartError {
 /// Largest number of coordinates for which the paper's scheme uses Cramer's rule, as published; beyond, dense LU.
 const CRAMER: usize = 16;
 
+/// Most steps of the paper's scheme between two checkpoints; the finest runs that finish take some 10^4.
+const CRAWL: usize = 1 << 14;
+
 /// Name of the method that isosheet uses when none is asked for.
 pub(crate) const DEFAULT: &str = "BDF2 (default)";
 
@@ -194,7 +197,8 @@ impl Scheme {
             Fineness::Step(h) => ChartStepControl::Fixed(h),
             Fineness::Tolerance(tolerance) => ChartStepControl::Adaptive {
                 tolerance,
-                min: 1e-7,
+                // A two-hundredth of the paper's smallest.
+                min: 1e-6,
                 // The paper's largest step.
                 max: 0.25,
             },
@@ -231,6 +235,7 @@ impl Scheme {
                         MassSolverKind::DenseLu
                     },
                     rebase: Rebase::Never,
+                    max_steps: CRAWL,
                     ..Default::default()
                 },
             ),
