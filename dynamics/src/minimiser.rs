@@ -15,6 +15,7 @@ use crate::report::{Effort, Path, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use merit::Merit;
+use tangent::Pace;
 
 /// Ratios of squared steps over which multipliers are carried; beyond, the motion has changed too
 /// much for them to be of use.
@@ -84,10 +85,10 @@ pub(crate) struct Minimiser {
 /// Ways to a minimum that are tried before the careful one.
 #[derive(Clone, Copy)]
 enum Way {
+    /// [`Minimiser::go_along_manifold`].
+    Manifold(Pace),
     /// [`Minimiser::go_from_prediction`].
     Prediction,
-    /// [`Minimiser::go_along_manifold`].
-    Manifold,
 }
 
 /// The problem of one step.
@@ -169,9 +170,11 @@ impl Minimiser {
         let ratio = (h / self.multiplier_step).powi(2);
         if MULTIPLIER_RATIOS.contains(&ratio) {
             self.multipliers.iter_mut().for_each(|m| *m *= ratio);
+            self.tangent_multipliers.iter_mut().for_each(|m| *m *= ratio);
             self.vertex_rows.scale(ratio);
         } else {
             self.forget();
+            self.tangent_multipliers.fill(0.0);
         }
         self.multiplier_step = h;
         let mut step = Step {
@@ -185,18 +188,21 @@ impl Minimiser {
         let driven = self.is_driven(&step) || step.scene.model.has_drives();
         let bound = (!driven).then(|| self.merit(&step));
         let bound = bound.as_ref();
-        let mut ways = [Way::Prediction, Way::Manifold];
-        if step.contact().is_some() {
-            ways.reverse();
-        }
+        let ways = [
+            Way::Manifold(Pace::Brisk),
+            Way::Manifold(Pace::Careful),
+            Way::Prediction,
+        ];
+        // Resting in contact is a matter of nearly dependent rods.
+        let skipped = usize::from(step.contact().is_some());
         let mut found = None;
-        for (attempt, way) in ways.into_iter().enumerate() {
+        for (attempt, way) in ways.into_iter().skip(skipped).enumerate() {
             if attempt > 0 {
                 self.begin(&mut step, span);
             }
             found = match way {
                 Way::Prediction => self.go_from_prediction(&mut step, effort),
-                Way::Manifold => self.go_along_manifold(&mut step, effort),
+                Way::Manifold(pace) => self.go_along_manifold(&mut step, pace, effort),
             };
             found = found.filter(|_| self.is_below(bound, &step));
             if found.is_some() {
@@ -235,12 +241,13 @@ impl Minimiser {
     fn go_along_manifold(
         &mut self,
         step: &mut Step<'_, '_>,
+        pace: Pace,
         effort: &mut Effort,
     ) -> Option<(f64, Path)> {
         if step.scene.model.has_drives() {
             return None;
         }
-        self.tangent_steps(step, effort)
+        self.tangent_steps(step, pace, effort)
             .map(|residual| (residual, Path::Newton))
     }
 

@@ -296,7 +296,7 @@ impl Minimiser {
     }
 
     /// Displaces the iterate off a saddle.
-    fn perturb(&mut self, step: &mut Step<'_, '_>) {
+    pub(super) fn perturb(&mut self, step: &mut Step<'_, '_>) {
         let model = step.scene.model;
         let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed);
         for (i, d) in self.dx.iter_mut().enumerate() {
