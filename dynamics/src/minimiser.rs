@@ -170,7 +170,9 @@ impl Minimiser {
         let ratio = (h / self.multiplier_step).powi(2);
         if MULTIPLIER_RATIOS.contains(&ratio) {
             self.multipliers.iter_mut().for_each(|m| *m *= ratio);
-            self.tangent_multipliers.iter_mut().for_each(|m| *m *= ratio);
+            self.tangent_multipliers
+                .iter_mut()
+                .for_each(|m| *m *= ratio);
             self.vertex_rows.scale(ratio);
         } else {
             self.forget();

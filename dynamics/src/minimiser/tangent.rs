@@ -50,8 +50,9 @@ const MAX_RETRACTION: usize = 12;
 const SMALL: f64 = 1e-5;
 /// Times that a step is halved in contact which does not descend: there is another way.
 const MAX_HALVINGS: usize = 2;
-/// Times without contact, where that way is longer. With two, a third of the steps of the hanging sheet takes it.
-const MAX_FREE_HALVINGS: usize = 30;
+/// Times without contact, where that way is longer. With two, a third of the steps of a hanging sheet of 2000 triangles takes it; with 30,
+/// a thousand steps a second need half as many factorisations more.
+const MAX_FREE_HALVINGS: usize = 8;
 /// Part of the promised decrease that has to come true.
 const ARMIJO: f64 = 1e-4;
 
@@ -86,7 +87,7 @@ impl Minimiser {
         if pace == Pace::Careful {
             self.multipliers.fill(0.0);
         }
-        self.penalty.fill(0.0);
+        self.set_merit_penalty(step);
         self.x.copy_from_slice(&step.state.x);
         let found = self.walk(step, pace, effort);
         match found {
@@ -98,12 +99,7 @@ impl Minimiser {
         found
     }
 
-    fn walk(
-        &mut self,
-        step: &mut Step<'_, '_>,
-        pace: Pace,
-        effort: &mut Effort,
-    ) -> Option<f64> {
+    fn walk(&mut self, step: &mut Step<'_, '_>, pace: Pace, effort: &mut Effort) -> Option<f64> {
         let model = step.scene.model;
         self.merit(step);
         let most = match step.contact() {
@@ -145,7 +141,7 @@ impl Minimiser {
             if !(length == 1.0 && is_converged && is_near) {
                 continue;
             }
-            if modified && !seeded && step.contact().is_none() && (pace == Pace::Brisk || std::env::var("SEED").is_ok()) {
+            if modified && !seeded && pace == Pace::Brisk {
                 (left, seeded) = (most, true);
                 self.perturb(step);
                 continue;
@@ -206,9 +202,17 @@ impl Minimiser {
                 break;
             }
         }
-        self.penalty.fill(0.0);
+        self.set_merit_penalty(step);
         self.gradient(step);
         Some(modified)
+    }
+
+    /// Sets the penalty of the function that steps have to decrease. The Lagrangian alone may grow along a step that mends lengths.
+    fn set_merit_penalty(&mut self, step: &Step<'_, '_>) {
+        match step.contact() {
+            Some(_) => self.penalty.fill(0.0),
+            None => self.penalty.copy_from_slice(&self.first_penalty),
+        }
     }
 
     /// Sets the penalty of the tangent system.
