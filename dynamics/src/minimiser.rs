@@ -32,11 +32,11 @@ const SETTLED: f64 = 0.05;
 /// `B` and `D` being contact and its friction where a scene has any: a minimisation that always descends, in place of a
 /// root finder that may not converge.
 ///
+/// * Along the manifold: tangent steps from the start, each projected, see [`Minimiser::tangent_steps`]. First choice; without contact at
+///   a brisk pace and then at a careful one.
 /// * From the prediction: an augmented Lagrangian with the impulses of the previous step as multipliers, minimised by
 ///   Newton's method with line search, whose Hessian is tried as it is and, where it is indefinite, with the negative part of the
 ///   rods' geometric stiffness left out; then a projection onto the lengths, which makes them exact.
-/// * Along the manifold: tangent steps from the start, each projected, see [`Minimiser::tangent_steps`]. First choice in contact, second
-///   without.
 /// * From the start: the augmented Lagrangian again, more carefully and without what is left from earlier steps.
 ///
 /// With contact every displacement, of either stage, is cut to the part that is proven to bring nothing into contact. Pins and
@@ -51,7 +51,7 @@ pub(crate) struct Minimiser {
     /// Those of the first round, whose penalty is the one that the next step begins with. (In a nearly flat sheet
     /// the ones of later rounds grow without bound.)
     first_multipliers: Vec<f64>,
-    /// Room for those of the tangent steps, which begin with none.
+    /// Those of the tangent steps, which begin with none in contact.
     tangent_multipliers: Vec<f64>,
     penalty: Vec<f64>,
     /// The penalty that every step begins with.
@@ -61,6 +61,7 @@ pub(crate) struct Minimiser {
     density: Vec<f64>,
     c: Vec<f64>,
     change: Vec<f64>,
+    has_slivers: bool,
     /// Edge strain from which the projection takes over where there is contact.
     ready: f64,
     /// Vertices on curves and surfaces.
@@ -132,6 +133,7 @@ impl Minimiser {
             density: vec![0.0; m],
             c: vec![0.0; m],
             change: vec![0.0; m],
+            has_slivers: tangent::has_slivers(model),
             ready: READY,
             vertex_rows: VertexRows::new(model, options.stiffness),
             target: vec![0.0; n],
@@ -190,19 +192,24 @@ impl Minimiser {
         let driven = self.is_driven(&step) || step.scene.model.has_drives();
         let bound = (!driven).then(|| self.merit(&step));
         let bound = bound.as_ref();
-        let ways = [
-            Way::Manifold(Pace::Brisk),
-            Way::Manifold(Pace::Careful),
-            Way::Prediction,
-        ];
-        // Resting in contact is a matter of nearly dependent rods.
-        let skipped = usize::from(step.contact().is_some());
+        let ways: &[Way] = if step.contact().is_some() {
+            // Resting in contact is a matter of nearly dependent rods.
+            &[Way::Manifold(Pace::Careful), Way::Prediction]
+        } else if self.has_slivers {
+            &[Way::Prediction, Way::Manifold(Pace::Careful)]
+        } else {
+            &[
+                Way::Manifold(Pace::Brisk),
+                Way::Manifold(Pace::Careful),
+                Way::Prediction,
+            ]
+        };
         let mut found = None;
-        for (attempt, way) in ways.into_iter().skip(skipped).enumerate() {
+        for (attempt, way) in ways.iter().enumerate() {
             if attempt > 0 {
                 self.begin(&mut step, span);
             }
-            found = match way {
+            found = match *way {
                 Way::Prediction => self.go_from_prediction(&mut step, effort),
                 Way::Manifold(pace) => self.go_along_manifold(&mut step, pace, effort),
             };
@@ -238,7 +245,7 @@ impl Minimiser {
     }
 
     /// Tangent steps from the positions at the start. In contact, where motions are small or blocked, they need a fraction of the
-    /// factorisations of the other ways, and come to rest; without contact they are for what the prediction misses. Bodies in motion
+    /// factorisations of the other ways, and come to rest; without contact, half to two thirds. Bodies in motion
     /// advance with the iterates; supports in motion are left to the other ways.
     fn go_along_manifold(
         &mut self,
