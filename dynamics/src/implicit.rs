@@ -11,8 +11,8 @@ use isosheet_coords::linalg::LinalgError;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImplicitOptions {
     /// Penalty of the rods in the augmented Lagrangian, relative to the masses: rods are
-    /// `stiffness` times as stiff as the inertia term. Default 1e4: a hundred times more needs
-    /// several times the Newton iterations, a hundred times less twice the projections.
+    /// `stiffness` times as stiff as the inertia term. Default 1e4: where steps along the manifold fail, a hundred times
+    /// more needs several times the Newton iterations, a hundred times less twice the projections.
     pub stiffness: f64,
     /// Newton's method stops when the decrease it still promises is this fraction of the
     /// inertia term of the incremental potential. Default 1e-4, far below the error of the
@@ -62,9 +62,9 @@ impl ImplicitOptions {
 /// Implicit Euler, `M (v1 - v0) = h f(x1) + G(x1)^T L, x1 = x0 + h v1, c(x1) = 0`.
 ///
 /// Equivalently `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)`
-/// over all positions with the rest lengths, which is how it is found: an augmented Lagrangian
-/// minimised by Newton's method with line search, then a projection that makes the lengths
-/// exact. Non-conservative forces are taken at the start of the step.
+/// over all positions with the rest lengths, which is how it is found: by sequential quadratic programming along
+/// the manifold of rest lengths, and where that fails by an augmented Lagrangian, minimised by Newton's method with line search; then a
+/// projection that makes the lengths exact. Non-conservative forces are taken at the start of the step.
 ///
 /// First order, strongly dissipative, stable at any step. A sheet that starts exactly flat
 /// needs no special treatment.

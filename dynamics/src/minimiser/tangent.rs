@@ -86,13 +86,13 @@ impl Minimiser {
     ///
     /// (`P`: the rods' geometric stiffness with the multipliers of the step before, its positive part where the matrix is
     /// indefinite), each cut by contact, projected towards the manifold where it is far from it, and halved where the Lagrangian
-    /// `Phi + L . c` does not descend; and a projection onto the lengths at the end (Nocedal and Wright,
+    /// `Phi + L . c`, without contact augmented, does not descend; and a projection onto the lengths at the end (Nocedal and Wright,
     /// "Numerical Optimization", 2006, chapter 18; Absil, Mahony and Sepulchre, "Optimization Algorithms on Matrix Manifolds", 2008).
     ///
     /// A sheet that lies flat is held up by rods that are nearly dependent, with multipliers that grow as
     /// the inverse of its fold angles; the augmented Lagrangian needs a dozen rounds to find them. Here they are the solution of a linear
-    /// system, and motions that are small or blocked by contact converge in a few steps. A step that has far to go through
-    /// a flat state is better begun without the lengths.
+    /// system, and motions that are small or blocked by contact converge in a few steps. At a brisk pace a
+    /// step that ends where the curvature is negative is begun again a little beside it: the sheet could fold either way.
     ///
     /// Returns the relative Newton decrement of the last step; nothing if no minimum was found.
     pub(super) fn tangent_steps(
