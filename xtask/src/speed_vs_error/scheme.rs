@@ -74,8 +74,11 @@ pub(crate) enum StartError {
 /// Largest number of coordinates for which the paper's scheme uses Cramer's rule, as published; beyond, dense LU.
 const CRAMER: usize = 16;
 
-/// Most steps of the paper's scheme between two checkpoints; the finest runs that finish take some 10^4.
-const CRAWL: usize = 1 << 14;
+/// Most steps of the paper's scheme between two checkpoints, a second or so. The finest runs that finish take some 10^4.
+const CRAWL: usize = 1 << 17;
+
+/// The same with more coordinates than [`CRAMER`].
+const LARGE_CRAWL: usize = 1 << 14;
 
 /// Name of the method that isosheet uses when none is asked for.
 pub(crate) const DEFAULT: &str = "BDF2 (default)";
@@ -221,24 +224,24 @@ impl Scheme {
                     ..Default::default()
                 },
             ),
-            Kind::Paper { degenerate, .. } => (
-                ChartKind::Front,
-                *degenerate,
-                ChartOptions {
+            Kind::Paper { degenerate, .. } => {
+                let (solver, max_steps) = if freedoms(problem)? <= CRAMER {
+                    (MassSolverKind::Cramer, CRAWL)
+                } else {
+                    (MassSolverKind::DenseLu, LARGE_CRAWL)
+                };
+                let options = ChartOptions {
                     method: ChartMethod::ForwardEuler,
                     equations: Equations::Published,
                     position: PositionUpdate::Linear,
                     control,
-                    solver: if freedoms(problem)? <= CRAMER {
-                        MassSolverKind::Cramer
-                    } else {
-                        MassSolverKind::DenseLu
-                    },
+                    solver,
                     rebase: Rebase::Never,
-                    max_steps: CRAWL,
+                    max_steps,
                     ..Default::default()
-                },
-            ),
+                };
+                (ChartKind::Front, *degenerate, options)
+            }
         };
         let model = problem.model()?;
         Ok(
