@@ -63,8 +63,8 @@ impl ImplicitOptions {
 ///
 /// Equivalently `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)`
 /// over all positions with the rest lengths, which is how it is found: by sequential quadratic programming along
-/// the manifold of rest lengths, and where that fails by an augmented Lagrangian, minimised by Newton's method with line search; then a
-/// projection that makes the lengths exact. Non-conservative forces are taken at the start of the step.
+/// the manifold of rest lengths, and where that fails by an augmented Lagrangian, minimised by Newton's method with line search (without
+/// contact, fine sheets and slivers the other way round); then a projection that makes the lengths exact. Non-conservative forces are taken at the start of the step.
 ///
 /// First order, strongly dissipative, stable at any step. A sheet that starts exactly flat
 /// needs no special treatment.

@@ -214,12 +214,12 @@ impl Minimiser {
             model.rods().apply(&self.x, &self.dx, &mut self.change);
             let (mut largest, mut most, mut off) = (0.0_f64, 0.0_f64, 0.0_f64);
             for e in 0..self.c.len() {
-                let more = self.along[e] * (self.c[e] - self.change[e]);
+                let (left, l) = (self.c[e] - self.change[e], model.rods().lengths()[e]);
+                let more = self.along[e] * left;
                 self.multipliers[e] += more;
                 largest = largest.max(self.multipliers[e].abs());
                 most = most.max(more.abs());
-                let l = model.rods().lengths()[e];
-                off = off.max((self.c[e] - self.change[e]).abs() / (l * l));
+                off = off.max(left.abs() / (l * l));
             }
             if pace == Pace::Brisk && off > LET_THROUGH {
                 return None;
