@@ -119,7 +119,7 @@ pub enum ChartDynamicsError {
     },
     /// One call of [`Simulation::step`](crate::Simulation::step) takes too long.
     #[error(
-        "{limit} steps, with those rejected, went no further than t = {t} s (near a singularity of the chart a step control crawls): ask for less time at once, take longer steps, loosen the tolerance or use a method without a chart"
+        "{limit} steps, with those rejected, went no further than t = {t} s (near a singularity of the chart a step control crawls); ask for less time at once, take longer steps, loosen the tolerance or use a method without a chart"
     )]
     TooManySteps {
         /// Time reached, seconds.
