@@ -2,7 +2,8 @@
 
 use crate::energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
 use crate::implicit::{Bdf2, ImplicitEuler, ImplicitOptions};
-use crate::integrator::{Integrator, OptionsError};
+use crate::integrator::Integrator;
+use crate::options::OptionsError;
 use crate::projection_step::{ProjectionStep, ProjectionStepOptions};
 use crate::rattle::{Rattle, RattleComposition, RattleOptions};
 use crate::{SheetModel, SimulationError};

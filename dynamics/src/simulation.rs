@@ -2,11 +2,11 @@
 
 use crate::chart::{ChartDynamicsError, ChartOptions, ChartSimulation};
 use crate::contact::{BodyLoad, Contact, ContactError};
-use crate::integrator::OptionsError;
+use crate::engine::Engine as FreeEngine;
+use crate::options::OptionsError;
 use crate::reaction::Reaction;
-use crate::report::{Path, StepError, StepReport};
+use crate::report::{Path, StepError, StepReport, Tally};
 use crate::start::{check_finite, check_motions, check_state};
-use crate::subdivide::{Subdivided, Tally};
 use crate::taut::held_by_lines;
 use crate::{Method, SheetModel, State, StepControl};
 use isosheet_coords::Chart;
@@ -80,7 +80,6 @@ pub enum SimulationError {
 /// ```
 pub struct Simulation {
     engine: Engine,
-    state: State,
     force: Vec<f64>,
     start_energy: f64,
     work: f64,
@@ -89,12 +88,13 @@ pub struct Simulation {
 }
 
 enum Engine {
-    Subdivided(Box<Subdivided>),
+    Free(Box<FreeEngine>),
     Chart(Box<ChartEngine>),
 }
 
 struct ChartEngine {
     simulation: ChartSimulation,
+    state: State,
     /// At the end of the last step.
     reactions: Vec<Reaction>,
 }
@@ -123,8 +123,8 @@ impl Simulation {
         model.hold(&held);
         held.iter()
             .for_each(|v| state.v[3 * v.index()..3 * v.index() + 3].fill(0.0));
-        let engine = Engine::Subdivided(Box::new(Subdivided::new(model, method)?));
-        Ok(Self::start(engine, state))
+        let engine = Engine::Free(Box::new(FreeEngine::new(model, method, state)?));
+        Ok(Self::start(engine))
     }
 
     /// A simulation of `model` from `state` in system coordinates: the paper's scheme and its
@@ -150,21 +150,22 @@ impl Simulation {
         let reactions = Vec::new();
         let engine = Engine::Chart(Box::new(ChartEngine {
             simulation,
+            state,
             reactions,
         }));
-        Ok(Self::start(engine, state))
+        Ok(Self::start(engine))
     }
 
-    fn start(engine: Engine, state: State) -> Self {
+    fn start(engine: Engine) -> Self {
         let mut simulation = Self {
+            force: Vec::new(),
             engine,
-            force: vec![0.0; state.x.len()],
-            state,
             start_energy: 0.0,
             work: 0.0,
             dissipated: 0.0,
             friction: 0.0,
         };
+        simulation.force = vec![0.0; simulation.state().x.len()];
         simulation.start_energy = simulation.energy();
         simulation
     }
@@ -175,7 +176,7 @@ impl Simulation {
     /// [`SimulationError`] if it makes no sense.
     pub fn with_control(mut self, control: StepControl) -> Result<Self, SimulationError> {
         match &mut self.engine {
-            Engine::Subdivided(engine) => engine.set_control(control)?,
+            Engine::Free(engine) => engine.set_control(control)?,
             Engine::Chart(_) => return Err(SimulationError::ChartControl),
         }
         Ok(self)
@@ -191,7 +192,7 @@ impl Simulation {
         contact: impl Contact + 'static,
     ) -> Result<Self, SimulationError> {
         match &mut self.engine {
-            Engine::Subdivided(engine) => engine.set_contact(Box::new(contact), &self.state)?,
+            Engine::Free(engine) => engine.set_contact(Box::new(contact))?,
             Engine::Chart(chart) => chart.simulation.set_contact(Box::new(contact))?,
         }
         self.start_energy = self.energy();
@@ -201,7 +202,7 @@ impl Simulation {
     /// Contact, if this scene has any.
     pub fn contact(&self) -> Option<&dyn Contact> {
         match &self.engine {
-            Engine::Subdivided(engine) => engine.contact.as_deref(),
+            Engine::Free(engine) => engine.contact.as_deref(),
             Engine::Chart(chart) => chart.simulation.contact(),
         }
     }
@@ -210,13 +211,13 @@ impl Simulation {
     /// impulses act ([`ChartSimulation::impulses`]).
     pub fn body_loads(&self) -> Vec<BodyLoad> {
         self.barrier()
-            .map_or_else(Vec::new, |c| c.loads(&self.state.x))
+            .map_or_else(Vec::new, |c| c.loads(&self.state().x))
     }
 
     /// Contact that acts by its barrier.
     fn barrier(&self) -> Option<&dyn Contact> {
         match &self.engine {
-            Engine::Subdivided(engine) => engine.contact.as_deref(),
+            Engine::Free(engine) => engine.contact.as_deref(),
             Engine::Chart(_) => None,
         }
     }
@@ -229,9 +230,9 @@ impl Simulation {
     /// when the forces are wanted.
     pub fn reactions(&self) -> Vec<Reaction> {
         match &self.engine {
-            Engine::Subdivided(engine) => {
-                let balance = engine.balance.as_ref();
-                balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, self.state.t))
+            Engine::Free(engine) => {
+                let balance = engine.balance();
+                balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, engine.state().t))
             }
             Engine::Chart(chart) => chart.reactions.clone(),
         }
@@ -240,7 +241,7 @@ impl Simulation {
     /// The model.
     pub fn model(&self) -> &SheetModel {
         match &self.engine {
-            Engine::Subdivided(engine) => &engine.model,
+            Engine::Free(engine) => &engine.model,
             Engine::Chart(chart) => chart.simulation.mechanics().model(),
         }
     }
@@ -248,23 +249,26 @@ impl Simulation {
     /// The simulation in system coordinates, if this is one: coordinates, momenta, step range.
     pub fn chart(&self) -> Option<&ChartSimulation> {
         match &self.engine {
-            Engine::Subdivided(_) => None,
+            Engine::Free(_) => None,
             Engine::Chart(chart) => Some(&chart.simulation),
         }
     }
 
     /// Time, positions and velocities.
     pub fn state(&self) -> &State {
-        &self.state
+        match &self.engine {
+            Engine::Free(engine) => engine.state(),
+            Engine::Chart(chart) => &chart.state,
+        }
     }
 
     /// Total energy `T + V`, contact included, joules.
     pub fn energy(&self) -> f64 {
-        self.model().kinetic_energy(&self.state.v) + self.potential_energy()
+        self.model().kinetic_energy(&self.state().v) + self.potential_energy()
     }
 
     fn potential_energy(&self) -> f64 {
-        let State { t, x, .. } = &self.state;
+        let State { t, x, .. } = self.state();
         let potential = self.model().potential_energy(*t, x);
         match self.barrier() {
             None => potential,
@@ -278,8 +282,8 @@ impl Simulation {
     /// # Errors
     /// [`StepError`]; the state is then that of the last accepted sub-step.
     pub fn step(&mut self, h: f64) -> Result<StepReport, StepError> {
-        let start = self.state.t;
-        check_finite(&self.state)?;
+        let start = self.state().t;
+        check_finite(self.state())?;
         if !(h.is_finite() && h > 0.0) || start + h <= start {
             return Err(StepError::StepSize { h, t: start });
         }
@@ -287,19 +291,17 @@ impl Simulation {
         let end = start + h;
         let mut tally = Tally::default();
         let done = match &mut self.engine {
-            Engine::Subdivided(engine) => engine.advance(&mut self.state, h, &mut tally),
-            Engine::Chart(chart) => advance_chart(chart, &mut self.state, end, &mut tally),
+            Engine::Free(engine) => engine.advance(h, &mut tally),
+            Engine::Chart(chart) => advance_chart(chart, end, &mut tally),
         };
         self.work += tally.work;
         self.dissipated += tally.dissipated;
         self.friction += tally.friction;
         done?;
-        if tally.taut.is_none() {
-            self.state.t = end;
-        }
-        let end = self.state.t;
         let model = self.model();
-        let kinetic = model.kinetic_energy(&self.state.v);
+        let State { t: end, x, v } = self.state();
+        let end = *end;
+        let kinetic = model.kinetic_energy(v);
         let potential = self.potential_energy();
         for (quantity, value) in [
             ("the potential energy", potential),
@@ -329,10 +331,10 @@ impl Simulation {
             friction: self.friction,
             energy_drift: kinetic + potential - self.work + self.dissipated + self.friction
                 - self.start_energy,
-            strain: model.rods().max_strain(&self.state.x),
+            strain: model.rods().max_strain(x),
             taut: tally.taut,
-            violation: model.largest_violation(self.state.t, &self.state.x),
-            gap: self.contact().map(|c| c.gap(&self.state.x)),
+            violation: model.largest_violation(end, x),
+            gap: self.contact().map(|c| c.gap(x)),
             path: tally.path,
         })
     }
@@ -340,7 +342,7 @@ impl Simulation {
     /// Refuses potentials and forces that are not finite at the state.
     fn check_forces(&mut self) -> Result<(), StepError> {
         let mut sum = std::mem::take(&mut self.force);
-        let State { t, x, v } = &self.state;
+        let State { t, x, v } = self.state();
         let model = self.model();
         model.potential_force(*t, x, &mut sum);
         for force in model.forces() {
@@ -367,13 +369,8 @@ const MOTION_SPAN: f64 = 1e-2;
 const TIME_ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
 /// Advances a simulation in a chart to `end`.
-fn advance_chart(
-    engine: &mut ChartEngine,
-    state: &mut State,
-    end: f64,
-    tally: &mut Tally,
-) -> Result<(), StepError> {
-    let chart = &mut engine.simulation;
+fn advance_chart(engine: &mut ChartEngine, end: f64, tally: &mut Tally) -> Result<(), StepError> {
+    let (chart, state) = (&mut engine.simulation, &mut engine.state);
     tally.path = Path::Chart;
     let failed = |t: f64, source: ChartDynamicsError| StepError::Chart {
         t,
@@ -422,7 +419,7 @@ fn advance_chart(
                 .sum::<f64>();
         }
     };
-    state.t = chart.time();
+    state.t = if outcome.is_ok() { end } else { chart.time() };
     state.x.copy_from_slice(chart.positions());
     state.v = chart.velocities().map_err(|e| failed(state.t, e))?;
     if chart.mechanics().model().has_supports() {
