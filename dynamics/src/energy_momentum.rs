@@ -10,9 +10,11 @@ use crate::report::{Effort, Path, StepError};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
+use serde::{Deserialize, Serialize};
 
 /// Options of [`EnergyMomentum`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct EnergyMomentumOptions {
     /// Largest relative residual of the momentum balance. Default 1e-12: the energy error of a
     /// step is about this fraction of the energy that changes hands in it.

@@ -1,5 +1,6 @@
 //! The chart-free engine: proposals of an integrator, judged and committed.
 
+use crate::checkpoint::{CheckpointError, FreeMotion};
 use crate::contact::{Contact, ContactError};
 use crate::control::{Decision, Stepping, take_substep};
 use crate::energy_account::{EnergyAccount, Exchange};
@@ -12,12 +13,17 @@ use crate::rank::rod_rank;
 use crate::reaction::Balance;
 use crate::report::{Path, StepError, Tally};
 use crate::subdivision::Subdivision;
+use crate::taut::held_by_lines;
 use crate::{Fallback, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable};
+use isosheet_mesh::VertexId;
 
 /// A sheet that a chart-free method moves.
 pub(crate) struct Engine {
     pub(crate) model: SheetModel,
     pub(crate) contact: Option<Box<dyn Contact>>,
+    method: Method,
+    /// Vertices that became pins at the start because they cannot move.
+    held: Vec<VertexId>,
     integrator: Box<dyn Integrator>,
     control: StepControl,
     fallback: Option<ImplicitEuler>,
@@ -30,10 +36,23 @@ pub(crate) struct Engine {
 }
 
 impl Engine {
+    /// Vertices on straight lines of rods between pins at rest become pins.
     pub(crate) fn new(
+        mut model: SheetModel,
+        method: Method,
+        mut state: State,
+    ) -> Result<Self, SimulationError> {
+        let held = held_by_lines(&model, &state.x);
+        model.hold(&held);
+        model.clear_velocities(&held, &mut state.v);
+        Self::with_held(model, method, state, held)
+    }
+
+    fn with_held(
         model: SheetModel,
         method: Method,
         state: State,
+        held: Vec<VertexId>,
     ) -> Result<Self, SimulationError> {
         let integrator = method.build(&model)?;
         let traits = integrator.traits();
@@ -51,8 +70,43 @@ impl Engine {
             contact: None,
             account: EnergyAccount::default(),
             has_moved: false,
+            method,
+            held,
             model,
         })
+    }
+
+    /// What a checkpoint keeps.
+    pub(crate) fn motion(&self) -> FreeMotion {
+        FreeMotion {
+            method: self.method.clone(),
+            control: self.control.clone(),
+            moment: self.moment.compact(),
+            account: self.account,
+            has_moved: self.has_moved,
+            held: self.held.iter().map(|v| v.0).collect(),
+        }
+    }
+
+    /// Goes on from a checkpoint.
+    pub(crate) fn resume(
+        mut model: SheetModel,
+        contact: Option<Box<dyn Contact>>,
+        motion: FreeMotion,
+    ) -> Result<Self, SimulationError> {
+        check_lengths(&model, &motion)?;
+        let held: Vec<VertexId> = motion.held.iter().copied().map(VertexId).collect();
+        model.hold(&held);
+        let state = motion.moment.state.clone();
+        let mut engine = Self::with_held(model, motion.method, state, held)?;
+        engine.set_control(motion.control)?;
+        engine.moment.copy_from(&motion.moment);
+        engine.account = motion.account;
+        engine.has_moved = motion.has_moved;
+        if let Some(contact) = contact {
+            engine.set_contact(contact)?;
+        }
+        Ok(engine)
     }
 
     /// Where the sheet is.
@@ -300,6 +354,52 @@ impl Stepping for Substeps<'_> {
         }
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         Ok(())
+    }
+}
+
+/// Refuses arrays of the wrong length.
+fn check_lengths(model: &SheetModel, motion: &FreeMotion) -> Result<(), CheckpointError> {
+    let (n, m, k) = (
+        model.coordinate_count(),
+        model.rods().len(),
+        model.constraints().len(),
+    );
+    let Moment { state, history, .. } = &motion.moment;
+    let previous = history.previous.as_ref().unwrap_or(state);
+    let multipliers = &history.multipliers;
+    let optional = |length: usize, expected: usize| if length == 0 { expected } else { length };
+    let vertices = model.topology().vertex_count();
+    let largest = history.couplings.iter().flatten().chain(&motion.held).max();
+    for (what, found, expected) in [
+        ("positions", state.x.len(), n),
+        ("velocities", state.v.len(), n),
+        ("positions of the step before", previous.x.len(), n),
+        ("velocities of the step before", previous.v.len(), n),
+        (
+            "multipliers of rods",
+            optional(multipliers.rods.len(), m),
+            m,
+        ),
+        (
+            "multipliers of vertex constraints",
+            optional(multipliers.constraints.len(), k),
+            k,
+        ),
+    ] {
+        if found != expected {
+            return Err(CheckpointError::Length {
+                what,
+                found,
+                expected,
+            });
+        }
+    }
+    match largest {
+        Some(&v) if v as usize >= vertices => Err(CheckpointError::NoSuchVertex {
+            vertex: v,
+            vertices,
+        }),
+        _ => Ok(()),
     }
 }
 

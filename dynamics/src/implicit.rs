@@ -8,9 +8,11 @@ use crate::options::OptionsError;
 use crate::report::{Effort, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
+use serde::{Deserialize, Serialize};
 
 /// Options of [`ImplicitEuler`] and [`Bdf2`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ImplicitOptions {
     /// Penalty of the rods in the augmented Lagrangian, relative to the masses: rods are
     /// `stiffness` times as stiff as the inertia term. Default 1e4: where steps along the manifold fail, a hundred times

@@ -5,6 +5,7 @@ use crate::history::{History, Multipliers};
 use crate::reaction::{Balance, ForceTime};
 use crate::report::{Effort, Path, StepError};
 use crate::{SheetModel, State};
+use serde::{Deserialize, Serialize};
 
 /// What an integrator moves: a sheet, and what the sheet may touch.
 pub(crate) struct Scene<'a> {
@@ -15,7 +16,7 @@ pub(crate) struct Scene<'a> {
 }
 
 /// A point of a motion: all that the next step depends on besides the scene and the options of the method.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Moment {
     /// Time, positions and velocities.
     pub(crate) state: State,
@@ -72,6 +73,24 @@ impl Moment {
                 RodDemand::Nothing => Balance::with_trail(model, ForceTime::End),
             },
         }
+    }
+}
+
+impl Moment {
+    /// What a checkpoint keeps.
+    pub(crate) fn compact(&self) -> Self {
+        Self {
+            state: self.state.clone(),
+            history: self.history.clone(),
+            balance: self.balance.compact(),
+        }
+    }
+
+    /// Takes over another moment of the same model, in place.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.state.copy_from(&other.state);
+        self.history.copy_from(&other.history);
+        self.balance.copy_from(&other.balance);
     }
 }
 

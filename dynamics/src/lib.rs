@@ -56,6 +56,7 @@
 //! [`Simulation::body_loads`] those of the sheet on the bodies.
 
 pub mod chart;
+mod checkpoint;
 pub mod constraint;
 pub mod contact;
 #[cfg(test)]
@@ -74,6 +75,7 @@ mod integrator;
 mod method;
 mod minimiser;
 mod model;
+mod observe;
 mod options;
 pub mod potential;
 mod primal;
@@ -85,12 +87,14 @@ mod reaction;
 mod report;
 mod saddle;
 mod simulation;
+mod simulation_error;
 mod start;
 mod state;
 mod subdivision;
 mod taut;
 mod trail;
 
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use constraint::VertexConstraint;
 pub use crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
 pub use energy_momentum::EnergyMomentumOptions;
@@ -98,14 +102,16 @@ pub use feasibility::Excess;
 pub use implicit::ImplicitOptions;
 pub use method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use model::{ModelError, SheetModel};
+pub use observe::{Frames, History, Observer, RunEnd};
 pub use options::OptionsError;
 pub use potential::{Force, Gravity, HessianSink, Potential, PotentialShape, STANDARD_GRAVITY};
 pub use projection_step::ProjectionStepOptions;
 pub use rank::{RodRank, rod_rank};
 pub use rattle::RattleOptions;
-pub use reaction::{Balance, Reaction, Support};
+pub use reaction::{Reaction, Support};
 pub use report::{Path, StepError, StepReport};
-pub use simulation::{Simulation, SimulationError};
+pub use simulation::Simulation;
+pub use simulation_error::SimulationError;
 pub use start::{leave_flat, project_positions};
 pub use state::State;
 

@@ -234,12 +234,19 @@ impl SheetModel {
         Ok(self)
     }
 
-    /// Pins vertices of the sheet.
+    /// Pins vertices of the sheet where they are.
     pub(crate) fn hold(&mut self, vertices: &[VertexId]) {
         for v in vertices {
             self.free_index[v.index()] = PINNED;
         }
         self.number_free();
+    }
+
+    /// Sets the velocities of some vertices to zero.
+    pub(crate) fn clear_velocities(&self, vertices: &[VertexId], v: &mut [f64]) {
+        for i in vertices {
+            v[3 * i.index()..3 * i.index() + 3].fill(0.0);
+        }
     }
 
     fn number_free(&mut self) {

@@ -12,9 +12,11 @@ use crate::reaction::{Balance, ForceTime};
 use crate::report::{Effort, Path, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
+use serde::{Deserialize, Serialize};
 
 /// Options of [`ProjectionStep`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ProjectionStepOptions {
     /// Largest relative edge length error of an accepted step. Default 1e-12.
     pub strain_tolerance: f64,

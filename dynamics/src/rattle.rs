@@ -13,9 +13,11 @@ use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 
 /// Options of [`Rattle`] and [`RattleComposition`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct RattleOptions {
     /// Largest relative edge length error of an accepted step. Default 2e-13.
     pub strain_tolerance: f64,

@@ -1,64 +1,17 @@
 //! A sheet in motion: state, integrator, step control and energy balance.
 
-use crate::chart::{ChartDynamicsError, ChartOptions, ChartSimulation};
-use crate::contact::{BodyLoad, Contact, ContactError};
+use crate::chart::engine::ChartEngine;
+use crate::chart::{ChartOptions, ChartSimulation};
+use crate::checkpoint::{Checkpoint, EnergySums, Motion, SheetFingerprint};
+use crate::contact::{BodyLoad, Contact};
 use crate::engine::Engine as FreeEngine;
-use crate::options::OptionsError;
 use crate::reaction::Reaction;
-use crate::report::{Path, StepError, StepReport, Tally};
+use crate::report::{StepError, StepReport, Tally};
+use crate::simulation_error::SimulationError;
 use crate::start::{check_finite, check_motions, check_state};
-use crate::taut::held_by_lines;
 use crate::{Method, SheetModel, State, StepControl};
 use isosheet_coords::Chart;
-use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::VertexId;
-
-/// Why a simulation cannot start.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SimulationError {
-    /// An option makes no sense.
-    #[error(transparent)]
-    Options(#[from] OptionsError),
-    /// The state does not fit the model.
-    #[error(
-        "the state has {positions} position and {velocities} velocity values, the sheet needs \
-         {expected} of each"
-    )]
-    StateLength {
-        /// Number of position values.
-        positions: usize,
-        /// Number of velocity values.
-        velocities: usize,
-        /// Three for each vertex.
-        expected: usize,
-    },
-    /// The start state is not one that a step could start from.
-    #[error(transparent)]
-    Start(#[from] StepError),
-    /// The linear algebra could not be set up.
-    #[error(transparent)]
-    Linalg(#[from] LinalgError),
-    /// The chart cannot be used.
-    #[error(transparent)]
-    Chart(#[from] ChartDynamicsError),
-    /// Contact cannot start here.
-    #[error(transparent)]
-    Contact(#[from] ContactError),
-    /// A one-sided constraint is in a scene of a conservative method.
-    #[error(
-        "vertex constraint {index} is one-sided, which the conservative methods have no place for: an \
-         impact loses energy. Use BDF2, implicit Euler or projection"
-    )]
-    OneSided {
-        /// Place in the order in which the constraints were added.
-        index: usize,
-    },
-    /// Step control by subdivision was asked for a chart, which has its own.
-    #[error(
-        "a simulation in a chart controls its steps by `ChartOptions::control`; leave `StepControl` out"
-    )]
-    ChartControl,
-}
 
 /// A sheet in motion. Owns the model, the state and the integrator.
 ///
@@ -80,23 +33,22 @@ pub enum SimulationError {
 /// ```
 pub struct Simulation {
     engine: Engine,
+    /// What tells the model, as its user built it, from another one.
+    sheet: SheetFingerprint,
+    energy: EnergySums,
+    /// Room for a sum of forces, `3V`.
     force: Vec<f64>,
-    start_energy: f64,
-    work: f64,
-    dissipated: f64,
-    friction: f64,
 }
+
+/// A simulation can move to another thread.
+const _: fn() = || {
+    fn is_send<T: Send>() {}
+    is_send::<Simulation>();
+};
 
 enum Engine {
     Free(Box<FreeEngine>),
     Chart(Box<ChartEngine>),
-}
-
-struct ChartEngine {
-    simulation: ChartSimulation,
-    state: State,
-    /// At the end of the last step.
-    reactions: Vec<Reaction>,
 }
 
 impl Simulation {
@@ -110,21 +62,18 @@ impl Simulation {
     /// [`SimulationError`] if the options or the state make no sense, or the state does not
     /// have the rest lengths to 1e-8 (see [`project_positions`](crate::project_positions)).
     pub fn new(
-        mut model: SheetModel,
+        model: SheetModel,
         mut state: State,
         method: Method,
     ) -> Result<Self, SimulationError> {
         check_length(&model, &state)?;
         check_motions(&model, &state)?;
+        let sheet = SheetFingerprint::of(&model);
         model.clear_pinned(&mut state.v);
         model.set_pin_velocities(state.t, MOTION_SPAN, &mut state.v);
         check_state(&model, &state)?;
-        let held = held_by_lines(&model, &state.x);
-        model.hold(&held);
-        held.iter()
-            .for_each(|v| state.v[3 * v.index()..3 * v.index() + 3].fill(0.0));
         let engine = Engine::Free(Box::new(FreeEngine::new(model, method, state)?));
-        Ok(Self::start(engine))
+        Ok(Self::start(engine, sheet))
     }
 
     /// A simulation of `model` from `state` in system coordinates: the paper's scheme and its
@@ -145,29 +94,54 @@ impl Simulation {
         check_length(&model, &state)?;
         check_motions(&model, &state)?;
         check_state(&model, &state)?;
+        let sheet = SheetFingerprint::of(&model);
         let mut simulation = ChartSimulation::from_state(model, chart, options, &state)?;
         state.v = simulation.velocities()?;
-        let reactions = Vec::new();
-        let engine = Engine::Chart(Box::new(ChartEngine {
-            simulation,
-            state,
-            reactions,
-        }));
-        Ok(Self::start(engine))
+        let engine = Engine::Chart(Box::new(ChartEngine::new(simulation, state)));
+        Ok(Self::start(engine, sheet))
     }
 
-    fn start(engine: Engine) -> Self {
+    fn start(engine: Engine, sheet: SheetFingerprint) -> Self {
         let mut simulation = Self {
-            force: Vec::new(),
             engine,
-            start_energy: 0.0,
-            work: 0.0,
-            dissipated: 0.0,
-            friction: 0.0,
+            sheet,
+            energy: EnergySums::default(),
+            force: Vec::new(),
         };
         simulation.force = vec![0.0; simulation.state().x.len()];
-        simulation.start_energy = simulation.energy();
+        simulation.energy.start = simulation.energy();
         simulation
+    }
+
+    /// Everything that the next step depends on besides model and contact, as a value.
+    pub fn checkpoint(&self) -> Checkpoint {
+        let motion = match &self.engine {
+            Engine::Free(engine) => Motion::Free(Box::new(engine.motion())),
+            Engine::Chart(_) => todo!(),
+        };
+        Checkpoint::new(self.sheet, self.energy, motion)
+    }
+
+    /// Goes on from a checkpoint of a chart-free method, with the model and the contact that it was made with: bit
+    /// for bit as the simulation would have gone on that the checkpoint was made of.
+    ///
+    /// # Errors
+    /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of simulation.
+    pub fn resume(
+        model: SheetModel,
+        contact: Option<Box<dyn Contact>>,
+        checkpoint: Checkpoint,
+    ) -> Result<Self, SimulationError> {
+        checkpoint.check_model(&model)?;
+        let Motion::Free(motion) = checkpoint.motion;
+        let engine = FreeEngine::resume(model, contact, *motion)?;
+        let force = vec![0.0; engine.state().x.len()];
+        Ok(Self {
+            engine: Engine::Free(Box::new(engine)),
+            sheet: checkpoint.sheet,
+            energy: checkpoint.energy,
+            force,
+        })
     }
 
     /// Replaces the step control of a chart-free method.
@@ -195,7 +169,7 @@ impl Simulation {
             Engine::Free(engine) => engine.set_contact(Box::new(contact))?,
             Engine::Chart(chart) => chart.simulation.set_contact(Box::new(contact))?,
         }
-        self.start_energy = self.energy();
+        self.energy.start = self.energy();
         Ok(self)
     }
 
@@ -292,32 +266,48 @@ impl Simulation {
         let mut tally = Tally::default();
         let done = match &mut self.engine {
             Engine::Free(engine) => engine.advance(h, &mut tally),
-            Engine::Chart(chart) => advance_chart(chart, end, &mut tally),
+            Engine::Chart(chart) => chart.advance(end, &mut tally),
         };
-        self.work += tally.work;
-        self.dissipated += tally.dissipated;
-        self.friction += tally.friction;
+        self.energy.work += tally.work;
+        self.energy.dissipated += tally.dissipated;
+        self.energy.friction += tally.friction;
         done?;
-        let model = self.model();
-        let State { t: end, x, v } = self.state();
-        let end = *end;
-        let kinetic = model.kinetic_energy(v);
-        let potential = self.potential_energy();
+        self.check_energies()?;
+        Ok(self.report(h, &tally))
+    }
+
+    /// Refuses energies that are not finite.
+    fn check_energies(&self) -> Result<(), StepError> {
+        let State { t, v, .. } = self.state();
         for (quantity, value) in [
-            ("the potential energy", potential),
-            ("the kinetic energy", kinetic),
-            ("the work of the applied forces", self.work),
+            ("the potential energy", self.potential_energy()),
+            ("the kinetic energy", self.model().kinetic_energy(v)),
+            ("the work of the applied forces", self.energy.work),
         ] {
             if !value.is_finite() {
                 return Err(StepError::NonFiniteEnergy {
                     quantity,
                     value,
-                    t: end,
+                    t: *t,
                 });
             }
         }
-        Ok(StepReport {
-            t: end,
+        Ok(())
+    }
+
+    /// What a step of `h` seconds did.
+    fn report(&self, h: f64, tally: &Tally) -> StepReport {
+        let model = self.model();
+        let State { t, x, v } = self.state();
+        let (kinetic, potential) = (model.kinetic_energy(v), self.potential_energy());
+        let EnergySums {
+            start,
+            work,
+            dissipated,
+            friction,
+        } = self.energy;
+        StepReport {
+            t: *t,
             h,
             substeps: tally.substeps,
             rejected: tally.rejected,
@@ -326,17 +316,16 @@ impl Simulation {
             residual: tally.residual,
             kinetic,
             potential,
-            work: self.work,
-            dissipated: self.dissipated,
-            friction: self.friction,
-            energy_drift: kinetic + potential - self.work + self.dissipated + self.friction
-                - self.start_energy,
+            work,
+            dissipated,
+            friction,
+            energy_drift: kinetic + potential - work + dissipated + friction - start,
             strain: model.rods().max_strain(x),
             taut: tally.taut,
-            violation: model.largest_violation(end, x),
+            violation: model.largest_violation(*t, x),
             gap: self.contact().map(|c| c.gap(x)),
             path: tally.path,
-        })
+        }
     }
 
     /// Refuses potentials and forces that are not finite at the state.
@@ -364,69 +353,6 @@ impl Simulation {
 
 /// Over parts of this time (seconds) the velocities of moving pins at the start are taken by differences.
 const MOTION_SPAN: f64 = 1e-2;
-
-/// Sub-steps shorter than this fraction of the time reached are round-off, not time.
-const TIME_ROUND_OFF: f64 = 4.0 * f64::EPSILON;
-
-/// Advances a simulation in a chart to `end`.
-fn advance_chart(engine: &mut ChartEngine, end: f64, tally: &mut Tally) -> Result<(), StepError> {
-    let (chart, state) = (&mut engine.simulation, &mut engine.state);
-    tally.path = Path::Chart;
-    let failed = |t: f64, source: ChartDynamicsError| StepError::Chart {
-        t,
-        source: Box::new(source),
-    };
-    let has_forces = !chart.mechanics().model().forces().is_empty();
-    let mut applied = vec![0.0; if has_forces { state.x.len() } else { 0 }];
-    let limit = chart.options().max_steps;
-    let outcome = loop {
-        let left = end - chart.time();
-        if left <= TIME_ROUND_OFF * end.abs() {
-            break Ok(());
-        }
-        if tally.substeps + tally.rejected >= limit {
-            let t = chart.time();
-            break Err(failed(t, ChartDynamicsError::TooManySteps { t, limit }));
-        }
-        if has_forces {
-            let v = match chart.velocities() {
-                Ok(v) => v,
-                Err(error) => break Err(failed(chart.time(), error)),
-            };
-            let model = chart.mechanics().model();
-            model.applied_force(chart.time(), chart.positions(), &v, &mut applied);
-            state.x.copy_from_slice(chart.positions());
-        }
-        let report = match chart.step_within(left) {
-            Ok(report) => report,
-            Err(error) => break Err(failed(chart.time(), error)),
-        };
-        tally.substeps += 1;
-        tally.rejected += report.rejected as usize;
-        tally.work += report.driven;
-        tally.dissipated += report.damped;
-        tally.friction += report.impact;
-        tally.path = tally.path.max(if report.rebased {
-            Path::Rebased
-        } else {
-            Path::Chart
-        });
-        if has_forces {
-            tally.work += applied
-                .iter()
-                .zip(chart.positions().iter().zip(&state.x))
-                .map(|(f, (new, old))| f * (new - old))
-                .sum::<f64>();
-        }
-    };
-    state.t = if outcome.is_ok() { end } else { chart.time() };
-    state.x.copy_from_slice(chart.positions());
-    state.v = chart.velocities().map_err(|e| failed(state.t, e))?;
-    if chart.mechanics().model().has_supports() {
-        engine.reactions = chart.reactions().map_err(|e| failed(state.t, e))?;
-    }
-    outcome
-}
 
 fn check_length(model: &SheetModel, state: &State) -> Result<(), SimulationError> {
     let expected = model.coordinate_count();
