@@ -68,11 +68,14 @@ mod energy_momentum;
 mod feasibility;
 mod implicit;
 mod integrator;
+mod load;
 mod method;
 mod minimiser;
 mod model;
+mod motion;
 pub mod potential;
 mod primal;
+mod profile;
 mod project;
 mod projection_step;
 mod rank;
@@ -93,9 +96,15 @@ pub use energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
 pub use feasibility::Excess;
 pub use implicit::{Bdf2, ImplicitEuler, ImplicitOptions};
 pub use integrator::{Integrator, OptionsError, RodDemand, Scene};
+pub use load::{AccelerationField, LoadError, VertexLoad};
 pub use method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use model::{ModelError, SheetModel};
-pub use potential::{Force, Gravity, HessianSink, Potential, PotentialShape, STANDARD_GRAVITY};
+pub use motion::{
+    AxisRotation, Keyframe, Kinematics, MotionError, PointMotion, PointProfile, RigidDisplacement,
+    RigidMotion, RigidProfile,
+};
+pub use potential::{Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape};
+pub use profile::{Interpolation, Profile, ProfileError};
 pub use projection_step::{ProjectionStep, ProjectionStepOptions};
 pub use rank::{RodRank, rod_rank};
 pub use rattle::{Rattle, RattleComposition, RattleOptions};
@@ -104,6 +113,8 @@ pub use report::{Accepted, Effort, Path, StepError, StepReport};
 pub use simulation::{Simulation, SimulationError};
 pub use start::{leave_flat, project_positions};
 pub use state::State;
+
+pub use nalgebra;
 
 /// The code of the README is compiled and run as a test.
 #[cfg(doctest)]
