@@ -19,7 +19,7 @@ use friction::Rubbing;
 use isosheet_dynamics::contact::{
     BodyLoad, Contact, ContactError, ContactPoint, ContactWork, CouplingSink,
 };
-use isosheet_dynamics::{STANDARD_GRAVITY, SheetModel, State};
+use isosheet_dynamics::{PAPER_GRAVITY, SheetModel, State};
 use law::GapPotential;
 use nalgebra::Vector3;
 use options::smallest_height;
@@ -161,7 +161,7 @@ impl Contacts {
     pub fn new(model: &SheetModel, options: ContactOptions) -> Result<Self, ContactsError> {
         options.validate()?;
         let n = model.coordinate_count();
-        let gravity = Vector3::from(STANDARD_GRAVITY).norm();
+        let gravity = Vector3::from(PAPER_GRAVITY).norm();
         let mut contacts = Self {
             options,
             ccd: options.ccd(),
@@ -577,7 +577,7 @@ impl Contact for Contacts {
             let (body_velocity, friction) = match touch.key.body {
                 Some(b) => {
                     let body = &self.bodies[b as usize];
-                    let velocity = body.obstacle().motion().velocity(t, &touch.foot);
+                    let velocity = body.obstacle().velocity(t, &touch.foot);
                     (velocity, body.coefficients.sliding)
                 }
                 None => {

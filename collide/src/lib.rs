@@ -4,12 +4,12 @@
 //!   and Hessians; [`ParallelMollifier`] smooths two edges that become parallel.
 //! * [`Jet`]: value, gradient and Hessian on a stencil of points, with product and chain rule.
 //! * [`CcdOptions`]: how far a motion may go before two primitives touch.
-//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle; bulk queries over
-//!   these pairs, and [`crossings`] as a check that uses none of them.
+//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle; bulk
+//!   queries over these pairs, and [`crossings`] as a check that uses none of them.
 //! * [`Barrier`] and [`Friction`]: the energies of contact, as functions of these distances.
 //! * [`Contacts`]: all of it together, as a step of `isosheet_dynamics` asks for it.
-//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a prescribed [`Motion`];
-//!   [`Obstacle::constraint`] holds a vertex on one.
+//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a
+//!   prescribed [`RigidMotion`]; [`Obstacle::constraint`] holds a vertex on one.
 //!
 //! A sheet falls on a table and rests with every gap open:
 //!
@@ -52,7 +52,6 @@ pub mod distance;
 mod friction;
 mod jet;
 mod mollifier;
-mod motion;
 mod narrow_phase;
 mod obstacle;
 mod signed_distance;
@@ -69,8 +68,10 @@ pub use distance::{Closest, Feature};
 pub use friction::{Friction, FrictionError, LaggedContact};
 pub use jet::Jet;
 pub use mollifier::ParallelMollifier;
-pub use motion::{Keyframe, Motion, MotionError};
 pub use narrow_phase::{Moving, crossings, crossings_between};
 pub use obstacle::{ContactGeometry, Obstacle, ObstacleError, Shape};
 pub use signed_distance::SignedDistance;
 pub use surface::{SurfaceError, TriangleSurface};
+
+#[doc(no_inline)]
+pub use isosheet_dynamics::{Keyframe, MotionError, RigidMotion};

@@ -72,13 +72,16 @@ mod feasibility;
 mod history;
 mod implicit;
 mod integrator;
+mod load;
 mod method;
 mod minimiser;
 mod model;
+mod motion;
 mod observe;
 mod options;
 pub mod potential;
 mod primal;
+mod profile;
 mod project;
 mod projection_step;
 mod rank;
@@ -100,11 +103,17 @@ pub use crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
 pub use energy_momentum::EnergyMomentumOptions;
 pub use feasibility::Excess;
 pub use implicit::ImplicitOptions;
+pub use load::{AccelerationField, LoadError, VertexLoad};
 pub use method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use model::{ModelError, SheetModel};
+pub use motion::{
+    AxisRotation, Keyframe, Kinematics, MotionError, PointMotion, PointProfile, RigidDisplacement,
+    RigidMotion, RigidProfile,
+};
 pub use observe::{Frames, History, Observer, RunEnd};
 pub use options::OptionsError;
-pub use potential::{Force, Gravity, HessianSink, Potential, PotentialShape, STANDARD_GRAVITY};
+pub use potential::{Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape};
+pub use profile::{Interpolation, Profile, ProfileError};
 pub use projection_step::ProjectionStepOptions;
 pub use rank::{RodRank, rod_rank};
 pub use rattle::RattleOptions;
@@ -114,6 +123,8 @@ pub use simulation::Simulation;
 pub use simulation_error::SimulationError;
 pub use start::{leave_flat, project_positions};
 pub use state::State;
+
+pub use nalgebra;
 
 /// The code of the README is compiled and run as a test.
 #[cfg(doctest)]

@@ -1,7 +1,7 @@
 //! The mechanics of contact against closed forms.
 
 use crate::watch::Watch;
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Motion, Obstacle, Shape};
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape};
 use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
@@ -269,8 +269,7 @@ fn a_conveyor_does_work_by_friction() {
         t,
         pose: Isometry3::translation(SPEED * t, 0.0, -0.95 * options.activation),
     };
-    let motion = Motion::new(vec![key(0.0), key(1.0)]).expect("in order");
-    let belt = Obstacle::new(Shape::HalfSpace, motion).expect("valid");
+    let belt = Obstacle::new(Shape::HalfSpace, vec![key(0.0), key(1.0)]).expect("valid");
     let contacts = Contacts::new(&model, options)
         .and_then(|c| c.with_body(belt, Coefficients::equal(0.5)))
         .expect("valid");

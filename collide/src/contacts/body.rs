@@ -215,14 +215,14 @@ impl Body {
     }
 
     /// A pose with the same place of the surface: for a body that is round about its z axis the
-    /// orientation that the shortest turn of the axis from the first keyframe leads to, so that it
+    /// orientation that the shortest turn of the axis from the pose at time zero leads to, so that it
     /// stays while the body spins; for a ball none.
     fn without_spin(&self, pose: Isometry3<f64>) -> Isometry3<f64> {
         let rotation = match self.obstacle.shape() {
             Shape::Cuboid { .. } | Shape::Surface(_) => pose.rotation,
             Shape::Sphere { .. } => UnitQuaternion::identity(),
             Shape::HalfSpace | Shape::Cylinder { .. } | Shape::Capsule { .. } => {
-                let first = self.obstacle.motion().keyframes()[0].pose.rotation;
+                let first = self.obstacle.motion().pose(0.0).rotation;
                 let (before, after) = (first * Vector3::z(), pose.rotation * Vector3::z());
                 if (after - before).amax() <= SAME_AXIS {
                     first

@@ -5,7 +5,7 @@ mod safety;
 mod start;
 
 use super::*;
-use crate::{Keyframe, Motion, Shape, TriangleSurface};
+use crate::{Keyframe, Shape, TriangleSurface};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Matrix3};
 use std::sync::Arc;
@@ -112,7 +112,7 @@ fn still(shape: Shape, pose: Isometry3<f64>) -> Obstacle {
 
 fn moving(shape: Shape, from: Isometry3<f64>, to: Isometry3<f64>, h: f64) -> Obstacle {
     let keys = vec![Keyframe { t: 0.0, pose: from }, Keyframe { t: h, pose: to }];
-    Obstacle::new(shape, Motion::new(keys).unwrap()).unwrap()
+    Obstacle::new(shape, keys).unwrap()
 }
 
 /// A dense Hessian that collects blocks.

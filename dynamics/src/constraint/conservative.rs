@@ -16,8 +16,8 @@ pub(crate) struct Entry {
     pub(crate) block: Matrix3<f64>,
 }
 
-/// The equations `N c = 0` of each vertex constraint with the rows `N` that are independent at the start of a step: one for
-/// a surface, two for a curve.
+/// The equations `N c = 0` of each vertex constraint with the rows `N` that are independent at the start of a
+/// step: one for a surface, two for a curve.
 pub(crate) struct ConservativeRows {
     frames: Vec<Matrix2x3<f64>>,
     /// Impulses of this step, kilogram metres per second.
@@ -72,8 +72,8 @@ impl ConservativeRows {
         }
     }
 
-    /// Lets the impulses act along Gonzalez' discrete gradient between `x0` and `x1`, midpoint `xm`, that does the work
-    /// `c(x1) - c(x0)` exactly; `scale` weighs the curvature.
+    /// Lets the impulses act along Gonzalez' discrete gradient between `x0` and `x1`, midpoint `xm`, that
+    /// does the work `c(x1) - c(x0)` exactly; `scale` weighs the curvature.
     pub(crate) fn push_between(
         &mut self,
         model: &SheetModel,
