@@ -9,7 +9,7 @@
 //! * [`Barrier`] and [`Friction`]: the energies of contact, as functions of these distances.
 //! * [`Contacts`]: all of it together, as a step of `isosheet_dynamics` asks for it.
 //! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a
-//!   prescribed [`RigidMotion`]; [`Obstacle::constraint`] holds a vertex on one.
+//!   prescribed [`RigidMotion`]; [`Obstacle::constraint`] constrains a vertex to one.
 //!
 //! A sheet falls on a table and rests with every gap open:
 //!
