@@ -61,7 +61,7 @@ impl EnergyAccount {
         let noise = POSITION_NOISE * norm_inf(&after.x) / (after.t - before.t);
         let mut round_off = 1e-9 * (t0 + v0.abs() + v1.abs() + driven)
             + model.mass().total() * noise * noise
-            + contact.play;
+            + contact.length_slack;
         let share = t0.max(t1) + DRIVES * drives;
         let net = self.net + gain;
         let kinetic = self.kinetic.max(t0);

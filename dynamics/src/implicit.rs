@@ -1,5 +1,6 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
+use crate::contact::ContactState;
 use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
 use crate::minimiser::Minimiser;
 use crate::reaction::Balance;
@@ -97,6 +98,10 @@ impl Integrator for ImplicitEuler {
         &self.minimiser.balance
     }
 
+    fn contact_state(&self) -> Option<&ContactState> {
+        self.minimiser.contact_state()
+    }
+
     fn step(
         &mut self,
         scene: Scene<'_>,
@@ -108,17 +113,17 @@ impl Integrator for ImplicitEuler {
         scene
             .model
             .applied_force(state.t, &state.x, &state.v, &mut m.applied);
-        for i in 0..m.x.len() {
+        for i in 0..m.x().len() {
             m.target[i] = state.x[i] + h * state.v[i];
         }
         let (residual, path, contact) = m.minimise(scene, state, h, h, effort)?;
         let mut work = 0.0;
-        for i in 0..m.x.len() {
-            let dx = m.x[i] - state.x[i];
+        for i in 0..m.x().len() {
+            let dx = m.x()[i] - state.x[i];
             work += m.applied[i] * dx;
             state.v[i] = dx / h;
         }
-        state.x.copy_from_slice(&m.x);
+        state.x.copy_from_slice(m.x());
         state.t += h;
         Ok(Accepted {
             residual,
@@ -190,6 +195,10 @@ impl Integrator for Bdf2 {
         &self.minimiser.balance
     }
 
+    fn contact_state(&self) -> Option<&ContactState> {
+        self.minimiser.contact_state()
+    }
+
     fn step(
         &mut self,
         scene: Scene<'_>,
@@ -213,7 +222,7 @@ impl Integrator for Bdf2 {
             .model
             .applied_force(state.t, &state.x, &state.v, &mut m.applied);
         let before = &self.previous;
-        for i in 0..m.x.len() {
+        for i in 0..m.x().len() {
             let (x, v) = (state.x[i], state.v[i]);
             m.target[i] = x + b * (x - before.x[i]) + k * h * (v + b * (v - before.v[i]));
         }
@@ -222,17 +231,17 @@ impl Integrator for Bdf2 {
         let damping = (-scene.model.damping() * h).exp();
         let (residual, path, contact) = m.minimise(scene, state, h, k * h, effort)?;
         let mut work = 0.0;
-        for i in 0..m.x.len() {
-            work += m.applied[i] * (m.x[i] - state.x[i]);
+        for i in 0..m.x().len() {
+            work += m.applied[i] * (m.x()[i] - state.x[i]);
             // The old history has served: it becomes the velocity at the end.
             let x = state.x[i];
-            self.previous.v[i] = ((m.x[i] - x) - b * (x - self.previous.x[i])) / (k * h);
+            self.previous.v[i] = ((m.x()[i] - x) - b * (x - self.previous.x[i])) / (k * h);
         }
         std::mem::swap(&mut self.previous.v, &mut state.v);
         self.previous.v.iter_mut().for_each(|v| *v *= damping);
         self.previous.x.copy_from_slice(&state.x);
         self.previous.t = state.t;
-        state.x.copy_from_slice(&m.x);
+        state.x.copy_from_slice(m.x());
         state.t += h;
         self.last.x.copy_from_slice(&state.x);
         Ok(Accepted {

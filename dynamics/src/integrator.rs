@@ -1,6 +1,6 @@
 //! What all integrators have in common.
 
-use crate::contact::Contact;
+use crate::contact::{ContactState, StepContact};
 use crate::reaction::Balance;
 use crate::report::{Accepted, Effort, StepError};
 use crate::{SheetModel, State};
@@ -10,7 +10,7 @@ pub struct Scene<'a> {
     /// The sheet.
     pub model: &'a SheetModel,
     /// Contact, in scenes that name it; only methods that [`Integrator::takes_contact`] are given any.
-    pub contact: Option<&'a mut (dyn Contact + 'static)>,
+    pub contact: Option<StepContact<'a>>,
 }
 
 /// A one-step method.
@@ -40,6 +40,11 @@ pub trait Integrator: Send {
 
     /// The forces of the supports in the last accepted step. Meaningless before.
     fn balance(&self) -> &Balance;
+
+    /// The contacts at the end of the last accepted step; `None` in scenes without contact.
+    fn contact_state(&self) -> Option<&ContactState> {
+        None
+    }
 
     /// Whether the method has a place for one-sided vertex constraints.
     fn takes_one_sided(&self) -> bool {

@@ -2,6 +2,7 @@
 
 use crate::contact::ContactWork;
 use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
+use crate::iterate::Iterate;
 use crate::minimiser::not_converged;
 use crate::model::PINNED;
 use crate::primal::{PrimalMatrix, strain_floor};
@@ -185,11 +186,12 @@ impl Integrator for ProjectionStep {
             .options
             .strain_tolerance
             .max(strain_floor(model, state));
+        let mut iterate = Iterate::without_contact(std::mem::take(&mut self.x));
         let strain = self.projector.positions(
             model,
             &mut self.matrix,
             None,
-            &mut self.x,
+            &mut iterate,
             Aim {
                 tolerance,
                 max_iterations: self.options.max_projections,
@@ -198,6 +200,7 @@ impl Integrator for ProjectionStep {
             },
             effort,
         );
+        self.x = iterate.into_x();
         if strain > tolerance || strain.is_nan() {
             return Err(not_converged(state.t, h, effort, 0.0, strain));
         }

@@ -1,7 +1,7 @@
 //! A sheet in motion: state, integrator, step control and energy balance.
 
 use crate::chart::{ChartDynamicsError, ChartOptions, ChartSimulation};
-use crate::contact::{BodyLoad, Contact, ContactError};
+use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactError, RunContact};
 use crate::integrator::OptionsError;
 use crate::reaction::Reaction;
 use crate::report::{Path, StepError, StepReport};
@@ -198,11 +198,11 @@ impl Simulation {
         Ok(self)
     }
 
-    /// Contact, if this scene has any.
-    pub fn contact(&self) -> Option<&dyn Contact> {
+    /// The contacts at the present state; `None` in scenes without contact.
+    pub fn contacts(&self) -> Option<&ActiveContacts> {
         match &self.engine {
-            Engine::Subdivided(engine) => engine.contact.as_deref(),
-            Engine::Chart(chart) => chart.simulation.contact(),
+            Engine::Subdivided(engine) => engine.contact.as_ref().map(|c| &c.state.active),
+            Engine::Chart(chart) => chart.simulation.contacts(),
         }
     }
 
@@ -214,9 +214,9 @@ impl Simulation {
     }
 
     /// Contact that acts by its barrier.
-    fn barrier(&self) -> Option<&dyn Contact> {
+    fn barrier(&self) -> Option<&RunContact> {
         match &self.engine {
-            Engine::Subdivided(engine) => engine.contact.as_deref(),
+            Engine::Subdivided(engine) => engine.contact.as_ref(),
             Engine::Chart(_) => None,
         }
     }
@@ -268,7 +268,7 @@ impl Simulation {
         let potential = self.model().potential_energy(*t, x);
         match self.barrier() {
             None => potential,
-            Some(contact) => potential + contact.potential(x),
+            Some(contact) => potential + contact.barrier_energy(),
         }
     }
 
@@ -332,7 +332,7 @@ impl Simulation {
             strain: model.rods().max_strain(&self.state.x),
             taut: tally.taut,
             violation: model.largest_violation(self.state.t, &self.state.x),
-            gap: self.contact().map(|c| c.gap(&self.state.x)),
+            gap: self.contacts().map(ActiveContacts::gap),
             path: tally.path,
         })
     }

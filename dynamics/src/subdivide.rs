@@ -1,6 +1,6 @@
 //! Steps of an integrator, subdivided where it rejects them.
 
-use crate::contact::{Contact, ContactError};
+use crate::contact::{Contact, ContactError, RunContact};
 use crate::energy_account::EnergyAccount;
 use crate::feasibility::{Excess, excess};
 use crate::implicit::ImplicitEuler;
@@ -51,7 +51,7 @@ pub(crate) struct Subdivided {
     control: StepControl,
     fallback: Option<ImplicitEuler>,
     before: State,
-    pub(crate) contact: Option<Box<dyn Contact>>,
+    pub(crate) contact: Option<RunContact>,
     /// Forces of the supports in the last accepted sub-step.
     pub(crate) balance: Option<Balance>,
     account: EnergyAccount,
@@ -80,15 +80,13 @@ impl Subdivided {
     /// Adds contact.
     pub(crate) fn set_contact(
         &mut self,
-        mut contact: Box<dyn Contact>,
+        contact: Box<dyn Contact>,
         state: &State,
     ) -> Result<(), SimulationError> {
         if !self.integrator.takes_contact() {
             return Err(ContactError::Method.into());
         }
-        contact.check_start(&self.model, state)?;
-        contact.begin(state.t, 0.0, &state.x);
-        self.contact = Some(contact);
+        self.contact = Some(RunContact::new(contact, &self.model, state)?);
         Ok(())
     }
 
@@ -118,10 +116,10 @@ impl Subdivided {
         // The conservative methods keep the energy by themselves.
         let guarded = self.integrator.demand() == RodDemand::Nothing;
         let driven = self.model.has_drives();
-        let pumped = self.model.has_driven_potentials();
+        let driven_potentials = self.model.has_driven_potentials();
         while done < 1.0 {
             let effort = &mut tally.effort;
-            if guarded || driven || pumped {
+            if guarded || driven || driven_potentials {
                 self.before.copy_from(state);
             }
             self.check_pins(state.t + fraction * h)?;
@@ -198,8 +196,17 @@ impl Subdivided {
                     none => *none = Some(balance.clone()),
                 }
             }
+            if let Some(contact) = &mut self.contact {
+                let state = match &self.fallback {
+                    Some(fallback) if fell_back => fallback.contact_state(),
+                    _ => self.integrator.contact_state(),
+                };
+                if let Some(state) = state {
+                    contact.state.copy_from(state);
+                }
+            }
             done += fraction;
-            if pumped {
+            if driven_potentials {
                 let (before, after) = (&self.before, &*state);
                 let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
                 tally.work += self.model.potential_work(ends.0, ends.1);
@@ -283,10 +290,10 @@ fn drive_work(
     balance.drive_work(model, kept, (before.t, &before.x), (after.t, &after.x))
 }
 
-fn scene<'a>(model: &'a SheetModel, contact: &'a mut Option<Box<dyn Contact>>) -> Scene<'a> {
+fn scene<'a>(model: &'a SheetModel, contact: &'a mut Option<RunContact>) -> Scene<'a> {
     Scene {
         model,
-        contact: contact.as_deref_mut(),
+        contact: contact.as_mut().map(RunContact::step),
     }
 }
 

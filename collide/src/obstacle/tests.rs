@@ -1,5 +1,5 @@
 use super::*;
-use crate::Jet;
+use crate::distance::Jet;
 use crate::distance::{point_edge, point_point};
 use crate::motion::Keyframe;
 use crate::testing::{check_jet, points, sizes};
