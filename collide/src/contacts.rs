@@ -1,34 +1,33 @@
-//! Contact of a sheet with bodies and with itself, for the implicit steps.
+//! Contact of a sheet with bodies and with itself.
 
 mod body;
-mod friction;
-mod law;
+mod evaluate;
+mod features;
 mod options;
 mod path;
 mod sheet;
 mod start;
 #[cfg(test)]
 mod tests;
-mod touch;
 
-pub use options::{Coefficients, ContactOptions, ContactsError, Stiffness};
+pub use options::{ContactOptions, ContactsError};
 
-use crate::{Barrier, BroadPhase, CcdOptions, ContactMesh, Friction, Obstacle};
-use body::{Body, SheetMotion};
-use friction::Rubbing;
+use crate::{BroadPhase, Candidates, CcdOptions, ContactMesh, CrossCandidates, Obstacle};
+use body::Body;
+use evaluate::{Placed, Sheet};
 use isosheet_dynamics::contact::{
-    BodyLoad, Contact, ContactError, ContactPoint, ContactWork, CouplingSink,
+    ActiveContact, ActiveContacts, BodyMotion, BodyPlace, Coefficients, Contact, ContactError,
+    ContactKey, ContactLaws, Motion, StepSpan,
 };
-use isosheet_dynamics::{PAPER_GRAVITY, SheetModel, State};
-use law::GapPotential;
+use isosheet_dynamics::{SheetModel, State};
 use nalgebra::Vector3;
 use options::smallest_height;
-use sheet::SelfContact;
-use std::cell::{Ref, RefCell};
-use touch::Touch;
+use path::PartOfStep;
+use sheet::SheetMotion;
 
-/// Contact of a sheet with bodies and with itself: barriers, lagged friction, and motions that are
-/// checked before they are taken.
+/// The geometry of contact of a sheet with bodies and with itself: pairs within reach, distances, and motions
+/// that are checked before they are taken. Barrier and friction are those of
+/// [`isosheet_dynamics::contact`], which says in which order the values are made that a step works with.
 ///
 /// ```
 /// # use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
@@ -49,8 +48,8 @@ use touch::Touch;
 /// ```
 ///
 /// # In a chart
-/// The explicit methods in a chart, the paper's among them, take the geometry and answer with impulses in place of the barrier
-/// ([`isosheet_dynamics::chart::ChartSimulation::with_contact`]):
+/// The explicit methods in a chart, the paper's among them, take the geometry and answer with impulses in place
+/// of the barrier ([`isosheet_dynamics::chart::ChartSimulation::with_contact`]):
 ///
 /// ```
 /// # use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
@@ -77,9 +76,9 @@ use touch::Touch;
 /// ```
 ///
 /// # What repels what
-/// Every gap `g` below the activation distance has a potential `phi(g) = kappa b(g^2)`, see
-/// [`Barrier`] (Li et al. 2020, Incremental potential contact), where the gap is a distance less the
-/// thickness of the sheet:
+/// Every gap `g` below the activation distance has a potential `phi(g)`, see
+/// [`isosheet_dynamics::contact::BarrierPotential`], where the gap is a distance less the thickness of the
+/// sheet:
 ///
 /// * half-space: that of every vertex. A flat face is away if its corners are.
 /// * box, ball, cylinder, capsule: the signed distance of every vertex, and the distances of faces
@@ -91,8 +90,8 @@ use touch::Touch;
 ///   edges. An open one has two sides.
 /// * the sheet itself: vertices and faces, edges and edges without a common vertex.
 ///
-/// Two edges have the factor of [`crate::ParallelMollifier`], without which their energy has a kink where
-/// they are parallel.
+/// Two edges have the factor of [`isosheet_dynamics::contact::ParallelEdges`], without which their energy has a
+/// kink where they are parallel.
 ///
 /// A gap next to an edge of the mesh belongs to several pairs at once, and counts for each: that
 /// stiffens the barrier there by a small factor and keeps it smooth.
@@ -106,51 +105,34 @@ use touch::Touch;
 /// What a scene does not name costs nothing: half-spaces need the vertices only, other bodies one refit
 /// of the sheet's boxes per checked motion, which they share with self-contact; friction without
 /// coefficients is not evaluated.
+///
+/// Between calls only boxes are kept, and memory. The tree of boxes has the shape of the sheet at the first
+/// positions it was asked about, which decides about speed and about the order in which pairs are found, not
+/// about which.
 #[derive(Debug)]
 pub struct Contacts {
     options: ContactOptions,
+    laws: ContactLaws,
     ccd: CcdOptions,
     mesh: ContactMesh,
     /// Squared rest lengths of the edges.
     lengths2: Vec<f64>,
     /// The face with the smallest height, and that height.
-    lowest: (u32, f64),
-    mean_mass: f64,
-    law: GapPotential,
+    smallest_height: (u32, f64),
+    bodies: Vec<Body>,
+    has_self_contact: bool,
+    search: Search,
+}
+
+/// Working memory of the search for pairs.
+#[derive(Debug, Default)]
+struct Search {
     /// Boxes of the sheet; made at the first positions.
     boxes: Option<BroadPhase>,
-    bodies: Vec<Body>,
-    itself: Option<SelfContact>,
-    step: Step,
-    rubbing: Vec<Rubbing>,
-    rubbing_before: Vec<Rubbing>,
-    /// Power of the barriers on the sheet at the start of the step times its duration, joules.
-    start_work: f64,
-    still: Vec<f64>,
+    /// Positions at the end of the motion.
     end: Vec<f64>,
-    touched: RefCell<Touched>,
-}
-
-/// The present step.
-#[derive(Debug, Default)]
-struct Step {
-    t0: f64,
-    h: f64,
-    s: f64,
-    x0: Vec<f64>,
-    /// Friction with each body, then of the sheet with itself.
-    friction: Vec<Option<Friction>>,
-}
-
-/// The contacts at the positions that were asked for last: energy, gradient and Hessian are mostly
-/// wanted at the same place.
-#[derive(Debug, Default)]
-struct Touched {
-    x: Vec<f64>,
-    valid: bool,
-    /// Whether a coordinate is not finite.
-    broken: bool,
-    list: Vec<Touch>,
+    own: Candidates,
+    cross: CrossCandidates,
 }
 
 impl Contacts {
@@ -160,33 +142,20 @@ impl Contacts {
     /// [`ContactsError`] naming the option that makes no sense.
     pub fn new(model: &SheetModel, options: ContactOptions) -> Result<Self, ContactsError> {
         options.validate()?;
-        let n = model.coordinate_count();
-        let gravity = Vector3::from(PAPER_GRAVITY).norm();
-        let mut contacts = Self {
+        Ok(Self {
             options,
+            laws: options.laws(),
             ccd: options.ccd(),
             mesh: ContactMesh::from_topology(model.topology()),
             lengths2: model.rods().lengths().iter().map(|l| l * l).collect(),
-            lowest: smallest_height(model),
-            mean_mass: model.mean_mass(),
-            law: GapPotential::new(Barrier::new(options.activation, 0.0)?, 1.0),
-            boxes: None,
+            smallest_height: smallest_height(model),
             bodies: Vec::new(),
-            itself: None,
-            step: Step {
-                s: 1.0,
-                x0: vec![0.0; n],
-                ..Step::default()
+            has_self_contact: false,
+            search: Search {
+                end: vec![0.0; model.coordinate_count()],
+                ..Search::default()
             },
-            rubbing: Vec::new(),
-            rubbing_before: Vec::new(),
-            start_work: 0.0,
-            still: vec![0.0; n],
-            end: vec![0.0; n],
-            touched: RefCell::default(),
-        };
-        contacts.set_stiffness(gravity);
-        Ok(contacts)
+        })
     }
 
     /// Adds contact with a body. Bodies are numbered from zero in the order in which they are added.
@@ -202,8 +171,8 @@ impl Contacts {
         coefficients.validate()?;
         let number = u32::try_from(self.bodies.len()).expect("fewer than 2^32 bodies");
         let segments = self.options.segments;
-        self.bodies
-            .push(Body::new(obstacle, number, coefficients, segments)?);
+        self.bodies.push(Body::new(obstacle, number, segments)?);
+        self.laws.bodies.push(coefficients);
         Ok(self)
     }
 
@@ -214,7 +183,7 @@ impl Contacts {
     /// neighbours in a flat sheet.
     pub fn with_self_contact(mut self, coefficients: Coefficients) -> Result<Self, ContactsError> {
         coefficients.validate()?;
-        let (face, height) = self.lowest;
+        let (face, height) = self.smallest_height;
         let reach = self.options.reach();
         if reach >= height {
             return Err(ContactsError::Reach {
@@ -223,7 +192,8 @@ impl Contacts {
                 reach,
             });
         }
-        self.itself = Some(SelfContact::new(coefficients));
+        self.has_self_contact = true;
+        self.laws.itself = coefficients;
         Ok(self)
     }
 
@@ -236,64 +206,35 @@ impl Contacts {
     pub fn bodies(&self) -> impl ExactSizeIterator<Item = &Obstacle> {
         self.bodies.iter().map(Body::obstacle)
     }
+}
 
-    fn set_stiffness(&mut self, acceleration: f64) {
-        let barrier = Barrier::new(self.options.activation, 0.0);
-        let barrier = barrier.expect("the options were validated");
-        self.law = match self.options.stiffness {
-            Stiffness::Automatic => GapPotential::for_weight(barrier, self.mean_mass, acceleration),
-            Stiffness::Joules(kappa) => GapPotential::new(barrier, kappa),
-        };
-        self.forget();
+impl Contact for Contacts {
+    fn laws(&self) -> &ContactLaws {
+        &self.laws
     }
 
-    fn forget(&mut self) {
-        self.touched.get_mut().valid = false;
+    fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>) {
+        out.extend(self.bodies.iter().map(|b| b.motion_over(span)));
     }
 
-    fn sheet<'a>(&'a self, x: &'a [f64]) -> SheetMotion<'a> {
-        SheetMotion {
-            mesh: &self.mesh,
-            x,
-            dx: &self.still,
-            reach: self.options.reach(),
-            ccd: &self.ccd,
-            lengths2: &self.lengths2,
-        }
+    fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64> {
+        let body = &self.bodies[body as usize];
+        body.obstacle().velocity(t, place)
     }
 
-    /// Bodies to their places at time `t0`, about to move to those at `t0 + h`.
-    fn place_bodies(&mut self, t0: f64, h: f64) {
-        for body in &mut self.bodies {
-            body.begin(t0, t0 + h);
-        }
-        let moving = self.bodies.iter().any(|b| b.moves());
-        self.step.t0 = t0;
-        self.step.h = h;
-        self.set_progress(if moving { 0.0 } else { 1.0 });
-    }
-
-    fn set_progress(&mut self, s: f64) {
-        self.step.s = s;
-        for body in &mut self.bodies {
-            body.place(s);
-        }
-        self.forget();
-    }
-
-    /// Pairs within reach on the way from `x` to `x + dx` and the part of it that is safe.
-    fn search(&mut self, x: &[f64], dx: &[f64], bodies: Bodies) -> f64 {
-        self.forget();
+    fn query(&mut self, motion: Motion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
+        let Motion {
+            progress, x, dx, ..
+        } = motion;
         let reach = self.options.reach();
-        let needs_boxes = self.itself.is_some() || self.bodies.iter().any(Body::has_features);
-        if needs_boxes {
-            for i in 0..x.len() {
-                self.end[i] = x[i] + dx[i];
+        let search = &mut self.search;
+        if self.has_self_contact || self.bodies.iter().any(|b| b.features().is_some()) {
+            for (end, (x, dx)) in search.end.iter_mut().zip(x.iter().zip(dx)) {
+                *end = x + dx;
             }
-            let boxes = self
-                .boxes
-                .get_or_insert_with(|| BroadPhase::new(self.mesh.clone(), x));
-            boxes.update(x, &self.end, 0.5 * reach);
+            let boxes = &mut search.boxes;
+            let boxes = boxes.get_or_insert_with(|| BroadPhase::new(self.mesh.clone(), x));
+            boxes.update(x, &search.end, 0.5 * reach);
         }
         let sheet = SheetMotion {
             mesh: &self.mesh,
@@ -301,301 +242,42 @@ impl Contacts {
             dx,
             reach,
             ccd: &self.ccd,
-            lengths2: &self.lengths2,
         };
         let mut limit = 1.0;
-        for body in &mut self.bodies {
-            let rest = body.rest(self.step.s);
-            let rest = match bodies {
-                Bodies::Held => rest.frozen(),
-                Bodies::Moving => rest,
-            };
-            limit = body.search(sheet, self.boxes.as_ref(), &rest, limit);
+        for (body, motion) in self.bodies.iter_mut().zip(motion.bodies.list()) {
+            let part = PartOfStep::new(&motion.surface, progress);
+            let boxes = search.boxes.as_ref();
+            limit = body.query(sheet, boxes, &part, &mut search.cross, limit, pairs);
         }
-        if let (Some(itself), Some(boxes)) = (&mut self.itself, &mut self.boxes) {
-            limit = itself.search(sheet, boxes, limit);
+        if self.has_self_contact
+            && let Some(boxes) = &mut search.boxes
+        {
+            limit = sheet::query(sheet, boxes, &mut search.own, limit, pairs);
         }
         limit
     }
 
-    /// The contacts within reach at `x`.
-    fn touches(&self, x: &[f64]) -> Ref<'_, Touched> {
-        {
-            let mut touched = self.touched.borrow_mut();
-            if !touched.valid || touched.x != x {
-                touched.x.clear();
-                touched.x.extend_from_slice(x);
-                touched.valid = true;
-                touched.broken = !x.iter().all(|c| c.is_finite());
-                touched.list.clear();
-                for body in &self.bodies {
-                    body.touches(self.sheet(x), &mut touched.list);
-                }
-                if let Some(itself) = &self.itself {
-                    itself.touches(self.sheet(x), &mut touched.list);
-                }
-            }
-        }
-        self.touched.borrow()
-    }
-
-    /// Friction at `x` with the bodies where they are, sorted by key.
-    fn lag(&self, x: &[f64], out: &mut Vec<Rubbing>) {
-        out.clear();
-        if self.step.friction.iter().all(Option::is_none) {
-            return;
-        }
-        for touch in &self.touches(x).list {
-            let owner = touch.key.body.map_or(self.bodies.len(), |b| b as usize);
-            if let Some(law) = self.step.friction[owner] {
-                let rubbing = Rubbing::new(touch, &self.law, law, &self.bodies);
-                if rubbing.contact.force > 0.0 {
-                    out.push(rubbing);
-                }
-            }
-        }
-        out.sort_unstable_by_key(|r| r.key);
-    }
-
-    /// Power of the barrier forces on the sheet at `x` times the duration of the step, joules.
-    fn barrier_work(&self, x: &[f64]) -> f64 {
-        let touched = self.touches(x);
-        let body_touches = touched.list.iter().filter_map(|touch| {
-            let body = &self.bodies[touch.key.body? as usize];
-            let velocity = body.step_velocity(&touch.foot);
-            let pushed = touch.force(&self.law) * touch.normal.dot(&velocity);
-            Some(pushed - touch.couple(&self.law).dot(&body.step_turn()))
-        });
-        body_touches.sum()
-    }
-
-    fn bodies_move(&self) -> bool {
-        self.bodies.iter().any(|b| b.moves())
-    }
-}
-
-/// Whether bodies move on while the sheet does.
-#[derive(Debug, Clone, Copy)]
-enum Bodies {
-    Held,
-    Moving,
-}
-
-impl Contact for Contacts {
-    fn begin(&mut self, t0: f64, h: f64, x0: &[f64]) {
-        self.place_bodies(t0, h);
-        self.step.x0.copy_from_slice(x0);
-        let smoothing = self.options.rest_speed * h;
-        let law = |c: &Coefficients| {
-            if c.is_frictionless() {
-                None
-            } else {
-                Friction::new(c.rest, c.sliding, smoothing).ok()
-            }
+    fn evaluate(
+        &self,
+        pairs: &[ContactKey],
+        x: &[f64],
+        bodies: &[BodyPlace],
+        out: &mut Vec<ActiveContact>,
+    ) {
+        let sheet = Sheet {
+            mesh: &self.mesh,
+            x,
+            lengths2: &self.lengths2,
+            reach: self.options.reach(),
+            thickness: self.options.thickness,
         };
-        self.step.friction.clear();
-        let laws = self.bodies.iter().map(|b| law(&b.coefficients));
-        self.step.friction.extend(laws);
-        let own = self.itself.as_ref().and_then(|s| law(&s.coefficients));
-        self.step.friction.push(own);
-        let still = std::mem::take(&mut self.still);
-        self.search(x0, &still, Bodies::Held);
-        self.still = still;
-        let mut rubbing = std::mem::take(&mut self.rubbing);
-        self.lag(x0, &mut rubbing);
-        self.rubbing = rubbing;
-        self.start_work = if self.bodies_move() {
-            self.barrier_work(x0)
-        } else {
-            0.0
-        };
-    }
-
-    fn progress(&self) -> f64 {
-        self.step.s
-    }
-
-    fn safe_fraction(&mut self, x: &[f64], dx: &[f64]) -> f64 {
-        let finite = x.iter().chain(dx).all(|c| c.is_finite());
-        let limit = self.search(x, dx, Bodies::Moving);
-        if finite { limit } else { 0.0 }
-    }
-
-    fn advance(&mut self, fraction: f64) {
-        let s = self.step.s;
-        self.set_progress(if fraction >= 1.0 || s >= 1.0 {
-            1.0
-        } else {
-            s + fraction * (1.0 - s)
-        });
-    }
-
-    fn energy(&self, x: &[f64]) -> f64 {
-        let barrier = self.potential(x);
-        let loss = self.rubbing.iter();
-        barrier
-            + loss
-                .map(|r| r.energy(&self.step.x0, x, &self.bodies))
-                .sum::<f64>()
-    }
-
-    fn add_gradient(&self, x: &[f64], scale: f64, out: &mut [f64]) {
-        for touch in &self.touches(x).list {
-            touch.gradient(&self.law, |v, g| add(out, v, scale * g));
-        }
-        for r in &self.rubbing {
-            let force = scale * r.force(&self.step.x0, x, &self.bodies);
-            for (v, w) in r.vertices.into_iter().zip(r.contact.weights) {
-                add(out, v, w * force);
+        out.extend(pairs.iter().filter_map(|&key| match key.body {
+            None => sheet.with_itself(key),
+            Some(b) => {
+                let (body, place) = (&self.bodies[b as usize], &bodies[b as usize]);
+                sheet.with_body(key, Placed { body, place })
             }
-        }
-    }
-
-    fn add_drive(&self, x: &[f64], scale: f64, out: &mut [f64]) {
-        if self.step.s >= 1.0 {
-            return;
-        }
-        for touch in &self.touches(x).list {
-            let Some(b) = touch.key.body else { continue };
-            let body = &self.bodies[b as usize];
-            let to_come = (1.0 - self.step.s) * body.step_velocity(&touch.foot);
-            touch.shift(&self.law, &to_come, |v, g| add(out, v, scale * g));
-        }
-    }
-
-    fn add_hessian(&self, x: &[f64], sink: &mut dyn CouplingSink) {
-        for touch in &self.touches(x).list {
-            touch.hessian(&self.law, sink);
-        }
-        for r in &self.rubbing {
-            r.hessian(&self.step.x0, x, &self.bodies, sink);
-        }
-    }
-
-    fn couplings(&self, x: &[f64], out: &mut Vec<[u32; 2]>) {
-        out.clear();
-        let touched = self.touches(x);
-        let now = touched.list.iter().map(|t| (t.key, t.vertices));
-        let lagged = self.rubbing.iter().map(|r| (r.key, r.vertices));
-        for (_, v) in now.chain(lagged).filter(|(key, _)| key.body.is_none()) {
-            for i in 0..4 {
-                for j in i + 1..4 {
-                    out.push([v[i].min(v[j]), v[i].max(v[j])]);
-                }
-            }
-        }
-    }
-
-    fn relag(&mut self, x: &[f64]) -> f64 {
-        std::mem::swap(&mut self.rubbing, &mut self.rubbing_before);
-        let mut rubbing = std::mem::take(&mut self.rubbing);
-        self.lag(x, &mut rubbing);
-        self.rubbing = rubbing;
-        friction::change(&self.rubbing_before, &self.rubbing)
-    }
-
-    fn finish(&mut self, x1: &[f64]) -> ContactWork {
-        let mut work = ContactWork::default();
-        let moving = self.bodies_move();
-        if moving {
-            work.bodies = 0.5 * (self.start_work + self.barrier_work(x1));
-        }
-        for r in &self.rubbing {
-            work.friction += r.loss(&self.step.x0, x1, &self.bodies);
-            if let Some(b) = r.key.body.filter(|_| moving) {
-                let displacement = self.bodies[b as usize].displacement(&r.point);
-                let force = r.force(&self.step.x0, x1, &self.bodies);
-                // The sheet pulls the body by this force; the body works against it.
-                work.bodies -= force.dot(&displacement);
-            }
-        }
-        work
-    }
-
-    fn potential(&self, x: &[f64]) -> f64 {
-        let touched = self.touches(x);
-        if touched.broken {
-            return f64::INFINITY;
-        }
-        touched.list.iter().map(|t| t.energy(&self.law)).sum()
-    }
-
-    fn gap(&self, x: &[f64]) -> f64 {
-        let touched = self.touches(x);
-        if touched.broken {
-            return f64::NAN;
-        }
-        let gaps = touched.list.iter().map(|t| t.gap);
-        // A gap that is not a number must not pass for a wide one.
-        gaps.fold(f64::INFINITY, |a, b| {
-            if a.is_nan() || b.is_nan() {
-                f64::NAN
-            } else {
-                a.min(b)
-            }
-        })
-    }
-
-    fn loads(&self, x: &[f64]) -> Vec<BodyLoad> {
-        let none = BodyLoad {
-            force: Vector3::zeros(),
-            torque: Vector3::zeros(),
-        };
-        let mut loads = vec![none; self.bodies.len()];
-        let mut push = |b: u32, force: Vector3<f64>, place: Vector3<f64>| {
-            let load = &mut loads[b as usize];
-            load.force += force;
-            load.torque += (place - self.bodies[b as usize].origin()).cross(&force);
-        };
-        for touch in &self.touches(x).list {
-            if let Some(b) = touch.key.body {
-                push(b, -touch.force(&self.law) * touch.normal, touch.foot);
-            }
-        }
-        for r in &self.rubbing {
-            if let Some(b) = r.key.body {
-                let place = self.bodies[b as usize].material_place(&r.point);
-                push(b, r.force(&self.step.x0, x, &self.bodies), place);
-            }
-        }
-        for touch in &self.touches(x).list {
-            if let Some(b) = touch.key.body {
-                loads[b as usize].torque += touch.couple(&self.law);
-            }
-        }
-        loads
-    }
-
-    fn activation(&self) -> f64 {
-        self.options.activation
-    }
-
-    fn contact_points(&self, x: &[f64], out: &mut Vec<ContactPoint>) {
-        out.clear();
-        let t = self.step.t0 + self.step.s * self.step.h;
-        for touch in &self.touches(x).list {
-            let (body_velocity, friction) = match touch.key.body {
-                Some(b) => {
-                    let body = &self.bodies[b as usize];
-                    let velocity = body.obstacle().velocity(t, &touch.foot);
-                    (velocity, body.coefficients.sliding)
-                }
-                None => {
-                    let own = self.itself.as_ref();
-                    (
-                        Vector3::zeros(),
-                        own.map_or(0.0, |s| s.coefficients.sliding),
-                    )
-                }
-            };
-            out.push(ContactPoint {
-                stencil: std::array::from_fn(|i| (touch.vertices[i], touch.weights[i])),
-                normal: touch.normal,
-                gap: touch.gap,
-                body_velocity,
-                friction,
-            });
-        }
+        }));
     }
 
     fn check_start(&mut self, model: &SheetModel, state: &State) -> Result<(), ContactError> {
@@ -605,46 +287,35 @@ impl Contact for Contacts {
             return Err(ContactError::Sheet { expected, found });
         }
         let (t, x) = (state.t, &state.x);
-        let mut force = vec![0.0; x.len()];
-        model.potential_force(t, x, &mut force);
-        let per_mass = force.as_chunks::<3>().0.iter().zip(&model.mass().vertex);
-        let acceleration = per_mass
-            .map(|(f, m)| Vector3::from(*f).norm() / m)
-            .fold(0.0, f64::max);
-        if acceleration > 0.0 && acceleration.is_finite() {
-            self.set_stiffness(acceleration);
-        }
-        self.place_bodies(t, 0.0);
-        self.step.x0.copy_from_slice(x);
-        self.step.friction.clear();
-        self.rubbing.clear();
-        self.start_work = 0.0;
-        let still = std::mem::take(&mut self.still);
-        self.search(x, &still, Bodies::Held);
-        self.still = still;
-        start::check_gaps(&self.touches(x).list, t)?;
-        let Some(boxes) = &mut self.boxes else {
+        let active = ActiveContacts::at_rest(self, t, x);
+        start::check_gaps(active.list(), t)?;
+        // The boxes are those of this place.
+        let Some(boxes) = &mut self.search.boxes else {
             return Ok(());
         };
-        for (number, body) in self.bodies.iter().enumerate() {
-            start::check_body(body, number, boxes, x, self.options.segments, t)?;
+        let places = active.bodies().iter();
+        for (number, (body, place)) in self.bodies.iter().zip(places).enumerate() {
+            start::check_body(
+                number,
+                Placed { body, place },
+                self.options.segments,
+                boxes,
+                x,
+            )
+            .map_err(|(pair, gap)| ContactError::Touching { pair, gap, t })?;
         }
-        if self.itself.is_some() {
-            start::check_itself(boxes, x, t)?;
+        if self.has_self_contact {
+            start::check_itself(boxes, x).map_err(|pair| ContactError::Touching {
+                pair,
+                gap: 0.0,
+                t,
+            })?;
         }
         Ok(())
     }
 }
 
-fn add(out: &mut [f64], v: u32, g: Vector3<f64>) {
-    let i = 3 * v as usize;
-    for k in 0..3 {
-        out[i + k] += g[k];
-    }
-}
-
-#[cfg(test)]
 const _: fn() = || {
-    fn is_send<T: Send>() {}
-    is_send::<Contacts>();
+    fn is_send_and_sync<T: Send + Sync>() {}
+    is_send_and_sync::<Contacts>();
 };

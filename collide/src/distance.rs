@@ -15,7 +15,6 @@
 //!
 //! No test compares with an absolute length: results do not depend on the unit.
 
-use crate::Jet;
 use nalgebra::{Matrix3, Vector3};
 
 #[cfg(test)]
@@ -50,6 +49,17 @@ pub enum Feature {
     PointTriangle,
     /// The insides of both edges of an edge-edge stencil.
     EdgeEdge,
+}
+
+/// A scalar function of `N` points with its gradient and Hessian by their coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jet<const N: usize> {
+    /// The value.
+    pub value: f64,
+    /// Derivatives by the points, `gradient[i] = df/dx_i`.
+    pub gradient: [Vector3<f64>; N],
+    /// Second derivatives, `hessian[i][j] = d2f / dx_i dx_j`, rows at `x_i`; the whole is symmetric.
+    pub hessian: [[Matrix3<f64>; N]; N],
 }
 
 /// The closest points of two primitives.

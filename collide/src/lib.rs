@@ -1,15 +1,14 @@
-//! The geometry of contact: distances, collision times, candidate pairs, barriers and obstacles.
+//! The geometry of contact: distances, collision times, candidate pairs and obstacles.
 //!
 //! * [`distance`]: squared distances of points, edges and triangles with closest points, gradients
-//!   and Hessians; [`ParallelMollifier`] smooths two edges that become parallel.
-//! * [`Jet`]: value, gradient and Hessian on a stencil of points, with product and chain rule.
+//!   and Hessians.
 //! * [`CcdOptions`]: how far a motion may go before two primitives touch.
-//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle; bulk
-//!   queries over these pairs, and [`crossings`] as a check that uses none of them.
-//! * [`Barrier`] and [`Friction`]: the energies of contact, as functions of these distances.
-//! * [`Contacts`]: all of it together, as a step of `isosheet_dynamics` asks for it.
-//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a
-//!   prescribed [`RigidMotion`]; [`Obstacle::constraint`] constrains a vertex to one.
+//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle; bulk queries
+//!   over these pairs, and [`crossings`] as a check that uses none of them.
+//! * [`Contacts`]: all of it together, as a step of [`isosheet_dynamics::contact`] asks for it, where barrier and
+//!   friction are functions of these distances.
+//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a prescribed
+//!   [`RigidMotion`]; [`Obstacle::constraint`] constrains a vertex to one.
 //!
 //! A sheet falls on a table and rests with every gap open:
 //!
@@ -42,16 +41,12 @@
 //! Everything is free of absolute tolerances: a sheet of a micrometre and one of a kilometre are
 //! treated alike. SI units and `f64` throughout.
 
-mod barrier;
 mod broad_phase;
 mod ccd;
 mod constraint;
 mod contact_mesh;
 mod contacts;
 pub mod distance;
-mod friction;
-mod jet;
-mod mollifier;
 mod narrow_phase;
 mod obstacle;
 mod signed_distance;
@@ -59,15 +54,13 @@ mod surface;
 #[cfg(test)]
 mod testing;
 
-pub use barrier::{Barrier, BarrierError};
 pub use broad_phase::{BroadPhase, Candidates, CrossCandidates};
 pub use ccd::{CcdOptions, CcdOptionsError};
 pub use contact_mesh::{ContactMesh, ContactMeshError};
-pub use contacts::{Coefficients, ContactOptions, Contacts, ContactsError, Stiffness};
-pub use distance::{Closest, Feature};
-pub use friction::{Friction, FrictionError, LaggedContact};
-pub use jet::Jet;
-pub use mollifier::ParallelMollifier;
+pub use contacts::{ContactOptions, Contacts, ContactsError};
+pub use distance::{Closest, Feature, Jet};
+pub use isosheet_dynamics::contact::{Coefficients, FrictionError, Stiffness};
+pub use nalgebra;
 pub use narrow_phase::{Moving, crossings, crossings_between};
 pub use obstacle::{ContactGeometry, Obstacle, ObstacleError, Shape};
 pub use signed_distance::SignedDistance;

@@ -1,6 +1,6 @@
 //! Random stencils and difference quotients for the tests.
 
-use crate::Jet;
+use crate::distance::Jet;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 

@@ -9,6 +9,7 @@
 //!   built with; more pins, moving ones, curves and surfaces are closure equations
 //!   ([`ChartSimulation::from_state`]). Contact acts by impulses ([`ChartSimulation::with_contact`]).
 
+mod contact;
 pub(crate) mod engine;
 mod error;
 mod impact;

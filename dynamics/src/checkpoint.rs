@@ -1,5 +1,6 @@
 //! Checkpoints: a simulation between two steps, as a value and as a file.
 
+use crate::contact::BarrierPotential;
 use crate::energy_account::EnergyAccount;
 use crate::integrator::Moment;
 use crate::{Method, SheetModel, StepControl};
@@ -68,6 +69,8 @@ pub(crate) struct FreeMotion {
     pub(crate) has_moved: bool,
     /// Vertices that were pinned at the start because they cannot move.
     pub(crate) held: Vec<u32>,
+    /// The barrier of contact, in scenes that have any.
+    pub(crate) barrier: Option<BarrierPotential>,
 }
 
 /// Sums of the energy balance since the start.

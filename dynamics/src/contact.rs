@@ -1,88 +1,93 @@
-//! What a step asks of contact: the sheet against bodies and against itself.
+//! Contact of a sheet with bodies and with itself.
+//!
+//! Contact is a barrier potential `B(x, s)` of the positions and of the places of the bodies, infinite where
+//! anything touches, and a friction potential `D(x - x0)` with normals and normal forces held fixed
+//! ("lagged"; Li et al. 2020, Incremental potential contact). Bodies move by prescribed motions; within a
+//! step their progress `s` runs from 0 (the start) to 1 (the end), and neither they nor the sheet move without
+//! a check that nothing is passed through on the way.
+//!
+//! An implementation of [`Contact`] knows the geometry and nothing else. All that happens with it is a chain
+//! of values, each of which can only be made from the one before:
+//!
+//! | value | made from | what it says |
+//! |---|---|---|
+//! | [`BodyMotions`] | a span of time | how the bodies move over a step |
+//! | [`ContactSet`] | a motion of sheet and bodies | the pairs within reach on it, the part that is safe |
+//! | [`ActiveContacts`] | a set and a place on its motion | distances, normals and weights there |
+//! | [`BarrierPotential`] | the laws, the model and the state at the start | the barrier and its stiffness |
+//! | [`LaggedFriction`] | the active contacts at which friction is lagged | normals and normal forces |
+//! | [`ContactTerms`] | active contacts, barrier and friction | energy, gradient, Hessian, loads of `B + D` |
+//! | [`ContactPoint`]s | active contacts | contacts for methods that use impulses instead of the barrier |
+//!
+//! Positions `x` and displacements are `3V` coordinates in metres, pinned vertices included.
+
+mod active;
+mod barrier;
+mod body;
+mod error;
+mod friction;
+mod impulse;
+mod lagged;
+mod laws;
+mod parallel;
+mod run;
+mod set;
+mod terms;
+
+pub use active::{ActiveContact, ActiveContacts};
+pub use barrier::{BarrierError, BarrierPotential, Stiffness};
+pub(crate) use body::advanced;
+pub use body::{BodyMotion, BodyMotions, BodyPlace, RigidMotion, StepSpan};
+pub use error::{ContactError, ContactPair};
+pub use friction::{Coefficients, Friction, FrictionError};
+pub use impulse::ContactPoint;
+pub use lagged::{FrictionContact, LaggedFriction};
+pub use laws::ContactLaws;
+pub use parallel::ParallelEdges;
+pub(crate) use run::{RunContact, StepContact};
+
+pub use set::{ContactKey, ContactKind, ContactSet, Motion};
+pub use terms::{BodyLoad, ContactState, ContactTerms, ContactWork};
 
 use crate::{SheetModel, State};
 use nalgebra::{Matrix3, Vector3};
-use std::fmt;
 
-/// Contact of a sheet with bodies and with itself, as a step of an implicit integrator sees it.
+/// The geometry of contact of a sheet with bodies and with itself.
 ///
-/// Contact is a barrier potential `B(x, s)` of the positions and of the bodies' poses, infinite where
-/// anything touches, and a friction potential `D(x - x0)` with normals and normal forces held fixed
-/// ("lagged"; Li et al. 2020, Incremental potential contact). Bodies move by prescribed motions; within
-/// a step their progress `s` runs from 0 (the start) to 1 (the end), and they never move without a
-/// check that nothing is passed through on the way. This crate knows only this interface; geometry is
-/// the business of the implementation.
-///
-/// The order of calls in a step: [`Contact::begin`]; then per iteration the energies and derivatives at
-/// the current positions, [`Contact::safe_fraction`] of the displacement found, [`Contact::advance`]
-/// by the part of it that is taken; at the end [`Contact::finish`]. A rejected step simply begins anew.
-///
-/// Positions `x` and displacements are `3V` coordinates in metres, pinned vertices included.
-pub trait Contact: Send {
-    /// Begins a step from `t0` (seconds) over `h` seconds at positions `x0`: bodies in their places at `t0`, `s = 0`
-    /// (or 1 if none moves in the step), friction lagged at `x0`.
-    fn begin(&mut self, t0: f64, h: f64, x0: &[f64]);
+/// Everything that is returned depends on the arguments alone, not on earlier calls: what an implementation
+/// keeps between calls, such as a tree of boxes, saves time and nothing else. [`ContactSet`] and
+/// [`ActiveContacts`] call these functions.
+pub trait Contact: Send + Sync {
+    /// Activation distance of the barrier, stiffness, friction.
+    fn laws(&self) -> &ContactLaws;
 
-    /// Progress `s` of the bodies, from 0 to 1. Exactly 1 if no body moves in this step.
-    fn progress(&self) -> f64;
+    /// Appends the motions of the bodies over a span of time, in the order of the bodies.
+    fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>);
 
-    /// Largest fraction `a <= 1` of the joint motion `x + a dx`, `s + a (1 - s)` that is proven to bring
-    /// nothing into contact.
-    ///
-    /// Also collects the pairs that are within reach anywhere on the whole motion; energies and
-    /// derivatives are valid at all its points until the next call of this or of [`Contact::begin`].
-    fn safe_fraction(&mut self, x: &[f64], dx: &[f64]) -> f64;
+    /// Velocity (metres per second) of the material of a body that is at `place` (metres, in space) at time
+    /// `t`.
+    fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64>;
 
-    /// Moves the bodies on: `s <- s + fraction (1 - s)`, to 1 exactly for `fraction = 1`.
-    fn advance(&mut self, fraction: f64);
+    /// Appends all pairs whose gap is below the activation distance at any time of a motion, in any order and
+    /// each once, and returns the largest fraction `a <= 1` of the motion that is proven to bring nothing into
+    /// contact. Pairs that stay out of reach may be among them.
+    fn query(&mut self, motion: Motion<'_>, pairs: &mut Vec<ContactKey>) -> f64;
 
-    /// `B + D` at `x` and the present progress, joules; infinite if anything touches.
-    fn energy(&self, x: &[f64]) -> f64;
+    /// Appends the contacts of those pairs whose gap is below the activation distance (or not a number) at
+    /// positions `x` with the bodies in their places, in the order of the pairs.
+    fn evaluate(
+        &self,
+        pairs: &[ContactKey],
+        x: &[f64],
+        bodies: &[BodyPlace],
+        out: &mut Vec<ActiveContact>,
+    );
 
-    /// Adds `scale` times the gradient of `B + D` to `out` (`3V`).
-    fn add_gradient(&self, x: &[f64], scale: f64, out: &mut [f64]);
-
-    /// Adds `scale` times the change of the gradient of `B` that the rest of the bodies' motion
-    /// causes, to first order: with `u` the displacement of the body at a contact, `-d2B/dx2 u`, with the
-    /// same semidefinite part of the Hessian as in [`Contact::add_hessian`].
-    fn add_drive(&self, x: &[f64], scale: f64, out: &mut [f64]);
-
-    /// Adds the Hessian of `B + D`, each contact's own part made positive semidefinite.
-    fn add_hessian(&self, x: &[f64], sink: &mut dyn CouplingSink);
-
-    /// The pairs of vertices, lower number first, that [`Contact::add_hessian`] couples at `x`; may hold pairs twice
-    /// and pairs that are mesh edges. Clears `out` first. Contact with bodies couples no vertices
-    /// that are not neighbours already and may be left out.
-    fn couplings(&self, x: &[f64], out: &mut Vec<[u32; 2]>);
-
-    /// Renews the normals and normal forces of friction at `x`. Returns the largest change of a normal
-    /// force relative to the largest normal force: zero without friction.
-    fn relag(&mut self, x: &[f64]) -> f64;
-
-    /// Books the step that ends at `x1`, with the bodies at the ends of their motions.
-    fn finish(&mut self, x1: &[f64]) -> ContactWork;
-
-    /// `B` at `x` with the bodies where they are now, joules.
-    fn potential(&self, x: &[f64]) -> f64;
-
-    /// Smallest distance less thickness over all pairs within reach at `x`, metres; infinite if there are none.
-    fn gap(&self, x: &[f64]) -> f64;
-
-    /// Forces and torques on the bodies at `x`, in the order of the bodies: barrier and friction.
-    fn loads(&self, x: &[f64]) -> Vec<BodyLoad>;
-
-    /// Gap below which [`Contact::contact_points`] names a contact, metres.
-    fn activation(&self) -> f64;
-
-    /// Contacts within reach at `x`, for methods that use impulses in place of the barrier. Clears
-    /// `out` first.
-    fn contact_points(&self, x: &[f64], out: &mut Vec<ContactPoint>);
-
-    /// Checks that a simulation can start here.
+    /// Checks that a simulation can start at a state.
     ///
     /// # Errors
-    /// [`ContactError`] if something touches or passes through at the start, or the implementation was made for
-    /// another sheet.
+    /// [`ContactError`] if something touches or passes through at the start, or the implementation was made
+    /// for another sheet.
     fn check_start(&mut self, model: &SheetModel, state: &State) -> Result<(), ContactError>;
 }
 
@@ -93,102 +98,36 @@ pub trait CouplingSink {
     fn add(&mut self, a: u32, b: u32, block: &Matrix3<f64>);
 }
 
-/// What contact did over a step.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ContactWork {
-    /// Work done on the sheet by the motion of the bodies, joules: trapezoidal rule over the step.
-    pub bodies: f64,
-    /// Energy lost to friction, joules; not negative.
-    pub friction: f64,
-    /// Change of the barrier potential `B`, joules. Set by the integrator.
-    pub stored: f64,
-    /// Energy that the tolerance of the lengths leaves open, joules. Set by the integrator.
-    pub play: f64,
-}
-
-/// What the sheet does to a body.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BodyLoad {
-    /// Force on the body, newtons.
-    pub force: Vector3<f64>,
-    /// Torque on the body about the origin of its own frame, newton metres, in space.
-    pub torque: Vector3<f64>,
-}
-
-/// A contact within reach.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactPoint {
-    /// Vertices of the sheet that take part and their weights in the relative motion,
-    /// `sum_i w_i v_i - body velocity`; unused places have weight zero.
-    pub stencil: [(u32, f64); 4],
-    /// Unit normal: the distance grows at the rate `n . (sum_i w_i v_i - body velocity)`.
-    pub normal: Vector3<f64>,
-    /// Distance less thickness, metres.
-    pub gap: f64,
-    /// Velocity of the body at the contact, metres per second; zero for the sheet with itself.
-    pub body_velocity: Vector3<f64>,
-    /// Kinetic coefficient of friction.
-    pub friction: f64,
-}
-
-/// Two things that touch, by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ContactPair {
-    /// The sheet and a body.
-    Body {
-        /// A vertex of the sheet at the place.
-        vertex: u32,
-        /// The body, in the order in which they were added.
-        body: usize,
-    },
-    /// Two places of the sheet.
-    Sheet {
-        /// A vertex at the first place.
-        first: u32,
-        /// A vertex at the second place.
-        second: u32,
-    },
-}
-
-impl fmt::Display for ContactPair {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Body { vertex, body } => write!(f, "the sheet at v{vertex} and body {body}"),
-            Self::Sheet { first, second } => {
-                write!(f, "the sheet at v{first} and the sheet at v{second}")
+/// Adds `w_i w_j block` for all pairs of a stencil; the block is symmetric.
+fn add_weighted(
+    vertices: &[u32; 4],
+    weights: &[f64; 4],
+    block: &Matrix3<f64>,
+    sink: &mut dyn CouplingSink,
+) {
+    for i in 0..4 {
+        for j in i..4 {
+            let w = weights[i] * weights[j];
+            if w != 0.0 {
+                add_block(vertices[i], vertices[j], w * block, sink);
             }
         }
     }
 }
 
-/// Why contact cannot start.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ContactError {
-    /// Something touches or passes through.
-    #[error(
-        "{pair} touch at t = {t} s (gap {gap} m): move them apart; contact keeps a gap, it does not make one"
-    )]
-    Touching {
-        /// What touches.
-        pair: ContactPair,
-        /// Distance less thickness, metres; zero or negative where one passes through the other.
-        gap: f64,
-        /// Time, seconds.
-        t: f64,
-    },
-    /// The contact belongs to another sheet.
-    #[error(
-        "contact was set up for {expected} vertices, the sheet has {found}: set it up for this sheet"
-    )]
-    Sheet {
-        /// Vertices it was made for.
-        expected: usize,
-        /// Vertices of the sheet.
-        found: usize,
-    },
-    /// The method has no place for contact.
-    #[error(
-        "this method has no place for contact: use BDF2 or implicit Euler, or a chart simulation with impulses"
-    )]
-    Method,
+/// Lower vertex first.
+fn add_block(a: u32, b: u32, block: Matrix3<f64>, sink: &mut dyn CouplingSink) {
+    if a <= b {
+        sink.add(a, b, &block);
+    } else {
+        sink.add(b, a, &block.transpose());
+    }
+}
+
+/// Adds to the entries of a vertex.
+fn add_at(out: &mut [f64], v: u32, g: Vector3<f64>) {
+    let i = 3 * v as usize;
+    for k in 0..3 {
+        out[i + k] += g[k];
+    }
 }

@@ -1,71 +1,68 @@
 //! Contact in the step, with the simplest body there is: a floor that the vertices stay above.
 
-use crate::contact::{BodyLoad, Contact, ContactError, ContactPoint, ContactWork, CouplingSink};
+use crate::contact::{
+    ActiveContact, ActiveContacts, BodyMotion, BodyMotions, BodyPlace, Contact, ContactError,
+    ContactKey, ContactKind, ContactLaws, ContactSet, Motion, RigidMotion, StepSpan, Stiffness,
+};
 use crate::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, Vector3};
 
-/// A floor at height `z(t)` below all vertices, with the barrier `-stiffness (d - reach)^2 ln(d / reach)`.
+/// A floor at height `z(t)` below all vertices.
 struct Floor {
     height: fn(f64) -> f64,
-    reach: f64,
-    stiffness: f64,
-    t: [f64; 2],
-    progress: f64,
+    laws: ContactLaws,
 }
 
 impl Floor {
     fn new(height: fn(f64) -> f64) -> Self {
         Self {
             height,
-            reach: 1e-3,
-            stiffness: 1e3,
-            t: [0.0; 2],
-            progress: 1.0,
+            laws: ContactLaws {
+                stiffness: Stiffness::Joules(2e-4),
+                ..ContactLaws::frictionless(1e-3)
+            },
         }
     }
 
-    fn travel(&self) -> f64 {
-        (self.height)(self.t[1]) - (self.height)(self.t[0])
+    fn pose(&self, t: f64) -> Isometry3<f64> {
+        Isometry3::translation(0.0, 0.0, (self.height)(t))
     }
+}
 
-    fn floor(&self) -> f64 {
-        (self.height)(self.t[0]) + self.progress * self.travel()
-    }
-
-    /// Value and derivatives of the barrier of each vertex in reach.
-    fn active<'a>(&'a self, x: &'a [f64]) -> impl Iterator<Item = (usize, [f64; 3])> + 'a {
-        let (r, k) = (self.reach, self.stiffness);
-        (0..x.len() / 3).filter_map(move |v| {
-            let d = x[3 * v + 2] - self.floor();
-            if d >= r {
-                return None;
-            }
-            if d <= 0.0 {
-                return Some((v, [f64::INFINITY, f64::NAN, f64::NAN]));
-            }
-            let (u, ln) = (d - r, (d / r).ln());
-            let slope = -k * (2.0 * u * ln + u * u / d);
-            let curvature = -k * (2.0 * ln + 4.0 * u / d - u * u / (d * d));
-            Some((v, [-k * u * u * ln, slope, curvature]))
-        })
+fn key(v: usize) -> ContactKey {
+    ContactKey {
+        body: Some(0),
+        kind: ContactKind::Vertex,
+        pair: [v as u32, 0],
     }
 }
 
 impl Contact for Floor {
-    fn begin(&mut self, t0: f64, h: f64, _: &[f64]) {
-        self.t = [t0, t0 + h];
-        self.progress = if self.travel() == 0.0 { 1.0 } else { 0.0 };
+    fn laws(&self) -> &ContactLaws {
+        &self.laws
     }
 
-    fn progress(&self) -> f64 {
-        self.progress
+    fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>) {
+        let motion = RigidMotion::new(self.pose(span.t0), self.pose(span.t0 + span.h));
+        out.push(BodyMotion {
+            material: motion,
+            surface: motion,
+        });
     }
 
-    fn safe_fraction(&mut self, x: &[f64], dx: &[f64]) -> f64 {
-        let rise = (1.0 - self.progress) * self.travel();
-        (0..x.len() / 3).fold(1.0, |a: f64, v| {
-            let (gap, approach) = (x[3 * v + 2] - self.floor(), rise - dx[3 * v + 2]);
+    fn body_velocity(&self, _: u32, _: f64, _: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::zeros()
+    }
+
+    fn query(&mut self, motion: Motion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
+        let body = &motion.bodies.list()[0].surface;
+        let [floor, end] = motion.progress.map(|s| body.pose(s).translation.z);
+        // Backwards: the order makes no difference.
+        (0..motion.x.len() / 3).rev().fold(1.0, |a: f64, v| {
+            pairs.push(key(v));
+            let i = 3 * v + 2;
+            let (gap, approach) = (motion.x[i] - floor, end - floor - motion.dx[i]);
             if approach > 0.9 * gap {
                 a.min(0.9 * gap / approach)
             } else {
@@ -74,75 +71,29 @@ impl Contact for Floor {
         })
     }
 
-    fn advance(&mut self, fraction: f64) {
-        self.progress = if fraction == 1.0 {
-            1.0
-        } else {
-            self.progress + fraction * (1.0 - self.progress)
-        };
-    }
-
-    fn energy(&self, x: &[f64]) -> f64 {
-        self.active(x).map(|(_, b)| b[0]).sum()
-    }
-
-    fn add_gradient(&self, x: &[f64], scale: f64, out: &mut [f64]) {
-        for (v, b) in self.active(x) {
-            out[3 * v + 2] += scale * b[1];
+    fn evaluate(
+        &self,
+        pairs: &[ContactKey],
+        x: &[f64],
+        bodies: &[BodyPlace],
+        out: &mut Vec<ActiveContact>,
+    ) {
+        for key in pairs {
+            let [v, _] = key.pair;
+            let i = 3 * v as usize;
+            let gap = x[i + 2] - bodies[0].origin().z;
+            if gap < self.laws.activation {
+                out.push(ActiveContact {
+                    key: *key,
+                    vertices: [v; 4],
+                    weights: [1.0, 0.0, 0.0, 0.0],
+                    normal: Vector3::z(),
+                    gap,
+                    closest: Vector3::new(x[i], x[i + 1], bodies[0].origin().z),
+                    parallel: None,
+                });
+            }
         }
-    }
-
-    fn add_drive(&self, x: &[f64], scale: f64, out: &mut [f64]) {
-        for (v, b) in self.active(x) {
-            out[3 * v + 2] -= scale * b[2] * (1.0 - self.progress) * self.travel();
-        }
-    }
-
-    fn add_hessian(&self, x: &[f64], sink: &mut dyn CouplingSink) {
-        for (v, b) in self.active(x) {
-            let z = Vector3::z();
-            sink.add(v as u32, v as u32, &(b[2] * z * z.transpose()));
-        }
-    }
-
-    fn couplings(&self, _: &[f64], out: &mut Vec<[u32; 2]>) {
-        out.clear();
-    }
-
-    fn relag(&mut self, _: &[f64]) -> f64 {
-        0.0
-    }
-
-    fn finish(&mut self, x1: &[f64]) -> ContactWork {
-        let force: f64 = self.active(x1).map(|(_, b)| -b[1]).sum();
-        ContactWork {
-            bodies: force * self.travel(),
-            ..ContactWork::default()
-        }
-    }
-
-    fn potential(&self, x: &[f64]) -> f64 {
-        self.energy(x)
-    }
-
-    fn gap(&self, x: &[f64]) -> f64 {
-        (0..x.len() / 3).fold(f64::INFINITY, |m, v| m.min(x[3 * v + 2] - self.floor()))
-    }
-
-    fn loads(&self, x: &[f64]) -> Vec<BodyLoad> {
-        let force: f64 = self.active(x).map(|(_, b)| b[1]).sum();
-        vec![BodyLoad {
-            force: force * Vector3::z(),
-            torque: Vector3::zeros(),
-        }]
-    }
-
-    fn activation(&self) -> f64 {
-        self.reach
-    }
-
-    fn contact_points(&self, _: &[f64], out: &mut Vec<ContactPoint>) {
-        out.clear();
     }
 
     fn check_start(&mut self, _: &SheetModel, _: &State) -> Result<(), ContactError> {
@@ -238,4 +189,36 @@ fn methods_without_room_for_contact_say_so() {
         refused.map(|_| ()),
         Err(crate::SimulationError::Contact(ContactError::Method))
     ));
+}
+
+/// A set does not depend on the order in which pairs are found, and knows a motion that is not finite.
+#[test]
+fn sets_are_sorted_and_refuse_what_is_not_finite() {
+    let mut floor = Floor::new(|t| t);
+    let span = StepSpan { t0: 1.0, h: 0.5 };
+    let bodies = BodyMotions::over(&floor, span);
+    assert!(bodies.any_moves() && bodies.first_progress() == 0.0);
+    assert_eq!(bodies.time(0.5), 1.25);
+    let x = [0.0, 0.0, 1.0005, 1.0, 0.0, 1.2, 0.0, 1.0, 2.0];
+    let dx = [0.0; 9];
+    let motion = |dx| Motion {
+        bodies: &bodies,
+        progress: [0.0, 1.0],
+        x: &x,
+        dx,
+    };
+    let mut set = ContactSet::of(&mut floor, motion(&dx));
+    assert_eq!(set.pairs(), [key(0), key(1), key(2)]);
+    assert!((set.safe_fraction() - 0.9 * 0.0005 / 0.5).abs() < 1e-12);
+    let active = ActiveContacts::at(&floor, &set, 0.0, &x);
+    assert_eq!(active.list().len(), 1);
+    assert!((active.gap() - 0.0005).abs() < 1e-12 && active.time() == 1.0);
+    // The floor has risen through the first vertex.
+    assert!(ActiveContacts::at(&floor, &set, 0.01, &x).gap() < 0.0);
+    let mut broken = dx;
+    broken[4] = f64::NAN;
+    set.update(&mut floor, motion(&broken));
+    assert_eq!(set.safe_fraction(), 0.0);
+    let active = ActiveContacts::at(&floor, &set, 0.0, &broken);
+    assert!(active.gap().is_nan());
 }

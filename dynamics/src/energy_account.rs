@@ -48,7 +48,7 @@ pub(crate) struct Exchange {
     /// Change of the barrier potential, joules.
     pub(crate) barrier: f64,
     /// Energy that the tolerance of the lengths leaves open in contact, joules.
-    pub(crate) uncertainty: f64,
+    pub(crate) length_slack: f64,
 }
 
 impl EnergyAccount {
@@ -77,7 +77,7 @@ impl EnergyAccount {
         let energies = kinetic[0] + potential[0].abs() + potential[1].abs();
         let mut round_off = RELATIVE_ROUND_OFF * (energies + exchange.forces.abs() + drives)
             + model.mass().total() * noise * noise
-            + exchange.uncertainty;
+            + exchange.length_slack;
         let share = kinetic[0].max(kinetic[1]) + DRIVES * drives;
         let net = self.net + gain;
         let largest = self.kinetic.max(kinetic[0]);

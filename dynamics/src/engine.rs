@@ -1,7 +1,7 @@
 //! The chart-free engine: proposals of an integrator, judged and committed.
 
 use crate::checkpoint::{CheckpointError, FreeMotion};
-use crate::contact::{Contact, ContactError};
+use crate::contact::{Contact, ContactError, ContactState, RunContact};
 use crate::control::{Decision, Stepping, take_substep};
 use crate::energy_account::{EnergyAccount, Exchange};
 use crate::feasibility::{Excess, excess};
@@ -20,7 +20,7 @@ use isosheet_mesh::VertexId;
 /// A sheet that a chart-free method moves.
 pub(crate) struct Engine {
     pub(crate) model: SheetModel,
-    pub(crate) contact: Option<Box<dyn Contact>>,
+    contact: Option<RunContact>,
     method: Method,
     /// Vertices that became pins at the start because they cannot move.
     held: Vec<VertexId>,
@@ -85,6 +85,7 @@ impl Engine {
             account: self.account,
             has_moved: self.has_moved,
             held: self.held.iter().map(|v| v.0).collect(),
+            barrier: self.contact.as_ref().map(RunContact::barrier),
         }
     }
 
@@ -103,10 +104,23 @@ impl Engine {
         engine.moment.copy_from(&motion.moment);
         engine.account = motion.account;
         engine.has_moved = motion.has_moved;
-        if let Some(contact) = contact {
-            engine.set_contact(contact)?;
-        }
+        engine.contact = match (contact, motion.barrier) {
+            (None, None) => None,
+            (Some(contact), Some(barrier)) => {
+                let state = &engine.moment.state;
+                Some(RunContact::resume(contact, barrier, &engine.model, state)?)
+            }
+            (_, barrier) => {
+                let expected = barrier.is_some();
+                return Err(CheckpointError::Contact { expected }.into());
+            }
+        };
         Ok(engine)
+    }
+
+    /// Contact, if the scene has any.
+    pub(crate) fn contact(&self) -> Option<(&RunContact, &ContactState)> {
+        self.contact.as_ref().zip(self.moment.contacts.as_ref())
     }
 
     /// Where the sheet is.
@@ -120,17 +134,13 @@ impl Engine {
     }
 
     /// Adds contact.
-    pub(crate) fn set_contact(
-        &mut self,
-        mut contact: Box<dyn Contact>,
-    ) -> Result<(), SimulationError> {
+    pub(crate) fn set_contact(&mut self, contact: Box<dyn Contact>) -> Result<(), SimulationError> {
         if self.integrator.traits().contact == ContactSupport::None {
             return Err(ContactError::Method.into());
         }
-        let state = &self.moment.state;
-        contact.check_start(&self.model, state)?;
-        contact.begin(state.t, 0.0, &state.x);
+        let (contact, contacts) = RunContact::new(contact, &self.model, &self.moment.state)?;
         self.contact = Some(contact);
+        self.moment.contacts = Some(contacts);
         Ok(())
     }
 
@@ -257,7 +267,7 @@ impl Stepping for Substeps<'_> {
         }
         let scene = Scene {
             model,
-            contact: contact.as_deref_mut(),
+            contact: contact.as_mut().map(RunContact::step),
         };
         let attempt = Attempt::new(moment, h, self.memory);
         let effort = &mut self.tally.effort;
@@ -272,7 +282,7 @@ impl Stepping for Substeps<'_> {
             forces: step.work,
             bodies: step.contact.bodies,
             barrier: step.contact.stored,
-            uncertainty: step.contact.play,
+            length_slack: step.contact.length_slack,
             ..Exchange::default()
         };
         if model.has_drives() {

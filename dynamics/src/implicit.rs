@@ -209,13 +209,14 @@ fn two_step(
     let moment = &mut proposal.moment;
     let mut work = 0.0;
     for i in 0..state.x.len() {
-        let dx = minimiser.x[i] - state.x[i];
+        let dx = minimiser.x()[i] - state.x[i];
         work += minimiser.applied[i] * dx;
         moment.state.v[i] = (dx - b * (state.x[i] - before.x[i])) / (k * h);
     }
-    moment.state.x.copy_from_slice(&minimiser.x);
+    moment.state.x.copy_from_slice(minimiser.x());
     moment.state.t = state.t + h;
     moment.balance.copy_from(&minimiser.balance);
+    moment.set_contacts(minimiser.contact_state());
     minimiser.remember(k * h, &mut moment.history);
     proposal.account = StepAccount {
         residual,

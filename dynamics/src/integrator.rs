@@ -1,6 +1,6 @@
 //! What all chart-free integrators have in common: they propose, and leave it to the step control to commit.
 
-use crate::contact::{Contact, ContactWork};
+use crate::contact::{ContactState, ContactWork, StepContact};
 use crate::history::{History, Multipliers};
 use crate::reaction::{Balance, ForceTime};
 use crate::report::{Effort, Path, StepError};
@@ -12,7 +12,7 @@ pub(crate) struct Scene<'a> {
     /// The sheet.
     pub(crate) model: &'a SheetModel,
     /// Contact, in scenes that name it.
-    pub(crate) contact: Option<&'a mut (dyn Contact + 'static)>,
+    pub(crate) contact: Option<StepContact<'a>>,
 }
 
 /// A point of a motion: all that the next step depends on besides the scene and the options of the method.
@@ -24,6 +24,8 @@ pub(crate) struct Moment {
     pub(crate) history: History,
     /// Forces of the supports in the step that ended here. Meaningless before the first step.
     pub(crate) balance: Balance,
+    /// The contacts at the state, with the friction of the step that ended here; `None` without contact.
+    pub(crate) contacts: Option<ContactState>,
 }
 
 /// A sub-step that could be taken.
@@ -72,6 +74,7 @@ impl Moment {
                 RodDemand::Independent => Balance::new(model, ForceTime::Mean),
                 RodDemand::Nothing => Balance::with_trail(model, ForceTime::End),
             },
+            contacts: None,
         }
     }
 }
@@ -83,6 +86,7 @@ impl Moment {
             state: self.state.clone(),
             history: self.history.clone(),
             balance: self.balance.compact(),
+            contacts: self.contacts.clone(),
         }
     }
 
@@ -91,6 +95,15 @@ impl Moment {
         self.state.copy_from(&other.state);
         self.history.copy_from(&other.history);
         self.balance.copy_from(&other.balance);
+        self.set_contacts(other.contacts.as_ref());
+    }
+
+    /// Sets the contacts, in place.
+    pub(crate) fn set_contacts(&mut self, contacts: Option<&ContactState>) {
+        match (&mut self.contacts, contacts) {
+            (Some(mine), Some(other)) => mine.copy_from(other),
+            (mine, other) => *mine = other.cloned(),
+        }
     }
 }
 

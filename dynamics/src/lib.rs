@@ -72,6 +72,7 @@ mod feasibility;
 mod history;
 mod implicit;
 mod integrator;
+mod iterate;
 mod load;
 mod method;
 mod minimiser;

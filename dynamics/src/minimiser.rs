@@ -7,8 +7,9 @@ mod tangent;
 
 use crate::ImplicitOptions;
 use crate::constraint::rows::VertexRows;
-use crate::contact::{Contact, ContactWork};
+use crate::contact::{ContactState, ContactWork, StepContact, StepSpan};
 use crate::integrator::Scene;
+use crate::iterate::Iterate;
 use crate::primal::{PrimalMatrix, penalties};
 use crate::project::Projector;
 use crate::reaction::{Balance, ForceTime};
@@ -25,7 +26,7 @@ const MULTIPLIER_RATIOS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 /// flat sheet folds by the root of its length error, the second attempt leaves nothing to the projection.
 const READY: f64 = 1e-5;
 /// Part of the largest fold that the tolerance of the lengths allows by which contact at rest may move.
-const PLAY: f64 = 0.1;
+const FOLD_PART: f64 = 0.1;
 /// Vertices above which steps without contact begin at the prediction. The manifold of a nearly flat sheet is the more curved the finer
 /// its mesh: hanging from near flat, 289 vertices need 3 tangent steps, 16 641 some 90, and from the prediction 8.
 const MANY: usize = 1000;
@@ -80,7 +81,7 @@ pub(crate) struct Minimiser {
     weighted: Vec<f64>,
     dx: Vec<f64>,
     /// The iterate and, after [`Minimiser::minimise`], the result.
-    pub(crate) x: Vec<f64>,
+    iterate: Iterate,
     start: Vec<f64>,
     /// Where prescribed motions end, at the pinned vertices.
     end: Vec<f64>,
@@ -107,16 +108,18 @@ struct Step<'a, 'b> {
 }
 
 impl Step<'_, '_> {
-    fn contact(&self) -> Option<&(dyn Contact + 'static)> {
-        self.scene.contact.as_deref()
+    fn has_contact(&self) -> bool {
+        self.scene.contact.is_some()
+    }
+}
+
+impl<'b> Step<'_, 'b> {
+    fn contact(&self) -> Option<&StepContact<'b>> {
+        self.scene.contact.as_ref()
     }
 
-    /// Largest safe part of a displacement.
-    fn safe_fraction(&mut self, x: &[f64], dx: &[f64]) -> f64 {
-        match &mut self.scene.contact {
-            None => 1.0,
-            Some(contact) => contact.safe_fraction(x, dx),
-        }
+    fn contact_mut(&mut self) -> Option<&mut StepContact<'b>> {
+        self.scene.contact.as_mut()
     }
 }
 
@@ -151,12 +154,22 @@ impl Minimiser {
             difference: vec![0.0; n],
             weighted: vec![0.0; n],
             dx: vec![0.0; n],
-            x: vec![0.0; n],
+            iterate: Iterate::new(n),
             start: vec![0.0; n],
             end: vec![0.0; n],
             balance: Balance::with_trail(model, ForceTime::End),
             options,
         })
+    }
+
+    /// The result, positions of `3V` coordinates.
+    pub(crate) fn x(&self) -> &[f64] {
+        self.iterate.x()
+    }
+
+    /// The contacts at the result.
+    pub(crate) fn contact_state(&self) -> Option<&ContactState> {
+        self.iterate.contact_state()
     }
 
     /// Minimises the incremental potential over all positions with the rest lengths, with
@@ -183,12 +196,11 @@ impl Minimiser {
             t: state.t + span,
             h,
         };
-        let stored = self.begin(&mut step, span);
-        self.x.copy_from_slice(&state.x);
+        self.begin(&mut step, span);
         let driven = self.is_driven(&step) || step.scene.model.has_drives();
         let bound = (!driven).then(|| self.merit(&step));
         let bound = bound.as_ref();
-        let ways: &[Way] = if step.contact().is_some() {
+        let ways: &[Way] = if step.has_contact() {
             // Resting in contact is a matter of nearly dependent rods.
             &[Way::Manifold(Pace::Careful), Way::Prediction]
         } else if self.is_hard_to_follow {
@@ -221,13 +233,10 @@ impl Minimiser {
                 self.go_from_start(&mut step, bound, effort)?
             }
         };
-        let mut work = ContactWork::default();
-        let play = self.play(&step);
-        if let Some(contact) = &mut step.scene.contact {
-            work = contact.finish(&self.x);
-            work.stored = contact.potential(&self.x) - stored;
-            work.play = play;
-            let gap = contact.gap(&self.x);
+        let mut work = self.iterate.contact_work(step.contact());
+        if let Some(terms) = self.iterate.terms(step.contact()) {
+            let gap = terms.active.gap();
+            work.length_slack = self.length_slack(&step);
             if gap <= 0.0 || gap.is_nan() {
                 self.forget();
                 return Err(StepError::Contact {
@@ -263,7 +272,6 @@ impl Minimiser {
         step: &mut Step<'_, '_>,
         effort: &mut Effort,
     ) -> Option<(f64, Path)> {
-        self.x.copy_from_slice(&step.state.x);
         self.predict(step);
         self.ready = READY;
         self.descend(step, effort).ok()
@@ -279,14 +287,13 @@ impl Minimiser {
         let (model, state) = (step.scene.model, step.state);
         self.forget();
         self.ready = self.options.strain_tolerance;
-        self.x.copy_from_slice(&state.x);
-        if step.contact().is_none() {
-            model.place_pins(step.t, &mut self.x);
+        if !step.has_contact() {
+            model.place_pins(step.t, self.iterate.x_mut());
         }
         let (residual, path) = self.descend(step, effort)?;
         if !self.is_below(bound, step) {
             self.forget();
-            let strain = model.rods().max_strain(&self.x);
+            let strain = model.rods().max_strain(self.iterate.x());
             let span = step.t - state.t;
             return Err(not_converged(state.t, span, effort, residual, strain));
         }
@@ -296,21 +303,21 @@ impl Minimiser {
     /// Forces of the supports at the iterate, with what it leaves unbalanced.
     fn set_balance(&mut self, step: &Step<'_, '_>) {
         let (model, state, per) = (step.scene.model, step.state, 1.0 / (step.h * step.h));
-        let (x, target) = (&self.x, &self.target);
+        let (x, target) = (self.iterate.x(), &self.target);
         if !self.balance.begin(model, |i| per * (x[i] - target[i])) {
             return;
         }
-        self.balance.add_potentials(model, step.t, &self.x, 1.0);
+        self.balance.add_potentials(model, step.t, x, 1.0);
         self.balance
             .add_applied(model, state.t, &state.x, &state.v, 1.0);
-        if let Some(contact) = step.contact() {
-            self.balance.add_contact(contact, &self.x);
+        if let Some(terms) = self.iterate.terms(step.contact()) {
+            self.balance.add_contact(&terms);
         }
-        self.balance
-            .add_rods(model, &self.x, &self.multipliers, per);
+        let x = self.iterate.x();
+        self.balance.add_rods(model, x, &self.multipliers, per);
         let rows = &self.vertex_rows;
         self.balance.add_constraints(rows, &rows.multipliers, per);
-        self.balance.leave(model, &self.x, &rows.active);
+        self.balance.leave(model, x, &rows.active);
     }
 
     /// Drops the multipliers.
@@ -319,47 +326,41 @@ impl Minimiser {
         self.vertex_rows.clear();
     }
 
-    /// Puts pins' ends and bodies in place for a step; returns the barrier's energy.
-    fn begin(&mut self, step: &mut Step<'_, '_>, span: f64) -> f64 {
+    /// Puts the iterate, pins' ends and bodies where a step of `h` seconds starts.
+    fn begin(&mut self, step: &mut Step<'_, '_>, h: f64) {
         let state = step.state;
         self.end.copy_from_slice(&state.x);
         step.scene.model.place_pins(step.t, &mut self.end);
-        match &mut step.scene.contact {
-            None => 0.0,
-            Some(contact) => {
-                contact.begin(state.t, span, &state.x);
-                contact.potential(&state.x)
-            }
-        }
+        let span = StepSpan { t0: state.t, h };
+        self.iterate.begin(step.contact_mut(), span, &state.x);
     }
 
     /// Whether bodies or pins are on their way.
     fn is_driven(&self, step: &Step<'_, '_>) -> bool {
-        step.contact().is_some_and(|c| c.progress() < 1.0)
+        let x = self.iterate.x();
+        self.iterate.progress() < 1.0
             || step
                 .scene
                 .model
                 .moving_pins()
-                .any(|v| (3 * v..3 * v + 3).any(|i| self.x[i] != self.end[i]))
+                .any(|v| (3 * v..3 * v + 3).any(|i| x[i] != self.end[i]))
     }
 
     /// Starts the iteration where inertia alone would go, unless something is in the way.
     fn predict(&mut self, step: &mut Step<'_, '_>) {
         let model = step.scene.model;
-        self.x.copy_from_slice(&self.target);
-        model.place_pins(step.t, &mut self.x);
-        if step.contact().is_none() {
-            return;
+        self.start.copy_from_slice(&self.target);
+        model.place_pins(step.t, &mut self.start);
+        if step.has_contact() {
+            for ((d, x), x0) in self.dx.iter_mut().zip(&self.start).zip(self.iterate.x()) {
+                *d = x - x0;
+            }
+            if self.iterate.safe_fraction(step.contact_mut(), &self.dx) < 1.0 {
+                return;
+            }
+            self.iterate.advance_bodies(1.0);
         }
-        let x0 = &step.state.x;
-        for ((d, x), x0) in self.dx.iter_mut().zip(&self.x).zip(x0) {
-            *d = x - x0;
-        }
-        if step.safe_fraction(&step.state.x, &self.dx) < 1.0 {
-            self.x.copy_from_slice(&step.state.x);
-        } else if let Some(contact) = &mut step.scene.contact {
-            contact.advance(1.0);
-        }
+        self.iterate.x_mut().copy_from_slice(&self.start);
     }
 
     /// Whether the incremental potential at the iterate is not above `bound`, but for what the
@@ -367,10 +368,12 @@ impl Minimiser {
     fn is_below(&mut self, bound: Option<&Merit>, step: &Step<'_, '_>) -> bool {
         let Some(bound) = bound else { return true };
         let now = self.merit(step);
-        let play = step
-            .contact()
-            .map_or(0.0, |_| step.h * step.h * self.play(step));
-        let slack = play
+        let length_slack = if step.has_contact() {
+            step.h * step.h * self.length_slack(step)
+        } else {
+            0.0
+        };
+        let slack = length_slack
             + 10.0 * (now.round_off + bound.round_off)
             + 10.0 * self.options.strain_tolerance * now.rod_scale.max(bound.rod_scale);
         now.potential <= bound.potential + slack
@@ -378,9 +381,9 @@ impl Minimiser {
 
     /// Energy that the tolerance of the lengths leaves open to a sheet at rest in contact, joules. A flat
     /// sheet folds by the root of a length error; its weight is lifted by a part of that.
-    fn play(&self, step: &Step<'_, '_>) -> f64 {
+    fn length_slack(&self, step: &Step<'_, '_>) -> f64 {
         let fold = self.options.strain_tolerance.sqrt() * step.scene.model.mean_length();
-        PLAY * fold * self.force.iter().map(|f| f.abs()).sum::<f64>()
+        FOLD_PART * fold * self.force.iter().map(|f| f.abs()).sum::<f64>()
     }
 }
 

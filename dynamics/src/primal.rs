@@ -1,6 +1,6 @@
 //! The primal matrix of an implicit step: masses, rods as stiff springs, potentials.
 
-use crate::contact::{Contact, CouplingSink};
+use crate::contact::{ContactTerms, CouplingSink};
 use crate::model::PINNED;
 use crate::{HessianSink, SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt, norm_inf};
@@ -120,17 +120,16 @@ impl PrimalMatrix {
         &self.extra
     }
 
-    /// Makes room for what contact couples at `x`. The matrix is analysed anew only when a pair
+    /// Makes room for what contact couples. The matrix is analysed anew only when a pair
     /// appears that it has no room for; pairs that have parted keep their room until they
     /// outnumber the ones in use.
     pub(crate) fn make_room(
         &mut self,
         model: &SheetModel,
-        contact: &dyn Contact,
-        x: &[f64],
+        contact: &ContactTerms<'_>,
     ) -> Result<(), LinalgError> {
         let mut pairs = std::mem::take(&mut self.couplings);
-        contact.couplings(x, &mut pairs);
+        contact.couplings(&mut pairs);
         let free = model.free_index();
         pairs.retain_mut(|[a, b]| {
             let (i, j) = (free[*a as usize], free[*b as usize]);
@@ -159,18 +158,14 @@ impl PrimalMatrix {
     pub(crate) fn add_contact(
         &mut self,
         model: &SheetModel,
-        contact: &dyn Contact,
-        x: &[f64],
+        contact: &ContactTerms<'_>,
         scale: f64,
     ) {
-        contact.add_hessian(
-            x,
-            &mut Sink {
-                matrix: self,
-                model,
-                scale,
-            },
-        );
+        contact.add_hessian(&mut Sink {
+            matrix: self,
+            model,
+            scale,
+        });
     }
 
     /// Sets the values: `along[e] = r_e`, `across[e] = p_e`.

@@ -2,7 +2,8 @@
 
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
-use crate::contact::Contact;
+use crate::contact::StepContact;
+use crate::iterate::Iterate;
 use crate::primal::{PrimalMatrix, penalties};
 use crate::report::Effort;
 use crate::trail::Trail;
@@ -55,6 +56,8 @@ pub(crate) struct Projector {
     rhs: Vec<f64>,
     dx: Vec<f64>,
     start: Vec<f64>,
+    /// Minus the gradient of contact at `start`, newtons times the factor of its energy.
+    contact_start: Vec<f64>,
     /// Momentum that the iterations of the last projection of positions gave, kilogram metres.
     pub(crate) trail: Trail,
     /// Vertices on curves and surfaces.
@@ -75,8 +78,8 @@ pub(crate) struct Aim<'a> {
 }
 
 /// Contact that a projection has to keep.
-pub(crate) struct Held<'a> {
-    pub(crate) contact: &'a mut dyn Contact,
+pub(crate) struct Held<'a, 'b> {
+    pub(crate) contact: &'a mut StepContact<'b>,
     /// Factor of its energy in the incremental potential, `h^2`.
     pub(crate) scale: f64,
 }
@@ -93,20 +96,21 @@ impl Projector {
             rhs: vec![0.0; n],
             dx: vec![0.0; n],
             start: vec![0.0; n],
+            contact_start: vec![0.0; n],
             trail: Trail::new(model),
             vertex_rows: VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0),
             rng: ChaCha8Rng::seed_from_u64(0),
         }
     }
 
-    /// Projects `x` in place; returns the strain reached, which exceeds `tolerance` if
+    /// Projects an iterate in place; returns the strain reached, which exceeds `tolerance` if
     /// `max_iterations` did not suffice.
     pub(crate) fn positions(
         &mut self,
         model: &SheetModel,
         matrix: &mut PrimalMatrix,
-        mut held: Option<Held<'_>>,
-        x: &mut [f64],
+        mut held: Option<Held<'_, '_>>,
+        iterate: &mut Iterate,
         aim: Aim<'_>,
         effort: &mut Effort,
     ) -> f64 {
@@ -126,14 +130,15 @@ impl Projector {
         let mut penalty = PROJECTION_PENALTY;
         let mut opening = 1.0;
         self.trail.clear();
-        rods.residual_into(x, &mut self.c);
+        rods.residual_into(iterate.x(), &mut self.c);
         for (i, c) in model.constraints().iter().enumerate() {
             let pressed = loads.get(i).is_some_and(|l| l.x < 0.0);
             self.vertex_rows.equality[i] = pressed || !c.is_one_sided();
         }
         self.vertex_rows.corrected.fill(false);
-        self.vertex_rows.evaluate(model.constraints(), t, x);
-        let mut strain = self.worst(model, x);
+        self.vertex_rows
+            .evaluate(model.constraints(), t, iterate.x());
+        let mut strain = self.worst(model, iterate.x());
         for _ in 0..max_iterations {
             // The negation also stops at a strain that is not a number.
             if strain <= goal || strain.is_nan() {
@@ -146,17 +151,24 @@ impl Projector {
                 self.w[e] = -self.along[e] * self.c[e];
             }
             self.across.fill(0.0);
-            if let Some(held) = &held
-                && matrix.make_room(model, held.contact, x).is_err()
+            let contact = held.as_ref().map(|h| &*h.contact);
+            if let Some(terms) = iterate.terms(contact)
+                && matrix.make_room(model, &terms).is_err()
             {
                 break;
             }
-            matrix.assemble(model, x, &self.along, &self.across);
+            matrix.assemble(model, iterate.x(), &self.along, &self.across);
             self.rhs.fill(0.0);
             self.vertex_rows
                 .add_projection(penalty, &mut matrix.sink(model), &mut self.rhs);
-            if let Some(held) = &held {
-                matrix.add_contact(model, held.contact, x, held.scale);
+            if let Some(held) = &held
+                && let Some(terms) = iterate.terms(Some(held.contact))
+            {
+                matrix.add_contact(model, &terms, held.scale);
+                if self.trail.has_room() {
+                    self.contact_start.fill(0.0);
+                    terms.add_gradient(-held.scale, &mut self.contact_start);
+                }
             }
             if matrix.factorize().is_err() {
                 if penalty <= PENALTY_RANGE.0 {
@@ -165,25 +177,24 @@ impl Projector {
                 penalty = (penalty * 1e-2).max(PENALTY_RANGE.0);
                 continue;
             }
-            rods.apply_transpose_add(x, &self.w, &mut self.rhs);
+            rods.apply_transpose_add(iterate.x(), &self.w, &mut self.rhs);
             matrix.solve(model, &self.rhs, &mut self.dx);
             let before = self.error(model);
-            self.start.copy_from_slice(x);
-            let limit = match &mut held {
-                None => 1.0,
-                Some(held) => held.contact.safe_fraction(x, &self.dx),
-            };
+            self.start.copy_from_slice(iterate.x());
+            let contact = held.as_mut().map(|h| &mut *h.contact);
+            let limit = iterate.safe_fraction(contact, &self.dx);
             if limit < SMALLEST_STEP {
                 // Contact is in the way; more pressure has to build up before.
                 break;
             }
             let mut length = limit;
             let after = loop {
-                for (i, xi) in x.iter_mut().enumerate() {
+                for (i, xi) in iterate.x_mut().iter_mut().enumerate() {
                     *xi = self.start[i] + length * self.dx[i];
                 }
-                rods.residual_into(x, &mut self.c);
-                self.vertex_rows.evaluate(model.constraints(), t, x);
+                rods.residual_into(iterate.x(), &mut self.c);
+                self.vertex_rows
+                    .evaluate(model.constraints(), t, iterate.x());
                 let after = self.error(model);
                 if after <= (1.0 - SUFFICIENT_DECREASE * length) * before || length < SMALLEST_STEP
                 {
@@ -191,9 +202,9 @@ impl Projector {
                 }
                 length *= 0.5;
             };
-            self.keep_momentum(model, held.as_ref(), x);
-            if after > RESERVE * before && self.worst(model, x) <= tolerance {
-                strain = self.worst(model, x);
+            self.keep_momentum(model, held.as_ref(), iterate);
+            if after > RESERVE * before && self.worst(model, iterate.x()) <= tolerance {
+                strain = self.worst(model, iterate.x());
                 break;
             }
             if length < SMALLEST_STEP {
@@ -202,17 +213,18 @@ impl Projector {
                 // sqrt(strain), in any direction, opens it.
                 penalty = PROJECTION_PENALTY;
                 let size = (opening * strain.sqrt()).min(LARGEST_OPENING);
-                self.unfold(model, held.as_mut(), x, size);
+                self.unfold(model, held.as_mut(), iterate, size);
                 opening *= OPENING_GROWTH;
-                rods.residual_into(x, &mut self.c);
-                self.vertex_rows.evaluate(model.constraints(), t, x);
+                rods.residual_into(iterate.x(), &mut self.c);
+                self.vertex_rows
+                    .evaluate(model.constraints(), t, iterate.x());
             } else if length < limit {
                 penalty *= 0.1;
             } else if limit == 1.0 && after > 0.1 * before {
                 penalty *= 10.0;
             }
             penalty = penalty.clamp(PENALTY_RANGE.0, PENALTY_RANGE.1);
-            strain = self.worst(model, x);
+            strain = self.worst(model, iterate.x());
         }
         strain
     }
@@ -236,8 +248,8 @@ impl Projector {
     fn unfold(
         &mut self,
         model: &SheetModel,
-        held: Option<&mut Held<'_>>,
-        x: &mut [f64],
+        held: Option<&mut Held<'_, '_>>,
+        iterate: &mut Iterate,
         relative: f64,
     ) {
         for (i, d) in self.dx.iter_mut().enumerate() {
@@ -245,11 +257,8 @@ impl Projector {
             *d = self.rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
-        let part = match held {
-            None => 1.0,
-            Some(held) => held.contact.safe_fraction(x, &self.dx),
-        };
-        for (xi, d) in x.iter_mut().zip(&self.dx) {
+        let part = iterate.safe_fraction(held.map(|h| &mut *h.contact), &self.dx);
+        for (xi, d) in iterate.x_mut().iter_mut().zip(&self.dx) {
             *xi += part * d;
         }
     }
@@ -261,12 +270,17 @@ impl Projector {
         }
     }
 
-    /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to `x`.
-    fn keep_momentum(&mut self, model: &SheetModel, held: Option<&Held<'_>>, x: &[f64]) {
+    /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to the iterate.
+    fn keep_momentum(
+        &mut self,
+        model: &SheetModel,
+        held: Option<&Held<'_, '_>>,
+        iterate: &mut Iterate,
+    ) {
         if !self.trail.has_room() {
             return;
         }
-        for ((d, x), x0) in self.dx.iter_mut().zip(x).zip(&self.start) {
+        for ((d, x), x0) in self.dx.iter_mut().zip(iterate.x()).zip(&self.start) {
             *d = x - x0;
         }
         model
@@ -276,9 +290,13 @@ impl Projector {
         let sum = self
             .trail
             .push(&self.start, active, self.rhs.iter().copied());
-        if let Some(held) = held {
-            held.contact.add_gradient(&self.start, -held.scale, sum);
-            held.contact.add_gradient(x, held.scale, sum);
+        if let Some(held) = held
+            && let Some(terms) = iterate.terms(Some(held.contact))
+        {
+            for (s, g) in sum.iter_mut().zip(&self.contact_start) {
+                *s += g;
+            }
+            terms.add_gradient(held.scale, sum);
         }
     }
 

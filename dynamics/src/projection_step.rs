@@ -3,6 +3,7 @@
 use crate::integrator::{
     Attempt, ContactSupport, Integrator, MethodTraits, Proposal, RodDemand, Scene, StepAccount,
 };
+use crate::iterate::Iterate;
 use crate::minimiser::not_converged;
 use crate::model::PINNED;
 use crate::options::OptionsError;
@@ -245,11 +246,12 @@ impl ProjectionStep {
             .options
             .strain_tolerance
             .max(strain_floor(model, state));
+        let mut iterate = Iterate::without_contact(std::mem::take(&mut self.x));
         let strain = self.projector.positions(
             model,
             &mut self.matrix,
             None,
-            &mut self.x,
+            &mut iterate,
             Aim {
                 tolerance,
                 max_iterations: self.options.max_projections,
@@ -258,6 +260,7 @@ impl ProjectionStep {
             },
             effort,
         );
+        self.x = iterate.into_x();
         if strain > tolerance || strain.is_nan() {
             return Err(not_converged(state.t, h, effort, 0.0, strain));
         }

@@ -2,7 +2,7 @@
 
 use crate::SheetModel;
 use crate::constraint::rows::{VertexRows, add, point};
-use crate::contact::Contact;
+use crate::contact::ContactTerms;
 use crate::trail::Trail;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
@@ -218,8 +218,8 @@ impl Balance {
     }
 
     /// Takes off the forces of contact.
-    pub(crate) fn add_contact(&mut self, contact: &dyn Contact, x: &[f64]) {
-        contact.add_gradient(x, 1.0, &mut self.pins);
+    pub(crate) fn add_contact(&mut self, contact: &ContactTerms<'_>) {
+        contact.add_gradient(1.0, &mut self.pins);
     }
 
     /// Takes off the forces of the rods, `-share G(x)^T multipliers`.

@@ -3,7 +3,7 @@
 use crate::chart::engine::ChartEngine;
 use crate::chart::{ChartOptions, ChartSimulation};
 use crate::checkpoint::{Checkpoint, EnergySums, Motion, SheetFingerprint};
-use crate::contact::{BodyLoad, Contact};
+use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact};
 use crate::engine::Engine as FreeEngine;
 use crate::reaction::Reaction;
 use crate::report::{StepError, StepReport, Tally};
@@ -173,25 +173,26 @@ impl Simulation {
         Ok(self)
     }
 
-    /// Contact, if this scene has any.
-    pub fn contact(&self) -> Option<&dyn Contact> {
+    /// The contacts at the present state; `None` in scenes without contact.
+    pub fn contacts(&self) -> Option<&ActiveContacts> {
         match &self.engine {
-            Engine::Free(engine) => engine.contact.as_deref(),
-            Engine::Chart(chart) => chart.simulation.contact(),
+            Engine::Free(engine) => engine.contact().map(|(_, contacts)| &contacts.active),
+            Engine::Chart(chart) => chart.simulation.contacts(),
         }
     }
 
     /// What the sheet does to the bodies, in the order in which they were added; empty without contact, and in charts, where
     /// impulses act ([`ChartSimulation::impulses`]).
     pub fn body_loads(&self) -> Vec<BodyLoad> {
-        self.barrier()
-            .map_or_else(Vec::new, |c| c.loads(&self.state().x))
+        self.barrier().map_or_else(Vec::new, |(contact, contacts)| {
+            contact.loads(contacts, &self.state().x)
+        })
     }
 
     /// Contact that acts by its barrier.
-    fn barrier(&self) -> Option<&dyn Contact> {
+    fn barrier(&self) -> Option<(&RunContact, &ContactState)> {
         match &self.engine {
-            Engine::Free(engine) => engine.contact.as_deref(),
+            Engine::Free(engine) => engine.contact(),
             Engine::Chart(_) => None,
         }
     }
@@ -246,7 +247,7 @@ impl Simulation {
         let potential = self.model().potential_energy(*t, x);
         match self.barrier() {
             None => potential,
-            Some(contact) => potential + contact.potential(x),
+            Some((contact, contacts)) => potential + contact.barrier_energy(contacts),
         }
     }
 
@@ -323,7 +324,7 @@ impl Simulation {
             strain: model.rods().max_strain(x),
             taut: tally.taut,
             violation: model.largest_violation(*t, x),
-            gap: self.contact().map(|c| c.gap(x)),
+            gap: self.contacts().map(ActiveContacts::gap),
             path: tally.path,
         }
     }

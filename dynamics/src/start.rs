@@ -1,6 +1,7 @@
 //! Making and checking states to start from.
 
 use crate::constraint::rows::point;
+use crate::iterate::Iterate;
 use crate::options::OptionsError;
 use crate::primal::PrimalMatrix;
 use crate::project::{Aim, Projector};
@@ -33,7 +34,7 @@ pub fn project_positions(
     check_count(model, x)?;
     let mut matrix = PrimalMatrix::new(model)?;
     let mut effort = Effort::default();
-    let mut moved = x.to_vec();
+    let mut moved = Iterate::without_contact(x.to_vec());
     let strain = Projector::new(model).positions(
         model,
         &mut matrix,
@@ -48,7 +49,7 @@ pub fn project_positions(
         &mut effort,
     );
     if strain <= tolerance {
-        x.copy_from_slice(&moved);
+        x.copy_from_slice(moved.x());
         Ok(strain)
     } else {
         Err(SimulationError::Start(StepError::Projection {

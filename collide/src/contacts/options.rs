@@ -1,9 +1,10 @@
 //! What a user chooses about contact.
 
-use crate::{
-    Barrier, BarrierError, CcdOptions, CcdOptionsError, Friction, FrictionError, ObstacleError,
-};
+use crate::{CcdOptions, CcdOptionsError, ObstacleError};
 use isosheet_dynamics::SheetModel;
+use isosheet_dynamics::contact::{
+    BarrierError, BarrierPotential, ContactLaws, FrictionError, Stiffness,
+};
 use thiserror::Error;
 
 /// Options of [`super::Contacts`]. Start from [`ContactOptions::for_sheet`].
@@ -31,65 +32,25 @@ pub struct ContactOptions {
     pub remainder: f64,
 }
 
-/// Stiffness `kappa` of the barrier potential `kappa b`, constant over a run.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Stiffness {
-    /// A contact that carries a hundred vertices of mean mass under the largest acceleration that the
-    /// potentials cause at the start keeps half the activation distance: `kappa = 100 m a d_hat /
-    /// |b'(1/2)|`, the slope taken by the gap over `d_hat`; one that carries its own vertex only keeps
-    /// 95 %. A draped sheet hangs on a few contacts. Ten times less and they close to where the
-    /// barrier is steep, ten times more and light contacts become hard: on draped
-    /// sheets of 81 and 289 vertices either costs up to five times the Newton iterations. The acceleration is that of
-    /// gravity, 9.8 m/s2, if there are no potentials.
-    Automatic,
-    /// A given value, joules.
-    Joules(f64),
-}
-
-/// Coefficients of Coulomb friction, see [`Friction`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coefficients {
-    /// Static coefficient, at least the kinetic one.
-    pub rest: f64,
-    /// Kinetic coefficient.
-    pub sliding: f64,
-}
-
-impl Coefficients {
-    /// No friction, and no cost of it.
-    pub const FRICTIONLESS: Self = Self {
-        rest: 0.0,
-        sliding: 0.0,
-    };
-
-    /// The same coefficient at rest and in motion.
-    pub const fn equal(mu: f64) -> Self {
-        Self {
-            rest: mu,
-            sliding: mu,
-        }
-    }
-
-    pub(super) fn is_frictionless(&self) -> bool {
-        self.rest == 0.0
-    }
-
-    /// # Errors
-    /// [`FrictionError`] unless `0 <= sliding <= rest`.
-    pub fn validate(&self) -> Result<(), FrictionError> {
-        Friction::new(self.rest, self.sliding, 1.0).map(|_| ())
-    }
-}
-
 /// Why contact cannot be set up.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ContactsError {
-    /// Activation distance or thickness make no sense.
+    /// Activation distance or stiffness make no sense.
     #[error(transparent)]
     Barrier(#[from] BarrierError),
-    /// The stiffness is not a positive energy.
-    #[error("stiffness {0} J: give a positive energy, or Stiffness::Automatic")]
-    Stiffness(f64),
+    /// The thickness is negative or not finite.
+    #[error("thickness {0} m: give zero or a positive length")]
+    Thickness(f64),
+    /// The activation distance is lost in the round-off of distances.
+    #[error(
+        "activation distance {activation} m with thickness {thickness} m: distances cannot tell them apart, choose lengths closer to each other"
+    )]
+    Resolution {
+        /// The activation distance.
+        activation: f64,
+        /// The thickness.
+        thickness: f64,
+    },
     /// The speed that counts as rest is not positive.
     #[error(
         "rest_speed {0} m/s: give a positive speed, for instance 1 % of a rod length per second"
@@ -141,12 +102,20 @@ impl ContactOptions {
     /// # Errors
     /// [`ContactsError`] naming the option that makes no sense.
     pub fn validate(&self) -> Result<(), ContactsError> {
-        Barrier::new(self.activation, 0.0)?;
-        Barrier::new(self.activation, self.thickness)?;
-        if let Stiffness::Joules(kappa) = self.stiffness
-            && !(kappa > 0.0 && kappa.is_finite())
-        {
-            return Err(ContactsError::Stiffness(kappa));
+        let stiffness = match self.stiffness {
+            Stiffness::Automatic => 1.0,
+            Stiffness::Joules(kappa) => kappa,
+        };
+        BarrierPotential::new(self.activation, stiffness)?;
+        let (activation, thickness) = (self.activation, self.thickness);
+        if !(thickness >= 0.0 && thickness.is_finite()) {
+            return Err(ContactsError::Thickness(thickness));
+        }
+        if self.reach() == thickness {
+            return Err(ContactsError::Resolution {
+                activation,
+                thickness,
+            });
         }
         if !(self.rest_speed > 0.0 && self.rest_speed.is_finite()) {
             return Err(ContactsError::RestSpeed(self.rest_speed));
@@ -160,6 +129,15 @@ impl ContactOptions {
             separation: self.thickness,
             remainder: self.remainder,
             ..CcdOptions::default()
+        }
+    }
+
+    /// Those of a scene without bodies.
+    pub(super) fn laws(&self) -> ContactLaws {
+        ContactLaws {
+            stiffness: self.stiffness,
+            rest_speed: self.rest_speed,
+            ..ContactLaws::frictionless(self.activation)
         }
     }
 

@@ -1,82 +1,12 @@
 //! The sheet as seen from a moving body, and how far that motion is safe.
 
 use crate::CcdOptions;
+use isosheet_dynamics::contact::RigidMotion;
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 
-/// The motion of a body over a step: its origin on a straight line at constant speed, its
-/// orientation about a fixed axis at a constant rate, from the pose at the start to that at the end.
+/// A part of a body's motion over a step; time runs from 0 to 1 again.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct StepMotion {
-    start: Isometry3<f64>,
-    end: Isometry3<f64>,
-    /// Displacement of the origin, metres.
-    shift: Vector3<f64>,
-    /// Rotation vector in space, radians.
-    turn: Vector3<f64>,
-}
-
-impl StepMotion {
-    pub(super) fn new(start: Isometry3<f64>, end: Isometry3<f64>) -> Self {
-        let turn = if start.rotation == end.rotation {
-            Vector3::zeros()
-        } else {
-            start.rotation.rotation_to(&end.rotation).scaled_axis()
-        };
-        Self {
-            start,
-            end,
-            shift: end.translation.vector - start.translation.vector,
-            turn,
-        }
-    }
-
-    pub(super) fn moves(&self) -> bool {
-        self.start != self.end
-    }
-
-    pub(super) fn start(&self) -> &Isometry3<f64> {
-        &self.start
-    }
-
-    pub(super) fn end(&self) -> &Isometry3<f64> {
-        &self.end
-    }
-
-    /// Velocity at an offset from the origin, per step, metres.
-    pub(super) fn velocity(&self, arm: &Vector3<f64>) -> Vector3<f64> {
-        self.shift + self.turn.cross(arm)
-    }
-
-    pub(super) fn turn(&self) -> Vector3<f64> {
-        self.turn
-    }
-
-    pub(super) fn pose(&self, s: f64) -> Isometry3<f64> {
-        if s >= 1.0 {
-            return self.end;
-        }
-        Isometry3::from_parts(
-            Translation3::from(self.start.translation.vector + s * self.shift),
-            UnitQuaternion::from_scaled_axis(s * self.turn) * self.start.rotation,
-        )
-    }
-
-    /// The rest of the motion after progress `s`.
-    pub(super) fn rest(&self, s: f64) -> RestOfStep {
-        let pose = self.pose(s);
-        RestOfStep {
-            origin: pose.translation.vector,
-            shift: (1.0 - s) * self.shift,
-            turn: (1.0 - s) * self.turn,
-            rotation: pose.rotation,
-            frame: pose.rotation.to_rotation_matrix().into_inner(),
-        }
-    }
-}
-
-/// The rest of a body's motion over a step; time runs from 0 to 1 again.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RestOfStep {
+pub(super) struct PartOfStep {
     origin: Vector3<f64>,
     shift: Vector3<f64>,
     turn: Vector3<f64>,
@@ -95,7 +25,19 @@ pub(super) struct Course {
     pub(super) bend: f64,
 }
 
-impl RestOfStep {
+impl PartOfStep {
+    /// From one progress of a motion to another.
+    pub(super) fn new(motion: &RigidMotion, [from, to]: [f64; 2]) -> Self {
+        let pose = motion.pose(from);
+        Self {
+            origin: pose.translation.vector,
+            shift: (to - from) * motion.shift(),
+            turn: (to - from) * motion.turn(),
+            rotation: pose.rotation,
+            frame: pose.rotation.to_rotation_matrix().into_inner(),
+        }
+    }
+
     pub(super) fn moves(&self) -> bool {
         self.shift != Vector3::zeros() || self.turn != Vector3::zeros()
     }
@@ -106,15 +48,6 @@ impl RestOfStep {
             Translation3::from(self.origin + time * self.shift),
             UnitQuaternion::from_scaled_axis(time * self.turn) * self.rotation,
         )
-    }
-
-    /// The same body held where it is.
-    pub(super) fn frozen(&self) -> Self {
-        Self {
-            shift: Vector3::zeros(),
-            turn: Vector3::zeros(),
-            ..*self
-        }
     }
 
     /// In the body's frame the point is at `p = Q^T y` with `y` linear in time and `Q' = [w] Q`, so
@@ -216,12 +149,12 @@ impl RestOfStep {
 
 impl Course {
     /// Bound on the distance from the place now during the motion, metres: chord and bulge.
-    pub(super) fn reach(&self, rest: &RestOfStep) -> f64 {
+    pub(super) fn reach(&self, part: &PartOfStep) -> f64 {
         if self.bend == 0.0 {
             return self.rate.norm();
         }
-        let [[now], _] = rest.at(&[*self], 0.0);
-        let [[then], _] = rest.at(&[*self], 1.0);
+        let [[now], _] = part.at(&[*self], 0.0);
+        let [[then], _] = part.at(&[*self], 1.0);
         (then - now).norm() + self.bend / 8.0
     }
 }

@@ -1,115 +1,105 @@
-//! Contact of the sheet with itself.
+//! The pairs of the sheet with itself.
 
-use super::body::{SheetMotion, point};
-use super::options::Coefficients;
-use super::touch::{Key, Kind, Parallel, Touch};
-use crate::distance::{Closest, edge_edge, point_triangle};
-use crate::{BroadPhase, Candidates, ParallelMollifier};
+use crate::distance::{edge_edge, point_triangle};
+use crate::narrow_phase::gather;
+use crate::{BroadPhase, Candidates, CcdOptions, ContactMesh};
+use isosheet_dynamics::contact::{ContactKey, ContactKind};
 use nalgebra::Vector3;
 
-/// The pairs of the sheet that are within reach on the present motion.
-#[derive(Debug, Clone)]
-pub(super) struct SelfContact {
-    pub(super) coefficients: Coefficients,
-    pub(super) pairs: Candidates,
+/// A motion of the sheet and what the search for pairs needs to know about it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SheetMotion<'a> {
+    pub(super) mesh: &'a ContactMesh,
+    pub(super) x: &'a [f64],
+    pub(super) dx: &'a [f64],
+    /// Distance below which the barrier acts, metres.
+    pub(super) reach: f64,
+    pub(super) ccd: &'a CcdOptions,
 }
 
-impl SelfContact {
-    pub(super) fn new(coefficients: Coefficients) -> Self {
-        Self {
-            coefficients,
-            pairs: Candidates::default(),
-        }
-    }
-
-    /// Collects the pairs within reach on a motion and returns the part of it, up to `limit`, that
-    /// brings nothing into contact. The boxes are those of the whole motion, enlarged by half the
-    /// reach.
-    pub(super) fn search(
-        &mut self,
-        sheet: SheetMotion<'_>,
-        sheet_boxes: &mut BroadPhase,
-        limit: f64,
-    ) -> f64 {
-        sheet_boxes.self_candidates(&mut self.pairs);
-        let SheetMotion {
-            mesh,
-            x,
-            dx,
-            reach,
-            ccd,
-            ..
-        } = sheet;
-        let half_way = ccd.separation + 0.5 * (reach - ccd.separation);
-        let mut limit = limit;
-        self.pairs.vertex_face.retain(|&[v, f]| {
-            let vertices = vertex_face(v, mesh.faces()[f as usize]);
-            let (places, steps) = (points(x, vertices), points(dx, vertices));
-            let closer = approach(&steps, 1);
-            let [p, a, b, c] = places;
-            let directions = [(a - p) + (b - p) + (c - p), (b - a).cross(&(c - a))];
-            if are_apart(&places, 1, &directions, reach + closer) {
-                return false;
-            }
-            let nearest = point_triangle(&places).distance() - closer;
-            if nearest <= half_way || nearest.is_nan() {
-                limit = ccd.point_triangle(&places, &steps, limit);
-            }
-            nearest <= reach || nearest.is_nan()
-        });
-        self.pairs.edge_edge.retain(|&[e, g]| {
-            let vertices = two_edges(mesh.edges()[e as usize], mesh.edges()[g as usize]);
-            let (places, steps) = (points(x, vertices), points(dx, vertices));
-            let closer = approach(&steps, 2);
-            let [a, b, c, d] = places;
-            let directions = [(c - a) + (d - b), (b - a).cross(&(d - c))];
-            if are_apart(&places, 2, &directions, reach + closer) {
-                return false;
-            }
-            let nearest = edge_edge(&places).distance() - closer;
-            if nearest <= half_way || nearest.is_nan() {
-                limit = ccd.edge_edge(&places, &steps, limit);
-            }
-            nearest <= reach || nearest.is_nan()
-        });
-        limit
-    }
-
-    /// Adds the contacts within reach at `x`.
-    pub(super) fn touches(&self, sheet: SheetMotion<'_>, out: &mut Vec<Touch>) {
-        let SheetMotion { mesh, x, .. } = sheet;
-        for &[v, f] in &self.pairs.vertex_face {
-            let vertices = vertex_face(v, mesh.faces()[f as usize]);
-            let closest = point_triangle(&points(x, vertices));
-            if let Some(touch) = touch(sheet, Kind::VertexFace, [v, f], vertices, &closest) {
-                out.push(touch);
-            }
-        }
-        for &[e, g] in &self.pairs.edge_edge {
-            let vertices = two_edges(mesh.edges()[e as usize], mesh.edges()[g as usize]);
-            let places = points(x, vertices);
-            let closest = edge_edge(&places);
-            if let Some(touch) = touch(sheet, Kind::EdgeEdge, [e, g], vertices, &closest) {
-                let lengths2 = [e, g].map(|e| sheet.lengths2[e as usize]);
-                let mollifier = ParallelMollifier::new(lengths2[0], lengths2[1]);
-                let [a, b, c, d] = places;
-                let parallel = Parallel::new(b - a, d - c, &mollifier);
-                out.push(Touch { parallel, ..touch });
-            }
-        }
+impl SheetMotion<'_> {
+    /// Distance between touching and being out of reach, metres: pairs that stay further apart need no
+    /// continuous collision detection. It is further than round-off can be wrong.
+    pub(super) fn half_way(&self) -> f64 {
+        self.ccd.separation + 0.5 * (self.reach - self.ccd.separation)
     }
 }
 
-fn vertex_face(v: u32, [a, b, c]: [u32; 3]) -> [u32; 4] {
+/// The vertices of the pair of a vertex and a face.
+pub(super) fn vertex_face(mesh: &ContactMesh, [v, f]: [u32; 2]) -> [u32; 4] {
+    let [a, b, c] = mesh.faces()[f as usize];
     [v, a, b, c]
 }
 
-fn two_edges([a, b]: [u32; 2], [c, d]: [u32; 2]) -> [u32; 4] {
+/// The vertices of the pair of two edges.
+pub(super) fn two_edges(mesh: &ContactMesh, [e, g]: [u32; 2]) -> [u32; 4] {
+    let ([a, b], [c, d]) = (mesh.edges()[e as usize], mesh.edges()[g as usize]);
     [a, b, c, d]
 }
 
-fn points(x: &[f64], vertices: [u32; 4]) -> [Vector3<f64>; 4] {
-    vertices.map(|v| point(x, v))
+fn key(kind: ContactKind, pair: [u32; 2]) -> ContactKey {
+    ContactKey {
+        body: None,
+        kind,
+        pair,
+    }
+}
+
+/// Appends the pairs of the sheet with itself within reach on a motion and returns the part of it, up to `limit`,
+/// that brings nothing into contact. The boxes are those of the whole motion, enlarged by half the reach;
+/// `candidates` is working memory.
+pub(super) fn query(
+    sheet: SheetMotion<'_>,
+    sheet_boxes: &mut BroadPhase,
+    candidates: &mut Candidates,
+    limit: f64,
+    pairs: &mut Vec<ContactKey>,
+) -> f64 {
+    sheet_boxes.self_candidates(candidates);
+    let SheetMotion {
+        mesh,
+        x,
+        dx,
+        reach,
+        ccd,
+    } = sheet;
+    let half_way = sheet.half_way();
+    let mut limit = limit;
+    for &pair in &candidates.vertex_face {
+        let vertices = vertex_face(mesh, pair);
+        let (places, steps) = (gather(x, vertices), gather(dx, vertices));
+        let closer = approach(&steps, 1);
+        let [p, a, b, c] = places;
+        let directions = [(a - p) + (b - p) + (c - p), (b - a).cross(&(c - a))];
+        if are_apart(&places, 1, &directions, reach + closer) {
+            continue;
+        }
+        let nearest = point_triangle(&places).distance() - closer;
+        if nearest <= half_way || nearest.is_nan() {
+            limit = ccd.point_triangle(&places, &steps, limit);
+        }
+        if nearest <= reach || nearest.is_nan() {
+            pairs.push(key(ContactKind::VertexFace, pair));
+        }
+    }
+    for &pair in &candidates.edge_edge {
+        let vertices = two_edges(mesh, pair);
+        let (places, steps) = (gather(x, vertices), gather(dx, vertices));
+        let closer = approach(&steps, 2);
+        let [a, b, c, d] = places;
+        let directions = [(c - a) + (d - b), (b - a).cross(&(d - c))];
+        if are_apart(&places, 2, &directions, reach + closer) {
+            continue;
+        }
+        let nearest = edge_edge(&places).distance() - closer;
+        if nearest <= half_way || nearest.is_nan() {
+            limit = ccd.edge_edge(&places, &steps, limit);
+        }
+        if nearest <= reach || nearest.is_nan() {
+            pairs.push(key(ContactKind::EdgeEdge, pair));
+        }
+    }
+    limit
 }
 
 /// Bound on how much closer two primitives come: the largest displacements of the points of both
@@ -140,31 +130,5 @@ fn are_apart(
         let (first, second) = (range(&height[..split]), range(&height[split..]));
         let between = (second.0 - first.1).max(first.0 - second.1);
         between > 0.0 && between * between > bound * bound * n.norm_squared()
-    })
-}
-
-fn touch(
-    sheet: SheetMotion<'_>,
-    kind: Kind,
-    pair: [u32; 2],
-    vertices: [u32; 4],
-    closest: &Closest<4>,
-) -> Option<Touch> {
-    let distance = closest.distance();
-    if distance >= sheet.reach {
-        return None;
-    }
-    Some(Touch {
-        key: Key {
-            body: None,
-            kind,
-            pair,
-        },
-        vertices,
-        weights: closest.weights,
-        normal: closest.difference / distance,
-        gap: distance - sheet.ccd.separation,
-        foot: Vector3::zeros(),
-        parallel: None,
     })
 }

@@ -1,25 +1,24 @@
 //! Whether a simulation can start.
 
-use super::body::{Body, point};
-use super::touch::Touch;
+use super::evaluate::Placed;
 use crate::narrow_phase::{gather, pierces};
 use crate::{BroadPhase, ContactMesh, Shape};
-use isosheet_dynamics::contact::{ContactError, ContactPair};
+use isosheet_dynamics::contact::{ActiveContact, ContactError, ContactPair};
 use nalgebra::Vector3;
 
 /// Refuses a contact whose gap is closed or not a number, naming the closest.
-pub(super) fn check_gaps(touches: &[Touch], t: f64) -> Result<(), ContactError> {
-    let mut worst: Option<&Touch> = None;
-    for touch in touches {
-        let closed = touch.gap <= 0.0 || touch.gap.is_nan();
-        if closed && worst.is_none_or(|w| touch.gap < w.gap) {
-            worst = Some(touch);
+pub(super) fn check_gaps(contacts: &[ActiveContact], t: f64) -> Result<(), ContactError> {
+    let mut worst: Option<&ActiveContact> = None;
+    for contact in contacts {
+        let closed = contact.gap <= 0.0 || contact.gap.is_nan();
+        if closed && worst.is_none_or(|w| contact.gap < w.gap) {
+            worst = Some(contact);
         }
     }
     match worst {
-        Some(touch) => Err(ContactError::Touching {
-            pair: name(touch),
-            gap: touch.gap,
+        Some(contact) => Err(ContactError::Touching {
+            pair: name(contact),
+            gap: contact.gap,
             t,
         }),
         None => Ok(()),
@@ -27,17 +26,17 @@ pub(super) fn check_gaps(touches: &[Touch], t: f64) -> Result<(), ContactError> 
 }
 
 /// The vertices of largest weight on both sides.
-fn name(touch: &Touch) -> ContactPair {
+fn name(contact: &ActiveContact) -> ContactPair {
     let heaviest = |sign: f64| {
         let mut best = 0;
         for i in 1..4 {
-            if sign * touch.weights[i] > sign * touch.weights[best] {
+            if sign * contact.weights[i] > sign * contact.weights[best] {
                 best = i;
             }
         }
-        touch.vertices[best]
+        contact.vertices[best]
     };
-    match touch.key.body {
+    match contact.key.body {
         Some(body) => ContactPair::Body {
             vertex: heaviest(1.0),
             body: body as usize,
@@ -49,51 +48,45 @@ fn name(touch: &Touch) -> ContactPair {
     }
 }
 
-fn crossing(pair: ContactPair, t: f64) -> ContactError {
-    ContactError::Touching { pair, gap: 0.0, t }
-}
-
-/// Refuses edges of the sheet that pass through its faces.
-pub(super) fn check_itself(boxes: &mut BroadPhase, x: &[f64], t: f64) -> Result<(), ContactError> {
+/// Refuses edges of the sheet that pass through its faces, with the pair.
+pub(super) fn check_itself(boxes: &mut BroadPhase, x: &[f64]) -> Result<(), ContactPair> {
     let mut pairs = Vec::new();
     boxes.self_edge_faces(&mut pairs);
     let mesh = boxes.mesh();
     for [e, f] in pairs {
         let (edge, face) = (mesh.edges()[e as usize], mesh.faces()[f as usize]);
         if pierces(gather(x, edge), gather(x, face)) {
-            let pair = ContactPair::Sheet {
+            return Err(ContactPair::Sheet {
                 first: edge[0],
                 second: face[0],
-            };
-            return Err(crossing(pair, t));
+            });
         }
     }
     Ok(())
 }
 
-/// Refuses a sheet that is inside a solid or passes through its surface at progress 1. Inside a convex
-/// body a gap is negative; this finds edges and faces that run through with their corners outside.
+/// Refuses a sheet that is inside a solid or passes through its surface, with the pair and its gap. Inside a
+/// convex body a gap is negative; this finds edges and faces that run through with their corners outside.
 pub(super) fn check_body(
-    body: &Body,
     number: usize,
+    Placed { body, place }: Placed<'_>,
+    segments: usize,
     boxes: &BroadPhase,
     x: &[f64],
-    segments: usize,
-    t: f64,
-) -> Result<(), ContactError> {
+) -> Result<(), (ContactPair, f64)> {
     let shape = body.obstacle().shape();
-    let named = |vertex| ContactPair::Body {
-        vertex,
-        body: number,
+    let touching = |vertex, gap| {
+        let body = number;
+        (ContactPair::Body { vertex, body }, gap)
     };
     if let Shape::Surface(surface) = shape
         && surface.is_closed()
     {
-        for v in 0..(x.len() / 3) as u32 {
-            let gap = surface.signed_distance(&body.local(&point(x, v))).value;
+        for (v, p) in (0..).zip(x.as_chunks::<3>().0) {
+            let local = place.to_local(&Vector3::from(*p));
+            let gap = surface.signed_distance(&local).value;
             if gap <= 0.0 {
-                let pair = named(v);
-                return Err(ContactError::Touching { pair, gap, t });
+                return Err(touching(v, gap));
             }
         }
     }
@@ -102,7 +95,7 @@ pub(super) fn check_body(
     };
     let mut places = geometry.positions;
     for p in places.as_chunks_mut::<3>().0 {
-        *p = body.in_space(&Vector3::from(*p)).into();
+        *p = place.to_space(&Vector3::from(*p)).into();
     }
     let other = BroadPhase::new(geometry.mesh, &places);
     let mut pairs = Vec::new();
@@ -111,14 +104,14 @@ pub(super) fn check_body(
     for &[e, f] in &pairs {
         let (edge, face) = (sheet.edges()[e as usize], solid.faces()[f as usize]);
         if pierces(gather(x, edge), gather(&places, face)) {
-            return Err(crossing(named(edge[0]), t));
+            return Err(touching(edge[0], 0.0));
         }
     }
     other.edge_faces_with(boxes, &mut pairs);
     for &[e, f] in &pairs {
         let (edge, face) = (solid.edges()[e as usize], sheet.faces()[f as usize]);
         if pierces(gather(&places, edge), gather(x, face)) {
-            return Err(crossing(named(face[0]), t));
+            return Err(touching(face[0], 0.0));
         }
     }
     Ok(())

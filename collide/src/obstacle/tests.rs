@@ -1,7 +1,8 @@
 use super::*;
+use crate::distance::Jet;
 use crate::distance::{point_edge, point_point};
 use crate::testing::{check_jet, points, sizes};
-use crate::{Coefficients, ContactOptions, Contacts, Jet, Keyframe};
+use crate::{Coefficients, ContactOptions, Contacts, Keyframe};
 use isosheet_dynamics::{
     AxisRotation, Method, Profile, RigidDisplacement, SheetModel, Simulation, State,
 };

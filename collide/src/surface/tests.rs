@@ -1,5 +1,5 @@
 use super::*;
-use crate::Jet;
+use crate::distance::Jet;
 use crate::testing::{check_jet, points};
 use proptest::prelude::*;
 

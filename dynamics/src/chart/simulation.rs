@@ -1,10 +1,11 @@
 //! Explicit integration in a chart, with the published step control.
 
+use super::contact::ChartContact;
 use super::stepping::{Stepper, Trial};
 use super::{
     ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, ContactImpulse, Rebase,
 };
-use crate::contact::{Contact, ContactError, ContactPoint};
+use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
 use crate::reaction::{Balance, ForceTime, Reaction};
 use crate::{SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
@@ -63,8 +64,7 @@ pub struct ChartSimulation {
     fresh: bool,
     /// Forces of the supports now, in scenes where they move.
     balance: Option<Balance>,
-    contact: Option<Box<dyn Contact>>,
-    points: Vec<ContactPoint>,
+    contact: Option<ChartContact>,
     impulses: Vec<ContactImpulse>,
 }
 
@@ -176,7 +176,6 @@ impl ChartSimulation {
             fresh: true,
             balance: None,
             contact: None,
-            points: Vec::new(),
             impulses: Vec::new(),
         };
         simulation.check_condition()?;
@@ -190,7 +189,7 @@ impl ChartSimulation {
     /// Adds contact with bodies and of the sheet with itself, by impulses on the momenta.
     ///
     /// The paper applies collision forces to momenta and does not say how; this is our choice. A step whose
-    /// displacement is not proven free of contact ([`Contact::safe_fraction`]) is taken anew as short as that
+    /// displacement is not proven free of contact ([`crate::contact::ContactSet::safe_fraction`]) is taken anew as short as that
     /// allows, so that every gap stays positive. At the end of each step all contacts within the activation distance that approach
     /// get impulses together, `p += J^T R^T l`, with [`ChartOptions::restitution`] and Coulomb friction with the kinetic
     /// coefficient, of which the energy never grows. The barrier of the contact is not used; a sheet rebounds at gaps
@@ -210,22 +209,18 @@ impl ChartSimulation {
         Ok(self)
     }
 
-    pub(crate) fn set_contact(
-        &mut self,
-        mut contact: Box<dyn Contact>,
-    ) -> Result<(), ContactError> {
+    pub(crate) fn set_contact(&mut self, contact: Box<dyn Contact>) -> Result<(), ContactError> {
         let mut state = State::at_rest(self.state.x.clone());
         state.t = self.t;
-        contact.check_start(self.stepper.mechanics.model(), &state)?;
-        contact.begin(self.t, 0.0, &self.state.x);
-        self.contact = Some(contact);
+        let model = self.stepper.mechanics.model();
+        self.contact = Some(ChartContact::new(contact, model, &state)?);
         Ok(())
     }
 
-    /// Contact, if there is any.
+    /// The contacts at the present state; `None` in scenes without contact.
     #[must_use]
-    pub fn contact(&self) -> Option<&dyn Contact> {
-        self.contact.as_deref()
+    pub fn contacts(&self) -> Option<&ActiveContacts> {
+        self.contact.as_ref().map(ChartContact::active)
     }
 
     /// The impulses of contacts at the end of the last step, zero ones of contacts that do not press included; empty if nothing
@@ -377,7 +372,8 @@ impl ChartSimulation {
         let trial = loop {
             let outcome = self.stepper.attempt(self.t, &self.state, h);
             if let (Ok(trial), Some(contact)) = (&outcome, &mut self.contact) {
-                let part = free_part(contact.as_mut(), (self.t, h), &self.state.x, &trial.x);
+                let span = StepSpan { t0: self.t, h };
+                let part = contact.safe_fraction(span, &self.state.x, &trial.x);
                 if part < 1.0 {
                     cuts += 1;
                     h *= part;
@@ -446,7 +442,7 @@ impl ChartSimulation {
         let mut driven = self.drive_work((start.0, &start.1.x), h)?;
         let mut impact = 0.0;
         if let Some(mut contact) = self.contact.take() {
-            let outcome = self.impact(contact.as_mut(), h);
+            let outcome = self.impact(&mut contact, h);
             self.contact = Some(contact);
             let [loss, work] = outcome?;
             impact = loss;
@@ -468,7 +464,7 @@ impl ChartSimulation {
             energy_change,
             damped: before_damping - self.hamiltonian,
             impact,
-            gap: self.contact.as_ref().map(|c| c.gap(&self.state.x)),
+            gap: self.contacts().map(ActiveContacts::gap),
             strain: self.stepper.mechanics.system().max_strain(&self.state.x),
             driven,
             rebased,
@@ -478,33 +474,34 @@ impl ChartSimulation {
     /// Impacts at the end of a step: energy lost and work of the bodies.
     fn impact(
         &mut self,
-        contact: &mut dyn Contact,
+        contact: &mut ChartContact,
         h: f64,
     ) -> Result<[f64; 2], ChartDynamicsError> {
-        let mut points = std::mem::take(&mut self.points);
         self.impulses.clear();
-        contact.advance(1.0);
-        contact.contact_points(&self.state.x, &mut points);
+        contact.evaluate(&self.state.x);
         let least = LEAST_GAP * contact.activation();
-        if points.iter().any(|p| p.gap < least) {
+        if contact.points().iter().any(|p| p.gap < least) {
+            let points = contact.points();
+            let opened = self.stepper.opened(self.t, &self.state, points, least);
+            let span = StepSpan { t0: self.t, h: 0.0 };
             // Where this is not possible the collision detection still holds.
-            if let Ok(opened) = self.stepper.opened(self.t, &self.state, &points, least)
-                && free_part(contact, (self.t, 0.0), &self.state.x, &opened.x) >= 1.0
+            if let Ok(opened) = opened
+                && contact.safe_fraction(span, &self.state.x, &opened.x) >= 1.0
             {
                 self.state = opened;
-                contact.contact_points(&self.state.x, &mut points);
+                contact.evaluate(&self.state.x);
             }
             self.stepper.mechanics.at(&self.state.x)?;
         }
         let mut done = [0.0; 2];
-        if !points.is_empty() {
+        if !contact.points().is_empty() {
             let (time, e) = ((self.t, h), self.options.restitution);
-            if let Some(impact) = self.stepper.impact(time, &mut self.state, &points, e)? {
+            let points = contact.points();
+            if let Some(impact) = self.stepper.impact(time, &mut self.state, points, e)? {
                 self.impulses = impact.impulses;
                 done = [impact.loss, impact.driven];
             }
         }
-        self.points = points;
         Ok(done)
     }
 
@@ -539,11 +536,4 @@ impl ChartSimulation {
         self.balance = Some(after);
         Ok(work)
     }
-}
-
-/// The part of a motion from `from` at time `t` over `h` that is proven free of contact.
-fn free_part(contact: &mut dyn Contact, (t, h): (f64, f64), from: &[f64], to: &[f64]) -> f64 {
-    let dx: Vec<f64> = to.iter().zip(from).map(|(a, b)| a - b).collect();
-    contact.begin(t, h, from);
-    contact.safe_fraction(from, &dx)
 }

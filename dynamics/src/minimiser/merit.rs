@@ -20,16 +20,17 @@ pub(super) struct Merit {
 }
 
 impl Minimiser {
-    /// The augmented Lagrangian at `self.x`; sets `self.c`.
+    /// The augmented Lagrangian at the iterate; sets `self.c`.
     pub(super) fn merit(&mut self, step: &Step<'_, '_>) -> Merit {
         let (model, t, h) = (step.scene.model, step.t, step.h);
-        for i in 0..self.x.len() {
-            self.difference[i] = self.x[i] - self.target[i];
+        let x = self.iterate.x();
+        for i in 0..x.len() {
+            self.difference[i] = x[i] - self.target[i];
         }
         let inertia = model.kinetic_energy(&self.difference);
         let work = dot(&self.applied, &self.difference);
-        model.rods().residual_into(&self.x, &mut self.c);
-        self.vertex_rows.evaluate(model.constraints(), t, &self.x);
+        model.rods().residual_into(x, &mut self.c);
+        self.vertex_rows.evaluate(model.constraints(), t, x);
         let rods: f64 = (0..self.c.len())
             .map(|e| (self.multipliers[e] + 0.5 * self.penalty[e] * self.c[e]) * self.c[e])
             .sum::<f64>()
@@ -43,7 +44,7 @@ impl Minimiser {
             .sum();
         // And where inertia alone has the right lengths already, nothing but the round-off of the
         // positions is left to minimise.
-        let size = self.x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let size = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let still: f64 = self
             .penalty
             .iter()
@@ -52,9 +53,9 @@ impl Minimiser {
             .sum();
         let (load, vertex_still) = self.vertex_rows.scales(size);
         let (rod_scale, still) = (rod_scale + load, still + vertex_still);
-        let mut potential = model.potential_energy(t, &self.x);
-        if let Some(contact) = step.contact() {
-            potential += contact.energy(&self.x);
+        let mut potential = model.potential_energy(t, x);
+        if let Some(terms) = self.iterate.terms(step.contact()) {
+            potential += terms.energy();
         }
         Merit {
             inertia,
@@ -68,16 +69,17 @@ impl Minimiser {
         }
     }
 
-    /// Gradient of the augmented Lagrangian at `self.x`, with `self.c` current; sets the
+    /// Gradient of the augmented Lagrangian at the iterate, with `self.c` current; sets the
     /// force densities of the rods.
     pub(super) fn gradient(&mut self, step: &Step<'_, '_>) {
         let (model, t, h) = (step.scene.model, step.t, step.h);
-        for i in 0..self.x.len() {
-            self.difference[i] = self.x[i] - self.target[i];
+        let x = self.iterate.x();
+        for i in 0..x.len() {
+            self.difference[i] = x[i] - self.target[i];
         }
         model.apply_mass(&self.difference, &mut self.weighted);
-        model.potential_force(t, &self.x, &mut self.force);
-        for i in 0..self.x.len() {
+        model.potential_force(t, x, &mut self.force);
+        for i in 0..x.len() {
             self.gradient[i] = self.weighted[i] - h * h * (self.force[i] + self.applied[i]);
         }
         for e in 0..self.c.len() {
@@ -85,10 +87,10 @@ impl Minimiser {
         }
         model
             .rods()
-            .apply_transpose_add(&self.x, &self.density, &mut self.gradient);
+            .apply_transpose_add(x, &self.density, &mut self.gradient);
         self.vertex_rows.add_gradient(&mut self.gradient);
-        if let Some(contact) = step.contact() {
-            contact.add_gradient(&self.x, h * h, &mut self.gradient);
+        if let Some(terms) = self.iterate.terms(step.contact()) {
+            terms.add_gradient(h * h, &mut self.gradient);
         }
         model.clear_pinned(&mut self.gradient);
     }
@@ -96,9 +98,10 @@ impl Minimiser {
     /// Adds to the gradient what the rest of the prescribed motions will change it by, to first order.
     pub(super) fn add_drive(&mut self, step: &Step<'_, '_>) {
         let model = step.scene.model;
-        if let Some(contact) = step.contact() {
-            contact.add_drive(&self.x, step.h * step.h, &mut self.gradient);
+        if let Some(terms) = self.iterate.terms(step.contact()) {
+            terms.add_drive(step.h * step.h, &mut self.gradient);
         }
+        let x = self.iterate.x();
         let free = model.free_index();
         for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
             let (pin, end) = match (free[a] == PINNED, free[b] == PINNED) {
@@ -107,10 +110,7 @@ impl Minimiser {
                 _ => continue,
             };
             let at = |x: &[f64], v: usize| Vector3::new(x[3 * v], x[3 * v + 1], x[3 * v + 2]);
-            let (d, u) = (
-                at(&self.x, end) - at(&self.x, pin),
-                at(&self.end, pin) - at(&self.x, pin),
-            );
+            let (d, u) = (at(x, end) - at(x, pin), at(&self.end, pin) - at(x, pin));
             let change = self.density[e] * u + self.penalty[e] * d.dot(&u) * d;
             for k in 0..3 {
                 self.gradient[3 * end + k] -= change[k];

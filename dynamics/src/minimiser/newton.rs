@@ -52,11 +52,7 @@ impl Minimiser {
             .strain_tolerance
             .max(strain_floor(model, step.state));
         let mut path = Path::Newton;
-        let rounds = if step.contact().is_some() {
-            MAX_ROUNDS
-        } else {
-            1
-        };
+        let rounds = if step.has_contact() { MAX_ROUNDS } else { 1 };
         let (mut residual, mut strain) = (f64::INFINITY, f64::INFINITY);
         for round in 0..rounds {
             // The second attempt is careful throughout.
@@ -78,11 +74,11 @@ impl Minimiser {
             if round == 0 {
                 self.first_multipliers.copy_from_slice(&self.multipliers);
             }
-            if round + 1 < rounds && model.rods().max_strain(&self.x) > self.ready {
+            if round + 1 < rounds && model.rods().max_strain(self.iterate.x()) > self.ready {
                 self.penalty.iter_mut().for_each(|p| *p *= GROWTH);
                 continue;
             }
-            let held = step.scene.contact.as_deref_mut().map(|contact| Held {
+            let held = step.scene.contact.as_mut().map(|contact| Held {
                 contact,
                 scale: step.h * step.h,
             });
@@ -90,7 +86,7 @@ impl Minimiser {
                 model,
                 &mut self.matrix,
                 held,
-                &mut self.x,
+                &mut self.iterate,
                 Aim {
                     tolerance,
                     max_iterations: self.options.max_projections,
@@ -105,12 +101,12 @@ impl Minimiser {
                 self.multipliers.copy_from_slice(&self.first_multipliers);
                 return Ok((residual, path));
             }
-            model.rods().residual_into(&self.x, &mut self.c);
+            model.rods().residual_into(self.iterate.x(), &mut self.c);
             self.vertex_rows
-                .evaluate(model.constraints(), step.t, &self.x);
+                .evaluate(model.constraints(), step.t, self.iterate.x());
         }
         if strain == f64::INFINITY {
-            strain = model.rods().max_strain(&self.x);
+            strain = model.rods().max_strain(self.iterate.x());
         }
         self.forget();
         let (t, h) = (step.state.t, step.t - step.state.t);
@@ -159,7 +155,7 @@ impl Minimiser {
             } else {
                 0.0
             };
-            self.start.copy_from_slice(&self.x);
+            self.start.copy_from_slice(self.iterate.x());
             let limit = self.limit(step);
             if is_driven {
                 driven += 1;
@@ -172,9 +168,7 @@ impl Minimiser {
             }
             let mut length = limit;
             loop {
-                for i in 0..self.x.len() {
-                    self.x[i] = self.start[i] - length * self.dx[i];
-                }
+                self.move_along(length);
                 let now = self.merit(step);
                 if now.value <= merit.value + ARMIJO * length * slope + merit.round_off
                     || length < 1e-9
@@ -196,9 +190,8 @@ impl Minimiser {
                     merit = self.merit(step);
                     continue;
                 }
-                if let Some(contact) = &mut step.scene.contact
-                    && updates < self.options.max_friction_updates
-                    && contact.relag(&self.x) > SETTLED
+                if updates < self.options.max_friction_updates
+                    && self.renew_friction(step) > SETTLED
                 {
                     updates += 1;
                     merit = self.merit(step);
@@ -212,40 +205,52 @@ impl Minimiser {
 
     /// Largest safe part of the displacement `-dx`, pinned vertices going to their ends.
     pub(super) fn limit(&mut self, step: &mut Step<'_, '_>) -> f64 {
-        if step.contact().is_none() {
+        if !step.has_contact() {
             return 1.0;
         }
+        let x = self.iterate.x();
         for v in step.scene.model.moving_pins() {
             for i in 3 * v..3 * v + 3 {
-                self.dx[i] = self.x[i] - self.end[i];
+                self.dx[i] = x[i] - self.end[i];
             }
         }
         for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
             *w = -d;
         }
-        step.safe_fraction(&self.x, &self.weighted)
+        self.iterate
+            .safe_fraction(step.contact_mut(), &self.weighted)
+    }
+
+    /// Puts the iterate at the part `length` of the displacement `-dx` from the start of the line search.
+    pub(super) fn move_along(&mut self, length: f64) {
+        let displaced = self.start.iter().zip(&self.dx);
+        for (x, (start, dx)) in self.iterate.x_mut().iter_mut().zip(displaced) {
+            *x = start - length * dx;
+        }
+    }
+
+    /// Lags friction anew at the iterate; the relative change of its normal forces, zero without friction.
+    pub(super) fn renew_friction(&mut self, step: &Step<'_, '_>) -> f64 {
+        self.iterate.renew_friction(step.contact(), &step.state.x)
     }
 
     /// Moves sheet, pins and bodies on together.
-    pub(super) fn drive(&mut self, step: &mut Step<'_, '_>, part: f64) {
-        for i in 0..self.x.len() {
-            self.x[i] = self.start[i] - part * self.dx[i];
-        }
+    pub(super) fn drive(&mut self, step: &Step<'_, '_>, part: f64) {
+        self.move_along(part);
         if part == 1.0 {
+            let x = self.iterate.x_mut();
             for v in step.scene.model.moving_pins() {
-                self.x[3 * v..3 * v + 3].copy_from_slice(&self.end[3 * v..3 * v + 3]);
+                x[3 * v..3 * v + 3].copy_from_slice(&self.end[3 * v..3 * v + 3]);
             }
         }
-        if let Some(contact) = &mut step.scene.contact {
-            contact.advance(part);
-        }
+        self.iterate.advance_bodies(part);
     }
 
     /// Factorises the Hessian; true if it was indefinite and had to be modified.
     fn factorize(&mut self, step: &Step<'_, '_>, effort: &mut Effort) -> Result<bool, LinalgError> {
         let model = step.scene.model;
-        if let Some(contact) = step.contact() {
-            self.matrix.make_room(model, contact, &self.x)?;
+        if let Some(terms) = self.iterate.terms(step.contact()) {
+            self.matrix.make_room(model, &terms)?;
         }
         self.along.copy_from_slice(&self.penalty);
         self.across.copy_from_slice(&self.density);
@@ -282,18 +287,18 @@ impl Minimiser {
     pub(super) fn assemble(&mut self, step: &Step<'_, '_>, part: HessianPart) {
         let model = step.scene.model;
         self.matrix
-            .assemble(model, &self.x, &self.along, &self.across);
+            .assemble(model, self.iterate.x(), &self.along, &self.across);
         self.vertex_rows
             .add_hessian(part, &mut self.matrix.sink(model));
-        if let Some(contact) = step.contact() {
-            self.matrix
-                .add_contact(model, contact, &self.x, step.h * step.h);
+        if let Some(terms) = self.iterate.terms(step.contact()) {
+            self.matrix.add_contact(model, &terms, step.h * step.h);
         }
     }
 
     pub(super) fn add_potentials(&mut self, step: &Step<'_, '_>) {
+        let (model, x) = (step.scene.model, self.iterate.x());
         self.matrix
-            .add_potentials(step.scene.model, step.t, &self.x, step.h * step.h);
+            .add_potentials(model, step.t, x, step.h * step.h);
     }
 
     /// Displaces the iterate off a saddle.
@@ -305,8 +310,8 @@ impl Minimiser {
             *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
-        let part = step.safe_fraction(&self.x, &self.dx);
-        for (x, d) in self.x.iter_mut().zip(&self.dx) {
+        let part = self.iterate.safe_fraction(step.contact_mut(), &self.dx);
+        for (x, d) in self.iterate.x_mut().iter_mut().zip(&self.dx) {
             *x += part * d;
         }
     }

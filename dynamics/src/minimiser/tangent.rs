@@ -109,7 +109,6 @@ impl Minimiser {
             self.multipliers.fill(0.0);
         }
         self.set_merit_penalty(step);
-        self.x.copy_from_slice(&step.state.x);
         let found = self.walk(step, pace, effort);
         match found {
             Some(_) => self.set_balance(step),
@@ -123,9 +122,10 @@ impl Minimiser {
     fn walk(&mut self, step: &mut Step<'_, '_>, pace: Pace, effort: &mut Effort) -> Option<f64> {
         let model = step.scene.model;
         self.merit(step);
-        let most = match step.contact() {
-            Some(_) => MAX_STEPS,
-            None => MAX_FREE_STEPS,
+        let most = if step.has_contact() {
+            MAX_STEPS
+        } else {
+            MAX_FREE_STEPS
         };
         let (mut left, mut updates, mut seeded) = (most, 0, false);
         while left > 0 {
@@ -144,7 +144,7 @@ impl Minimiser {
             } else {
                 (slope.abs() / before.inertia).sqrt()
             };
-            self.start.copy_from_slice(&self.x);
+            self.start.copy_from_slice(self.iterate.x());
             let limit = self.limit(step);
             if is_driven {
                 if limit == 0.0 {
@@ -158,7 +158,7 @@ impl Minimiser {
                 return (still && self.arrive(step, effort)).then_some(residual);
             };
             let is_converged = still || slope.abs() <= self.options.tolerance * before.inertia;
-            let is_near = step.contact().is_some() || model.rods().max_strain(&self.x) <= SMALL;
+            let is_near = step.has_contact() || model.rods().max_strain(self.iterate.x()) <= SMALL;
             if !(length == 1.0 && is_converged && is_near) {
                 continue;
             }
@@ -167,10 +167,7 @@ impl Minimiser {
                 self.perturb(step);
                 continue;
             }
-            if let Some(contact) = &mut step.scene.contact
-                && updates < self.options.max_friction_updates
-                && contact.relag(&self.x) > SETTLED
-            {
+            if updates < self.options.max_friction_updates && self.renew_friction(step) > SETTLED {
                 (left, updates) = (most, updates + 1);
                 continue;
             }
@@ -183,8 +180,8 @@ impl Minimiser {
     /// modified, and nothing if there is no step. Sets the gradient of the Lagrangian with them.
     fn tangent(&mut self, step: &Step<'_, '_>, pace: Pace, effort: &mut Effort) -> Option<bool> {
         let model = step.scene.model;
-        if let Some(contact) = step.contact()
-            && self.matrix.make_room(model, contact, &self.x).is_err()
+        if let Some(terms) = self.iterate.terms(step.contact())
+            && self.matrix.make_room(model, &terms).is_err()
         {
             return None;
         }
@@ -211,7 +208,9 @@ impl Minimiser {
                 self.add_drive(step);
             }
             self.matrix.solve(model, &self.gradient, &mut self.dx);
-            model.rods().apply(&self.x, &self.dx, &mut self.change);
+            model
+                .rods()
+                .apply(self.iterate.x(), &self.dx, &mut self.change);
             let (mut largest, mut most, mut off) = (0.0_f64, 0.0_f64, 0.0_f64);
             for e in 0..self.c.len() {
                 let (left, l) = (self.c[e] - self.change[e], model.rods().lengths()[e]);
@@ -235,9 +234,10 @@ impl Minimiser {
 
     /// Sets the penalty of the function that steps have to decrease. The Lagrangian alone may grow along a step that mends lengths.
     fn set_merit_penalty(&mut self, step: &Step<'_, '_>) {
-        match step.contact() {
-            Some(_) => self.penalty.fill(0.0),
-            None => self.penalty.copy_from_slice(&self.first_penalty),
+        if step.has_contact() {
+            self.penalty.fill(0.0);
+        } else {
+            self.penalty.copy_from_slice(&self.first_penalty);
         }
     }
 
@@ -271,15 +271,14 @@ impl Minimiser {
         before: &Merit,
         effort: &mut Effort,
     ) -> Option<f64> {
-        let halvings = match step.contact() {
-            Some(_) => MAX_HALVINGS,
-            None => MAX_FREE_HALVINGS,
+        let halvings = if step.has_contact() {
+            MAX_HALVINGS
+        } else {
+            MAX_FREE_HALVINGS
         };
         let mut length = limit;
         for _ in 0..=halvings {
-            for i in 0..self.x.len() {
-                self.x[i] = self.start[i] - length * self.dx[i];
-            }
+            self.move_along(length);
             if self.project(step, NEAR, effort) <= NEAR {
                 let now = self.merit(step);
                 let promised = before.value + ARMIJO * length * slope;
@@ -289,7 +288,7 @@ impl Minimiser {
             }
             length *= 0.5;
             // Back to where contact knows the motion that the next trial is part of.
-            self.x.copy_from_slice(&self.start);
+            self.iterate.x_mut().copy_from_slice(&self.start);
             self.limit(step);
         }
         None
@@ -304,7 +303,7 @@ impl Minimiser {
 
     /// Projects until the edge strain is within `tolerance`; the strain reached.
     fn project(&mut self, step: &mut Step<'_, '_>, tolerance: f64, effort: &mut Effort) -> f64 {
-        let held = step.scene.contact.as_deref_mut().map(|contact| Held {
+        let held = step.scene.contact.as_mut().map(|contact| Held {
             contact,
             scale: step.h * step.h,
         });
@@ -314,8 +313,8 @@ impl Minimiser {
             t: step.t,
             loads: &self.vertex_rows.multipliers,
         };
-        let (model, x) = (step.scene.model, &mut self.x);
+        let (model, iterate) = (step.scene.model, &mut self.iterate);
         self.projector
-            .positions(model, &mut self.matrix, held, x, aim, effort)
+            .positions(model, &mut self.matrix, held, iterate, aim, effort)
     }
 }

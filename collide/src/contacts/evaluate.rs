@@ -1,0 +1,193 @@
+//! Distances, normals and weights of pairs at given positions.
+
+use super::body::Body;
+use super::features::Features;
+use super::sheet::{two_edges, vertex_face};
+use crate::ContactMesh;
+use crate::distance::{Closest, edge_edge, point_triangle};
+use crate::narrow_phase::gather;
+use isosheet_dynamics::contact::{
+    ActiveContact, BodyPlace, ContactKey, ContactKind, ParallelEdges,
+};
+use nalgebra::Vector3;
+
+/// The sheet at given positions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sheet<'a> {
+    pub(super) mesh: &'a ContactMesh,
+    pub(super) x: &'a [f64],
+    /// Squared rest lengths of the edges.
+    pub(super) lengths2: &'a [f64],
+    /// Distance below which the barrier acts, metres.
+    pub(super) reach: f64,
+    pub(super) thickness: f64,
+}
+
+/// A body in its place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Placed<'a> {
+    pub(super) body: &'a Body,
+    pub(super) place: &'a BodyPlace,
+}
+
+impl Sheet<'_> {
+    /// The contact of a pair of the sheet with itself; `None` out of reach.
+    pub(super) fn with_itself(&self, key: ContactKey) -> Option<ActiveContact> {
+        if key.kind == ContactKind::EdgeEdge {
+            let vertices = two_edges(self.mesh, key.pair);
+            let places = gather(self.x, vertices);
+            let contact = self.own_contact(key, vertices, &edge_edge(&places))?;
+            let lengths2 = key.pair.map(|e| self.lengths2[e as usize]);
+            let [a, b, c, d] = places;
+            let parallel = ParallelEdges::new(b - a, d - c, lengths2);
+            Some(ActiveContact {
+                parallel,
+                ..contact
+            })
+        } else {
+            let vertices = vertex_face(self.mesh, key.pair);
+            let closest = point_triangle(&gather(self.x, vertices));
+            self.own_contact(key, vertices, &closest)
+        }
+    }
+
+    fn own_contact(
+        &self,
+        key: ContactKey,
+        vertices: [u32; 4],
+        closest: &Closest<4>,
+    ) -> Option<ActiveContact> {
+        let distance = closest.distance();
+        if distance >= self.reach {
+            return None;
+        }
+        Some(ActiveContact {
+            key,
+            vertices,
+            weights: closest.weights,
+            normal: closest.difference / distance,
+            gap: distance - self.thickness,
+            closest: Vector3::zeros(),
+            parallel: None,
+        })
+    }
+
+    /// The contact of a pair of the sheet and a body; `None` out of reach.
+    pub(super) fn with_body(&self, key: ContactKey, placed: Placed<'_>) -> Option<ActiveContact> {
+        if key.kind == ContactKind::Vertex {
+            return self.vertex(key, placed);
+        }
+        let features = placed.body.features()?;
+        match key.kind {
+            ContactKind::Vertex => None,
+            ContactKind::VertexFace => self.vertex_face(key, placed, features),
+            ContactKind::FaceVertex => self.face_vertex(key, placed, features),
+            ContactKind::EdgeEdge => self.edge_edge(key, placed, features),
+        }
+    }
+
+    /// A vertex of the sheet in the frame of a body's surface.
+    fn local(&self, place: &BodyPlace, v: u32) -> Vector3<f64> {
+        let [p] = gather(self.x, [v]);
+        place.to_local(&p)
+    }
+
+    /// The gap for a distance; `None` out of reach, but not if it is not a number.
+    fn gap(&self, distance: f64) -> Option<f64> {
+        let gap = distance - self.thickness;
+        (gap < self.reach - self.thickness || gap.is_nan()).then_some(gap)
+    }
+
+    fn vertex(&self, key: ContactKey, Placed { body, place }: Placed<'_>) -> Option<ActiveContact> {
+        let [v, _] = key.pair;
+        let p = self.local(place, v);
+        let d = body.obstacle().shape().signed_distance(&p);
+        let gap = self.gap(d.value)?;
+        Some(ActiveContact {
+            key,
+            vertices: [v; 4],
+            weights: [1.0, 0.0, 0.0, 0.0],
+            normal: place.frame() * d.normal,
+            gap,
+            closest: place.to_space(&d.closest(&p)),
+            parallel: None,
+        })
+    }
+
+    fn vertex_face(
+        &self,
+        key: ContactKey,
+        Placed { place, .. }: Placed<'_>,
+        features: &Features,
+    ) -> Option<ActiveContact> {
+        let [v, f] = key.pair;
+        let p = self.local(place, v);
+        let [a, b, c] = features.face(f);
+        let closest = point_triangle(&[p, a, b, c]);
+        let distance = closest.distance();
+        let gap = self.gap(distance - features.radius)?;
+        let n = closest.difference / distance;
+        let point = p - closest.difference;
+        Some(ActiveContact {
+            key,
+            vertices: [v; 4],
+            weights: [1.0, 0.0, 0.0, 0.0],
+            normal: place.frame() * n,
+            gap,
+            closest: place.to_space(&(point + features.radius * n)),
+            parallel: None,
+        })
+    }
+
+    fn face_vertex(
+        &self,
+        key: ContactKey,
+        Placed { place, .. }: Placed<'_>,
+        features: &Features,
+    ) -> Option<ActiveContact> {
+        let [f, v] = key.pair;
+        let face = self.mesh.faces()[f as usize];
+        let ([p, q, r], b) = (face.map(|v| self.local(place, v)), features.vertex(v));
+        let closest = point_triangle(&[b, p, q, r]);
+        let distance = closest.distance();
+        let gap = self.gap(distance - features.radius)?;
+        let n = -closest.difference / distance;
+        let [_, wp, wq, wr] = closest.weights;
+        Some(ActiveContact {
+            key,
+            vertices: [face[0], face[1], face[2], face[0]],
+            weights: [-wp, -wq, -wr, 0.0],
+            normal: place.frame() * n,
+            gap,
+            closest: place.to_space(&(b + features.radius * n)),
+            parallel: None,
+        })
+    }
+
+    fn edge_edge(
+        &self,
+        key: ContactKey,
+        Placed { place, .. }: Placed<'_>,
+        features: &Features,
+    ) -> Option<ActiveContact> {
+        let [e, g] = key.pair;
+        let edge = self.mesh.edges()[e as usize];
+        let ([p, q], [c, d]) = (edge.map(|v| self.local(place, v)), features.edge(g));
+        let closest = edge_edge(&[p, q, c, d]);
+        let distance = closest.distance();
+        let gap = self.gap(distance - features.radius)?;
+        let n = closest.difference / distance;
+        let [wp, wq, wc, wd] = closest.weights;
+        let point = -wc * c - wd * d;
+        let (u, v) = (place.frame() * (q - p), place.frame() * (d - c));
+        Some(ActiveContact {
+            key,
+            vertices: [edge[0], edge[1], edge[0], edge[0]],
+            weights: [wp, wq, 0.0, 0.0],
+            normal: place.frame() * n,
+            gap,
+            closest: place.to_space(&(point + features.radius * n)),
+            parallel: ParallelEdges::new(u, v, [self.lengths2[e as usize], v.norm_squared()]),
+        })
+    }
+}

@@ -1,0 +1,154 @@
+//! The corners, edges and faces of a body, as edges and faces of a sheet meet them.
+
+use super::path::PartOfStep;
+use crate::{BroadPhase, ContactGeometry, ContactMesh, ObstacleError, Shape};
+use nalgebra::{Isometry3, Point3, Vector3};
+use std::collections::HashMap;
+
+/// Sine of the angle between two faces below which the edge between them is none: a thousand times
+/// the round-off of unit normals, and a ridge too low to matter.
+const FLAT_SINE: f64 = 1e-12;
+
+/// What of a body meets edges and faces of the sheet; of a triangle surface vertices as well.
+#[derive(Debug, Clone)]
+pub(super) struct Features {
+    phase: BroadPhase,
+    /// In the body's frame.
+    points: Vec<Vector3<f64>>,
+    pub(super) radius: f64,
+    /// Largest distance of a point from the origin of the frame.
+    pub(super) extent: f64,
+    /// Vertices and edges that are no corner: inside a flat facet.
+    flat_vertices: Vec<bool>,
+    flat_edges: Vec<bool>,
+    /// Places of the points in space at the start and at the end of a motion.
+    start: Vec<f64>,
+    end: Vec<f64>,
+    /// Where and with what inflation the boxes are those of a body that does not move.
+    boxed: Option<(Isometry3<f64>, f64)>,
+}
+
+impl Features {
+    pub(super) fn new(shape: &Shape, segments: usize) -> Result<Option<Self>, ObstacleError> {
+        let Some(geometry) = shape.contact_geometry(segments)? else {
+            return Ok(None);
+        };
+        let ContactGeometry {
+            mesh,
+            positions,
+            radius,
+        } = geometry;
+        let points = positions.as_chunks::<3>().0.iter();
+        let points: Vec<Vector3<f64>> = points.map(|p| Vector3::from(*p)).collect();
+        let flat_edges = flat_edges(&mesh, &points);
+        let mut flat_vertices = vec![false; points.len()];
+        for &v in mesh.faces().iter().flatten() {
+            flat_vertices[v as usize] = true;
+        }
+        for (edge, _) in mesh.edges().iter().zip(&flat_edges).filter(|(_, f)| !**f) {
+            for &v in edge {
+                flat_vertices[v as usize] = false;
+            }
+        }
+        // The faces of a convex body are looked after by its signed distance.
+        let (mesh, flat_edges) = if matches!(shape, Shape::Surface(_)) {
+            (mesh, flat_edges)
+        } else {
+            let mut flat = flat_edges.iter();
+            let mesh = mesh.without_faces(|_| flat.next() == Some(&false));
+            let kept = mesh.edges().len();
+            (mesh, vec![false; kept])
+        };
+        Ok(Some(Self {
+            phase: BroadPhase::new(mesh, &positions),
+            extent: points.iter().map(|p| p.norm()).fold(0.0, f64::max),
+            points,
+            radius,
+            flat_vertices,
+            flat_edges,
+            end: positions.clone(),
+            start: positions,
+            boxed: None,
+        }))
+    }
+
+    /// Refits the boxes to a motion; those of a resting body stay.
+    pub(super) fn refit(&mut self, part: &PartOfStep, inflation: f64) {
+        let pose = part.pose_at(0.0);
+        let boxed = (!part.moves()).then_some((pose, inflation));
+        if boxed.is_some() && boxed == self.boxed {
+            return;
+        }
+        place_all(&self.points, &pose, &mut self.start);
+        place_all(&self.points, &part.pose_at(1.0), &mut self.end);
+        self.phase.update(&self.start, &self.end, inflation);
+        self.boxed = boxed;
+    }
+
+    /// The boxes.
+    pub(super) fn phase(&self) -> &BroadPhase {
+        &self.phase
+    }
+
+    /// The corners of a face, in the body's frame.
+    pub(super) fn face(&self, f: u32) -> [Vector3<f64>; 3] {
+        self.corners(self.phase.mesh().faces()[f as usize])
+    }
+
+    /// The ends of an edge, in the body's frame.
+    pub(super) fn edge(&self, e: u32) -> [Vector3<f64>; 2] {
+        self.corners(self.phase.mesh().edges()[e as usize])
+    }
+
+    /// A corner, in the body's frame.
+    pub(super) fn vertex(&self, v: u32) -> Vector3<f64> {
+        self.points[v as usize]
+    }
+
+    /// Whether a vertex is inside a flat facet.
+    pub(super) fn is_flat_vertex(&self, v: u32) -> bool {
+        self.flat_vertices[v as usize]
+    }
+
+    /// Whether an edge is inside a flat facet.
+    pub(super) fn is_flat_edge(&self, e: u32) -> bool {
+        self.flat_edges[e as usize]
+    }
+
+    fn corners<const N: usize>(&self, vertices: [u32; N]) -> [Vector3<f64>; N] {
+        vertices.map(|v| self.points[v as usize])
+    }
+}
+
+/// Edges between exactly two faces that lie in one plane on opposite sides of it.
+fn flat_edges(mesh: &ContactMesh, points: &[Vector3<f64>]) -> Vec<bool> {
+    let mut sides: HashMap<[u32; 2], Vec<Vector3<f64>>> = HashMap::new();
+    for &[a, b, c] in mesh.faces() {
+        let [p, q, r] = [a, b, c].map(|v| points[v as usize]);
+        let normal = (q - p).cross(&(r - p)).normalize();
+        for [i, j] in [[a, b], [b, c], [c, a]] {
+            // Turned so that two faces on opposite sides of the edge agree.
+            let sign = if i < j { 1.0 } else { -1.0 };
+            sides
+                .entry([i.min(j), i.max(j)])
+                .or_default()
+                .push(sign * normal);
+        }
+    }
+    mesh.edges()
+        .iter()
+        .map(|&[a, b]| match sides.get(&[a.min(b), a.max(b)]) {
+            // Run through in opposite directions, the two entries have opposite signs.
+            Some(n) if n.len() == 2 => {
+                n[0].dot(&n[1]) < 0.0 && n[0].cross(&n[1]).norm() < FLAT_SINE
+            }
+            _ => false,
+        })
+        .collect()
+}
+
+fn place_all(points: &[Vector3<f64>], pose: &Isometry3<f64>, out: &mut [f64]) {
+    for (p, q) in points.iter().zip(out.as_chunks_mut::<3>().0) {
+        *q = (pose * Point3::from(*p)).coords.into();
+    }
+}

@@ -1,0 +1,89 @@
+//! Contact of a simulation in a chart.
+
+use crate::contact::{
+    ActiveContacts, BodyMotions, Contact, ContactError, ContactPoint, ContactSet, Motion, StepSpan,
+};
+use crate::{SheetModel, State};
+
+/// The geometry of contact with the contacts at the present state.
+pub(super) struct ChartContact {
+    geometry: Box<dyn Contact>,
+    bodies: BodyMotions,
+    /// The pairs of the motion that was checked last.
+    set: ContactSet,
+    active: ActiveContacts,
+    points: Vec<ContactPoint>,
+    displacement: Vec<f64>,
+}
+
+impl ChartContact {
+    /// Starts at a state.
+    pub(super) fn new(
+        mut geometry: Box<dyn Contact>,
+        model: &SheetModel,
+        state: &State,
+    ) -> Result<Self, ContactError> {
+        geometry.check_start(model, state)?;
+        let span = StepSpan {
+            t0: state.t,
+            h: 0.0,
+        };
+        let bodies = BodyMotions::over(geometry.as_ref(), span);
+        let displacement = vec![0.0; state.x.len()];
+        let motion = Motion {
+            bodies: &bodies,
+            progress: [1.0; 2],
+            x: &state.x,
+            dx: &displacement,
+        };
+        let set = ContactSet::of(geometry.as_mut(), motion);
+        let mut contact = Self {
+            active: ActiveContacts::at(geometry.as_ref(), &set, 1.0, &state.x),
+            points: Vec::new(),
+            geometry,
+            bodies,
+            set,
+            displacement,
+        };
+        contact.evaluate(&state.x);
+        Ok(contact)
+    }
+
+    /// The part of a motion of the sheet, and of the bodies over a span of time, that is proven free of contact.
+    pub(super) fn safe_fraction(&mut self, span: StepSpan, from: &[f64], to: &[f64]) -> f64 {
+        for ((d, a), b) in self.displacement.iter_mut().zip(to).zip(from) {
+            *d = a - b;
+        }
+        self.bodies.update(self.geometry.as_ref(), span);
+        let motion = Motion {
+            bodies: &self.bodies,
+            progress: [self.bodies.first_progress(), 1.0],
+            x: from,
+            dx: &self.displacement,
+        };
+        self.set.update(self.geometry.as_mut(), motion);
+        self.set.safe_fraction()
+    }
+
+    /// Evaluates the contacts at positions on the motion that was checked last, with the bodies at its end.
+    pub(super) fn evaluate(&mut self, x: &[f64]) {
+        let geometry = self.geometry.as_ref();
+        self.active.update(geometry, &self.set, 1.0, x);
+        self.active.contact_points(geometry, &mut self.points);
+    }
+
+    /// The contacts that were evaluated last.
+    pub(super) fn active(&self) -> &ActiveContacts {
+        &self.active
+    }
+
+    /// The same for impulses.
+    pub(super) fn points(&self) -> &[ContactPoint] {
+        &self.points
+    }
+
+    /// Gap below which contacts are named, metres.
+    pub(super) fn activation(&self) -> f64 {
+        self.geometry.laws().activation
+    }
+}

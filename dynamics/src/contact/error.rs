@@ -1,0 +1,69 @@
+//! Why contact cannot start.
+
+use super::BarrierError;
+use std::fmt;
+
+/// Two things that touch, by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactPair {
+    /// The sheet and a body.
+    Body {
+        /// A vertex of the sheet at the place.
+        vertex: u32,
+        /// The body, in the order in which they were added.
+        body: usize,
+    },
+    /// Two places of the sheet.
+    Sheet {
+        /// A vertex at the first place.
+        first: u32,
+        /// A vertex at the second place.
+        second: u32,
+    },
+}
+
+impl fmt::Display for ContactPair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Body { vertex, body } => write!(f, "the sheet at v{vertex} and body {body}"),
+            Self::Sheet { first, second } => {
+                write!(f, "the sheet at v{first} and the sheet at v{second}")
+            }
+        }
+    }
+}
+
+/// Why contact cannot start.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ContactError {
+    /// Something touches or passes through.
+    #[error(
+        "{pair} touch at t = {t} s (gap {gap} m): move them apart; contact keeps a gap, it does not make one"
+    )]
+    Touching {
+        /// What touches.
+        pair: ContactPair,
+        /// Distance less thickness, metres; zero or negative where one passes through the other.
+        gap: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// The contact belongs to another sheet.
+    #[error(
+        "contact was set up for {expected} vertices, the sheet has {found}: set it up for this sheet"
+    )]
+    Sheet {
+        /// Vertices it was made for.
+        expected: usize,
+        /// Vertices of the sheet.
+        found: usize,
+    },
+    /// The barrier makes no sense.
+    #[error(transparent)]
+    Barrier(#[from] BarrierError),
+    /// The method has no place for contact.
+    #[error(
+        "this method has no place for contact: use BDF2 or implicit Euler, or a chart simulation with impulses"
+    )]
+    Method,
+}

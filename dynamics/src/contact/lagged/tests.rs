@@ -1,0 +1,162 @@
+use super::*;
+use crate::contact::{BodyMotion, ContactKind, RigidMotion};
+use nalgebra::Isometry3;
+use proptest::prelude::*;
+
+/// Keeps the blocks of a Hessian of four vertices.
+struct Dense(nalgebra::SMatrix<f64, 12, 12>);
+
+impl CouplingSink for Dense {
+    fn add(&mut self, a: u32, b: u32, block: &Matrix3<f64>) {
+        let (i, j) = (3 * a as usize, 3 * b as usize);
+        for r in 0..3 {
+            for c in 0..3 {
+                self.0[(i + r, j + c)] += block[(r, c)];
+                if a != b {
+                    self.0[(j + c, i + r)] += block[(r, c)];
+                }
+            }
+        }
+    }
+}
+
+fn contact(weights: [f64; 4], normal: [f64; 3], force: f64, law: Friction) -> FrictionContact {
+    FrictionContact {
+        key: ContactKey {
+            body: None,
+            kind: ContactKind::VertexFace,
+            pair: [0, 0],
+        },
+        vertices: [0, 1, 2, 3],
+        weights,
+        normal: Vector3::from(normal).normalize(),
+        force,
+        point: Vector3::zeros(),
+        point_start: Vector3::zeros(),
+        law,
+    }
+}
+
+fn friction(contacts: Vec<FrictionContact>) -> LaggedFriction {
+    LaggedFriction {
+        x0: vec![0.0; 12],
+        contacts,
+    }
+}
+
+fn positions() -> impl Strategy<Value = [f64; 12]> {
+    proptest::array::uniform12(-1.0..1.0_f64)
+}
+
+proptest! {
+    #[test]
+    fn energy_gradient_and_hessian_match_differences(
+        x in positions(), normal in proptest::array::uniform3(0.2..1.0_f64), size in -6.0..3.0_f64,
+        part in 0.01..3.0_f64, rest in 0.1..1.0_f64, sliding in 0.0..=1.0_f64, a in 0.1..0.4_f64, b in 0.1..0.4_f64,
+    ) {
+        let e = 10.0_f64.powf(size);
+        let law = Friction::new(rest, rest * sliding, e).unwrap();
+        let contact = contact([1.0, -a, -b, a + b - 1.0], normal, 7.0, law);
+        let friction = friction(vec![contact]);
+        let x = x.map(|x| part * e * x);
+        let y = contact.slip(&friction.x0, &x, &[]).norm() / e;
+        // The curvature has kinks at the seams and turns quickly next to rest.
+        prop_assume!((y - 1.0).abs() > 1e-3 && (y - 3.0).abs() > 1e-3 && y > 0.05);
+        let gradient = |x: &[f64]| {
+            let mut out = [0.0; 12];
+            friction.add_gradient(x, &[], 1.0, &mut out);
+            out
+        };
+        let g = gradient(&x);
+        let mut hessian = Dense(nalgebra::SMatrix::zeros());
+        friction.add_hessian(&x, &[], &mut hessian);
+        let (steepest, largest) = (7.0 * rest, 7.0 * 2.0 * rest / e);
+        let h = 1e-5 * e;
+        for i in 0..12 {
+            let moved = |d: f64| {
+                let mut y = x;
+                y[i] += d;
+                y
+            };
+            let (up, down) = (moved(h), moved(-h));
+            let slope = (friction.energy(&up, &[]) - friction.energy(&down, &[])) / (2.0 * h);
+            prop_assert!((slope - g[i]).abs() < 1e-6 * steepest);
+            // A law that falls has its negative slope left out.
+            if y < 1.0 || y > 3.0 {
+                let (up, down) = (gradient(&up), gradient(&down));
+                for j in 0..12 {
+                    let curvature = (up[j] - down[j]) / (2.0 * h);
+                    prop_assert!((curvature - hessian.0[(i, j)]).abs() < 1e-4 * largest);
+                }
+            }
+        }
+        let lowest = hessian.0.symmetric_eigenvalues().min();
+        prop_assert!(lowest > -1e-12 * largest);
+    }
+
+    #[test]
+    fn force_is_tangential_opposes_the_slip_and_sums_to_nothing(
+        x in positions(), normal in proptest::array::uniform3(0.2..1.0_f64),
+    ) {
+        let contact = contact([1.0, -0.2, -0.5, -0.3], normal, 3.0, Friction::new(0.5, 0.4, 1e-3).unwrap());
+        let friction = friction(vec![contact]);
+        let mut g = [0.0; 12];
+        friction.add_gradient(&x, &[], 1.0, &mut g);
+        let forces: Vec<Vector3<f64>> = g.as_chunks::<3>().0.iter().map(|g| Vector3::from(*g)).collect();
+        prop_assert!(forces.iter().sum::<Vector3<f64>>().norm() < 1e-12);
+        for f in &forces {
+            prop_assert!(f.dot(&contact.normal).abs() < 1e-12);
+        }
+        let power: f64 = g.iter().zip(&x).map(|(g, x)| g * x).sum();
+        prop_assert!(power >= 0.0);
+        // Sliding far beyond the passage: kinetic coefficient times normal force.
+        let y = contact.slip(&friction.x0, &x, &[]).norm();
+        if y > 3e-3 {
+            prop_assert!((forces[0].norm() - 0.4 * 3.0).abs() < 1e-12);
+            prop_assert!((friction.loss(&x, &[]) - 0.4 * 3.0 * y).abs() < 1e-12);
+        }
+    }
+}
+
+/// A sheet at rest on a belt that moves by `d` slides by `-d`: the belt works, all of it is lost.
+#[test]
+fn a_belt_under_a_sheet_at_rest_loses_its_work() {
+    let law = Friction::new(0.5, 0.5, 1e-4).unwrap();
+    let motion = RigidMotion::new(Isometry3::identity(), Isometry3::translation(0.1, 0.0, 0.0));
+    let motion = BodyMotion {
+        material: motion,
+        surface: motion,
+    };
+    let mut on_belt = contact([1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 2.0, law);
+    on_belt.key.body = Some(0);
+    let friction = friction(vec![on_belt]);
+    let x = [0.0; 12];
+    let bodies = [BodyPlace::at(&motion, 1.0)];
+    let work = friction.body_work(&x, &bodies);
+    assert!((work - 0.5 * 2.0 * 0.1).abs() < 1e-15, "{work}");
+    assert!((friction.loss(&x, &bodies) - work).abs() < 1e-15);
+    // Half-way the sheet has slid half as far.
+    let half = [BodyPlace::at(&motion, 0.5)];
+    assert!((friction.loss(&x, &half) - 0.5 * work).abs() < 1e-15);
+    let mut force = [0.0; 12];
+    friction.add_gradient(&x, &bodies, -1.0, &mut force);
+    assert!((force[0] - 1.0).abs() < 1e-15, "taken along: {force:?}");
+}
+
+#[test]
+fn changes_are_relative_to_the_largest_force() {
+    let law = Friction::new(0.5, 0.5, 1e-4).unwrap();
+    let at = |number: u32, force: f64| {
+        let mut c = contact([1.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0], force, law);
+        c.key.pair[0] = number;
+        c
+    };
+    let before = friction(vec![at(0, 1.0), at(2, 4.0)]);
+    assert_eq!(before.change_since(&before), 0.0);
+    let none = LaggedFriction::none();
+    assert_eq!(none.change_since(&none), 0.0);
+    assert_eq!(before.change_since(&none), 1.0);
+    // One has come, one has gone, one has changed.
+    let after = friction(vec![at(1, 2.0), at(2, 5.0)]);
+    assert_eq!(after.change_since(&before), 2.0 / 5.0);
+}

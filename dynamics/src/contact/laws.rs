@@ -1,0 +1,58 @@
+//! The numbers of a scene's contact.
+
+use super::{Coefficients, Friction, Stiffness};
+
+/// How strongly a sheet is repelled and how it rubs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactLaws {
+    /// Gap below which the barrier acts and contacts are named, metres.
+    pub activation: f64,
+    /// Stiffness of the barrier.
+    pub stiffness: Stiffness,
+    /// Speed below which sliding counts as rest, metres per second.
+    pub rest_speed: f64,
+    /// Friction of the sheet with itself.
+    pub itself: Coefficients,
+    /// Friction of the sheet with each body, in the order of the bodies; none where a body has no entry.
+    pub bodies: Vec<Coefficients>,
+}
+
+impl ContactLaws {
+    /// An activation distance (metres), an automatic stiffness and no friction.
+    pub fn frictionless(activation: f64) -> Self {
+        Self {
+            activation,
+            stiffness: Stiffness::Automatic,
+            rest_speed: 0.0,
+            itself: Coefficients::FRICTIONLESS,
+            bodies: Vec::new(),
+        }
+    }
+
+    /// The coefficients of friction with a body, or of the sheet with itself.
+    pub fn coefficients(&self, body: Option<u32>) -> Coefficients {
+        match body {
+            None => self.itself,
+            Some(b) => {
+                let own = self.bodies.get(b as usize);
+                own.copied().unwrap_or(Coefficients::FRICTIONLESS)
+            }
+        }
+    }
+
+    /// Friction with a body, or of the sheet with itself, in a step of `h` seconds; `None` without friction and
+    /// in a step without duration.
+    pub fn friction(&self, body: Option<u32>, h: f64) -> Option<Friction> {
+        let c = self.coefficients(body);
+        if c.is_frictionless() {
+            return None;
+        }
+        Friction::new(c.rest, c.sliding, self.rest_speed * h).ok()
+    }
+
+    /// Whether nothing rubs.
+    pub fn is_frictionless(&self) -> bool {
+        let mut all = self.bodies.iter().chain([&self.itself]);
+        all.all(Coefficients::is_frictionless)
+    }
+}
