@@ -2,11 +2,10 @@
 
 use crate::constraint::conservative::ConservativeRows;
 use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
-use crate::minimiser::not_converged;
 use crate::options::OptionsError;
 use crate::primal::{dot, strain_floor, velocity_round_off};
 use crate::reaction::Balance;
-use crate::report::{Effort, Path, StepError};
+use crate::report::{Effort, Path, StepError, not_converged};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};

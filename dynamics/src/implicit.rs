@@ -4,6 +4,7 @@ use crate::integrator::{
     Attempt, ContactSupport, Integrator, MethodTraits, Proposal, RodDemand, Scene, StepAccount,
 };
 use crate::minimiser::Minimiser;
+use crate::minimiser::problem::StepProblem;
 use crate::options::OptionsError;
 use crate::report::{Effort, StepError};
 use crate::{SheetModel, State};
@@ -195,17 +196,30 @@ fn two_step(
     let b = w * w / (1.0 + 2.0 * w);
     let k = (1.0 + w) / (1.0 + 2.0 * w);
     let before = previous.unwrap_or(state);
-    scene
-        .model
-        .applied_force(state.t, &state.x, &state.v, &mut minimiser.applied);
+    let model = scene.model;
+    // The minimiser lends its arrays to the problem.
+    let mut applied = std::mem::take(&mut minimiser.applied);
+    let mut prediction = std::mem::take(&mut minimiser.prediction);
+    model.applied_force(state.t, &state.x, &state.v, &mut applied);
     for i in 0..state.x.len() {
         let (x, v) = (state.x[i], state.v[i]);
-        minimiser.target[i] = x + b * (x - before.x[i]) + k * h * (v + b * (v - before.v[i]));
+        prediction[i] = x + b * (x - before.x[i]) + k * h * (v + b * (v - before.v[i]));
     }
     minimiser
-        .recall(scene.model, &attempt, k * h)
+        .recall(model, &attempt, k * h)
         .map_err(|source| StepError::Linalg { t: state.t, source })?;
-    let (residual, path, contact) = minimiser.minimise(scene, state, h, k * h, effort)?;
+    let problem = StepProblem {
+        model,
+        contact: scene.contact,
+        state,
+        span: h,
+        h: k * h,
+        prediction: &prediction,
+        applied: &applied,
+    };
+    let outcome = minimiser.minimise(problem, effort);
+    (minimiser.applied, minimiser.prediction) = (applied, prediction);
+    let (minimum, contact) = outcome?;
     let moment = &mut proposal.moment;
     let mut work = 0.0;
     for i in 0..state.x.len() {
@@ -219,9 +233,9 @@ fn two_step(
     moment.set_contacts(minimiser.contact_state());
     minimiser.remember(k * h, &mut moment.history);
     proposal.account = StepAccount {
-        residual,
+        residual: minimum.residual,
         work,
-        path,
+        path: minimum.path,
         contact,
     };
     Ok(())

@@ -4,13 +4,12 @@ use crate::integrator::{
     Attempt, ContactSupport, Integrator, MethodTraits, Proposal, RodDemand, Scene, StepAccount,
 };
 use crate::iterate::Iterate;
-use crate::minimiser::not_converged;
 use crate::model::PINNED;
 use crate::options::OptionsError;
 use crate::primal::{PrimalMatrix, strain_floor};
 use crate::project::{Aim, Projector};
 use crate::reaction::{Balance, ForceTime};
-use crate::report::{Effort, Path, StepError};
+use crate::report::{Effort, Path, StepError, not_converged};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use serde::{Deserialize, Serialize};

@@ -321,3 +321,20 @@ impl Default for Tally {
         }
     }
 }
+
+/// The error of an iteration of a step of `h` seconds at time `t` that did not converge.
+pub(crate) fn not_converged(
+    t: f64,
+    h: f64,
+    effort: &Effort,
+    residual: f64,
+    strain: f64,
+) -> StepError {
+    StepError::NotConverged {
+        t,
+        h,
+        iterations: effort.iterations,
+        residual,
+        strain,
+    }
+}

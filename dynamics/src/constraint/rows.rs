@@ -58,6 +58,33 @@ impl VertexRows {
         }
     }
 
+    /// Sets penalties of `kappa` times the mass of the vertex.
+    pub(crate) fn set_stiffness(&mut self, kappa: f64) {
+        for (p, v) in self.penalties.iter_mut().zip(&self.vertices) {
+            *p = kappa * v.mass;
+        }
+    }
+
+    /// Replaces the multipliers by their first-order estimates after the step `-dx`, the equations being linearised:
+    /// `L + p (c - J dx)`, of one-sided constraints the negative part. Returns the largest change and the largest
+    /// multiplier, kilogram metres.
+    pub(crate) fn update_after(&mut self, dx: &[f64]) -> [f64; 2] {
+        let mut largest = [0.0_f64; 2];
+        for i in 0..self.multipliers.len() {
+            let (local, vertex) = (&self.local[i], self.vertices[i].vertex);
+            let left = local.value - local.jacobian * point(dx, vertex);
+            let mut new = self.multipliers[i] + self.penalties[i] * left;
+            if !self.equality[i] {
+                new = Vector3::new(new.x.min(0.0), 0.0, 0.0);
+            }
+            largest[0] = largest[0].max((new - self.multipliers[i]).norm());
+            largest[1] = largest[1].max(new.norm());
+            self.multipliers[i] = new;
+            self.active[i] = self.equality[i] || new.x < 0.0;
+        }
+        largest
+    }
+
     /// Evaluates the equations and their derivatives at time `t` (seconds) and positions `x` (`3V`, metres).
     pub(crate) fn evaluate(&mut self, constraints: &[VertexConstraint], t: f64, x: &[f64]) {
         self.local.clear();

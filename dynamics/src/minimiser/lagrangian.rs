@@ -1,0 +1,423 @@
+//! The augmented Lagrangian of a step at an iterate: value, gradient and Hessian.
+
+use super::problem::StepProblem;
+use crate::SheetModel;
+use crate::constraint::rows::{HessianPart, VertexRows};
+use crate::contact::StepSpan;
+use crate::iterate::Iterate;
+use crate::model::PINNED;
+use crate::primal::{PrimalMatrix, dot, penalties};
+use crate::report::Effort;
+use isosheet_coords::linalg::LinalgError;
+use nalgebra::Vector3;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Size of the perturbation that leaves a saddle, in lengths of a vertex's shortest rod: large enough to leave the
+/// saddle (folds grow by factors of ten per iteration there), too small to be seen.
+const BRANCH_PERTURBATION: f64 = 1e-4;
+
+/// Bound on the number of operations that a term of the value goes through, for its round-off.
+const ROUND_OFF_OPERATIONS: f64 = 8.0;
+/// The same for the squares of length errors that are themselves round-off of the positions.
+const POSITION_OPERATIONS: f64 = 64.0;
+
+/// The augmented Lagrangian at an iterate,
+///
+/// ```text
+/// L(x) = Phi(x) + sum_e (L_e + r_e c_e(x) / 2) c_e(x) + (terms of the vertex constraints, see VertexRows),
+/// ```
+///
+/// with the multipliers `L_e` of the rods (`h^2` times force densities, tension positive) and penalties `r_e`.
+pub(crate) struct Lagrangian {
+    pub(super) iterate: Iterate,
+    pub(super) matrix: PrimalMatrix,
+    pub(super) multipliers: Vec<f64>,
+    pub(super) vertex_rows: VertexRows,
+    /// Penalties `r_e` of rods as stiff as the masses.
+    unit_penalty: Vec<f64>,
+    /// How many times as stiff as the masses rods are in the value.
+    stiffness: f64,
+    /// Length errors `c_e` at the last evaluation, square metres.
+    pub(super) c: Vec<f64>,
+    /// `L_e + r_e c_e` at the last gradient.
+    pub(super) density: Vec<f64>,
+    pub(super) gradient: Vec<f64>,
+    /// Conservative forces without contact at the last gradient, newtons.
+    pub(super) force: Vec<f64>,
+    /// Solution of the last linear system: minus the search direction.
+    pub(super) dx: Vec<f64>,
+    /// Where the line search starts.
+    pub(super) start: Vec<f64>,
+    /// Where prescribed motions end, at the pinned vertices.
+    end: Vec<f64>,
+    along: Vec<f64>,
+    across: Vec<f64>,
+    difference: Vec<f64>,
+    weighted: Vec<f64>,
+    /// Changes of length errors, for linearised constraints.
+    pub(super) change: Vec<f64>,
+}
+
+/// The augmented Lagrangian at an iterate, and what its parts say about round-off.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Merit {
+    /// Its inertia term.
+    pub(super) inertia: f64,
+    /// The incremental potential `Phi`.
+    pub(super) potential: f64,
+    /// Size of the multipliers' terms, `sum |L| l^2`.
+    pub(super) rod_scale: f64,
+    /// Its value.
+    pub(super) value: f64,
+    /// Round-off in the value.
+    pub(super) round_off: f64,
+}
+
+/// Whether the Hessian was positive definite as it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Definiteness {
+    /// It was.
+    Definite,
+    /// It was not, and a positive definite part of it was factorised.
+    Modified,
+}
+
+/// Which curvature of the rods under load enters a Hessian.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum RodLoad {
+    /// That of the multipliers: for steps of sequential quadratic programming.
+    Multipliers,
+    /// That of the multiplier estimates `L + r c`: for Newton's method on the augmented Lagrangian.
+    Estimates,
+}
+
+impl Lagrangian {
+    pub(super) fn new(model: &SheetModel) -> Result<Self, LinalgError> {
+        let (n, m) = (model.coordinate_count(), model.rods().len());
+        let vertices = model.constrained_vertices();
+        Ok(Self {
+            iterate: Iterate::new(n),
+            matrix: PrimalMatrix::new(model)?,
+            multipliers: vec![0.0; m],
+            vertex_rows: VertexRows::new(model.constraints(), vertices, 1.0),
+            unit_penalty: penalties(model, 1.0),
+            stiffness: 1.0,
+            c: vec![0.0; m],
+            density: vec![0.0; m],
+            gradient: vec![0.0; n],
+            force: vec![0.0; n],
+            dx: vec![0.0; n],
+            start: vec![0.0; n],
+            end: vec![0.0; n],
+            along: vec![0.0; m],
+            across: vec![0.0; m],
+            difference: vec![0.0; n],
+            weighted: vec![0.0; n],
+            change: vec![0.0; m],
+        })
+    }
+
+    /// Puts the iterate, the ends of prescribed motions and the bodies where a step starts.
+    pub(super) fn begin(&mut self, problem: &mut StepProblem<'_>) {
+        let (state, h) = (problem.state, problem.span);
+        self.end.copy_from_slice(&state.x);
+        problem.model.place_pins(problem.t(), &mut self.end);
+        let span = StepSpan { t0: state.t, h };
+        self.iterate.begin(problem.contact_mut(), span, &state.x);
+    }
+
+    /// Sets the penalties of rods and of vertex constraints: so many times as stiff as the masses.
+    pub(super) fn set_stiffness(&mut self, rods: f64, constraints: f64) {
+        self.vertex_rows.set_stiffness(constraints);
+        self.stiffness = rods;
+    }
+
+    /// Penalty of a rod, kilograms per square metre.
+    pub(super) fn penalty(&self, e: usize) -> f64 {
+        self.stiffness * self.unit_penalty[e]
+    }
+
+    /// Drops the multipliers.
+    pub(super) fn clear_multipliers(&mut self) {
+        self.multipliers.fill(0.0);
+        self.vertex_rows.clear();
+    }
+
+    /// Whether bodies or pins have not arrived yet.
+    pub(super) fn is_driven(&self, problem: &StepProblem<'_>) -> bool {
+        let x = self.iterate.x();
+        let has_arrived = |v: usize| x[3 * v..3 * v + 3] == self.end[3 * v..3 * v + 3];
+        self.iterate.progress() < 1.0 || !problem.model.moving_pins().all(has_arrived)
+    }
+
+    /// Evaluates value and constraints at the iterate.
+    pub(super) fn merit(&mut self, problem: &StepProblem<'_>) -> Merit {
+        let (model, t, h) = (problem.model, problem.t(), problem.h);
+        let x = self.iterate.x();
+        for i in 0..x.len() {
+            self.difference[i] = x[i] - problem.prediction[i];
+        }
+        let inertia = model.kinetic_energy(&self.difference);
+        let work = dot(problem.applied, &self.difference);
+        model.rods().residual_into(x, &mut self.c);
+        self.vertex_rows.evaluate(model.constraints(), t, x);
+        let size = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        // Round-off of c is that of the squared lengths; and where inertia alone has the right lengths already, nothing
+        // but the round-off of the positions is left to minimise.
+        let (mut rods, mut rod_scale, mut squares) = (0.0, 0.0, 0.0);
+        for (e, l) in model.rods().lengths().iter().enumerate() {
+            let (m, p, c) = (self.multipliers[e], self.penalty(e), self.c[e]);
+            rods += (m + 0.5 * p * c) * c;
+            rod_scale += m.abs() * l * l;
+            squares += p * (f64::EPSILON * l * (size + l)).powi(2);
+        }
+        rods += self.vertex_rows.value();
+        let (vertex_scale, vertex_squares) = self.vertex_rows.scales(size);
+        rod_scale += vertex_scale;
+        squares += vertex_squares;
+        let mut energy = model.potential_energy(t, x);
+        if let Some(terms) = self.iterate.terms(problem.contact()) {
+            energy += terms.energy();
+        }
+        let potential = inertia + h * h * (energy - work);
+        let sizes = inertia + h * h * (energy.abs() + work.abs()) + rods.abs() + rod_scale;
+        Merit {
+            inertia,
+            value: potential + rods,
+            potential,
+            rod_scale,
+            round_off: ROUND_OFF_OPERATIONS * f64::EPSILON * sizes + POSITION_OPERATIONS * squares,
+        }
+    }
+
+    /// Sets the gradient at the iterate, whose constraints have to be current. While bodies or pins move, with
+    /// what the rest of their motions will change the gradient by, to first order.
+    pub(super) fn set_gradient(&mut self, problem: &StepProblem<'_>) {
+        let (model, t, h) = (problem.model, problem.t(), problem.h);
+        let x = self.iterate.x();
+        for i in 0..x.len() {
+            self.difference[i] = x[i] - problem.prediction[i];
+        }
+        model.apply_mass(&self.difference, &mut self.weighted);
+        model.potential_force(t, x, &mut self.force);
+        for i in 0..x.len() {
+            self.gradient[i] = self.weighted[i] - h * h * (self.force[i] + problem.applied[i]);
+        }
+        for e in 0..self.c.len() {
+            self.density[e] = self.multipliers[e] + self.penalty(e) * self.c[e];
+        }
+        let rods = model.rods();
+        rods.apply_transpose_add(x, &self.density, &mut self.gradient);
+        self.vertex_rows.add_gradient(&mut self.gradient);
+        if let Some(terms) = self.iterate.terms(problem.contact()) {
+            terms.add_gradient(h * h, &mut self.gradient);
+        }
+        if self.is_driven(problem) {
+            self.add_drive(problem);
+        }
+        model.clear_pinned(&mut self.gradient);
+    }
+
+    /// Adds the change of the gradient by the motions to come of bodies and pins, to first order.
+    fn add_drive(&mut self, problem: &StepProblem<'_>) {
+        let model = problem.model;
+        if let Some(terms) = self.iterate.terms(problem.contact()) {
+            terms.add_drive(problem.h * problem.h, &mut self.gradient);
+        }
+        let x = self.iterate.x();
+        let free = model.free_index();
+        for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
+            let (pin, end) = match (free[a] == PINNED, free[b] == PINNED) {
+                (true, false) => (a, b),
+                (false, true) => (b, a),
+                _ => continue,
+            };
+            let at = |x: &[f64], v: usize| Vector3::new(x[3 * v], x[3 * v + 1], x[3 * v + 2]);
+            let (d, u) = (at(x, end) - at(x, pin), at(&self.end, pin) - at(x, pin));
+            let change = self.density[e] * u + self.penalty(e) * d.dot(&u) * d;
+            for k in 0..3 {
+                self.gradient[3 * end + k] -= change[k];
+            }
+        }
+    }
+
+    /// Factorises the Hessian at the iterate; where it is indefinite, a positive definite part: the rods' geometric
+    /// stiffness and the curvature of vertex constraints projected onto the semidefinite matrices, and if that
+    /// does not help, without the curvature of the potentials.
+    ///
+    /// # Errors
+    /// [`LinalgError`] if even that cannot be factorised, which takes a coefficient that is not a number.
+    pub(super) fn factorize(
+        &mut self,
+        problem: &StepProblem<'_>,
+        load: RodLoad,
+        effort: &mut Effort,
+    ) -> Result<Definiteness, LinalgError> {
+        if let Some(terms) = self.iterate.terms(problem.contact()) {
+            self.matrix.make_room(problem.model, &terms)?;
+        }
+        for e in 0..self.c.len() {
+            self.along[e] = self.penalty(e);
+        }
+        self.across.copy_from_slice(match load {
+            RodLoad::Multipliers => &self.multipliers,
+            RodLoad::Estimates => &self.density,
+        });
+        effort.factorisations += 1;
+        self.assemble(problem, HessianPart::Full);
+        self.add_potentials(problem);
+        if self.matrix.factorize().is_ok() {
+            return Ok(Definiteness::Definite);
+        }
+        self.project_rods(problem.model, load);
+        effort.factorisations += 1;
+        self.assemble(problem, HessianPart::PositiveSemidefinite);
+        self.add_potentials(problem);
+        if self.matrix.factorize().is_err() {
+            effort.factorisations += 1;
+            self.assemble(problem, HessianPart::PositiveSemidefinite);
+            self.matrix.factorize()?;
+        }
+        Ok(Definiteness::Modified)
+    }
+
+    /// Replaces each rod's own Hessian, with eigenvalues `p` across and `p + r |d|^2` along the rod, by its positive
+    /// semidefinite part. (With multipliers far from the estimates the part along the rod stays as it is.)
+    fn project_rods(&mut self, model: &SheetModel, load: RodLoad) {
+        for e in 0..self.c.len() {
+            if self.across[e] < 0.0 {
+                if load == RodLoad::Estimates {
+                    let l = model.rods().lengths()[e];
+                    let squared = (l * l + 2.0 * self.c[e]).max(f64::MIN_POSITIVE);
+                    self.along[e] = (self.along[e] + self.across[e] / squared).max(0.0);
+                }
+                self.across[e] = 0.0;
+            }
+        }
+    }
+
+    /// Sets the matrix: masses, rods, vertex constraints and contact.
+    fn assemble(&mut self, problem: &StepProblem<'_>, part: HessianPart) {
+        let model = problem.model;
+        self.matrix
+            .assemble(model, self.iterate.x(), &self.along, &self.across);
+        self.vertex_rows
+            .add_hessian(part, &mut self.matrix.sink(model));
+        if let Some(terms) = self.iterate.terms(problem.contact()) {
+            self.matrix
+                .add_contact(model, &terms, problem.h * problem.h);
+        }
+    }
+
+    fn add_potentials(&mut self, problem: &StepProblem<'_>) {
+        let (t, x) = (problem.t(), self.iterate.x());
+        let scale = problem.h * problem.h;
+        self.matrix.add_potentials(problem.model, t, x, scale);
+    }
+
+    /// Solves for minus the search direction; the slope of the value along the search direction.
+    pub(super) fn solve(&mut self, model: &SheetModel) -> f64 {
+        self.matrix.solve(model, &self.gradient, &mut self.dx);
+        self.slope()
+    }
+
+    /// Slope of the value along `-dx`, the gradient being current.
+    pub(super) fn slope(&self) -> f64 {
+        -dot(&self.dx, &self.gradient)
+    }
+
+    /// Begins a line search at the iterate: the largest part of the step `-dx` that is safe, pinned vertices going to
+    /// their ends.
+    pub(super) fn begin_line_search(&mut self, problem: &mut StepProblem<'_>) -> f64 {
+        self.start.copy_from_slice(self.iterate.x());
+        self.safe_part(problem)
+    }
+
+    /// Brings the iterate back to the start of the line search, where contact knows the motion that the next trial is
+    /// part of.
+    pub(super) fn return_to_start(&mut self, problem: &mut StepProblem<'_>) {
+        self.iterate.x_mut().copy_from_slice(&self.start);
+        self.safe_part(problem);
+    }
+
+    fn safe_part(&mut self, problem: &mut StepProblem<'_>) -> f64 {
+        let x = self.iterate.x();
+        for v in problem.model.moving_pins() {
+            for i in 3 * v..3 * v + 3 {
+                self.dx[i] = x[i] - self.end[i];
+            }
+        }
+        if !problem.has_contact() {
+            return 1.0;
+        }
+        for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
+            *w = -d;
+        }
+        self.iterate
+            .safe_fraction(problem.contact_mut(), &self.weighted)
+    }
+
+    /// Puts the iterate at the part `length` of the step `-dx` from the start of the line search.
+    pub(super) fn move_along(&mut self, length: f64) {
+        let displaced = self.start.iter().zip(&self.dx);
+        for (x, (start, dx)) in self.iterate.x_mut().iter_mut().zip(displaced) {
+            *x = start - length * dx;
+        }
+    }
+
+    /// Moves sheet, pins and bodies on together by a part of the rest of their motions.
+    pub(super) fn drive(&mut self, problem: &StepProblem<'_>, part: f64) {
+        self.move_along(part);
+        if part == 1.0 {
+            let x = self.iterate.x_mut();
+            for v in problem.model.moving_pins() {
+                x[3 * v..3 * v + 3].copy_from_slice(&self.end[3 * v..3 * v + 3]);
+            }
+        }
+        self.iterate.advance_bodies(part);
+    }
+
+    /// Puts the iterate where inertia alone would take the sheet, unless contact is in the way, and pins and bodies to
+    /// the ends of their motions.
+    pub(super) fn predict(&mut self, problem: &mut StepProblem<'_>) {
+        self.start.copy_from_slice(problem.prediction);
+        problem.model.place_pins(problem.t(), &mut self.start);
+        if problem.has_contact() {
+            for ((d, x), x0) in self.dx.iter_mut().zip(&self.start).zip(self.iterate.x()) {
+                *d = x - x0;
+            }
+            if self.iterate.safe_fraction(problem.contact_mut(), &self.dx) < 1.0 {
+                return;
+            }
+            self.iterate.advance_bodies(1.0);
+        }
+        self.iterate.x_mut().copy_from_slice(&self.start);
+    }
+
+    /// Puts pins in motion where they are at the end of the step.
+    pub(super) fn place_pins(&mut self, problem: &StepProblem<'_>) {
+        problem.model.place_pins(problem.t(), self.iterate.x_mut());
+    }
+
+    /// Lags friction anew at the iterate; the relative change of its normal forces, zero without friction.
+    pub(super) fn renew_friction(&mut self, problem: &StepProblem<'_>) -> f64 {
+        let x0 = &problem.state.x;
+        self.iterate.renew_friction(problem.contact(), x0)
+    }
+
+    /// Displaces the iterate off a saddle, in the direction that belongs to `seed`.
+    pub(super) fn perturb(&mut self, problem: &mut StepProblem<'_>, seed: u64) {
+        let model = problem.model;
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        for (i, d) in self.dx.iter_mut().enumerate() {
+            let size = BRANCH_PERTURBATION * model.shortest_rod(i / 3);
+            *d = rng.random_range(-size..=size);
+        }
+        model.clear_pinned(&mut self.dx);
+        let part = self.iterate.safe_fraction(problem.contact_mut(), &self.dx);
+        for (x, d) in self.iterate.x_mut().iter_mut().zip(&self.dx) {
+            *x += part * d;
+        }
+    }
+}

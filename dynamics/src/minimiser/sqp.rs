@@ -1,0 +1,310 @@
+//! Stabilised sequential quadratic programming from the positions at the start of a step.
+
+use super::lagrangian::{Definiteness, Merit, RodLoad};
+use super::problem::StepProblem;
+use super::{FRICTION_SETTLED, Minimiser};
+use crate::report::Effort;
+
+/// Regularisation of the linear systems of sequential quadratic programming.
+///
+/// With penalties `r` the regularised saddle-point system `[H G^T; G -1/r]` is solved by elimination of the multipliers, and
+/// the regularisation is taken out again by passes of the method of multipliers with the same factor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Regularisation {
+    /// Rods 1e10 times as stiff as the masses, which keeps the momentum to round-off, and two passes. Stands its ground
+    /// where rods are nearly dependent and no finite multipliers exist: what they cannot hold is left over.
+    Strong,
+    /// Rods 1e13 times as stiff (beyond, the masses drown in the round-off of the penalty) and up to four passes. The
+    /// first leaves what the stiffness lets through along nearly dependent rods, as in a sheet that lies flat, the
+    /// fourth nothing that can be seen in the imbalance of forces.
+    Weak,
+}
+
+impl Regularisation {
+    fn stiffness(self) -> f64 {
+        match self {
+            Self::Strong => 1e10,
+            Self::Weak => 1e13,
+        }
+    }
+
+    fn passes(self) -> usize {
+        match self {
+            Self::Strong => 2,
+            Self::Weak => 4,
+        }
+    }
+}
+
+/// Edge strain of the linearised rods up to which a strongly regularised step is taken. A sheet hanging by a corner, of 2000
+/// triangles, stays below, also where it is nearly flat; one pulled with a million times its weight does not, nor do
+/// masses in the ratio of 1e8.
+const MAX_LINEARISED_STRAIN: f64 = 1e-7;
+/// Change of the multipliers, relative to the largest, from which a pass is not worth its solve. With 1e-3 a sheet at rest on a
+/// table needs three times as many steps.
+const MULTIPLIERS_SETTLED: f64 = 1e-4;
+/// Largest number of steps in contact. A draping sheet needs three to six, one at rest two to six, an impact more where
+/// contact cuts them.
+const MAX_STEPS_IN_CONTACT: usize = 20;
+/// Largest number of steps without contact. A hanging sheet of 2000 triangles needs up to 50 at 60 steps a second.
+const MAX_STEPS: usize = 80;
+/// Edge strain that iterates may have. Between 1e-13 and 1e-1 the number of steps is the same; that of restorations goes from
+/// four per step to hardly any.
+const ITERATE_STRAIN: f64 = 1e-2;
+/// Largest number of iterations of a restoration of an iterate: more are a sign that the step is not a small one.
+const MAX_RESTORATION: usize = 12;
+/// Largest number of iterations of the last restoration. Clamped strips, whose rods lock, need up to 40; with 12 half as many
+/// steps again end in the augmented Lagrangian.
+const MAX_LAST_RESTORATION: usize = 40;
+/// Edge strain from which the last restoration is a small displacement.
+const SMALL_STRAIN: f64 = 1e-5;
+/// Largest number of step halvings in contact; after these the augmented Lagrangian is used.
+const MAX_HALVINGS_IN_CONTACT: usize = 2;
+/// Largest number of step halvings without contact, where the augmented Lagrangian takes longer. With two, a third of
+/// the steps of a hanging sheet of 2000 triangles uses it; with 30, a thousand steps a second need half as many factorisations
+/// more.
+const MAX_HALVINGS: usize = 8;
+/// Part of the promised decrease that has to come true (Armijo's condition).
+const ARMIJO: f64 = 1e-4;
+
+/// Minimises the incremental potential `Phi` by steps
+///
+/// ```text
+/// (M + h^2 (V + B + D)'' + P) dx + G^T L = -grad Phi,   G dx = -c
+/// ```
+///
+/// with `P` the geometric stiffness of the rods under the multipliers of the step before (its positive part where the matrix is
+/// indefinite). Every step is cut to its safe part in contact, brought near the manifold of rest lengths where it is far from it,
+/// and halved where the Lagrangian `Phi + L . c`, without contact augmented, does not decrease. At the end the
+/// lengths are restored exactly. (Nocedal and Wright, "Numerical Optimization", 2006, chapter 18; regularised as in Gill, Kungurtsev
+/// and Robinson, Math. Program. 163, 2017; restoration as in Waechter and Biegler, Math. Program. 106, 2006.)
+///
+/// A sheet that lies flat is held up by rods that are nearly dependent, with multipliers that grow as the inverse of its fold
+/// angles; the augmented Lagrangian needs a dozen rounds to find them. Here they are the solution of a linear system,
+/// and motions that are small or blocked by contact converge in a few steps.
+pub(super) struct Sqp<'a, 'b> {
+    minimiser: &'a mut Minimiser,
+    problem: &'a mut StepProblem<'b>,
+    regularisation: Regularisation,
+    effort: &'a mut Effort,
+    limits: Limits,
+    /// Steps left before the iteration counts as failed.
+    steps_left: usize,
+    /// Renewals of lagged friction so far.
+    friction_updates: usize,
+    /// Whether a perturbation has decided already which way the sheet folds.
+    is_perturbed: bool,
+}
+
+/// What depends on whether there is contact.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    steps: usize,
+    halvings: usize,
+    /// Stiffness of the rods in the merit function, relative to the masses.
+    merit_stiffness: f64,
+}
+
+/// A search direction and what the merit function says of it.
+struct Direction {
+    before: Merit,
+    slope: f64,
+    hessian: Definiteness,
+}
+
+impl<'a, 'b> Sqp<'a, 'b> {
+    pub(super) fn new(
+        minimiser: &'a mut Minimiser,
+        problem: &'a mut StepProblem<'b>,
+        regularisation: Regularisation,
+        effort: &'a mut Effort,
+    ) -> Self {
+        // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that mends lengths
+        // against the barrier.
+        let limits = if problem.has_contact() {
+            Limits {
+                steps: MAX_STEPS_IN_CONTACT,
+                halvings: MAX_HALVINGS_IN_CONTACT,
+                merit_stiffness: 0.0,
+            }
+        } else {
+            Limits {
+                steps: MAX_STEPS,
+                halvings: MAX_HALVINGS,
+                merit_stiffness: minimiser.options.stiffness,
+            }
+        };
+        Self {
+            minimiser,
+            problem,
+            regularisation,
+            effort,
+            limits,
+            steps_left: limits.steps,
+            friction_updates: 0,
+            is_perturbed: false,
+        }
+    }
+
+    /// The relative Newton decrement of the last step; nothing if no minimum was found.
+    pub(super) fn run(mut self) -> Option<f64> {
+        self.choose_start();
+        while self.steps_left > 0 {
+            self.steps_left -= 1;
+            let is_driven = self.minimiser.lagrangian.is_driven(self.problem);
+            let direction = self.direction()?;
+            let limit = self.minimiser.lagrangian.begin_line_search(self.problem);
+            if is_driven {
+                if limit == 0.0 {
+                    return None;
+                }
+                self.minimiser.lagrangian.drive(self.problem, limit);
+                self.minimiser.lagrangian.merit(self.problem);
+                continue;
+            }
+            let Direction { before, slope, .. } = direction;
+            let is_round_off = slope.abs() <= before.round_off;
+            let residual = if is_round_off {
+                0.0
+            } else {
+                (slope.abs() / before.inertia).sqrt()
+            };
+            let Some(length) = self.line_search(limit, &direction) else {
+                return (is_round_off && self.restore_lengths()).then_some(residual);
+            };
+            let tolerance = self.minimiser.options.tolerance;
+            let is_converged = is_round_off || slope.abs() <= tolerance * before.inertia;
+            if length == 1.0 && is_converged && self.is_near() && !self.goes_on(&direction) {
+                return self.restore_lengths().then_some(residual);
+            }
+        }
+        None
+    }
+
+    /// Starts at the positions at the start of the step or, where supports have moved on without contact, at
+    /// the prediction if its merit is lower.
+    fn choose_start(&mut self) {
+        let stiffness = self.minimiser.options.stiffness;
+        let lagrangian = &mut self.minimiser.lagrangian;
+        if self.problem.model.has_drives() && !self.problem.has_contact() {
+            lagrangian.set_stiffness(stiffness, stiffness);
+            lagrangian.place_pins(self.problem);
+            let start = lagrangian.merit(self.problem).value;
+            lagrangian.begin_line_search(self.problem);
+            lagrangian.predict(self.problem);
+            if lagrangian.merit(self.problem).value >= start {
+                lagrangian.begin(self.problem);
+                lagrangian.place_pins(self.problem);
+            }
+        }
+        lagrangian.set_stiffness(self.limits.merit_stiffness, stiffness);
+        lagrangian.merit(self.problem);
+    }
+
+    /// Solves for the step `-dx` at the iterate and for the multipliers; nothing if there is no step.
+    fn direction(&mut self) -> Option<Direction> {
+        let stiffness = self.regularisation.stiffness();
+        let (model, merit_stiffness) = (self.problem.model, self.limits.merit_stiffness);
+        let constraint_stiffness = self.minimiser.options.stiffness;
+        let lagrangian = &mut self.minimiser.lagrangian;
+        self.effort.iterations += 1;
+        lagrangian.set_stiffness(stiffness, stiffness);
+        let hessian = lagrangian
+            .factorize(self.problem, RodLoad::Multipliers, self.effort)
+            .ok()?;
+        for _ in 0..self.regularisation.passes() {
+            lagrangian.set_gradient(self.problem);
+            lagrangian.solve(model);
+            let rods = model.rods();
+            let x = lagrangian.iterate.x();
+            rods.apply(x, &lagrangian.dx, &mut lagrangian.change);
+            let [mut change, mut largest] = lagrangian.vertex_rows.update_after(&lagrangian.dx);
+            let mut strain = 0.0_f64;
+            for (e, l) in rods.lengths().iter().enumerate() {
+                let left = lagrangian.c[e] - lagrangian.change[e];
+                let update = lagrangian.penalty(e) * left;
+                lagrangian.multipliers[e] += update;
+                largest = largest.max(lagrangian.multipliers[e].abs());
+                change = change.max(update.abs());
+                strain = strain.max(left.abs() / (l * l));
+            }
+            if self.regularisation == Regularisation::Strong && strain > MAX_LINEARISED_STRAIN {
+                return None;
+            }
+            if change <= MULTIPLIERS_SETTLED * largest {
+                break;
+            }
+        }
+        // The merit function has the new multipliers.
+        lagrangian.set_stiffness(merit_stiffness, constraint_stiffness);
+        lagrangian.set_gradient(self.problem);
+        let before = lagrangian.merit(self.problem);
+        let slope = lagrangian.slope();
+        slope.is_finite().then_some(Direction {
+            before,
+            slope,
+            hessian,
+        })
+    }
+
+    /// Goes on by up to `limit` of the step, not far from the manifold; the part of the step, or nothing if it does not
+    /// decrease the merit function.
+    fn line_search(&mut self, limit: f64, direction: &Direction) -> Option<f64> {
+        let mut length = limit;
+        for _ in 0..=self.limits.halvings {
+            self.minimiser.lagrangian.move_along(length);
+            let most = MAX_RESTORATION;
+            let strain = self
+                .minimiser
+                .restore(self.problem, ITERATE_STRAIN, most, self.effort);
+            if strain <= ITERATE_STRAIN {
+                let Direction { before, slope, .. } = direction;
+                let now = self.minimiser.lagrangian.merit(self.problem);
+                let promised = before.value + ARMIJO * length * slope;
+                if now.value <= promised + before.round_off {
+                    return Some(length);
+                }
+            }
+            length *= 0.5;
+            self.minimiser.lagrangian.return_to_start(self.problem);
+        }
+        None
+    }
+
+    /// Whether the last restoration will be a small displacement. (In contact the lengths of iterates are exact enough.)
+    fn is_near(&self) -> bool {
+        let x = self.minimiser.lagrangian.iterate.x();
+        self.problem.has_contact() || self.problem.model.rods().max_strain(x) <= SMALL_STRAIN
+    }
+
+    /// Begins anew from a point that has converged but is no minimum: a saddle, where the sheet could fold either way, or one
+    /// with friction that belongs to other normal forces. Returns false if there is no reason to.
+    fn goes_on(&mut self, direction: &Direction) -> bool {
+        let options = &self.minimiser.options;
+        let is_saddle = direction.hessian == Definiteness::Modified
+            && self.regularisation == Regularisation::Strong
+            && !self.is_perturbed;
+        if is_saddle {
+            self.is_perturbed = true;
+            let seed = options.seed;
+            self.minimiser.lagrangian.perturb(self.problem, seed);
+        } else if self.friction_updates < options.max_friction_updates
+            && self.minimiser.lagrangian.renew_friction(self.problem) > FRICTION_SETTLED
+        {
+            self.friction_updates += 1;
+        } else {
+            return false;
+        }
+        self.steps_left = self.limits.steps;
+        true
+    }
+
+    /// Restores the lengths exactly; whether that succeeds.
+    fn restore_lengths(&mut self) -> bool {
+        let tolerance = self.minimiser.strain_tolerance(self.problem);
+        let most = MAX_LAST_RESTORATION;
+        self.minimiser
+            .restore(self.problem, tolerance, most, self.effort)
+            <= tolerance
+    }
+}
