@@ -124,6 +124,19 @@ fn add_block(a: u32, b: u32, block: Matrix3<f64>, sink: &mut dyn CouplingSink) {
     }
 }
 
+/// Appends the pairs of vertices, lower number first, that a contact of the sheet with itself couples.
+fn couple(key: ContactKey, vertices: &[u32; 4], out: &mut Vec<[u32; 2]>) {
+    if key.body.is_some() {
+        return;
+    }
+    for i in 0..4 {
+        for j in i + 1..4 {
+            let (a, b) = (vertices[i], vertices[j]);
+            out.push([a.min(b), a.max(b)]);
+        }
+    }
+}
+
 /// Adds to the entries of a vertex.
 fn add_at(out: &mut [f64], v: u32, g: Vector3<f64>) {
     let i = 3 * v as usize;

@@ -2,7 +2,7 @@
 
 use super::{
     BarrierPotential, BodyMotions, BodyPlace, Contact, ContactKey, ContactKind, ContactSet,
-    CouplingSink, ParallelEdges, StepSpan, add_at, add_block, add_weighted,
+    CouplingSink, ParallelEdges, StepSpan, add_at, add_block, add_weighted, couple,
 };
 use nalgebra::Vector3;
 
@@ -341,6 +341,16 @@ impl ActiveContacts {
     pub fn add_barrier_hessian(&self, barrier: &BarrierPotential, sink: &mut dyn CouplingSink) {
         for contact in &self.list {
             contact.hessian(barrier, sink);
+        }
+    }
+
+    /// The pairs of vertices, lower number first, that the Hessian couples; may hold pairs twice and pairs that
+    /// are mesh edges. Clears `out` first. Contact with bodies couples no vertices that are not neighbours
+    /// already and is left out.
+    pub fn couplings(&self, out: &mut Vec<[u32; 2]>) {
+        out.clear();
+        for c in &self.list {
+            couple(c.key, &c.vertices, out);
         }
     }
 
