@@ -4,7 +4,7 @@ use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_ma
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::contact::{
     ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactSet, ContactTerms, CouplingSink,
-    LaggedFriction, Motion, StepSpan,
+    JointMotion, LaggedFriction, StepSpan,
 };
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
@@ -53,7 +53,7 @@ fn pieces(
     let dx: Vec<f64> = (0..x.len())
         .map(|i| 1e-5 * (7.0 * i as f64).sin())
         .collect();
-    let motion = |x| Motion {
+    let motion = |x| JointMotion {
         bodies: &bodies,
         progress: [1.0; 2],
         x,

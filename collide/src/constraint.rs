@@ -19,9 +19,9 @@ impl From<SignedDistance> for SurfacePoint {
     }
 }
 
-/// The level is [`Shape::signed_distance`], in the body's own frame. Outside a body its gradient is continuous,
-/// and the second derivative jumps where the closest point passes from one face, edge or corner to another;
-/// on the sharp edges of a box, a cylinder or triangles the gradient jumps too.
+/// The level is [`Shape::signed_distance`], in the body's own frame. Outside a body its gradient is
+/// continuous, and the second derivative jumps where the closest point passes from one face, edge or corner
+/// to another; on the sharp edges of a box, a cylinder or triangles the gradient jumps too.
 impl Surface for Shape {
     fn at(&self, p: &Vector3<f64>) -> SurfacePoint {
         match self {
@@ -31,8 +31,8 @@ impl Surface for Shape {
     }
 }
 
-/// The level is [`TriangleSurface::signed_distance`], but [`TriangleSurface::oriented_distance`] if the surface is
-/// open: the distance alone has a kink on the surface, where a constraint needs its gradient.
+/// The level is [`TriangleSurface::signed_distance`], but [`TriangleSurface::oriented_distance`] if the
+/// surface is open: the distance alone has a kink on the surface, where a constraint needs its gradient.
 impl Surface for TriangleSurface {
     fn at(&self, p: &Vector3<f64>) -> SurfacePoint {
         self.oriented_distance(p).into()
@@ -40,7 +40,8 @@ impl Surface for TriangleSurface {
 }
 
 impl Obstacle {
-    /// Holds a vertex on the body, or on one side of it, without friction; the constraint moves as the body does.
+    /// Holds a vertex on the body, or on one side of it, without friction; the constraint moves as the body
+    /// does.
     ///
     /// ```
     /// use isosheet_collide::{Obstacle, Shape};
@@ -61,33 +62,7 @@ impl Obstacle {
     /// # }
     /// ```
     pub fn constraint(&self, vertex: VertexId, side: Side) -> VertexConstraint {
-        let (shape, motion) = (self.shape().clone(), self.motion().clone());
-        if motion.is_still() {
-            let pose = motion.pose(0.0);
-            VertexConstraint::on_surface(vertex, Posed { shape, pose }, side)
-        } else {
-            VertexConstraint::on_surface(vertex, shape, side).moving(move |t| motion.pose(t))
-        }
-    }
-}
-
-/// A shape at rest in a pose. (A pose that is a function of time would have its velocity taken at every step.)
-#[derive(Debug)]
-struct Posed {
-    shape: Shape,
-    pose: nalgebra::Isometry3<f64>,
-}
-
-impl Surface for Posed {
-    fn at(&self, p: &Vector3<f64>) -> SurfacePoint {
-        let turn = self.pose.rotation.to_rotation_matrix().into_inner();
-        let local = self
-            .shape
-            .at(&self.pose.inverse_transform_point(&(*p).into()).coords);
-        SurfacePoint {
-            level: local.level,
-            gradient: turn * local.gradient,
-            hessian: turn * local.hessian * turn.transpose(),
-        }
+        let surface = VertexConstraint::on_surface(vertex, self.shape().clone(), side);
+        surface.moving(self.motion().clone())
     }
 }

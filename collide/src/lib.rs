@@ -3,12 +3,12 @@
 //! * [`distance`]: squared distances of points, edges and triangles with closest points, gradients
 //!   and Hessians.
 //! * [`CcdOptions`]: how far a motion may go before two primitives touch.
-//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle; bulk queries
-//!   over these pairs, and [`crossings`] as a check that uses none of them.
-//! * [`Contacts`]: all of it together, as a step of [`isosheet_dynamics::contact`] asks for it, where barrier and
-//!   friction are functions of these distances.
-//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a prescribed
-//!   [`Motion`]; [`Obstacle::constraint`] holds a vertex on one.
+//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle; bulk
+//!   queries over these pairs, and [`crossings`] as a check that uses none of them.
+//! * [`Contacts`]: all of it together, as a step of [`isosheet_dynamics::contact`] asks for it, where barrier
+//!   and friction are functions of these distances.
+//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a
+//!   prescribed [`RigidMotion`]; [`Obstacle::constraint`] holds a vertex on one.
 //!
 //! A sheet falls on a table and rests with every gap open:
 //!
@@ -47,7 +47,6 @@ mod constraint;
 mod contact_mesh;
 mod contacts;
 pub mod distance;
-mod motion;
 mod narrow_phase;
 mod obstacle;
 mod signed_distance;
@@ -61,9 +60,11 @@ pub use contact_mesh::{ContactMesh, ContactMeshError};
 pub use contacts::{ContactOptions, Contacts, ContactsError};
 pub use distance::{Closest, Feature, Jet};
 pub use isosheet_dynamics::contact::{Coefficients, FrictionError, Stiffness};
-pub use motion::{Keyframe, Motion, MotionError};
 pub use nalgebra;
 pub use narrow_phase::{Moving, crossings, crossings_between};
 pub use obstacle::{ContactGeometry, Obstacle, ObstacleError, Shape};
 pub use signed_distance::SignedDistance;
 pub use surface::{SurfaceError, TriangleSurface};
+
+#[doc(no_inline)]
+pub use isosheet_dynamics::{Keyframe, MotionError, RigidMotion};

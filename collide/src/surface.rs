@@ -76,7 +76,8 @@ pub enum SurfaceError {
 /// Sine of the smallest angle below which a face has no usable normal: 1e4 units of round-off.
 const FLAT_SINE: f64 = 1e4 * f64::EPSILON;
 
-/// Distance from an edge or corner, over the size of the coordinates, that is round-off: its direction says nothing.
+/// Distance from an edge or corner, over the size of the coordinates, that is round-off: its direction says
+/// nothing.
 const ON_SURFACE: f64 = 4.0 * f64::EPSILON;
 
 impl std::fmt::Debug for TriangleSurface {
@@ -222,9 +223,9 @@ impl TriangleSurface {
         }
     }
 
-    /// Distance of `p` with derivatives, negative on the side that the face normals point away from, of an open
-    /// surface too. Smooth across the faces; beyond the rim of an open surface it is the distance from the rim, and
-    /// changes sign with a jump where the surface would go on. Not a number if `p` is not.
+    /// Distance of `p` with derivatives, negative on the side that the face normals point away from, of an
+    /// open surface too. Smooth across the faces; beyond the rim of an open surface it is the distance from
+    /// the rim, and changes sign with a jump where the surface would go on. Not a number if `p` is not.
     pub fn oriented_distance(&self, p: &Vector3<f64>) -> SignedDistance {
         let Some((face, closest)) = self.closest(p) else {
             return SignedDistance {

@@ -165,7 +165,7 @@ impl RowPattern {
 ///
 /// States x and velocities v are full slices, three values per vertex, with zero velocity at pinned
 /// vertices; entries of S refer to the unknowns of the [`crate::RodSystem`].
-pub trait Chart {
+pub trait Chart: Send {
     /// The rod system that the chart was built for.
     fn system(&self) -> &RodSystem;
 

@@ -10,6 +10,7 @@
 //!   ([`ChartSimulation::from_state`]). Contact acts by impulses ([`ChartSimulation::with_contact`]).
 
 mod contact;
+pub(crate) mod engine;
 mod error;
 mod impact;
 mod mechanics;

@@ -1,26 +1,78 @@
-//! Springs at the edges: creases that fold by driven angles, and the bending stiffness of the material.
+//! Torsion springs at the edges: creases that are folded by driven rest angles, and the bending stiffness of
+//! the material.
 
+use crate::profile::{Profile, ProfileError};
 use crate::{HessianSink, Potential};
 use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId};
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
+use std::sync::Arc;
 
-/// The fold angle that a spring is at rest at, radians: positive for a valley as seen from the side from which faces are
-/// counter-clockwise, negative for a mountain (the sign of [`isosheet_mesh::fold_angle`]).
+/// The fold angle at which a spring exerts no moment, radians: positive for a valley as seen from the side
+/// from which faces are counter-clockwise, negative for a mountain (the sign of
+/// [`isosheet_mesh::fold_angle`]).
+///
+/// Made from a number, a [`Profile`], or a function of time (seconds). A crease whose rest angle changes is
+/// driven.
+#[derive(Clone)]
 pub enum RestAngle {
-    /// Always the same.
-    Fixed(f64),
-    /// A prescribed function of time (seconds): the crease is driven.
-    Driven(Box<dyn Fn(f64) -> f64 + Send + Sync>),
+    /// By a profile, radians: data that can be written and read.
+    Profile(Profile),
+    /// Any function of time (seconds).
+    Custom(Arc<dyn Fn(f64) -> f64 + Send + Sync>),
+}
+
+impl From<Profile> for RestAngle {
+    fn from(profile: Profile) -> Self {
+        Self::Profile(profile)
+    }
+}
+
+impl From<f64> for RestAngle {
+    fn from(angle: f64) -> Self {
+        Self::Profile(angle.into())
+    }
+}
+
+impl<F: Fn(f64) -> f64 + Send + Sync + 'static> From<F> for RestAngle {
+    fn from(angle: F) -> Self {
+        Self::Custom(Arc::new(angle))
+    }
 }
 
 impl RestAngle {
     /// The angle at time `t`, radians.
     pub fn at(&self, t: f64) -> f64 {
         match self {
-            Self::Fixed(angle) => *angle,
-            Self::Driven(angle) => angle(t),
+            Self::Profile(profile) => profile.value(t),
+            Self::Custom(angle) => angle(t),
+        }
+    }
+
+    /// Whether it may change.
+    fn is_driven(&self) -> bool {
+        match self {
+            Self::Profile(profile) => !profile.is_constant(),
+            Self::Custom(_) => true,
+        }
+    }
+
+    /// A constant angle lies between a fold shut as a mountain and one shut as a valley; a driven one may
+    /// pass both.
+    fn validate(&self, edge: EdgeId) -> Result<(), CreaseError> {
+        let Self::Profile(profile) = self else {
+            return Ok(());
+        };
+        profile
+            .validate()
+            .map_err(|source| CreaseError::RestAngle { edge, source })?;
+        match profile {
+            Profile::Constant { value } if !(-PI..=PI).contains(value) => {
+                let angle = *value;
+                Err(CreaseError::Angle { edge, angle })
+            }
+            _ => Ok(()),
         }
     }
 }
@@ -28,8 +80,8 @@ impl RestAngle {
 impl fmt::Debug for RestAngle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Fixed(angle) => write!(f, "Fixed({angle})"),
-            Self::Driven(_) => write!(f, "Driven"),
+            Self::Profile(profile) => profile.fmt(f),
+            Self::Custom(_) => f.write_str("Custom"),
         }
     }
 }
@@ -41,7 +93,7 @@ pub struct CreaseSpring {
     pub edge: EdgeId,
     /// Torsional stiffness `k` of the whole edge, newton metres per radian.
     pub stiffness: f64,
-    /// The angle at which it is at rest.
+    /// The angle at which it exerts no moment.
     pub rest: RestAngle,
 }
 
@@ -54,7 +106,7 @@ pub enum CreaseError {
         /// The edge.
         edge: EdgeId,
     },
-    /// A stiffness makes no sense.
+    /// A stiffness is negative or not finite.
     #[error("the spring at {edge} has stiffness {stiffness} N m; give a finite one of at least 0")]
     Stiffness {
         /// The edge.
@@ -62,7 +114,15 @@ pub enum CreaseError {
         /// The stiffness given, N m/rad.
         stiffness: f64,
     },
-    /// A fixed rest angle makes no sense.
+    /// The profile of a rest angle cannot be used.
+    #[error("the rest angle of the spring at {edge} cannot be used: {source}")]
+    RestAngle {
+        /// The edge.
+        edge: EdgeId,
+        /// What is wrong with its profile.
+        source: ProfileError,
+    },
+    /// A constant rest angle is beyond a fold that is shut.
     #[error("the spring at {edge} rests at {angle} rad; give an angle from -pi to pi")]
     Angle {
         /// The edge.
@@ -70,7 +130,7 @@ pub enum CreaseError {
         /// The angle given, radians.
         angle: f64,
     },
-    /// A flexural rigidity makes no sense.
+    /// A flexural rigidity is negative or not finite.
     #[error("the flexural rigidity is {rigidity} N m; give a finite one of at least 0")]
     Rigidity {
         /// The rigidity given, N m.
@@ -84,15 +144,17 @@ pub enum CreaseError {
 /// V(t, x) = sum_e k_e / 2 [theta_e(x) - rest_e(t)]^2,
 /// ```
 ///
-/// `theta_e` the fold angle of edge `e` in radians. The difference is taken the short way round, so an angle that passes pi
-/// (a fold shut) stays continuous; the energy has a kink only half a turn away from the rest angle.
+/// `theta_e` the fold angle of edge `e` in radians. The difference is taken the short way round, so an angle
+/// that passes pi (a fold shut) stays continuous; the energy has a kink only half a turn away from the rest
+/// angle.
 ///
-/// In a flat sheet the force is normal to it, upwards or downwards by the sign of the rest angle: the assignment of mountains
-/// and valleys chooses the branch, no perturbation is needed.
+/// In a flat sheet the force is normal to it, upwards or downwards by the sign of the rest angle: the
+/// assignment of mountains and valleys chooses the branch, no perturbation is needed.
 ///
-/// The work of driving a rest angle, the integral of `dV/dt` at fixed positions, enters the energy balance. The
-/// derivatives of the angle are those of Bridson, Marino and Fedkiw, *Simulation of clothing with folds and wrinkles* (2003),
-/// Eq. 3; of the Hessian the semidefinite part `k grad theta grad theta^T` is given, exact where the spring is at rest.
+/// The work of driving a rest angle, the integral of `dV/dt` at fixed positions, enters the energy balance.
+/// The derivatives of the angle are those of Bridson, Marino and Fedkiw, *Simulation of clothing with folds
+/// and wrinkles* (2003), Eq. 3; of the Hessian the semidefinite part `k grad theta grad theta^T` is given,
+/// exact where the spring is at rest.
 #[derive(Debug)]
 pub struct CreaseSprings {
     hinges: Vec<Hinge>,
@@ -112,7 +174,8 @@ impl CreaseSprings {
     /// Springs on a mesh.
     ///
     /// # Errors
-    /// [`CreaseError`] naming the first edge that has no fold angle, or whose stiffness or angle makes no sense.
+    /// [`CreaseError`] naming the first edge that has no fold angle, or whose stiffness or rest angle cannot
+    /// be used.
     pub fn new(topology: &Topology, springs: Vec<CreaseSpring>) -> Result<Self, CreaseError> {
         let hinges = springs.into_iter().map(|s| Hinge::new(topology, s));
         Ok(Self {
@@ -120,12 +183,13 @@ impl CreaseSprings {
         })
     }
 
-    /// The bending stiffness of a uniform material on all interior edges, at rest when flat: `k_e = D l_e^2 / A_e` with the
-    /// flexural rigidity `D` (newton metres; office paper has about 5e-4) and the area `A_e` of the two faces.
+    /// The bending stiffness of a uniform material on all interior edges, at rest when flat:
+    /// `k_e = D l_e^2 / A_e` with the flexural rigidity `D` (newton metres; office paper has about 5e-4) and
+    /// the area `A_e` of the two faces.
     ///
-    /// On a union-jack grid of squares a bend along grid lines has exactly the energy `D kappa^2 / 2` per area, one along
-    /// diagonals twice that. A sheet of rigid rods bends at its edges only: how stiff it is in other directions depends
-    /// on the mesh.
+    /// On a union-jack grid of squares a bend along grid lines has exactly the energy `D kappa^2 / 2` per
+    /// area, one along diagonals twice that. A sheet of rigid rods bends at its edges only: how stiff it is
+    /// in other directions depends on the mesh.
     ///
     /// # Errors
     /// [`CreaseError::Rigidity`].
@@ -141,15 +205,15 @@ impl CreaseSprings {
                 springs.push(CreaseSpring {
                     edge,
                     stiffness: rigidity * sheet.lengths()[edge.index()].powi(2) / area,
-                    rest: RestAngle::Fixed(0.0),
+                    rest: 0.0.into(),
                 });
             }
         }
         Self::new(t, springs)
     }
 
-    /// Moments `k (rest - theta)` of the springs at time `t` and positions `x`, newton metres, in the order given: positive
-    /// where a spring folds towards a valley.
+    /// Moments `k (rest - theta)` of the springs at time `t` and positions `x`, newton metres, in the order
+    /// given: positive where a spring folds towards a valley.
     pub fn moments(&self, t: f64, x: &[f64]) -> Vec<f64> {
         let moment = |h: &Hinge| -h.stiffness * h.excess(t, Angle::at(x, &h.vertices).value);
         self.hinges.iter().map(moment).collect()
@@ -172,11 +236,7 @@ impl Hinge {
         if !(stiffness.is_finite() && stiffness >= 0.0) {
             return Err(CreaseError::Stiffness { edge, stiffness });
         }
-        if let RestAngle::Fixed(angle) = rest
-            && !(-PI..=PI).contains(&angle)
-        {
-            return Err(CreaseError::Angle { edge, angle });
-        }
+        rest.validate(edge)?;
         let [a, b] = topology.edges()[edge.index()];
         let vertices = [a, b, left, right];
         let between = |i: usize, j: usize| {
@@ -216,7 +276,8 @@ impl Angle {
         let (n_l, n_r) = (along.cross(&to_l), to_r.cross(&along));
         let squared = along.norm_squared();
         let length = squared.sqrt();
-        // Per unit of height of an opposite vertex the angle grows by the inverse of its distance from the edge.
+        // Per unit of height of an opposite vertex the angle grows by the inverse of its distance from the
+        // edge.
         let (g_l, g_r) = (
             n_l * (length / n_l.norm_squared()),
             n_r * (length / n_r.norm_squared()),
@@ -277,8 +338,7 @@ impl Potential for CreaseSprings {
     }
 
     fn is_driven(&self) -> bool {
-        let driven = |h: &Hinge| matches!(h.rest, RestAngle::Driven(_));
-        self.hinges.iter().any(driven)
+        self.hinges.iter().any(|h| h.rest.is_driven())
     }
 }
 

@@ -1,18 +1,20 @@
 //! The energy-momentum integrator.
 
 use crate::constraint::conservative::ConservativeRows;
-use crate::contact::ContactWork;
-use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
+use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::minimiser::not_converged;
+use crate::options::OptionsError;
 use crate::primal::{dot, strain_floor, velocity_round_off};
-use crate::reaction::{Balance, ForceTime};
-use crate::report::{Accepted, Effort, Path, StepError};
+use crate::reaction::Balance;
+use crate::report::{Effort, Path, StepError};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
+use serde::{Deserialize, Serialize};
 
 /// Options of [`EnergyMomentum`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct EnergyMomentumOptions {
     /// Largest relative residual of the momentum balance. Default 1e-12: the energy error of a
     /// step is about this fraction of the energy that changes hands in it.
@@ -67,12 +69,10 @@ const QUADRATIC_BELOW: f64 = 1e-2;
 ///
 /// Solved by Newton's method with one sparse LU per iteration, in the impulses `L`, which stay
 /// moderate where the multipliers `L / h` do not.
-pub struct EnergyMomentum {
+pub(crate) struct EnergyMomentum {
     options: EnergyMomentumOptions,
     matrix: SaddleMatrix,
     impulse: Vec<f64>,
-    impulse_step: f64,
-    trial: Vec<f64>,
     density: Vec<f64>,
     w: Vec<f64>,
     x1: Vec<f64>,
@@ -83,7 +83,6 @@ pub struct EnergyMomentum {
     difference: Vec<f64>,
     rods: Vec<f64>,
     constraints: ConservativeRows,
-    balance: Balance,
 }
 
 impl EnergyMomentum {
@@ -91,14 +90,15 @@ impl EnergyMomentum {
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
-    pub fn new(model: &SheetModel, options: EnergyMomentumOptions) -> Result<Self, LinalgError> {
+    pub(crate) fn new(
+        model: &SheetModel,
+        options: EnergyMomentumOptions,
+    ) -> Result<Self, LinalgError> {
         let (n, m) = (model.coordinate_count(), model.rods().len());
         Ok(Self {
             options,
             matrix: SaddleMatrix::new(model)?,
             impulse: vec![0.0; m],
-            impulse_step: 0.0,
-            trial: vec![0.0; m],
             density: vec![0.0; m],
             w: vec![0.0; n],
             x1: vec![0.0; n],
@@ -109,7 +109,6 @@ impl EnergyMomentum {
             difference: vec![0.0; n],
             rods: vec![0.0; m],
             constraints: ConservativeRows::new(model),
-            balance: Balance::new(model, ForceTime::Mean),
         })
     }
 
@@ -160,19 +159,17 @@ impl EnergyMomentum {
     }
 
     /// Mean forces of the supports over the step.
-    fn set_balance(&mut self, model: &SheetModel, state: &State, h: f64) {
+    fn set_balance(&self, model: &SheetModel, state: &State, h: f64, balance: &mut Balance) {
         let (w, v) = (&self.w, &state.v);
-        if !self.balance.begin(model, |i| 2.0 * (w[i] - v[i]) / h) {
+        if !balance.begin(model, |i| 2.0 * (w[i] - v[i]) / h) {
             return;
         }
         let t = state.t + 0.5 * h;
-        self.balance.add_potentials(model, t, &self.xm, 1.0);
-        self.balance.add_applied(model, t, &self.xm, &self.w, 1.0);
-        self.balance
-            .add_rods(model, &self.xm, &self.trial, -1.0 / h);
-        self.balance
-            .add_loads(self.constraints.loads(&self.constraints.impulses, 1.0 / h));
-        self.balance.finish(model);
+        balance.add_potentials(model, t, &self.xm, 1.0);
+        balance.add_applied(model, t, &self.xm, &self.w, 1.0);
+        balance.add_rods(model, &self.xm, &self.impulse, -1.0 / h);
+        balance.add_loads(self.constraints.loads(&self.constraints.impulses, 1.0 / h));
+        balance.finish(model);
     }
 
     /// Sets the negative residuals; returns the relative momentum residual and the strain.
@@ -197,7 +194,7 @@ impl EnergyMomentum {
         }
         model
             .rods()
-            .apply_transpose_add(&self.xm, &self.trial, &mut self.momentum);
+            .apply_transpose_add(&self.xm, &self.impulse, &mut self.momentum);
         self.constraints.push_between(
             model,
             state.t + 0.5 * h,
@@ -243,41 +240,75 @@ pub(crate) fn mean_pin_velocities(
 }
 
 impl Integrator for EnergyMomentum {
-    fn demand(&self) -> RodDemand {
-        RodDemand::Independent
+    fn traits(&self) -> MethodTraits {
+        MethodTraits::conservative()
     }
 
-    fn balance(&self) -> &Balance {
-        &self.balance
-    }
-
-    fn step(
+    fn propose(
         &mut self,
         scene: Scene<'_>,
-        state: &mut State,
-        h: f64,
+        attempt: Attempt<'_>,
+        proposal: &mut Proposal,
         effort: &mut Effort,
-    ) -> Result<Accepted, StepError> {
-        let model = scene.model;
-        let strain_tolerance = self
-            .options
-            .strain_tolerance
-            .max(strain_floor(model, state));
-        let ratio = if self.impulse_step > 0.0 {
-            h / self.impulse_step
+    ) -> Result<(), StepError> {
+        let (model, state, h) = (scene.model, attempt.state, attempt.h);
+        self.begin(model, &attempt);
+        let (residual, path) = self.solve(model, state, h, effort)?;
+        let moment = &mut proposal.moment;
+        // Impulses of dependent rods are not unique, and what a regularised solve makes of round-off in their
+        // lengths would buckle the next step: they are found anew there.
+        if path == Path::Newton {
+            let constraints = self.constraints.full_impulses();
+            moment
+                .history
+                .multipliers
+                .set(h, &self.impulse, constraints);
         } else {
-            0.0
-        };
-        for (t, i) in self.trial.iter_mut().zip(&self.impulse) {
-            *t = ratio * i;
+            moment.history.multipliers.clear();
         }
-        self.constraints.begin(model, state.t, &state.x, ratio);
+        self.set_balance(model, state, h, &mut moment.balance);
+        for i in 0..self.w.len() {
+            moment.state.v[i] = 2.0 * self.w[i] - state.v[i];
+        }
+        model.set_pin_velocities(state.t + h, h, &mut moment.state.v);
+        moment.state.x.copy_from_slice(&self.x1);
+        moment.state.t = state.t + h;
+        let work = h * dot(&self.applied, &self.w);
+        proposal.account = StepAccount::without_contact(residual, work, path);
+        Ok(())
+    }
+}
+
+impl EnergyMomentum {
+    /// First guess: the impulses of the step before, scaled to this one, and the velocity at the start.
+    fn begin(&mut self, model: &SheetModel, attempt: &Attempt<'_>) {
+        let (state, h) = (attempt.state, attempt.h);
+        let (ratio, last) = attempt.scaled_multipliers();
+        for (e, l) in self.impulse.iter_mut().enumerate() {
+            *l = last.rods.get(e).map_or(0.0, |i| ratio * i);
+        }
+        self.constraints
+            .begin(model, state.t, &state.x, ratio, &last.constraints);
         if self.falls_freely(model, state, h) {
-            self.trial.fill(0.0);
+            self.impulse.fill(0.0);
         } else {
             self.w.copy_from_slice(&state.v);
         }
         mean_pin_velocities(model, state, h, &mut self.x1, &mut self.w);
+    }
+
+    /// Newton's method; returns the relative residual and how it was reached.
+    fn solve(
+        &mut self,
+        model: &SheetModel,
+        state: &State,
+        h: f64,
+        effort: &mut Effort,
+    ) -> Result<(f64, Path), StepError> {
+        let strain_tolerance = self
+            .options
+            .strain_tolerance
+            .max(strain_floor(model, state));
         let (mut residual, mut strain) = self.residuals(model, state, h);
         let mut previous = f64::INFINITY;
         let mut path = Path::Newton;
@@ -302,7 +333,7 @@ impl Integrator for EnergyMomentum {
             previous = residual;
             iterations += 1;
             effort.iterations += 1;
-            for (d, l) in self.density.iter_mut().zip(&self.trial) {
+            for (d, l) in self.density.iter_mut().zip(&self.impulse) {
                 *d = -0.5 * h * l;
             }
             let system = System {
@@ -328,35 +359,15 @@ impl Integrator for EnergyMomentum {
             for (w, d) in self.w.iter_mut().zip(&self.momentum) {
                 *w += d;
             }
-            for (l, d) in self.trial.iter_mut().zip(&self.rods) {
+            for (l, d) in self.impulse.iter_mut().zip(&self.rods) {
                 *l += d;
             }
             self.constraints.correct();
             (residual, strain) = self.residuals(model, state, h);
         };
         if !converged {
-            self.impulse_step = 0.0;
             return Err(not_converged(state.t, h, effort, residual, strain));
         }
-        self.impulse.copy_from_slice(&self.trial);
-        // Impulses of dependent rods are not unique, and what a regularised solve makes of round-off in their lengths would
-        // buckle the next step: they are found anew there.
-        self.impulse_step = if path == Path::Newton { h } else { 0.0 };
-        self.constraints.keep();
-        self.set_balance(model, state, h);
-        let work = h * dot(&self.applied, &self.w);
-        for i in 0..self.w.len() {
-            state.v[i] = 2.0 * self.w[i] - state.v[i];
-        }
-        model.set_pin_velocities(state.t + h, h, &mut state.v);
-        state.x.copy_from_slice(&self.x1);
-        state.t += h;
-        Ok(Accepted {
-            residual,
-            work,
-            driven: 0.0,
-            path,
-            contact: ContactWork::default(),
-        })
+        Ok((residual, path))
     }
 }

@@ -1,15 +1,18 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
-use crate::contact::ContactState;
-use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
+use crate::integrator::{
+    Attempt, ContactSupport, Integrator, MethodTraits, Proposal, RodDemand, Scene, StepAccount,
+};
 use crate::minimiser::Minimiser;
-use crate::reaction::Balance;
-use crate::report::{Accepted, Effort, StepError};
+use crate::options::OptionsError;
+use crate::report::{Effort, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
+use serde::{Deserialize, Serialize};
 
 /// Options of [`ImplicitEuler`] and [`Bdf2`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ImplicitOptions {
     /// Penalty of the rods in the augmented Lagrangian, relative to the masses: rods are
     /// `stiffness` times as stiff as the inertia term. Default 1e4: where steps along the manifold fail, a hundred times
@@ -69,7 +72,7 @@ impl ImplicitOptions {
 ///
 /// First order, strongly dissipative, stable at any step. A sheet that starts exactly flat
 /// needs no special treatment.
-pub struct ImplicitEuler {
+pub(crate) struct ImplicitEuler {
     minimiser: Minimiser,
 }
 
@@ -78,7 +81,7 @@ impl ImplicitEuler {
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
-    pub fn new(model: &SheetModel, options: ImplicitOptions) -> Result<Self, LinalgError> {
+    pub(crate) fn new(model: &SheetModel, options: ImplicitOptions) -> Result<Self, LinalgError> {
         Ok(Self {
             minimiser: Minimiser::new(model, options)?,
         })
@@ -86,52 +89,19 @@ impl ImplicitEuler {
 }
 
 impl Integrator for ImplicitEuler {
-    fn demand(&self) -> RodDemand {
-        RodDemand::Nothing
+    fn traits(&self) -> MethodTraits {
+        MINIMISING
     }
 
-    fn takes_contact(&self) -> bool {
-        true
-    }
-
-    fn balance(&self) -> &Balance {
-        &self.minimiser.balance
-    }
-
-    fn contact_state(&self) -> Option<&ContactState> {
-        self.minimiser.contact_state()
-    }
-
-    fn step(
+    fn propose(
         &mut self,
         scene: Scene<'_>,
-        state: &mut State,
-        h: f64,
+        attempt: Attempt<'_>,
+        proposal: &mut Proposal,
         effort: &mut Effort,
-    ) -> Result<Accepted, StepError> {
-        let m = &mut self.minimiser;
-        scene
-            .model
-            .applied_force(state.t, &state.x, &state.v, &mut m.applied);
-        for i in 0..m.x().len() {
-            m.target[i] = state.x[i] + h * state.v[i];
-        }
-        let (residual, path, contact) = m.minimise(scene, state, h, h, effort)?;
-        let mut work = 0.0;
-        for i in 0..m.x().len() {
-            let dx = m.x()[i] - state.x[i];
-            work += m.applied[i] * dx;
-            state.v[i] = dx / h;
-        }
-        state.x.copy_from_slice(m.x());
-        state.t += h;
-        Ok(Accepted {
-            residual,
-            work,
-            driven: 0.0,
-            path,
-            contact,
-        })
+    ) -> Result<(), StepError> {
+        proposal.moment.history.previous = None;
+        two_step(&mut self.minimiser, scene, attempt, None, proposal, effort)
     }
 }
 
@@ -152,10 +122,8 @@ const MAX_STEP_RATIO: f64 = 2.0 + 1e-9;
 /// step, the first after the state was changed from outside, and one that is more than twice as
 /// long as the one before are implicit Euler (`w = 0`).
 /// Non-conservative forces are taken at the start of the step, which makes them first order.
-pub struct Bdf2 {
+pub(crate) struct Bdf2 {
     minimiser: Minimiser,
-    previous: State,
-    last: State,
 }
 
 impl Bdf2 {
@@ -163,93 +131,98 @@ impl Bdf2 {
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
-    pub fn new(model: &SheetModel, options: ImplicitOptions) -> Result<Self, LinalgError> {
-        let nowhere = State {
-            t: f64::NAN,
-            ..State::at_rest(vec![0.0; model.coordinate_count()])
-        };
+    pub(crate) fn new(model: &SheetModel, options: ImplicitOptions) -> Result<Self, LinalgError> {
         Ok(Self {
             minimiser: Minimiser::new(model, options)?,
-            previous: nowhere.clone(),
-            last: nowhere,
         })
     }
 }
 
 impl Integrator for Bdf2 {
-    fn demand(&self) -> RodDemand {
-        RodDemand::Nothing
+    fn traits(&self) -> MethodTraits {
+        MINIMISING
     }
 
-    fn restart(&mut self) -> bool {
-        let has_history = self.previous.t.is_finite();
-        self.previous.t = f64::NAN;
-        has_history
-    }
-
-    fn takes_contact(&self) -> bool {
-        true
-    }
-
-    fn balance(&self) -> &Balance {
-        &self.minimiser.balance
-    }
-
-    fn contact_state(&self) -> Option<&ContactState> {
-        self.minimiser.contact_state()
-    }
-
-    fn step(
+    fn propose(
         &mut self,
         scene: Scene<'_>,
-        state: &mut State,
-        h: f64,
+        attempt: Attempt<'_>,
+        proposal: &mut Proposal,
         effort: &mut Effort,
-    ) -> Result<Accepted, StepError> {
-        // Velocity damping after the steps changes `v` but not `x`.
-        let continued = self.last.x == state.x && self.previous.t < state.t;
-        let w = if continued {
-            h / (state.t - self.previous.t)
-        } else {
-            0.0
-        };
-        let w = if w <= MAX_STEP_RATIO { w } else { 0.0 };
-        // a = 1 + b: differences keep pinned vertices where they are to the last bit.
-        let b = w * w / (1.0 + 2.0 * w);
-        let k = (1.0 + w) / (1.0 + 2.0 * w);
-        let m = &mut self.minimiser;
-        scene
-            .model
-            .applied_force(state.t, &state.x, &state.v, &mut m.applied);
-        let before = &self.previous;
-        for i in 0..m.x().len() {
-            let (x, v) = (state.x[i], state.v[i]);
-            m.target[i] = x + b * (x - before.x[i]) + k * h * (v + b * (v - before.v[i]));
-        }
+    ) -> Result<(), StepError> {
+        let (state, h) = (attempt.state, attempt.h);
+        let previous = attempt
+            .previous()
+            .filter(|before| h <= MAX_STEP_RATIO * (state.t - before.t));
+        let damping = (-scene.model.damping() * h).exp();
+        two_step(
+            &mut self.minimiser,
+            scene,
+            attempt,
+            previous,
+            proposal,
+            effort,
+        )?;
         // The damping that follows the step acts on the whole history, or a rate `gamma` would act as
         // `3/2 gamma`: `v1 = 4/3 v0 - 1/3 v_` amplifies what is taken from `v0` alone.
-        let damping = (-scene.model.damping() * h).exp();
-        let (residual, path, contact) = m.minimise(scene, state, h, k * h, effort)?;
-        let mut work = 0.0;
-        for i in 0..m.x().len() {
-            work += m.applied[i] * (m.x()[i] - state.x[i]);
-            // The old history has served: it becomes the velocity at the end.
-            let x = state.x[i];
-            self.previous.v[i] = ((m.x()[i] - x) - b * (x - self.previous.x[i])) / (k * h);
+        let history = &mut proposal.moment.history;
+        history.set_previous(Some(state));
+        if let Some(before) = &mut history.previous {
+            before.v.iter_mut().for_each(|v| *v *= damping);
         }
-        std::mem::swap(&mut self.previous.v, &mut state.v);
-        self.previous.v.iter_mut().for_each(|v| *v *= damping);
-        self.previous.x.copy_from_slice(&state.x);
-        self.previous.t = state.t;
-        state.x.copy_from_slice(m.x());
-        state.t += h;
-        self.last.x.copy_from_slice(&state.x);
-        Ok(Accepted {
-            residual,
-            work,
-            driven: 0.0,
-            path,
-            contact,
-        })
+        Ok(())
     }
+}
+
+/// Both methods are minimisations, at any rank of the rods, and take contact as a barrier.
+const MINIMISING: MethodTraits = MethodTraits {
+    demand: RodDemand::Nothing,
+    contact: ContactSupport::Barrier,
+};
+
+/// Proposes the step of the two-step formula, or of implicit Euler where there is no state before the present one.
+fn two_step(
+    minimiser: &mut Minimiser,
+    scene: Scene<'_>,
+    attempt: Attempt<'_>,
+    previous: Option<&State>,
+    proposal: &mut Proposal,
+    effort: &mut Effort,
+) -> Result<(), StepError> {
+    let (state, h) = (attempt.state, attempt.h);
+    let w = previous.map_or(0.0, |before| h / (state.t - before.t));
+    // a = 1 + b: differences keep pinned vertices where they are to the last bit.
+    let b = w * w / (1.0 + 2.0 * w);
+    let k = (1.0 + w) / (1.0 + 2.0 * w);
+    let before = previous.unwrap_or(state);
+    scene
+        .model
+        .applied_force(state.t, &state.x, &state.v, &mut minimiser.applied);
+    for i in 0..state.x.len() {
+        let (x, v) = (state.x[i], state.v[i]);
+        minimiser.target[i] = x + b * (x - before.x[i]) + k * h * (v + b * (v - before.v[i]));
+    }
+    minimiser
+        .recall(scene.model, &attempt, k * h)
+        .map_err(|source| StepError::Linalg { t: state.t, source })?;
+    let (residual, path, contact) = minimiser.minimise(scene, state, h, k * h, effort)?;
+    let moment = &mut proposal.moment;
+    let mut work = 0.0;
+    for i in 0..state.x.len() {
+        let dx = minimiser.x()[i] - state.x[i];
+        work += minimiser.applied[i] * dx;
+        moment.state.v[i] = (dx - b * (state.x[i] - before.x[i])) / (k * h);
+    }
+    moment.state.x.copy_from_slice(minimiser.x());
+    moment.state.t = state.t + h;
+    moment.balance.copy_from(&minimiser.balance);
+    moment.set_contacts(minimiser.contact_state());
+    minimiser.remember(k * h, &mut moment.history);
+    proposal.account = StepAccount {
+        residual,
+        work,
+        path,
+        contact,
+    };
+    Ok(())
 }

@@ -56,24 +56,33 @@
 //! [`Simulation::body_loads`] those of the sheet on the bodies.
 
 pub mod chart;
+mod checkpoint;
 pub mod constraint;
 pub mod contact;
 #[cfg(test)]
 mod contact_tests;
+mod control;
 mod crease;
 #[cfg(test)]
 mod derivative_tests;
 mod energy_account;
 mod energy_momentum;
+mod engine;
 mod feasibility;
+mod history;
 mod implicit;
 mod integrator;
 mod iterate;
+mod load;
 mod method;
 mod minimiser;
 mod model;
+mod motion;
+mod observe;
+mod options;
 pub mod potential;
 mod primal;
+mod profile;
 mod project;
 mod projection_step;
 mod rank;
@@ -82,30 +91,41 @@ mod reaction;
 mod report;
 mod saddle;
 mod simulation;
+mod simulation_error;
 mod start;
 mod state;
-mod subdivide;
+mod subdivision;
 mod taut;
 mod trail;
 
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use constraint::VertexConstraint;
 pub use crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
-pub use energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
+pub use energy_momentum::EnergyMomentumOptions;
 pub use feasibility::Excess;
-pub use implicit::{Bdf2, ImplicitEuler, ImplicitOptions};
-pub use integrator::{Integrator, OptionsError, RodDemand, Scene};
+pub use implicit::ImplicitOptions;
+pub use load::{AccelerationField, LoadError, VertexLoad};
 pub use method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use model::{ModelError, SheetModel};
-pub use nalgebra;
-pub use potential::{Force, Gravity, HessianSink, Potential, PotentialShape, STANDARD_GRAVITY};
-pub use projection_step::{ProjectionStep, ProjectionStepOptions};
+pub use motion::{
+    AxisRotation, Keyframe, Kinematics, MotionError, PointMotion, PointProfile, RigidDisplacement,
+    RigidMotion, RigidProfile,
+};
+pub use observe::{Frames, History, Observer, RunEnd};
+pub use options::OptionsError;
+pub use potential::{Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape};
+pub use profile::{Interpolation, Profile, ProfileError};
+pub use projection_step::ProjectionStepOptions;
 pub use rank::{RodRank, rod_rank};
-pub use rattle::{Rattle, RattleComposition, RattleOptions};
-pub use reaction::{Balance, Reaction, Support};
-pub use report::{Accepted, Effort, Path, StepError, StepReport};
-pub use simulation::{Simulation, SimulationError};
+pub use rattle::RattleOptions;
+pub use reaction::{Reaction, Support};
+pub use report::{Path, StepError, StepReport};
+pub use simulation::Simulation;
+pub use simulation_error::SimulationError;
 pub use start::{leave_flat, project_positions};
 pub use state::State;
+
+pub use nalgebra;
 
 /// The code of the README is compiled and run as a test.
 #[cfg(doctest)]

@@ -2,13 +2,15 @@
 
 use crate::energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
 use crate::implicit::{Bdf2, ImplicitEuler, ImplicitOptions};
-use crate::integrator::{Integrator, OptionsError};
+use crate::integrator::Integrator;
+use crate::options::OptionsError;
 use crate::projection_step::{ProjectionStep, ProjectionStepOptions};
 use crate::rattle::{Rattle, RattleComposition, RattleOptions};
 use crate::{SheetModel, SimulationError};
+use serde::{Deserialize, Serialize};
 
 /// Which chart-free integrator moves the sheet.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Method {
     /// Implicit Euler with the constraints in the step: first order, strongly damped, takes any
     /// state.
@@ -29,8 +31,8 @@ pub enum Method {
 
 impl Method {
     /// Validates the options and analyses the model.
-    pub(crate) fn build(self, model: &SheetModel) -> Result<Box<dyn Integrator>, SimulationError> {
-        Ok(match self {
+    pub(crate) fn build(&self, model: &SheetModel) -> Result<Box<dyn Integrator>, SimulationError> {
+        Ok(match self.clone() {
             Self::ImplicitEuler(o) => {
                 o.validate()?;
                 Box::new(ImplicitEuler::new(model, o)?)
@@ -66,7 +68,7 @@ impl Default for Method {
 }
 
 /// How a simulation subdivides steps that its integrator rejects.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StepControl {
     /// Smallest sub-step, as a fraction of the step asked for. Default 2^-14 (6e-5).
     pub min_fraction: f64,
@@ -77,7 +79,7 @@ pub struct StepControl {
 }
 
 /// What to do when moving supports ask for more than the rods allow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Unsatisfiable {
     /// Return [`StepError::Unsatisfiable`](crate::StepError::Unsatisfiable).
     #[default]
@@ -88,7 +90,7 @@ pub enum Unsatisfiable {
 }
 
 /// What to do when an integrator rejects even the smallest sub-step.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub enum Fallback {
     /// Return the error.
     #[default]

@@ -1,5 +1,6 @@
 //! Minimisation of an implicit step's incremental potential under the length constraints.
 
+mod history;
 mod merit;
 mod newton;
 mod tangent;
@@ -51,7 +52,6 @@ pub(crate) struct Minimiser {
     projector: Projector,
     /// Impulse multipliers of the rods (h^2 times force densities), kept from step to step.
     multipliers: Vec<f64>,
-    multiplier_step: f64,
     /// Those of the first round, whose penalty is the one that the next step begins with. (In a nearly flat sheet
     /// the ones of later rounds grow without bound.)
     first_multipliers: Vec<f64>,
@@ -132,7 +132,6 @@ impl Minimiser {
             multipliers: vec![0.0; m],
             first_multipliers: vec![0.0; m],
             tangent_multipliers: vec![0.0; m],
-            multiplier_step: 0.0,
             penalty: penalties(model, options.stiffness),
             first_penalty: penalties(model, options.stiffness),
             along: vec![0.0; m],
@@ -187,18 +186,6 @@ impl Minimiser {
         h: f64,
         effort: &mut Effort,
     ) -> Result<(f64, Path, ContactWork), StepError> {
-        let ratio = (h / self.multiplier_step).powi(2);
-        if MULTIPLIER_RATIOS.contains(&ratio) {
-            self.multipliers.iter_mut().for_each(|m| *m *= ratio);
-            self.tangent_multipliers
-                .iter_mut()
-                .for_each(|m| *m *= ratio);
-            self.vertex_rows.scale(ratio);
-        } else {
-            self.forget();
-            self.tangent_multipliers.fill(0.0);
-        }
-        self.multiplier_step = h;
         let mut step = Step {
             scene: &mut scene,
             state,
@@ -270,8 +257,9 @@ impl Minimiser {
         if step.scene.model.has_drives() {
             return None;
         }
-        self.tangent_steps(step, pace, effort)
-            .map(|residual| (residual, Path::Newton))
+        let residual = self.tangent_steps(step, pace, effort)?;
+        self.multipliers.copy_from_slice(&self.tangent_multipliers);
+        Some((residual, Path::Newton))
     }
 
     /// The augmented Lagrangian from where inertia alone would go.

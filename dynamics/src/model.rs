@@ -2,13 +2,13 @@
 
 use crate::constraint::VertexConstraint;
 use crate::constraint::rows::point;
-use crate::potential::{Force, Gravity, Potential, PotentialShape, STANDARD_GRAVITY};
+use crate::motion::{MotionError, PointMotion};
+use crate::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
 use crate::reaction::Support;
 use isosheet_mesh::{
     LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
 };
 use nalgebra::Vector3;
-use std::fmt;
 
 /// Why a model cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -43,6 +43,14 @@ pub enum ModelError {
         /// Number of vertices.
         vertex_count: usize,
     },
+    /// A prescribed motion cannot be used.
+    #[error("the motion prescribed for {vertex} cannot be used: {source}")]
+    Motion {
+        /// The vertex that is pinned or constrained.
+        vertex: VertexId,
+        /// What is wrong with its motion.
+        source: MotionError,
+    },
     /// The damping rate is negative or not finite.
     #[error("damping rate is {rate}; give a finite rate of at least 0 per second")]
     Damping {
@@ -52,15 +60,10 @@ pub enum ModelError {
 }
 
 /// A pinned vertex in prescribed motion.
+#[derive(Debug)]
 struct MovingPin {
     vertex: usize,
-    position: Box<dyn Fn(f64) -> [f64; 3] + Send + Sync>,
-}
-
-impl fmt::Debug for MovingPin {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "MovingPin({})", self.vertex)
-    }
+    motion: PointMotion,
 }
 
 /// Marks a vertex without unknowns in [`SheetModel::free_index`].
@@ -85,34 +88,6 @@ pub struct SheetModel {
     mean_length: f64,
     mean_mass: f64,
     shortest_rods: Vec<f64>,
-}
-
-/// Spacing of the differences in time, relative to the step: their truncation error is 1e-8 of the fifth
-/// derivative's part in the motion over a step.
-const TIME_SPACING: f64 = 1e-2;
-
-/// Derivative of a motion by five-point differences.
-fn time_derivative(at: impl Fn(f64) -> Vector3<f64>, t: f64, span: f64) -> Vector3<f64> {
-    let d = TIME_SPACING * span.abs();
-    let near = at(t + d) - at(t - d);
-    let far = at(t + 2.0 * d) - at(t - 2.0 * d);
-    (8.0 * near - far) / (12.0 * d)
-}
-
-/// Spacing of second differences in time, relative to the step: round-off is 1e-14 of a motion over its squared step,
-/// truncation 1e-6 of the sixth derivative's part.
-const SECOND_SPACING: f64 = 0.1;
-
-/// Second derivative of a motion by five-point differences.
-pub(crate) fn second_time_derivative(
-    at: impl Fn(f64) -> Vector3<f64>,
-    t: f64,
-    span: f64,
-) -> Vector3<f64> {
-    let d = SECOND_SPACING * span.abs();
-    let near = at(t + d) + at(t - d);
-    let far = at(t + 2.0 * d) + at(t - 2.0 * d);
-    (16.0 * near - far - 30.0 * at(t)) / (12.0 * d * d)
 }
 
 impl SheetModel {
@@ -173,10 +148,10 @@ impl SheetModel {
         })
     }
 
-    /// Adds uniform gravity of 9.8 m/s2 along -z.
+    /// Adds uniform gravity of 9.8 m/s2 along -z, the [`PAPER_GRAVITY`].
     #[must_use]
     pub fn with_gravity(self) -> Self {
-        self.with_acceleration(STANDARD_GRAVITY)
+        self.with_acceleration(PAPER_GRAVITY)
     }
 
     /// Adds uniform gravity of the given acceleration, m/s2.
@@ -234,12 +209,19 @@ impl SheetModel {
         Ok(self)
     }
 
-    /// Pins vertices of the sheet.
+    /// Pins vertices of the sheet where they are.
     pub(crate) fn hold(&mut self, vertices: &[VertexId]) {
         for v in vertices {
             self.free_index[v.index()] = PINNED;
         }
         self.number_free();
+    }
+
+    /// Sets the velocities of some vertices to zero.
+    pub(crate) fn clear_velocities(&self, vertices: &[VertexId], v: &mut [f64]) {
+        for i in vertices {
+            v[3 * i.index()..3 * i.index() + 3].fill(0.0);
+        }
     }
 
     fn number_free(&mut self) {
@@ -251,38 +233,63 @@ impl SheetModel {
         self.free_count = next as usize;
     }
 
-    /// Pins a vertex to a prescribed motion: a function of time (seconds) that returns its position (metres).
+    /// Pins a vertex to a prescribed motion: a [`PointProfile`](crate::PointProfile), or a function of time
+    /// (seconds) that returns its position (metres).
     ///
     /// The start state has to have it there. Like any pin it has no unknowns.
     ///
+    /// ```
+    /// use isosheet_dynamics::{PointProfile, Profile, SheetModel};
+    /// use isosheet_mesh::{MassKind, VertexId, generate};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let sheet = generate::isotropic_square(1, 0.2)?;
+    /// let shake = PointProfile {
+    ///     offset: sheet.position(VertexId(0)),
+    ///     z: Profile::Sine { mean: 0.0, amplitude: 0.01, frequency: 2.0, phase: 0.0 },
+    ///     ..PointProfile::default()
+    /// };
+    /// let [x, y, z] = sheet.position(VertexId(24));
+    /// let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?
+    ///     .with_moving_pin(VertexId(0), shake)?
+    ///     .with_moving_pin(VertexId(24), move |t: f64| [x, y, z + 0.01 * t.powi(3)])?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
     /// # Errors
-    /// [`ModelError::NoSuchVertex`].
+    /// [`ModelError::NoSuchVertex`], [`ModelError::Motion`].
     pub fn with_moving_pin(
         self,
         v: VertexId,
-        position: impl Fn(f64) -> [f64; 3] + Send + Sync + 'static,
+        motion: impl Into<PointMotion>,
     ) -> Result<Self, ModelError> {
+        let motion = motion.into();
+        motion
+            .validate()
+            .map_err(|source| ModelError::Motion { vertex: v, source })?;
         let mut model = self.with_pins(&[v])?;
         let vertex = v.index();
         model.moving_pins.retain(|pin| pin.vertex != vertex);
-        model.moving_pins.push(MovingPin {
-            vertex,
-            position: Box::new(position),
-        });
+        model.moving_pins.push(MovingPin { vertex, motion });
         Ok(model)
     }
 
     /// Holds a vertex on a curve or surface. The start state has to have it there.
     ///
     /// # Errors
-    /// [`ModelError::NoSuchVertex`].
+    /// [`ModelError::NoSuchVertex`], [`ModelError::Motion`].
     pub fn with_constraint(mut self, constraint: VertexConstraint) -> Result<Self, ModelError> {
-        if constraint.vertex().index() >= self.free_index.len() {
+        let vertex = constraint.vertex();
+        if vertex.index() >= self.free_index.len() {
             return Err(ModelError::NoSuchVertex {
-                vertex: constraint.vertex(),
+                vertex,
                 vertex_count: self.free_index.len(),
             });
         }
+        constraint
+            .validate_motion()
+            .map_err(|source| ModelError::Motion { vertex, source })?;
         self.constraints.push(constraint);
         Ok(self)
     }
@@ -304,7 +311,7 @@ impl SheetModel {
     /// The first support whose motion is not finite at time `t`, and the value.
     pub(crate) fn find_bad_motion(&self, t: f64) -> Option<(Support, f64)> {
         let pins = self.moving_pins.iter().flat_map(|pin| {
-            let at = (pin.position)(t);
+            let at = pin.motion.position(t);
             at.map(|c| (Support::Pin(VertexId(pin.vertex as u32)), c))
         });
         let constraints = self.constraints.iter().enumerate().flat_map(|(index, c)| {
@@ -325,42 +332,34 @@ impl SheetModel {
         self.free_count < self.free_index.len() || !self.constraints.is_empty()
     }
 
-    /// Sets the velocities of pins at time `t`, those in prescribed motion by differences over a
-    /// part of the time `span`.
+    /// Sets the velocities of pins in prescribed motion at time `t`; of functions by differences over a part
+    /// of the time `span`.
     pub(crate) fn set_pin_velocities(&self, t: f64, span: f64, v: &mut [f64]) {
         for pin in &self.moving_pins {
-            let at = |s: f64| Vector3::from((pin.position)(s));
-            let rate = time_derivative(at, t, span);
+            let rate = pin.motion.velocity(t, span);
             v[3 * pin.vertex..3 * pin.vertex + 3].copy_from_slice(rate.as_slice());
         }
     }
 
     /// Rates `dc/dt` of the vertex constraints at fixed positions, metres per second.
     pub(crate) fn constraint_rates(&self, t: f64, span: f64, x: &[f64]) -> Vec<Vector3<f64>> {
-        self.constraints
-            .iter()
-            .map(|c| {
-                let p = point(x, c.vertex());
-                if c.moves() {
-                    time_derivative(|s| c.at(s, &p).value, t, span)
-                } else {
-                    Vector3::zeros()
-                }
-            })
+        let constraints = self.constraints.iter();
+        constraints
+            .map(|c| c.rate(t, span, &point(x, c.vertex())))
             .collect()
     }
 
     /// Moves the pins in prescribed motion to where they are at time `t`.
     pub(crate) fn place_pins(&self, t: f64, x: &mut [f64]) {
         for pin in &self.moving_pins {
-            x[3 * pin.vertex..3 * pin.vertex + 3].copy_from_slice(&(pin.position)(t));
+            x[3 * pin.vertex..3 * pin.vertex + 3].copy_from_slice(&pin.motion.position(t));
         }
     }
 
-    /// The motion of a pin, if it moves.
-    pub(crate) fn pin_motion(&self, v: VertexId) -> Option<impl Fn(f64) -> Vector3<f64> + '_> {
+    /// The motion of a pin, if one is prescribed.
+    pub(crate) fn pin_motion(&self, v: VertexId) -> Option<&PointMotion> {
         let pin = self.moving_pins.iter().find(|p| p.vertex == v.index())?;
-        Some(|t| Vector3::from((pin.position)(t)))
+        Some(&pin.motion)
     }
 
     /// The vertices in prescribed motion.
@@ -452,8 +451,8 @@ impl SheetModel {
         self.potentials.iter().any(|p| p.is_driven())
     }
 
-    /// Work of changing the driven potentials while the sheet moves from `x0` at `t0` to `x1` at `t1`, joules: the integral of
-    /// dV/dt at fixed positions, by the mean of the changes at both.
+    /// Work of changing the driven potentials while the sheet moves from `x0` at `t0` to `x1` at `t1`,
+    /// joules: the integral of dV/dt at fixed positions, by the mean of the changes at both.
     pub(crate) fn potential_work(&self, (t0, x0): (f64, &[f64]), (t1, x1): (f64, &[f64])) -> f64 {
         let driven = self.potentials.iter().filter(|p| p.is_driven());
         let change = |p: &dyn Potential, x: &[f64]| p.energy(t1, x) - p.energy(t0, x);

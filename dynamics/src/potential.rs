@@ -21,13 +21,14 @@ pub trait Potential: Debug + Send + Sync {
     fn add_hessian(&self, _t: f64, _x: &[f64], _hessian: &mut dyn HessianSink) {}
 
     /// The pairs of vertices without a common edge that [`Potential::add_hessian`] couples by
-    /// [`HessianSink::add_pair`]; they have to be the same at all times and positions. The default names none.
+    /// [`HessianSink::add_pair`]; they have to be the same at all times and positions. The default names
+    /// none.
     fn couplings(&self) -> Vec<[VertexId; 2]> {
         Vec::new()
     }
 
-    /// Whether the energy depends on time at fixed positions. If it says so, the work of changing it enters the energy
-    /// balance; the default says no.
+    /// Whether the energy depends on time at fixed positions. If it says so, the work of changing it enters
+    /// the energy balance; the default says no.
     fn is_driven(&self) -> bool {
         false
     }
@@ -59,8 +60,8 @@ pub trait HessianSink {
     /// Adds `d2V / dx_a dx_b` for the edge `a -> b`; the transposed block is implied.
     fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>);
 
-    /// Adds `d2V / dx_a dx_b` for a pair named by [`Potential::couplings`], rows at `a`; the transposed block is
-    /// implied.
+    /// Adds `d2V / dx_a dx_b` for a pair named by [`Potential::couplings`], rows at `a`; the transposed block
+    /// is implied.
     fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>);
 }
 
@@ -71,8 +72,9 @@ pub struct Gravity {
     acceleration: [f64; 3],
 }
 
-/// The acceleration of the paper's scenes, metres per second squared, z up.
-pub const STANDARD_GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
+/// The acceleration of gravity in the paper's scenes, metres per second squared, z up. (Standard gravity is
+/// 9.80665 m/s2; [`SheetModel::with_acceleration`](crate::SheetModel::with_acceleration) takes any.)
+pub const PAPER_GRAVITY: [f64; 3] = [0.0, 0.0, -9.8];
 
 impl Gravity {
     /// Gravity acting on vertices of the given masses (for a consistent mass matrix its row

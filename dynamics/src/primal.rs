@@ -102,6 +102,24 @@ impl PrimalMatrix {
         })
     }
 
+    /// Makes room for exactly the given pairs of free vertices beyond the edges of the mesh.
+    pub(crate) fn reserve(
+        &mut self,
+        model: &SheetModel,
+        pairs: &[[u32; 2]],
+    ) -> Result<(), LinalgError> {
+        if self.extra != pairs {
+            *self = Self::with_extra(model, pairs.to_vec())?;
+        }
+        Ok(())
+    }
+
+    /// The pairs of free vertices (in free numbers, larger first, sorted) beyond the edges of the mesh that there is room
+    /// for on account of contact.
+    pub(crate) fn extra_pairs(&self) -> &[[u32; 2]] {
+        &self.extra
+    }
+
     /// Makes room for what contact couples. The matrix is analysed anew only when a pair
     /// appears that it has no room for; pairs that have parted keep their room until they
     /// outnumber the ones in use.

@@ -1,19 +1,23 @@
 //! Predict, project onto the lengths, project the velocity.
 
-use crate::contact::ContactWork;
-use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
+use crate::integrator::{
+    Attempt, ContactSupport, Integrator, MethodTraits, Proposal, RodDemand, Scene, StepAccount,
+};
 use crate::iterate::Iterate;
 use crate::minimiser::not_converged;
 use crate::model::PINNED;
+use crate::options::OptionsError;
 use crate::primal::{PrimalMatrix, strain_floor};
 use crate::project::{Aim, Projector};
 use crate::reaction::{Balance, ForceTime};
-use crate::report::{Accepted, Effort, Path, StepError};
+use crate::report::{Effort, Path, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
+use serde::{Deserialize, Serialize};
 
 /// Options of [`ProjectionStep`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ProjectionStepOptions {
     /// Largest relative edge length error of an accepted step. Default 1e-12.
     pub strain_tolerance: f64,
@@ -47,7 +51,7 @@ const DISTANCE_SLACK: f64 = 1e-6;
 /// (in the manner of Goldenthal et al., "Efficient simulation of inextensible cloth", 2007).
 ///
 /// First order, dissipative, stable at any step, positive definite solves at any rank.
-pub struct ProjectionStep {
+pub(crate) struct ProjectionStep {
     options: ProjectionStepOptions,
     matrix: PrimalMatrix,
     projector: Projector,
@@ -66,7 +70,10 @@ impl ProjectionStep {
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
-    pub fn new(model: &SheetModel, options: ProjectionStepOptions) -> Result<Self, LinalgError> {
+    pub(crate) fn new(
+        model: &SheetModel,
+        options: ProjectionStepOptions,
+    ) -> Result<Self, LinalgError> {
         let n = model.coordinate_count();
         Ok(Self {
             options,
@@ -139,22 +146,64 @@ impl ProjectionStep {
 }
 
 impl Integrator for ProjectionStep {
-    fn demand(&self) -> RodDemand {
-        RodDemand::Nothing
+    fn traits(&self) -> MethodTraits {
+        MethodTraits {
+            demand: RodDemand::Nothing,
+            contact: ContactSupport::None,
+        }
     }
 
-    fn balance(&self) -> &Balance {
-        &self.balance
-    }
-
-    fn step(
+    fn propose(
         &mut self,
         scene: Scene<'_>,
-        state: &mut State,
+        attempt: Attempt<'_>,
+        proposal: &mut Proposal,
+        effort: &mut Effort,
+    ) -> Result<(), StepError> {
+        let (model, state, h) = (scene.model, attempt.state, attempt.h);
+        self.predict(model, state, h, effort)?;
+        let end = state.t + h;
+        let strain = self.project(model, state, h, effort)?;
+        let mut work = 0.0;
+        for i in 0..self.x.len() {
+            let dx = self.x[i] - state.x[i];
+            work += self.applied[i] * dx;
+            self.v[i] = dx / h;
+        }
+        model.set_pin_velocities(end, h, &mut self.v);
+        let rates = model.constraint_rates(end, h, &self.x);
+        self.projector.release(model);
+        let residual = self.projector.velocities(
+            model,
+            &mut self.matrix,
+            &self.x,
+            &mut self.v,
+            &rates,
+            effort,
+        );
+        if !residual.is_finite() {
+            return Err(not_converged(state.t, h, effort, residual, strain));
+        }
+        self.set_balance(model, state, h);
+        let moment = &mut proposal.moment;
+        moment.balance.copy_from(&self.balance);
+        moment.state.x.copy_from_slice(&self.x);
+        moment.state.v.copy_from_slice(&self.v);
+        moment.state.t = end;
+        proposal.account = StepAccount::without_contact(residual, work, Path::Newton);
+        Ok(())
+    }
+}
+
+impl ProjectionStep {
+    /// Sets `x` and `predicted` to where forces and inertia alone would take the sheet.
+    fn predict(
+        &mut self,
+        model: &SheetModel,
+        state: &State,
         h: f64,
         effort: &mut Effort,
-    ) -> Result<Accepted, StepError> {
-        let model = scene.model;
+    ) -> Result<(), StepError> {
         model.potential_force(state.t, &state.x, &mut self.force);
         model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
         for (f, a) in self.force.iter_mut().zip(&self.applied) {
@@ -182,6 +231,17 @@ impl Integrator for ProjectionStep {
         }
         model.place_pins(end, &mut self.x);
         self.predicted.copy_from_slice(&self.x);
+        Ok(())
+    }
+
+    /// Projects `x` onto the lengths; returns the strain reached.
+    fn project(
+        &mut self,
+        model: &SheetModel,
+        state: &State,
+        h: f64,
+        effort: &mut Effort,
+    ) -> Result<f64, StepError> {
         let tolerance = self
             .options
             .strain_tolerance
@@ -195,7 +255,7 @@ impl Integrator for ProjectionStep {
             Aim {
                 tolerance,
                 max_iterations: self.options.max_projections,
-                t: end,
+                t: state.t + h,
                 loads: &[],
             },
             effort,
@@ -217,36 +277,6 @@ impl Integrator for ProjectionStep {
         if !model.has_drives() && to_result > to_start * (1.0 + DISTANCE_SLACK) {
             return Err(not_converged(state.t, h, effort, 0.0, strain));
         }
-        let mut work = 0.0;
-        for i in 0..self.x.len() {
-            let dx = self.x[i] - state.x[i];
-            work += self.applied[i] * dx;
-            self.v[i] = dx / h;
-        }
-        model.set_pin_velocities(end, h, &mut self.v);
-        let rates = model.constraint_rates(end, h, &self.x);
-        self.projector.release(model);
-        let residual = self.projector.velocities(
-            model,
-            &mut self.matrix,
-            &self.x,
-            &mut self.v,
-            &rates,
-            effort,
-        );
-        if !residual.is_finite() {
-            return Err(not_converged(state.t, h, effort, residual, strain));
-        }
-        self.set_balance(model, state, h);
-        state.x.copy_from_slice(&self.x);
-        state.v.copy_from_slice(&self.v);
-        state.t += h;
-        Ok(Accepted {
-            residual,
-            work,
-            driven: 0.0,
-            path: Path::Newton,
-            contact: ContactWork::default(),
-        })
+        Ok(strain)
     }
 }

@@ -1,20 +1,23 @@
 //! RATTLE and its fourth-order composition.
 
 use crate::constraint::conservative::ConservativeRows;
-use crate::contact::ContactWork;
 use crate::energy_momentum::mean_pin_velocities;
-use crate::integrator::{Integrator, OptionsError, RodDemand, Scene};
+use crate::history::Multipliers;
+use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::minimiser::not_converged;
+use crate::options::OptionsError;
 use crate::primal::{dot, strain_floor, velocity_round_off};
 use crate::reaction::{Balance, ForceTime};
-use crate::report::{Accepted, Effort, Path, StepError};
+use crate::report::{Effort, Path, StepError};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 
 /// Options of [`Rattle`] and [`RattleComposition`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct RattleOptions {
     /// Largest relative edge length error of an accepted step. Default 2e-13.
     pub strain_tolerance: f64,
@@ -52,12 +55,11 @@ impl RattleOptions {
 /// Second order, symmetric, symplectic; momenta conserved to round-off. It needs independent
 /// rods: next to a flat state its steps shrink with the smallest singular value of `G`, and
 /// where the rods are dependent and loaded it has no solution, which is reported.
-pub struct Rattle {
+pub(crate) struct Rattle {
     options: RattleOptions,
     matrix: SaddleMatrix,
     impulse: Vec<f64>,
-    impulse_step: f64,
-    trial: Vec<f64>,
+    rates: Vec<f64>,
     none: Vec<f64>,
     u: Vec<f64>,
     x1: Vec<f64>,
@@ -79,14 +81,13 @@ impl Rattle {
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
-    pub fn new(model: &SheetModel, options: RattleOptions) -> Result<Self, LinalgError> {
+    pub(crate) fn new(model: &SheetModel, options: RattleOptions) -> Result<Self, LinalgError> {
         let (n, m) = (model.coordinate_count(), model.rods().len());
         Ok(Self {
             options,
             matrix: SaddleMatrix::new(model)?,
             impulse: vec![0.0; m],
-            impulse_step: 0.0,
-            trial: vec![0.0; m],
+            rates: vec![0.0; m],
             none: vec![0.0; m],
             u: vec![0.0; n],
             x1: vec![0.0; n],
@@ -125,7 +126,7 @@ impl Rattle {
         }
         model
             .rods()
-            .apply_transpose_add(&state.x, &self.trial, &mut self.momentum);
+            .apply_transpose_add(&state.x, &self.impulse, &mut self.momentum);
         self.constraints
             .add_impulses(model, &self.constraints.impulses, &mut self.momentum);
         self.constraints
@@ -148,6 +149,7 @@ impl Rattle {
         &mut self,
         model: &SheetModel,
         state: &State,
+        multipliers: &mut Multipliers,
         h: f64,
         effort: &mut Effort,
     ) -> Result<(f64, Path), StepError> {
@@ -156,15 +158,16 @@ impl Rattle {
             .strain_tolerance
             .max(strain_floor(model, state));
         // The impulse grows with h while motion is smooth; h < 0 occurs inside compositions.
-        let ratio = if self.impulse_step == 0.0 {
+        let ratio = if multipliers.step == 0.0 {
             0.0
         } else {
-            h / self.impulse_step
+            h / multipliers.step
         };
-        for (t, i) in self.trial.iter_mut().zip(&self.impulse) {
-            *t = ratio * i;
+        for (e, l) in self.impulse.iter_mut().enumerate() {
+            *l = multipliers.rods.get(e).map_or(0.0, |i| ratio * i);
         }
-        self.constraints.begin(model, state.t, &state.x, ratio);
+        self.constraints
+            .begin(model, state.t, &state.x, ratio, &multipliers.constraints);
         self.constraints.push_at(model, state.t, &state.x);
         self.u.copy_from_slice(&state.v);
         mean_pin_velocities(model, state, h, &mut self.x1, &mut self.u);
@@ -179,7 +182,6 @@ impl Rattle {
         {
             if iterations == self.options.max_iterations || !(residual.is_finite() && strain < 1.0)
             {
-                self.impulse_step = 0.0;
                 return Err(not_converged(state.t, h, effort, residual, strain));
             }
             iterations += 1;
@@ -207,15 +209,14 @@ impl Rattle {
             for (u, d) in self.u.iter_mut().zip(&self.momentum) {
                 *u += d;
             }
-            for (l, d) in self.trial.iter_mut().zip(&self.rods) {
+            for (l, d) in self.impulse.iter_mut().zip(&self.rods) {
                 *l += d;
             }
             self.constraints.correct();
             (residual, strain) = self.residuals(model, state, h);
         }
-        self.impulse.copy_from_slice(&self.trial);
-        self.impulse_step = h;
-        self.constraints.keep();
+        let constraints = self.constraints.full_impulses();
+        multipliers.set(h, &self.impulse, constraints);
         Ok((residual, path))
     }
 
@@ -231,9 +232,9 @@ impl Rattle {
             + model.largest_acceleration(&self.kick)
             + velocity_round_off(state, h) / VELOCITY_TOLERANCE;
         let rods = model.rods();
-        rods.apply(&self.x1, &self.momentum, &mut self.trial);
+        rods.apply(&self.x1, &self.momentum, &mut self.rates);
         let rate = self
-            .trial
+            .rates
             .iter()
             .zip(rods.lengths())
             .fold(0.0_f64, |m, (r, l)| m.max(r.abs() / l))
@@ -246,11 +247,11 @@ impl Rattle {
         for (k, c) in self.kick.iter_mut().zip(&self.change) {
             *k += c;
         }
-        self.trial
+        self.rates
             .iter_mut()
             .zip(&self.rods)
             .for_each(|(t, r)| *t = -r);
-        rods.apply_transpose_add(&self.x1, &self.trial, &mut self.kick);
+        rods.apply_transpose_add(&self.x1, &self.rates, &mut self.kick);
         self.pushes.iter_mut().for_each(|p| *p = -*p);
         self.constraints
             .add_impulses(model, &self.pushes, &mut self.kick);
@@ -301,7 +302,7 @@ impl Rattle {
         balance.add_potentials(model, end, &self.x1, 0.5);
         balance.add_applied(model, t, &state.x, &state.v, 0.5);
         balance.add_applied(model, end, &self.x1, &self.u, 0.5);
-        balance.add_rods(model, &state.x, &self.trial, -1.0 / h);
+        balance.add_rods(model, &state.x, &self.impulse, -1.0 / h);
         balance.add_loads(self.constraints.loads(&self.constraints.impulses, 1.0 / h));
     }
 
@@ -318,21 +319,23 @@ impl Rattle {
         balance.finish(model);
     }
 
-    /// One step of any sign.
+    /// One step of any sign, of a state and the multipliers that belong to it. The forces of the supports over the
+    /// step are in `self.balance` afterwards.
     fn advance(
         &mut self,
         model: &SheetModel,
         state: &mut State,
+        multipliers: &mut Multipliers,
         h: f64,
         effort: &mut Effort,
-    ) -> Result<Accepted, StepError> {
+    ) -> Result<StepAccount, StepError> {
         model.potential_force(state.t, &state.x, &mut self.force);
         model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
         for i in 0..self.u.len() {
             self.kick[i] = 0.5 * h * (self.force[i] + self.applied[i]);
         }
         let mut work: f64 = 0.5 * h * dot(&self.applied, &state.v);
-        let (residual, path) = self.solve_positions(model, state, h, effort)?;
+        let (residual, path) = self.solve_positions(model, state, multipliers, h, effort)?;
         // Velocity: the momentum after the second half kick, projected onto G(x1) v = 0.
         model.potential_force(state.t + h, &self.x1, &mut self.force);
         model.applied_force(state.t + h, &self.x1, &self.u, &mut self.applied);
@@ -372,7 +375,6 @@ impl Rattle {
         self.pushes.clone_from(&self.constraints.rhs);
         let (rate, balance) = self.velocity_errors(model, state, h);
         if rate > VELOCITY_TOLERANCE || balance > VELOCITY_TOLERANCE || rate.is_nan() {
-            self.impulse_step = 0.0;
             let strain = model.rods().max_strain(&self.x1);
             return Err(not_converged(state.t, h, effort, rate.max(balance), strain));
         }
@@ -381,13 +383,11 @@ impl Rattle {
         state.x.copy_from_slice(&self.x1);
         state.v.copy_from_slice(&self.momentum);
         state.t += h;
-        Ok(Accepted {
+        Ok(StepAccount::without_contact(
             residual,
             work,
-            driven: 0.0,
-            path: path.max(projected),
-            contact: ContactWork::default(),
-        })
+            path.max(projected),
+        ))
     }
 }
 
@@ -404,32 +404,33 @@ const IMPULSE_ROUND_OFF: f64 = 1e-3;
 const VELOCITY_TOLERANCE: f64 = 1e-8;
 
 impl Integrator for Rattle {
-    fn demand(&self) -> RodDemand {
-        RodDemand::Independent
+    fn traits(&self) -> MethodTraits {
+        MethodTraits::conservative()
     }
 
-    fn balance(&self) -> &Balance {
-        &self.balance
-    }
-
-    fn step(
+    fn propose(
         &mut self,
         scene: Scene<'_>,
-        state: &mut State,
-        h: f64,
+        attempt: Attempt<'_>,
+        proposal: &mut Proposal,
         effort: &mut Effort,
-    ) -> Result<Accepted, StepError> {
-        self.advance(scene.model, state, h, effort)
+    ) -> Result<(), StepError> {
+        let moment = &mut proposal.moment;
+        moment.state.copy_from(attempt.state);
+        let multipliers = &mut moment.history.multipliers;
+        multipliers.copy_from(attempt.multipliers());
+        let state = &mut moment.state;
+        proposal.account = self.advance(scene.model, state, multipliers, attempt.h, effort)?;
+        moment.balance.copy_from(&self.balance);
+        Ok(())
     }
 }
 
 /// Suzuki's composition of five RATTLE steps of lengths `a, a, 1 - 4a, a, a` times `h` with
 /// `a = 1 / (4 - 4^(1/3))`: fourth order, symmetric, symplectic, with error constants far below
 /// those of the three-step composition (Hairer, Lubich and Wanner, Example II.4.3).
-pub struct RattleComposition {
+pub(crate) struct RattleComposition {
     rattle: Rattle,
-    saved: State,
-    total: Balance,
 }
 
 impl RattleComposition {
@@ -437,58 +438,44 @@ impl RattleComposition {
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
-    pub fn new(model: &SheetModel, options: RattleOptions) -> Result<Self, LinalgError> {
-        Ok(Self {
-            rattle: Rattle::new(model, options)?,
-            total: Balance::new(model, ForceTime::Mean),
-            saved: State::at_rest(vec![0.0; model.coordinate_count()]),
-        })
+    pub(crate) fn new(model: &SheetModel, options: RattleOptions) -> Result<Self, LinalgError> {
+        let rattle = Rattle::new(model, options)?;
+        Ok(Self { rattle })
     }
 }
 
 impl Integrator for RattleComposition {
-    fn demand(&self) -> RodDemand {
-        RodDemand::Independent
+    fn traits(&self) -> MethodTraits {
+        MethodTraits::conservative()
     }
 
-    fn balance(&self) -> &Balance {
-        &self.total
-    }
-
-    fn step(
+    fn propose(
         &mut self,
         scene: Scene<'_>,
-        state: &mut State,
-        h: f64,
+        attempt: Attempt<'_>,
+        proposal: &mut Proposal,
         effort: &mut Effort,
-    ) -> Result<Accepted, StepError> {
-        let model = scene.model;
+    ) -> Result<(), StepError> {
+        let (model, h) = (scene.model, attempt.h);
         let a = 1.0 / (4.0 - 4.0_f64.cbrt());
-        let t0 = state.t;
-        self.saved.copy_from(state);
-        self.total.clear();
-        let mut total = Accepted {
-            residual: 0.0,
-            work: 0.0,
-            driven: 0.0,
-            path: Path::Newton,
-            contact: ContactWork::default(),
-        };
+        let moment = &mut proposal.moment;
+        moment.state.copy_from(attempt.state);
+        let multipliers = &mut moment.history.multipliers;
+        multipliers.copy_from(attempt.multipliers());
+        moment.balance.clear();
+        let mut total = StepAccount::without_contact(0.0, 0.0, Path::Newton);
         for part in [a, a, 1.0 - 4.0 * a, a, a] {
-            match self.rattle.advance(model, state, part * h, effort) {
-                Ok(done) => {
-                    total.residual = total.residual.max(done.residual);
-                    total.work += done.work;
-                    total.path = total.path.max(done.path);
-                    self.total.add_share(&self.rattle.balance, part);
-                }
-                Err(error) => {
-                    state.copy_from(&self.saved);
-                    return Err(error);
-                }
-            }
+            let state = &mut moment.state;
+            let done = self
+                .rattle
+                .advance(model, state, multipliers, part * h, effort)?;
+            total.residual = total.residual.max(done.residual);
+            total.work += done.work;
+            total.path = total.path.max(done.path);
+            moment.balance.add_share(&self.rattle.balance, part);
         }
-        state.t = t0 + h;
-        Ok(total)
+        moment.state.t = attempt.state.t + h;
+        proposal.account = total;
+        Ok(())
     }
 }

@@ -6,6 +6,7 @@ use crate::contact::ContactTerms;
 use crate::trail::Trail;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Something that holds the sheet, by name.
@@ -22,7 +23,7 @@ pub enum Support {
     },
 }
 
-impl serde::Serialize for Support {
+impl Serialize for Support {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
@@ -47,8 +48,8 @@ pub struct Reaction {
 }
 
 /// At what time of a step forces are known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ForceTime {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum ForceTime {
     /// At its end.
     End,
     /// Their mean over it.
@@ -74,8 +75,8 @@ pub enum ForceTime {
 /// The conservative methods keep this balance to round-off. In the damped ones two things are left over: what Newton's method leaves at free
 /// vertices, which shrinks with its tolerance, and, where there is contact, the change of its forces by the projection that
 /// ends a step, beyond first order.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Balance {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Balance {
     /// At pinned vertices the force of the pin, elsewhere zero; `3V`, newtons.
     pub pins: Vec<f64>,
     /// Of each vertex constraint the multipliers of its equations, newtons. Of the damped methods, here and in the other two, without
@@ -87,6 +88,8 @@ pub struct Balance {
     pub time: ForceTime,
     /// Newtons that are not shared out between the supports yet.
     pub(crate) trail: Trail,
+    /// Room for intermediate results, `3V`.
+    #[serde(skip)]
     work: Vec<f64>,
 }
 
@@ -155,6 +158,18 @@ impl Balance {
         self.constraints.clone_from(&other.constraints);
         self.time = other.time;
         self.trail.copy_from(&other.trail);
+    }
+
+    /// The forces alone, without room for further ones.
+    pub(crate) fn compact(&self) -> Self {
+        Self {
+            pins: self.pins.clone(),
+            multipliers: self.multipliers.clone(),
+            constraints: self.constraints.clone(),
+            time: self.time,
+            trail: self.trail.compact(),
+            work: Vec::new(),
+        }
     }
 
     /// Sets all forces to zero.

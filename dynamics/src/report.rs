@@ -1,7 +1,6 @@
 //! What a step tells, and why a step fails.
 
 use crate::chart::ChartDynamicsError;
-use crate::contact::ContactWork;
 use crate::feasibility::Excess;
 use crate::reaction::Support;
 use isosheet_coords::linalg::LinalgError;
@@ -81,8 +80,8 @@ impl StepReport {
     }
 }
 
-/// Why a step could not be taken. [`Integrator::step`](crate::Integrator::step) leaves the state as
-/// it was, [`Simulation::step`](crate::Simulation::step) at the last accepted sub-step.
+/// Why a step could not be taken. [`Simulation::step`](crate::Simulation::step) leaves the state at the last
+/// accepted sub-step.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// The step size makes no sense.
@@ -284,26 +283,41 @@ pub enum StepError {
     },
 }
 
-/// Counters of one attempted sub-step, filled also when it fails.
+/// Counters of attempted sub-steps, filled also when they fail.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Effort {
+pub(crate) struct Effort {
     /// Newton iterations.
-    pub iterations: usize,
+    pub(crate) iterations: usize,
     /// Matrix factorisations.
-    pub factorisations: usize,
+    pub(crate) factorisations: usize,
 }
 
-/// What an accepted sub-step achieved.
-#[derive(Debug, Clone, Copy)]
-pub struct Accepted {
-    /// Relative residual of the momentum balance.
-    pub residual: f64,
-    /// Work done by the non-conservative forces, joules.
-    pub work: f64,
-    /// Work done by moving pins and vertex constraints, joules; filled in by the step control.
-    pub driven: f64,
-    /// How it was obtained.
-    pub path: Path,
-    /// What contact did; zero without.
-    pub contact: ContactWork,
+/// What was done on the way to the end of a step, kept also if the step fails half-way.
+#[derive(Debug)]
+pub(crate) struct Tally {
+    pub(crate) substeps: usize,
+    pub(crate) rejected: usize,
+    pub(crate) effort: Effort,
+    pub(crate) residual: f64,
+    pub(crate) path: Path,
+    pub(crate) work: f64,
+    pub(crate) dissipated: f64,
+    pub(crate) friction: f64,
+    pub(crate) taut: Option<Excess>,
+}
+
+impl Default for Tally {
+    fn default() -> Self {
+        Self {
+            substeps: 0,
+            rejected: 0,
+            effort: Effort::default(),
+            residual: 0.0,
+            path: Path::Newton,
+            work: 0.0,
+            dissipated: 0.0,
+            friction: 0.0,
+            taut: None,
+        }
+    }
 }

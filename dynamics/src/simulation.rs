@@ -1,64 +1,17 @@
 //! A sheet in motion: state, integrator, step control and energy balance.
 
-use crate::chart::{ChartDynamicsError, ChartOptions, ChartSimulation};
-use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactError, RunContact};
-use crate::integrator::OptionsError;
+use crate::chart::engine::ChartEngine;
+use crate::chart::{ChartOptions, ChartSimulation};
+use crate::checkpoint::{Checkpoint, EnergySums, Motion, SheetFingerprint};
+use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact};
+use crate::engine::Engine as FreeEngine;
 use crate::reaction::Reaction;
-use crate::report::{Path, StepError, StepReport};
+use crate::report::{StepError, StepReport, Tally};
+use crate::simulation_error::SimulationError;
 use crate::start::{check_finite, check_motions, check_state};
-use crate::subdivide::{Subdivided, Tally};
-use crate::taut::held_by_lines;
 use crate::{Method, SheetModel, State, StepControl};
 use isosheet_coords::Chart;
-use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::VertexId;
-
-/// Why a simulation cannot start.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SimulationError {
-    /// An option makes no sense.
-    #[error(transparent)]
-    Options(#[from] OptionsError),
-    /// The state does not fit the model.
-    #[error(
-        "the state has {positions} position and {velocities} velocity values, the sheet needs \
-         {expected} of each"
-    )]
-    StateLength {
-        /// Number of position values.
-        positions: usize,
-        /// Number of velocity values.
-        velocities: usize,
-        /// Three for each vertex.
-        expected: usize,
-    },
-    /// The start state is not one that a step could start from.
-    #[error(transparent)]
-    Start(#[from] StepError),
-    /// The linear algebra could not be set up.
-    #[error(transparent)]
-    Linalg(#[from] LinalgError),
-    /// The chart cannot be used.
-    #[error(transparent)]
-    Chart(#[from] ChartDynamicsError),
-    /// Contact cannot start here.
-    #[error(transparent)]
-    Contact(#[from] ContactError),
-    /// A one-sided constraint is in a scene of a conservative method.
-    #[error(
-        "vertex constraint {index} is one-sided, which the conservative methods have no place for: an \
-         impact loses energy. Use BDF2, implicit Euler or projection"
-    )]
-    OneSided {
-        /// Place in the order in which the constraints were added.
-        index: usize,
-    },
-    /// Step control by subdivision was asked for a chart, which has its own.
-    #[error(
-        "a simulation in a chart controls its steps by `ChartOptions::control`; leave `StepControl` out"
-    )]
-    ChartControl,
-}
 
 /// A sheet in motion. Owns the model, the state and the integrator.
 ///
@@ -80,23 +33,22 @@ pub enum SimulationError {
 /// ```
 pub struct Simulation {
     engine: Engine,
-    state: State,
+    /// What tells the model, as its user built it, from another one.
+    sheet: SheetFingerprint,
+    energy: EnergySums,
+    /// Room for a sum of forces, `3V`.
     force: Vec<f64>,
-    start_energy: f64,
-    work: f64,
-    dissipated: f64,
-    friction: f64,
 }
+
+/// A simulation can move to another thread.
+const _: fn() = || {
+    fn is_send<T: Send>() {}
+    is_send::<Simulation>();
+};
 
 enum Engine {
-    Subdivided(Box<Subdivided>),
+    Free(Box<FreeEngine>),
     Chart(Box<ChartEngine>),
-}
-
-struct ChartEngine {
-    simulation: ChartSimulation,
-    /// At the end of the last step.
-    reactions: Vec<Reaction>,
 }
 
 impl Simulation {
@@ -110,21 +62,18 @@ impl Simulation {
     /// [`SimulationError`] if the options or the state make no sense, or the state does not
     /// have the rest lengths to 1e-8 (see [`project_positions`](crate::project_positions)).
     pub fn new(
-        mut model: SheetModel,
+        model: SheetModel,
         mut state: State,
         method: Method,
     ) -> Result<Self, SimulationError> {
         check_length(&model, &state)?;
         check_motions(&model, &state)?;
+        let sheet = SheetFingerprint::of(&model);
         model.clear_pinned(&mut state.v);
         model.set_pin_velocities(state.t, MOTION_SPAN, &mut state.v);
         check_state(&model, &state)?;
-        let held = held_by_lines(&model, &state.x);
-        model.hold(&held);
-        held.iter()
-            .for_each(|v| state.v[3 * v.index()..3 * v.index() + 3].fill(0.0));
-        let engine = Engine::Subdivided(Box::new(Subdivided::new(model, method)?));
-        Ok(Self::start(engine, state))
+        let engine = Engine::Free(Box::new(FreeEngine::new(model, method, state)?));
+        Ok(Self::start(engine, sheet))
     }
 
     /// A simulation of `model` from `state` in system coordinates: the paper's scheme and its
@@ -145,28 +94,54 @@ impl Simulation {
         check_length(&model, &state)?;
         check_motions(&model, &state)?;
         check_state(&model, &state)?;
+        let sheet = SheetFingerprint::of(&model);
         let mut simulation = ChartSimulation::from_state(model, chart, options, &state)?;
         state.v = simulation.velocities()?;
-        let reactions = Vec::new();
-        let engine = Engine::Chart(Box::new(ChartEngine {
-            simulation,
-            reactions,
-        }));
-        Ok(Self::start(engine, state))
+        let engine = Engine::Chart(Box::new(ChartEngine::new(simulation, state)));
+        Ok(Self::start(engine, sheet))
     }
 
-    fn start(engine: Engine, state: State) -> Self {
+    fn start(engine: Engine, sheet: SheetFingerprint) -> Self {
         let mut simulation = Self {
             engine,
-            force: vec![0.0; state.x.len()],
-            state,
-            start_energy: 0.0,
-            work: 0.0,
-            dissipated: 0.0,
-            friction: 0.0,
+            sheet,
+            energy: EnergySums::default(),
+            force: Vec::new(),
         };
-        simulation.start_energy = simulation.energy();
+        simulation.force = vec![0.0; simulation.state().x.len()];
+        simulation.energy.start = simulation.energy();
         simulation
+    }
+
+    /// Everything that the next step depends on besides model and contact, as a value.
+    pub fn checkpoint(&self) -> Checkpoint {
+        let motion = match &self.engine {
+            Engine::Free(engine) => Motion::Free(Box::new(engine.motion())),
+            Engine::Chart(_) => todo!(),
+        };
+        Checkpoint::new(self.sheet, self.energy, motion)
+    }
+
+    /// Goes on from a checkpoint of a chart-free method, with the model and the contact that it was made with: bit
+    /// for bit as the simulation would have gone on that the checkpoint was made of.
+    ///
+    /// # Errors
+    /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of simulation.
+    pub fn resume(
+        model: SheetModel,
+        contact: Option<Box<dyn Contact>>,
+        checkpoint: Checkpoint,
+    ) -> Result<Self, SimulationError> {
+        checkpoint.check_model(&model)?;
+        let Motion::Free(motion) = checkpoint.motion;
+        let engine = FreeEngine::resume(model, contact, *motion)?;
+        let force = vec![0.0; engine.state().x.len()];
+        Ok(Self {
+            engine: Engine::Free(Box::new(engine)),
+            sheet: checkpoint.sheet,
+            energy: checkpoint.energy,
+            force,
+        })
     }
 
     /// Replaces the step control of a chart-free method.
@@ -175,7 +150,7 @@ impl Simulation {
     /// [`SimulationError`] if it makes no sense.
     pub fn with_control(mut self, control: StepControl) -> Result<Self, SimulationError> {
         match &mut self.engine {
-            Engine::Subdivided(engine) => engine.set_control(control)?,
+            Engine::Free(engine) => engine.set_control(control)?,
             Engine::Chart(_) => return Err(SimulationError::ChartControl),
         }
         Ok(self)
@@ -191,17 +166,17 @@ impl Simulation {
         contact: impl Contact + 'static,
     ) -> Result<Self, SimulationError> {
         match &mut self.engine {
-            Engine::Subdivided(engine) => engine.set_contact(Box::new(contact), &self.state)?,
+            Engine::Free(engine) => engine.set_contact(Box::new(contact))?,
             Engine::Chart(chart) => chart.simulation.set_contact(Box::new(contact))?,
         }
-        self.start_energy = self.energy();
+        self.energy.start = self.energy();
         Ok(self)
     }
 
     /// The contacts at the present state; `None` in scenes without contact.
     pub fn contacts(&self) -> Option<&ActiveContacts> {
         match &self.engine {
-            Engine::Subdivided(engine) => engine.contact.as_ref().map(|c| &c.state.active),
+            Engine::Free(engine) => engine.contact().map(|(_, contacts)| &contacts.active),
             Engine::Chart(chart) => chart.simulation.contacts(),
         }
     }
@@ -209,14 +184,15 @@ impl Simulation {
     /// What the sheet does to the bodies, in the order in which they were added; empty without contact, and in charts, where
     /// impulses act ([`ChartSimulation::impulses`]).
     pub fn body_loads(&self) -> Vec<BodyLoad> {
-        self.barrier()
-            .map_or_else(Vec::new, |c| c.loads(&self.state.x))
+        self.barrier().map_or_else(Vec::new, |(contact, contacts)| {
+            contact.loads(contacts, &self.state().x)
+        })
     }
 
     /// Contact that acts by its barrier.
-    fn barrier(&self) -> Option<&RunContact> {
+    fn barrier(&self) -> Option<(&RunContact, &ContactState)> {
         match &self.engine {
-            Engine::Subdivided(engine) => engine.contact.as_ref(),
+            Engine::Free(engine) => engine.contact(),
             Engine::Chart(_) => None,
         }
     }
@@ -229,9 +205,9 @@ impl Simulation {
     /// when the forces are wanted.
     pub fn reactions(&self) -> Vec<Reaction> {
         match &self.engine {
-            Engine::Subdivided(engine) => {
-                let balance = engine.balance.as_ref();
-                balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, self.state.t))
+            Engine::Free(engine) => {
+                let balance = engine.balance();
+                balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, engine.state().t))
             }
             Engine::Chart(chart) => chart.reactions.clone(),
         }
@@ -240,7 +216,7 @@ impl Simulation {
     /// The model.
     pub fn model(&self) -> &SheetModel {
         match &self.engine {
-            Engine::Subdivided(engine) => &engine.model,
+            Engine::Free(engine) => &engine.model,
             Engine::Chart(chart) => chart.simulation.mechanics().model(),
         }
     }
@@ -248,27 +224,30 @@ impl Simulation {
     /// The simulation in system coordinates, if this is one: coordinates, momenta, step range.
     pub fn chart(&self) -> Option<&ChartSimulation> {
         match &self.engine {
-            Engine::Subdivided(_) => None,
+            Engine::Free(_) => None,
             Engine::Chart(chart) => Some(&chart.simulation),
         }
     }
 
     /// Time, positions and velocities.
     pub fn state(&self) -> &State {
-        &self.state
+        match &self.engine {
+            Engine::Free(engine) => engine.state(),
+            Engine::Chart(chart) => &chart.state,
+        }
     }
 
     /// Total energy `T + V`, contact included, joules.
     pub fn energy(&self) -> f64 {
-        self.model().kinetic_energy(&self.state.v) + self.potential_energy()
+        self.model().kinetic_energy(&self.state().v) + self.potential_energy()
     }
 
     fn potential_energy(&self) -> f64 {
-        let State { t, x, .. } = &self.state;
+        let State { t, x, .. } = self.state();
         let potential = self.model().potential_energy(*t, x);
         match self.barrier() {
             None => potential,
-            Some(contact) => potential + contact.barrier_energy(),
+            Some((contact, contacts)) => potential + contact.barrier_energy(contacts),
         }
     }
 
@@ -278,8 +257,8 @@ impl Simulation {
     /// # Errors
     /// [`StepError`]; the state is then that of the last accepted sub-step.
     pub fn step(&mut self, h: f64) -> Result<StepReport, StepError> {
-        let start = self.state.t;
-        check_finite(&self.state)?;
+        let start = self.state().t;
+        check_finite(self.state())?;
         if !(h.is_finite() && h > 0.0) || start + h <= start {
             return Err(StepError::StepSize { h, t: start });
         }
@@ -287,35 +266,49 @@ impl Simulation {
         let end = start + h;
         let mut tally = Tally::default();
         let done = match &mut self.engine {
-            Engine::Subdivided(engine) => engine.advance(&mut self.state, h, &mut tally),
-            Engine::Chart(chart) => advance_chart(chart, &mut self.state, end, &mut tally),
+            Engine::Free(engine) => engine.advance(h, &mut tally),
+            Engine::Chart(chart) => chart.advance(end, &mut tally),
         };
-        self.work += tally.work;
-        self.dissipated += tally.dissipated;
-        self.friction += tally.friction;
+        self.energy.work += tally.work;
+        self.energy.dissipated += tally.dissipated;
+        self.energy.friction += tally.friction;
         done?;
-        if tally.taut.is_none() {
-            self.state.t = end;
-        }
-        let end = self.state.t;
-        let model = self.model();
-        let kinetic = model.kinetic_energy(&self.state.v);
-        let potential = self.potential_energy();
+        self.check_energies()?;
+        Ok(self.report(h, &tally))
+    }
+
+    /// Refuses energies that are not finite.
+    fn check_energies(&self) -> Result<(), StepError> {
+        let State { t, v, .. } = self.state();
         for (quantity, value) in [
-            ("the potential energy", potential),
-            ("the kinetic energy", kinetic),
-            ("the work of the applied forces", self.work),
+            ("the potential energy", self.potential_energy()),
+            ("the kinetic energy", self.model().kinetic_energy(v)),
+            ("the work of the applied forces", self.energy.work),
         ] {
             if !value.is_finite() {
                 return Err(StepError::NonFiniteEnergy {
                     quantity,
                     value,
-                    t: end,
+                    t: *t,
                 });
             }
         }
-        Ok(StepReport {
-            t: end,
+        Ok(())
+    }
+
+    /// What a step of `h` seconds did.
+    fn report(&self, h: f64, tally: &Tally) -> StepReport {
+        let model = self.model();
+        let State { t, x, v } = self.state();
+        let (kinetic, potential) = (model.kinetic_energy(v), self.potential_energy());
+        let EnergySums {
+            start,
+            work,
+            dissipated,
+            friction,
+        } = self.energy;
+        StepReport {
+            t: *t,
             h,
             substeps: tally.substeps,
             rejected: tally.rejected,
@@ -324,23 +317,22 @@ impl Simulation {
             residual: tally.residual,
             kinetic,
             potential,
-            work: self.work,
-            dissipated: self.dissipated,
-            friction: self.friction,
-            energy_drift: kinetic + potential - self.work + self.dissipated + self.friction
-                - self.start_energy,
-            strain: model.rods().max_strain(&self.state.x),
+            work,
+            dissipated,
+            friction,
+            energy_drift: kinetic + potential - work + dissipated + friction - start,
+            strain: model.rods().max_strain(x),
             taut: tally.taut,
-            violation: model.largest_violation(self.state.t, &self.state.x),
+            violation: model.largest_violation(*t, x),
             gap: self.contacts().map(ActiveContacts::gap),
             path: tally.path,
-        })
+        }
     }
 
     /// Refuses potentials and forces that are not finite at the state.
     fn check_forces(&mut self) -> Result<(), StepError> {
         let mut sum = std::mem::take(&mut self.force);
-        let State { t, x, v } = &self.state;
+        let State { t, x, v } = self.state();
         let model = self.model();
         model.potential_force(*t, x, &mut sum);
         for force in model.forces() {
@@ -362,74 +354,6 @@ impl Simulation {
 
 /// Over parts of this time (seconds) the velocities of moving pins at the start are taken by differences.
 const MOTION_SPAN: f64 = 1e-2;
-
-/// Sub-steps shorter than this fraction of the time reached are round-off, not time.
-const TIME_ROUND_OFF: f64 = 4.0 * f64::EPSILON;
-
-/// Advances a simulation in a chart to `end`.
-fn advance_chart(
-    engine: &mut ChartEngine,
-    state: &mut State,
-    end: f64,
-    tally: &mut Tally,
-) -> Result<(), StepError> {
-    let chart = &mut engine.simulation;
-    tally.path = Path::Chart;
-    let failed = |t: f64, source: ChartDynamicsError| StepError::Chart {
-        t,
-        source: Box::new(source),
-    };
-    let has_forces = !chart.mechanics().model().forces().is_empty();
-    let mut applied = vec![0.0; if has_forces { state.x.len() } else { 0 }];
-    let limit = chart.options().max_steps;
-    let outcome = loop {
-        let left = end - chart.time();
-        if left <= TIME_ROUND_OFF * end.abs() {
-            break Ok(());
-        }
-        if tally.substeps + tally.rejected >= limit {
-            let t = chart.time();
-            break Err(failed(t, ChartDynamicsError::TooManySteps { t, limit }));
-        }
-        if has_forces {
-            let v = match chart.velocities() {
-                Ok(v) => v,
-                Err(error) => break Err(failed(chart.time(), error)),
-            };
-            let model = chart.mechanics().model();
-            model.applied_force(chart.time(), chart.positions(), &v, &mut applied);
-            state.x.copy_from_slice(chart.positions());
-        }
-        let report = match chart.step_within(left) {
-            Ok(report) => report,
-            Err(error) => break Err(failed(chart.time(), error)),
-        };
-        tally.substeps += 1;
-        tally.rejected += report.rejected as usize;
-        tally.work += report.driven;
-        tally.dissipated += report.damped;
-        tally.friction += report.impact;
-        tally.path = tally.path.max(if report.rebased {
-            Path::Rebased
-        } else {
-            Path::Chart
-        });
-        if has_forces {
-            tally.work += applied
-                .iter()
-                .zip(chart.positions().iter().zip(&state.x))
-                .map(|(f, (new, old))| f * (new - old))
-                .sum::<f64>();
-        }
-    };
-    state.t = chart.time();
-    state.x.copy_from_slice(chart.positions());
-    state.v = chart.velocities().map_err(|e| failed(state.t, e))?;
-    if chart.mechanics().model().has_supports() {
-        engine.reactions = chart.reactions().map_err(|e| failed(state.t, e))?;
-    }
-    outcome
-}
 
 fn check_length(model: &SheetModel, state: &State) -> Result<(), SimulationError> {
     let expected = model.coordinate_count();

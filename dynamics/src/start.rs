@@ -1,8 +1,8 @@
 //! Making and checking states to start from.
 
 use crate::constraint::rows::point;
-use crate::integrator::OptionsError;
 use crate::iterate::Iterate;
+use crate::options::OptionsError;
 use crate::primal::PrimalMatrix;
 use crate::project::{Aim, Projector};
 use crate::reaction::Support;

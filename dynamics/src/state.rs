@@ -1,7 +1,7 @@
 //! The state of a sheet in motion.
 
 /// Time, positions and velocities.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct State {
     /// Time, seconds.
     pub t: f64,

@@ -87,8 +87,8 @@ mod tests {
         assert_eq!(held(&[0, 24], |_| ()), [6, 12, 18]);
         assert_eq!(held(&[0, 3], |_| ()), [1, 2]);
         // A knight's move is no line of rods.
-        assert_eq!(held(&[0, 11], |_| ()), []);
-        assert_eq!(held(&[0], |_| ()), []);
+        assert_eq!(held(&[0, 11], |_| ()), [0_u32; 0]);
+        assert_eq!(held(&[0], |_| ()), [0_u32; 0]);
         // The border first, and everything inside between its vertices.
         assert_eq!(held(&[0, 4, 20, 24], |_| ()).len(), 21);
     }
@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn lines_with_slack_are_not() {
         let lift = |z: f64| move |x: &mut [f64]| x[3 * 2 + 2] = z;
-        assert_eq!(held(&[0, 4], lift(1e-5)), []);
+        assert_eq!(held(&[0, 4], lift(1e-5)), [0_u32; 0]);
         assert_eq!(held(&[0, 4], lift(1e-8)), [1, 2, 3]);
     }
 

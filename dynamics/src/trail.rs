@@ -5,6 +5,7 @@ use crate::constraint::rows::VertexRows;
 use crate::primal::{PrimalMatrix, penalties};
 use isosheet_coords::linalg::norm_inf;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// Entries that a trail has room for; projections need three to six iterations. What comes later joins the last one.
 const ROOM: usize = 16;
@@ -18,13 +19,13 @@ const BALANCED: f64 = 1e-12;
 
 /// The parts of a step's change of momentum that no multiplier is known for, each with the positions whose rods and vertex
 /// constraints gave it: iterations of a projection, and what a minimisation left.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Trail {
     entries: Vec<Entry>,
     len: usize,
 }
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Entry {
     /// `3V`, metres.
     x: Vec<f64>,
@@ -60,6 +61,14 @@ impl Trail {
 
     pub(crate) fn has_room(&self) -> bool {
         !self.entries.is_empty()
+    }
+
+    /// The entries alone, without room for further ones.
+    pub(crate) fn compact(&self) -> Self {
+        Self {
+            entries: self.entries[..self.len].to_vec(),
+            len: self.len,
+        }
     }
 
     pub(crate) fn clear(&mut self) {

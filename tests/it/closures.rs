@@ -240,7 +240,7 @@ fn moving_closures_follow_the_chart_free_motion() {
         let normal = [0.3, -0.2, 1.0];
         let plane = Plane::new(sheet.position(VertexId(4)), normal).expect("valid");
         let plane = VertexConstraint::on_surface(VertexId(4), plane, Side::On)
-            .moving(|t| Isometry3::translation(0.0, 0.0, 0.1 * (5.0 * t).sin()));
+            .moving(|t: f64| Isometry3::translation(0.0, 0.0, 0.1 * (5.0 * t).sin()));
         let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
             .expect("valid")
             .with_gravity()
@@ -248,7 +248,7 @@ fn moving_closures_follow_the_chart_free_motion() {
             .expect("valid")
             .with_pins(&[first])
             .expect("exists")
-            .with_moving_pin(second, move |t| {
+            .with_moving_pin(second, move |t: f64| {
                 let s = 0.1 * (4.0 * t).sin();
                 [from[0] - s, from[1] - s, from[2] + s * s]
             })

@@ -2,12 +2,13 @@
 
 use isosheet_dynamics::constraint::{Circle, Line, Plane, Side, Sphere};
 use isosheet_dynamics::{
-    ImplicitOptions, Method, SheetModel, Simulation, SimulationError, State, StepControl,
-    StepError, Support, Unsatisfiable, VertexConstraint,
+    ImplicitOptions, Method, Profile, RigidDisplacement, SheetModel, Simulation, SimulationError,
+    State, StepControl, StepError, Support, Unsatisfiable, VertexConstraint,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use isosheet_tests::{HangingStrip, Pendulum, max_difference, orders};
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::Vector3;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 const G: f64 = 9.8;
 
@@ -340,10 +341,20 @@ fn a_moving_plane_lifts_a_triangle() {
         let name = format!("{method:?}");
         let order_one = matches!(method, Method::ImplicitEuler(_) | Method::Projection(_));
         let (sheet, mut model) = triangle(0.3);
+        // From rest at the lowest point: 0.1 m (1 - cos(6 t / s)).
+        let lift = RigidDisplacement {
+            z: Profile::Sine {
+                mean: 0.1,
+                amplitude: 0.1,
+                frequency: 6.0 / TAU,
+                phase: -FRAC_PI_2,
+            },
+            ..RigidDisplacement::default()
+        };
         for v in 0..3 {
             let floor = Plane::new([0.0; 3], [0.0, 0.0, 1.0]).expect("valid");
-            let floor = VertexConstraint::on_surface(VertexId(v), floor, Side::On)
-                .moving(|t| Isometry3::translation(0.0, 0.0, 0.1 * (1.0 - (6.0 * t).cos())));
+            let floor =
+                VertexConstraint::on_surface(VertexId(v), floor, Side::On).moving(lift.clone());
             model = model.with_constraint(floor).expect("exists");
         }
         let model = model.with_gravity();

@@ -1,10 +1,10 @@
 //! The mechanics of contact against closed forms.
 
 use crate::watch::Watch;
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Motion, Obstacle, Shape};
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape};
 use isosheet_dynamics::contact::{
-    ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactSet, LaggedFriction,
-    Motion as Course, StepSpan,
+    ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactSet, JointMotion,
+    LaggedFriction, StepSpan,
 };
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
@@ -274,8 +274,7 @@ fn a_conveyor_does_work_by_friction() {
         t,
         pose: Isometry3::translation(SPEED * t, 0.0, -0.95 * options.activation),
     };
-    let motion = Motion::new(vec![key(0.0), key(1.0)]).expect("in order");
-    let belt = Obstacle::new(Shape::HalfSpace, motion).expect("valid");
+    let belt = Obstacle::new(Shape::HalfSpace, vec![key(0.0), key(1.0)]).expect("valid");
     let contacts = Contacts::new(&model, options)
         .and_then(|c| c.with_body(belt, Coefficients::equal(0.5)))
         .expect("valid");
@@ -316,7 +315,7 @@ fn barrier_and_lagged_friction_survive_a_file() {
     let barrier = BarrierPotential::at_start(contacts.laws(), &model, &start).expect("valid");
     let span = StepSpan { t0: 0.0, h: 0.01 };
     let bodies = BodyMotions::over(&contacts, span);
-    let motion = Course {
+    let motion = JointMotion {
         bodies: &bodies,
         progress: [1.0; 2],
         x: &start.x,

@@ -1,7 +1,7 @@
 //! Contact by impulses, in charts.
 
 use crate::scenes::gap;
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Motion, Obstacle, Shape};
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape};
 use isosheet_coords::{AssignmentOptions, CartesianChart, Chart, Choice, FrontChart, RodSystem};
 use isosheet_dynamics::chart::{
     ChartDynamicsError, ChartMethod, ChartOptions, ChartSimulation, ChartStepControl, Equations,
@@ -267,7 +267,7 @@ fn moving_bodies_do_work_and_do_not_pass() {
         t,
         pose: Isometry3::translation(0.0, 0.0, z),
     };
-    let rising = Motion::new(vec![key(0.0, 0.0), key(0.2, 0.4)]).expect("valid");
+    let rising = vec![key(0.0, 0.0), key(0.2, 0.4)];
     let rising = Obstacle::new(Shape::HalfSpace, rising).expect("valid");
     let contacts = floor(&model, Isometry3::translation(0.0, 0.0, -1.0), 0.0)
         .with_body(rising, Coefficients::FRICTIONLESS)
@@ -294,7 +294,7 @@ fn moving_bodies_do_work_and_do_not_pass() {
         ..Default::default()
     };
     let (model, start) = (pendulum.model(), pendulum.start());
-    let rising = Motion::new(vec![key(0.0, -0.5), key(1.0, 0.1)]).expect("valid");
+    let rising = vec![key(0.0, -0.5), key(1.0, 0.1)];
     let rising = Obstacle::new(Shape::HalfSpace, rising).expect("valid");
     let contacts = floor(&model, Isometry3::translation(0.0, 0.0, -1.0), 0.0)
         .with_body(rising, Coefficients::FRICTIONLESS)

@@ -3,6 +3,7 @@
 mod balance;
 mod buckling;
 mod charts;
+mod checkpoint;
 mod closures;
 mod conservation;
 mod constraints;

@@ -1,23 +1,25 @@
 //! Sheets folded from exactly flat by driven angles at their creases, against the kinematics of rigid origami.
 
 use isosheet_dynamics::{
-    CreaseSpring, CreaseSprings, Method, RestAngle, SheetModel, Simulation, State,
+    CreaseSpring, CreaseSprings, Interpolation, Method, Profile, SheetModel, Simulation, State,
 };
 use isosheet_mesh::generate::{Assignment, FoldPattern, degree_four, miura};
 use isosheet_mesh::{EdgeId, MassKind, VertexId, fold_angle};
 use isosheet_tests::{DegreeFour, FoldingMode, Miura, max_difference};
 
-/// A smooth ramp from 0 at t = 0 to 1 at t = 1, then constant.
-fn ramp(t: f64) -> f64 {
-    let s = t.clamp(0.0, 1.0);
-    s * s * (3.0 - 2.0 * s)
+/// Folds by an angle in a second, at rest before and after.
+fn folded_by(full: f64) -> Profile {
+    Profile::Keyframes {
+        interpolation: Interpolation::MonotoneCubic,
+        keys: vec![[0.0, 0.0], [1.0, full]],
+    }
 }
 
 fn spring(edge: EdgeId, stiffness: f64, full: f64) -> CreaseSpring {
     CreaseSpring {
         edge,
         stiffness,
-        rest: RestAngle::Driven(Box::new(move |t| full * ramp(t))),
+        rest: folded_by(full).into(),
     }
 }
 

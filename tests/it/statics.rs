@@ -1,6 +1,6 @@
 //! Sheets at rest against closed forms and the balance of forces.
 
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Motion, Obstacle, Shape};
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape};
 use isosheet_dynamics::{
     ImplicitOptions, Method, Reaction, SheetModel, Simulation, State, StepControl, StepError,
     Support, Unsatisfiable,
@@ -119,8 +119,7 @@ impl Hammock {
                 pose: at(to),
             },
         ];
-        let motion = Motion::new(keys).expect("in order");
-        let ball = Obstacle::new(Shape::Sphere { radius: RADIUS }, motion).expect("valid");
+        let ball = Obstacle::new(Shape::Sphere { radius: RADIUS }, keys).expect("valid");
         let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))
             .and_then(|c| c.with_body(ball, Coefficients::FRICTIONLESS))
             .expect("valid");

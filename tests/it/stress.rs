@@ -2,7 +2,7 @@
 
 use crate::watch::Watch;
 use isosheet_collide::{
-    Coefficients, ContactOptions, Contacts, Keyframe, Motion, Obstacle, Shape, TriangleSurface,
+    Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape, TriangleSurface,
 };
 use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepReport};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
@@ -73,7 +73,7 @@ fn wall(point: [f64; 3], normal: [f64; 3]) -> Isometry3<f64> {
 /// A body that moves from one pose to another between two times.
 fn mover(shape: Shape, from: Isometry3<f64>, to: Isometry3<f64>, [t0, t1]: [f64; 2]) -> Obstacle {
     let keys = vec![Keyframe { t: t0, pose: from }, Keyframe { t: t1, pose: to }];
-    Obstacle::new(shape, Motion::new(keys).expect("in order")).expect("valid")
+    Obstacle::new(shape, keys).expect("valid")
 }
 
 /// A half-space that closes in along its normal by `way` metres within `t` seconds.
@@ -340,7 +340,7 @@ fn a_strip_is_wrapped_round_a_cylinder_and_unrolled() {
             radius,
             half_height: width,
         },
-        Motion::new(keys.collect()).expect("in order"),
+        keys.collect::<Vec<_>>(),
     )
     .expect("valid");
     let pin = move |y: f64| {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Coefficients, ContactOptions, Contacts, Keyframe, Motion};
+use crate::{Coefficients, ContactOptions, Contacts, Keyframe};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State, Support};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::Isometry3;
@@ -53,25 +53,21 @@ fn shapes() -> Vec<Shape> {
 fn derivatives_of_levels_are_those_of_their_differences() {
     let h = 1e-6;
     for shape in shapes() {
-        let posed = Posed {
-            shape,
-            pose: pose(),
-        };
         for i in 0..200 {
             let a = f64::from(i);
             let p = Vector3::new((1.3 * a).sin(), (2.1 * a).cos(), (0.7 * a).sin()) * 0.6;
             // Half of the points on the surface itself, where a vertex is held.
-            let at = posed.at(&p);
+            let at = shape.at(&p);
             let p = if i % 2 == 0 {
                 p
             } else {
                 p - at.level * at.gradient
             };
-            let at = posed.at(&p);
+            let at = shape.at(&p);
             let ends = |k: usize| {
                 let mut d = Vector3::zeros();
                 d[k] = h;
-                [posed.at(&(p + d)), posed.at(&(p - d))]
+                [shape.at(&(p + d)), shape.at(&(p - d))]
             };
             // Across a sharp edge, and where the closest feature changes, there is no derivative.
             let smooth = (0..3).flat_map(ends).all(|e| {
@@ -87,12 +83,12 @@ fn derivatives_of_levels_are_those_of_their_differences() {
                 assert!(
                     (slope - at.gradient[k]).abs() < 1e-8,
                     "{:?} at {p:?}: {slope} against {}",
-                    posed.shape,
+                    shape,
                     at.gradient[k]
                 );
                 let turn = (up.gradient - down.gradient) / (2.0 * h);
                 let error = (turn - at.hessian.column(k)).norm();
-                assert!(error < 1e-5, "{:?} at {p:?}: {error:e}", posed.shape);
+                assert!(error < 1e-5, "{shape:?} at {p:?}: {error:e}");
             }
         }
     }
@@ -103,7 +99,7 @@ fn constraints_move_as_their_bodies_do() {
     let keys = [(0.0, Isometry3::identity()), (1.0, pose())]
         .map(|(t, pose)| Keyframe { t, pose })
         .to_vec();
-    let body = Obstacle::new(Shape::Sphere { radius: 0.2 }, Motion::new(keys).unwrap()).unwrap();
+    let body = Obstacle::new(Shape::Sphere { radius: 0.2 }, keys).unwrap();
     let still = Obstacle::still(Shape::Sphere { radius: 0.2 }, pose()).unwrap();
     let p = Vector3::new(0.3, 0.2, 0.5);
     assert!(body.constraint(VertexId(0), Side::On).moves());
@@ -190,8 +186,8 @@ fn a_triangle_slides_along_a_capsule_at_g_sin() {
     slide(x, &body, slope);
 }
 
-/// A sheet with one corner led along a path, the opposite one on a ball, and a floor below: lengths, gap and supports hold,
-/// and the floor carries weight.
+/// A sheet with one corner led along a path, the opposite one on a ball, and a floor below: lengths, gap and
+/// supports hold, and the floor carries weight.
 #[test]
 fn a_led_corner_a_ball_and_a_floor_hold_together() {
     let sheet = generate::isotropic_square(1, 1.0).unwrap();

@@ -6,7 +6,7 @@ use super::sheet::SheetMotion;
 use crate::distance::{Closest, edge_edge, point_triangle};
 use crate::narrow_phase::{gather, smaller};
 use crate::{BroadPhase, CrossCandidates, Obstacle, ObstacleError, Shape};
-use isosheet_dynamics::contact::{BodyMotion, ContactKey, ContactKind, RigidMotion, StepSpan};
+use isosheet_dynamics::contact::{BodyMotion, ContactKey, ContactKind, StepMotion, StepSpan};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 /// Directions of an axis closer than this are the same but for the round-off of a quaternion.
@@ -47,20 +47,20 @@ impl Body {
         let motion = self.obstacle.motion();
         let (start, end) = (motion.pose(span.t0), motion.pose(span.t0 + span.h));
         BodyMotion {
-            material: RigidMotion::new(start, end),
-            surface: RigidMotion::new(self.without_spin(start), self.without_spin(end)),
+            material: StepMotion::new(start, end),
+            surface: StepMotion::new(self.without_spin(start), self.without_spin(end)),
         }
     }
 
     /// A pose with the same place of the surface: for a body that is round about its z axis the
-    /// orientation that the shortest turn of the axis from the first keyframe leads to, so that it
+    /// orientation that the shortest turn of the axis from the pose at time zero leads to, so that it
     /// stays while the body spins; for a ball none.
     fn without_spin(&self, pose: Isometry3<f64>) -> Isometry3<f64> {
         let rotation = match self.obstacle.shape() {
             Shape::Cuboid { .. } | Shape::Surface(_) => pose.rotation,
             Shape::Sphere { .. } => UnitQuaternion::identity(),
             Shape::HalfSpace | Shape::Cylinder { .. } | Shape::Capsule { .. } => {
-                let first = self.obstacle.motion().keyframes()[0].pose.rotation;
+                let first = self.obstacle.motion().pose(0.0).rotation;
                 let (before, after) = (first * Vector3::z(), pose.rotation * Vector3::z());
                 if (after - before).amax() <= SAME_AXIS {
                     first

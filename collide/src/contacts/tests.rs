@@ -115,7 +115,7 @@ fn still(shape: Shape, pose: Isometry3<f64>) -> Obstacle {
 
 fn moving(shape: Shape, from: Isometry3<f64>, to: Isometry3<f64>, h: f64) -> Obstacle {
     let keys = vec![Keyframe { t: 0.0, pose: from }, Keyframe { t: h, pose: to }];
-    Obstacle::new(shape, crate::Motion::new(keys).unwrap()).unwrap()
+    Obstacle::new(shape, keys).unwrap()
 }
 
 /// A dense Hessian that collects blocks.
@@ -244,8 +244,8 @@ fn motion<'a>(
     progress: [f64; 2],
     x: &'a [f64],
     dx: &'a [f64],
-) -> Motion<'a> {
-    Motion {
+) -> JointMotion<'a> {
+    JointMotion {
         bodies,
         progress,
         x,

@@ -1,8 +1,12 @@
 use super::*;
 use crate::distance::Jet;
 use crate::distance::{point_edge, point_point};
-use crate::motion::Keyframe;
 use crate::testing::{check_jet, points, sizes};
+use crate::{Coefficients, ContactOptions, Contacts, Keyframe};
+use isosheet_dynamics::{
+    AxisRotation, Method, Profile, RigidDisplacement, SheetModel, Simulation, State,
+};
+use isosheet_mesh::{MassKind, generate};
 use proptest::prelude::*;
 
 fn shapes() -> impl Strategy<Value = Shape> {
@@ -54,11 +58,7 @@ fn moving(shape: Shape, pose: &[f64; 6], end: &[f64; 6]) -> Obstacle {
             Vector3::new(p[3], p[4], p[5]),
         ),
     };
-    Obstacle::new(
-        shape,
-        Motion::new(vec![key(0.0, pose), key(1.0, end)]).unwrap(),
-    )
-    .unwrap()
+    Obstacle::new(shape, vec![key(0.0, pose), key(1.0, end)]).unwrap()
 }
 
 fn pose() -> impl Strategy<Value = [f64; 6]> {
@@ -226,4 +226,97 @@ fn bad_lengths_are_named() {
         Obstacle::still(Shape::HalfSpace, pose),
         Err(ObstacleError::Motion(MotionError::NotFinite { .. }))
     ));
+}
+
+/// A table that sinks and turns about its own centre.
+fn sinking() -> RigidDisplacement {
+    let ramp = |to: f64| Profile::Ramp {
+        from: 0.0,
+        to,
+        begin: 0.0,
+        end: 0.4,
+    };
+    let pose = Isometry3::translation(0.1, 0.1, -0.0505);
+    RigidDisplacement {
+        pose,
+        z: ramp(-0.03),
+        rotation: Some(AxisRotation {
+            centre: pose.translation.vector.into(),
+            axis: [0.2, 1.0, 0.4],
+            angle: ramp(0.5),
+        }),
+        ..RigidDisplacement::default()
+    }
+}
+
+#[test]
+fn distance_rates_of_profiles_and_functions_match_differences() {
+    let shape = Shape::Sphere { radius: 0.3 };
+    let swing = RigidDisplacement {
+        x: Profile::Sine {
+            mean: 0.1,
+            amplitude: 0.2,
+            frequency: 0.7,
+            phase: 0.3,
+        },
+        ..sinking()
+    };
+    let profile = RigidProfile::from(swing.clone());
+    let function = move |t: f64| profile.kinematics(t).pose;
+    let (p, t, h) = (Vector3::new(0.6, 0.2, 0.3), 0.21, 1e-4);
+    for body in [
+        Obstacle::new(shape.clone(), swing).unwrap(),
+        Obstacle::new(shape, function).unwrap(),
+    ] {
+        let at = |s: f64| body.signed_distance(t + s * h, &p).value;
+        let rate = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
+        let found = body.distance_rate(t, &p);
+        assert!((rate - found).abs() < 1e-9, "{rate} {found}");
+    }
+}
+
+/// A sheet on a table, with friction, after 0.1 s.
+fn carried(motion: impl Into<RigidMotion>) -> Vec<f64> {
+    let sheet = generate::isotropic_square(1, 0.2).unwrap();
+    let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)
+        .unwrap()
+        .with_gravity();
+    let half = [0.06, 0.06, 0.05];
+    let table = Obstacle::new(Shape::Cuboid { half }, motion).unwrap();
+    let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))
+        .and_then(|c| c.with_body(table, Coefficients::equal(0.5)))
+        .unwrap();
+    let start = State::at_rest(sheet.positions().to_vec());
+    let method = Method::ImplicitEuler(Default::default());
+    let mut run = Simulation::new(model, start, method).unwrap();
+    run = run.with_contact(contacts).unwrap();
+    for _ in 0..10 {
+        assert!(run.step(0.01).unwrap().gap.unwrap() > 0.0);
+    }
+    run.state().x.clone()
+}
+
+#[test]
+fn bodies_by_profiles_carry_the_sheet_as_bodies_by_keyframes_and_functions() {
+    let exact = carried(sinking());
+    let profile = RigidProfile::from(sinking());
+    let keys = [0.0, 0.4].map(|t| Keyframe {
+        t,
+        pose: profile.kinematics(t).pose,
+    });
+    let others = [
+        carried(keys.to_vec()),
+        carried(move |t: f64| profile.kinematics(t).pose),
+    ];
+    let sunk = exact
+        .iter()
+        .skip(2)
+        .step_by(3)
+        .fold(0.0, |m: f64, z| m.min(*z));
+    assert!(sunk < -1e-3, "sunk by {sunk} m");
+    for other in others {
+        let differences = exact.iter().zip(&other).map(|(a, b)| (a - b).abs());
+        let error = differences.fold(0.0, f64::max);
+        assert!(error < 1e-9, "off by {error:e} m");
+    }
 }

@@ -27,7 +27,6 @@
 
 use super::{ChartDynamicsError, ChartMechanics, PositionUpdate};
 use crate::constraint::rows::point;
-use crate::model::second_time_derivative;
 use crate::reaction::{Balance, Support};
 use isosheet_coords::linalg::norm_inf;
 use isosheet_coords::{ChartError, SaddlePoint};
@@ -133,7 +132,9 @@ impl Mobility {
         self.rows.clear();
         self.frames.clear();
         for &(vertex, start) in &self.pins {
-            let target = model.pin_motion(vertex).map_or(start, |at| at(t));
+            let target = model
+                .pin_motion(vertex)
+                .map_or(start, |m| m.position(t).into());
             let off = point(x, vertex) - target;
             for k in 0..3 {
                 self.rows.push(Row {
@@ -306,18 +307,12 @@ impl Mobility {
         let mut bends = Vec::with_capacity(self.rows.len());
         for &(vertex, _) in &self.pins {
             let motion = model.pin_motion(vertex);
-            let bend = motion.map_or(Vector3::zeros(), |at| -second_time_derivative(at, t, span));
+            let bend = motion.map_or(Vector3::zeros(), |m| -m.acceleration(t, span));
             bends.extend(bend.iter());
         }
         for (c, frame) in model.constraints().iter().zip(&self.frames) {
             let (p, u) = (point(x, c.vertex()), point(v, c.vertex()));
-            let bend: Vector2<f64> = if c.moves() {
-                frame * second_time_derivative(|s| c.at(s, &(p + (s - t) * u)).value, t, span)
-            } else {
-                let local = c.at(t, &p);
-                let along = |k: usize| u.dot(&(local.hessian(&frame.row(k).transpose()) * u));
-                Vector2::new(along(0), along(1))
-            };
+            let bend = frame * c.second_rate(t, span, &p, &u);
             bends.extend(bend.iter().take(c.equations()));
         }
         bends
@@ -493,7 +488,7 @@ impl Mobility {
             if error <= TOLERANCE || stalled {
                 for &(vertex, start) in &self.pins {
                     let target = mechanics.model().pin_motion(vertex);
-                    let target = target.map_or(start, |at| at(t));
+                    let target = target.map_or(start, |m| m.position(t).into());
                     let i = 3 * vertex.index();
                     x[i..i + 3].copy_from_slice(target.as_slice());
                 }

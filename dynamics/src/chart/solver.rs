@@ -13,7 +13,7 @@ const CRAMER_LIMIT: usize = 40;
 ///
 /// All implementations give the same velocities, and the same derivative of the Hamiltonian
 /// `dH/dp = qdot` (Eq. 18), up to the conditioning of the chart.
-pub trait MassSolver {
+pub trait MassSolver: Send {
     /// Prepare for the state x, at which `linear` is factorised.
     ///
     /// # Errors

@@ -16,12 +16,10 @@ pub(crate) struct Entry {
     pub(crate) block: Matrix3<f64>,
 }
 
-/// The equations `N c = 0` of each vertex constraint with the rows `N` that are independent at the start of a step: one for
-/// a surface, two for a curve.
+/// The equations `N c = 0` of each vertex constraint with the rows `N` that are independent at the start of a
+/// step: one for a surface, two for a curve.
 pub(crate) struct ConservativeRows {
     frames: Vec<Matrix2x3<f64>>,
-    /// Impulses of the last step in the space of all equations, kept from step to step.
-    kept: Vec<Vector3<f64>>,
     /// Impulses of this step, kilogram metres per second.
     pub(crate) impulses: Vec<Vector2<f64>>,
     pub(crate) rhs: Vec<Vector2<f64>>,
@@ -34,7 +32,6 @@ impl ConservativeRows {
         let m = model.constraints().len();
         Self {
             frames: Vec::with_capacity(m),
-            kept: vec![Vector3::zeros(); m],
             impulses: vec![Vector2::zeros(); m],
             rhs: vec![Vector2::zeros(); m],
             entries: vec![
@@ -49,12 +46,21 @@ impl ConservativeRows {
         }
     }
 
-    /// Begins a step at `x0` with `ratio` times the impulses of the last one.
-    pub(crate) fn begin(&mut self, model: &SheetModel, t0: f64, x0: &[f64], ratio: f64) {
+    /// Begins a step at `x0` with `ratio` times the impulses `last`, in the space of all equations; none if `last` is empty.
+    pub(crate) fn begin(
+        &mut self,
+        model: &SheetModel,
+        t0: f64,
+        x0: &[f64],
+        ratio: f64,
+        last: &[Vector3<f64>],
+    ) {
         self.frames.clear();
         for (i, c) in model.constraints().iter().enumerate() {
             let frame = c.at(t0, &point(x0, c.vertex())).independent();
-            self.impulses[i] = ratio * (frame * self.kept[i]);
+            self.impulses[i] = last
+                .get(i)
+                .map_or(Vector2::zeros(), |l| ratio * (frame * l));
             self.frames.push(frame);
         }
     }
@@ -66,8 +72,8 @@ impl ConservativeRows {
         }
     }
 
-    /// Lets the impulses act along Gonzalez' discrete gradient between `x0` and `x1`, midpoint `xm`, that does the work
-    /// `c(x1) - c(x0)` exactly; `scale` weighs the curvature.
+    /// Lets the impulses act along Gonzalez' discrete gradient between `x0` and `x1`, midpoint `xm`, that
+    /// does the work `c(x1) - c(x0)` exactly; `scale` weighs the curvature.
     pub(crate) fn push_between(
         &mut self,
         model: &SheetModel,
@@ -153,11 +159,10 @@ impl ConservativeRows {
         }
     }
 
-    /// Keeps the impulses for the next step.
-    pub(crate) fn keep(&mut self) {
-        for (i, frame) in self.frames.iter().enumerate() {
-            self.kept[i] = frame.tr_mul(&self.impulses[i]);
-        }
+    /// The impulses in the space of all equations.
+    pub(crate) fn full_impulses(&self) -> impl Iterator<Item = Vector3<f64>> + '_ {
+        let pairs = self.frames.iter().zip(&self.impulses);
+        pairs.map(|(frame, l)| frame.tr_mul(l))
     }
 
     /// The impulses in the space of all equations and as forces, per time, with their sign as multipliers.

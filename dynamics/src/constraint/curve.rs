@@ -28,7 +28,8 @@ pub struct CurvePoint {
 const SMALLEST_DENOMINATOR: f64 = 1e-3;
 
 impl CurvePoint {
-    /// `|q'|^2 - q'' . r`: the slope of `q' . (p - q)` along the curve, negated; zero at the centre of curvature.
+    /// `|q'|^2 - q'' . r`: the slope of `q' . (p - q)` along the curve, negated; zero at the centre of
+    /// curvature.
     pub(crate) fn denominator(&self, r: &Vector3<f64>) -> f64 {
         let size = self.first.norm_squared();
         (size - self.second.dot(r)).max(SMALLEST_DENOMINATOR * size)

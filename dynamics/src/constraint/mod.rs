@@ -14,9 +14,9 @@ pub use polyline::Polyline;
 pub use spline::Spline;
 pub use surface::{Cylinder, Plane, SignedDistanceField, Sphere, Surface, SurfacePoint};
 
+use crate::motion::{MotionError, RigidMotion};
 use isosheet_mesh::VertexId;
-use nalgebra::{Isometry3, Matrix2x3, Matrix3, Vector3};
-use std::fmt;
+use nalgebra::{Matrix2x3, Matrix3, Vector3};
 
 /// A curve or surface that makes no constraint.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -131,22 +131,11 @@ enum Shape {
 /// A constraint so touches its vertex's own 3x3 block of the matrices and nothing else.
 ///
 /// One-sided constraints ask `c >= 0` (outside) or `c <= 0` (inside).
+#[derive(Debug)]
 pub struct VertexConstraint {
     vertex: VertexId,
     shape: Shape,
-    pose: Option<Box<Pose>>,
-}
-
-type Pose = dyn Fn(f64) -> Isometry3<f64> + Send + Sync;
-
-impl fmt::Debug for VertexConstraint {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("VertexConstraint")
-            .field("vertex", &self.vertex)
-            .field("shape", &self.shape)
-            .field("moves", &self.moves())
-            .finish()
-    }
+    motion: Option<RigidMotion>,
 }
 
 impl VertexConstraint {
@@ -155,7 +144,7 @@ impl VertexConstraint {
         Self {
             vertex,
             shape: Shape::Surface(Box::new(surface), side),
-            pose: None,
+            motion: None,
         }
     }
 
@@ -164,15 +153,16 @@ impl VertexConstraint {
         Self {
             vertex,
             shape: Shape::Curve(Box::new(curve)),
-            pose: None,
+            motion: None,
         }
     }
 
-    /// Moves the curve or surface: `pose(t)` takes its frame to space at time `t` (seconds). Velocities are taken by
-    /// differences, for which the motion has to be defined a little before the start too.
+    /// Moves the curve or surface: the motion takes its frame to space. It is a
+    /// [`RigidProfile`](crate::RigidProfile), a [`RigidDisplacement`](crate::RigidDisplacement), keyframes,
+    /// or a function of time (seconds) that returns the pose.
     #[must_use]
-    pub fn moving(mut self, pose: impl Fn(f64) -> Isometry3<f64> + Send + Sync + 'static) -> Self {
-        self.pose = Some(Box::new(pose));
+    pub fn moving(mut self, motion: impl Into<RigidMotion>) -> Self {
+        self.motion = Some(motion.into());
         self
     }
 
@@ -181,14 +171,22 @@ impl VertexConstraint {
         self.vertex
     }
 
-    /// Whether it moves.
+    /// Whether it moves, as far as is known.
     pub fn moves(&self) -> bool {
-        self.pose.is_some()
+        self.moving_frame().is_some()
+    }
+
+    fn moving_frame(&self) -> Option<&RigidMotion> {
+        self.motion.as_ref().filter(|motion| !motion.is_still())
+    }
+
+    pub(crate) fn validate_motion(&self) -> Result<(), MotionError> {
+        self.motion.as_ref().map_or(Ok(()), RigidMotion::validate)
     }
 
     /// A number of the pose at time `t` that is not finite, if there is one.
     pub(crate) fn bad_pose(&self, t: f64) -> Option<f64> {
-        let pose = self.pose.as_ref()?(t);
+        let pose = self.motion.as_ref()?.pose(t);
         let parts = pose
             .translation
             .vector
@@ -212,13 +210,47 @@ impl VertexConstraint {
 
     /// The equations at a point (metres) and time (seconds).
     pub(crate) fn at(&self, t: f64, p: &Vector3<f64>) -> Local {
-        let Some(pose) = &self.pose else {
+        let Some(motion) = &self.motion else {
             return self.shape.at(p);
         };
-        let pose = pose(t);
+        let pose = motion.pose(t);
         let rotation = pose.rotation.to_rotation_matrix().into_inner();
         let body = rotation.transpose() * (p - pose.translation.vector);
         self.shape.at(&body).turned(&rotation)
+    }
+
+    /// Rate `dc/dt = -J v` at a fixed point (metres), `v` the velocity of the curve or surface there; metres
+    /// per second. Of motions that are functions of time by differences over a part of the time `span`
+    /// (seconds).
+    pub(crate) fn rate(&self, t: f64, span: f64, p: &Vector3<f64>) -> Vector3<f64> {
+        match self.moving_frame() {
+            Some(motion) => -(self.at(t, p).jacobian * motion.kinematics(t, span).velocity_at(p)),
+            None => Vector3::zeros(),
+        }
+    }
+
+    /// Second derivative by time of `c` along the straight path from a point (metres) with velocity `u`,
+    /// metres per second squared: `w^T hessian_i w - J (a + 2 omega x w)`, where `w = u - v` is the velocity
+    /// relative to the curve or surface, and `v`, `a` and `omega` are its velocity, acceleration and angular
+    /// velocity there.
+    pub(crate) fn second_rate(
+        &self,
+        t: f64,
+        span: f64,
+        p: &Vector3<f64>,
+        u: &Vector3<f64>,
+    ) -> Vector3<f64> {
+        let local = self.at(t, p);
+        let bend = |w: &Vector3<f64>| {
+            Vector3::from_fn(|i, _| w.dot(&(local.hessian(&Vector3::ith(i, 1.0)) * w)))
+        };
+        let Some(motion) = self.moving_frame() else {
+            return bend(u);
+        };
+        let frame = motion.kinematics(t, span);
+        let w = u - frame.velocity_at(p);
+        let apparent = frame.acceleration_at(p) + 2.0 * frame.angular_velocity.cross(&w);
+        bend(&w) - local.jacobian * apparent
     }
 
     /// Distance by which the constraint is broken at a point, metres.

@@ -29,15 +29,16 @@ enum Piece {
     },
 }
 
-/// Turns of less than this angle (radians) are no corners: rounding one would need an arc shorter than round-off.
+/// Turns of less than this angle (radians) are no corners: rounding one would need an arc shorter than
+/// round-off.
 const STRAIGHT: f64 = 1e-9;
 
 impl Polyline {
     /// Through points (metres), corners rounded with a radius (metres).
     ///
     /// # Errors
-    /// [`ConstraintError`] if a number is not finite, there are fewer than two points, neighbours coincide, or the
-    /// radius does not fit between the corners.
+    /// [`ConstraintError`] if a number is not finite, there are fewer than two points, neighbours coincide,
+    /// or the radius does not fit between the corners.
     pub fn new(points: &[[f64; 3]], corner_radius: f64) -> Result<Self, ConstraintError> {
         let radius = ConstraintError::check_positive("the radius of the corners", corner_radius)?;
         if points.len() < 2 {

@@ -12,7 +12,8 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 /// L_i . c_i + p_i |c_i|^2 / 2,      one-sided (c_i >= 0):  (min(0, L_i + p_i c_i)^2 - L_i^2) / (2 p_i)
 /// ```
 ///
-/// with its derivatives (Rockafellar 1973 for the one-sided form). Empty, and free of cost, in scenes without constraints.
+/// with its derivatives (Rockafellar 1973 for the one-sided form). Empty, and free of cost, in scenes without
+/// constraints.
 pub(crate) struct VertexRows {
     /// Kilograms; zero at pinned vertices.
     penalties: Vec<f64>,
@@ -21,7 +22,8 @@ pub(crate) struct VertexRows {
     local: Vec<Local>,
     /// Whether a one-sided equation had to be mended since it was cleared.
     pub(crate) mended: Vec<bool>,
-    /// Whether the equation took part in the last system of a projection or the last update of the multipliers.
+    /// Whether the equation took part in the last system of a projection or the last update of the
+    /// multipliers.
     pub(crate) active: Vec<bool>,
     /// Whether the equation holds as an equality: always, unless it is one-sided.
     pub(crate) bound: Vec<bool>,
@@ -37,7 +39,8 @@ pub(crate) enum Bending {
 }
 
 impl VertexRows {
-    /// With penalties of `kappa` times the mass of the vertex: like the rods, `kappa` times as stiff as inertia.
+    /// With penalties of `kappa` times the mass of the vertex: like the rods, `kappa` times as stiff as
+    /// inertia.
     pub(crate) fn new(model: &SheetModel, kappa: f64) -> Self {
         let constraints = model.constraints();
         Self {
@@ -195,7 +198,8 @@ impl VertexRows {
         }
     }
 
-    /// Adds to a projection's system `(M + p J^T J) dx = -p J^T c`, `p` being `penalty` times the vertex mass.
+    /// Adds to a projection's system `(M + p J^T J) dx = -p J^T c`, `p` being `penalty` times the vertex
+    /// mass.
     pub(crate) fn add_projection(
         &mut self,
         model: &SheetModel,
@@ -243,7 +247,8 @@ impl VertexRows {
         }
     }
 
-    /// Adds `-p J^T (J v + rate)` for the bound equations; returns the largest `|J v + rate|`, metres per second.
+    /// Adds `-p J^T (J v + rate)` for the bound equations; returns the largest `|J v + rate|`, metres per
+    /// second.
     pub(crate) fn add_rates(
         &self,
         model: &SheetModel,

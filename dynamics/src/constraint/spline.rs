@@ -3,8 +3,9 @@
 use super::{ConstraintError, Curve, CurvePoint};
 use nalgebra::Vector3;
 
-/// A cubic spline through points, twice continuously differentiable, with the distance of the points as the parameter:
-/// open with natural ends (it goes on straight beyond them, without a jump in curvature), or closed.
+/// A cubic spline through points, twice continuously differentiable, with the distance of the points as the
+/// parameter: open with natural ends (it goes on straight beyond them, without a jump in curvature), or
+/// closed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline {
     points: Vec<Vector3<f64>>,
@@ -117,9 +118,9 @@ impl Spline {
     }
 }
 
-/// Second derivatives `m` at the points from
-/// `h_- m_- + 2 (h_- + h_+) m + h_+ m_+ = 6 (slope_+ - slope_-)`, `m = 0` at open ends; by Gauss-Seidel, as the
-/// matrix is diagonally dominant by a factor of two: each sweep halves the error at least.
+/// Second derivatives `m` at the points from `h_- m_- + 2 (h_- + h_+) m + h_+ m_+ = 6 (slope_+ - slope_-)`,
+/// `m = 0` at open ends; by Gauss-Seidel, as the matrix is diagonally dominant by a factor of two: each sweep
+/// halves the error at least.
 fn second_derivatives(points: &[Vector3<f64>], knots: &[f64], closed: bool) -> Vec<Vector3<f64>> {
     const SWEEPS: usize = 60;
     let n = points.len();

@@ -89,7 +89,8 @@ impl Cylinder {
     /// About the axis through a point (metres) in a direction of any length.
     ///
     /// # Errors
-    /// [`ConstraintError`] if a number is not finite, the direction is zero or the radius (metres) not positive.
+    /// [`ConstraintError`] if a number is not finite, the direction is zero or the radius (metres) not
+    /// positive.
     pub fn new(point: [f64; 3], axis: [f64; 3], radius: f64) -> Result<Self, ConstraintError> {
         Ok(Self {
             point: ConstraintError::check_vector("a point of the axis", &point)?,
@@ -106,7 +107,8 @@ impl Surface for Cylinder {
     }
 }
 
-/// At a distance about the centre or axis, from which `d` leads to the point; `across` projects on what counts.
+/// At a distance about the centre or axis, from which `d` leads to the point; `across` projects on what
+/// counts.
 fn around(d: &Vector3<f64>, across: &Matrix3<f64>, radius: f64) -> SurfacePoint {
     let size = d.norm();
     // From the centre every direction leads out.

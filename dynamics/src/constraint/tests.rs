@@ -1,7 +1,9 @@
 //! Derivatives against differences, and closest points against their definition.
 
 use super::*;
-use nalgebra::{Translation3, UnitQuaternion};
+use crate::motion::{AxisRotation, RigidDisplacement, RigidProfile};
+use crate::profile::Profile;
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
 fn v(x: f64, y: f64, z: f64) -> Vector3<f64> {
     Vector3::new(x, y, z)
@@ -30,12 +32,12 @@ fn samples() -> Vec<(&'static str, VertexConstraint)> {
     let surface = |s: Box<dyn Surface>, side| VertexConstraint {
         vertex: id,
         shape: Shape::Surface(s, side),
-        pose: None,
+        motion: None,
     };
     let curve = |c: Box<dyn Curve>| VertexConstraint {
         vertex: id,
         shape: Shape::Curve(c),
-        pose: None,
+        motion: None,
     };
     let mut all = Vec::new();
     let plane = Plane::new([0.1, 0.2, 0.3], [1.0, -2.0, 0.5]).expect("valid");
@@ -161,4 +163,61 @@ fn senseless_shapes_are_refused() {
             largest: 1.0 / (std::f64::consts::FRAC_PI_4).tan()
         })
     );
+}
+
+/// Rates of moved curves and surfaces, at fixed and at moving points.
+#[test]
+fn rates_are_differences_in_time() {
+    let swing = |phase: f64| Profile::Sine {
+        mean: 0.1,
+        amplitude: 0.2,
+        frequency: 0.4,
+        phase,
+    };
+    let motion = RigidDisplacement {
+        pose: turned(),
+        x: swing(0.0),
+        y: swing(1.0),
+        z: swing(2.0),
+        rotation: Some(AxisRotation {
+            centre: [0.2, -0.1, 0.4],
+            axis: [0.5, 1.0, -0.3],
+            angle: swing(3.0),
+        }),
+    };
+    // Short, so that no closest point passes a knot of a spline, where the fourth derivative jumps.
+    let (h, t) = (2e-4, 0.7);
+    let u = v(0.4, -0.8, 0.5);
+    for (name, mut c) in samples() {
+        let profile = RigidProfile::from(motion.clone());
+        let function = RigidMotion::from(move |t: f64| profile.kinematics(t).pose);
+        for motion in [RigidMotion::from(motion.clone()), function] {
+            c.motion = Some(motion);
+            for p in [v(0.31, 0.14, 0.12), v(0.72, 0.21, 0.33)] {
+                let at = |s: f64| c.at(t + s * h, &p).value;
+                let rate = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
+                let error = (rate - c.rate(t, 0.05, &p)).norm();
+                assert!(error < 1e-8, "{name} at {p:?}: rate {error:e}");
+                let at = |s: f64| c.at(t + s * h, &(p + s * h * u)).value;
+                let near = at(1.0) + at(-1.0);
+                let far = at(2.0) + at(-2.0);
+                let second = (16.0 * near - far - 30.0 * at(0.0)) / (12.0 * h * h);
+                let error = (second - c.second_rate(t, 0.05, &p, &u)).norm();
+                assert!(error < 1e-5, "{name} at {p:?}: second rate {error:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_constraint_with_an_unusable_motion_is_refused() {
+    let sheet = isosheet_mesh::generate::isotropic_square(0, 1.0).expect("valid");
+    let mass = isosheet_mesh::MassKind::Lumped;
+    let model = crate::SheetModel::new(&sheet, 1.0, mass).expect("valid");
+    let plane = Plane::new([0.0; 3], [0.0, 0.0, 1.0]).expect("valid");
+    let plane = VertexConstraint::on_surface(VertexId(2), plane, Side::On);
+    let error = model.with_constraint(plane.moving(Vec::new())).err();
+    let vertex = VertexId(2);
+    let source = MotionError::Empty;
+    assert_eq!(error, Some(crate::ModelError::Motion { vertex, source }));
 }

@@ -2,9 +2,10 @@
 
 use super::Contact;
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// The span of time of a step.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct StepSpan {
     /// Its start, seconds.
     pub t0: f64,
@@ -12,10 +13,10 @@ pub struct StepSpan {
     pub h: f64,
 }
 
-/// The motion of a frame over a step: its origin on a straight line at constant speed, its orientation about a
-/// fixed axis at a constant rate, from the pose at the start to that at the end.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RigidMotion {
+/// The motion of a frame over a step: its origin on a straight line at constant speed, its orientation about
+/// a fixed axis at a constant rate, from the pose at the start to that at the end.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StepMotion {
     start: Isometry3<f64>,
     end: Isometry3<f64>,
     /// Displacement of the origin, metres.
@@ -24,7 +25,7 @@ pub struct RigidMotion {
     turn: Vector3<f64>,
 }
 
-impl RigidMotion {
+impl StepMotion {
     /// From one pose to another, the shorter way round.
     pub fn new(start: Isometry3<f64>, end: Isometry3<f64>) -> Self {
         let turn = if start.rotation == end.rotation {
@@ -78,13 +79,13 @@ impl RigidMotion {
 }
 
 /// The motion of a body over a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BodyMotion {
     /// Motion of the material, with which friction goes.
-    pub material: RigidMotion,
-    /// Motion of the surface: that of the material but for the spin of a round body about its own axis, which
-    /// does not move the surface.
-    pub surface: RigidMotion,
+    pub material: StepMotion,
+    /// Motion of the surface: that of the material but for the spin of a round body about its own axis,
+    /// which does not move the surface.
+    pub surface: StepMotion,
 }
 
 /// The motions of all bodies over a step.
@@ -154,7 +155,7 @@ pub(crate) fn advanced(s: f64, fraction: f64) -> f64 {
 }
 
 /// A body in its place at a progress of its motion over a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BodyPlace {
     motion: BodyMotion,
     /// Pose of the material.

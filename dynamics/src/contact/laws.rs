@@ -40,8 +40,8 @@ impl ContactLaws {
         }
     }
 
-    /// Friction with a body, or of the sheet with itself, in a step of `h` seconds; `None` without friction and
-    /// in a step without duration.
+    /// Friction with a body, or of the sheet with itself, in a step of `h` seconds; `None` without friction
+    /// and in a step without duration.
     pub fn friction(&self, body: Option<u32>, h: f64) -> Option<Friction> {
         let c = self.coefficients(body);
         if c.is_frictionless() {

@@ -1,6 +1,7 @@
 //! Smoothing of the distance of two edges where they are parallel.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// Threshold relative to the squared product of the rest lengths, Li et al. 2020: a sine of about 0.03.
 const RELATIVE_THRESHOLD: f64 = 1e-3;
@@ -17,7 +18,7 @@ const RELATIVE_THRESHOLD: f64 = 1e-3;
 /// is once continuously differentiable and vanishes with its gradient at `c = 0`, so its product with a
 /// function of the distance is smooth there. The pairs of points and triangles about the edges still keep
 /// parallel edges apart. Li et al. 2020, Incremental potential contact, Eq. 24.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ParallelEdges {
     pub(super) u: Vector3<f64>,
     pub(super) v: Vector3<f64>,
@@ -27,8 +28,8 @@ pub struct ParallelEdges {
 }
 
 impl ParallelEdges {
-    /// Of two edge vectors in space (metres) with the given squared rest lengths (square metres), the threshold
-    /// being `1e-3` of their product; `None` where the factor is one.
+    /// Of two edge vectors in space (metres) with the given squared rest lengths (square metres), the
+    /// threshold being `1e-3` of their product; `None` where the factor is one.
     pub fn new(u: Vector3<f64>, v: Vector3<f64>, rest_lengths2: [f64; 2]) -> Option<Self> {
         let threshold = RELATIVE_THRESHOLD * rest_lengths2[0] * rest_lengths2[1];
         let y = u.cross(&v).norm_squared() / threshold;

@@ -7,37 +7,52 @@ use super::{
 use crate::{SheetModel, State};
 
 /// Contact as a step uses it.
-pub struct StepContact<'a> {
+pub(crate) struct StepContact<'a> {
     /// The geometry.
-    pub geometry: &'a mut (dyn Contact + 'static),
+    pub(crate) geometry: &'a mut (dyn Contact + 'static),
     /// The barrier of the run.
-    pub barrier: BarrierPotential,
+    pub(crate) barrier: BarrierPotential,
 }
 
 /// Contact as a simulation holds it.
 pub(crate) struct RunContact {
     geometry: Box<dyn Contact>,
     barrier: BarrierPotential,
-    /// The contacts at the last accepted state.
-    pub(crate) state: ContactState,
 }
 
 impl RunContact {
-    /// Starts at a state.
+    /// Starts at a state; with the contacts there.
     pub(crate) fn new(
         mut geometry: Box<dyn Contact>,
         model: &SheetModel,
         state: &State,
+    ) -> Result<(Self, ContactState), ContactError> {
+        geometry.check_start(model, state)?;
+        let barrier = BarrierPotential::at_start(geometry.laws(), model, state)?;
+        let contacts = ContactState {
+            active: ActiveContacts::at_rest(geometry.as_mut(), state.t, &state.x),
+            friction: LaggedFriction::none(),
+        };
+        Ok((Self { geometry, barrier }, contacts))
+    }
+
+    /// Goes on with the barrier of an earlier run.
+    ///
+    /// # Errors
+    /// [`ContactError`] if the geometry is of another sheet, or something touches at the state.
+    pub(crate) fn resume(
+        mut geometry: Box<dyn Contact>,
+        barrier: BarrierPotential,
+        model: &SheetModel,
+        state: &State,
     ) -> Result<Self, ContactError> {
         geometry.check_start(model, state)?;
-        Ok(Self {
-            barrier: BarrierPotential::at_start(geometry.laws(), model, state)?,
-            state: ContactState {
-                active: ActiveContacts::at_rest(geometry.as_mut(), state.t, &state.x),
-                friction: LaggedFriction::none(),
-            },
-            geometry,
-        })
+        Ok(Self { geometry, barrier })
+    }
+
+    /// The barrier, whose stiffness was set at the start of the run.
+    pub(crate) fn barrier(&self) -> BarrierPotential {
+        self.barrier
     }
 
     /// For a step.
@@ -48,22 +63,19 @@ impl RunContact {
         }
     }
 
-    fn terms<'a>(&'a self, x: &'a [f64]) -> ContactTerms<'a> {
-        ContactTerms {
+    /// The barrier potential of contacts, joules.
+    pub(crate) fn barrier_energy(&self, contacts: &ContactState) -> f64 {
+        contacts.active.barrier_energy(&self.barrier)
+    }
+
+    /// What the sheet does to the bodies at contacts, `x` being the positions.
+    pub(crate) fn loads(&self, contacts: &ContactState, x: &[f64]) -> Vec<BodyLoad> {
+        let terms = ContactTerms {
             x,
-            active: &self.state.active,
+            active: &contacts.active,
             barrier: &self.barrier,
-            friction: &self.state.friction,
-        }
-    }
-
-    /// The barrier potential at the last accepted state, joules.
-    pub(crate) fn barrier_energy(&self) -> f64 {
-        self.state.active.barrier_energy(&self.barrier)
-    }
-
-    /// What the sheet does to the bodies at the last accepted state, `x` being its positions.
-    pub(crate) fn loads(&self, x: &[f64]) -> Vec<BodyLoad> {
-        self.terms(x).loads()
+            friction: &contacts.friction,
+        };
+        terms.loads()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{ActiveContacts, BarrierPotential, CouplingSink, LaggedFriction, couple};
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// What the sheet does to a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +27,7 @@ pub struct ContactWork {
 }
 
 /// Contacts at the positions of a state, with the friction of the step that led there.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
     /// The contacts.
     pub active: ActiveContacts,
@@ -86,9 +87,9 @@ impl ContactTerms<'_> {
             .add_hessian(self.x, self.active.bodies(), sink);
     }
 
-    /// The pairs of vertices, lower number first, that the Hessian couples; may hold pairs twice and pairs that
-    /// are mesh edges. Clears `out` first. Contact with bodies couples no vertices that are not neighbours
-    /// already and is left out.
+    /// The pairs of vertices, lower number first, that the Hessian couples; may hold pairs twice and pairs
+    /// that are mesh edges. Clears `out` first. Contact with bodies couples no vertices that are not
+    /// neighbours already and is left out.
     pub fn couplings(&self, out: &mut Vec<[u32; 2]>) {
         self.active.couplings(out);
         for c in self.friction.contacts() {

@@ -25,9 +25,9 @@ fn springs(t: &Topology, rest: impl Fn(EdgeId) -> f64) -> CreaseSprings {
             edge,
             stiffness: 0.5 + 0.01 * edge.index() as f64,
             rest: if edge.index() % 2 == 0 {
-                RestAngle::Fixed(angle)
+                RestAngle::from(angle)
             } else {
-                RestAngle::Driven(Box::new(move |t| angle * t))
+                RestAngle::from(move |t| angle * t)
             },
         }
     });
@@ -48,7 +48,7 @@ fn angles_are_those_of_the_mesh_in_sign_and_size() {
         let spring = CreaseSpring {
             edge: e,
             stiffness: 1.0,
-            rest: RestAngle::Fixed(0.0),
+            rest: 0.0.into(),
         };
         let own = CreaseSprings::new(t, vec![spring]).expect("interior");
         let moment = own.moments(0.0, &x)[0];
@@ -131,7 +131,7 @@ fn a_fold_that_passes_shut_goes_on() {
     let spring = CreaseSpring {
         edge: interior(t)[0],
         stiffness: 2.0,
-        rest: RestAngle::Fixed(3.0),
+        rest: 3.0.into(),
     };
     let p = CreaseSprings::new(t, vec![spring]).expect("interior");
     let hinge = &p.hinges[0];
@@ -144,7 +144,7 @@ fn what_makes_no_sense_is_named() {
     let sheet = generate::isotropic_square(0, 1.0).expect("valid");
     let t = sheet.topology();
     let make = |edge: EdgeId, stiffness: f64, angle: f64| {
-        let rest = RestAngle::Fixed(angle);
+        let rest = RestAngle::from(angle);
         let spring = CreaseSpring {
             edge,
             stiffness,
@@ -218,8 +218,8 @@ fn ramp(t: f64) -> f64 {
     1.2 * t * t * (3.0 - 2.0 * t)
 }
 
-/// Two triangles folded along their edge by a driven spring against one of equal stiffness that is at rest when flat: the final
-/// angle, the work of the drive and the energy that is missing.
+/// Two triangles folded along their edge by a driven spring against one of equal stiffness that is at rest
+/// when flat: the final angle, the work of the drive and the energy that is missing.
 fn driven(method: Method) -> [f64; 3] {
     let sheet = Sheet::new(
         vec![0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.1, 0.1, 0.0, 0.0, 0.1, 0.0],
@@ -228,7 +228,7 @@ fn driven(method: Method) -> [f64; 3] {
     .expect("a square");
     let t = sheet.topology();
     let edge = t.find_edge(VertexId(0), VertexId(2)).expect("the diagonal");
-    let rests = [RestAngle::Driven(Box::new(ramp)), RestAngle::Fixed(0.0)];
+    let rests = [ramp.into(), 0.0.into()];
     let springs = rests.map(|rest| CreaseSpring {
         edge,
         stiffness: 1e-2,
@@ -250,8 +250,8 @@ fn driven(method: Method) -> [f64; 3] {
 
 #[test]
 fn the_work_of_the_drive_closes_the_energy_balance() {
-    // Half of the rest angle is the static balance, and what the two springs then store the work; kinetic energy and inertia
-    // change both by a thousandth.
+    // Half of the rest angle is the static balance, and what the two springs then store the work; kinetic
+    // energy and inertia change both by a thousandth.
     let half = 0.5 * ramp(1e-3 * DRIVEN as f64);
     let exact = 0.5 * 2.0 * 1e-2 * half * half;
     for (method, bound) in [

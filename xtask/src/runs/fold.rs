@@ -3,7 +3,7 @@
 use super::Staged;
 use anyhow::Result;
 use isosheet_dynamics::{
-    CreaseSpring, CreaseSprings, Method, RestAngle, SheetModel, Simulation, State,
+    CreaseSpring, CreaseSprings, Interpolation, Method, Profile, SheetModel, Simulation, State,
 };
 use isosheet_mesh::generate::{Assignment, FoldPattern, degree_four, miura};
 use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
@@ -120,10 +120,12 @@ impl Fold {
         }
     }
 
-    /// The size of the driven angles at time `t`, radians: a cubic ramp, level at both ends.
-    pub(crate) fn target(&self, t: f64) -> f64 {
-        let s = (t / self.duration).clamp(0.0, 1.0);
-        self.full * s * s * (3.0 - 2.0 * s)
+    /// The rest angle of a driven crease, radians: a cubic ramp, level at both ends.
+    fn drive(&self, sign: f64) -> Profile {
+        Profile::Keyframes {
+            interpolation: Interpolation::MonotoneCubic,
+            keys: vec![[0.0, 0.0], [self.duration, sign * self.full]],
+        }
     }
 
     /// Whether an edge is a driven crease.
@@ -147,14 +149,14 @@ impl Fold {
                 _ if self.is_driven(pattern, edge) => 1.0,
                 _ => self.hint,
             };
-            let (scene, sign) = (self.clone(), assignment.sign());
+            let sign = assignment.sign();
             springs.push(CreaseSpring {
                 edge,
                 stiffness: share * self.drive * pattern.sheet.lengths()[edge.index()],
                 rest: if sign == 0.0 {
-                    RestAngle::Fixed(0.0)
+                    0.0.into()
                 } else {
-                    RestAngle::Driven(Box::new(move |t| sign * scene.target(t)))
+                    self.drive(sign).into()
                 },
             });
         }

@@ -4,8 +4,7 @@ use super::Staged;
 use super::scene::SelfContact;
 use anyhow::Result;
 use isosheet_collide::{
-    Coefficients, ContactOptions, Contacts, Keyframe, Motion, Obstacle, Shape, Stiffness,
-    TriangleSurface,
+    Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape, Stiffness, TriangleSurface,
 };
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::generate::isotropic_square;
@@ -163,7 +162,7 @@ impl Staged for Stamping {
     fn bodies(&self) -> Result<Vec<Obstacle>> {
         let pose = |z: f64| Isometry3::translation(0.0, 0.0, z - 0.5 * BLOCK);
         let low = -self.activation;
-        let motion = Motion::new(vec![
+        let keys = vec![
             Keyframe {
                 t: 0.0,
                 pose: pose(low),
@@ -172,9 +171,9 @@ impl Staged for Stamping {
                 t: self.stroke / self.speed,
                 pose: pose(low + self.stroke),
             },
-        ])?;
+        ];
         let half = [self.die, self.die, 0.5 * BLOCK];
-        let mut bodies = vec![Obstacle::new(Shape::Cuboid { half }, motion)?];
+        let mut bodies = vec![Obstacle::new(Shape::Cuboid { half }, keys)?];
         let surface = frame([self.outer(), self.opening], [low - PLATE, low])?;
         let shape = Shape::Surface(Arc::new(surface));
         bodies.push(Obstacle::still(shape, Isometry3::identity())?);

@@ -1,8 +1,8 @@
 //! A stop-watch around contact.
 
 use isosheet_dynamics::contact::{
-    ActiveContact, BodyMotion, BodyPlace, Contact, ContactError, ContactKey, ContactLaws, Motion,
-    StepSpan,
+    ActiveContact, BodyMotion, BodyPlace, Contact, ContactError, ContactKey, ContactLaws,
+    JointMotion, StepSpan,
 };
 use isosheet_dynamics::{SheetModel, State};
 use nalgebra::Vector3;
@@ -13,7 +13,8 @@ use std::time::Instant;
 /// Seconds spent in contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Spent {
-    /// Looking for pairs within reach and for the safe part of motions: broad phase and continuous collision detection.
+    /// Looking for pairs within reach and for the safe part of motions: broad phase and continuous collision
+    /// detection.
     pub(super) detection: f64,
     /// Distances, normals and weights of the pairs within reach.
     pub(super) evaluation: f64,
@@ -84,7 +85,7 @@ impl<C: Contact> Contact for Timed<C> {
         self.inner.body_velocity(body, t, place)
     }
 
-    fn query(&mut self, motion: Motion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
+    fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
         book(&self.watch.detection, || self.inner.query(motion, pairs))
     }
 

@@ -12,8 +12,8 @@ use std::sync::{Mutex, PoisonError};
 
 /// The barrier of frictionless contact with resting bodies as a potential of the positions.
 ///
-/// The same function that [`isosheet_dynamics::Simulation::with_contact`] takes, but no motion is checked: a method that steps
-/// too far passes through the bodies.
+/// The same function that [`isosheet_dynamics::Simulation::with_contact`] takes, but no motion is checked: a
+/// method that steps too far passes through the bodies.
 pub(crate) struct Barrier {
     /// Energies want the pairs within reach to be found anew at every place.
     contacts: Mutex<Contacts>,
@@ -132,8 +132,8 @@ mod tests {
         }
     }
 
-    /// A cloth laid into the reach of the table: slopes of the energy, and the part of the Hessian that a push straight
-    /// down sees, against differences.
+    /// A cloth laid into the reach of the table: slopes of the energy, and the part of the Hessian that a
+    /// push straight down sees, against differences.
     #[test]
     fn the_barrier_has_the_derivatives_of_its_energy() {
         let problem = Problem::Cloth(1);

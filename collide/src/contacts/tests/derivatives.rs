@@ -89,7 +89,7 @@ impl Contact for One<'_> {
         self.contacts.body_velocity(body, t, place)
     }
 
-    fn query(&mut self, _: Motion<'_>, _: &mut Vec<ContactKey>) -> f64 {
+    fn query(&mut self, _: JointMotion<'_>, _: &mut Vec<ContactKey>) -> f64 {
         unreachable!("the set is known")
     }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::{CcdOptions, crossings, crossings_between};
-use isosheet_dynamics::contact::RigidMotion;
+use isosheet_dynamics::contact::StepMotion;
 use proptest::prelude::*;
 
 /// Whether the sheet passes through the body or is inside it at progress `s` of the step.
@@ -220,7 +220,7 @@ proptest! {
             (start.translation.vector + v(shift)).into(),
             nalgebra::UnitQuaternion::from_scaled_axis(v(turn)) * start.rotation,
         );
-        let motion = RigidMotion::new(start, end);
+        let motion = StepMotion::new(start, end);
         let rest = PartOfStep::new(&motion, [s, 1.0]);
         prop_assert!((rest.pose_at(1.0).to_matrix() - end.to_matrix()).norm() < 1e-12);
         let course = rest.course(&v(x), &v(dx));
@@ -247,7 +247,7 @@ fn a_point_above_a_turning_slab_is_met() {
         half: [1.0, 1.0, 0.1],
     };
     let turned = Isometry3::new(Vector3::zeros(), 0.5 * Vector3::y());
-    let motion = RigidMotion::new(Isometry3::identity(), turned);
+    let motion = StepMotion::new(Isometry3::identity(), turned);
     let rest = PartOfStep::new(&motion, [0.0, 1.0]);
     let course = rest.course(&Vector3::new(0.0, 0.0, 0.101), &Vector3::zeros());
     let t = rest.advance(&CcdOptions::default(), &[course], 1.0, |[p]| {
@@ -258,8 +258,8 @@ fn a_point_above_a_turning_slab_is_met() {
     assert!(t < met(0.0) && t > met(2e-4), "{t} {}", met(0.0));
 }
 
-/// A search after many others finds the same as one by contacts that are new, in the same order: what a simulation
-/// that is resumed from a file does does not depend on what was searched for before.
+/// A search after many others finds the same as one by contacts that are new, in the same order: what a
+/// simulation that is resumed from a file does does not depend on what was searched for before.
 #[test]
 fn sets_do_not_depend_on_earlier_searches() {
     let sheet = sheet(2);

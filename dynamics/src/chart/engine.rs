@@ -1,0 +1,87 @@
+//! A simulation in a chart as an engine of [`Simulation`](crate::Simulation).
+
+use super::{ChartDynamicsError, ChartSimulation};
+use crate::State;
+use crate::reaction::Reaction;
+use crate::report::{Path, StepError, Tally};
+
+/// Sub-steps shorter than this fraction of the time reached are round-off, not time.
+const TIME_ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+/// A sheet that moves in a chart, with its state in space.
+pub(crate) struct ChartEngine {
+    pub(crate) simulation: ChartSimulation,
+    pub(crate) state: State,
+    /// Forces of the supports at the end of the last step.
+    pub(crate) reactions: Vec<Reaction>,
+}
+
+impl ChartEngine {
+    pub(crate) fn new(simulation: ChartSimulation, state: State) -> Self {
+        Self {
+            simulation,
+            state,
+            reactions: Vec::new(),
+        }
+    }
+
+    /// Advances to the time `end`.
+    pub(crate) fn advance(&mut self, end: f64, tally: &mut Tally) -> Result<(), StepError> {
+        let (chart, state) = (&mut self.simulation, &mut self.state);
+        tally.path = Path::Chart;
+        let failed = |t: f64, source: ChartDynamicsError| StepError::Chart {
+            t,
+            source: Box::new(source),
+        };
+        let has_forces = !chart.mechanics().model().forces().is_empty();
+        let mut applied = vec![0.0; if has_forces { state.x.len() } else { 0 }];
+        let limit = chart.options().max_steps;
+        let outcome = loop {
+            let left = end - chart.time();
+            if left <= TIME_ROUND_OFF * end.abs() {
+                break Ok(());
+            }
+            if tally.substeps + tally.rejected >= limit {
+                let t = chart.time();
+                break Err(failed(t, ChartDynamicsError::TooManySteps { t, limit }));
+            }
+            if has_forces {
+                let v = match chart.velocities() {
+                    Ok(v) => v,
+                    Err(error) => break Err(failed(chart.time(), error)),
+                };
+                let model = chart.mechanics().model();
+                model.applied_force(chart.time(), chart.positions(), &v, &mut applied);
+                state.x.copy_from_slice(chart.positions());
+            }
+            let report = match chart.step_within(left) {
+                Ok(report) => report,
+                Err(error) => break Err(failed(chart.time(), error)),
+            };
+            tally.substeps += 1;
+            tally.rejected += report.rejected as usize;
+            tally.work += report.driven;
+            tally.dissipated += report.damped;
+            tally.friction += report.impact;
+            tally.path = tally.path.max(if report.rebased {
+                Path::Rebased
+            } else {
+                Path::Chart
+            });
+            if has_forces {
+                tally.work += applied
+                    .iter()
+                    .zip(chart.positions().iter().zip(&state.x))
+                    .map(|(f, (new, old))| f * (new - old))
+                    .sum::<f64>();
+            }
+        };
+        state.t = if outcome.is_ok() { end } else { chart.time() };
+        state.x.copy_from_slice(chart.positions());
+        state.v = chart.velocities().map_err(|e| failed(state.t, e))?;
+        if chart.mechanics().model().has_supports() {
+            self.reactions = chart.reactions().map_err(|e| failed(state.t, e))?;
+        }
+        outcome
+    }
+}

@@ -1,0 +1,324 @@
+//! Checkpoints: a simulation between two steps, as a value and as a file.
+
+use crate::contact::BarrierPotential;
+use crate::energy_account::EnergyAccount;
+use crate::integrator::Moment;
+use crate::{Method, SheetModel, StepControl};
+use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
+use serde::{Deserialize, Serialize};
+
+/// Version of the format. It grows with every change of the fields, because the binary format does not name them.
+const VERSION: u32 = 1;
+
+/// First bytes of a checkpoint file.
+const MAGIC: &[u8; 8] = b"isosheet";
+
+/// Everything that the next step depends on besides the model and the contact: state, history of multistep methods,
+/// multipliers, energy sums, method and options, and in a chart its reference state, coordinates and momenta.
+///
+/// Model and contact are supplied again by [`Simulation::resume`](crate::Simulation::resume), because they may hold
+/// functions. A simulation that is resumed goes on bit for bit as it would have gone on without a stop.
+///
+/// # Format
+/// [`Checkpoint::to_bytes`]: the eight bytes `isosheet`, the version (little-endian `u32`), the fields in the
+/// `postcard` encoding, and the CRC-32 of all that as a little-endian `u32`. [`Checkpoint::to_json`]: the same fields by name,
+/// numbers with as many digits as a round trip needs.
+///
+/// ```
+/// use isosheet_dynamics::{Checkpoint, Method, SheetModel, Simulation, State};
+/// use isosheet_mesh::{MassKind, VertexId, generate};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let sheet = generate::isotropic_square(1, 0.21)?;
+/// let model = || -> Result<SheetModel, isosheet_dynamics::ModelError> {
+///     SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?.with_gravity().with_pins(&[VertexId(20)])
+/// };
+/// let start = State::at_rest(sheet.positions().to_vec());
+/// let mut simulation = Simulation::new(model()?, start, Method::default())?;
+/// simulation.step(1.0 / 60.0)?;
+///
+/// let bytes = simulation.checkpoint().to_bytes()?;
+/// let mut resumed = Simulation::resume(model()?, None, Checkpoint::from_bytes(&bytes)?)?;
+/// assert_eq!(resumed.step(1.0 / 60.0)?, simulation.step(1.0 / 60.0)?);
+/// assert_eq!(resumed.state(), simulation.state());
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Checkpoint {
+    version: u32,
+    pub(crate) sheet: SheetFingerprint,
+    pub(crate) energy: EnergySums,
+    pub(crate) motion: Motion,
+}
+
+/// What moves the sheet, and where the motion is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Motion {
+    /// A chart-free method.
+    Free(Box<FreeMotion>),
+}
+
+/// A chart-free simulation between two steps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct FreeMotion {
+    pub(crate) method: Method,
+    pub(crate) control: StepControl,
+    pub(crate) moment: Moment,
+    pub(crate) account: EnergyAccount,
+    pub(crate) has_moved: bool,
+    /// Vertices that were pinned at the start because they cannot move.
+    pub(crate) held: Vec<u32>,
+    /// The barrier of contact, in scenes that have any.
+    pub(crate) barrier: Option<BarrierPotential>,
+}
+
+/// Sums of the energy balance since the start.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct EnergySums {
+    /// Total energy at the start, joules.
+    pub(crate) start: f64,
+    /// Work done on the sheet, joules.
+    pub(crate) work: f64,
+    /// Energy taken out by velocity damping, joules.
+    pub(crate) dissipated: f64,
+    /// Energy lost to friction and impacts, joules.
+    pub(crate) friction: f64,
+}
+
+/// What tells one model from another: counts for the message, sums of bits for certainty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct SheetFingerprint {
+    vertices: usize,
+    edges: usize,
+    connectivity: u64,
+    lengths: u64,
+    masses: u64,
+    supports: u64,
+}
+
+impl SheetFingerprint {
+    /// Of a model as its user built it.
+    pub(crate) fn of(model: &SheetModel) -> Self {
+        let crc = Crc::<u64>::new(&CRC_64_XZ);
+        let sum = |bytes: &mut dyn Iterator<Item = u64>| {
+            let mut digest = crc.digest();
+            bytes.for_each(|b| digest.update(&b.to_le_bytes()));
+            digest.finalize()
+        };
+        let (rods, mass) = (model.rods(), model.mass());
+        let faces = model.topology().faces().iter();
+        let edge_mass = mass.edge.iter().flatten();
+        let pins = model.pins().into_iter().map(|v| u64::from(v.0));
+        let held = model.constraints().iter().map(|c| u64::from(c.vertex().0));
+        Self {
+            vertices: model.topology().vertex_count(),
+            edges: rods.len(),
+            connectivity: sum(&mut faces.flatten().map(|v| u64::from(v.0))),
+            lengths: sum(&mut rods.lengths().iter().map(|l| l.to_bits())),
+            masses: sum(&mut mass.vertex.iter().chain(edge_mass).map(|m| m.to_bits())),
+            supports: sum(&mut pins.chain([u64::MAX]).chain(held)),
+        }
+    }
+
+    /// Refuses another model.
+    fn check(&self, found: &Self) -> Result<(), CheckpointError> {
+        let differs = |what| Err(CheckpointError::OtherSheet { what });
+        if (self.vertices, self.edges) != (found.vertices, found.edges) {
+            Err(CheckpointError::OtherSize {
+                expected: [self.vertices, self.edges],
+                found: [found.vertices, found.edges],
+            })
+        } else if self.connectivity != found.connectivity {
+            differs("connectivity")
+        } else if self.lengths != found.lengths {
+            differs("rest lengths")
+        } else if self.masses != found.masses {
+            differs("masses")
+        } else if self.supports != found.supports {
+            differs("pins or vertex constraints")
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Why a checkpoint cannot be read or resumed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CheckpointError {
+    /// The bytes are not a checkpoint.
+    #[error(
+        "these {length} bytes are no checkpoint of isosheet: they do not begin with `isosheet`"
+    )]
+    NoCheckpoint {
+        /// Number of bytes.
+        length: usize,
+    },
+    /// The checkpoint has another version.
+    #[error(
+        "the checkpoint has version {found}, this program reads version {supported}: run it with the program that wrote it"
+    )]
+    Version {
+        /// Version of the checkpoint.
+        found: u32,
+        /// Version that this program reads.
+        supported: u32,
+    },
+    /// The file is damaged.
+    #[error(
+        "the checkpoint is damaged: its checksum is {found:08x} instead of {expected:08x}; use an earlier one"
+    )]
+    Damaged {
+        /// Checksum in the file.
+        expected: u32,
+        /// Checksum of the bytes.
+        found: u32,
+    },
+    /// The fields cannot be decoded.
+    #[error("the checkpoint cannot be decoded: {0}")]
+    Decode(String),
+    /// The fields cannot be encoded.
+    #[error("the checkpoint cannot be encoded: {0}")]
+    Encode(String),
+    /// The sheet has another size.
+    #[error(
+        "the checkpoint is of a sheet of {} vertices and {} edges, the model has {} and {}: supply the model that it was made with",
+        expected[0], expected[1], found[0], found[1]
+    )]
+    OtherSize {
+        /// Vertices and edges in the checkpoint.
+        expected: [usize; 2],
+        /// Vertices and edges of the model.
+        found: [usize; 2],
+    },
+    /// The sheet is another one.
+    #[error(
+        "the {what} of the model are not those of the checkpoint: supply the model that it was made with"
+    )]
+    OtherSheet {
+        /// What differs.
+        what: &'static str,
+    },
+    /// A value of the state makes no sense.
+    #[error("{what} of the checkpoint has {found} values where the model needs {expected}")]
+    Length {
+        /// Which array.
+        what: &'static str,
+        /// Values in the checkpoint.
+        found: usize,
+        /// Values that the model needs.
+        expected: usize,
+    },
+    /// A vertex of the checkpoint does not exist.
+    #[error(
+        "the checkpoint names vertex {vertex}, the model has only {vertices} vertices: the checkpoint was changed from outside"
+    )]
+    NoSuchVertex {
+        /// The vertex.
+        vertex: u32,
+        /// Vertices of the model.
+        vertices: usize,
+    },
+    /// Contact is missing or was not expected.
+    #[error("the checkpoint was made {} contact and is resumed {} it: supply the contact that it was made with",
+        if *.expected { "with" } else { "without" }, if *.expected { "without" } else { "with" })]
+    Contact {
+        /// Whether the checkpoint has contact.
+        expected: bool,
+    },
+    /// A chart is missing or was not expected.
+    #[error("the checkpoint is of a simulation {}: use `{}`",
+        if *.in_chart { "in a chart" } else { "without a chart" },
+        if *.in_chart { "Simulation::resume_in_chart" } else { "Simulation::resume" })]
+    Chart {
+        /// Whether the checkpoint is of a simulation in a chart.
+        in_chart: bool,
+    },
+}
+
+impl Checkpoint {
+    pub(crate) fn new(sheet: SheetFingerprint, energy: EnergySums, motion: Motion) -> Self {
+        Self {
+            version: VERSION,
+            sheet,
+            energy,
+            motion,
+        }
+    }
+
+    /// Refuses a model other than the one that the checkpoint was made with.
+    pub(crate) fn check_model(&self, model: &SheetModel) -> Result<(), CheckpointError> {
+        self.sheet.check(&SheetFingerprint::of(model))
+    }
+
+    /// The binary form.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Encode`] if memory runs out.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend_from_slice(&self.version.to_le_bytes());
+        let mut bytes =
+            postcard::to_extend(self, bytes).map_err(|e| CheckpointError::Encode(e.to_string()))?;
+        bytes.extend_from_slice(&checksum(&bytes).to_le_bytes());
+        Ok(bytes)
+    }
+
+    /// Reads the binary form.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] if the bytes are no checkpoint, one of another version, or damaged.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
+        let length = bytes.len();
+        let no_checkpoint = CheckpointError::NoCheckpoint { length };
+        let rest = bytes.strip_prefix(MAGIC).ok_or(no_checkpoint.clone())?;
+        let (version, rest) = rest.split_first_chunk::<4>().ok_or(no_checkpoint.clone())?;
+        check_version(u32::from_le_bytes(*version))?;
+        let (fields, sum) = rest.split_last_chunk::<4>().ok_or(no_checkpoint)?;
+        let expected = u32::from_le_bytes(*sum);
+        let found = checksum(&bytes[..length - sum.len()]);
+        if found != expected {
+            return Err(CheckpointError::Damaged { expected, found });
+        }
+        postcard::from_bytes(fields).map_err(|e| CheckpointError::Decode(e.to_string()))
+    }
+
+    /// The JSON form.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Encode`] if memory runs out.
+    pub fn to_json(&self) -> Result<String, CheckpointError> {
+        serde_json::to_string(self).map_err(|e| CheckpointError::Encode(e.to_string()))
+    }
+
+    /// Reads the JSON form.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] if the text is no checkpoint or one of another version.
+    pub fn from_json(text: &str) -> Result<Self, CheckpointError> {
+        /// The one field that all versions have.
+        #[derive(Deserialize)]
+        struct Header {
+            version: u32,
+        }
+        let decode = |e: serde_json::Error| CheckpointError::Decode(e.to_string());
+        let header: Header = serde_json::from_str(text).map_err(decode)?;
+        check_version(header.version)?;
+        serde_json::from_str(text).map_err(decode)
+    }
+}
+
+fn check_version(found: u32) -> Result<(), CheckpointError> {
+    if found == VERSION {
+        Ok(())
+    } else {
+        Err(CheckpointError::Version {
+            found,
+            supported: VERSION,
+        })
+    }
+}
+
+fn checksum(bytes: &[u8]) -> u32 {
+    Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(bytes)
+}

@@ -1,0 +1,430 @@
+//! The chart-free engine: proposals of an integrator, judged and committed.
+
+use crate::checkpoint::{CheckpointError, FreeMotion};
+use crate::contact::{Contact, ContactError, ContactState, RunContact};
+use crate::control::{Decision, Stepping, take_substep};
+use crate::energy_account::{EnergyAccount, Exchange};
+use crate::feasibility::{Excess, excess};
+use crate::implicit::ImplicitEuler;
+use crate::integrator::{
+    Attempt, ContactSupport, Integrator, Memory, Moment, Proposal, RodDemand, Scene,
+};
+use crate::rank::rod_rank;
+use crate::reaction::Balance;
+use crate::report::{Path, StepError, Tally};
+use crate::subdivision::Subdivision;
+use crate::taut::held_by_lines;
+use crate::{Fallback, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable};
+use isosheet_mesh::VertexId;
+
+/// A sheet that a chart-free method moves.
+pub(crate) struct Engine {
+    pub(crate) model: SheetModel,
+    contact: Option<RunContact>,
+    method: Method,
+    /// Vertices that became pins at the start because they cannot move.
+    held: Vec<VertexId>,
+    integrator: Box<dyn Integrator>,
+    control: StepControl,
+    fallback: Option<ImplicitEuler>,
+    /// Where the sheet is. Nothing but [`Substeps::commit`] changes it.
+    moment: Moment,
+    account: EnergyAccount,
+    /// Steps taken since the start.
+    has_moved: bool,
+    proposal: Proposal,
+}
+
+impl Engine {
+    /// Vertices on straight lines of rods between pins at rest become pins.
+    pub(crate) fn new(
+        mut model: SheetModel,
+        method: Method,
+        mut state: State,
+    ) -> Result<Self, SimulationError> {
+        let held = held_by_lines(&model, &state.x);
+        model.hold(&held);
+        model.clear_velocities(&held, &mut state.v);
+        Self::with_held(model, method, state, held)
+    }
+
+    fn with_held(
+        model: SheetModel,
+        method: Method,
+        state: State,
+        held: Vec<VertexId>,
+    ) -> Result<Self, SimulationError> {
+        let integrator = method.build(&model)?;
+        let traits = integrator.traits();
+        if traits.demand == RodDemand::Independent
+            && let Some(index) = model.constraints().iter().position(|c| c.is_one_sided())
+        {
+            return Err(SimulationError::OneSided { index });
+        }
+        Ok(Self {
+            moment: Moment::at(state, &model, traits),
+            proposal: Proposal::new(&model, traits),
+            integrator,
+            control: StepControl::default(),
+            fallback: None,
+            contact: None,
+            account: EnergyAccount::default(),
+            has_moved: false,
+            method,
+            held,
+            model,
+        })
+    }
+
+    /// What a checkpoint keeps.
+    pub(crate) fn motion(&self) -> FreeMotion {
+        FreeMotion {
+            method: self.method.clone(),
+            control: self.control.clone(),
+            moment: self.moment.compact(),
+            account: self.account,
+            has_moved: self.has_moved,
+            held: self.held.iter().map(|v| v.0).collect(),
+            barrier: self.contact.as_ref().map(RunContact::barrier),
+        }
+    }
+
+    /// Goes on from a checkpoint.
+    pub(crate) fn resume(
+        mut model: SheetModel,
+        contact: Option<Box<dyn Contact>>,
+        motion: FreeMotion,
+    ) -> Result<Self, SimulationError> {
+        check_lengths(&model, &motion)?;
+        let held: Vec<VertexId> = motion.held.iter().copied().map(VertexId).collect();
+        model.hold(&held);
+        let state = motion.moment.state.clone();
+        let mut engine = Self::with_held(model, motion.method, state, held)?;
+        engine.set_control(motion.control)?;
+        engine.moment.copy_from(&motion.moment);
+        engine.account = motion.account;
+        engine.has_moved = motion.has_moved;
+        engine.contact = match (contact, motion.barrier) {
+            (None, None) => None,
+            (Some(contact), Some(barrier)) => {
+                let state = &engine.moment.state;
+                Some(RunContact::resume(contact, barrier, &engine.model, state)?)
+            }
+            (_, barrier) => {
+                let expected = barrier.is_some();
+                return Err(CheckpointError::Contact { expected }.into());
+            }
+        };
+        Ok(engine)
+    }
+
+    /// Contact, if the scene has any.
+    pub(crate) fn contact(&self) -> Option<(&RunContact, &ContactState)> {
+        self.contact.as_ref().zip(self.moment.contacts.as_ref())
+    }
+
+    /// Where the sheet is.
+    pub(crate) fn state(&self) -> &State {
+        &self.moment.state
+    }
+
+    /// Forces of the supports in the last sub-step.
+    pub(crate) fn balance(&self) -> Option<&Balance> {
+        self.has_moved.then_some(&self.moment.balance)
+    }
+
+    /// Adds contact.
+    pub(crate) fn set_contact(&mut self, contact: Box<dyn Contact>) -> Result<(), SimulationError> {
+        if self.integrator.traits().contact == ContactSupport::None {
+            return Err(ContactError::Method.into());
+        }
+        let (contact, contacts) = RunContact::new(contact, &self.model, &self.moment.state)?;
+        self.contact = Some(contact);
+        self.moment.contacts = Some(contacts);
+        Ok(())
+    }
+
+    pub(crate) fn set_control(&mut self, control: StepControl) -> Result<(), SimulationError> {
+        control.validate()?;
+        self.fallback = match &control.fallback {
+            Fallback::Refuse => None,
+            Fallback::ImplicitEuler(o) => Some(ImplicitEuler::new(&self.model, o.clone())?),
+        };
+        self.control = control;
+        Ok(())
+    }
+
+    /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
+    pub(crate) fn advance(&mut self, h: f64, tally: &mut Tally) -> Result<(), StepError> {
+        let lengths = Subdivision::new(self.state().t, h, self.control.min_fraction);
+        let mut run = Substeps {
+            engine: self,
+            lengths,
+            memory: Memory::All,
+            proposer: Proposer::Method,
+            pending: Pending::default(),
+            tally,
+        };
+        while !run.lengths.is_finished() {
+            let h = run.lengths.length();
+            match take_substep(&mut run, h) {
+                Ok(()) => (),
+                Err(Stop::Taut(excess)) => {
+                    run.tally.taut = Some(excess);
+                    return Ok(());
+                }
+                Err(Stop::Error(error)) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Why there is no sub-step: supports that ask for too much, dependent rods, or as the integrator said.
+    fn stop(&self, lengths: &Subdivision, cause: StepError) -> Stop {
+        let state = self.state();
+        if self.model.has_drives()
+            && let Some(excess) = excess(&self.model, state, lengths.end())
+        {
+            return match self.control.unsatisfiable {
+                Unsatisfiable::StopTaut => Stop::Taut(excess),
+                Unsatisfiable::Refuse => {
+                    Stop::Error(StepError::Unsatisfiable { t: state.t, excess })
+                }
+            };
+        }
+        if self.integrator.traits().demand == RodDemand::Independent
+            && let Some(rank) = rod_rank(&self.model, &state.x)
+            && rank.smallest < DEPENDENT_RODS
+        {
+            return Stop::Error(StepError::RankDeficient {
+                t: state.t,
+                rank_deficiency: rank.deficiency,
+                smallest_singular_value: rank.smallest,
+            });
+        }
+        Stop::Error(StepError::StepTooSmall {
+            t: state.t,
+            min_step: lengths.smallest(),
+            cause: Box::new(cause),
+        })
+    }
+}
+
+/// The sub-steps of one step.
+struct Substeps<'a> {
+    engine: &'a mut Engine,
+    lengths: Subdivision,
+    /// What of the history the next proposal begins with.
+    memory: Memory,
+    proposer: Proposer,
+    pending: Pending,
+    tally: &'a mut Tally,
+}
+
+/// Who proposes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Proposer {
+    /// The method that was asked for.
+    Method,
+    /// Implicit Euler.
+    Fallback,
+}
+
+/// What the energy accounts will be once the proposal is committed.
+#[derive(Debug, Clone, Copy, Default)]
+struct Pending {
+    account: EnergyAccount,
+    exchange: Exchange,
+}
+
+/// Why a step ends early.
+enum Stop {
+    /// At a taut state, as the step control allows.
+    Taut(Excess),
+    Error(StepError),
+}
+
+impl Stepping for Substeps<'_> {
+    type Refusal = StepError;
+    type Error = Stop;
+    type Report = ();
+
+    fn propose(&mut self, h: f64) -> Result<(), StepError> {
+        let Engine {
+            model,
+            contact,
+            integrator,
+            fallback,
+            moment,
+            account,
+            has_moved,
+            proposal,
+            ..
+        } = &mut *self.engine;
+        let t = moment.state.t + h;
+        if let Some((support, value)) = model.find_bad_motion(t) {
+            return Err(StepError::NonFiniteMotion { support, value, t });
+        }
+        let scene = Scene {
+            model,
+            contact: contact.as_mut().map(RunContact::step),
+        };
+        let attempt = Attempt::new(moment, h, self.memory);
+        let effort = &mut self.tally.effort;
+        let is_fallback = self.proposer == Proposer::Fallback;
+        match fallback {
+            Some(fallback) if is_fallback => fallback.propose(scene, attempt, proposal, effort)?,
+            _ => integrator.propose(scene, attempt, proposal, effort)?,
+        }
+        let (before, after) = (&moment.state, &proposal.moment.state);
+        let step = &proposal.account;
+        let mut exchange = Exchange {
+            forces: step.work,
+            bodies: step.contact.bodies,
+            barrier: step.contact.stored,
+            length_slack: step.contact.length_slack,
+            ..Exchange::default()
+        };
+        if model.has_drives() {
+            let kept = has_moved.then_some(&moment.balance);
+            let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
+            let balance = &proposal.moment.balance;
+            exchange.supports = balance.drive_work(model, kept, ends.0, ends.1);
+        }
+        self.pending = Pending {
+            account: *account,
+            exchange,
+        };
+        // The conservative methods keep the energy by themselves, and the fallback is the last resort.
+        if integrator.traits().demand == RodDemand::Nothing && !is_fallback {
+            self.pending.account = account.after(model, before, after, &exchange)?;
+        }
+        Ok(())
+    }
+
+    fn decide(&mut self, refusal: StepError, _h: f64) -> Decision<Stop> {
+        if matches!(refusal, StepError::NonFiniteMotion { .. }) {
+            return Decision::Stop(Stop::Error(refusal));
+        }
+        self.tally.rejected += 1;
+        let looks_back = self.memory > Memory::Restart && self.engine.moment.history.looks_back();
+        let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
+        if self.proposer == Proposer::Fallback {
+            Decision::Stop(self.engine.stop(&self.lengths, refusal))
+        } else if gains_energy && looks_back {
+            // Contact came or went, or rods snapped through: the history of the motion does not continue.
+            Decision::Restart
+        } else if let Some(shorter) = self.lengths.halve() {
+            self.memory = self.memory.min(Memory::State);
+            Decision::Shorten(shorter)
+        } else if self.engine.fallback.is_some() {
+            Decision::FallBack(self.lengths.lengthen())
+        } else {
+            Decision::Stop(self.engine.stop(&self.lengths, refusal))
+        }
+    }
+
+    fn restart(&mut self) -> Result<(), Stop> {
+        self.memory = Memory::Restart;
+        Ok(())
+    }
+
+    fn fall_back(&mut self) {
+        self.memory = Memory::Restart;
+        self.proposer = Proposer::Fallback;
+    }
+
+    fn commit(&mut self, h: f64) -> Result<(), Stop> {
+        let engine = &mut *self.engine;
+        let (step, exchange) = (engine.proposal.account, self.pending.exchange);
+        std::mem::swap(&mut engine.moment, &mut engine.proposal.moment);
+        engine.account = self.pending.account;
+        engine.has_moved = true;
+        // The end of the step is set by the caller, free of accumulated round-off.
+        engine.moment.state.t = self.lengths.advance();
+        let tally = &mut *self.tally;
+        if engine.model.has_driven_potentials() {
+            let (before, after) = (&engine.proposal.moment.state, &engine.moment.state);
+            let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
+            tally.work += engine.model.potential_work(ends.0, ends.1);
+        }
+        tally.substeps += 1;
+        tally.residual = tally.residual.max(step.residual);
+        tally.path = tally.path.max(step.path);
+        tally.work += exchange.forces + exchange.supports + exchange.bodies;
+        tally.friction += step.contact.friction;
+        let dissipated = damp(&engine.model, &mut engine.moment.state, h);
+        tally.dissipated += dissipated;
+        engine.account.spend(dissipated);
+        if self.proposer == Proposer::Fallback {
+            // What implicit Euler remembers means nothing to the method that was asked for.
+            engine.moment.history.previous = None;
+            engine.moment.history.multipliers.clear();
+            tally.path = Path::Fallback;
+        }
+        (self.memory, self.proposer) = (Memory::All, Proposer::Method);
+        Ok(())
+    }
+}
+
+/// Refuses arrays of the wrong length.
+fn check_lengths(model: &SheetModel, motion: &FreeMotion) -> Result<(), CheckpointError> {
+    let (n, m, k) = (
+        model.coordinate_count(),
+        model.rods().len(),
+        model.constraints().len(),
+    );
+    let Moment { state, history, .. } = &motion.moment;
+    let previous = history.previous.as_ref().unwrap_or(state);
+    let multipliers = &history.multipliers;
+    let optional = |length: usize, expected: usize| if length == 0 { expected } else { length };
+    let vertices = model.topology().vertex_count();
+    let largest = history.couplings.iter().flatten().chain(&motion.held).max();
+    for (what, found, expected) in [
+        ("positions", state.x.len(), n),
+        ("velocities", state.v.len(), n),
+        ("positions of the step before", previous.x.len(), n),
+        ("velocities of the step before", previous.v.len(), n),
+        (
+            "multipliers of rods",
+            optional(multipliers.rods.len(), m),
+            m,
+        ),
+        (
+            "multipliers of vertex constraints",
+            optional(multipliers.constraints.len(), k),
+            k,
+        ),
+    ] {
+        if found != expected {
+            return Err(CheckpointError::Length {
+                what,
+                found,
+                expected,
+            });
+        }
+    }
+    match largest {
+        Some(&v) if v as usize >= vertices => Err(CheckpointError::NoSuchVertex {
+            vertex: v,
+            vertices,
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Applies velocity damping over a step; returns the energy taken out.
+fn damp(model: &SheetModel, state: &mut State, h: f64) -> f64 {
+    if model.damping() == 0.0 {
+        return 0.0;
+    }
+    let before = model.kinetic_energy(&state.v);
+    let factor = (-model.damping() * h).exp();
+    state.v.iter_mut().for_each(|v| *v *= factor);
+    before * (1.0 - factor * factor)
+}
+
+/// Smallest singular value (of the rigidity matrix with unit rods) below which dependence of
+/// the rods is named as the reason of a failure: the referee integrations of the smoothest
+/// known runs pass values down to 1e-6 only with steps of a microsecond.
+const DEPENDENT_RODS: f64 = 1e-5;

@@ -1,0 +1,326 @@
+//! Kinematics against differences, motions by profiles against the same motions by functions, and refusals.
+
+use super::*;
+use crate::profile::tests::profiles;
+use crate::{Method, ModelError, SheetModel, Simulation, State, leave_flat};
+use isosheet_mesh::{MassKind, VertexId, generate};
+use nalgebra::{Isometry3, Point3, UnitQuaternion};
+use proptest::prelude::*;
+
+fn vector() -> impl Strategy<Value = [f64; 3]> {
+    proptest::array::uniform3(-1.0..1.0_f64)
+}
+
+fn pose() -> impl Strategy<Value = Isometry3<f64>> {
+    (vector(), vector()).prop_map(|(p, turn)| Isometry3::new(p.into(), turn.into()))
+}
+
+/// A profile without kinks.
+fn smooth() -> impl Strategy<Value = Profile> {
+    (-1.0..1.0_f64, -1.0..1.0_f64, -0.5..0.5_f64, -3.0..3.0_f64).prop_map(
+        |(mean, amplitude, frequency, phase)| Profile::Sine {
+            mean,
+            amplitude,
+            frequency,
+            phase,
+        },
+    )
+}
+
+fn displacements(
+    profile: impl Strategy<Value = Profile> + Clone,
+) -> impl Strategy<Value = RigidDisplacement> {
+    let axes = (profile.clone(), profile.clone(), profile.clone());
+    let rotation = (vector(), vector(), profile).prop_map(|(centre, axis, angle)| AxisRotation {
+        centre,
+        axis,
+        angle,
+    });
+    (pose(), axes, proptest::option::of(rotation)).prop_map(|(pose, (x, y, z), rotation)| {
+        RigidDisplacement {
+            pose,
+            x,
+            y,
+            z,
+            rotation,
+        }
+    })
+}
+
+fn key(t: f64, translation: [f64; 3], turn: [f64; 3]) -> Keyframe {
+    let pose = Isometry3::new(Vector3::from(translation), Vector3::from(turn));
+    Keyframe { t, pose }
+}
+
+/// First and second derivative by five-point differences.
+fn differences(at: impl Fn(f64) -> Vector3<f64>, t: f64) -> [Vector3<f64>; 2] {
+    let h = 1e-3;
+    let [a, b, c, d, e] = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| at(t + k * h));
+    [
+        (a - 8.0 * b + 8.0 * d - e) / (12.0 * h),
+        (-a + 16.0 * b - 30.0 * c + 16.0 * d - e) / (12.0 * h * h),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn rigid_kinematics_match_differences(
+        motion in displacements(smooth().boxed()), p in vector(), t in -1.0..1.0_f64
+    ) {
+        let exact = RigidMotion::from(motion.clone());
+        let profile = RigidProfile::from(motion);
+        let custom = RigidMotion::from(move |t: f64| profile.kinematics(t).pose);
+        let body = Point3::from(p);
+        let at = |t: f64| (exact.pose(t) * body).coords;
+        let [velocity, acceleration] = differences(at, t);
+        for (motion, tolerance) in [(&exact, 1e-7), (&custom, 1e-6)] {
+            let now = motion.kinematics(t, 0.03);
+            prop_assert!((now.pose.inverse() * exact.pose(t)).translation.vector.norm() < 1e-14);
+            let error = (now.velocity_at(&at(t)) - velocity).norm();
+            prop_assert!(error < tolerance, "velocity off by {error:e}");
+            let error = (now.acceleration_at(&at(t)) - acceleration).norm();
+            prop_assert!(error < 100.0 * tolerance, "acceleration off by {error:e}");
+        }
+    }
+
+    #[test]
+    fn velocity_between_keyframes_is_the_rate_of_the_pose(
+        a in vector(), b in vector(), c in vector(), d in vector(), p in vector(), s in 0.01..0.99_f64
+    ) {
+        let keys = vec![key(1.0, a, c), key(3.0, b, d)];
+        let motion = RigidMotion::from(keys.clone());
+        prop_assert_eq!(motion.validate(), Ok(()));
+        let t = 1.0 + 2.0 * s;
+        let at = |t: f64| (motion.pose(t) * Point3::from(p)).coords;
+        let [velocity, acceleration] = differences(at, t);
+        let now = motion.kinematics(t, 1.0);
+        prop_assert!((velocity - now.velocity_at(&at(t))).norm() < 1e-10);
+        prop_assert!((acceleration - now.acceleration_at(&at(t))).norm() < 1e-7);
+        for (k, t) in [(0, 1.0), (1, 3.0), (0, -5.0), (1, 9.0)] {
+            let error = (at(t) - (keys[k].pose * Point3::from(p)).coords).norm();
+            prop_assert!(error < 1e-14);
+        }
+        prop_assert_eq!(motion.kinematics(9.0, 1.0).velocity_at(&at(9.0)), Vector3::zeros());
+    }
+
+    #[test]
+    fn point_motions_match_differences(
+        offset in vector(), x in smooth(), y in smooth(), z in smooth(), t in -1.0..1.0_f64
+    ) {
+        let profile = PointProfile { offset, x, y, z };
+        let exact = PointMotion::from(profile.clone());
+        let custom = PointMotion::from(move |t: f64| profile.position(t));
+        let [velocity, acceleration] = differences(|t| exact.position(t).into(), t);
+        for motion in [exact, custom] {
+            prop_assert!((motion.velocity(t, 0.03) - velocity).norm() < 1e-7);
+            prop_assert!((motion.acceleration(t, 0.03) - acceleration).norm() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn json_keeps_every_bit(
+        motion in displacements(profiles().boxed()), offset in vector(), poses in proptest::collection::vec(pose(), 1..4)
+    ) {
+        let [x, y, z] = [&motion.x, &motion.y, &motion.z].map(Clone::clone);
+        let point = PointProfile { offset, x, y, z };
+        let text = serde_json::to_string(&point).unwrap();
+        let read: PointProfile = serde_json::from_str(&text).unwrap();
+        prop_assert_eq!(read, point);
+        let times = (0..).map(f64::from);
+        let keys: Vec<Keyframe> = times.zip(poses).map(|(t, pose)| Keyframe { t, pose }).collect();
+        for motion in [RigidProfile::from(motion), RigidProfile::from(keys)] {
+            let text = serde_json::to_string(&motion).unwrap();
+            let read: RigidProfile = serde_json::from_str(&text).unwrap();
+            prop_assert_eq!(format!("{read:?}"), format!("{motion:?}"));
+        }
+    }
+}
+
+#[test]
+fn a_quarter_turn_is_halved() {
+    let turn = [0.0, 0.0, std::f64::consts::FRAC_PI_2];
+    let motion = RigidMotion::from(vec![
+        key(0.0, [0.0; 3], [0.0; 3]),
+        key(2.0, [4.0, 0.0, 0.0], turn),
+    ]);
+    let p = (motion.pose(1.0) * Point3::new(1.0, 0.0, 0.0)).coords;
+    let r = 0.5_f64.sqrt();
+    assert!((p - Vector3::new(2.0 + r, r, 0.0)).norm() < 1e-15);
+    assert!(!motion.is_still());
+    assert!(RigidProfile::still(motion.pose(1.0)).is_still());
+}
+
+/// A wheel of radius `r` that turns by `w t` and moves on by `r w t` does not slip where it touches the
+/// ground.
+#[test]
+fn a_rolling_wheel_rests_where_it_touches_the_ground() {
+    let (r, angle) = (0.3, 5.0);
+    let ramp = |to: f64| Profile::Ramp {
+        from: 0.0,
+        to,
+        begin: 0.0,
+        end: 2.0,
+    };
+    let wheel = RigidDisplacement {
+        pose: Isometry3::translation(0.0, 0.0, r),
+        x: ramp(r * angle),
+        rotation: Some(AxisRotation {
+            centre: [0.0, 0.0, r],
+            axis: [0.0, 2.0, 0.0],
+            angle: ramp(angle),
+        }),
+        ..RigidDisplacement::default()
+    };
+    let t = 1.3;
+    let now = RigidMotion::from(wheel).kinematics(t, 1.0);
+    let x = r * angle * t / 2.0;
+    let centre = Vector3::new(x, 0.0, r);
+    assert!((now.pose.translation.vector - centre).norm() < 1e-15);
+    let ground = now.velocity_at(&Vector3::new(x, 0.0, 0.0));
+    assert!(ground.norm() < 1e-15, "{ground}");
+    let top = now.velocity_at(&Vector3::new(x, 0.0, 2.0 * r));
+    assert!((top - Vector3::new(r * angle, 0.0, 0.0)).norm() < 1e-14);
+}
+
+#[test]
+fn poses_are_written_as_position_and_quaternion() {
+    let text = r#"{"kind": "displacement", "pose": {"position": [0, 0, 1], "rotation": [0, 0, 0.7, 0.7]},
+        "z": {"kind": "constant", "value": 0.5}}"#;
+    let motion: RigidProfile = serde_json::from_str(text).unwrap();
+    let pose = motion.kinematics(0.0).pose;
+    let quarter = UnitQuaternion::from_euler_angles(0.0, 0.0, std::f64::consts::FRAC_PI_2);
+    assert!(pose.rotation.angle_to(&quarter) < 1e-15);
+    assert_eq!(pose.translation.vector, Vector3::new(0.0, 0.0, 1.5));
+    let text = r#"{"kind": "keyframes", "keys": [{"t": 0, "pose": {}}, {"t": 1, "pose": {"position": [1, 0, 0]}}]}"#;
+    let motion: RigidProfile = serde_json::from_str(text).unwrap();
+    assert_eq!(motion.kinematics(0.5).velocity, Vector3::x());
+    for wrong in [
+        r#"{"kind": "displacement", "pose": {"rotation": [0, 0, 0, 0]}}"#,
+        r#"{"kind": "displacement", "pose": {"postion": [0, 0, 0]}}"#,
+        r#"{"kind": "displacement", "w": {"kind": "constant", "value": 0.5}}"#,
+        r#"{"kind": "orbit"}"#,
+    ] {
+        let error = serde_json::from_str::<RigidProfile>(wrong).unwrap_err();
+        assert!(!error.to_string().is_empty(), "{wrong}");
+    }
+}
+
+#[test]
+fn unusable_motions_are_named() {
+    let zero = [0.0; 3];
+    let refused = |keys: Vec<Keyframe>| RigidMotion::from(keys).validate().unwrap_err();
+    assert_eq!(refused(Vec::new()), MotionError::Empty);
+    let (index, t) = (1, 0.0);
+    let previous = 0.0;
+    assert_eq!(
+        refused(vec![key(t, zero, zero), key(t, zero, zero)]),
+        MotionError::Order { index, t, previous }
+    );
+    assert_eq!(
+        refused(vec![key(t, [f64::NAN, 0.0, 0.0], zero)]),
+        MotionError::Keyframe { index: 0, t }
+    );
+    let half = [0.0, std::f64::consts::PI, 0.0];
+    assert_eq!(
+        refused(vec![key(0.0, zero, zero), key(1.0, zero, half)]),
+        MotionError::HalfTurn { index, t: 1.0 }
+    );
+    let rotation = |axis: [f64; 3], centre: [f64; 3], angle: f64| {
+        let angle = angle.into();
+        let motion = RigidDisplacement {
+            rotation: Some(AxisRotation {
+                centre,
+                axis,
+                angle,
+            }),
+            ..RigidDisplacement::default()
+        };
+        RigidMotion::from(motion).validate()
+    };
+    let up = [0.0, 0.0, 1.0];
+    assert_eq!(rotation(up, zero, 1.0), Ok(()));
+    assert_eq!(rotation(zero, zero, 1.0), Err(MotionError::NoAxis));
+    for wrong in [
+        rotation([f64::NAN; 3], zero, 1.0),
+        rotation(up, [f64::INFINITY; 3], 1.0),
+        rotation(up, zero, f64::NAN),
+    ] {
+        assert!(wrong.is_err());
+    }
+    let still = RigidProfile::still(Isometry3::translation(0.0, f64::NAN, 0.0));
+    assert!(matches!(
+        still.validate(),
+        Err(MotionError::NotFinite { .. })
+    ));
+    let sheet = generate::isotropic_square(0, 1.0).unwrap();
+    let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped).unwrap();
+    let bad = PointProfile {
+        y: f64::NAN.into(),
+        ..PointProfile::default()
+    };
+    let error = model.with_moving_pin(VertexId(1), bad).unwrap_err();
+    assert!(
+        matches!(error, ModelError::Motion { vertex: VertexId(1), source: MotionError::Profile { name, .. } } if name.ends_with('y')),
+        "{error}"
+    );
+}
+
+/// A small sheet that hangs by a shaken corner: the end of half a second.
+fn shaken(method: Method, motion: impl Into<PointMotion>) -> State {
+    let sheet = generate::isotropic_square(0, 0.2).unwrap();
+    let mut x = sheet.positions().to_vec();
+    let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Consistent)
+        .unwrap()
+        .with_gravity()
+        .with_moving_pin(VertexId(0), motion)
+        .unwrap();
+    leave_flat(&model, &mut x, 0.02, 1).unwrap();
+    let mut run = Simulation::new(model, State::at_rest(x), method).unwrap();
+    for _ in 0..100 {
+        run.step(2e-3).unwrap();
+    }
+    run.state().clone()
+}
+
+#[test]
+fn pins_by_profiles_move_as_pins_by_functions() {
+    let sheet = generate::isotropic_square(0, 0.2).unwrap();
+    let shake = PointProfile {
+        offset: sheet.position(VertexId(0)),
+        x: Profile::SmoothStep {
+            from: 0.0,
+            to: 0.03,
+            begin: 0.02,
+            end: 0.15,
+        },
+        z: Profile::Sine {
+            mean: 0.0,
+            amplitude: 0.01,
+            frequency: 3.0,
+            phase: 0.0,
+        },
+        ..PointProfile::default()
+    };
+    for method in [
+        Method::default(),
+        Method::EnergyMomentum(Default::default()),
+        Method::Rattle(Default::default()),
+    ] {
+        let name = format!("{method:?}");
+        let exact = shaken(method.clone(), shake.clone());
+        let profile = shake.clone();
+        let custom = shaken(method, move |t| profile.position(t));
+        let moved = exact.x[2] - sheet.positions()[2];
+        assert!(moved.abs() > 1e-4, "{name}: the pin moved by {moved} m");
+        let error = |a: &[f64], b: &[f64]| {
+            let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+            differences.fold(0.0, f64::max)
+        };
+        // Velocities by differences are good to 1e-8 of their change in a step.
+        let (dx, dv) = (error(&exact.x, &custom.x), error(&exact.v, &custom.v));
+        assert!(
+            dx < 1e-9 && dv < 1e-7,
+            "{name}: off by {dx:e} m, {dv:e} m/s"
+        );
+    }
+}

@@ -1,0 +1,39 @@
+//! Options that are out of range.
+
+/// An option that makes no sense.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("option {name} is {value}; give a value from {min} to {max}")]
+pub struct OptionsError {
+    /// Name of the option.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Smallest value that makes sense.
+    pub min: f64,
+    /// Largest value that makes sense.
+    pub max: f64,
+}
+
+impl OptionsError {
+    pub(crate) fn check_range(
+        name: &'static str,
+        value: f64,
+        min: f64,
+        max: f64,
+    ) -> Result<(), Self> {
+        if (min..=max).contains(&value) {
+            Ok(())
+        } else {
+            Err(Self {
+                name,
+                value,
+                min,
+                max,
+            })
+        }
+    }
+
+    pub(crate) fn check_count(name: &'static str, value: usize) -> Result<(), Self> {
+        Self::check_range(name, value as f64, 1.0, 1e6)
+    }
+}

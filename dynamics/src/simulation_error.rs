@@ -1,0 +1,58 @@
+//! Why a simulation cannot start.
+
+use crate::chart::ChartDynamicsError;
+use crate::checkpoint::CheckpointError;
+use crate::contact::ContactError;
+use crate::options::OptionsError;
+use crate::report::StepError;
+use isosheet_coords::linalg::LinalgError;
+
+/// Why a simulation cannot start.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SimulationError {
+    /// An option makes no sense.
+    #[error(transparent)]
+    Options(#[from] OptionsError),
+    /// The state does not fit the model.
+    #[error(
+        "the state has {positions} position and {velocities} velocity values, the sheet needs \
+         {expected} of each"
+    )]
+    StateLength {
+        /// Number of position values.
+        positions: usize,
+        /// Number of velocity values.
+        velocities: usize,
+        /// Three for each vertex.
+        expected: usize,
+    },
+    /// The start state is not one that a step could start from.
+    #[error(transparent)]
+    Start(#[from] StepError),
+    /// The linear algebra could not be set up.
+    #[error(transparent)]
+    Linalg(#[from] LinalgError),
+    /// The chart cannot be used.
+    #[error(transparent)]
+    Chart(#[from] ChartDynamicsError),
+    /// Contact cannot start here.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// A one-sided constraint is in a scene of a conservative method.
+    #[error(
+        "vertex constraint {index} is one-sided, which the conservative methods have no place for: an \
+         impact loses energy. Use BDF2, implicit Euler or projection"
+    )]
+    OneSided {
+        /// Place in the order in which the constraints were added.
+        index: usize,
+    },
+    /// The checkpoint does not belong to the model or cannot be resumed this way.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// Step control by subdivision was asked for a chart, which has its own.
+    #[error(
+        "a simulation in a chart controls its steps by `ChartOptions::control`; leave `StepControl` out"
+    )]
+    ChartControl,
+}

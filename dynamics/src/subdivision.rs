@@ -1,0 +1,121 @@
+//! Lengths of the sub-steps of a step: halves of halves, on a binary grid that ends at the step exactly.
+
+/// Sub-steps accepted after a refusal before a longer one is tried: a singular state takes a few steps to pass, and
+/// trying too soon is what most refusals were.
+const PATIENCE: usize = 4;
+
+/// Sub-steps `h / 2^k` of a step of `h` seconds.
+#[derive(Debug, Clone)]
+pub(crate) struct Subdivision {
+    start: f64,
+    h: f64,
+    /// Smallest sub-step, seconds.
+    smallest: f64,
+    /// Length of the next sub-step, as a fraction of the step.
+    fraction: f64,
+    /// Fraction of the step that is done.
+    done: f64,
+    patience: usize,
+}
+
+impl Subdivision {
+    /// Of a step of `h` seconds from the time `start`, in sub-steps of at least the fraction `smallest`.
+    pub(crate) fn new(start: f64, h: f64, smallest: f64) -> Self {
+        Self {
+            start,
+            h,
+            smallest: smallest * h,
+            fraction: 1.0,
+            done: 0.0,
+            patience: 0,
+        }
+    }
+
+    pub(crate) fn is_finished(&self) -> bool {
+        self.done >= 1.0
+    }
+
+    /// Length of the next sub-step, seconds.
+    pub(crate) fn length(&self) -> f64 {
+        self.fraction * self.h
+    }
+
+    /// Length of the smallest sub-step, seconds.
+    pub(crate) fn smallest(&self) -> f64 {
+        self.smallest
+    }
+
+    /// Time at the end of the step, seconds.
+    pub(crate) fn end(&self) -> f64 {
+        self.start + self.h
+    }
+
+    /// Halves the next sub-step and returns its length; nothing if it would be too small.
+    pub(crate) fn halve(&mut self) -> Option<f64> {
+        if 0.5 * self.length() < self.smallest {
+            return None;
+        }
+        self.fraction *= 0.5;
+        self.patience = PATIENCE;
+        Some(self.length())
+    }
+
+    /// Makes the next sub-step as long as the grid allows and returns its length.
+    pub(crate) fn lengthen(&mut self) -> f64 {
+        self.fraction = self.longest();
+        self.length()
+    }
+
+    /// Takes the sub-step as done; returns the time reached, free of accumulated round-off.
+    pub(crate) fn advance(&mut self) -> f64 {
+        self.done += self.fraction;
+        self.patience = self.patience.saturating_sub(1);
+        let growth = if self.patience == 0 { 2.0 } else { 1.0 };
+        self.fraction = self.longest().min(growth * self.fraction);
+        self.start + self.done * self.h
+    }
+
+    /// The largest sub-step `2^-k` that may start after the fraction that is done.
+    fn longest(&self) -> f64 {
+        let mut fraction = 1.0;
+        while (self.done / fraction).fract() != 0.0 {
+            fraction *= 0.5;
+        }
+        fraction
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sub_steps_end_at_the_step() {
+        let mut steps = Subdivision::new(1.0, 0.3, 1.0 / 64.0);
+        let mut refusals = 0;
+        let (mut t, mut count) = (1.0, 0);
+        while !steps.is_finished() {
+            // Every third sub-step is refused once.
+            if count % 3 == 0 && refusals < 4 && steps.halve().is_some() {
+                refusals += 1;
+            }
+            let length = steps.length();
+            let end = steps.advance();
+            assert!((end - t - length).abs() < 1e-15, "{end} {t} {length}");
+            t = end;
+            count += 1;
+        }
+        assert_eq!((t, steps.end()), (1.3, 1.3));
+        assert!(refusals == 4 && count > 5);
+    }
+
+    #[test]
+    fn halving_ends() {
+        let mut steps = Subdivision::new(0.0, 1.0, 0.25);
+        assert_eq!(steps.halve(), Some(0.5));
+        assert_eq!(steps.halve(), Some(0.25));
+        assert_eq!(steps.halve(), None);
+        assert_eq!(steps.advance(), 0.25);
+        assert_eq!(steps.length(), 0.25);
+    }
+}

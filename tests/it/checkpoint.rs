@@ -1,0 +1,261 @@
+//! Checkpoints: N steps, a checkpoint through a file, N more are 2 N steps, bit for bit.
+
+use isosheet_dynamics::constraint::{Line, Plane, Side};
+use isosheet_dynamics::{
+    Checkpoint, CheckpointError, CreaseSprings, Fallback, ImplicitOptions, Method, SheetModel,
+    Simulation, SimulationError, State, StepControl, VertexConstraint,
+};
+use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
+
+const STEP: f64 = 1.0 / 120.0;
+const STEPS: usize = 12;
+
+/// How a checkpoint travels.
+#[derive(Debug, Clone, Copy)]
+enum Form {
+    Binary,
+    Json,
+}
+
+fn through_a_file(checkpoint: &Checkpoint, form: Form) -> Checkpoint {
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    let path = folder.path().join("run.checkpoint");
+    let bytes = match form {
+        Form::Binary => checkpoint.to_bytes().expect("encoded"),
+        Form::Json => checkpoint.to_json().expect("encoded").into_bytes(),
+    };
+    std::fs::write(&path, bytes).expect("written");
+    let bytes = std::fs::read(&path).expect("read");
+    match form {
+        Form::Binary => Checkpoint::from_bytes(&bytes).expect("decoded"),
+        Form::Json => {
+            Checkpoint::from_json(std::str::from_utf8(&bytes).expect("text")).expect("decoded")
+        }
+    }
+}
+
+fn bits(state: &State) -> Vec<u64> {
+    let values = [state.t].into_iter();
+    let values = values
+        .chain(state.x.iter().copied())
+        .chain(state.v.iter().copied());
+    values.map(f64::to_bits).collect()
+}
+
+/// Runs `2 N` steps, and `N` with a checkpoint and `N` more, and compares states, reports and support forces.
+fn compare(name: &str, start: impl Fn() -> Simulation, model: impl Fn() -> SheetModel) {
+    for form in [Form::Binary, Form::Json] {
+        let mut whole = start();
+        let mut first = start();
+        for _ in 0..STEPS {
+            whole.step(STEP).expect("accepted");
+            first.step(STEP).expect("accepted");
+        }
+        let checkpoint = first.checkpoint();
+        drop(first);
+        let read = through_a_file(&checkpoint, form);
+        assert_eq!(read, checkpoint, "{name}, {form:?}");
+        let mut second = Simulation::resume(model(), None, read).expect("the same model");
+        assert_eq!(second.reactions(), whole.reactions(), "{name}, {form:?}");
+        for step in 0..STEPS {
+            let (a, b) = (whole.step(STEP), second.step(STEP));
+            assert_eq!(a, b, "{name}, {form:?}, step {step}");
+            assert_eq!(
+                bits(whole.state()),
+                bits(second.state()),
+                "{name}, {form:?}, step {step}"
+            );
+            assert_eq!(
+                whole.reactions(),
+                second.reactions(),
+                "{name}, {form:?}, step {step}"
+            );
+        }
+    }
+}
+
+fn methods() -> [(&'static str, Method); 6] {
+    [
+        ("BDF2", Method::default()),
+        (
+            "implicit Euler",
+            Method::ImplicitEuler(ImplicitOptions::default()),
+        ),
+        ("projection", Method::Projection(Default::default())),
+        (
+            "energy-momentum",
+            Method::EnergyMomentum(Default::default()),
+        ),
+        ("RATTLE", Method::Rattle(Default::default())),
+        ("composition", Method::RattleComposition(Default::default())),
+    ]
+}
+
+/// A bumped square, far enough from flat for every method.
+fn bumped(level: u32) -> Sheet {
+    let flat = generate::isotropic_square(level, 0.2).expect("valid");
+    let mut x = flat.positions().to_vec();
+    for p in x.chunks_mut(3) {
+        p[2] = 0.03 * (15.0 * p[0]).sin() * (13.0 * p[1]).cos();
+    }
+    Sheet::new(x, &flat.face_indices()).expect("valid")
+}
+
+fn plain(sheet: &Sheet) -> SheetModel {
+    SheetModel::new(sheet, 3.5e-3, MassKind::Lumped)
+        .expect("valid")
+        .with_gravity()
+        .with_damping(0.5)
+        .expect("valid")
+}
+
+#[test]
+fn a_hanging_sheet_goes_on_bit_for_bit() {
+    let sheet = bumped(1);
+    let model = || plain(&sheet).with_pins(&[VertexId(20)]).expect("exists");
+    for (name, method) in methods() {
+        let start = || {
+            let state = State::at_rest(sheet.positions().to_vec());
+            Simulation::new(model(), state, method.clone()).expect("valid")
+        };
+        compare(name, start, model);
+    }
+}
+
+#[test]
+fn so_do_drives_constraints_creases_and_a_fallback() {
+    let sheet = bumped(1);
+    let line = || Line::new(sheet.position(VertexId(0)), [0.1, 1.0, -0.3]).expect("valid");
+    let low = sheet
+        .positions()
+        .iter()
+        .skip(2)
+        .step_by(3)
+        .fold(f64::INFINITY, |m, z| m.min(*z));
+    let floor = || Plane::new([0.0, 0.0, low - 2e-3], [0.0, 0.0, 1.0]).expect("valid");
+    let creases = |s: &Sheet| CreaseSprings::bending(s, 1e-4).expect("valid");
+    for (name, method) in methods() {
+        let is_damped = matches!(
+            method,
+            Method::Bdf2(_) | Method::ImplicitEuler(_) | Method::Projection(_)
+        );
+        let corner = sheet.position(VertexId(20));
+        let model = || {
+            let mut model = plain(&sheet)
+                .with_potential(creases(&sheet))
+                .with_moving_pin(VertexId(20), move |t| {
+                    [corner[0], corner[1], corner[2] - 0.004 * (9.0 * t).sin()]
+                })
+                .and_then(|m| m.with_constraint(VertexConstraint::on_curve(VertexId(0), line())))
+                .expect("exists");
+            if is_damped {
+                let side = VertexConstraint::on_surface(VertexId(4), floor(), Side::Outside);
+                model = model.with_constraint(side).expect("exists");
+            }
+            model
+        };
+        let control = StepControl {
+            fallback: Fallback::ImplicitEuler(ImplicitOptions::default()),
+            ..StepControl::default()
+        };
+        let start = || {
+            let state = State::at_rest(sheet.positions().to_vec());
+            Simulation::new(model(), state, method.clone())
+                .and_then(|s| s.with_control(control.clone()))
+                .expect("valid")
+        };
+        compare(name, start, model);
+    }
+}
+
+#[test]
+fn a_flat_start_and_held_vertices_survive() {
+    let sheet = generate::isotropic_square(2, 0.2).expect("valid");
+    let model = || {
+        plain(&sheet)
+            .with_pins(&[VertexId(0), VertexId(8)])
+            .expect("exist")
+    };
+    let start = || {
+        let state = State::at_rest(sheet.positions().to_vec());
+        Simulation::new(model(), state, Method::default()).expect("valid")
+    };
+    compare("flat", start, model);
+}
+
+#[test]
+fn other_sheets_versions_and_damage_are_refused() {
+    let sheet = bumped(1);
+    let state = State::at_rest(sheet.positions().to_vec());
+    let run = Simulation::new(plain(&sheet), state, Method::default()).expect("valid");
+    let checkpoint = run.checkpoint();
+    let refused = |model: SheetModel| match Simulation::resume(model, None, checkpoint.clone()) {
+        Err(SimulationError::Checkpoint(error)) => error,
+        Err(error) => panic!("another error: {error}"),
+        Ok(_) => panic!("resumed with another model"),
+    };
+    let finer = refused(plain(&bumped(2)));
+    assert!(
+        matches!(
+            finer,
+            CheckpointError::OtherSize {
+                expected: [25, 56],
+                ..
+            }
+        ),
+        "{finer}"
+    );
+    let flat = generate::isotropic_square(1, 0.2).expect("valid");
+    let other = refused(plain(&flat));
+    assert_eq!(
+        other,
+        CheckpointError::OtherSheet {
+            what: "rest lengths"
+        }
+    );
+    let pinned = refused(plain(&sheet).with_pins(&[VertexId(3)]).expect("exists"));
+    assert_eq!(
+        pinned,
+        CheckpointError::OtherSheet {
+            what: "pins or vertex constraints"
+        }
+    );
+
+    let bytes = checkpoint.to_bytes().expect("encoded");
+    let with = |at: usize, change: u8| {
+        let mut bytes = bytes.clone();
+        bytes[at] ^= change;
+        Checkpoint::from_bytes(&bytes).expect_err("damaged")
+    };
+    assert!(matches!(with(0, 1), CheckpointError::NoCheckpoint { .. }));
+    assert!(matches!(
+        with(8, 2),
+        CheckpointError::Version {
+            found: 3,
+            supported: 1
+        }
+    ));
+    // Every other byte is under the checksum, the checksum included.
+    for at in (12..bytes.len()).step_by(97).chain([bytes.len() - 1]) {
+        assert!(
+            matches!(with(at, 0x10), CheckpointError::Damaged { .. }),
+            "byte {at}"
+        );
+    }
+    for length in 0..64 {
+        assert!(Checkpoint::from_bytes(&bytes[..length]).is_err());
+    }
+    let text = checkpoint.to_json().expect("encoded");
+    let other = text.replacen("\"version\":1", "\"version\":7", 1);
+    assert_eq!(
+        Checkpoint::from_json(&other),
+        Err(CheckpointError::Version {
+            found: 7,
+            supported: 1
+        })
+    );
+    assert!(matches!(
+        Checkpoint::from_json(&text[1..]),
+        Err(CheckpointError::Decode(_))
+    ));
+}
