@@ -1,4 +1,4 @@
-//! Vertices held on bodies, or on one side of them.
+//! Vertices constrained to bodies, or to one side of them.
 
 use crate::{Obstacle, Shape, SignedDistance, TriangleSurface};
 use isosheet_dynamics::VertexConstraint;
@@ -40,8 +40,8 @@ impl Surface for TriangleSurface {
 }
 
 impl Obstacle {
-    /// Holds a vertex on the body, or on one side of it, without friction; the constraint moves as the body
-    /// does.
+    /// Constrains a vertex to the body, or to one side of it, without friction; the constraint moves as the
+    /// body does.
     ///
     /// ```
     /// use isosheet_collide::{Obstacle, Shape};

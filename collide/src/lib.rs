@@ -8,7 +8,7 @@
 //! * [`Contacts`]: all of it together, as a step of [`isosheet_dynamics::contact`] asks for it, where barrier
 //!   and friction are functions of these distances.
 //! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a
-//!   prescribed [`RigidMotion`]; [`Obstacle::constraint`] holds a vertex on one.
+//!   prescribed [`RigidMotion`]; [`Obstacle::constraint`] constrains a vertex to one.
 //!
 //! A sheet falls on a table and rests with every gap open:
 //!

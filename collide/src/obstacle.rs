@@ -45,7 +45,7 @@ pub enum Shape {
     Surface(Arc<TriangleSurface>),
 }
 
-/// A shape that makes no obstacle.
+/// Why a shape cannot be an obstacle.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ObstacleError {
     /// A length is not positive.

@@ -37,7 +37,7 @@ struct Normals {
     vertices: Vec<Vector3<f64>>,
 }
 
-/// A surface that makes no obstacle.
+/// Why triangles cannot be an obstacle.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SurfaceError {
     /// There is no face.
@@ -94,7 +94,7 @@ impl TriangleSurface {
     /// From `positions` (three per vertex, metres) and `faces`, counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// [`SurfaceError`] naming the first vertex or face that makes no sense.
+    /// [`SurfaceError`] naming the first vertex or face that cannot be used.
     pub fn new(positions: &[f64], faces: &[[u32; 3]]) -> Result<Self, SurfaceError> {
         let (points, []) = positions.as_chunks::<3>() else {
             return Err(SurfaceError::Coordinates(positions.len()));

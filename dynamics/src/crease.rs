@@ -68,7 +68,7 @@ impl RestAngle {
             .validate()
             .map_err(|source| CreaseError::RestAngle { edge, source })?;
         match profile {
-            Profile::Constant { value } if !(-PI..=PI).contains(value) => {
+            Profile::Constant(value) if !(-PI..=PI).contains(value) => {
                 let angle = *value;
                 Err(CreaseError::Angle { edge, angle })
             }

@@ -108,7 +108,7 @@ impl EnergyMomentum {
             momentum: vec![0.0; n],
             difference: vec![0.0; n],
             rods: vec![0.0; m],
-            constraints: ConservativeRows::new(model),
+            constraints: ConservativeRows::new(model.constrained_vertices()),
         })
     }
 
@@ -196,15 +196,15 @@ impl EnergyMomentum {
             .rods()
             .apply_transpose_add(&self.xm, &self.impulse, &mut self.momentum);
         self.constraints.push_between(
-            model,
+            model.constraints(),
             state.t + 0.5 * h,
             (&state.x, &self.xm, &self.x1),
             -0.5 * h,
         );
         self.constraints
-            .add_impulses(model, &self.constraints.impulses, &mut self.momentum);
+            .add_impulses(&self.constraints.impulses, &mut self.momentum);
         self.constraints
-            .linearise(model, state.t + h, &self.x1, 1.0 / h);
+            .linearise(model.constraints(), state.t + h, &self.x1, 1.0 / h);
         model.clear_pinned(&mut self.momentum);
         let worst = model.largest_acceleration(&self.momentum);
         model.rods().residual_into(&self.x1, &mut self.rods);
@@ -287,8 +287,13 @@ impl EnergyMomentum {
         for (e, l) in self.impulse.iter_mut().enumerate() {
             *l = last.rods.get(e).map_or(0.0, |i| ratio * i);
         }
-        self.constraints
-            .begin(model, state.t, &state.x, ratio, &last.constraints);
+        self.constraints.begin(
+            model.constraints(),
+            state.t,
+            &state.x,
+            ratio,
+            &last.constraints,
+        );
         if self.falls_freely(model, state, h) {
             self.impulse.fill(0.0);
         } else {
@@ -342,7 +347,7 @@ impl EnergyMomentum {
                 left: &self.xm,
                 right: &self.x1,
                 potentials: Some((state.t + 0.5 * h, &self.xm, 0.5 * h * h)),
-                constraints: &self.constraints.entries,
+                constraints: &self.constraints.blocks,
             };
             let used = self
                 .matrix

@@ -1,6 +1,6 @@
 //! Supports that ask for more than the rods allow.
 
-use crate::constraint::rows::{Bending, VertexRows, add, point};
+use crate::constraint::rows::{HessianPart, VertexRows, add, point};
 use crate::primal::PrimalMatrix;
 use crate::reaction::Support;
 use crate::{SheetModel, State};
@@ -89,7 +89,7 @@ impl<'a> Fit<'a> {
         let mut fit = Self {
             model,
             matrix: PrimalMatrix::new(model).ok()?,
-            rows: VertexRows::new(model, STIFFNESS),
+            rows: VertexRows::new(model.constraints(), model.constrained_vertices(), STIFFNESS),
             penalty: penalties(model),
             c: vec![0.0; m],
             tension: vec![0.0; m],
@@ -112,8 +112,9 @@ impl<'a> Fit<'a> {
         self.model
             .rods()
             .apply_transpose_add(&self.x, &self.tension, &mut self.gradient);
-        self.rows.evaluate(self.model, self.t, &self.x);
-        self.rows.add_gradient(self.model, &mut self.gradient);
+        self.rows
+            .evaluate(self.model.constraints(), self.t, &self.x);
+        self.rows.add_gradient(&mut self.gradient);
     }
 
     fn energy(&self) -> f64 {
@@ -123,7 +124,7 @@ impl<'a> Fit<'a> {
 
     fn strain(&self) -> f64 {
         let strain = self.model.rods().max_strain(&self.x);
-        strain.max(self.rows.largest_violation(self.model))
+        strain.max(self.rows.largest_violation())
     }
 
     /// Largest force on a free vertex.
@@ -143,7 +144,7 @@ impl<'a> Fit<'a> {
         });
         let constraints = self.model.constraints().iter().enumerate();
         let constraints = constraints.filter(|(_, c)| c.moves()).map(|(index, c)| {
-            let load = self.rows.density(index);
+            let load = self.rows.multiplier_estimate(index);
             let force: Vector3<f64> = self.rows.local(index).jacobian.tr_mul(&load);
             let vertex = c.vertex();
             (Support::Constraint { index, vertex }, force.norm())
@@ -159,8 +160,10 @@ impl<'a> Fit<'a> {
         let across: Vec<f64> = self.tension.iter().map(|w| w.max(0.0)).collect();
         self.matrix
             .assemble(self.model, &self.x, &self.penalty, &across);
-        self.rows
-            .add_hessian(self.model, &mut self.matrix, Bending::Positive);
+        self.rows.add_hessian(
+            HessianPart::PositiveSemidefinite,
+            &mut self.matrix.sink(self.model),
+        );
         self.matrix.factorize().ok()?;
         self.matrix.solve(self.model, &self.gradient, &mut self.dx);
         let start = self.x.clone();

@@ -142,7 +142,11 @@ impl Minimiser {
             is_hard_to_follow: model.topology().vertex_count() > MANY
                 || tangent::has_slivers(model),
             ready: READY,
-            vertex_rows: VertexRows::new(model, options.stiffness),
+            vertex_rows: VertexRows::new(
+                model.constraints(),
+                model.constrained_vertices(),
+                options.stiffness,
+            ),
             target: vec![0.0; n],
             force: vec![0.0; n],
             applied: vec![0.0; n],

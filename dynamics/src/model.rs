@@ -1,7 +1,7 @@
 //! The mechanical system: rods, masses, pins, potentials and forces.
 
-use crate::constraint::VertexConstraint;
 use crate::constraint::rows::point;
+use crate::constraint::{ConstrainedVertex, VertexConstraint};
 use crate::motion::{MotionError, PointMotion};
 use crate::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
 use crate::reaction::Support;
@@ -275,7 +275,7 @@ impl SheetModel {
         Ok(model)
     }
 
-    /// Holds a vertex on a curve or surface. The start state has to have it there.
+    /// Constrains a vertex to a curve or surface. The start state has to have it there.
     ///
     /// # Errors
     /// [`ModelError::NoSuchVertex`], [`ModelError::Motion`].
@@ -297,6 +297,21 @@ impl SheetModel {
     /// The vertices on curves and surfaces.
     pub fn constraints(&self) -> &[VertexConstraint] {
         &self.constraints
+    }
+
+    /// Masses and lengths at the vertices of the constraints, one for each constraint.
+    pub(crate) fn constrained_vertices(&self) -> Vec<ConstrainedVertex> {
+        let vertices = self.constraints.iter().map(VertexConstraint::vertex);
+        let scales = vertices.map(|vertex| ConstrainedVertex {
+            vertex,
+            mass: if self.is_pinned(vertex) {
+                0.0
+            } else {
+                self.mass.vertex[vertex.index()]
+            },
+            length: self.shortest_rod(vertex.index()),
+        });
+        scales.collect()
     }
 
     /// Largest distance by which a vertex constraint is broken, metres; `None` if there is none.

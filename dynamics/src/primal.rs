@@ -236,14 +236,13 @@ impl PrimalMatrix {
         }
     }
 
-    /// Adds a symmetric block at a vertex.
-    pub(crate) fn add_block(&mut self, model: &SheetModel, v: VertexId, block: &Matrix3<f64>) {
-        let mut sink = Sink {
+    /// Receives blocks that are added as they are.
+    pub(crate) fn sink<'a>(&'a mut self, model: &'a SheetModel) -> impl HessianSink + 'a {
+        Sink {
             matrix: self,
             model,
             scale: 1.0,
-        };
-        sink.add_vertex(v, block);
+        }
     }
 
     pub(crate) fn factorize(&mut self) -> Result<(), LinalgError> {

@@ -9,24 +9,20 @@ pub(crate) mod tests;
 /// A scalar function of time (seconds), written and read as data. Its unit is that of what it drives: metres
 /// for a displacement, radians for an angle, newtons for a load.
 ///
-/// In JSON `{"kind": "ramp", "from": 0.0, "to": 0.1, "begin": 0.5, "end": 2.0}`; in TOML
+/// In JSON `{"ramp": {"from": 0.0, "to": 0.1, "begin": 0.5, "end": 2.0}}` or `{"constant": 0.1}`; in TOML
 ///
 /// ```toml
-/// kind = "sine"
-/// amplitude = 0.02    # half the stroke
-/// frequency = 1.5     # hertz
+/// x.sine = { amplitude = 0.02, frequency = 1.5 }
+/// z.keyframes = { interpolation = "monotone_cubic", keys = [[0.0, 0.0], [0.5, 0.1], [2.0, 0.0]] }
 /// ```
 ///
 /// The derivatives are exact. Where one of them jumps, which is at the ends of a ramp and at keyframes, it is
 /// the value to the right: that of the motion that begins there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Profile {
     /// The same value at all times.
-    Constant {
-        /// The value.
-        value: f64,
-    },
+    Constant(f64),
     /// `from` before `begin`, `to` after `end`, and linear between. The rate jumps at both ends; the
     /// acceleration is zero everywhere else and is given as zero there too.
     Ramp {
@@ -144,13 +140,13 @@ pub enum ProfileError {
 impl Default for Profile {
     /// Zero at all times.
     fn default() -> Self {
-        Self::Constant { value: 0.0 }
+        Self::Constant(0.0)
     }
 }
 
 impl From<f64> for Profile {
     fn from(value: f64) -> Self {
-        Self::Constant { value }
+        Self::Constant(value)
     }
 }
 
@@ -161,7 +157,7 @@ impl Profile {
     /// [`ProfileError`] naming the first parameter or keyframe that cannot be used.
     pub fn validate(&self) -> Result<(), ProfileError> {
         match self {
-            Self::Constant { value } => check_finite(&[("value", *value)]),
+            Self::Constant(value) => check_finite(&[("value", *value)]),
             Self::Ramp {
                 from,
                 to,
@@ -215,7 +211,7 @@ impl Profile {
     /// Whether the value is the same at all times.
     pub fn is_constant(&self) -> bool {
         match self {
-            Self::Constant { .. } => true,
+            Self::Constant(_) => true,
             Self::Ramp { from, to, .. } | Self::SmoothStep { from, to, .. } => from == to,
             Self::Sine {
                 amplitude,
@@ -229,7 +225,7 @@ impl Profile {
     /// Value, rate and acceleration at time `t`.
     pub(crate) fn derivatives(&self, t: f64) -> [f64; 3] {
         match self {
-            Self::Constant { value } => [*value, 0.0, 0.0],
+            Self::Constant(value) => [*value, 0.0, 0.0],
             Self::Ramp {
                 from,
                 to,

@@ -98,7 +98,7 @@ impl Projector {
             start: vec![0.0; n],
             contact_start: vec![0.0; n],
             trail: Trail::new(model),
-            vertex_rows: VertexRows::new(model, 1.0),
+            vertex_rows: VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0),
             rng: ChaCha8Rng::seed_from_u64(0),
         }
     }
@@ -133,10 +133,11 @@ impl Projector {
         rods.residual_into(iterate.x(), &mut self.c);
         for (i, c) in model.constraints().iter().enumerate() {
             let pressed = loads.get(i).is_some_and(|l| l.x < 0.0);
-            self.vertex_rows.bound[i] = pressed || !c.is_one_sided();
+            self.vertex_rows.equality[i] = pressed || !c.is_one_sided();
         }
-        self.vertex_rows.mended.fill(false);
-        self.vertex_rows.evaluate(model, t, iterate.x());
+        self.vertex_rows.corrected.fill(false);
+        self.vertex_rows
+            .evaluate(model.constraints(), t, iterate.x());
         let mut strain = self.worst(model, iterate.x());
         for _ in 0..max_iterations {
             // The negation also stops at a strain that is not a number.
@@ -159,7 +160,7 @@ impl Projector {
             matrix.assemble(model, iterate.x(), &self.along, &self.across);
             self.rhs.fill(0.0);
             self.vertex_rows
-                .add_projection(model, penalty, matrix, &mut self.rhs);
+                .add_projection(penalty, &mut matrix.sink(model), &mut self.rhs);
             if let Some(held) = &held
                 && let Some(terms) = iterate.terms(Some(held.contact))
             {
@@ -192,7 +193,8 @@ impl Projector {
                     *xi = self.start[i] + length * self.dx[i];
                 }
                 rods.residual_into(iterate.x(), &mut self.c);
-                self.vertex_rows.evaluate(model, t, iterate.x());
+                self.vertex_rows
+                    .evaluate(model.constraints(), t, iterate.x());
                 let after = self.error(model);
                 if after <= (1.0 - SUFFICIENT_DECREASE * length) * before || length < SMALLEST_STEP
                 {
@@ -214,7 +216,8 @@ impl Projector {
                 self.unfold(model, held.as_mut(), iterate, size);
                 opening *= OPENING_GROWTH;
                 rods.residual_into(iterate.x(), &mut self.c);
-                self.vertex_rows.evaluate(model, t, iterate.x());
+                self.vertex_rows
+                    .evaluate(model.constraints(), t, iterate.x());
             } else if length < limit {
                 penalty *= 0.1;
             } else if limit == 1.0 && after > 0.1 * before {
@@ -232,7 +235,7 @@ impl Projector {
         if model.constraints().is_empty() {
             return strain;
         }
-        let violation = self.vertex_rows.largest_violation(model);
+        let violation = self.vertex_rows.largest_violation();
         // `max` would pass over a value that is not a number.
         if violation.is_nan() {
             violation
@@ -263,7 +266,7 @@ impl Projector {
     /// Releases one-sided constraints that the last projection of positions did not press on.
     pub(crate) fn release(&mut self, model: &SheetModel) {
         for (i, c) in model.constraints().iter().enumerate() {
-            self.vertex_rows.bound[i] = !c.is_one_sided() || self.vertex_rows.mended[i];
+            self.vertex_rows.equality[i] = !c.is_one_sided() || self.vertex_rows.corrected[i];
         }
     }
 
@@ -297,8 +300,8 @@ impl Projector {
         }
     }
 
-    /// Projects `v` in place onto `G(x) v = 0` (and, at vertex constraints, those last evaluated being
-    /// bound, `J v + rate = 0`), nearest in the sense of the mass matrix, by
+    /// Projects `v` in place onto `G(x) v = 0` (and, at the vertex constraints that are equalities,
+    /// `J v + rate = 0` with `J` as last evaluated), nearest in the sense of the mass matrix, by
     /// the method of multipliers: each solve with `M + r G^T G` is followed by the update of
     /// the multipliers, all with one factor.
     ///
@@ -319,7 +322,7 @@ impl Projector {
         self.across.fill(0.0);
         matrix.assemble(model, x, &self.along, &self.across);
         self.vertex_rows
-            .add_bound(model, PROJECTION_PENALTY, matrix);
+            .add_equalities(PROJECTION_PENALTY, &mut matrix.sink(model));
         effort.factorisations += 1;
         if matrix.factorize().is_err() {
             return f64::INFINITY;
@@ -334,9 +337,9 @@ impl Projector {
                 .zip(rods.lengths())
                 .fold(0.0_f64, |m, (c, l)| m.max(c.abs() / l));
             self.rhs.fill(0.0);
-            let slip =
-                self.vertex_rows
-                    .add_rates(model, PROJECTION_PENALTY, rates, v, &mut self.rhs);
+            let slip = self
+                .vertex_rows
+                .add_rates(PROJECTION_PENALTY, rates, v, &mut self.rhs);
             rate = rate.max(slip) / speed.max(f64::MIN_POSITIVE);
             if rate < 1e-15 {
                 break;
@@ -361,6 +364,6 @@ impl Projector {
             .zip(model.rods().lengths())
             .map(|(c, l)| (c / (l * l)).powi(2))
             .sum::<f64>();
-        (rods + self.vertex_rows.squared_error(model)).sqrt()
+        (rods + self.vertex_rows.squared_error()).sqrt()
     }
 }

@@ -120,8 +120,8 @@ impl ProjectionStep {
         }
         let mass = model.mass();
         mass.apply(model.topology(), &self.acceleration, &mut self.force);
-        let bound = &self.projector.vertex_rows.bound;
-        trail.push(&self.x, bound, self.force.iter().copied());
+        let equalities = &self.projector.vertex_rows.equality;
+        trail.push(&self.x, equalities, self.force.iter().copied());
         if model.has_drives() {
             // The work of what moves needs them.
             self.balance.settle(model, state.t + h);

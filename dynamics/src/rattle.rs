@@ -98,7 +98,7 @@ impl Rattle {
             difference: vec![0.0; n],
             change: vec![0.0; n],
             rods: vec![0.0; m],
-            constraints: ConservativeRows::new(model),
+            constraints: ConservativeRows::new(model.constrained_vertices()),
             pushes: Vec::new(),
             balance: Balance::new(model, ForceTime::Mean),
         })
@@ -128,9 +128,9 @@ impl Rattle {
             .rods()
             .apply_transpose_add(&state.x, &self.impulse, &mut self.momentum);
         self.constraints
-            .add_impulses(model, &self.constraints.impulses, &mut self.momentum);
+            .add_impulses(&self.constraints.impulses, &mut self.momentum);
         self.constraints
-            .linearise(model, state.t + h, &self.x1, 1.0 / h);
+            .linearise(model.constraints(), state.t + h, &self.x1, 1.0 / h);
         model.clear_pinned(&mut self.momentum);
         let worst = model.largest_acceleration(&self.momentum);
         model.rods().residual_into(&self.x1, &mut self.rods);
@@ -166,9 +166,15 @@ impl Rattle {
         for (e, l) in self.impulse.iter_mut().enumerate() {
             *l = multipliers.rods.get(e).map_or(0.0, |i| ratio * i);
         }
+        self.constraints.begin(
+            model.constraints(),
+            state.t,
+            &state.x,
+            ratio,
+            &multipliers.constraints,
+        );
         self.constraints
-            .begin(model, state.t, &state.x, ratio, &multipliers.constraints);
-        self.constraints.push_at(model, state.t, &state.x);
+            .push_at(model.constraints(), state.t, &state.x);
         self.u.copy_from_slice(&state.v);
         mean_pin_velocities(model, state, h, &mut self.x1, &mut self.u);
         let (mut residual, mut strain) = self.residuals(model, state, h);
@@ -192,7 +198,7 @@ impl Rattle {
                 left: &state.x,
                 right: &self.x1,
                 potentials: None,
-                constraints: &self.constraints.entries,
+                constraints: &self.constraints.blocks,
             };
             let used = self
                 .matrix
@@ -253,8 +259,7 @@ impl Rattle {
             .for_each(|(t, r)| *t = -r);
         rods.apply_transpose_add(&self.x1, &self.rates, &mut self.kick);
         self.pushes.iter_mut().for_each(|p| *p = -*p);
-        self.constraints
-            .add_impulses(model, &self.pushes, &mut self.kick);
+        self.constraints.add_impulses(&self.pushes, &mut self.kick);
         self.pushes.iter_mut().for_each(|p| *p = -*p);
         model.clear_pinned(&mut self.kick);
         (rate / speed, model.largest_acceleration(&self.kick) / speed)
@@ -266,8 +271,8 @@ impl Rattle {
             return 0.0;
         }
         let rates = model.constraint_rates(t, h, &self.x1);
-        self.constraints.ask_rates(model, &self.momentum, &rates);
-        self.constraints.largest_rate(model)
+        self.constraints.set_rates(&self.momentum, &rates);
+        self.constraints.largest_rate()
     }
 
     /// Right-hand sides of the rods' rates, the velocities of moving pins at the end being given.
@@ -346,8 +351,9 @@ impl Rattle {
         self.begin_balance(model, state, h);
         self.ask_rod_rates(model, state.t + h, h);
         let rates = model.constraint_rates(state.t + h, h, &self.x1);
-        self.constraints.push_at(model, state.t + h, &self.x1);
-        self.constraints.ask_rates(model, &self.u, &rates);
+        self.constraints
+            .push_at(model.constraints(), state.t + h, &self.x1);
+        self.constraints.set_rates(&self.u, &rates);
         self.rods.iter_mut().for_each(|r| *r = -*r);
         let system = System {
             mass: 1.0,
@@ -355,7 +361,7 @@ impl Rattle {
             left: &self.x1,
             right: &self.x1,
             potentials: None,
-            constraints: &self.constraints.entries,
+            constraints: &self.constraints.blocks,
         };
         let projected = self
             .matrix

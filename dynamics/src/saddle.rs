@@ -1,6 +1,6 @@
 //! The unsymmetric saddle-point matrix of the conservative integrators.
 
-use crate::constraint::conservative::Entry;
+use crate::constraint::conservative::SaddleBlocks;
 use crate::model::PINNED;
 use crate::primal::{gather, scatter};
 use crate::report::{Effort, Path};
@@ -55,7 +55,7 @@ pub(crate) struct System<'a> {
     /// Time, positions and factor `s` of the Hessians of the potentials.
     pub(crate) potentials: Option<(f64, &'a [f64], f64)>,
     /// The vertex constraints.
-    pub(crate) constraints: &'a [Entry],
+    pub(crate) constraints: &'a [SaddleBlocks],
 }
 
 /// Regularisation of the rod rows that replaces a singular saddle-point matrix, relative to
@@ -127,7 +127,7 @@ impl SaddleMatrix {
         }
         for c in model.constraints() {
             let v = free[c.vertex().index()];
-            for _ in 0..if v == PINNED { 0 } else { c.equations() } {
+            for _ in 0..if v == PINNED { 0 } else { c.equation_count() } {
                 let own = primal as u32 + rods;
                 rods += 1;
                 for k in 0..3 {
@@ -202,7 +202,7 @@ impl SaddleMatrix {
         let mut own = order as u32;
         for c in model.constraints() {
             if !model.is_pinned(c.vertex()) {
-                own -= c.equations() as u32;
+                own -= c.equation_count() as u32;
             }
         }
         let constraint_slots = model
@@ -212,7 +212,7 @@ impl SaddleMatrix {
                 let count = if model.is_pinned(c.vertex()) {
                     0
                 } else {
-                    c.equations()
+                    c.equation_count()
                 };
                 let mut slots = [None, None];
                 for equation in &mut slots[..count] {

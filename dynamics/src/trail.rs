@@ -131,7 +131,7 @@ impl Trail {
         let Ok(mut matrix) = PrimalMatrix::new(model) else {
             return shares;
         };
-        let mut rows = VertexRows::new(model, 1.0);
+        let mut rows = VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0);
         let (along, across) = (penalties(model, PENALTY), vec![0.0; m]);
         let (mut left, mut answer) = (vec![0.0; n], vec![0.0; n]);
         let (mut tension, mut change) = (vec![0.0; m], vec![0.0; m]);
@@ -141,11 +141,11 @@ impl Trail {
             momentum,
         } in &self.entries[..self.len]
         {
-            rows.evaluate(model, t, x);
+            rows.evaluate(model.constraints(), t, x);
             rows.clear();
-            rows.bound.copy_from_slice(active);
+            rows.equality.copy_from_slice(active);
             matrix.assemble(model, x, &along, &across);
-            rows.add_bound(model, PENALTY, &mut matrix);
+            rows.add_equalities(PENALTY, &mut matrix.sink(model));
             if matrix.factorize().is_err() {
                 continue;
             }
@@ -154,7 +154,7 @@ impl Trail {
             for _ in 0..=MAX_PASSES {
                 left.copy_from_slice(momentum);
                 model.rods().apply_transpose_add(x, &tension, &mut left);
-                rows.add_loads(model, &rows.multipliers, &mut left);
+                rows.apply_transpose_add(&rows.multipliers, &mut left);
                 let mut free = left.clone();
                 model.clear_pinned(&mut free);
                 let size = norm_inf(&free);
@@ -166,7 +166,7 @@ impl Trail {
                 for ((w, c), p) in tension.iter_mut().zip(&change).zip(&along) {
                     *w -= p * c;
                 }
-                rows.answer(model, PENALTY, &answer);
+                rows.add_displacement(PENALTY, &answer);
             }
             for (p, f) in shares.pins.iter_mut().zip(&left) {
                 *p += f;

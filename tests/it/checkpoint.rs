@@ -143,7 +143,7 @@ fn so_do_drives_constraints_creases_and_a_fallback() {
         let model = || {
             let mut model = plain(&sheet)
                 .with_potential(creases(&sheet))
-                .with_moving_pin(VertexId(20), move |t| {
+                .with_moving_pin(VertexId(20), move |t: f64| {
                     [corner[0], corner[1], corner[2] - 0.004 * (9.0 * t).sin()]
                 })
                 .and_then(|m| m.with_constraint(VertexConstraint::on_curve(VertexId(0), line())))

@@ -152,7 +152,7 @@ impl Mobility {
             let local = c.at(t, &point(x, vertex));
             let frame = local.independent();
             let (gradients, values) = (frame * local.jacobian, frame * local.value);
-            for k in 0..c.equations() {
+            for k in 0..c.equation_count() {
                 self.rows.push(Row {
                     support: Support::Constraint { index, vertex },
                     vertex,
@@ -289,7 +289,7 @@ impl Mobility {
         }
         let own = model.constraint_rates(t, span, x);
         for ((c, frame), rate) in model.constraints().iter().zip(&self.frames).zip(own) {
-            rates.extend((frame * rate).iter().take(c.equations()));
+            rates.extend((frame * rate).iter().take(c.equation_count()));
         }
         rates
     }
@@ -313,7 +313,7 @@ impl Mobility {
         for (c, frame) in model.constraints().iter().zip(&self.frames) {
             let (p, u) = (point(x, c.vertex()), point(v, c.vertex()));
             let bend = frame * c.second_rate(t, span, &p, &u);
-            bends.extend(bend.iter().take(c.equations()));
+            bends.extend(bend.iter().take(c.equation_count()));
         }
         bends
     }
@@ -406,7 +406,7 @@ impl Mobility {
             .iter()
             .zip(&self.frames)
             .map(|(c, frame)| {
-                let rows = first..first + c.equations();
+                let rows = first..first + c.equation_count();
                 first = rows.end;
                 let mut own = Vector2::zeros();
                 let mut force = Vector3::zeros();

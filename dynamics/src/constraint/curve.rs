@@ -1,4 +1,4 @@
-//! Curves that a vertex can be held on.
+//! Curves that a vertex can be constrained to.
 
 use super::{ConstraintError, across};
 use nalgebra::{Matrix3, Vector3};

@@ -1,4 +1,4 @@
-//! Vertices held on curves and surfaces.
+//! Vertices constrained to curves and surfaces.
 
 pub(crate) mod conservative;
 mod curve;
@@ -18,10 +18,10 @@ use crate::motion::{MotionError, RigidMotion};
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix2x3, Matrix3, Vector3};
 
-/// A curve or surface that makes no constraint.
+/// Why a curve or surface cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ConstraintError {
-    /// A number is not one that makes sense.
+    /// A number is not finite, or not positive where it has to be.
     #[error("{what} is {value}; give a finite number{condition}")]
     Number {
         /// Which one.
@@ -104,12 +104,22 @@ impl ConstraintError {
 /// On which side of a surface a vertex may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
-    /// On it: it holds both ways.
+    /// On it: an equality.
     On,
-    /// On it or where its level is positive: it pushes, and does not pull.
+    /// On it or where its level is positive: an inequality, whose force pushes and does not pull.
     Outside,
-    /// On it or where its level is negative.
+    /// On it or where its level is negative: an inequality.
     Inside,
+}
+
+/// What the rows of a constraint have to know of its vertex.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ConstrainedVertex {
+    pub(crate) vertex: VertexId,
+    /// Mass, kilograms; zero if the vertex is pinned.
+    pub(crate) mass: f64,
+    /// Length of the shortest rod at it, metres: the scale of violations.
+    pub(crate) length: f64,
 }
 
 #[derive(Debug)]
@@ -118,15 +128,15 @@ enum Shape {
     Curve(Box<dyn Curve>),
 }
 
-/// A vertex held on a curve or surface, without friction.
+/// A vertex constrained to a curve or surface, without friction.
 ///
 /// A constraint is up to three equations `c(x_v, t) = 0` (metres) at one vertex:
 ///
 /// * a surface, its level (a signed distance, or near the surface like one): one equation;
 /// * a curve, the vector from its closest point, `r(p) = p - q(s(p))`: three equations of rank two on the
-///   curve. Its Jacobian there is the projector across the curve, so the two equations that count are perfectly
-///   conditioned, and it is as smooth as the curve: no frame has to be carried along, none
-///   is missing where a curve closes or is straight, and no unknown is added.
+///   curve. Its Jacobian there is the projector across the curve, so the two independent equations are
+///   perfectly conditioned, and as smooth as the curve. No frame has to be transported along the curve, none is
+///   undefined where a curve closes or is straight, and no unknown is added.
 ///
 /// A constraint so touches its vertex's own 3x3 block of the matrices and nothing else.
 ///
@@ -139,7 +149,7 @@ pub struct VertexConstraint {
 }
 
 impl VertexConstraint {
-    /// Holds a vertex on a surface, or on one side of it.
+    /// Constrains a vertex to a surface, or to one side of it.
     pub fn on_surface(vertex: VertexId, surface: impl Surface + 'static, side: Side) -> Self {
         Self {
             vertex,
@@ -148,7 +158,7 @@ impl VertexConstraint {
         }
     }
 
-    /// Holds a vertex on a curve.
+    /// Constrains a vertex to a curve.
     pub fn on_curve(vertex: VertexId, curve: impl Curve + 'static) -> Self {
         Self {
             vertex,
@@ -195,13 +205,13 @@ impl VertexConstraint {
         parts.copied().find(|c| !c.is_finite())
     }
 
-    /// Whether it only pushes.
+    /// Whether the constraint is an inequality: it pushes, and does not pull.
     pub fn is_one_sided(&self) -> bool {
         matches!(self.shape, Shape::Surface(_, Side::Outside | Side::Inside))
     }
 
     /// Number of independent equations: 1 for a surface, 2 for a curve.
-    pub(crate) fn equations(&self) -> usize {
+    pub(crate) fn equation_count(&self) -> usize {
         match self.shape {
             Shape::Surface(..) => 1,
             Shape::Curve(_) => 2,
@@ -209,7 +219,7 @@ impl VertexConstraint {
     }
 
     /// The equations at a point (metres) and time (seconds).
-    pub(crate) fn at(&self, t: f64, p: &Vector3<f64>) -> Local {
+    pub(crate) fn at(&self, t: f64, p: &Vector3<f64>) -> LocalEquations {
         let Some(motion) = &self.motion else {
             return self.shape.at(p);
         };
@@ -267,7 +277,7 @@ impl VertexConstraint {
 }
 
 impl Shape {
-    fn at(&self, p: &Vector3<f64>) -> Local {
+    fn at(&self, p: &Vector3<f64>) -> LocalEquations {
         match self {
             Self::Surface(surface, side) => {
                 // One-sided constraints are written c >= 0.
@@ -275,7 +285,7 @@ impl Shape {
                 let at = surface.at(p);
                 let mut jacobian = Matrix3::zeros();
                 jacobian.set_row(0, &(sign * at.gradient).transpose());
-                Local {
+                LocalEquations {
                     value: Vector3::new(sign * at.level, 0.0, 0.0),
                     jacobian,
                     curvature: Curvature::Surface(sign * at.hessian),
@@ -285,7 +295,7 @@ impl Shape {
                 let at = curve.closest(p);
                 let value = p - at.position;
                 let d = at.denominator(&value);
-                Local {
+                LocalEquations {
                     value,
                     jacobian: Matrix3::identity() - at.first * at.first.transpose() / d,
                     curvature: Curvature::Curve(at, Matrix3::identity()),
@@ -297,7 +307,7 @@ impl Shape {
 
 /// The equations of a constraint at a point: `value + jacobian dp + (dp^T hessian_i dp)_i / 2`.
 #[derive(Debug, Clone)]
-pub(crate) struct Local {
+pub(crate) struct LocalEquations {
     /// Metres; a surface fills the first entry only.
     pub(crate) value: Vector3<f64>,
     /// One equation a row.
@@ -312,7 +322,7 @@ enum Curvature {
     Curve(CurvePoint, Matrix3<f64>),
 }
 
-impl Local {
+impl LocalEquations {
     fn turned(mut self, rotation: &Matrix3<f64>) -> Self {
         self.jacobian *= rotation.transpose();
         match &mut self.curvature {

@@ -1,12 +1,11 @@
 //! The equations of all vertex constraints of a model, beside those of the rods.
 
-use super::Local;
-use crate::SheetModel;
-use crate::primal::PrimalMatrix;
+use super::{ConstrainedVertex, LocalEquations, VertexConstraint};
+use crate::potential::HessianSink;
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-/// Equations `c_i(x, t)` with multipliers and penalties: the augmented Lagrangian
+/// Equations `c_i(x, t)` with multipliers `L_i` and penalties `p_i`: the augmented Lagrangian
 ///
 /// ```text
 /// L_i . c_i + p_i |c_i|^2 / 2,      one-sided (c_i >= 0):  (min(0, L_i + p_i c_i)^2 - L_i^2) / (2 p_i)
@@ -15,83 +14,93 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 /// with its derivatives (Rockafellar 1973 for the one-sided form). Empty, and free of cost, in scenes without
 /// constraints.
 pub(crate) struct VertexRows {
+    vertices: Vec<ConstrainedVertex>,
     /// Kilograms; zero at pinned vertices.
     penalties: Vec<f64>,
     /// Kilogram metres.
     pub(crate) multipliers: Vec<Vector3<f64>>,
-    local: Vec<Local>,
-    /// Whether a one-sided equation had to be mended since it was cleared.
-    pub(crate) mended: Vec<bool>,
+    local: Vec<LocalEquations>,
+    /// Whether a projection has corrected the equation since this was cleared.
+    pub(crate) corrected: Vec<bool>,
     /// Whether the equation took part in the last system of a projection or the last update of the
     /// multipliers.
     pub(crate) active: Vec<bool>,
-    /// Whether the equation holds as an equality: always, unless it is one-sided.
-    pub(crate) bound: Vec<bool>,
+    /// Whether the constraint is treated as an equality: always, unless it is one-sided.
+    pub(crate) equality: Vec<bool>,
 }
 
-/// What to do with the curvature of constraints under load.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Bending {
-    /// As it is.
+/// Which part of the constraints' curvature under load enters a Hessian.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum HessianPart {
+    /// All of it.
     Full,
-    /// Its positive part.
-    Positive,
+    /// Of each constraint the nearest positive semidefinite matrix.
+    PositiveSemidefinite,
 }
 
 impl VertexRows {
     /// With penalties of `kappa` times the mass of the vertex: like the rods, `kappa` times as stiff as
     /// inertia.
-    pub(crate) fn new(model: &SheetModel, kappa: f64) -> Self {
-        let constraints = model.constraints();
+    pub(crate) fn new(
+        constraints: &[VertexConstraint],
+        vertices: Vec<ConstrainedVertex>,
+        kappa: f64,
+    ) -> Self {
+        let m = constraints.len();
         Self {
-            penalties: constraints
-                .iter()
-                .map(|c| {
-                    if model.is_pinned(c.vertex()) {
-                        0.0
-                    } else {
-                        kappa * model.mass().vertex[c.vertex().index()]
-                    }
-                })
-                .collect(),
-            multipliers: vec![Vector3::zeros(); constraints.len()],
-            local: Vec::with_capacity(constraints.len()),
-            mended: vec![false; constraints.len()],
-            active: vec![false; constraints.len()],
-            bound: constraints.iter().map(|c| !c.is_one_sided()).collect(),
+            penalties: vertices.iter().map(|v| kappa * v.mass).collect(),
+            vertices,
+            multipliers: vec![Vector3::zeros(); m],
+            local: Vec::with_capacity(m),
+            corrected: vec![false; m],
+            active: vec![false; m],
+            equality: constraints.iter().map(|c| !c.is_one_sided()).collect(),
         }
     }
 
-    pub(crate) fn evaluate(&mut self, model: &SheetModel, t: f64, x: &[f64]) {
+    /// Evaluates the equations and their derivatives at time `t` (seconds) and positions `x` (`3V`, metres).
+    pub(crate) fn evaluate(&mut self, constraints: &[VertexConstraint], t: f64, x: &[f64]) {
         self.local.clear();
-        for c in model.constraints() {
+        for c in constraints {
             self.local.push(c.at(t, &point(x, c.vertex())));
         }
     }
 
-    /// Kilogram metres: the force on the vertex is `-J^T density`, per squared step.
-    pub(crate) fn density(&self, i: usize) -> Vector3<f64> {
-        let d = self.multipliers[i] + self.penalties[i] * self.local[i].value;
-        if self.bound[i] {
-            d
+    /// The equations of a constraint at the last evaluation.
+    pub(crate) fn local(&self, i: usize) -> &LocalEquations {
+        &self.local[i]
+    }
+
+    fn indexed_vertices(&self) -> impl Iterator<Item = (usize, VertexId)> + '_ {
+        self.vertices.iter().map(|v| v.vertex).enumerate()
+    }
+
+    /// First-order estimate of the multipliers, `L_i + p_i c_i` (one-sided: its negative part), kilogram
+    /// metres: the force on the vertex is `-J^T` times it per squared step.
+    pub(crate) fn multiplier_estimate(&self, i: usize) -> Vector3<f64> {
+        let estimate = self.multipliers[i] + self.penalties[i] * self.local[i].value;
+        if self.equality[i] {
+            estimate
         } else {
-            Vector3::new(d.x.min(0.0), 0.0, 0.0)
+            Vector3::new(estimate.x.min(0.0), 0.0, 0.0)
         }
     }
 
-    /// Whether a one-sided equation is at its bound.
-    fn presses(&self, i: usize) -> bool {
-        self.bound[i] || self.density(i).x < 0.0
+    /// Whether the constraint is in the active set: an equality, or one-sided with a multiplier that is not
+    /// zero.
+    fn is_active(&self, i: usize) -> bool {
+        self.equality[i] || self.multiplier_estimate(i).x < 0.0
     }
 
+    /// The augmented Lagrangian's terms of the constraints, joules times squared step.
     pub(crate) fn value(&self) -> f64 {
         let mut sum = 0.0;
         for (i, local) in self.local.iter().enumerate() {
             let (l, p, c) = (&self.multipliers[i], self.penalties[i], &local.value);
-            if self.bound[i] || p == 0.0 {
+            if self.equality[i] || p == 0.0 {
                 sum += l.dot(c) + 0.5 * p * c.norm_squared();
             } else {
-                let d = self.density(i).x;
+                let d = self.multiplier_estimate(i).x;
                 sum += (d * d - l.x * l.x) / (2.0 * p);
             }
         }
@@ -99,99 +108,86 @@ impl VertexRows {
     }
 
     /// Size of the multipliers' terms, and energy of the round-off of positions of the given size.
-    pub(crate) fn scales(&self, model: &SheetModel, size: f64) -> (f64, f64) {
+    pub(crate) fn scales(&self, size: f64) -> (f64, f64) {
         let (mut load, mut still) = (0.0, 0.0);
-        for (i, c) in model.constraints().iter().enumerate() {
-            let l = model.shortest_rod(c.vertex().index());
-            load += self.multipliers[i].norm() * l;
-            still += self.penalties[i] * (f64::EPSILON * (size + l)).powi(2);
+        for (i, v) in self.vertices.iter().enumerate() {
+            load += self.multipliers[i].norm() * v.length;
+            still += self.penalties[i] * (f64::EPSILON * (size + v.length)).powi(2);
         }
         (load, still)
     }
 
-    pub(crate) fn add_gradient(&self, model: &SheetModel, out: &mut [f64]) {
-        for (i, c) in model.constraints().iter().enumerate() {
-            let g = self.local[i].jacobian.tr_mul(&self.density(i));
-            add(out, c.vertex(), &g);
+    /// Adds the gradient of [`VertexRows::value`].
+    pub(crate) fn add_gradient(&self, out: &mut [f64]) {
+        for (i, v) in self.indexed_vertices() {
+            let g = self.local[i].jacobian.tr_mul(&self.multiplier_estimate(i));
+            add(out, v, &g);
         }
     }
 
-    pub(crate) fn add_hessian(
-        &self,
-        model: &SheetModel,
-        matrix: &mut PrimalMatrix,
-        bending: Bending,
-    ) {
-        for (i, c) in model.constraints().iter().enumerate() {
-            if !self.presses(i) {
+    /// Adds the Hessian of [`VertexRows::value`], or a positive semidefinite part of it.
+    pub(crate) fn add_hessian(&self, part: HessianPart, hessian: &mut dyn HessianSink) {
+        for (i, v) in self.indexed_vertices() {
+            if !self.is_active(i) {
                 continue;
             }
             let local = &self.local[i];
-            let mut bent = local.hessian(&self.density(i));
-            if bending == Bending::Positive {
-                bent = positive(&bent);
+            let mut curvature = local.hessian(&self.multiplier_estimate(i));
+            if part == HessianPart::PositiveSemidefinite {
+                curvature = positive_semidefinite(&curvature);
             }
-            let block = self.penalties[i] * local.jacobian.tr_mul(&local.jacobian) + bent;
-            matrix.add_block(model, c.vertex(), &block);
+            let stiffness = self.penalties[i] * local.jacobian.tr_mul(&local.jacobian);
+            hessian.add_vertex(v, &(stiffness + curvature));
         }
     }
 
-    /// Adds `J^T multipliers`.
-    pub(crate) fn add_loads(
-        &self,
-        model: &SheetModel,
-        multipliers: &[Vector3<f64>],
-        out: &mut [f64],
-    ) {
-        for (i, c) in model.constraints().iter().enumerate() {
-            let g = self.local[i].jacobian.tr_mul(&multipliers[i]);
-            add(out, c.vertex(), &g);
+    /// Adds `J^T L`.
+    pub(crate) fn apply_transpose_add(&self, multipliers: &[Vector3<f64>], out: &mut [f64]) {
+        for (i, v) in self.indexed_vertices() {
+            add(out, v, &self.local[i].jacobian.tr_mul(&multipliers[i]));
         }
     }
 
-    /// Takes the densities for new multipliers.
+    /// Replaces the multipliers by their first-order estimates.
     pub(crate) fn update(&mut self) {
         for i in 0..self.multipliers.len() {
-            self.active[i] = self.presses(i);
-            self.multipliers[i] = self.density(i);
+            self.active[i] = self.is_active(i);
+            self.multipliers[i] = self.multiplier_estimate(i);
         }
     }
 
+    /// Scales the multipliers.
     pub(crate) fn scale(&mut self, ratio: f64) {
         self.multipliers.iter_mut().for_each(|m| *m *= ratio);
     }
 
+    /// Sets the multipliers to zero.
     pub(crate) fn clear(&mut self) {
         self.scale(0.0);
     }
 
+    /// Violations relative to the shortest rod at the vertex.
+    fn relative_violations(&self) -> impl Iterator<Item = f64> + '_ {
+        let vertices = self.vertices.iter().enumerate();
+        vertices.map(|(i, v)| self.violation(i).norm() / v.length)
+    }
+
     /// Largest violation relative to the shortest rod at the vertex.
-    pub(crate) fn largest_violation(&self, model: &SheetModel) -> f64 {
-        model
-            .constraints()
-            .iter()
-            .enumerate()
-            .map(|(i, c)| self.violation(i).norm() / model.shortest_rod(c.vertex().index()))
+    pub(crate) fn largest_violation(&self) -> f64 {
+        self.relative_violations()
             // `max` would pass over a value that is not a number.
             .fold(0.0, |m: f64, v| if v.is_nan() { v } else { m.max(v) })
     }
 
     /// Sum of the squares of the relative violations.
-    pub(crate) fn squared_error(&self, model: &SheetModel) -> f64 {
-        model
-            .constraints()
-            .iter()
-            .enumerate()
-            .map(|(i, c)| {
-                (self.violation(i).norm() / model.shortest_rod(c.vertex().index())).powi(2)
-            })
-            .sum()
+    pub(crate) fn squared_error(&self) -> f64 {
+        self.relative_violations().map(|v| v.powi(2)).sum()
     }
 
-    /// What is broken of an equation: all of a bound one, the negative part of another.
+    /// What is violated of an equation: all of an equality, the negative part of an inequality.
     fn violation(&self, i: usize) -> Vector3<f64> {
         let c = self.local[i].value;
-        if self.bound[i] || c.x.is_nan() {
+        if self.equality[i] || c.x.is_nan() {
             c
         } else {
             Vector3::new(c.x.min(0.0), 0.0, 0.0)
@@ -199,83 +195,64 @@ impl VertexRows {
     }
 
     /// Adds to a projection's system `(M + p J^T J) dx = -p J^T c`, `p` being `penalty` times the vertex
-    /// mass.
+    /// mass: the equalities, and the inequalities that are violated.
     pub(crate) fn add_projection(
         &mut self,
-        model: &SheetModel,
         penalty: f64,
-        matrix: &mut PrimalMatrix,
+        hessian: &mut dyn HessianSink,
         rhs: &mut [f64],
     ) {
-        for (i, c) in model.constraints().iter().enumerate() {
-            self.active[i] = self.is_broken_or_bound(i);
+        for i in 0..self.vertices.len() {
+            self.active[i] = self.equality[i] || self.local[i].value.x < 0.0;
             if !self.active[i] {
                 continue;
             }
-            self.mended[i] = true;
+            self.corrected[i] = true;
+            let v = self.vertices[i].vertex;
             let (p, j) = (penalty * self.penalties[i], &self.local[i].jacobian);
-            matrix.add_block(model, c.vertex(), &(p * j.tr_mul(j)));
-            add(rhs, c.vertex(), &(-p * j.tr_mul(&self.violation(i))));
+            hessian.add_vertex(v, &(p * j.tr_mul(j)));
+            add(rhs, v, &(-p * j.tr_mul(&self.violation(i))));
         }
     }
 
-    fn is_broken_or_bound(&self, i: usize) -> bool {
-        self.bound[i] || self.local[i].value.x < 0.0
-    }
-
-    /// Adds what the bound equations answer to a displacement `y` to the multipliers, `-p J y`.
-    pub(crate) fn answer(&mut self, model: &SheetModel, penalty: f64, y: &[f64]) {
-        for (i, c) in model.constraints().iter().enumerate() {
-            if self.bound[i] {
+    /// Updates the multipliers of the equalities for a displacement `y`: adds `-p J y`.
+    pub(crate) fn add_displacement(&mut self, penalty: f64, y: &[f64]) {
+        for (i, v) in self.vertices.iter().enumerate() {
+            if self.equality[i] {
                 let p = penalty * self.penalties[i];
-                self.multipliers[i] -= p * (self.local[i].jacobian * point(y, c.vertex()));
+                self.multipliers[i] -= p * (self.local[i].jacobian * point(y, v.vertex));
             }
         }
     }
 
-    /// Adds `p J^T J` for the bound equations, for velocities.
-    pub(crate) fn add_bound(&self, model: &SheetModel, penalty: f64, matrix: &mut PrimalMatrix) {
-        for (i, c) in model.constraints().iter().enumerate() {
-            if self.bound[i] {
-                let j = &self.local[i].jacobian;
-                matrix.add_block(
-                    model,
-                    c.vertex(),
-                    &(penalty * self.penalties[i] * j.tr_mul(j)),
-                );
+    /// Adds `p J^T J` for the equalities, for velocities.
+    pub(crate) fn add_equalities(&self, penalty: f64, hessian: &mut dyn HessianSink) {
+        for (i, v) in self.indexed_vertices() {
+            if self.equality[i] {
+                let (p, j) = (penalty * self.penalties[i], &self.local[i].jacobian);
+                hessian.add_vertex(v, &(p * j.tr_mul(j)));
             }
         }
     }
 
-    /// Adds `-p J^T (J v + rate)` for the bound equations; returns the largest `|J v + rate|`, metres per
-    /// second.
+    /// Adds `-p J^T (J v + rate)` for the equalities; returns the largest `|J v + rate|`, metres per second.
     pub(crate) fn add_rates(
         &self,
-        model: &SheetModel,
         penalty: f64,
         rates: &[Vector3<f64>],
         v: &[f64],
         rhs: &mut [f64],
     ) -> f64 {
         let mut largest = 0.0_f64;
-        for (i, c) in model.constraints().iter().enumerate() {
-            if self.bound[i] && self.penalties[i] > 0.0 {
-                let j = &self.local[i].jacobian;
-                let rate = j * point(v, c.vertex()) + rates[i];
+        for (i, vertex) in self.indexed_vertices() {
+            if self.equality[i] && self.penalties[i] > 0.0 {
+                let (p, j) = (penalty * self.penalties[i], &self.local[i].jacobian);
+                let rate = j * point(v, vertex) + rates[i];
                 largest = largest.max(rate.norm());
-                add(
-                    rhs,
-                    c.vertex(),
-                    &(-penalty * self.penalties[i] * j.tr_mul(&rate)),
-                );
+                add(rhs, vertex, &(-p * j.tr_mul(&rate)));
             }
         }
         largest
-    }
-
-    /// The equations at the last evaluation.
-    pub(crate) fn local(&self, i: usize) -> &Local {
-        &self.local[i]
     }
 }
 
@@ -292,9 +269,9 @@ pub(crate) fn add(x: &mut [f64], v: VertexId, d: &Vector3<f64>) {
     }
 }
 
-/// The nearest positive semidefinite matrix.
-fn positive(m: &Matrix3<f64>) -> Matrix3<f64> {
+/// The nearest positive semidefinite matrix in the Frobenius norm: eigenvalues below zero become zero.
+fn positive_semidefinite(m: &Matrix3<f64>) -> Matrix3<f64> {
     let eigen = SymmetricEigen::new(*m);
-    let kept = eigen.eigenvalues.map(|e| e.max(0.0));
-    eigen.eigenvectors * Matrix3::from_diagonal(&kept) * eigen.eigenvectors.transpose()
+    let clamped = eigen.eigenvalues.map(|e| e.max(0.0));
+    eigen.eigenvectors * Matrix3::from_diagonal(&clamped) * eigen.eigenvectors.transpose()
 }

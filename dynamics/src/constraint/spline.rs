@@ -13,7 +13,16 @@ pub struct Spline {
     second: Vec<Vector3<f64>>,
     /// Parameters of the points; for a closed spline also that of the first at the end.
     knots: Vec<f64>,
-    closed: bool,
+    ends: Ends,
+}
+
+/// What a spline does at its ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ends {
+    /// The second derivative is zero there.
+    Natural,
+    /// The last point is followed by the first.
+    Joined,
 }
 
 /// Places per span that the closest point is sought from.
@@ -27,7 +36,7 @@ impl Spline {
     /// # Errors
     /// [`ConstraintError`] if a number is not finite, there are too few points, or neighbours coincide.
     pub fn open(points: &[[f64; 3]]) -> Result<Self, ConstraintError> {
-        Self::new(points, false)
+        Self::new(points, Ends::Natural)
     }
 
     /// Through at least three points and back to the first, metres.
@@ -35,11 +44,14 @@ impl Spline {
     /// # Errors
     /// As [`Spline::open`].
     pub fn closed(points: &[[f64; 3]]) -> Result<Self, ConstraintError> {
-        Self::new(points, true)
+        Self::new(points, Ends::Joined)
     }
 
-    fn new(points: &[[f64; 3]], closed: bool) -> Result<Self, ConstraintError> {
-        let needed = if closed { 3 } else { 2 };
+    fn new(points: &[[f64; 3]], ends: Ends) -> Result<Self, ConstraintError> {
+        let needed = match ends {
+            Ends::Joined => 3,
+            Ends::Natural => 2,
+        };
         let n = points.len();
         if n < needed {
             return Err(ConstraintError::TooFewPoints {
@@ -52,7 +64,10 @@ impl Spline {
             .iter()
             .map(|p| ConstraintError::check_vector("a point of the spline", p))
             .collect::<Result<Vec<_>, _>>()?;
-        let spans = if closed { n } else { n - 1 };
+        let spans = match ends {
+            Ends::Joined => n,
+            Ends::Natural => n - 1,
+        };
         let mut knots = vec![0.0];
         for i in 0..spans {
             let length = (points[(i + 1) % n] - points[i]).norm();
@@ -64,12 +79,12 @@ impl Spline {
             }
             knots.push(knots[i] + length);
         }
-        let second = second_derivatives(&points, &knots, closed);
+        let second = second_derivatives(&points, &knots, ends);
         Ok(Self {
             points,
             second,
             knots,
-            closed,
+            ends,
         })
     }
 
@@ -79,7 +94,7 @@ impl Spline {
 
     fn at(&self, s: f64) -> CurvePoint {
         let spans = self.knots.len() - 1;
-        let s = if self.closed {
+        let s = if self.ends == Ends::Joined {
             s.rem_euclid(self.length())
         } else {
             s
@@ -121,12 +136,15 @@ impl Spline {
 /// Second derivatives `m` at the points from `h_- m_- + 2 (h_- + h_+) m + h_+ m_+ = 6 (slope_+ - slope_-)`,
 /// `m = 0` at open ends; by Gauss-Seidel, as the matrix is diagonally dominant by a factor of two: each sweep
 /// halves the error at least.
-fn second_derivatives(points: &[Vector3<f64>], knots: &[f64], closed: bool) -> Vec<Vector3<f64>> {
+fn second_derivatives(points: &[Vector3<f64>], knots: &[f64], ends: Ends) -> Vec<Vector3<f64>> {
     const SWEEPS: usize = 60;
     let n = points.len();
     let mut m = vec![Vector3::zeros(); n];
     let span = |i: usize| knots[i + 1] - knots[i];
-    let range = if closed { 0..n } else { 1..n - 1 };
+    let range = match ends {
+        Ends::Joined => 0..n,
+        Ends::Natural => 1..n - 1,
+    };
     for _ in 0..SWEEPS {
         for i in range.clone() {
             let (before, after) = ((i + n - 1) % n, (i + 1) % n);

@@ -1,4 +1,4 @@
-//! Surfaces that a vertex can be held on.
+//! Surfaces that a vertex can be constrained to.
 
 use super::ConstraintError;
 use nalgebra::{Matrix3, Vector3};

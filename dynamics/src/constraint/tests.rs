@@ -149,7 +149,7 @@ fn splines_pass_through_their_points_with_continuous_curvature() {
 }
 
 #[test]
-fn senseless_shapes_are_refused() {
+fn degenerate_shapes_are_refused() {
     assert!(Plane::new([0.0; 3], [0.0; 3]).is_err());
     assert!(Sphere::new([0.0; 3], -1.0).is_err());
     assert!(Circle::new([f64::NAN, 0.0, 0.0], [0.0, 0.0, 1.0], 1.0).is_err());

@@ -30,7 +30,7 @@ impl Minimiser {
         let inertia = model.kinetic_energy(&self.difference);
         let work = dot(&self.applied, &self.difference);
         model.rods().residual_into(x, &mut self.c);
-        self.vertex_rows.evaluate(model, t, x);
+        self.vertex_rows.evaluate(model.constraints(), t, x);
         let rods: f64 = (0..self.c.len())
             .map(|e| (self.multipliers[e] + 0.5 * self.penalty[e] * self.c[e]) * self.c[e])
             .sum::<f64>()
@@ -51,7 +51,7 @@ impl Minimiser {
             .zip(model.rods().lengths())
             .map(|(p, l)| p * (f64::EPSILON * l * (size + l)).powi(2))
             .sum();
-        let (load, vertex_still) = self.vertex_rows.scales(model, size);
+        let (load, vertex_still) = self.vertex_rows.scales(size);
         let (rod_scale, still) = (rod_scale + load, still + vertex_still);
         let mut potential = model.potential_energy(t, x);
         if let Some(terms) = self.iterate.terms(step.contact()) {
@@ -88,7 +88,7 @@ impl Minimiser {
         model
             .rods()
             .apply_transpose_add(x, &self.density, &mut self.gradient);
-        self.vertex_rows.add_gradient(model, &mut self.gradient);
+        self.vertex_rows.add_gradient(&mut self.gradient);
         if let Some(terms) = self.iterate.terms(step.contact()) {
             terms.add_gradient(h * h, &mut self.gradient);
         }

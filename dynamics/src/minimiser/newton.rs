@@ -1,7 +1,7 @@
 //! Newton's method on the augmented Lagrangian, in rounds of the method of multipliers, and the projection that ends them.
 
 use super::{Minimiser, READY, SETTLED, Step, not_converged};
-use crate::constraint::rows::Bending;
+use crate::constraint::rows::HessianPart;
 use crate::primal::{dot, strain_floor};
 use crate::project::{Aim, Held};
 use crate::report::{Effort, Path, StepError};
@@ -102,7 +102,8 @@ impl Minimiser {
                 return Ok((residual, path));
             }
             model.rods().residual_into(self.iterate.x(), &mut self.c);
-            self.vertex_rows.evaluate(model, step.t, self.iterate.x());
+            self.vertex_rows
+                .evaluate(model.constraints(), step.t, self.iterate.x());
         }
         if strain == f64::INFINITY {
             strain = model.rods().max_strain(self.iterate.x());
@@ -254,7 +255,7 @@ impl Minimiser {
         self.along.copy_from_slice(&self.penalty);
         self.across.copy_from_slice(&self.density);
         effort.factorisations += 1;
-        self.assemble(step, Bending::Full);
+        self.assemble(step, HessianPart::Full);
         self.add_potentials(step);
         if self.matrix.factorize().is_ok() {
             return Ok(false);
@@ -270,25 +271,25 @@ impl Minimiser {
             }
         }
         effort.factorisations += 1;
-        self.assemble(step, Bending::Positive);
+        self.assemble(step, HessianPart::PositiveSemidefinite);
         self.add_potentials(step);
         if self.matrix.factorize().is_ok() {
             return Ok(true);
         }
         // The potentials are concave here: leave their curvature out.
         effort.factorisations += 1;
-        self.assemble(step, Bending::Positive);
+        self.assemble(step, HessianPart::PositiveSemidefinite);
         self.matrix.factorize()?;
         Ok(true)
     }
 
     /// Masses, rods, vertex constraints and contact.
-    pub(super) fn assemble(&mut self, step: &Step<'_, '_>, bending: Bending) {
+    pub(super) fn assemble(&mut self, step: &Step<'_, '_>, part: HessianPart) {
         let model = step.scene.model;
         self.matrix
             .assemble(model, self.iterate.x(), &self.along, &self.across);
         self.vertex_rows
-            .add_hessian(model, &mut self.matrix, bending);
+            .add_hessian(part, &mut self.matrix.sink(model));
         if let Some(terms) = self.iterate.terms(step.contact()) {
             self.matrix.add_contact(model, &terms, step.h * step.h);
         }

@@ -3,7 +3,7 @@
 use super::merit::Merit;
 use super::{Minimiser, SETTLED, Step};
 use crate::SheetModel;
-use crate::constraint::rows::Bending;
+use crate::constraint::rows::HessianPart;
 use crate::primal::{dot, strain_floor};
 use crate::project::{Aim, Held};
 use crate::report::Effort;
@@ -188,13 +188,13 @@ impl Minimiser {
         self.set_stiffness(pace.stiffness());
         self.across.copy_from_slice(&self.multipliers);
         effort.iterations += 1;
-        let modified = !self.factorize_tangent(step, Bending::Full, effort);
+        let modified = !self.factorize_tangent(step, HessianPart::Full, effort);
         if modified {
             self.across.iter_mut().for_each(|p| *p = p.max(0.0));
-            if !self.factorize_tangent(step, Bending::Positive, effort) {
+            if !self.factorize_tangent(step, HessianPart::PositiveSemidefinite, effort) {
                 // The potentials are concave here: leave their curvature out.
                 effort.factorisations += 1;
-                self.assemble(step, Bending::Positive);
+                self.assemble(step, HessianPart::PositiveSemidefinite);
                 if self.matrix.factorize().is_err() {
                     return None;
                 }
@@ -252,11 +252,11 @@ impl Minimiser {
     fn factorize_tangent(
         &mut self,
         step: &Step<'_, '_>,
-        bending: Bending,
+        part: HessianPart,
         effort: &mut Effort,
     ) -> bool {
         effort.factorisations += 1;
-        self.assemble(step, bending);
+        self.assemble(step, part);
         self.add_potentials(step);
         self.matrix.factorize().is_ok()
     }

@@ -71,7 +71,6 @@ pub struct RigidDisplacement {
     /// Translation along z, metres.
     pub z: Profile,
     /// Rotation, if there is one.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub rotation: Option<AxisRotation>,
 }
 
@@ -139,7 +138,7 @@ impl RigidDisplacement {
 
 /// A rigid motion as data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum RigidProfile {
     /// Translation and rotation by profiles.
     Displacement(Box<RigidDisplacement>),

@@ -118,7 +118,7 @@ proptest! {
     }
 
     #[test]
-    fn json_keeps_every_bit(
+    fn files_keep_every_bit(
         motion in displacements(profiles().boxed()), offset in vector(), poses in proptest::collection::vec(pose(), 1..4)
     ) {
         let [x, y, z] = [&motion.x, &motion.y, &motion.z].map(Clone::clone);
@@ -131,6 +131,8 @@ proptest! {
         for motion in [RigidProfile::from(motion), RigidProfile::from(keys)] {
             let text = serde_json::to_string(&motion).unwrap();
             let read: RigidProfile = serde_json::from_str(&text).unwrap();
+            let bytes = postcard::to_stdvec(&motion).unwrap();
+            prop_assert_eq!(&postcard::from_bytes::<RigidProfile>(&bytes).unwrap(), &motion);
             prop_assert_eq!(format!("{read:?}"), format!("{motion:?}"));
         }
     }
@@ -184,21 +186,21 @@ fn a_rolling_wheel_rests_where_it_touches_the_ground() {
 
 #[test]
 fn poses_are_written_as_position_and_quaternion() {
-    let text = r#"{"kind": "displacement", "pose": {"position": [0, 0, 1], "rotation": [0, 0, 0.7, 0.7]},
-        "z": {"kind": "constant", "value": 0.5}}"#;
+    let text = r#"{"displacement": {"pose": {"position": [0, 0, 1], "rotation": [0, 0, 0.7, 0.7]},
+        "z": {"constant": 0.5}}}"#;
     let motion: RigidProfile = serde_json::from_str(text).unwrap();
     let pose = motion.kinematics(0.0).pose;
     let quarter = UnitQuaternion::from_euler_angles(0.0, 0.0, std::f64::consts::FRAC_PI_2);
     assert!(pose.rotation.angle_to(&quarter) < 1e-15);
     assert_eq!(pose.translation.vector, Vector3::new(0.0, 0.0, 1.5));
-    let text = r#"{"kind": "keyframes", "keys": [{"t": 0, "pose": {}}, {"t": 1, "pose": {"position": [1, 0, 0]}}]}"#;
+    let text = r#"{"keyframes": {"keys": [{"t": 0, "pose": {}}, {"t": 1, "pose": {"position": [1, 0, 0]}}]}}"#;
     let motion: RigidProfile = serde_json::from_str(text).unwrap();
     assert_eq!(motion.kinematics(0.5).velocity, Vector3::x());
     for wrong in [
-        r#"{"kind": "displacement", "pose": {"rotation": [0, 0, 0, 0]}}"#,
-        r#"{"kind": "displacement", "pose": {"postion": [0, 0, 0]}}"#,
-        r#"{"kind": "displacement", "w": {"kind": "constant", "value": 0.5}}"#,
-        r#"{"kind": "orbit"}"#,
+        r#"{"displacement": {"pose": {"rotation": [0, 0, 0, 0]}}}"#,
+        r#"{"displacement": {"pose": {"postion": [0, 0, 0]}}}"#,
+        r#"{"displacement": {"w": {"constant": 0.5}}}"#,
+        r#"{"orbit": {}}"#,
     ] {
         let error = serde_json::from_str::<RigidProfile>(wrong).unwrap_err();
         assert!(!error.to_string().is_empty(), "{wrong}");

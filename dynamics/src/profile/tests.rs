@@ -52,7 +52,7 @@ pub(crate) fn profiles() -> impl Strategy<Value = Profile> {
 /// Times at which a derivative may jump.
 fn kinks(profile: &Profile) -> Vec<f64> {
     match profile {
-        Profile::Constant { .. } | Profile::Sine { .. } => Vec::new(),
+        Profile::Constant(_) | Profile::Sine { .. } => Vec::new(),
         Profile::Ramp { begin, end, .. } | Profile::SmoothStep { begin, end, .. } => {
             vec![*begin, *end]
         }
@@ -112,11 +112,13 @@ proptest! {
     }
 
     #[test]
-    fn json_keeps_every_bit(profile in profiles(), numbers in proptest::array::uniform4(proptest::num::f64::NORMAL | proptest::num::f64::ZERO)) {
+    fn files_keep_every_bit(profile in profiles(), numbers in proptest::array::uniform4(proptest::num::f64::NORMAL | proptest::num::f64::ZERO)) {
         let [mean, amplitude, frequency, phase] = numbers;
         for profile in [profile, Profile::Sine { mean, amplitude, frequency, phase }] {
             let text = serde_json::to_string(&profile).unwrap();
             let read: Profile = serde_json::from_str(&text).unwrap();
+            let bytes = postcard::to_stdvec(&profile).unwrap();
+            prop_assert_eq!(&postcard::from_bytes::<Profile>(&bytes).unwrap(), &profile);
             // (The debug form tells 0.0 from -0.0.)
             prop_assert_eq!(format!("{read:?}"), format!("{profile:?}"));
         }
@@ -145,7 +147,7 @@ fn a_smooth_step_is_twice_continuously_differentiable() {
 fn files_may_leave_out_what_is_zero() {
     let read = |text: &str| serde_json::from_str::<Profile>(text);
     assert_eq!(
-        read(r#"{"kind": "sine", "amplitude": 0.02, "frequency": 2}"#).unwrap(),
+        read(r#"{"sine": {"amplitude": 0.02, "frequency": 2}}"#).unwrap(),
         Profile::Sine {
             mean: 0.0,
             amplitude: 0.02,
@@ -154,7 +156,7 @@ fn files_may_leave_out_what_is_zero() {
         }
     );
     assert_eq!(
-        read(r#"{"kind": "smooth_step", "from": 0, "to": 1, "begin": 0, "end": 2}"#).unwrap(),
+        read(r#"{"smooth_step": {"from": 0, "to": 1, "begin": 0, "end": 2}}"#).unwrap(),
         Profile::SmoothStep {
             from: 0.0,
             to: 1.0,
@@ -163,16 +165,16 @@ fn files_may_leave_out_what_is_zero() {
         }
     );
     assert_eq!(
-        read(r#"{"kind": "keyframes", "keys": [[0, 1], [2, 3]]}"#).unwrap(),
+        read(r#"{"keyframes": {"keys": [[0, 1], [2, 3]]}}"#).unwrap(),
         Profile::Keyframes {
             interpolation: Interpolation::Linear,
             keys: vec![[0.0, 1.0], [2.0, 3.0]]
         }
     );
     for wrong in [
-        r#"{"kind": "constant"}"#,
-        r#"{"kind": "constant", "value": 1, "valeu": 2}"#,
-        r#"{"kind": "sinus", "amplitude": 1, "frequency": 1}"#,
+        r#"{"constant": "much"}"#,
+        r#"{"sine": {"amplitude": 1, "frequency": 1, "phaes": 2}}"#,
+        r#"{"sinus": {"amplitude": 1, "frequency": 1}}"#,
     ] {
         assert!(read(wrong).is_err(), "{wrong}");
     }
