@@ -331,7 +331,7 @@ fn action_is_reaction() {
         let y: Vec<f64> = (0..x.len())
             .map(|i| x[i] + 1e-4 * (3.0 * i as f64).sin())
             .collect();
-        for (x, rubs) in [(&x, false), (&y, true)] {
+        for (x, has_slid) in [(&x, false), (&y, true)] {
             let g = step.gradient(x);
             let load = step.terms(x, |t| t.loads())[0];
             let origin = *step.active(x).bodies()[0].origin();
@@ -346,7 +346,7 @@ fn action_is_reaction() {
             assert!(scale > 0.0);
             assert!((load.force - force).norm() < 1e-11 * scale, "{name}");
             // Friction acts at the closest point, a gap below the sheet.
-            let slack = if rubs { 0.1 } else { 1e-11 };
+            let slack = if has_slid { 0.1 } else { 1e-11 };
             assert!(
                 (load.torque - torque).norm() < slack * scale,
                 "{name}: {} {torque}",
