@@ -2,7 +2,10 @@
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
-use isosheet_dynamics::contact::{Contact, CouplingSink};
+use isosheet_dynamics::contact::{
+    ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactSet, ContactTerms, CouplingSink,
+    JointMotion, LaggedFriction, StepSpan,
+};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Matrix3};
@@ -37,42 +40,60 @@ fn pieces(
     model: &SheetModel,
     x: &[f64],
 ) {
+    let start = State::at_rest(x.to_vec());
     contacts
-        .check_start(model, &State::at_rest(x.to_vec()))
+        .check_start(model, &start)
         .expect("a start without touch");
-    contacts.begin(0.0, 1.0 / 60.0, x);
+    let barrier = BarrierPotential::at_start(contacts.laws(), model, &start).expect("valid laws");
+    let span = StepSpan {
+        t0: 0.0,
+        h: 1.0 / 60.0,
+    };
+    let bodies = BodyMotions::over(&contacts, span);
     let dx: Vec<f64> = (0..x.len())
         .map(|i| 1e-5 * (7.0 * i as f64).sin())
         .collect();
-    println!("{name}, {size}: safe {}", contacts.safe_fraction(x, &dx));
-    let mut points = Vec::new();
-    contacts.contact_points(x, &mut points);
+    let motion = |x| JointMotion {
+        bodies: &bodies,
+        progress: [1.0; 2],
+        x,
+        dx: &dx,
+    };
+    let mut set = ContactSet::of(&mut contacts, motion(x));
+    let mut active = ActiveContacts::at(&contacts, &set, 1.0, x);
     println!(
-        "{name}, {size}: {} contacts, gap {}",
-        points.len(),
-        contacts.gap(x)
+        "{name}, {size}: safe {}, {} pairs, {} contacts, gap {}",
+        set.safe_fraction(),
+        set.pairs().len(),
+        active.list().len(),
+        active.gap()
     );
-    // Another place for every call, as in a line search; what comes after finds its contacts.
-    let y: Vec<f64> = x.iter().zip(&dx).map(|(x, d)| x + 0.1 * d).collect();
+    let mut friction = LaggedFriction::none();
     let mut group = c.benchmark_group(name);
     let id = |what: &str| BenchmarkId::new(what, size);
-    group.bench_function(id("safe fraction"), |b| {
-        b.iter(|| contacts.safe_fraction(black_box(x), &dx));
+    group.bench_function(id("query"), |b| {
+        b.iter(|| set.update(&mut contacts, motion(black_box(x))));
     });
-    group.bench_function(id("two energies"), |b| {
-        b.iter(|| contacts.energy(black_box(x)) + contacts.energy(black_box(&y)));
+    group.bench_function(id("evaluate"), |b| {
+        b.iter(|| active.update(&contacts, &set, 1.0, black_box(x)));
     });
-    contacts.energy(x);
+    group.bench_function(id("lag friction"), |b| {
+        b.iter(|| friction.lag(contacts.laws(), &barrier, black_box(&active), x));
+    });
+    let terms = ContactTerms {
+        x,
+        active: &active,
+        barrier: &barrier,
+        friction: &friction,
+    };
+    group.bench_function(id("energy"), |b| b.iter(|| black_box(terms).energy()));
     group.bench_function(id("gradient"), |b| {
         let mut out = vec![0.0; x.len()];
-        b.iter(|| contacts.add_gradient(black_box(x), 1.0, &mut out));
+        b.iter(|| black_box(terms).add_gradient(1.0, &mut out));
     });
     group.bench_function(id("Hessian"), |b| {
         let mut sum = Sum(0.0);
-        b.iter(|| contacts.add_hessian(black_box(x), &mut sum));
-    });
-    group.bench_function(id("begin"), |b| {
-        b.iter(|| contacts.begin(0.0, 1.0 / 60.0, black_box(x)));
+        b.iter(|| black_box(terms).add_hessian(&mut sum));
     });
     group.finish();
 }

@@ -3,8 +3,7 @@
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use isosheet_collide::distance::{edge_edge, point_triangle};
 use isosheet_collide::{
-    Barrier, BroadPhase, Candidates, CcdOptions, ContactMesh, Moving, ParallelMollifier, Shape,
-    TriangleSurface,
+    BroadPhase, Candidates, CcdOptions, ContactMesh, Moving, Shape, TriangleSurface,
 };
 use isosheet_mesh::generate;
 use nalgebra::Vector3;
@@ -39,25 +38,6 @@ fn queries(c: &mut Criterion) {
     });
     group.bench_function("edge-edge jet", |b| {
         b.iter(|| sum(&|x| edge_edge(x).jet(x).hessian[0][3][(0, 1)]));
-    });
-    let barrier = Barrier::new(1.0, 0.0).expect("a positive distance");
-    let mollifier = ParallelMollifier::new(1.0, 1.0);
-    group.bench_function("edge-edge barrier, mollified", |b| {
-        b.iter(|| {
-            sum(&|x| barrier.mollified_jet(x, &edge_edge(x), &mollifier).hessian[0][3][(0, 1)])
-        });
-    });
-    group.bench_function("projection of the Hessian", |b| {
-        let jets: Vec<_> = x[..100]
-            .iter()
-            .map(|x| barrier.jet(x, &edge_edge(x)))
-            .collect();
-        b.iter(|| {
-            black_box(&jets)
-                .iter()
-                .map(|j| j.projected().hessian[0][0][(0, 0)])
-                .sum::<f64>()
-        });
     });
     let options = CcdOptions::default();
     let dx = stencils(2000).split_off(1000);

@@ -17,7 +17,7 @@ use body::Body;
 use evaluate::{Placed, Sheet};
 use isosheet_dynamics::contact::{
     ActiveContact, ActiveContacts, BodyMotion, BodyPlace, Coefficients, Contact, ContactError,
-    ContactKey, ContactLaws, Motion, StepSpan,
+    ContactKey, ContactLaws, JointMotion, StepSpan,
 };
 use isosheet_dynamics::{SheetModel, State};
 use nalgebra::Vector3;
@@ -48,8 +48,8 @@ use sheet::SheetMotion;
 /// ```
 ///
 /// # In a chart
-/// The explicit methods in a chart, the paper's among them, take the geometry and answer with impulses in place
-/// of the barrier ([`isosheet_dynamics::chart::ChartSimulation::with_contact`]):
+/// The explicit methods in a chart, the paper's among them, take the geometry and answer with impulses in
+/// place of the barrier ([`isosheet_dynamics::chart::ChartSimulation::with_contact`]):
 ///
 /// ```
 /// # use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
@@ -90,8 +90,8 @@ use sheet::SheetMotion;
 ///   edges. An open one has two sides.
 /// * the sheet itself: vertices and faces, edges and edges without a common vertex.
 ///
-/// Two edges have the factor of [`isosheet_dynamics::contact::ParallelEdges`], without which their energy has a
-/// kink where they are parallel.
+/// Two edges have the factor of [`isosheet_dynamics::contact::ParallelEdges`], without which their energy has
+/// a kink where they are parallel.
 ///
 /// A gap next to an edge of the mesh belongs to several pairs at once, and counts for each: that
 /// stiffens the barrier there by a small factor and keeps it smooth.
@@ -222,8 +222,8 @@ impl Contact for Contacts {
         body.obstacle().velocity(t, place)
     }
 
-    fn query(&mut self, motion: Motion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
-        let Motion {
+    fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
+        let JointMotion {
             progress, x, dx, ..
         } = motion;
         let reach = self.options.reach();

@@ -3,12 +3,12 @@
 //! * [`distance`]: squared distances of points, edges and triangles with closest points, gradients
 //!   and Hessians.
 //! * [`CcdOptions`]: how far a motion may go before two primitives touch.
-//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle; bulk queries
-//!   over these pairs, and [`crossings`] as a check that uses none of them.
-//! * [`Contacts`]: all of it together, as a step of [`isosheet_dynamics::contact`] asks for it, where barrier and
-//!   friction are functions of these distances.
-//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a prescribed
-//!   [`RigidMotion`]; [`Obstacle::constraint`] constrains a vertex to one.
+//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle; bulk
+//!   queries over these pairs, and [`crossings`] as a check that uses none of them.
+//! * [`Contacts`]: all of it together, as a step of [`isosheet_dynamics::contact`] asks for it, where barrier
+//!   and friction are functions of these distances.
+//! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a
+//!   prescribed [`RigidMotion`]; [`Obstacle::constraint`] constrains a vertex to one.
 //!
 //! A sheet falls on a table and rests with every gap open:
 //!

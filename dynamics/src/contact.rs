@@ -3,8 +3,8 @@
 //! Contact is a barrier potential `B(x, s)` of the positions and of the places of the bodies, infinite where
 //! anything touches, and a friction potential `D(x - x0)` with normals and normal forces held fixed
 //! ("lagged"; Li et al. 2020, Incremental potential contact). Bodies move by prescribed motions; within a
-//! step their progress `s` runs from 0 (the start) to 1 (the end), and neither they nor the sheet move without
-//! a check that nothing is passed through on the way.
+//! step their progress `s` runs from 0 (the start) to 1 (the end), and neither they nor the sheet move
+//! without a check that nothing is passed through on the way.
 //!
 //! An implementation of [`Contact`] knows the geometry and nothing else. All that happens with it is a chain
 //! of values, each of which can only be made from the one before:
@@ -37,7 +37,7 @@ mod terms;
 pub use active::{ActiveContact, ActiveContacts};
 pub use barrier::{BarrierError, BarrierPotential, Stiffness};
 pub(crate) use body::advanced;
-pub use body::{BodyMotion, BodyMotions, BodyPlace, RigidMotion, StepSpan};
+pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
 pub use error::{ContactError, ContactPair};
 pub use friction::{Coefficients, Friction, FrictionError};
 pub use impulse::ContactPoint;
@@ -46,7 +46,7 @@ pub use laws::ContactLaws;
 pub use parallel::ParallelEdges;
 pub(crate) use run::{RunContact, StepContact};
 
-pub use set::{ContactKey, ContactKind, ContactSet, Motion};
+pub use set::{ContactKey, ContactKind, ContactSet, JointMotion};
 pub use terms::{BodyLoad, ContactState, ContactTerms, ContactWork};
 
 use crate::{SheetModel, State};
@@ -69,9 +69,9 @@ pub trait Contact: Send + Sync {
     fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64>;
 
     /// Appends all pairs whose gap is below the activation distance at any time of a motion, in any order and
-    /// each once, and returns the largest fraction `a <= 1` of the motion that is proven to bring nothing into
-    /// contact. Pairs that stay out of reach may be among them.
-    fn query(&mut self, motion: Motion<'_>, pairs: &mut Vec<ContactKey>) -> f64;
+    /// each once, and returns the largest fraction `a <= 1` of the motion that is proven to bring nothing
+    /// into contact. Pairs that stay out of reach may be among them.
+    fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64;
 
     /// Appends the contacts of those pairs whose gap is below the activation distance (or not a number) at
     /// positions `x` with the bodies in their places, in the order of the pairs.
@@ -121,6 +121,19 @@ fn add_block(a: u32, b: u32, block: Matrix3<f64>, sink: &mut dyn CouplingSink) {
         sink.add(a, b, &block);
     } else {
         sink.add(b, a, &block.transpose());
+    }
+}
+
+/// Appends the pairs of vertices, lower number first, that a contact of the sheet with itself couples.
+fn couple(key: ContactKey, vertices: &[u32; 4], out: &mut Vec<[u32; 2]>) {
+    if key.body.is_some() {
+        return;
+    }
+    for i in 0..4 {
+        for j in i + 1..4 {
+            let (a, b) = (vertices[i], vertices[j]);
+            out.push([a.min(b), a.max(b)]);
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::contact::{
     ActiveContact, ActiveContacts, BodyMotion, BodyMotions, BodyPlace, Contact, ContactError,
-    ContactKey, ContactKind, ContactLaws, ContactSet, Motion, RigidMotion, StepSpan, Stiffness,
+    ContactKey, ContactKind, ContactLaws, ContactSet, JointMotion, StepMotion, StepSpan, Stiffness,
 };
 use crate::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
@@ -44,7 +44,7 @@ impl Contact for Floor {
     }
 
     fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>) {
-        let motion = RigidMotion::new(self.pose(span.t0), self.pose(span.t0 + span.h));
+        let motion = StepMotion::new(self.pose(span.t0), self.pose(span.t0 + span.h));
         out.push(BodyMotion {
             material: motion,
             surface: motion,
@@ -55,7 +55,7 @@ impl Contact for Floor {
         Vector3::zeros()
     }
 
-    fn query(&mut self, motion: Motion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
+    fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
         let body = &motion.bodies.list()[0].surface;
         let [floor, end] = motion.progress.map(|s| body.pose(s).translation.z);
         // Backwards: the order makes no difference.
@@ -129,8 +129,8 @@ fn a_flat_sheet_lands_and_lies_still() {
         assert!(report.gap.unwrap() > 0.0 && report.strain < 1e-12);
     }
     assert!(report.kinetic < 1e-9 * 0.1 * 9.8 * 5e-3, "{report:?}");
-    // The floor carries the weight. A flat sheet gives way to a force across it by the root of its length error
-    // only: forces at rest are known to a percent.
+    // The floor carries the weight. A flat sheet gives way to a force across it by the root of its length
+    // error only: forces at rest are known to a percent.
     let load = simulation.body_loads()[0].force.z;
     assert!((load / (-0.1 * 9.8) - 1.0).abs() < 0.01, "{load}");
 }
@@ -201,7 +201,7 @@ fn sets_are_sorted_and_refuse_what_is_not_finite() {
     assert_eq!(bodies.time(0.5), 1.25);
     let x = [0.0, 0.0, 1.0005, 1.0, 0.0, 1.2, 0.0, 1.0, 2.0];
     let dx = [0.0; 9];
-    let motion = |dx| Motion {
+    let motion = |dx| JointMotion {
         bodies: &bodies,
         progress: [0.0, 1.0],
         x: &x,

@@ -1,13 +1,13 @@
 //! Positions in the course of a step, with the contacts there.
 
 use crate::contact::{
-    ActiveContacts, BodyMotions, ContactSet, ContactState, ContactTerms, ContactWork,
-    LaggedFriction, Motion, StepContact, StepSpan, advanced,
+    ActiveContacts, BodyMotions, ContactSet, ContactState, ContactTerms, ContactWork, JointMotion,
+    LaggedFriction, StepContact, StepSpan, advanced,
 };
 
-/// The positions of an iteration and, in scenes with contact, the places of the bodies and what is known of the
-/// contacts there. The contacts always belong to the positions: whatever changes one makes the other evaluated
-/// anew when it is asked for, and no more often than that.
+/// The positions of an iteration and, in scenes with contact, the places of the bodies and what is known of
+/// the contacts there. The contacts always belong to the positions: whatever changes one makes the other
+/// evaluated anew when it is asked for, and no more often than that.
 pub(crate) struct Iterate {
     x: Vec<f64>,
     contact: Option<ContactIterate>,
@@ -84,8 +84,8 @@ impl ContactIterate {
 }
 
 /// No motion: bodies and sheet stay where they are.
-fn held<'a>(bodies: &'a BodyMotions, s: f64, x: &'a [f64], zeros: &'a [f64]) -> Motion<'a> {
-    Motion {
+fn held<'a>(bodies: &'a BodyMotions, s: f64, x: &'a [f64], zeros: &'a [f64]) -> JointMotion<'a> {
+    JointMotion {
         bodies,
         progress: [s; 2],
         x,
@@ -142,8 +142,8 @@ impl Iterate {
         self.contact.as_ref().map_or(1.0, |c| c.progress)
     }
 
-    /// Largest part of a displacement, at most one, that is proven to bring nothing into contact while the bodies
-    /// go through the same part of the rest of their motions. Until the next call of this or of
+    /// Largest part of a displacement, at most one, that is proven to bring nothing into contact while the
+    /// bodies go through the same part of the rest of their motions. Until the next call of this or of
     /// [`Iterate::begin`], the iterate has to stay on that motion.
     pub(crate) fn safe_fraction(
         &mut self,
@@ -153,7 +153,7 @@ impl Iterate {
         let (Some(contact), Some(own)) = (contact, &mut self.contact) else {
             return 1.0;
         };
-        let motion = Motion {
+        let motion = JointMotion {
             bodies: &own.bodies,
             progress: [own.progress, 1.0],
             x: &self.x,

@@ -2,7 +2,10 @@
 
 use crate::watch::Watch;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape};
-use isosheet_dynamics::contact::Contact;
+use isosheet_dynamics::contact::{
+    ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactSet, JointMotion,
+    LaggedFriction, StepSpan,
+};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
@@ -55,8 +58,10 @@ fn plate(
         contacts
             .check_start(&model, &state)
             .expect("nothing touches");
+        let barrier = BarrierPotential::at_start(contacts.laws(), &model, &state).expect("valid");
+        let active = ActiveContacts::at_rest(&mut contacts, state.t, &state.x);
         let mut force = [0.0; 9];
-        contacts.add_gradient(&state.x, -1.0, &mut force);
+        active.add_barrier_gradient(&barrier, -1.0, &mut force);
         let carried = force[2] + force[5] + force[8];
         let normal = carried / theta.cos();
         *(if normal > MASS * G * theta.cos() {
@@ -287,4 +292,41 @@ fn a_conveyor_does_work_by_friction() {
     assert!((last.friction / work - 0.5).abs() < 0.02, "{last:?}");
     assert!((last.kinetic / work - 0.5).abs() < 0.01, "{last:?}");
     assert!(last.energy_drift.abs() < 0.02 * work, "{last:?}");
+}
+
+/// What is kept to resume a run comes back to the last bit: the barrier, and the friction of the step.
+#[test]
+fn barrier_and_lagged_friction_survive_a_file() {
+    let flat = generate::isotropic_square(1, 0.2).expect("valid");
+    let model = SheetModel::new(&flat, MASS, MassKind::Lumped)
+        .expect("valid")
+        .with_gravity();
+    let options = ContactOptions::for_sheet(&model);
+    let floor = Isometry3::translation(0.0, 0.0, -0.7 * options.activation);
+    let mut contacts = Contacts::new(&model, options)
+        .and_then(|c| {
+            c.with_body(
+                Obstacle::still(Shape::HalfSpace, floor)?,
+                Coefficients::equal(0.5),
+            )
+        })
+        .expect("valid");
+    let start = State::at_rest(flat.positions().to_vec());
+    let barrier = BarrierPotential::at_start(contacts.laws(), &model, &start).expect("valid");
+    let span = StepSpan { t0: 0.0, h: 0.01 };
+    let bodies = BodyMotions::over(&contacts, span);
+    let motion = JointMotion {
+        bodies: &bodies,
+        progress: [1.0; 2],
+        x: &start.x,
+        dx: &vec![0.0; start.x.len()],
+    };
+    let set = ContactSet::of(&mut contacts, motion);
+    let active = ActiveContacts::at(&contacts, &set, 1.0, &start.x);
+    let mut friction = LaggedFriction::none();
+    friction.lag(contacts.laws(), &barrier, &active, &start.x);
+    assert_eq!(friction.contacts().len(), 25);
+    let text = serde_json::to_string(&(barrier, &friction)).expect("finite");
+    let back: (BarrierPotential, LaggedFriction) = serde_json::from_str(&text).expect("readable");
+    assert_eq!(back, (barrier, friction));
 }

@@ -6,7 +6,7 @@ use super::sheet::SheetMotion;
 use crate::distance::{Closest, edge_edge, point_triangle};
 use crate::narrow_phase::{gather, smaller};
 use crate::{BroadPhase, CrossCandidates, Obstacle, ObstacleError, Shape};
-use isosheet_dynamics::contact::{BodyMotion, ContactKey, ContactKind, RigidMotion, StepSpan};
+use isosheet_dynamics::contact::{BodyMotion, ContactKey, ContactKind, StepMotion, StepSpan};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 /// Directions of an axis closer than this are the same but for the round-off of a quaternion.
@@ -47,8 +47,8 @@ impl Body {
         let motion = self.obstacle.motion();
         let (start, end) = (motion.pose(span.t0), motion.pose(span.t0 + span.h));
         BodyMotion {
-            material: RigidMotion::new(start, end),
-            surface: RigidMotion::new(self.without_spin(start), self.without_spin(end)),
+            material: StepMotion::new(start, end),
+            surface: StepMotion::new(self.without_spin(start), self.without_spin(end)),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The sheet as seen from a moving body, and how far that motion is safe.
 
 use crate::CcdOptions;
-use isosheet_dynamics::contact::RigidMotion;
+use isosheet_dynamics::contact::StepMotion;
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 
 /// A part of a body's motion over a step; time runs from 0 to 1 again.
@@ -27,7 +27,7 @@ pub(super) struct Course {
 
 impl PartOfStep {
     /// From one progress of a motion to another.
-    pub(super) fn new(motion: &RigidMotion, [from, to]: [f64; 2]) -> Self {
+    pub(super) fn new(motion: &StepMotion, [from, to]: [f64; 2]) -> Self {
         let pose = motion.pose(from);
         Self {
             origin: pose.translation.vector,

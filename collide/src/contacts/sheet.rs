@@ -45,9 +45,9 @@ fn key(kind: ContactKind, pair: [u32; 2]) -> ContactKey {
     }
 }
 
-/// Appends the pairs of the sheet with itself within reach on a motion and returns the part of it, up to `limit`,
-/// that brings nothing into contact. The boxes are those of the whole motion, enlarged by half the reach;
-/// `candidates` is working memory.
+/// Appends the pairs of the sheet with itself within reach on a motion and returns the part of it, up to
+/// `limit`, that brings nothing into contact. The boxes are those of the whole motion, enlarged by half the
+/// reach; `candidates` is working memory.
 pub(super) fn query(
     sheet: SheetMotion<'_>,
     sheet_boxes: &mut BroadPhase,

@@ -5,7 +5,10 @@ mod safety;
 mod start;
 
 use super::*;
-use crate::{Keyframe, Shape, TriangleSurface};
+use crate::{Keyframe, Shape, Stiffness, TriangleSurface};
+use isosheet_dynamics::contact::{
+    BarrierPotential, BodyMotions, ContactSet, ContactTerms, CouplingSink, LaggedFriction,
+};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Matrix3};
 use std::sync::Arc;
@@ -152,16 +155,102 @@ impl CouplingSink for Dense {
     }
 }
 
-fn gradient(contacts: &Contacts, x: &[f64]) -> Vec<f64> {
-    let mut out = vec![0.0; x.len()];
-    contacts.add_gradient(x, 1.0, &mut out);
-    out
+/// A step in progress: the values that an iteration works with.
+struct Step {
+    contacts: Contacts,
+    barrier: BarrierPotential,
+    bodies: BodyMotions,
+    s: f64,
+    set: ContactSet,
+    friction: LaggedFriction,
 }
 
-fn hessian(contacts: &Contacts, x: &[f64]) -> Dense {
-    let mut out = Dense::new(x.len());
-    contacts.add_hessian(x, &mut out);
-    out
+impl Step {
+    /// Starts a step of `h` seconds at positions `x` at time 0, friction lagged there.
+    fn begin(mut contacts: Contacts, model: &SheetModel, h: f64, x: &[f64]) -> Self {
+        let start = State::at_rest(x.to_vec());
+        contacts.check_start(model, &start).unwrap();
+        let barrier = BarrierPotential::at_start(contacts.laws(), model, &start).unwrap();
+        let bodies = BodyMotions::over(&contacts, StepSpan { t0: 0.0, h });
+        let s = bodies.first_progress();
+        let still = vec![0.0; x.len()];
+        let set = ContactSet::of(&mut contacts, motion(&bodies, [s; 2], x, &still));
+        let mut step = Self {
+            contacts,
+            barrier,
+            bodies,
+            s,
+            set,
+            friction: LaggedFriction::none(),
+        };
+        let active = step.active(x);
+        step.friction
+            .lag(step.contacts.laws(), &barrier, &active, x);
+        step
+    }
+
+    /// Checks a motion from `x` with the bodies going on to the ends of theirs.
+    fn query(&mut self, x: &[f64], dx: &[f64]) -> f64 {
+        let motion = motion(&self.bodies, [self.s, 1.0], x, dx);
+        self.set.update(&mut self.contacts, motion);
+        self.set.safe_fraction()
+    }
+
+    fn advance(&mut self, fraction: f64) {
+        self.s = if fraction == 1.0 {
+            1.0
+        } else {
+            self.s + fraction * (1.0 - self.s)
+        };
+    }
+
+    fn active(&self, x: &[f64]) -> ActiveContacts {
+        ActiveContacts::at(&self.contacts, &self.set, self.s, x)
+    }
+
+    fn gap(&self, x: &[f64]) -> f64 {
+        self.active(x).gap()
+    }
+
+    /// What `look` sees of the contact terms at `x`.
+    fn terms<T>(&self, x: &[f64], look: impl FnOnce(ContactTerms<'_>) -> T) -> T {
+        look(ContactTerms {
+            x,
+            active: &self.active(x),
+            barrier: &self.barrier,
+            friction: &self.friction,
+        })
+    }
+
+    fn energy(&self, x: &[f64]) -> f64 {
+        self.terms(x, |t| t.energy())
+    }
+
+    fn gradient(&self, x: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; x.len()];
+        self.terms(x, |t| t.add_gradient(1.0, &mut out));
+        out
+    }
+
+    fn hessian(&self, x: &[f64]) -> Dense {
+        let mut out = Dense::new(x.len());
+        self.terms(x, |t| t.add_hessian(&mut out));
+        out
+    }
+}
+
+fn motion<'a>(
+    bodies: &'a BodyMotions,
+    progress: [f64; 2],
+    x: &'a [f64],
+    dx: &'a [f64],
+) -> JointMotion<'a> {
+    JointMotion {
+        bodies,
+        progress,
+        x,
+        dx,
+    }
 }
 
 fn largest(list: &[f64]) -> f64 {

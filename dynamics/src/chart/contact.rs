@@ -1,7 +1,8 @@
 //! Contact of a simulation in a chart.
 
 use crate::contact::{
-    ActiveContacts, BodyMotions, Contact, ContactError, ContactPoint, ContactSet, Motion, StepSpan,
+    ActiveContacts, BodyMotions, Contact, ContactError, ContactPoint, ContactSet, JointMotion,
+    StepSpan,
 };
 use crate::{SheetModel, State};
 
@@ -30,7 +31,7 @@ impl ChartContact {
         };
         let bodies = BodyMotions::over(geometry.as_ref(), span);
         let displacement = vec![0.0; state.x.len()];
-        let motion = Motion {
+        let motion = JointMotion {
             bodies: &bodies,
             progress: [1.0; 2],
             x: &state.x,
@@ -49,13 +50,14 @@ impl ChartContact {
         Ok(contact)
     }
 
-    /// The part of a motion of the sheet, and of the bodies over a span of time, that is proven free of contact.
+    /// The part of a motion of the sheet, and of the bodies over a span of time, that is proven free of
+    /// contact.
     pub(super) fn safe_fraction(&mut self, span: StepSpan, from: &[f64], to: &[f64]) -> f64 {
         for ((d, a), b) in self.displacement.iter_mut().zip(to).zip(from) {
             *d = a - b;
         }
         self.bodies.update(self.geometry.as_ref(), span);
-        let motion = Motion {
+        let motion = JointMotion {
             bodies: &self.bodies,
             progress: [self.bodies.first_progress(), 1.0],
             x: from,

@@ -2,8 +2,8 @@
 //!
 //! The paper applies collision forces to momenta and does not say how. What follows is our choice.
 //!
-//! A contact within reach has a normal `n` and a relative velocity `u = R v - w`, `v` the velocities of the vertices, `w` that
-//! of the body; an impulse `l` at it changes momenta and relative velocities by
+//! A contact within reach has a normal `n` and a relative velocity `u = R v - w`, `v` the velocities of the
+//! vertices, `w` that of the body; an impulse `l` at it changes momenta and relative velocities by
 //!
 //! ```text
 //! p += J^T R^T l,   u += D l,   D = R P R^T,   P = J C^-1 J^T
@@ -11,15 +11,16 @@
 //!
 //! (P with the closures held too). All contacts are solved together, in three stages:
 //!
-//! 1. compression: impulses with which nothing approaches any more, `0 <= l_n  _|_  u_n >= 0`, and friction `|l_t| <= mu l_n` that
-//!    opposes sliding or stops it (projected Gauss-Seidel over the contacts);
+//! 1. compression: impulses with which nothing approaches any more, `0 <= l_n  _|_  u_n >= 0`, and friction
+//!    `|l_t| <= mu l_n` that opposes sliding or stops it (projected Gauss-Seidel over the contacts);
 //! 2. restitution: `1 + e` times these impulses, and friction again for these normal impulses;
-//! 3. what approaches after that, as a contact that opened before the impact may, is compressed again without restitution, in the
-//!    end without friction too.
+//! 3. what approaches after that, as a contact that opened before the impact may, is compressed again without
+//!    restitution, in the end without friction too.
 //!
-//! For one contact `u_n' = -e u_n`. The kinetic energy never grows, whatever the friction: after compression `l . u <= 0`, so that on
-//! the way from no impulse to twice the compression it is a parabola that ends no higher than it began (Newton's
-//! hypothesis contact by contact has no such bound, Kane and Levinson 1985); and at given normal impulses friction minimises it.
+//! For one contact `u_n' = -e u_n`. The kinetic energy never grows, whatever the friction: after compression
+//! `l . u <= 0`, so that on the way from no impulse to twice the compression it is a parabola that ends no
+//! higher than it began (Newton's hypothesis contact by contact has no such bound, Kane and Levinson 1985);
+//! and at given normal impulses friction minimises it.
 
 use super::ChartDynamicsError;
 use super::mobility::Mobility;
@@ -31,15 +32,15 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector3};
 /// Changes of velocities relative to the largest at which the iteration has converged.
 const TOLERANCE: f64 = 1e-12;
 
-/// Most sweeps over the contacts. Contacts that depend on each other converge linearly; what is left is caught by the
-/// collision detection and the next step.
+/// Most sweeps over the contacts. Contacts that depend on each other converge linearly; what is left is
+/// caught by the collision detection and the next step.
 const SWEEPS: usize = 1000;
 
 /// Most compressions after the first, the last one without friction; one is usual where any is needed.
 const AGAIN: usize = 4;
 
-/// A contact at which a unit impulse moves the sheet by less than this, times its mean vertex mass, is one of pins with a body:
-/// no impulse can help.
+/// A contact at which a unit impulse moves the sheet by less than this, times its mean vertex mass, is one of
+/// pins with a body: no impulse can help.
 const HELD: f64 = 1e-12;
 
 /// The impulse of a contact on the sheet.
@@ -194,7 +195,8 @@ impl Impacts {
         let mut after = u.clone();
         let mut stage = Stage::Compression;
         if !self.sweep(&mut l, &mut after, small, stage) {
-            // Strong friction may turn normal impulses on and off for ever: those without friction are unique.
+            // Strong friction may turn normal impulses on and off for ever: those without friction are
+            // unique.
             stage = Stage::Opening;
             l = self.normal_impulses(u, small);
         }
@@ -213,7 +215,8 @@ impl Impacts {
         l
     }
 
-    /// Impulses without friction and restitution. Convex: they exist wherever the contacts let go, and every sweep takes energy.
+    /// Impulses without friction and restitution. Convex: they exist wherever the contacts let go, and every
+    /// sweep takes energy.
     fn normal_impulses(&self, u: &DVector<f64>, small: f64) -> DVector<f64> {
         let mut l = DVector::zeros(u.len());
         let mut after = u.clone();
@@ -221,7 +224,8 @@ impl Impacts {
         l
     }
 
-    /// The least displacement in the mass metric, on the unknowns, after which every gap is at least `least` to first order.
+    /// The least displacement in the mass metric, on the unknowns, after which every gap is at least `least`
+    /// to first order.
     pub(super) fn open(&self, least: f64) -> Vec<f64> {
         let mut u = DVector::zeros(self.response.len());
         for block in &self.blocks {
@@ -302,7 +306,8 @@ impl Impacts {
 /// Most gradient steps of [`least_on_disc`]; what is left is taken up by the next sweep.
 const STEPS: usize = 30;
 
-/// The point of a disc about zero at which `x^T d x / 2 + slope . x` is least, or one where it is less than at `x`.
+/// The point of a disc about zero at which `x^T d x / 2 + slope . x` is least, or one where it is less than
+/// at `x`.
 fn least_on_disc(
     d: &Matrix2<f64>,
     slope: &Vector2<f64>,

@@ -2,7 +2,7 @@
 
 use super::{
     BarrierPotential, BodyMotions, BodyPlace, Contact, ContactKey, ContactKind, ContactSet,
-    CouplingSink, ParallelEdges, StepSpan, add_at, add_block, add_weighted,
+    CouplingSink, ParallelEdges, StepSpan, add_at, add_block, add_weighted, couple,
 };
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -73,8 +73,8 @@ impl ActiveContact {
         }
     }
 
-    /// Couple on the body besides the force at the closest point, newton metres: that of the factor of parallel
-    /// edges, which turns the edges of sheet and body towards each other.
+    /// Couple on the body besides the force at the closest point, newton metres: that of the factor of
+    /// parallel edges, which turns the edges of sheet and body towards each other.
     pub(super) fn couple(&self, barrier: &BarrierPotential) -> Vector3<f64> {
         match &self.parallel {
             Some(p) if self.key.body.is_some() => {
@@ -237,8 +237,8 @@ pub struct ActiveContacts {
 }
 
 impl ActiveContacts {
-    /// The contacts of a set at positions `x` (`3V`, metres) and progress `s` of the bodies, which have to be on
-    /// the motion of the set.
+    /// The contacts of a set at positions `x` (`3V`, metres) and progress `s` of the bodies, which have to be
+    /// on the motion of the set.
     pub fn at(contact: &dyn Contact, set: &ContactSet, s: f64, x: &[f64]) -> Self {
         let mut active = Self {
             list: Vec::new(),
@@ -251,12 +251,13 @@ impl ActiveContacts {
         active
     }
 
-    /// The contacts at positions `x` (`3V`, metres) and time `t` (seconds), with the pairs searched for there.
+    /// The contacts at positions `x` (`3V`, metres) and time `t` (seconds), with the pairs searched for
+    /// there.
     pub fn at_rest(contact: &mut dyn Contact, t: f64, x: &[f64]) -> Self {
         let bodies = BodyMotions::over(contact, StepSpan { t0: t, h: 0.0 });
         let set = ContactSet::of(
             contact,
-            super::Motion {
+            super::JointMotion {
                 bodies: &bodies,
                 progress: [1.0; 2],
                 x,
@@ -306,8 +307,8 @@ impl ActiveContacts {
         self.span.t0 + self.progress * self.span.h
     }
 
-    /// Smallest gap, metres: distance less thickness. Infinite if there are no contacts; not a number if a gap or
-    /// a position is not.
+    /// Smallest gap, metres: distance less thickness. Infinite if there are no contacts; not a number if a
+    /// gap or a position is not.
     pub fn gap(&self) -> f64 {
         if !self.is_finite {
             return f64::NAN;
@@ -342,6 +343,16 @@ impl ActiveContacts {
     pub fn add_barrier_hessian(&self, barrier: &BarrierPotential, sink: &mut dyn CouplingSink) {
         for contact in &self.list {
             contact.hessian(barrier, sink);
+        }
+    }
+
+    /// The pairs of vertices, lower number first, that the Hessian couples; may hold pairs twice and pairs
+    /// that are mesh edges. Clears `out` first. Contact with bodies couples no vertices that are not
+    /// neighbours already and is left out.
+    pub fn couplings(&self, out: &mut Vec<[u32; 2]>) {
+        out.clear();
+        for c in &self.list {
+            couple(c.key, &c.vertices, out);
         }
     }
 

@@ -35,8 +35,8 @@ pub enum Stiffness {
 /// ```
 ///
 /// It is twice continuously differentiable, decreasing and convex, and `b` is a function of a ratio alone: no
-/// unit enters. Li et al. 2020 (Incremental potential contact, Eq. 6) up to the factor `d_hat^4`. A function of
-/// the gap rather than of the distance, so that balls, capsules and their signed distances repel alike.
+/// unit enters. Li et al. 2020 (Incremental potential contact, Eq. 6) up to the factor `d_hat^4`. A function
+/// of the gap rather than of the distance, so that balls, capsules and their signed distances repel alike.
 ///
 /// A simulation has one, from its start on: it is part of what has to be kept to resume a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -129,8 +129,8 @@ impl BarrierPotential {
         }
     }
 
-    /// Value, first and second derivative by the gap: joules over powers of metres. At and below zero the value
-    /// is infinite and the derivatives are not numbers.
+    /// Value, first and second derivative by the gap: joules over powers of metres. At and below zero the
+    /// value is infinite and the derivatives are not numbers.
     pub fn derivatives(&self, gap: f64) -> [f64; 3] {
         let [b, b1, b2] = self.by_squared_gap(gap * gap);
         let k = self.stiffness;
@@ -273,7 +273,8 @@ mod tests {
         assert_eq!(given.unwrap().stiffness(), 2.0);
         let automatic = laws(Stiffness::Automatic);
         let at = |model| BarrierPotential::at_start(&automatic, &model, &state).unwrap();
-        // Half the activation distance under the weight of a hundred vertices; gravity where there is no load.
+        // Half the activation distance under the weight of a hundred vertices; gravity where there is no
+        // load.
         let weight = 100.0 * 0.1 / 25.0 * 9.8;
         assert!((at(plain()).force(5e-4) / weight - 1.0).abs() < 1e-12);
         let ratio = at(plain().with_acceleration([0.0, 3.0, -4.0])).stiffness()

@@ -13,10 +13,10 @@ pub struct StepSpan {
     pub h: f64,
 }
 
-/// The motion of a frame over a step: its origin on a straight line at constant speed, its orientation about a
-/// fixed axis at a constant rate, from the pose at the start to that at the end.
+/// The motion of a frame over a step: its origin on a straight line at constant speed, its orientation about
+/// a fixed axis at a constant rate, from the pose at the start to that at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct RigidMotion {
+pub struct StepMotion {
     start: Isometry3<f64>,
     end: Isometry3<f64>,
     /// Displacement of the origin, metres.
@@ -25,7 +25,7 @@ pub struct RigidMotion {
     turn: Vector3<f64>,
 }
 
-impl RigidMotion {
+impl StepMotion {
     /// From one pose to another, the shorter way round.
     pub fn new(start: Isometry3<f64>, end: Isometry3<f64>) -> Self {
         let turn = if start.rotation == end.rotation {
@@ -82,10 +82,10 @@ impl RigidMotion {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BodyMotion {
     /// Motion of the material, with which friction goes.
-    pub material: RigidMotion,
-    /// Motion of the surface: that of the material but for the spin of a round body about its own axis, which
-    /// does not move the surface.
-    pub surface: RigidMotion,
+    pub material: StepMotion,
+    /// Motion of the surface: that of the material but for the spin of a round body about its own axis,
+    /// which does not move the surface.
+    pub surface: StepMotion,
 }
 
 /// The motions of all bodies over a step.

@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 /// at which it was lagged (Li et al. 2020, Incremental potential contact, Sec. 5).
 ///
 /// For displacements `dx_i` since the start of the step, and `d` of the body's material point, the contact
-/// slides by `u = (I - n n^T) (sum_i w_i dx_i - d)`; its potential is `N F(|u|)` with the normal force `N` and
-/// the integral `F` of the friction law.
+/// slides by `u = (I - n n^T) (sum_i w_i dx_i - d)`; its potential is `N F(|u|)` with the normal force `N`
+/// and the integral `F` of the friction law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FrictionContact {
     /// Which two primitives.
@@ -160,8 +160,8 @@ impl LaggedFriction {
         &self.contacts
     }
 
-    /// The largest change of a normal force since `before`, relative to the largest normal force; zero without
-    /// friction.
+    /// The largest change of a normal force since `before`, relative to the largest normal force; zero
+    /// without friction.
     pub fn change_since(&self, before: &Self) -> f64 {
         let (old, new) = (&before.contacts, &self.contacts);
         let (mut i, mut j) = (0, 0);
@@ -228,7 +228,7 @@ impl LaggedFriction {
         }
     }
 
-    /// Calls `add` with each body that rubs, the force on it (newtons) and where in space it acts (metres).
+    /// Calls `add` with each body under friction, the force on it (newtons) and where in space it acts (metres).
     pub(super) fn body_forces(
         &self,
         x: &[f64],

@@ -1,8 +1,8 @@
-//! The numbers of a scene's contact.
+//! The parameters of a scene's contact.
 
 use super::{Coefficients, Friction, Stiffness};
 
-/// How strongly a sheet is repelled and how it rubs.
+/// The parameters of barrier and friction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactLaws {
     /// Gap below which the barrier acts and contacts are named, metres.
@@ -40,8 +40,8 @@ impl ContactLaws {
         }
     }
 
-    /// Friction with a body, or of the sheet with itself, in a step of `h` seconds; `None` without friction and
-    /// in a step without duration.
+    /// Friction with a body, or of the sheet with itself, in a step of `h` seconds; `None` without friction
+    /// and in a step without duration.
     pub fn friction(&self, body: Option<u32>, h: f64) -> Option<Friction> {
         let c = self.coefficients(body);
         if c.is_frictionless() {
@@ -50,7 +50,7 @@ impl ContactLaws {
         Friction::new(c.rest, c.sliding, self.rest_speed * h).ok()
     }
 
-    /// Whether nothing rubs.
+    /// Whether there is no friction anywhere.
     pub fn is_frictionless(&self) -> bool {
         let mut all = self.bodies.iter().chain([&self.itself]);
         all.all(Coefficients::is_frictionless)

@@ -28,8 +28,8 @@ pub struct ParallelEdges {
 }
 
 impl ParallelEdges {
-    /// Of two edge vectors in space (metres) with the given squared rest lengths (square metres), the threshold
-    /// being `1e-3` of their product; `None` where the factor is one.
+    /// Of two edge vectors in space (metres) with the given squared rest lengths (square metres), the
+    /// threshold being `1e-3` of their product; `None` where the factor is one.
     pub fn new(u: Vector3<f64>, v: Vector3<f64>, rest_lengths2: [f64; 2]) -> Option<Self> {
         let threshold = RELATIVE_THRESHOLD * rest_lengths2[0] * rest_lengths2[1];
         let y = u.cross(&v).norm_squared() / threshold;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// A motion of the sheet and the bodies that is to be checked: the sheet on straight lines from `x` to
 /// `x + dx`, the bodies, at the same time, from one progress of their motions over the step to another.
 #[derive(Debug, Clone, Copy)]
-pub struct Motion<'a> {
+pub struct JointMotion<'a> {
     /// The motions of the bodies over the step.
     pub bodies: &'a BodyMotions,
     /// Progress of the bodies at the start and at the end of this motion, from 0 to 1.
@@ -54,7 +54,7 @@ pub struct ContactSet {
 
 impl ContactSet {
     /// The set of a motion.
-    pub fn of(contact: &mut dyn Contact, motion: Motion<'_>) -> Self {
+    pub fn of(contact: &mut dyn Contact, motion: JointMotion<'_>) -> Self {
         let mut set = Self {
             bodies: motion.bodies.clone(),
             pairs: Vec::new(),
@@ -65,7 +65,7 @@ impl ContactSet {
     }
 
     /// Becomes the set of another motion; reuses memory.
-    pub fn update(&mut self, contact: &mut dyn Contact, motion: Motion<'_>) {
+    pub fn update(&mut self, contact: &mut dyn Contact, motion: JointMotion<'_>) {
         self.bodies.copy_from(motion.bodies);
         self.pairs.clear();
         let safe = contact.query(motion, &mut self.pairs);

@@ -1,6 +1,6 @@
 //! Barrier and friction together.
 
-use super::{ActiveContacts, BarrierPotential, CouplingSink, LaggedFriction};
+use super::{ActiveContacts, BarrierPotential, CouplingSink, LaggedFriction, couple};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -87,20 +87,13 @@ impl ContactTerms<'_> {
             .add_hessian(self.x, self.active.bodies(), sink);
     }
 
-    /// The pairs of vertices, lower number first, that the Hessian couples; may hold pairs twice and pairs that
-    /// are mesh edges. Clears `out` first. Contact with bodies couples no vertices that are not neighbours
-    /// already and is left out.
+    /// The pairs of vertices, lower number first, that the Hessian couples; may hold pairs twice and pairs
+    /// that are mesh edges. Clears `out` first. Contact with bodies couples no vertices that are not
+    /// neighbours already and is left out.
     pub fn couplings(&self, out: &mut Vec<[u32; 2]>) {
-        out.clear();
-        let now = self.active.list().iter().map(|c| (c.key, c.vertices));
-        let lagged = self.friction.contacts().iter();
-        let lagged = lagged.map(|c| (c.key, c.vertices));
-        for (_, v) in now.chain(lagged).filter(|(key, _)| key.body.is_none()) {
-            for i in 0..4 {
-                for j in i + 1..4 {
-                    out.push([v[i].min(v[j]), v[i].max(v[j])]);
-                }
-            }
+        self.active.couplings(out);
+        for c in self.friction.contacts() {
+            couple(c.key, &c.vertices, out);
         }
     }
 

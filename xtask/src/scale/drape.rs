@@ -30,7 +30,7 @@ pub(crate) struct DrapeRow {
     pub(crate) steps: usize,
     /// Wall seconds per step.
     pub(crate) per_step: f64,
-    /// Parts of it, seconds: finding pairs and safe motions; energies and derivatives of contact.
+    /// Parts of it, seconds: finding pairs and safe motions; distances and normals of contacts.
     pub(crate) detection: f64,
     pub(crate) evaluation: f64,
     pub(crate) iterations: f64,
@@ -114,13 +114,10 @@ pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRo
     row.iterations = iterations as f64 / n;
     row.factorisations = factorisations as f64 / n;
     row.peak = peak_memory();
-    if let Some(contact) = run.contact() {
-        let x = &run.state().x;
-        let mut points = Vec::new();
-        contact.contact_points(x, &mut points);
-        row.contacts = points.len();
+    if let Some(active) = run.contacts() {
+        row.contacts = active.list().len();
         let mut pairs = Vec::new();
-        contact.couplings(x, &mut pairs);
+        active.couplings(&mut pairs);
         pairs.sort_unstable();
         pairs.dedup();
         let edge = |[a, b]: &[u32; 2]| sheet.topology().find_edge(VertexId(*a), VertexId(*b));

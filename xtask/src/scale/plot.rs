@@ -140,7 +140,7 @@ pub(super) fn plot(results: &Results) -> Drawing {
                 Some(Marker::Square),
             ),
             series(
-                "contact, derivatives",
+                "contact, distances",
                 drape(|r| r.evaluation),
                 palette::PURPLE,
                 Some(Marker::Diamond),

@@ -153,11 +153,11 @@ fn orders(rows: &[Row]) -> Table {
 
 fn draping(rows: &[DrapeRow]) -> Table {
     Table {
-        caption: "Per step of the draping sheet. Detection: pairs within reach and the safe part of every motion; derivatives: energies, gradients \
-                  and Hessians of contact. Couplings: pairs of vertices that contact adds to the pattern of the matrix."
+        caption: "Per step of the draping sheet. Detection: pairs within reach and the safe part of every motion; distances: distances, normals \
+                  and weights of the pairs. Couplings: pairs of vertices that contact adds to the pattern of the matrix."
             .into(),
         head: head(&[
-            "mesh", "V", "steps", "step, s", "iterations", "factorisations", "rejected", "detection", "derivatives", "contacts", "couplings",
+            "mesh", "V", "steps", "step, s", "iterations", "factorisations", "rejected", "detection", "distances", "contacts", "couplings",
             "strain", "gap, µm", "peak, MB", "remark",
         ]),
         rows: rows
@@ -338,7 +338,7 @@ fn draping_conclusion(results: &Results) -> String {
     let power =
         |value: fn(&DrapeRow) -> f64| power(&points(rows, |r| [r.vertices as f64, value(r)]));
     let mut out = format!(
-        "Fitted powers of V with contact: time per step {}, factorisations per step {}, detection {}, derivatives of contact {}.",
+        "Fitted powers of V with contact: time per step {}, factorisations per step {}, detection {}, distances of contacts {}.",
         power(|r| r.per_step),
         power(|r| r.factorisations),
         power(|r| r.detection),
@@ -394,7 +394,7 @@ pub(super) fn text(results: &Results) -> String {
     }
     let _ = writeln!(
         out,
-        "{}\n{}\nwith contact:   step, s  factorisations  detection  derivatives  contacts  peak, MB",
+        "{}\n{}\nwith contact:   step, s  factorisations  detection    distances  contacts  peak, MB",
         conclusion(&results.hanging),
         threads(&results.hanging)
     );
@@ -455,7 +455,7 @@ fn csv(rows: &[Row]) -> String {
 
 fn draping_csv(rows: &[DrapeRow]) -> String {
     let mut out = String::from(
-        "level,vertices,step_size_s,steps,step_s,detection_s,derivatives_s,iterations,factorisations,rejected,contacts,couplings,strain,gap_m,\
+        "level,vertices,step_size_s,steps,step_s,detection_s,distances_s,iterations,factorisations,rejected,contacts,couplings,strain,gap_m,\
          peak_bytes,stopped\n",
     );
     for r in rows {

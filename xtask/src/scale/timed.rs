@@ -1,9 +1,11 @@
 //! A stop-watch around contact.
 
 use isosheet_dynamics::contact::{
-    BodyLoad, Contact, ContactError, ContactPoint, ContactWork, CouplingSink,
+    ActiveContact, BodyMotion, BodyPlace, Contact, ContactError, ContactKey, ContactLaws,
+    JointMotion, StepSpan,
 };
 use isosheet_dynamics::{SheetModel, State};
+use nalgebra::Vector3;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -11,9 +13,10 @@ use std::time::Instant;
 /// Seconds spent in contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Spent {
-    /// Looking for pairs within reach and for the safe part of motions: broad phase and continuous collision detection.
+    /// Looking for pairs within reach and for the safe part of motions: broad phase and continuous collision
+    /// detection.
     pub(super) detection: f64,
-    /// Energies, gradients and Hessians, distances and assembly included.
+    /// Distances, normals and weights of the pairs within reach.
     pub(super) evaluation: f64,
 }
 
@@ -67,75 +70,35 @@ impl<C> Timed<C> {
         };
         (timed, watch)
     }
-
-    fn evaluate<T>(&self, work: impl FnOnce(&C) -> T) -> T {
-        book(&self.watch.evaluation, || work(&self.inner))
-    }
 }
 
 impl<C: Contact> Contact for Timed<C> {
-    fn begin(&mut self, t0: f64, h: f64, x0: &[f64]) {
-        book(&self.watch.detection, || self.inner.begin(t0, h, x0));
+    fn laws(&self) -> &ContactLaws {
+        self.inner.laws()
     }
 
-    fn progress(&self) -> f64 {
-        self.inner.progress()
+    fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>) {
+        self.inner.body_motions(span, out);
     }
 
-    fn safe_fraction(&mut self, x: &[f64], dx: &[f64]) -> f64 {
-        book(&self.watch.detection, || self.inner.safe_fraction(x, dx))
+    fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64> {
+        self.inner.body_velocity(body, t, place)
     }
 
-    fn advance(&mut self, fraction: f64) {
-        self.inner.advance(fraction);
+    fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
+        book(&self.watch.detection, || self.inner.query(motion, pairs))
     }
 
-    fn energy(&self, x: &[f64]) -> f64 {
-        self.evaluate(|c| c.energy(x))
-    }
-
-    fn add_gradient(&self, x: &[f64], scale: f64, out: &mut [f64]) {
-        self.evaluate(|c| c.add_gradient(x, scale, out));
-    }
-
-    fn add_drive(&self, x: &[f64], scale: f64, out: &mut [f64]) {
-        self.evaluate(|c| c.add_drive(x, scale, out));
-    }
-
-    fn add_hessian(&self, x: &[f64], sink: &mut dyn CouplingSink) {
-        self.evaluate(|c| c.add_hessian(x, sink));
-    }
-
-    fn couplings(&self, x: &[f64], out: &mut Vec<[u32; 2]>) {
-        self.evaluate(|c| c.couplings(x, out));
-    }
-
-    fn relag(&mut self, x: &[f64]) -> f64 {
-        book(&self.watch.evaluation, || self.inner.relag(x))
-    }
-
-    fn finish(&mut self, x1: &[f64]) -> ContactWork {
-        book(&self.watch.evaluation, || self.inner.finish(x1))
-    }
-
-    fn potential(&self, x: &[f64]) -> f64 {
-        self.evaluate(|c| c.potential(x))
-    }
-
-    fn gap(&self, x: &[f64]) -> f64 {
-        self.evaluate(|c| c.gap(x))
-    }
-
-    fn loads(&self, x: &[f64]) -> Vec<BodyLoad> {
-        self.evaluate(|c| c.loads(x))
-    }
-
-    fn activation(&self) -> f64 {
-        self.inner.activation()
-    }
-
-    fn contact_points(&self, x: &[f64], out: &mut Vec<ContactPoint>) {
-        self.evaluate(|c| c.contact_points(x, out));
+    fn evaluate(
+        &self,
+        pairs: &[ContactKey],
+        x: &[f64],
+        bodies: &[BodyPlace],
+        out: &mut Vec<ActiveContact>,
+    ) {
+        book(&self.watch.evaluation, || {
+            self.inner.evaluate(pairs, x, bodies, out);
+        });
     }
 
     fn check_start(&mut self, model: &SheetModel, state: &State) -> Result<(), ContactError> {

@@ -1,38 +1,46 @@
 //! Contact for methods that have no place for it: its barrier as a potential like any other.
 
 use isosheet_collide::Contacts;
-use isosheet_dynamics::contact::{Contact, CouplingSink};
-use isosheet_dynamics::{HessianSink, Potential};
+use isosheet_dynamics::contact::{
+    ActiveContacts, BarrierError, BarrierPotential, Contact, CouplingSink,
+};
+use isosheet_dynamics::{HessianSink, Potential, SheetModel, State};
 use isosheet_mesh::{Topology, VertexId};
 use nalgebra::Matrix3;
 use std::fmt;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 /// The barrier of frictionless contact with resting bodies as a potential of the positions.
 ///
-/// The same function that [`isosheet_dynamics::Simulation::with_contact`] takes, but no motion is checked: a method that steps
-/// too far passes through the bodies.
+/// The same function that [`isosheet_dynamics::Simulation::with_contact`] takes, but no motion is checked: a
+/// method that steps too far passes through the bodies.
 pub(crate) struct Barrier {
     /// Energies want the pairs within reach to be found anew at every place.
     contacts: Mutex<Contacts>,
+    potential: BarrierPotential,
     topology: Topology,
 }
 
 impl Barrier {
-    pub(crate) fn new(contacts: Contacts, topology: Topology) -> Self {
-        Self {
+    /// The barrier of a simulation of `model` without the barrier from a state.
+    pub(crate) fn new(
+        contacts: Contacts,
+        model: &SheetModel,
+        start: &State,
+    ) -> Result<Self, BarrierError> {
+        Ok(Self {
+            potential: BarrierPotential::at_start(contacts.laws(), model, start)?,
             contacts: Mutex::new(contacts),
-            topology,
-        }
+            topology: model.topology().clone(),
+        })
     }
 
-    /// Contact with the pairs that are within reach at `x`.
-    fn at(&self, x: &[f64]) -> MutexGuard<'_, Contacts> {
+    /// The contacts at `x`.
+    fn at(&self, x: &[f64]) -> ActiveContacts {
         let lock = self.contacts.lock();
         // Whatever a thread that panicked left behind is overwritten.
         let mut contacts = lock.unwrap_or_else(PoisonError::into_inner);
-        contacts.begin(0.0, 1.0, x);
-        contacts
+        ActiveContacts::at_rest(&mut *contacts, 0.0, x)
     }
 }
 
@@ -44,11 +52,12 @@ impl fmt::Debug for Barrier {
 
 impl Potential for Barrier {
     fn energy(&self, _t: f64, x: &[f64]) -> f64 {
-        self.at(x).potential(x)
+        self.at(x).barrier_energy(&self.potential)
     }
 
     fn add_gradient(&self, _t: f64, x: &[f64], gradient: &mut [f64]) {
-        self.at(x).add_gradient(x, 1.0, gradient);
+        let active = self.at(x);
+        active.add_barrier_gradient(&self.potential, 1.0, gradient);
     }
 
     fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
@@ -56,7 +65,8 @@ impl Potential for Barrier {
             topology: &self.topology,
             hessian,
         };
-        self.at(x).add_hessian(x, &mut sink);
+        let active = self.at(x);
+        active.add_barrier_hessian(&self.potential, &mut sink);
     }
 }
 
@@ -122,8 +132,8 @@ mod tests {
         }
     }
 
-    /// A cloth laid into the reach of the table: slopes of the energy, and the part of the Hessian that a push straight
-    /// down sees, against differences.
+    /// A cloth laid into the reach of the table: slopes of the energy, and the part of the Hessian that a
+    /// push straight down sees, against differences.
     #[test]
     fn the_barrier_has_the_derivatives_of_its_energy() {
         let problem = Problem::Cloth(1);
@@ -131,7 +141,8 @@ mod tests {
         let contacts = problem.contacts().unwrap().unwrap();
         let mut x = sheet.positions().to_vec();
         let depth = contacts.options().activation;
-        let barrier = Barrier::new(contacts, sheet.topology().clone());
+        let start = problem.start().unwrap();
+        let barrier = Barrier::new(contacts, &problem.without_contact().unwrap(), &start).unwrap();
         assert_eq!(
             barrier.energy(0.0, &x),
             0.0,

@@ -125,7 +125,7 @@ impl Problem {
     }
 
     /// The mechanical system, contact left out.
-    fn without_contact(self) -> Result<SheetModel> {
+    pub(super) fn without_contact(self) -> Result<SheetModel> {
         Ok(match self {
             Self::Pendulum => Pendulum::default().model(),
             Self::Triangle => {
@@ -158,8 +158,8 @@ impl Problem {
         Ok(match self.contacts()? {
             None => model,
             Some(contacts) => {
-                let topology = model.topology().clone();
-                model.with_potential(Barrier::new(contacts, topology))
+                let barrier = Barrier::new(contacts, &model, &self.start()?)?;
+                model.with_potential(barrier)
             }
         })
     }
@@ -324,7 +324,7 @@ mod tests {
             let run = problem.simulation(&Method::default(), problem.start().unwrap());
             let run = run.unwrap().unwrap();
             assert_eq!(
-                run.contact().is_some(),
+                run.contacts().is_some(),
                 matches!(problem, Problem::Cloth(_))
             );
         }

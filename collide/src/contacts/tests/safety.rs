@@ -1,14 +1,15 @@
 //! No accepted motion passes anything.
 
-use super::super::path::StepMotion;
 use super::*;
 use crate::{CcdOptions, crossings, crossings_between};
+use isosheet_dynamics::contact::StepMotion;
 use proptest::prelude::*;
 
 /// Whether the sheet passes through the body or is inside it at progress `s` of the step.
-fn passes(contacts: &Contacts, x: &[f64], s: f64) -> bool {
+fn passes(step: &Step, x: &[f64], s: f64) -> bool {
+    let contacts = &step.contacts;
     let body = &contacts.bodies[0];
-    let pose = body.rest(0.0).pose_at(s);
+    let pose = step.bodies.list()[0].surface.pose(s);
     let shape = body.obstacle().shape();
     let solid = !matches!(shape, Shape::Surface(surface) if !surface.is_closed());
     if solid {
@@ -51,31 +52,30 @@ proptest! {
         let up = Vector3::from(shift) + Vector3::new(0.0, 0.0, 0.6);
         let to = Isometry3::new(up, Vector3::from(turn));
         let mut x = waves(&sheet, top(&shape, &from) + 0.01, 0.05);
-        let mut contacts = Contacts::new(&model, options(&model, 0.005)).unwrap()
+        let contacts = Contacts::new(&model, options(&model, 0.005)).unwrap()
             .with_body(moving(shape, from, to, 0.02), Coefficients::FRICTIONLESS).unwrap();
-        contacts.check_start(&model, &State::at_rest(x.clone())).unwrap();
-        contacts.begin(0.0, 0.02, &x);
+        let mut step = Step::begin(contacts, &model, 0.02, &x);
         let mut cut = 0;
         for throw in &throws {
             let dx: Vec<f64> = throw.iter().map(|d| size * d).collect();
-            let s0 = contacts.progress();
-            let a = contacts.safe_fraction(&x, &dx);
+            let s0 = step.s;
+            let a = step.query(&x, &dx);
             cut += usize::from(a < 1.0);
             for k in 0..=8 {
                 let b = a * f64::from(k) / 8.0;
                 let y: Vec<f64> = x.iter().zip(&dx).map(|(x, d)| x + b * d).collect();
                 let s = s0 + b * (1.0 - s0);
-                prop_assert!(!passes(&contacts, &y, s), "{} at {} of {}", name, b, a);
+                prop_assert!(!passes(&step, &y, s), "{} at {} of {}", name, b, a);
             }
             for i in 0..x.len() {
                 x[i] += a * dx[i];
             }
-            contacts.advance(a);
-            let gap = contacts.gap(&x);
+            step.advance(a);
+            let gap = step.gap(&x);
             prop_assert!(gap > 0.0, "{}: gap {}", name, gap);
-            prop_assert!(contacts.energy(&x).is_finite());
+            prop_assert!(step.energy(&x).is_finite());
         }
-        prop_assert!(cut > 0 || contacts.progress() == 1.0);
+        prop_assert!(cut > 0 || step.s == 1.0);
     }
 
     /// A sheet thrown at itself.
@@ -88,21 +88,20 @@ proptest! {
         let model = model(&sheet);
         let mut x = waves(&sheet, 0.0, 0.05);
         let options = ContactOptions { thickness, ..options(&model, 0.01) };
-        let mut contacts = Contacts::new(&model, options).unwrap()
+        let contacts = Contacts::new(&model, options).unwrap()
             .with_self_contact(Coefficients::FRICTIONLESS).unwrap();
-        contacts.check_start(&model, &State::at_rest(x.clone())).unwrap();
-        contacts.begin(0.0, 0.02, &x);
+        let mut step = Step::begin(contacts, &model, 0.02, &x);
         for throw in &throws {
             let dx: Vec<f64> = throw.iter().map(|d| size * d).collect();
-            let a = contacts.safe_fraction(&x, &dx);
+            let a = step.query(&x, &dx);
             for k in 1..=8 {
                 let b = a * f64::from(k) / 8.0;
                 let y: Vec<f64> = x.iter().zip(&dx).map(|(x, d)| x + b * d).collect();
-                prop_assert!(crossings(&contacts.mesh, &y).is_empty());
+                prop_assert!(crossings(&step.contacts.mesh, &y).is_empty());
                 // The pairs found are those of the whole motion.
-                let gap = contacts.gap(&y);
+                let gap = step.gap(&y);
                 prop_assert!(gap > 0.0);
-                let all = every_gap(&contacts, &y);
+                let all = every_gap(&step.contacts, &y);
                 prop_assert!((gap.min(0.01) - all.min(0.01)).abs() < 1e-12, "{} {}", gap, all);
             }
             for i in 0..x.len() {
@@ -115,7 +114,7 @@ proptest! {
 /// Smallest gap of the sheet with itself over all pairs.
 fn every_gap(contacts: &Contacts, x: &[f64]) -> f64 {
     let mesh = &contacts.mesh;
-    let mut all = crate::Candidates::default();
+    let mut all = Candidates::default();
     for v in 0..mesh.vertex_count() as u32 {
         for (f, face) in (0..).zip(mesh.faces()) {
             if !face.contains(&v) {
@@ -144,30 +143,27 @@ fn a_fast_punch_does_not_tunnel() {
         let x = waves(&sheet, top(&shape, &from) + gap, 1e-5);
         let h = 1.0 / 60.0;
         let to = nalgebra::Translation3::new(0.0, 0.0, 10.0 * h) * from;
-        let mut contacts = Contacts::new(&model, options(&model, 5e-4))
+        let contacts = Contacts::new(&model, options(&model, 5e-4))
             .unwrap()
             .with_body(moving(shape, from, to, h), Coefficients::FRICTIONLESS)
             .unwrap();
-        contacts
-            .check_start(&model, &State::at_rest(x.clone()))
-            .unwrap();
-        contacts.begin(0.0, h, &x);
+        let mut step = Step::begin(contacts, &model, h, &x);
         let still = vec![0.0; x.len()];
-        let a = contacts.safe_fraction(&x, &still);
+        let a = step.query(&x, &still);
         let impact = gap / (10.0 * h);
         assert!(
             a < 1.05 * impact && a > 0.8 * impact,
             "{name}: {a} {impact}"
         );
-        contacts.advance(a);
-        assert!(contacts.gap(&x) > 0.0 && contacts.gap(&x) < 3e-4, "{name}");
+        step.advance(a);
+        assert!(step.gap(&x) > 0.0 && step.gap(&x) < 3e-4, "{name}");
         // Nothing more is possible, and it does not end with a touch.
         for _ in 0..5 {
-            let a = contacts.safe_fraction(&x, &still);
-            contacts.advance(a);
-            assert!(contacts.gap(&x) > 0.0, "{name}");
+            let a = step.query(&x, &still);
+            step.advance(a);
+            assert!(step.gap(&x) > 0.0, "{name}");
         }
-        assert!(contacts.progress() < 2.0 * impact);
+        assert!(step.s < 2.0 * impact);
     }
 }
 
@@ -200,16 +196,13 @@ fn spinning_in_place_is_safe() {
             pose.translation,
             nalgebra::UnitQuaternion::from_scaled_axis(0.8 * axis) * pose.rotation,
         );
-        let mut contacts = Contacts::new(&model, options(&model, 1e-3))
+        let contacts = Contacts::new(&model, options(&model, 1e-3))
             .unwrap()
             .with_body(moving(shape, pose, to, 0.01), Coefficients::FRICTIONLESS)
             .unwrap();
-        contacts
-            .check_start(&model, &State::at_rest(x.clone()))
-            .unwrap();
-        contacts.begin(0.0, 0.01, &x);
+        let mut step = Step::begin(contacts, &model, 0.01, &x);
         let still = vec![0.0; x.len()];
-        assert_eq!(contacts.safe_fraction(&x, &still), 1.0, "{name}");
+        assert_eq!(step.query(&x, &still), 1.0, "{name}");
     }
 }
 
@@ -228,7 +221,7 @@ proptest! {
             nalgebra::UnitQuaternion::from_scaled_axis(v(turn)) * start.rotation,
         );
         let motion = StepMotion::new(start, end);
-        let rest = motion.rest(s);
+        let rest = PartOfStep::new(&motion, [s, 1.0]);
         prop_assert!((rest.pose_at(1.0).to_matrix() - end.to_matrix()).norm() < 1e-12);
         let course = rest.course(&v(x), &v(dx));
         let at = |t: f64| {
@@ -254,7 +247,8 @@ fn a_point_above_a_turning_slab_is_met() {
         half: [1.0, 1.0, 0.1],
     };
     let turned = Isometry3::new(Vector3::zeros(), 0.5 * Vector3::y());
-    let rest = StepMotion::new(Isometry3::identity(), turned).rest(0.0);
+    let motion = StepMotion::new(Isometry3::identity(), turned);
+    let rest = PartOfStep::new(&motion, [0.0, 1.0]);
     let course = rest.course(&Vector3::new(0.0, 0.0, 0.101), &Vector3::zeros());
     let t = rest.advance(&CcdOptions::default(), &[course], 1.0, |[p]| {
         let d = slab.signed_distance(p);
@@ -262,4 +256,57 @@ fn a_point_above_a_turning_slab_is_met() {
     });
     let met = |gap: f64| ((0.1 + gap) / 0.101_f64).acos() / 0.5;
     assert!(t < met(0.0) && t > met(2e-4), "{t} {}", met(0.0));
+}
+
+/// A search after many others finds the same as one by contacts that are new, in the same order: what a
+/// simulation that is resumed from a file does does not depend on what was searched for before.
+#[test]
+fn sets_do_not_depend_on_earlier_searches() {
+    let sheet = sheet(2);
+    let model = model(&sheet);
+    let shape = Shape::Cylinder {
+        radius: 0.15,
+        half_height: 0.2,
+    };
+    let to = Isometry3::translation(0.02, 0.01, 0.03);
+    let make = || {
+        Contacts::new(&model, options(&model, 0.05))
+            .unwrap()
+            .with_body(
+                moving(shape.clone(), Isometry3::identity(), to, 0.02),
+                Coefficients::FRICTIONLESS,
+            )
+            .unwrap()
+            .with_body(
+                still(roof(), Isometry3::translation(0.0, 0.0, -0.3)),
+                Coefficients::FRICTIONLESS,
+            )
+            .unwrap()
+            .with_self_contact(Coefficients::FRICTIONLESS)
+            .unwrap()
+    };
+    let bent = waves(&sheet, top(&shape, &Isometry3::identity()) + 0.01, 0.05);
+    let dx: Vec<f64> = (0..bent.len())
+        .map(|i| 0.05 * (3.0 * i as f64).sin())
+        .collect();
+    let mut fresh = make();
+    let span = StepSpan { t0: 0.0, h: 0.02 };
+    let bodies = BodyMotions::over(&fresh, span);
+    let searched = |contacts: &mut Contacts| {
+        let set = ContactSet::of(contacts, motion(&bodies, [0.25, 1.0], &bent, &dx));
+        let active = ActiveContacts::at(contacts, &set, 0.25, &bent);
+        (set, active)
+    };
+    let expected = searched(&mut fresh);
+    assert!(expected.0.pairs().is_sorted() && expected.0.pairs().len() > 100);
+    assert!(expected.1.list().len() > 10);
+    let mut used = make();
+    // Its tree has the shape of the flat sheet, and its boxes have been elsewhere.
+    let mut x = sheet.positions().to_vec();
+    for k in 0..5 {
+        ActiveContacts::at_rest(&mut used, 0.005 * f64::from(k), &x);
+        x.iter_mut().for_each(|x| *x *= 1.1);
+    }
+    assert_eq!(searched(&mut used), expected);
+    assert_eq!(searched(&mut used), expected);
 }

@@ -1,7 +1,7 @@
 //! Starts that are refused and options that make no sense.
 
 use super::*;
-use isosheet_dynamics::contact::ContactPair;
+use isosheet_dynamics::contact::{BarrierError, ContactPair};
 
 fn table(model: &SheetModel, gap: f64) -> Contacts {
     let shape = Shape::Cuboid {
@@ -36,11 +36,15 @@ fn touching_starts_are_refused_by_name() {
     let mut broken = flat.clone();
     broken.x[4] = f64::NAN;
     let mut contacts = table(&model, 1e-3);
-    assert!(contacts.gap(&broken.x).is_nan());
-    assert_eq!(contacts.energy(&broken.x), f64::INFINITY);
+    let active = ActiveContacts::at_rest(&mut contacts, 0.0, &broken.x);
+    assert!(active.gap().is_nan());
+    let barrier = BarrierPotential::new(contacts.options.activation, 1.0).unwrap();
+    assert_eq!(active.barrier_energy(&barrier), f64::INFINITY);
+    let mut step = Step::begin(contacts, &model, 0.0, &flat.x);
     let dx = vec![0.0; flat.x.len()];
-    assert_eq!(contacts.safe_fraction(&broken.x, &dx), 0.0);
-    assert_eq!(contacts.safe_fraction(&flat.x, &broken.x), 0.0);
+    assert_eq!(step.query(&broken.x, &dx), 0.0);
+    assert_eq!(step.query(&flat.x, &broken.x), 0.0);
+    let mut contacts = step.contacts;
     let other = super::sheet(2);
     assert_eq!(
         contacts.check_start(&super::model(&other), &flat),
@@ -159,12 +163,18 @@ fn options_that_make_no_sense_are_named() {
         thickness: -1.0,
         ..good
     };
-    assert!(matches!(make(o), Err(ContactsError::Barrier(_))));
+    assert_eq!(make(o), Err(ContactsError::Thickness(-1.0)));
+    let o = ContactOptions {
+        thickness: 1e20,
+        ..good
+    };
+    assert!(matches!(make(o), Err(ContactsError::Resolution { .. })));
     let o = ContactOptions {
         stiffness: Stiffness::Joules(0.0),
         ..good
     };
-    assert_eq!(make(o), Err(ContactsError::Stiffness(0.0)));
+    let refused = BarrierError::Stiffness(0.0);
+    assert_eq!(make(o), Err(ContactsError::Barrier(refused)));
     let o = ContactOptions {
         rest_speed: f64::NAN,
         ..good
@@ -228,7 +238,7 @@ fn automatic_stiffness_carries_a_hundred_vertices() {
         (plain(), 9.8),
     ] {
         let options = ContactOptions::for_sheet(&model);
-        let mut contacts = Contacts::new(&model, options)
+        let contacts = Contacts::new(&model, options)
             .unwrap()
             .with_body(
                 still(Shape::HalfSpace, Isometry3::identity()),
@@ -238,11 +248,10 @@ fn automatic_stiffness_carries_a_hundred_vertices() {
         let mut x = sheet.positions().to_vec();
         x.iter_mut().skip(2).step_by(3).for_each(|z| *z = 1.0);
         x[2] = 0.5 * options.activation;
-        contacts
-            .check_start(&model, &State::at_rest(x.clone()))
-            .unwrap();
+        let step = Step::begin(contacts, &model, 0.0, &x);
         let weight = 100.0 * 0.1 / 81.0 * acceleration;
-        assert!((contacts.loads(&x)[0].force.z + weight).abs() < 1e-11);
-        assert!((contacts.gap(&x) - x[2]).abs() < 1e-18);
+        let load = step.terms(&x, |t| t.loads())[0];
+        assert!((load.force.z + weight).abs() < 1e-11);
+        assert!((step.gap(&x) - x[2]).abs() < 1e-18);
     }
 }
