@@ -10,6 +10,7 @@
 //!   ([`ChartSimulation::from_state`]). Contact acts by impulses ([`ChartSimulation::with_contact`]).
 
 mod contact;
+mod energy_bound;
 pub(crate) mod engine;
 mod error;
 mod impact;
@@ -19,11 +20,13 @@ mod options;
 mod simulation;
 mod solver;
 mod stepping;
+mod substep;
 
 pub use error::ChartDynamicsError;
 pub use impact::ContactImpulse;
 pub use mechanics::{ChartMechanics, Equations};
 pub use options::{ChartMethod, ChartOptions, ChartStepControl, PositionUpdate, Rebase};
+pub(crate) use simulation::ChartMotion;
 pub use simulation::{ChartSimulation, ChartStepReport, StepRange};
 pub use solver::{
     CholeskySolver, CramerSolver, DenseLuSolver, MassSolver, MassSolverKind, SaddleSolver,

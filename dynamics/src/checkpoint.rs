@@ -1,10 +1,12 @@
 //! Checkpoints: a simulation between two steps, as a value and as a file.
 
+use crate::chart::{ChartMotion, ChartOptions};
 use crate::contact::BarrierPotential;
 use crate::energy_account::EnergyAccount;
 use crate::integrator::Moment;
 use crate::{Method, SheetModel, StepControl};
 use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Version of the format. It grows with every change of the fields, because the binary format does not name them.
@@ -57,6 +59,20 @@ pub struct Checkpoint {
 pub(crate) enum Motion {
     /// A chart-free method.
     Free(Box<FreeMotion>),
+    /// A method in a chart.
+    Chart(Box<InChart>),
+}
+
+/// A simulation in a chart between two steps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct InChart {
+    pub(crate) options: ChartOptions,
+    pub(crate) motion: ChartMotion,
+    /// Velocities of the vertices at the end of the last step, `3V`, metres per second.
+    pub(crate) velocities: Vec<f64>,
+    /// Forces of the supports at the end of the last step, newtons; empty before the first.
+    pub(crate) reactions: Vec<Vector3<f64>>,
+    pub(crate) has_contact: bool,
 }
 
 /// A chart-free simulation between two steps.

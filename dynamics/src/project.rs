@@ -130,6 +130,8 @@ impl Projector {
         let mut penalty = PROJECTION_PENALTY;
         let mut opening = 1.0;
         self.trail.clear();
+        // Every projection draws the same numbers, so that none depends on the ones before.
+        self.rng = ChaCha8Rng::seed_from_u64(0);
         rods.residual_into(iterate.x(), &mut self.c);
         for (i, c) in model.constraints().iter().enumerate() {
             let pressed = loads.get(i).is_some_and(|l| l.x < 0.0);

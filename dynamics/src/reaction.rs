@@ -47,6 +47,20 @@ pub struct Reaction {
     pub force: Vector3<f64>,
 }
 
+/// The supports of a model in the order of their reactions: pins, then vertex constraints.
+pub(crate) fn supports(model: &SheetModel) -> impl Iterator<Item = Support> + '_ {
+    let constraints = model.constraints().iter().enumerate();
+    let constraints = constraints.map(|(index, c)| Support::Constraint {
+        index,
+        vertex: c.vertex(),
+    });
+    model
+        .pins()
+        .into_iter()
+        .map(Support::Pin)
+        .chain(constraints)
+}
+
 /// At what time of a step forces are known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum ForceTime {

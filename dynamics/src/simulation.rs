@@ -2,7 +2,7 @@
 
 use crate::chart::engine::ChartEngine;
 use crate::chart::{ChartOptions, ChartSimulation};
-use crate::checkpoint::{Checkpoint, EnergySums, Motion, SheetFingerprint};
+use crate::checkpoint::{Checkpoint, CheckpointError, EnergySums, Motion, SheetFingerprint};
 use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact};
 use crate::engine::Engine as FreeEngine;
 use crate::reaction::Reaction;
@@ -117,7 +117,7 @@ impl Simulation {
     pub fn checkpoint(&self) -> Checkpoint {
         let motion = match &self.engine {
             Engine::Free(engine) => Motion::Free(Box::new(engine.motion())),
-            Engine::Chart(_) => todo!(),
+            Engine::Chart(chart) => Motion::Chart(Box::new(chart.motion())),
         };
         Checkpoint::new(self.sheet, self.energy, motion)
     }
@@ -133,15 +133,43 @@ impl Simulation {
         checkpoint: Checkpoint,
     ) -> Result<Self, SimulationError> {
         checkpoint.check_model(&model)?;
-        let Motion::Free(motion) = checkpoint.motion;
+        let Motion::Free(motion) = checkpoint.motion else {
+            return Err(CheckpointError::Chart { in_chart: true }.into());
+        };
         let engine = FreeEngine::resume(model, contact, *motion)?;
-        let force = vec![0.0; engine.state().x.len()];
-        Ok(Self {
-            engine: Engine::Free(Box::new(engine)),
-            sheet: checkpoint.sheet,
-            energy: checkpoint.energy,
-            force,
-        })
+        let engine = Engine::Free(Box::new(engine));
+        Ok(Self::going_on(engine, checkpoint.sheet, checkpoint.energy))
+    }
+
+    /// Goes on from a checkpoint of a simulation in a chart, with the model, the chart and the contact that it was
+    /// started with: bit for bit as the simulation would have gone on.
+    ///
+    /// # Errors
+    /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of simulation.
+    pub fn resume_in_chart(
+        model: SheetModel,
+        chart: Box<dyn Chart>,
+        contact: Option<Box<dyn Contact>>,
+        checkpoint: Checkpoint,
+    ) -> Result<Self, SimulationError> {
+        checkpoint.check_model(&model)?;
+        let Motion::Chart(motion) = checkpoint.motion else {
+            return Err(CheckpointError::Chart { in_chart: false }.into());
+        };
+        let engine = ChartEngine::resume(model, chart, contact, *motion)?;
+        let engine = Engine::Chart(Box::new(engine));
+        Ok(Self::going_on(engine, checkpoint.sheet, checkpoint.energy))
+    }
+
+    fn going_on(engine: Engine, sheet: SheetFingerprint, energy: EnergySums) -> Self {
+        let mut simulation = Self {
+            engine,
+            sheet,
+            energy,
+            force: Vec::new(),
+        };
+        simulation.force = vec![0.0; simulation.state().x.len()];
+        simulation
     }
 
     /// Replaces the step control of a chart-free method.

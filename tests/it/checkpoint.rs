@@ -1,11 +1,17 @@
 //! Checkpoints: N steps, a checkpoint through a file, N more are 2 N steps, bit for bit.
 
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_coords::{CartesianChart, Chart, Choice, RodSystem};
+use isosheet_dynamics::chart::{ChartMethod, ChartOptions, ChartStepControl};
 use isosheet_dynamics::constraint::{Line, Plane, Side};
+use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{
-    Checkpoint, CheckpointError, CreaseSprings, Fallback, ImplicitOptions, Method, SheetModel,
-    Simulation, SimulationError, State, StepControl, VertexConstraint,
+    Checkpoint, CheckpointError, CreaseSprings, Fallback, ImplicitOptions, Method, PointProfile,
+    Profile, RigidDisplacement, SheetModel, Simulation, SimulationError, State, StepControl,
+    VertexConstraint,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
+use nalgebra::Isometry3;
 
 const STEP: f64 = 1.0 / 120.0;
 const STEPS: usize = 12;
@@ -42,34 +48,59 @@ fn bits(state: &State) -> Vec<u64> {
     values.map(f64::to_bits).collect()
 }
 
-/// Runs `2 N` steps, and `N` with a checkpoint and `N` more, and compares states, reports and support forces.
+/// Compares a resumed simulation of a chart-free method without contact, see [`compare_with`].
 fn compare(name: &str, start: impl Fn() -> Simulation, model: impl Fn() -> SheetModel) {
+    compare_with(name, STEP, start, |checkpoint| {
+        Simulation::resume(model(), None, checkpoint).expect("the same model")
+    });
+}
+
+/// Runs `2 N` steps, and `N` with a checkpoint and `N` more, and compares states, reports, support forces and what bodies bear.
+fn compare_with(
+    name: &str,
+    h: f64,
+    start: impl Fn() -> Simulation,
+    resume: impl Fn(Checkpoint) -> Simulation,
+) {
     for form in [Form::Binary, Form::Json] {
         let mut whole = start();
         let mut first = start();
         for _ in 0..STEPS {
-            whole.step(STEP).expect("accepted");
-            first.step(STEP).expect("accepted");
+            whole.step(h).expect("accepted");
+            first.step(h).expect("accepted");
         }
         let checkpoint = first.checkpoint();
         drop(first);
         let read = through_a_file(&checkpoint, form);
         assert_eq!(read, checkpoint, "{name}, {form:?}");
-        let mut second = Simulation::resume(model(), None, read).expect("the same model");
-        assert_eq!(second.reactions(), whole.reactions(), "{name}, {form:?}");
-        for step in 0..STEPS {
-            let (a, b) = (whole.step(STEP), second.step(STEP));
+        let mut second = resume(read);
+        let same = |a: &Simulation, b: &Simulation, step: usize| {
+            assert_eq!(
+                bits(a.state()),
+                bits(b.state()),
+                "{name}, {form:?}, step {step}"
+            );
+            assert_eq!(
+                a.reactions(),
+                b.reactions(),
+                "{name}, {form:?}, step {step}"
+            );
+            assert_eq!(
+                a.body_loads(),
+                b.body_loads(),
+                "{name}, {form:?}, step {step}"
+            );
+            assert_eq!(
+                a.energy().to_bits(),
+                b.energy().to_bits(),
+                "{name}, {form:?}, step {step}"
+            );
+        };
+        same(&whole, &second, 0);
+        for step in 1..=STEPS {
+            let (a, b) = (whole.step(h), second.step(h));
             assert_eq!(a, b, "{name}, {form:?}, step {step}");
-            assert_eq!(
-                bits(whole.state()),
-                bits(second.state()),
-                "{name}, {form:?}, step {step}"
-            );
-            assert_eq!(
-                whole.reactions(),
-                second.reactions(),
-                "{name}, {form:?}, step {step}"
-            );
+            same(&whole, &second, step);
         }
     }
 }
@@ -258,4 +289,170 @@ fn other_sheets_versions_and_damage_are_refused() {
         Checkpoint::from_json(&text[1..]),
         Err(CheckpointError::Decode(_))
     ));
+}
+
+/// A table under a sheet, a ball that comes up from below beside it, friction, and the sheet itself.
+fn contacts(model: &SheetModel) -> Contacts {
+    let table = Shape::Cuboid {
+        half: [0.03, 0.03, 0.01],
+    };
+    let table = Obstacle::still(table, Isometry3::translation(0.1, 0.1, -0.0305)).expect("valid");
+    let ball = Profile::Ramp {
+        from: 0.0,
+        to: 0.03,
+        begin: 0.0,
+        end: 0.15,
+    };
+    let ball = RigidDisplacement {
+        pose: Isometry3::translation(0.03, 0.05, -0.07),
+        x: Profile::default(),
+        y: Profile::default(),
+        z: ball,
+        rotation: None,
+    };
+    let ball = Obstacle::new(Shape::Sphere { radius: 0.02 }, ball).expect("valid");
+    Contacts::new(model, ContactOptions::for_sheet(model))
+        .and_then(|c| c.with_body(table, Coefficients::equal(0.3)))
+        .and_then(|c| c.with_body(ball, Coefficients::equal(0.2)))
+        .and_then(|c| c.with_self_contact(Coefficients::equal(0.1)))
+        .expect("valid")
+}
+
+#[test]
+fn contact_friction_and_self_contact_go_on_bit_for_bit() {
+    for level in [1, 2] {
+        let sheet = generate::isotropic_square(level, 0.2).expect("valid");
+        let model = || plain(&sheet);
+        for (name, method) in &methods()[..2] {
+            let start = || {
+                let mut state = State::at_rest(sheet.positions().to_vec());
+                state
+                    .x
+                    .iter_mut()
+                    .skip(2)
+                    .step_by(3)
+                    .for_each(|z| *z = -0.015);
+                let contacts = contacts(&model());
+                let mut simulation = Simulation::new(model(), state, method.clone())
+                    .and_then(|s| s.with_contact(contacts))
+                    .expect("nothing touches");
+                // On until the sheet rubs on table and ball.
+                for _ in 0..16 {
+                    simulation.step(STEP).expect("accepted");
+                }
+                simulation
+            };
+            let pressed = start().body_loads();
+            assert!(pressed.iter().any(|load| load.force.norm() > 0.0), "{name}");
+            compare_with(name, STEP, start, |checkpoint| {
+                let contacts: Box<dyn Contact> = Box::new(contacts(&model()));
+                Simulation::resume(model(), Some(contacts), checkpoint).expect("the same scene")
+            });
+        }
+    }
+}
+
+#[test]
+fn charts_go_on_bit_for_bit() {
+    let sheet = bumped(1);
+    let controls = [
+        ChartStepControl::Fixed(1e-3),
+        ChartStepControl::Adaptive {
+            tolerance: 1e-5,
+            min: 1e-8,
+            max: 5e-3,
+        },
+    ];
+    for control in controls {
+        for method in [ChartMethod::ForwardEuler, ChartMethod::RungeKutta4] {
+            let options = ChartOptions {
+                method,
+                control,
+                // Rebased often.
+                growth_limit: 1.05,
+                condition_interval: 7,
+                ..ChartOptions::default()
+            };
+            let pins = [VertexId(20)];
+            let model = || plain(&sheet).with_pins(&pins).expect("exists");
+            let chart = || -> Box<dyn Chart> {
+                let system = RodSystem::new(&sheet, &pins).expect("valid");
+                let chart = CartesianChart::new(system, Choice::Auto, sheet.positions());
+                Box::new(chart.expect("not flat"))
+            };
+            let start = || {
+                let state = State::at_rest(sheet.positions().to_vec());
+                Simulation::in_chart(model(), state, chart(), options).expect("valid")
+            };
+            compare_with(
+                &format!("{method:?}, {control:?}"),
+                STEP,
+                start,
+                |checkpoint| {
+                    Simulation::resume_in_chart(model(), chart(), None, checkpoint)
+                        .expect("the same")
+                },
+            );
+        }
+    }
+}
+
+#[test]
+fn charts_with_closures_drives_and_impacts_go_on_bit_for_bit() {
+    let sheet = bumped(1);
+    let low = sheet
+        .positions()
+        .iter()
+        .skip(2)
+        .step_by(3)
+        .fold(f64::INFINITY, |m, z| m.min(*z));
+    let corner = sheet.position(VertexId(20));
+    let swing = Profile::Sine {
+        mean: 0.0,
+        amplitude: 2e-3,
+        frequency: 3.0,
+        phase: 0.0,
+    };
+    let swing = PointProfile {
+        offset: corner,
+        x: Profile::default(),
+        y: Profile::default(),
+        z: swing,
+    };
+    let model = || {
+        let line = Line::new(sheet.position(VertexId(0)), [0.1, 1.0, -0.3]).expect("valid");
+        plain(&sheet)
+            .with_moving_pin(VertexId(20), swing.clone())
+            .and_then(|m| m.with_constraint(VertexConstraint::on_curve(VertexId(0), line)))
+            .expect("exists")
+    };
+    let chart = || -> Box<dyn Chart> {
+        let system = RodSystem::new(&sheet, &[]).expect("valid");
+        let chart = CartesianChart::new(system, Choice::Auto, sheet.positions());
+        Box::new(chart.expect("not flat"))
+    };
+    let floor = |model: &SheetModel| {
+        let pose = Isometry3::translation(0.0, 0.0, low - 1e-3);
+        let floor = Obstacle::still(Shape::HalfSpace, pose).expect("valid");
+        Contacts::new(model, ContactOptions::for_sheet(model))
+            .and_then(|c| c.with_body(floor, Coefficients::equal(0.3)))
+            .expect("valid")
+    };
+    let start = || {
+        let state = State::at_rest(sheet.positions().to_vec());
+        Simulation::in_chart(model(), state, chart(), ChartOptions::default())
+            .and_then(|s| s.with_contact(floor(&model())))
+            .expect("valid")
+    };
+    compare_with("closures", STEP / 8.0, start, |checkpoint| {
+        let contacts: Box<dyn Contact> = Box::new(floor(&model()));
+        Simulation::resume_in_chart(model(), chart(), Some(contacts), checkpoint).expect("the same")
+    });
+    let checkpoint = start().checkpoint();
+    let error = Simulation::resume(model(), None, checkpoint.clone()).err();
+    let in_chart = CheckpointError::Chart { in_chart: true };
+    assert_eq!(error, Some(SimulationError::Checkpoint(in_chart)));
+    let error = Simulation::resume_in_chart(model(), chart(), None, checkpoint).err();
+    let expected = CheckpointError::Contact { expected: true };
+    assert_eq!(error, Some(SimulationError::Checkpoint(expected)));
 }

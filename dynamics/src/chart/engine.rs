@@ -1,9 +1,13 @@
 //! A simulation in a chart as an engine of [`Simulation`](crate::Simulation).
 
 use super::{ChartDynamicsError, ChartSimulation};
-use crate::State;
-use crate::reaction::Reaction;
+use crate::checkpoint::{CheckpointError, InChart};
+use crate::contact::Contact;
+use crate::reaction::{Reaction, supports};
 use crate::report::{Path, StepError, Tally};
+use crate::simulation_error::SimulationError;
+use crate::{SheetModel, State};
+use isosheet_coords::Chart;
 
 /// Sub-steps shorter than this fraction of the time reached are round-off, not time.
 const TIME_ROUND_OFF: f64 = 4.0 * f64::EPSILON;
@@ -23,6 +27,57 @@ impl ChartEngine {
             state,
             reactions: Vec::new(),
         }
+    }
+
+    /// What a checkpoint keeps.
+    pub(crate) fn motion(&self) -> InChart {
+        InChart {
+            options: *self.simulation.options(),
+            motion: self.simulation.motion(),
+            velocities: self.state.v.clone(),
+            reactions: self.reactions.iter().map(|r| r.force).collect(),
+            has_contact: self.simulation.contacts().is_some(),
+        }
+    }
+
+    /// Goes on from a checkpoint.
+    pub(crate) fn resume(
+        model: SheetModel,
+        chart: Box<dyn Chart>,
+        contact: Option<Box<dyn Contact>>,
+        kept: InChart,
+    ) -> Result<Self, SimulationError> {
+        if kept.has_contact != contact.is_some() {
+            let expected = kept.has_contact;
+            return Err(CheckpointError::Contact { expected }.into());
+        }
+        let (found, expected) = (kept.velocities.len(), model.coordinate_count());
+        if found != expected {
+            let what = "velocities";
+            return Err(CheckpointError::Length {
+                what,
+                found,
+                expected,
+            }
+            .into());
+        }
+        let mut simulation = ChartSimulation::resume(model, chart, kept.options, kept.motion)?;
+        if let Some(contact) = contact {
+            simulation.set_contact(contact)?;
+        }
+        let state = State {
+            t: simulation.time(),
+            x: simulation.positions().to_vec(),
+            v: kept.velocities,
+        };
+        Ok(Self {
+            reactions: supports(simulation.mechanics().model())
+                .zip(kept.reactions)
+                .map(|(support, force)| Reaction { support, force })
+                .collect(),
+            simulation,
+            state,
+        })
     }
 
     /// Advances to the time `end`.

@@ -28,6 +28,7 @@ use crate::contact::ContactPoint;
 use isosheet_coords::RodSystem;
 use isosheet_mesh::VertexId;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Changes of velocities relative to the largest at which the iteration has converged.
 const TOLERANCE: f64 = 1e-12;
@@ -44,7 +45,7 @@ const AGAIN: usize = 4;
 const HELD: f64 = 1e-12;
 
 /// The impulse of a contact on the sheet.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ContactImpulse {
     /// The contact.
     pub point: ContactPoint,

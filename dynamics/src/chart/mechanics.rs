@@ -6,7 +6,7 @@ use isosheet_coords::{Chart, Linearised, RodSystem};
 use isosheet_mesh::VertexId;
 
 /// Which terms of the equations of motion are kept, and what happens to the momenta.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Equations {
     /// Sec. 4.1 as published: `dH/dq = dV/dq`, the Jacobian taken as constant, momenta carried over
     /// from step to step. Not a consistent approximation of Eq. 19: it does not converge to the

@@ -122,6 +122,18 @@ impl Mobility {
         })
     }
 
+    /// Where the pins are held that are free in the chart; fixed ones.
+    pub(super) fn pin_positions(&self) -> Vec<Vector3<f64>> {
+        self.pins.iter().map(|(_, x)| *x).collect()
+    }
+
+    /// Sets where the pins are held that are free in the chart.
+    pub(super) fn set_pin_positions(&mut self, positions: &[Vector3<f64>]) {
+        for ((_, x), kept) in self.pins.iter_mut().zip(positions) {
+            *x = *kept;
+        }
+    }
+
     pub(super) fn is_closed(&self) -> bool {
         self.closed
     }

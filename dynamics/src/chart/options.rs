@@ -1,9 +1,10 @@
 //! Options of the integration in a chart.
 
 use super::{ChartDynamicsError, Equations, MassSolverKind};
+use serde::{Deserialize, Serialize};
 
 /// Time integration method.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ChartMethod {
     /// Forward Euler, Eq. 20; first order, gains energy.
     #[default]
@@ -16,7 +17,7 @@ pub enum ChartMethod {
 }
 
 /// How positions follow from the step of the coordinates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PositionUpdate {
     /// To first order, `x + h J qdot` (Eq. 15): edge lengths drift.
     Linear,
@@ -29,7 +30,7 @@ pub enum PositionUpdate {
 }
 
 /// Choice of the time step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ChartStepControl {
     /// The same step throughout, seconds.
     Fixed(f64),
@@ -49,7 +50,7 @@ pub enum ChartStepControl {
 }
 
 /// What to do when the chart approaches a singularity.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Rebase {
     /// Take the current state as new reference and form the momenta anew from the velocities.
     #[default]
@@ -59,7 +60,8 @@ pub enum Rebase {
 }
 
 /// Options of a [`ChartSimulation`](super::ChartSimulation).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ChartOptions {
     /// Method, default forward Euler.
     pub method: ChartMethod,

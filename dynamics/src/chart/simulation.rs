@@ -1,14 +1,19 @@
 //! Explicit integration in a chart, with the published step control.
 
 use super::contact::ChartContact;
+use super::energy_bound::EnergyBound;
 use super::stepping::{Stepper, Trial};
+use super::substep::ChartSubstep;
 use super::{
     ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, ContactImpulse, Rebase,
 };
 use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
+use crate::control::take_substep;
 use crate::reaction::{Balance, ForceTime, Reaction};
 use crate::{SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// What one step did.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +45,7 @@ pub struct ChartStepReport {
 }
 
 /// Smallest and largest step of a run: the column "Step size min/max" of Fig. 10.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepRange {
     /// Smallest, seconds.
     pub min: f64,
@@ -50,31 +55,48 @@ pub struct StepRange {
     pub steps: u64,
 }
 
+/// Where a motion in a chart is: all that the next step depends on besides model, contact and options.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ChartMotion {
+    /// Time, seconds.
+    pub(super) t: f64,
+    pub(super) state: Trial,
+    /// Energy after velocity damping, joules.
+    pub(super) hamiltonian: f64,
+    /// Planned length of the next step, seconds.
+    pub(super) next_step: f64,
+    /// Smallest and largest step so far; none before the first.
+    pub(super) range: Option<StepRange>,
+    /// Steps since the condition number was estimated.
+    pub(super) since_check: u32,
+    /// Growth of the largest eigenvalue of C since the reference state.
+    pub(super) growth: f64,
+    /// Whether the present state is the chart's reference state.
+    pub(super) is_fresh: bool,
+    /// Positions at which the chart was rebased last; none if it is as its user built it.
+    reference: Option<Vec<f64>>,
+    /// Largest eigenvalue of C at the reference state, and the vector of the power iteration.
+    eigenvalue: f64,
+    eigenvector: Vec<f64>,
+    /// Where the pins are held that the chart does not eliminate.
+    pins: Vec<Vector3<f64>>,
+    /// Forces of the supports now, in scenes where they move.
+    pub(super) balance: Option<Balance>,
+    /// Impulses of contacts at the end of the last step.
+    pub(super) impulses: Vec<ContactImpulse>,
+}
+
 /// A sheet moving in a chart.
 pub struct ChartSimulation {
-    stepper: Stepper,
-    options: ChartOptions,
-    t: f64,
-    state: Trial,
-    hamiltonian: f64,
-    next_step: f64,
-    range: StepRange,
-    since_check: u32,
-    growth: f64,
-    fresh: bool,
-    /// Forces of the supports now, in scenes where they move.
-    balance: Option<Balance>,
-    contact: Option<ChartContact>,
-    impulses: Vec<ContactImpulse>,
+    pub(super) stepper: Stepper,
+    pub(super) options: ChartOptions,
+    pub(super) motion: ChartMotion,
+    pub(super) contact: Option<ChartContact>,
 }
 
 /// Gaps below this part of the activation distance are opened to it: the curvature of the path brings a sheet that lies or
 /// slides closer by the squared step each step, which no impulse sees.
 const LEAST_GAP: f64 = 0.1;
-
-/// Part of the planned step below which contact does not shorten a step, and how often it may.
-const SHORTEST_CUT: f64 = 1e-10;
-const MOST_CUTS: u32 = 100;
 
 impl ChartSimulation {
     /// Start at time zero at positions x with velocities v, three values per vertex. See
@@ -155,35 +177,110 @@ impl ChartSimulation {
         stepper.close_momenta((t, step), x, &mut p)?;
         let hamiltonian = stepper.mechanics.hamiltonian(t, x, &p)?;
         let mut simulation = Self {
+            motion: ChartMotion {
+                t,
+                state: Trial {
+                    x: x.to_vec(),
+                    q,
+                    p,
+                    hamiltonian,
+                },
+                hamiltonian,
+                next_step: step,
+                range: None,
+                since_check: 0,
+                growth: 1.0,
+                is_fresh: true,
+                reference: None,
+                eigenvector: Vec::new(),
+                eigenvalue: 0.0,
+                pins: stepper.mobility.pin_positions(),
+                balance: None,
+                impulses: Vec::new(),
+            },
             stepper,
             options,
-            t,
-            state: Trial {
-                x: x.to_vec(),
-                q,
-                p,
-                hamiltonian,
-            },
-            hamiltonian,
-            next_step: step,
-            range: StepRange {
-                min: f64::INFINITY,
-                max: 0.0,
-                steps: 0,
-            },
-            since_check: 0,
-            growth: 1.0,
-            fresh: true,
-            balance: None,
             contact: None,
-            impulses: Vec::new(),
         };
         simulation.check_condition()?;
         simulation.stepper.set_reference()?;
         if simulation.mechanics().model().has_drives() {
-            simulation.balance = Some(simulation.new_balance(step)?);
+            simulation.motion.balance = Some(simulation.new_balance(step)?);
         }
         Ok(simulation)
+    }
+
+    /// What a checkpoint keeps.
+    pub(crate) fn motion(&self) -> ChartMotion {
+        let (eigenvalue, eigenvector) = self.stepper.power();
+        ChartMotion {
+            eigenvalue,
+            eigenvector: eigenvector.to_vec(),
+            balance: self.motion.balance.as_ref().map(Balance::compact),
+            ..self.motion.clone()
+        }
+    }
+
+    /// Back to a motion of the same chart.
+    pub(super) fn restore(&mut self, motion: ChartMotion) {
+        self.stepper
+            .set_power(motion.eigenvalue, &motion.eigenvector);
+        self.motion = motion;
+    }
+
+    /// Goes on from a checkpoint, with the chart as its user built it at the start.
+    pub(crate) fn resume(
+        model: SheetModel,
+        mut chart: Box<dyn Chart>,
+        options: ChartOptions,
+        motion: ChartMotion,
+    ) -> Result<Self, ChartDynamicsError> {
+        let n = model.coordinate_count();
+        let reference = motion.reference.as_ref().unwrap_or(&motion.state.x);
+        for (what, found, expected) in [
+            ("x", motion.state.x.len(), n),
+            ("the reference state", reference.len(), n),
+        ] {
+            if found != expected {
+                return Err(ChartDynamicsError::WrongLength {
+                    what,
+                    found,
+                    expected,
+                });
+            }
+        }
+        if let Some(reference) = &motion.reference {
+            chart.rebase(reference)?;
+        }
+        let mechanics = ChartMechanics::new(model, chart, options.solver)?;
+        let n = mechanics.dimension();
+        for (what, found) in [
+            ("q", motion.state.q.len()),
+            ("p", motion.state.p.len()),
+            ("the power iteration", motion.eigenvector.len()),
+        ] {
+            if found != n {
+                return Err(ChartDynamicsError::WrongLength {
+                    what,
+                    found,
+                    expected: n,
+                });
+            }
+        }
+        let mut stepper = Stepper::new(mechanics, &options, &motion.state.x)?;
+        stepper.mobility.set_pin_positions(&motion.pins);
+        stepper.set_power(motion.eigenvalue, &motion.eigenvector);
+        let balance = motion.balance.as_ref().map(|kept| {
+            let mut balance = Balance::new(stepper.mechanics.model(), ForceTime::End);
+            balance.copy_from(kept);
+            balance
+        });
+        Ok(Self {
+            stepper,
+            options,
+            motion: ChartMotion { balance, ..motion },
+            contact: None,
+        })
     }
 
     /// Adds contact with bodies and of the sheet with itself, by impulses on the momenta.
@@ -210,8 +307,8 @@ impl ChartSimulation {
     }
 
     pub(crate) fn set_contact(&mut self, contact: Box<dyn Contact>) -> Result<(), ContactError> {
-        let mut state = State::at_rest(self.state.x.clone());
-        state.t = self.t;
+        let mut state = State::at_rest(self.motion.state.x.clone());
+        state.t = self.motion.t;
         let model = self.stepper.mechanics.model();
         self.contact = Some(ChartContact::new(contact, model, &state)?);
         Ok(())
@@ -227,14 +324,14 @@ impl ChartSimulation {
     /// approached.
     #[must_use]
     pub fn impulses(&self) -> &[ContactImpulse] {
-        &self.impulses
+        &self.motion.impulses
     }
 
     /// Forces of the supports at the present state, motions differentiated over parts of the time `span`.
     fn new_balance(&mut self, span: f64) -> Result<Balance, ChartDynamicsError> {
         let mut balance = Balance::new(self.stepper.mechanics.model(), ForceTime::End);
         self.stepper
-            .balance((self.t, span), &self.state, &mut balance)?;
+            .balance((self.motion.t, span), &self.motion.state, &mut balance)?;
         Ok(balance)
     }
 
@@ -245,47 +342,51 @@ impl ChartSimulation {
     /// # Errors
     /// [`ChartDynamicsError::Chart`] where the chart is singular.
     pub fn reactions(&mut self) -> Result<Vec<Reaction>, ChartDynamicsError> {
-        let balance = match &self.balance {
+        let balance = match &self.motion.balance {
             Some(balance) => balance.clone(),
-            None => self.new_balance(self.next_step)?,
+            None => self.new_balance(self.motion.next_step)?,
         };
-        Ok(balance.reactions(self.stepper.mechanics.model(), self.t))
+        Ok(balance.reactions(self.stepper.mechanics.model(), self.motion.t))
     }
 
     /// Time, seconds.
     #[must_use]
     pub fn time(&self) -> f64 {
-        self.t
+        self.motion.t
     }
 
     /// Positions, three per vertex.
     #[must_use]
     pub fn positions(&self) -> &[f64] {
-        &self.state.x
+        &self.motion.state.x
     }
 
     /// Coordinates.
     #[must_use]
     pub fn coordinates(&self) -> &[f64] {
-        &self.state.q
+        &self.motion.state.q
     }
 
     /// Momenta.
     #[must_use]
     pub fn momenta(&self) -> &[f64] {
-        &self.state.p
+        &self.motion.state.p
     }
 
     /// The Hamiltonian, joules.
     #[must_use]
     pub fn hamiltonian(&self) -> f64 {
-        self.hamiltonian
+        self.motion.hamiltonian
     }
 
     /// Smallest and largest step so far.
     #[must_use]
     pub fn step_range(&self) -> StepRange {
-        self.range
+        self.motion.range.unwrap_or(StepRange {
+            min: f64::INFINITY,
+            max: 0.0,
+            steps: 0,
+        })
     }
 
     /// The options.
@@ -305,21 +406,25 @@ impl ChartSimulation {
     /// # Errors
     /// [`ChartDynamicsError::Chart`] where the chart is singular.
     pub fn velocities(&mut self) -> Result<Vec<f64>, ChartDynamicsError> {
-        self.stepper.velocities(&self.state)
+        self.stepper.velocities(&self.motion.state)
     }
 
     /// Estimate the condition number of C; above the limit rebase once, then refuse.
     fn check_condition(&mut self) -> Result<(), ChartDynamicsError> {
-        self.since_check = 0;
+        self.motion.since_check = 0;
         loop {
             let m = &self.stepper.mechanics;
-            let condition =
-                mass_condition_estimate(m.system(), m.chart(), m.model().mass(), &self.state.x)?;
+            let condition = mass_condition_estimate(
+                m.system(),
+                m.chart(),
+                m.model().mass(),
+                &self.motion.state.x,
+            )?;
             // NaN counts as too large.
             if condition <= self.options.condition_limit {
                 return Ok(());
             }
-            if self.fresh || self.options.rebase == Rebase::Never {
+            if self.motion.is_fresh || self.options.rebase == Rebase::Never {
                 return Err(ChartError::IllConditioned {
                     condition,
                     limit: self.options.condition_limit,
@@ -330,10 +435,11 @@ impl ChartSimulation {
         }
     }
 
-    fn rebase(&mut self) -> Result<(), ChartDynamicsError> {
-        self.stepper.rebase(&mut self.state)?;
-        self.growth = 1.0;
-        self.fresh = true;
+    pub(super) fn rebase(&mut self) -> Result<(), ChartDynamicsError> {
+        self.stepper.rebase(&mut self.motion.state)?;
+        self.motion.reference = Some(self.motion.state.x.clone());
+        self.motion.growth = 1.0;
+        self.motion.is_fresh = true;
         Ok(())
     }
 
@@ -353,152 +459,63 @@ impl ChartSimulation {
     /// As [`ChartSimulation::step`].
     pub fn step_within(&mut self, limit: f64) -> Result<ChartStepReport, ChartDynamicsError> {
         let mut rebased = false;
-        let rebasing = self.options.rebase == Rebase::WhenNeeded;
-        if rebasing && !self.fresh {
-            let margin = self.stepper.mechanics.chart().margin(&self.state.x)?;
-            if margin < self.options.margin_limit || self.growth > self.options.growth_limit {
+        if self.options.rebase == Rebase::WhenNeeded && !self.motion.is_fresh {
+            let margin = self
+                .stepper
+                .mechanics
+                .chart()
+                .margin(&self.motion.state.x)?;
+            let growth = self.motion.growth;
+            if margin < self.options.margin_limit || growth > self.options.growth_limit {
                 self.rebase()?;
                 rebased = true;
             }
         }
-        if self.since_check >= self.options.condition_interval {
+        if self.motion.since_check >= self.options.condition_interval {
             self.check_condition()?;
         }
-        let mut rejected = 0;
-        let planned = self.next_step;
-        let mut h = planned.min(limit);
-        let cut_short = h < planned;
-        let mut cuts = 0;
-        let trial = loop {
-            let outcome = self.stepper.attempt(self.t, &self.state, h);
-            if let (Ok(trial), Some(contact)) = (&outcome, &mut self.contact) {
-                let span = StepSpan { t0: self.t, h };
-                let part = contact.safe_fraction(span, &self.state.x, &trial.x);
-                if part < 1.0 {
-                    cuts += 1;
-                    h *= part;
-                    if h < SHORTEST_CUT * planned || cuts > MOST_CUTS {
-                        return Err(ChartDynamicsError::Contact { t: self.t, h });
-                    }
-                    continue;
-                }
-            }
-            let change = match &outcome {
-                Ok(trial) => (trial.hamiltonian - self.hamiltonian).abs(),
-                Err(_) => f64::NAN,
-            };
-            match (self.options.control, outcome) {
-                (ChartStepControl::Fixed(_), Ok(trial)) => break trial,
-                (ChartStepControl::Adaptive { tolerance, max, .. }, Ok(trial))
-                    if change < tolerance =>
-                {
-                    let growth = (0.9 * (tolerance / change).sqrt()).clamp(1.0, 2.0);
-                    self.next_step = if cuts > 0 || cut_short && rejected == 0 {
-                        planned
-                    } else {
-                        (h * growth).min(max)
-                    };
-                    break trial;
-                }
-                (_, Err(ChartDynamicsError::Chart(_))) if rebasing && !self.fresh => {
-                    self.rebase()?;
-                    rebased = true;
-                }
-                (ChartStepControl::Fixed(_), Err(e)) => return Err(e),
-                (ChartStepControl::Adaptive { tolerance, min, .. }, outcome) => {
-                    if h <= min {
-                        return Err(ChartDynamicsError::StepTooSmall {
-                            t: self.t,
-                            minimum: min,
-                            tolerance,
-                            change,
-                            cause: match outcome {
-                                Ok(_) => "the change is too large".to_owned(),
-                                Err(e) => e.to_string(),
-                            },
-                        });
-                    }
-                    let factor = 0.9 * (tolerance / change).sqrt();
-                    let factor = if factor.is_nan() { 0.25 } else { factor };
-                    h = (h * factor.clamp(0.1, 0.9)).max(min);
-                    rejected += 1;
-                }
-            }
-        };
-        let strain = self.stepper.mechanics.system().max_strain(&trial.x);
-        if strain > self.options.failure_strain {
-            return Err(ChartDynamicsError::Diverged {
-                t: self.t + h,
-                strain,
-                limit: self.options.failure_strain,
-            });
-        }
-        self.growth = self.stepper.growth()?;
-        let energy_change = trial.hamiltonian - self.hamiltonian;
-        let start = (self.t, std::mem::replace(&mut self.state, trial));
-        self.t += h;
-        self.fresh = false;
-        self.since_check += 1;
-        let mut driven = self.drive_work((start.0, &start.1.x), h)?;
-        let mut impact = 0.0;
-        if let Some(mut contact) = self.contact.take() {
-            let outcome = self.impact(&mut contact, h);
-            self.contact = Some(contact);
-            let [loss, work] = outcome?;
-            impact = loss;
-            driven += work;
-        }
-        let before_damping = self.state.hamiltonian;
-        let potential = self.damp(h)?;
-        if cuts == 0 && (!cut_short || rejected > 0) {
-            self.range.min = self.range.min.min(h);
-            self.range.max = self.range.max.max(h);
-            self.range.steps += 1;
-        }
-        Ok(ChartStepReport {
-            t: self.t,
-            h,
-            rejected,
-            kinetic: self.hamiltonian - potential,
-            potential,
-            energy_change,
-            damped: before_damping - self.hamiltonian,
-            impact,
-            gap: self.contacts().map(ActiveContacts::gap),
-            strain: self.stepper.mechanics.system().max_strain(&self.state.x),
-            driven,
-            rebased,
-        })
+        let bound = EnergyBound::new(self.options.control, self.motion.next_step);
+        let h = bound.planned().min(limit);
+        let mut substep = ChartSubstep::new(self, bound, h, rebased);
+        take_substep(&mut substep, h)
     }
 
     /// Impacts at the end of a step: energy lost and work of the bodies.
-    fn impact(
+    pub(super) fn impact(
         &mut self,
         contact: &mut ChartContact,
         h: f64,
     ) -> Result<[f64; 2], ChartDynamicsError> {
-        self.impulses.clear();
-        contact.evaluate(&self.state.x);
+        self.motion.impulses.clear();
+        contact.evaluate(&self.motion.state.x);
         let least = LEAST_GAP * contact.activation();
         if contact.points().iter().any(|p| p.gap < least) {
             let points = contact.points();
-            let opened = self.stepper.opened(self.t, &self.state, points, least);
-            let span = StepSpan { t0: self.t, h: 0.0 };
+            let opened = self
+                .stepper
+                .opened(self.motion.t, &self.motion.state, points, least);
+            let span = StepSpan {
+                t0: self.motion.t,
+                h: 0.0,
+            };
             // Where this is not possible the collision detection still holds.
             if let Ok(opened) = opened
-                && contact.safe_fraction(span, &self.state.x, &opened.x) >= 1.0
+                && contact.safe_fraction(span, &self.motion.state.x, &opened.x) >= 1.0
             {
-                self.state = opened;
-                contact.evaluate(&self.state.x);
+                self.motion.state = opened;
+                contact.evaluate(&self.motion.state.x);
             }
-            self.stepper.mechanics.at(&self.state.x)?;
+            self.stepper.mechanics.at(&self.motion.state.x)?;
         }
         let mut done = [0.0; 2];
         if !contact.points().is_empty() {
-            let (time, e) = ((self.t, h), self.options.restitution);
+            let (time, e) = ((self.motion.t, h), self.options.restitution);
             let points = contact.points();
-            if let Some(impact) = self.stepper.impact(time, &mut self.state, points, e)? {
-                self.impulses = impact.impulses;
+            if let Some(impact) = self
+                .stepper
+                .impact(time, &mut self.motion.state, points, e)?
+            {
+                self.motion.impulses = impact.impulses;
                 done = [impact.loss, impact.driven];
             }
         }
@@ -506,34 +523,38 @@ impl ChartSimulation {
     }
 
     /// Velocity damping over `h`; returns the potential energy.
-    fn damp(&mut self, h: f64) -> Result<f64, ChartDynamicsError> {
+    pub(super) fn damp(&mut self, h: f64) -> Result<f64, ChartDynamicsError> {
         let model = self.stepper.mechanics.model();
         let damping = (-model.damping() * h).exp();
-        let potential = model.potential_energy(self.t, &self.state.x);
-        let kinetic = self.state.hamiltonian - potential;
+        let potential = model.potential_energy(self.motion.t, &self.motion.state.x);
+        let kinetic = self.motion.state.hamiltonian - potential;
         let driven = model.has_drives();
-        self.state.p.iter_mut().for_each(|p| *p *= damping);
-        self.hamiltonian = potential + kinetic * damping * damping;
+        self.motion.state.p.iter_mut().for_each(|p| *p *= damping);
+        self.motion.hamiltonian = potential + kinetic * damping * damping;
         if driven && damping < 1.0 {
             // Moving supports keep their velocities.
-            let Trial { x, p, .. } = &mut self.state;
-            self.stepper.close_momenta((self.t, h), x, p)?;
-            self.hamiltonian = self.stepper.mechanics.hamiltonian(self.t, x, p)?;
+            let Trial { x, p, .. } = &mut self.motion.state;
+            self.stepper.close_momenta((self.motion.t, h), x, p)?;
+            self.motion.hamiltonian = self.stepper.mechanics.hamiltonian(self.motion.t, x, p)?;
         }
-        self.state.hamiltonian = self.hamiltonian;
+        self.motion.state.hamiltonian = self.motion.hamiltonian;
         Ok(potential)
     }
 
     /// Work of moving supports over the step that ends now.
-    fn drive_work(&mut self, start: (f64, &[f64]), h: f64) -> Result<f64, ChartDynamicsError> {
-        if self.balance.is_none() {
+    pub(super) fn drive_work(
+        &mut self,
+        start: (f64, &[f64]),
+        h: f64,
+    ) -> Result<f64, ChartDynamicsError> {
+        if self.motion.balance.is_none() {
             return Ok(0.0);
         }
         let after = self.new_balance(h)?;
         let model = self.stepper.mechanics.model();
-        let end = (self.t, &*self.state.x);
-        let work = after.drive_work(model, self.balance.as_ref(), start, end);
-        self.balance = Some(after);
+        let end = (self.motion.t, &*self.motion.state.x);
+        let work = after.drive_work(model, self.motion.balance.as_ref(), start, end);
+        self.motion.balance = Some(after);
         Ok(work)
     }
 }

@@ -48,7 +48,7 @@ pub trait MassSolver: Send {
 }
 
 /// The solvers at hand.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum MassSolverKind {
     /// [`SaddleSolver`], for any size.
     #[default]

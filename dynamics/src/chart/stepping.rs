@@ -6,6 +6,7 @@ use super::{ChartDynamicsError, ChartMechanics, Equations};
 use super::{ChartMethod, ChartOptions, PositionUpdate};
 use crate::contact::ContactPoint;
 use crate::reaction::Balance;
+use serde::{Deserialize, Serialize};
 
 /// Relative change of the momenta at which the implicit part of symplectic Euler has converged.
 const MOMENTA_TOLERANCE: f64 = 1e-13;
@@ -17,8 +18,8 @@ const MOMENTA_ITERATIONS: u32 = 60;
 const POWER_STEPS: usize = 6;
 
 /// A state in phase space, with the positions that belong to it.
-#[derive(Clone)]
-pub(super) struct Trial {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Trial {
     pub(super) x: Vec<f64>,
     pub(super) q: Vec<f64>,
     pub(super) p: Vec<f64>,
@@ -86,6 +87,18 @@ impl Stepper {
     /// It grows without bound where the chart becomes singular.
     pub(super) fn growth(&mut self) -> Result<f64, ChartDynamicsError> {
         Ok(self.mechanics.power_step(&mut self.power)? / self.reference)
+    }
+
+    /// The largest eigenvalue of C at the reference state, and the vector of the power iteration.
+    pub(super) fn power(&self) -> (f64, &[f64]) {
+        (self.reference, &self.power)
+    }
+
+    /// Sets what [`Stepper::power`] returns.
+    pub(super) fn set_power(&mut self, eigenvalue: f64, vector: &[f64]) {
+        self.reference = eigenvalue;
+        self.power.clear();
+        self.power.extend_from_slice(vector);
     }
 
     /// Factorise what the rates at a state need.

@@ -2,9 +2,10 @@
 
 use super::{ActiveContacts, Contact};
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// A contact within reach, as impulses on momenta need it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ContactPoint {
     /// Vertices of the sheet that take part and their weights in the relative motion,
     /// `sum_i w_i v_i - body velocity`; unused places have weight zero.

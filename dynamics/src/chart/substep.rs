@@ -1,0 +1,233 @@
+//! One step in a chart: proposals of the method, judged by the step control and by contact.
+
+use super::energy_bound::{EnergyBound, Verdict};
+use super::simulation::{ChartSimulation, StepRange};
+use super::stepping::Trial;
+use super::{ChartDynamicsError, ChartStepControl, ChartStepReport, Rebase};
+use crate::contact::{ActiveContacts, StepSpan};
+use crate::control::{Decision, Stepping};
+
+/// Part of the planned step below which contact does not shorten a step: beyond, positions drown in round-off.
+const SHORTEST_CUT: f64 = 1e-10;
+/// How often contact may shorten a step. Each time the gap shrinks by nine tenths, so that 100 times are the range of f64.
+const MOST_CUTS: u32 = 100;
+
+/// A step to be proposed and committed.
+pub(super) struct ChartSubstep<'a> {
+    simulation: &'a mut ChartSimulation,
+    bound: EnergyBound,
+    /// Whether the step is shorter than planned because the caller wants it so.
+    is_cut_short: bool,
+    /// How often contact has shortened it.
+    cuts: u32,
+    rejected: u32,
+    is_rebased: bool,
+    /// The state at the end of the proposal.
+    trial: Option<Trial>,
+}
+
+/// Why a step in a chart is not taken as proposed.
+pub(super) enum Refusal {
+    /// Only this part of the displacement is proven free of contact.
+    Blocked(f64),
+    /// It changes the Hamiltonian by this much, joules.
+    Energy(f64),
+    /// There is no such step.
+    Failed(ChartDynamicsError),
+}
+
+impl<'a> ChartSubstep<'a> {
+    /// Of at most `h` seconds.
+    pub(super) fn new(
+        simulation: &'a mut ChartSimulation,
+        bound: EnergyBound,
+        h: f64,
+        is_rebased: bool,
+    ) -> Self {
+        Self {
+            is_cut_short: h < bound.planned(),
+            simulation,
+            bound,
+            cuts: 0,
+            rejected: 0,
+            is_rebased,
+            trial: None,
+        }
+    }
+
+    fn t(&self) -> f64 {
+        self.simulation.motion.t
+    }
+
+    /// The error of a step that cannot be shortened.
+    fn too_small(&self, change: f64, refusal: Refusal) -> ChartDynamicsError {
+        let cause = match refusal {
+            Refusal::Failed(error) => match self.bound.control() {
+                ChartStepControl::Fixed(_) => return error,
+                ChartStepControl::Adaptive { .. } => error.to_string(),
+            },
+            Refusal::Energy(_) | Refusal::Blocked(_) => "the change is too large".to_owned(),
+        };
+        let (minimum, tolerance) = match self.bound.control() {
+            ChartStepControl::Adaptive { min, tolerance, .. } => (min, tolerance),
+            ChartStepControl::Fixed(h) => (h, f64::INFINITY),
+        };
+        ChartDynamicsError::StepTooSmall {
+            t: self.t(),
+            minimum,
+            tolerance,
+            change,
+            cause,
+        }
+    }
+
+    /// Makes the proposal the state; what can fail comes with a way back.
+    fn apply(&mut self, trial: Trial, h: f64) -> Result<ChartStepReport, ChartDynamicsError> {
+        let simulation = &mut *self.simulation;
+        simulation.motion.growth = simulation.stepper.growth()?;
+        let motion = &mut simulation.motion;
+        let energy_change = trial.hamiltonian - motion.hamiltonian;
+        if self.cuts == 0 && !(self.is_cut_short && self.rejected == 0) {
+            motion.next_step = self.bound.next(h, energy_change.abs());
+        }
+        let start = (motion.t, std::mem::replace(&mut motion.state, trial));
+        motion.t += h;
+        motion.is_fresh = false;
+        motion.since_check += 1;
+        let mut driven = simulation.drive_work((start.0, &start.1.x), h)?;
+        let mut impact = 0.0;
+        if let Some(mut contact) = simulation.contact.take() {
+            let outcome = simulation.impact(&mut contact, h);
+            simulation.contact = Some(contact);
+            let [loss, work] = outcome?;
+            impact = loss;
+            driven += work;
+        }
+        let before_damping = simulation.motion.state.hamiltonian;
+        let potential = simulation.damp(h)?;
+        let motion = &mut simulation.motion;
+        if self.cuts == 0 && (!self.is_cut_short || self.rejected > 0) {
+            let so_far = motion.range.unwrap_or(StepRange {
+                min: h,
+                max: h,
+                steps: 0,
+            });
+            motion.range = Some(StepRange {
+                min: so_far.min.min(h),
+                max: so_far.max.max(h),
+                steps: so_far.steps + 1,
+            });
+        }
+        let system = simulation.stepper.mechanics.system();
+        Ok(ChartStepReport {
+            t: motion.t,
+            h,
+            rejected: self.rejected,
+            kinetic: motion.hamiltonian - potential,
+            potential,
+            energy_change,
+            damped: before_damping - motion.hamiltonian,
+            impact,
+            gap: simulation
+                .contact
+                .as_ref()
+                .map(|c| ActiveContacts::gap(c.active())),
+            strain: system.max_strain(&motion.state.x),
+            driven,
+            rebased: self.is_rebased,
+        })
+    }
+}
+
+impl Stepping for ChartSubstep<'_> {
+    type Refusal = Refusal;
+    type Error = ChartDynamicsError;
+    type Report = ChartStepReport;
+
+    fn propose(&mut self, h: f64) -> Result<(), Refusal> {
+        let ChartSimulation {
+            stepper,
+            motion,
+            contact,
+            options,
+        } = &mut *self.simulation;
+        let trial = stepper
+            .attempt(motion.t, &motion.state, h)
+            .map_err(Refusal::Failed)?;
+        if let Some(contact) = contact {
+            let span = StepSpan { t0: motion.t, h };
+            let part = contact.safe_fraction(span, &motion.state.x, &trial.x);
+            if part < 1.0 {
+                return Err(Refusal::Blocked(part));
+            }
+        }
+        let change = (trial.hamiltonian - motion.hamiltonian).abs();
+        if self.bound.judge(h, change) != Verdict::Accept {
+            return Err(Refusal::Energy(change));
+        }
+        let strain = stepper.mechanics.system().max_strain(&trial.x);
+        if strain > options.failure_strain {
+            return Err(Refusal::Failed(ChartDynamicsError::Diverged {
+                t: motion.t + h,
+                strain,
+                limit: options.failure_strain,
+            }));
+        }
+        self.trial = Some(trial);
+        Ok(())
+    }
+
+    fn decide(&mut self, refusal: Refusal, h: f64) -> Decision<ChartDynamicsError> {
+        let may_rebase = self.simulation.options.rebase == Rebase::WhenNeeded
+            && !self.simulation.motion.is_fresh;
+        let change = match &refusal {
+            Refusal::Blocked(part) => {
+                self.cuts += 1;
+                let shorter = part * h;
+                let is_too_short = shorter < SHORTEST_CUT * self.bound.planned();
+                return if is_too_short || self.cuts > MOST_CUTS {
+                    Decision::Stop(ChartDynamicsError::Contact {
+                        t: self.t(),
+                        h: shorter,
+                    })
+                } else {
+                    Decision::Shorten(shorter)
+                };
+            }
+            Refusal::Failed(ChartDynamicsError::Chart(_)) if may_rebase => {
+                return Decision::Restart;
+            }
+            // The edge lengths have drifted over many steps: a shorter one does not help.
+            Refusal::Failed(ChartDynamicsError::Diverged { .. }) => {
+                let Refusal::Failed(error) = refusal else {
+                    unreachable!("matched above")
+                };
+                return Decision::Stop(error);
+            }
+            Refusal::Failed(_) => f64::NAN,
+            Refusal::Energy(change) => *change,
+        };
+        match self.bound.judge(h, change) {
+            Verdict::Shorten(shorter) => {
+                self.rejected += 1;
+                Decision::Shorten(shorter)
+            }
+            Verdict::Accept | Verdict::TooSmall => Decision::Stop(self.too_small(change, refusal)),
+        }
+    }
+
+    fn restart(&mut self) -> Result<(), ChartDynamicsError> {
+        self.is_rebased = true;
+        self.simulation.rebase()
+    }
+
+    fn fall_back(&mut self) {}
+
+    fn commit(&mut self, h: f64) -> Result<ChartStepReport, ChartDynamicsError> {
+        let trial = self.trial.take().expect("proposed before it is committed");
+        let before = self.simulation.motion();
+        self.apply(trial, h).inspect_err(|_| {
+            self.simulation.restore(before);
+        })
+    }
+}
