@@ -2,7 +2,7 @@
 
 use crate::constraint::rows::{HessianPart, VertexRows, add, point};
 use crate::primal::PrimalMatrix;
-use crate::reaction::Support;
+use crate::support::Support;
 use crate::{SheetModel, State};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;

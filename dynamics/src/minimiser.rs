@@ -11,9 +11,9 @@ use crate::contact::{ContactState, ContactWork};
 use crate::history::History;
 use crate::integrator::Attempt;
 use crate::primal::strain_floor;
-use crate::project::{Aim, Held, Projector};
 use crate::reaction::{Balance, ForceTime};
 use crate::report::{self, Effort, Path, StepError};
+use crate::restoration::{Restoration, RestorationContact, RestorationGoal};
 use augmented_lagrangian::{AugmentedLagrangian, Rounds};
 use isosheet_coords::linalg::LinalgError;
 use lagrangian::{Lagrangian, Merit};
@@ -47,7 +47,7 @@ const COMPARISON_SLACK: f64 = 10.0;
 pub(crate) struct Minimiser {
     options: ImplicitOptions,
     lagrangian: Lagrangian,
-    projector: Projector,
+    restoration: Restoration,
     /// Forces of the supports at the result.
     pub(crate) balance: Balance,
     /// Multipliers of the step before, scaled to this one; zero where there are none.
@@ -98,7 +98,7 @@ impl Minimiser {
         let n = model.coordinate_count();
         Ok(Self {
             lagrangian: Lagrangian::new(model)?,
-            projector: Projector::new(model),
+            restoration: Restoration::new(model),
             balance: Balance::with_trail(model, ForceTime::End),
             remembered: vec![0.0; model.rods().len()],
             prediction: vec![0.0; n],
@@ -265,22 +265,22 @@ impl Minimiser {
         }
         let (model, t) = (problem.model, problem.t());
         let lagrangian = &mut self.lagrangian;
-        let aim = Aim {
+        let aim = RestorationGoal {
             tolerance,
             max_iterations: most.min(self.options.max_projections),
             t,
             loads: &lagrangian.vertex_rows.multipliers,
         };
-        let held = problem.contact_mut().map(|contact| Held {
+        let held = problem.contact_mut().map(|contact| RestorationContact {
             contact,
             scale: 1.0 / per,
         });
         let (matrix, iterate) = (&mut lagrangian.matrix, &mut lagrangian.iterate);
         let strain = self
-            .projector
+            .restoration
             .positions(model, matrix, held, iterate, aim, effort);
         if is_last {
-            self.balance.trail.append(&self.projector.trail, per);
+            self.balance.trail.append(&self.restoration.trail, per);
         }
         strain
     }

@@ -4,7 +4,7 @@ use crate::constraint::rows::point;
 use crate::constraint::{ConstrainedVertex, VertexConstraint};
 use crate::motion::{MotionError, PointMotion};
 use crate::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
-use crate::reaction::Support;
+use crate::support::Support;
 use isosheet_mesh::{
     LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
 };

@@ -1,6 +1,7 @@
 //! The primal matrix of an implicit step: masses, rods as stiff springs, potentials.
 
 use crate::contact::{ContactTerms, CouplingSink};
+use crate::layout::{FULL, LOWER, Layout};
 use crate::model::PINNED;
 use crate::{HessianSink, SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt, norm_inf};
@@ -24,7 +25,7 @@ const EXTRA_LIMIT: usize = 2;
 pub(crate) struct PrimalMatrix {
     llt: SparseLlt,
     /// Slots of the lower triangle of each vertex block, row by row.
-    vertex_slots: Vec<[u32; 6]>,
+    vertex_slots: Vec<Option<[u32; 6]>>,
     /// Slots of each edge block and whether its rows belong to end `b` (else to `a`).
     edge_slots: Vec<Option<([u32; 9], bool)>>,
     rhs: Vec<f64>,
@@ -41,57 +42,34 @@ impl PrimalMatrix {
     /// Room for the blocks of the `extra` pairs of free vertices too.
     fn with_extra(model: &SheetModel, extra: Vec<[u32; 2]>) -> Result<Self, LinalgError> {
         let free = model.free_index();
-        let mut entries = Vec::new();
-        for &i in free.iter().filter(|&&i| i != PINNED) {
-            for r in 0..3 {
-                for c in 0..=r {
-                    entries.push((3 * i + r, 3 * i + c));
-                }
-            }
-        }
-        for &[a, b] in model.rods().edges() {
-            let (i, j) = (free[a], free[b]);
-            if i == PINNED || j == PINNED {
-                continue;
-            }
-            let (row, col) = (i.max(j), i.min(j));
-            for r in 0..3 {
-                for c in 0..3 {
-                    entries.push((3 * row + r, 3 * col + c));
-                }
-            }
-        }
-        let coupled = potential_pairs(model);
-        for &[row, col] in coupled.iter().chain(&extra) {
-            for r in 0..3 {
-                for c in 0..3 {
-                    entries.push((3 * row + r, 3 * col + c));
-                }
-            }
-        }
-        let n = 3 * model.free_count();
-        let (pattern, slots) = Pattern::from_entries(n, n, &entries);
-        let mut next = slots.iter().copied();
-        let mut take = || next.next().expect("one slot per entry");
-        let vertex_slots = free
+        let mut layout = Layout::default();
+        let mut vertex_slots: Vec<_> = free
             .iter()
-            .map(|&i| {
-                if i == PINNED {
-                    [0; 6]
-                } else {
-                    std::array::from_fn(|_| take())
-                }
-            })
+            .map(|&i| (i != PINNED).then(|| layout.block([i, i], LOWER)))
             .collect();
-        let edge_slots = model
+        let mut edge_slots: Vec<_> = model
             .rods()
             .edges()
             .iter()
             .map(|&[a, b]| {
                 let (i, j) = (free[a], free[b]);
-                (i != PINNED && j != PINNED).then(|| (std::array::from_fn(|_| take()), j > i))
+                let both_free = i != PINNED && j != PINNED;
+                both_free.then(|| (layout.block([i.max(j), i.min(j)], FULL), j > i))
             })
             .collect();
+        for &pair in potential_pairs(model).iter().chain(&extra) {
+            layout.block(pair, FULL);
+        }
+        let n = 3 * model.free_count();
+        let (pattern, slots) = layout.finish(n);
+        vertex_slots
+            .iter_mut()
+            .flatten()
+            .for_each(|b| slots.resolve(b));
+        edge_slots
+            .iter_mut()
+            .flatten()
+            .for_each(|(b, _)| slots.resolve(b));
         Ok(Self {
             llt: SparseLlt::with_blocks(pattern, 3)?,
             vertex_slots,
@@ -176,13 +154,12 @@ impl PrimalMatrix {
         along: &[f64],
         across: &[f64],
     ) {
-        let free = model.free_index();
         let values = self.llt.values_mut();
         values.fill(0.0);
-        for (i, slots) in self.vertex_slots.iter().enumerate() {
-            if free[i] != PINNED {
+        for (slots, mass) in self.vertex_slots.iter().zip(&model.mass().vertex) {
+            if let Some(slots) = slots {
                 for k in [0, 2, 5] {
-                    values[slots[k] as usize] += model.mass().vertex[i];
+                    values[slots[k] as usize] += mass;
                 }
             }
         }
@@ -200,17 +177,17 @@ impl PrimalMatrix {
                 r * d[2] * d[2] + p,
             ];
             for v in [a, b] {
-                if free[v] != PINNED {
-                    let slots = &self.vertex_slots[v];
+                if let Some(slots) = &self.vertex_slots[v] {
                     for k in 0..6 {
                         values[slots[k] as usize] += block[k];
                     }
                 }
             }
             if let Some((slots, _)) = &self.edge_slots[e] {
-                const FULL: [usize; 9] = [0, 1, 3, 1, 2, 4, 3, 4, 5];
+                /// Of each entry of the whole block its place in the lower triangle.
+                const SYMMETRIC: [usize; 9] = [0, 1, 3, 1, 2, 4, 3, 4, 5];
                 for k in 0..9 {
-                    values[slots[k] as usize] -= block[FULL[k]];
+                    values[slots[k] as usize] -= block[SYMMETRIC[k]];
                 }
                 if let Some(m) = off_mass {
                     for k in [0, 4, 8] {
@@ -279,10 +256,9 @@ struct Sink<'a> {
 
 impl HessianSink for Sink<'_> {
     fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>) {
-        if self.model.is_pinned(v) {
+        let Some(slots) = self.matrix.vertex_slots[v.index()] else {
             return;
-        }
-        let slots = self.matrix.vertex_slots[v.index()];
+        };
         let values = self.matrix.llt.values_mut();
         let mut k = 0;
         for r in 0..3 {

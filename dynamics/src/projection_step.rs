@@ -7,9 +7,9 @@ use crate::iterate::Iterate;
 use crate::model::PINNED;
 use crate::options::OptionsError;
 use crate::primal::{PrimalMatrix, strain_floor};
-use crate::project::{Aim, Projector};
 use crate::reaction::{Balance, ForceTime};
 use crate::report::{Effort, Path, StepError, not_converged};
+use crate::restoration::{Restoration, RestorationGoal};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use serde::{Deserialize, Serialize};
@@ -53,7 +53,7 @@ const DISTANCE_SLACK: f64 = 1e-6;
 pub(crate) struct ProjectionStep {
     options: ProjectionStepOptions,
     matrix: PrimalMatrix,
-    projector: Projector,
+    restoration: Restoration,
     force: Vec<f64>,
     applied: Vec<f64>,
     acceleration: Vec<f64>,
@@ -77,7 +77,7 @@ impl ProjectionStep {
         Ok(Self {
             options,
             matrix: PrimalMatrix::new(model)?,
-            projector: Projector::new(model),
+            restoration: Restoration::new(model),
             force: vec![0.0; n],
             applied: vec![0.0; n],
             acceleration: vec![0.0; n],
@@ -109,7 +109,7 @@ impl ProjectionStep {
             .add_applied(model, state.t, &state.x, &state.v, 1.0);
         self.balance.finish(model);
         let trail = &mut self.balance.trail;
-        trail.append(&self.projector.trail, 1.0 / (h * h));
+        trail.append(&self.restoration.trail, 1.0 / (h * h));
         for i in 0..self.x.len() {
             self.acceleration[i] = if free[i / 3] == PINNED {
                 0.0
@@ -119,7 +119,7 @@ impl ProjectionStep {
         }
         let mass = model.mass();
         mass.apply(model.topology(), &self.acceleration, &mut self.force);
-        let equalities = &self.projector.vertex_rows.equality;
+        let equalities = &self.restoration.vertex_rows.equality;
         trail.push(&self.x, equalities, self.force.iter().copied());
         if model.has_drives() {
             // The work of what moves needs them.
@@ -171,8 +171,8 @@ impl Integrator for ProjectionStep {
         }
         model.set_pin_velocities(end, h, &mut self.v);
         let rates = model.constraint_rates(end, h, &self.x);
-        self.projector.release(model);
-        let residual = self.projector.velocities(
+        self.restoration.release(model);
+        let residual = self.restoration.velocities(
             model,
             &mut self.matrix,
             &self.x,
@@ -246,12 +246,12 @@ impl ProjectionStep {
             .strain_tolerance
             .max(strain_floor(model, state));
         let mut iterate = Iterate::without_contact(std::mem::take(&mut self.x));
-        let strain = self.projector.positions(
+        let strain = self.restoration.positions(
             model,
             &mut self.matrix,
             None,
             &mut iterate,
-            Aim {
+            RestorationGoal {
                 tolerance,
                 max_iterations: self.options.max_projections,
                 t: state.t + h,

@@ -2,7 +2,7 @@
 
 use crate::chart::ChartDynamicsError;
 use crate::feasibility::Excess;
-use crate::reaction::Support;
+use crate::support::Support;
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::{EdgeId, VertexId};
 

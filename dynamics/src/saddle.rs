@@ -1,11 +1,12 @@
 //! The unsymmetric saddle-point matrix of the conservative integrators.
 
 use crate::constraint::conservative::SaddleBlocks;
+use crate::layout::{DIAGONAL, FULL, Layout, Slots};
 use crate::model::PINNED;
 use crate::primal::{gather, scatter};
 use crate::report::{Effort, Path};
 use crate::{HessianSink, SheetModel};
-use isosheet_coords::linalg::{LinalgError, Pattern, SparseLu};
+use isosheet_coords::linalg::{LinalgError, SparseLu};
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector2};
 use std::collections::BTreeMap;
@@ -23,23 +24,74 @@ use std::collections::BTreeMap;
 /// partial pivoting compares like with like.
 pub(crate) struct SaddleMatrix {
     lu: SparseLu,
-    /// Slots of the vertex blocks: nine entries or, without potential Hessians, the diagonal.
-    vertex_slots: Vec<[u32; 9]>,
-    /// Slots of the blocks (a, b) and (b, a) of each edge.
-    edge_slots: Vec<Option<[[u32; 9]; 2]>>,
-    /// Slots of the blocks (a, b) and (b, a) of the other pairs of vertices that potentials couple.
-    pair_slots: BTreeMap<[VertexId; 2], [[u32; 9]; 2]>,
-    /// Slots of the multiplier column and row of each rod: `[end][axis][column or row]`.
+    /// Blocks of free vertices.
+    vertex_slots: Vec<Option<Block>>,
+    /// Blocks (a, b) and (b, a) of each edge with two free ends.
+    edge_slots: Vec<Option<[Block; 2]>>,
+    /// Blocks (a, b) and (b, a) of the other pairs of free vertices that potentials couple.
+    pair_slots: BTreeMap<[VertexId; 2], [Block; 2]>,
+    /// Multiplier columns and rows of the rods with a free end.
     rod_slots: Vec<Option<RodSlots>>,
-    /// Row of each rod after the momenta.
-    rod_index: Vec<u32>,
-    /// Slots of each equation of a vertex constraint.
+    /// The same of each equation of the vertex constraints.
     constraint_slots: Vec<[Option<EquationSlots>; 2]>,
-    width: usize,
+    width: Width,
     primal: usize,
     rhs: Vec<f64>,
     mass_scale: f64,
     length_scale: f64,
+}
+
+/// Which entries of a vertex block are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Width {
+    /// The diagonal: enough unless a potential or a constraint may bring a Hessian.
+    Diagonal,
+    /// All nine.
+    Full,
+}
+
+/// Slots of a block; of diagonal blocks the first three are in use.
+type Block = [u32; 9];
+
+impl Width {
+    fn of(model: &SheetModel) -> Self {
+        if model.has_constant_forces() && model.constraints().is_empty() {
+            Self::Diagonal
+        } else {
+            Self::Full
+        }
+    }
+
+    fn block(self, layout: &mut Layout, pair: [u32; 2]) -> Block {
+        match self {
+            Self::Full => layout.block(pair, FULL),
+            Self::Diagonal => {
+                let mut block = [0; 9];
+                block[..3].copy_from_slice(&layout.block(pair, DIAGONAL));
+                block
+            }
+        }
+    }
+
+    /// Blocks of a pair and of the same pair the other way round.
+    fn blocks(self, layout: &mut Layout, [i, j]: [u32; 2]) -> [Block; 2] {
+        [self.block(layout, [i, j]), self.block(layout, [j, i])]
+    }
+
+    /// Places of the diagonal in a block.
+    fn diagonal(self) -> [usize; 3] {
+        match self {
+            Self::Diagonal => [0, 1, 2],
+            Self::Full => [0, 4, 8],
+        }
+    }
+
+    fn resolve(self, block: &mut Block, slots: &Slots) {
+        match self {
+            Self::Diagonal => slots.resolve(&mut block[..3]),
+            Self::Full => slots.resolve(block),
+        }
+    }
 }
 
 /// What to put into a [`SaddleMatrix`].
@@ -62,189 +114,102 @@ pub(crate) struct System<'a> {
 /// rods of unit length and mean mass. Residuals stay exact, so it costs iterations only.
 const REGULARISATION: f64 = 1e-10;
 
+/// Slots of a multiplier's column and row at the vertices that it acts on.
 struct RodSlots {
-    column: [[u32; 3]; 2],
-    row: [[u32; 3]; 2],
+    /// At the two ends; nothing at pinned ones.
+    ends: [Option<EndSlots>; 2],
     diagonal: u32,
+    /// Its own row.
+    own: u32,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct EndSlots {
+    column: [u32; 3],
+    row: [u32; 3],
 }
 
 /// Slots of an equation at one vertex.
 struct EquationSlots {
-    column: [u32; 3],
-    row: [u32; 3],
+    end: EndSlots,
     diagonal: u32,
-    /// Its row after those of the rods.
+    /// Its own row.
     own: u32,
 }
 
-/// Marks an end of a rod that has no unknowns.
-const NO_SLOT: u32 = u32::MAX;
+impl EndSlots {
+    /// Of the equation in row `own` at the free vertex `i`.
+    fn new(layout: &mut Layout, i: u32, own: u32) -> Self {
+        Self {
+            column: [0, 1, 2].map(|k| layout.entry(3 * i + k, own)),
+            row: [0, 1, 2].map(|k| layout.entry(own, 3 * i + k)),
+        }
+    }
+
+    fn resolve(&mut self, slots: &Slots) {
+        slots.resolve(&mut self.column);
+        slots.resolve(&mut self.row);
+    }
+}
+
+fn resolve_one(place: &mut u32, slots: &Slots) {
+    slots.resolve(std::slice::from_mut(place));
+}
 
 impl SaddleMatrix {
     pub(crate) fn new(model: &SheetModel) -> Result<Self, LinalgError> {
         let free = model.free_index();
-        // Scalar blocks suffice unless a potential or a constraint may bring a Hessian.
-        let width = if model.has_constant_forces() && model.constraints().is_empty() {
-            3
-        } else {
-            9
-        };
+        let width = Width::of(model);
         let primal = 3 * model.free_count();
-        let mut entries = Vec::new();
-        let block = |entries: &mut Vec<(u32, u32)>, i: u32, j: u32| {
-            for k in 0..width as u32 {
-                let (r, c) = if width == 3 { (k, k) } else { (k / 3, k % 3) };
-                entries.push((3 * i + r, 3 * j + c));
-            }
-        };
-        for &i in free.iter().filter(|&&i| i != PINNED) {
-            block(&mut entries, i, i);
-        }
-        let mut rod_index = Vec::with_capacity(model.rods().len());
-        let mut rods = 0;
-        for &[a, b] in model.rods().edges() {
-            let (i, j) = (free[a], free[b]);
-            if i == PINNED && j == PINNED {
-                rod_index.push(PINNED);
-                continue;
-            }
-            let own = primal as u32 + rods;
-            rod_index.push(own);
-            rods += 1;
-            if i != PINNED && j != PINNED {
-                block(&mut entries, i, j);
-                block(&mut entries, j, i);
-            }
-            for end in [i, j] {
-                if end != PINNED {
-                    for k in 0..3 {
-                        entries.push((3 * end + k, own));
-                        entries.push((own, 3 * end + k));
-                    }
-                }
-            }
-            entries.push((own, own));
-        }
-        for c in model.constraints() {
-            let v = free[c.vertex().index()];
-            for _ in 0..if v == PINNED { 0 } else { c.equation_count() } {
-                let own = primal as u32 + rods;
-                rods += 1;
-                for k in 0..3 {
-                    entries.push((3 * v + k, own));
-                    entries.push((own, 3 * v + k));
-                }
-                entries.push((own, own));
-            }
-        }
-        let pairs: Vec<[VertexId; 2]> = model
+        let mut layout = Layout::default();
+        let mut vertex_slots: Vec<_> = free
+            .iter()
+            .map(|&i| (i != PINNED).then(|| width.block(&mut layout, [i, i])))
+            .collect();
+        let pairs = model.rods().edges().iter().map(|e| e.map(|v| free[v]));
+        let mut edge_slots: Vec<_> = pairs
+            .map(|pair| (!pair.contains(&PINNED)).then(|| width.blocks(&mut layout, pair)))
+            .collect();
+        let mut pair_slots: BTreeMap<_, _> = model
             .potentials()
             .iter()
             .flat_map(|p| p.couplings())
-            .collect();
-        let both_free = |[a, b]: &[VertexId; 2]| !model.is_pinned(*a) && !model.is_pinned(*b);
-        for [a, b] in pairs.iter().copied().filter(|p| both_free(p)) {
-            let (i, j) = (free[a.index()], free[b.index()]);
-            block(&mut entries, i, j);
-            block(&mut entries, j, i);
-        }
-        let order = primal + rods as usize;
-        let (pattern, slots) = Pattern::from_entries(order, order, &entries);
-        let mut next = slots.iter().copied();
-        let mut take = || next.next().expect("one slot per entry");
-        let take_block = |take: &mut dyn FnMut() -> u32| {
-            let mut b = [NO_SLOT; 9];
-            for k in 0..width {
-                b[k] = take();
-            }
-            b
-        };
-        let vertex_slots = free
-            .iter()
-            .map(|&i| {
-                if i == PINNED {
-                    [NO_SLOT; 9]
-                } else {
-                    take_block(&mut take)
-                }
+            .filter(|pair| !pair.iter().any(|v| model.is_pinned(*v)))
+            .map(|pair| {
+                (
+                    pair,
+                    width.blocks(&mut layout, pair.map(|v| free[v.index()])),
+                )
             })
             .collect();
-        let mut edge_slots = Vec::with_capacity(rod_index.len());
-        let mut rod_slots = Vec::with_capacity(rod_index.len());
-        for (&[a, b], &own) in model.rods().edges().iter().zip(&rod_index) {
-            let (i, j) = (free[a], free[b]);
-            if own == PINNED {
-                edge_slots.push(None);
-                rod_slots.push(None);
-                continue;
-            }
-            edge_slots.push(if i != PINNED && j != PINNED {
-                Some([take_block(&mut take), take_block(&mut take)])
-            } else {
-                None
-            });
-            let mut rod = RodSlots {
-                column: [[NO_SLOT; 3]; 2],
-                row: [[NO_SLOT; 3]; 2],
-                diagonal: 0,
-            };
-            for (side, end) in [i, j].into_iter().enumerate() {
-                if end != PINNED {
-                    for k in 0..3 {
-                        rod.column[side][k] = take();
-                        rod.row[side][k] = take();
-                    }
-                }
-            }
-            rod.diagonal = take();
-            rod_slots.push(Some(rod));
+        let mut next = primal as u32;
+        let mut rod_slots = rod_slots(model, &mut layout, &mut next);
+        let mut constraint_slots = constraint_slots(model, &mut layout, &mut next);
+        let order = next as usize;
+        let (pattern, slots) = layout.finish(order);
+        let vertices = vertex_slots.iter_mut().flatten();
+        let edges = edge_slots.iter_mut().flatten().flatten();
+        let pairs = pair_slots.values_mut().flatten();
+        vertices
+            .chain(edges)
+            .chain(pairs)
+            .for_each(|block| width.resolve(block, &slots));
+        for rod in rod_slots.iter_mut().flatten() {
+            let ends = rod.ends.iter_mut().flatten();
+            ends.for_each(|end| end.resolve(&slots));
+            resolve_one(&mut rod.diagonal, &slots);
         }
-        let mut own = order as u32;
-        for c in model.constraints() {
-            if !model.is_pinned(c.vertex()) {
-                own -= c.equation_count() as u32;
-            }
+        for equation in constraint_slots.iter_mut().flatten().flatten() {
+            equation.end.resolve(&slots);
+            resolve_one(&mut equation.diagonal, &slots);
         }
-        let constraint_slots = model
-            .constraints()
-            .iter()
-            .map(|c| {
-                let count = if model.is_pinned(c.vertex()) {
-                    0
-                } else {
-                    c.equation_count()
-                };
-                let mut slots = [None, None];
-                for equation in &mut slots[..count] {
-                    let (mut column, mut row) = ([0; 3], [0; 3]);
-                    for k in 0..3 {
-                        column[k] = take();
-                        row[k] = take();
-                    }
-                    *equation = Some(EquationSlots {
-                        column,
-                        row,
-                        diagonal: take(),
-                        own,
-                    });
-                    own += 1;
-                }
-                slots
-            })
-            .collect();
-        let pair_slots = pairs
-            .into_iter()
-            .filter(both_free)
-            .map(|p| (p, [take_block(&mut take), take_block(&mut take)]))
-            .collect();
         Ok(Self {
-            constraint_slots,
-            pair_slots,
             lu: SparseLu::new(pattern)?,
             vertex_slots,
             edge_slots,
+            pair_slots,
             rod_slots,
-            rod_index,
+            constraint_slots,
             width,
             primal,
             rhs: vec![0.0; order],
@@ -280,101 +245,98 @@ impl SaddleMatrix {
     }
 
     fn assemble(&mut self, model: &SheetModel, system: &System<'_>, delta: f64) {
-        let System {
-            mass: a,
-            density: p,
-            left,
-            right,
-            ..
-        } = *system;
+        self.lu.values_mut().fill(0.0);
+        self.add_masses(model, system);
+        self.add_rods(model, system, delta);
+        self.add_constraints(model, system, delta);
+        if self.width == Width::Diagonal {
+            return;
+        }
+        if let Some((t, x, scale)) = system.potentials {
+            let scale = scale / self.mass_scale;
+            for p in model.potentials() {
+                p.add_hessian(
+                    t,
+                    x,
+                    &mut Sink {
+                        matrix: self,
+                        scale,
+                    },
+                );
+            }
+        }
+    }
+
+    /// Adds `a M + sum_e p_e (Laplacian of edge e)`.
+    fn add_masses(&mut self, model: &SheetModel, system: &System<'_>) {
+        let (a, p) = (system.mass, system.density);
         let per_mass = 1.0 / self.mass_scale;
-        let per_length = 1.0 / self.length_scale;
-        let diagonal: [usize; 3] = if self.width == 3 {
-            [0, 1, 2]
-        } else {
-            [0, 4, 8]
-        };
+        let diagonal = self.width.diagonal();
         let values = self.lu.values_mut();
-        values.fill(0.0);
-        for (v, slots) in self.vertex_slots.iter().enumerate() {
-            if slots[0] != NO_SLOT {
-                for k in diagonal {
-                    values[slots[k] as usize] += a * model.mass().vertex[v] * per_mass;
-                }
+        let mut add = |block: &Block, value: f64| {
+            for k in diagonal {
+                values[block[k] as usize] += value;
+            }
+        };
+        for (block, mass) in self.vertex_slots.iter().zip(&model.mass().vertex) {
+            if let Some(block) = block {
+                add(block, a * mass * per_mass);
             }
         }
         let off_mass = model.mass().edge.as_deref();
-        for (e, &[i, j]) in model.rods().edges().iter().enumerate() {
-            let Some(rod) = &self.rod_slots[e] else {
-                continue;
-            };
+        for (e, ends) in model.rods().edges().iter().enumerate() {
             let density = p[e] * per_mass;
             if density != 0.0 {
-                for v in [i, j] {
-                    let slots = self.vertex_slots[v];
-                    if slots[0] != NO_SLOT {
-                        for k in diagonal {
-                            values[slots[k] as usize] += density;
-                        }
-                    }
-                }
+                let blocks = ends.iter().filter_map(|v| self.vertex_slots[*v].as_ref());
+                blocks.for_each(|block| add(block, density));
             }
             if let Some(blocks) = &self.edge_slots[e] {
                 let entry = off_mass.map_or(0.0, |m| a * m[e] * per_mass) - density;
-                for slots in blocks {
-                    for k in diagonal {
-                        values[slots[k] as usize] += entry;
-                    }
-                }
+                blocks.iter().for_each(|block| add(block, entry));
             }
+        }
+    }
+
+    /// Sets the rows and columns of the rods.
+    fn add_rods(&mut self, model: &SheetModel, system: &System<'_>, delta: f64) {
+        let (left, right) = (system.left, system.right);
+        let per_length = 1.0 / self.length_scale;
+        let values = self.lu.values_mut();
+        for (rod, &[i, j]) in self.rod_slots.iter().zip(model.rods().edges()) {
+            let Some(rod) = rod else { continue };
             for k in 0..3 {
                 let l = (left[3 * i + k] - left[3 * j + k]) * per_length;
                 let r = (right[3 * i + k] - right[3 * j + k]) * per_length;
-                for (side, sign) in [(0, 1.0), (1, -1.0)] {
-                    if rod.column[side][0] != NO_SLOT {
-                        values[rod.column[side][k] as usize] = -sign * l;
-                        values[rod.row[side][k] as usize] = sign * r;
+                for (end, sign) in rod.ends.iter().zip([1.0, -1.0]) {
+                    if let Some(end) = end {
+                        values[end.column[k] as usize] = -sign * l;
+                        values[end.row[k] as usize] = sign * r;
                     }
                 }
             }
             values[rod.diagonal as usize] = -delta;
         }
-        for (c, (slots, entry)) in model
-            .constraints()
-            .iter()
-            .zip(self.constraint_slots.iter().zip(system.constraints))
-        {
-            for (i, slots) in slots.iter().enumerate() {
+    }
+
+    /// Sets the rows and columns of the vertex constraints and adds their curvature.
+    fn add_constraints(&mut self, model: &SheetModel, system: &System<'_>, delta: f64) {
+        let per_mass = 1.0 / self.mass_scale;
+        let values = self.lu.values_mut();
+        let slots = self.constraint_slots.iter().zip(system.constraints);
+        for (c, (equations, blocks)) in model.constraints().iter().zip(slots) {
+            for (i, slots) in equations.iter().enumerate() {
                 let Some(slots) = slots else { continue };
                 for k in 0..3 {
-                    values[slots.column[k] as usize] = -entry.left[(i, k)];
-                    values[slots.row[k] as usize] = entry.right[(i, k)];
+                    values[slots.end.column[k] as usize] = -blocks.left[(i, k)];
+                    values[slots.end.row[k] as usize] = blocks.right[(i, k)];
                 }
                 values[slots.diagonal as usize] = -delta;
             }
-            let block = self.vertex_slots[c.vertex().index()];
-            if block[0] != NO_SLOT {
+            if let Some(block) = &self.vertex_slots[c.vertex().index()] {
                 for k in 0..9 {
-                    values[block[k] as usize] += entry.block[(k / 3, k % 3)] * per_mass;
+                    values[block[k] as usize] += blocks.block[(k / 3, k % 3)] * per_mass;
                 }
             }
-        }
-        if self.width == 3 {
-            return;
-        }
-        let Some((t, x, scale)) = system.potentials else {
-            return;
-        };
-        let scale = scale / self.mass_scale;
-        for p in model.potentials() {
-            p.add_hessian(
-                t,
-                x,
-                &mut Sink {
-                    matrix: self,
-                    scale,
-                },
-            );
         }
     }
 
@@ -390,8 +352,10 @@ impl SaddleMatrix {
         self.assemble(model, system, 0.0);
         let mut packed = vec![0.0; self.rhs.len()];
         gather(model, direction, &mut packed[..self.primal]);
-        for (&i, l) in self.rod_index.iter().zip(multipliers) {
-            packed[i as usize] = l * self.length_scale / self.mass_scale;
+        for (rod, l) in self.rod_slots.iter().zip(multipliers) {
+            if let Some(rod) = rod {
+                packed[rod.own as usize] = l * self.length_scale / self.mass_scale;
+            }
         }
         let mut out = vec![0.0; packed.len()];
         self.lu
@@ -400,11 +364,9 @@ impl SaddleMatrix {
         let mut momentum = vec![0.0; direction.len()];
         scatter(model, &out[..self.primal], &mut momentum);
         momentum.iter_mut().for_each(|m| *m *= -self.mass_scale);
-        let rods = self
-            .rod_index
-            .iter()
-            .map(|&i| -out[i as usize] * self.length_scale)
-            .collect();
+        let rod = |rod: &RodSlots| -out[rod.own as usize] * self.length_scale;
+        let rods = self.rod_slots.iter();
+        let rods = rods.map(|slots| slots.as_ref().map_or(0.0, rod)).collect();
         (momentum, rods)
     }
 
@@ -420,9 +382,9 @@ impl SaddleMatrix {
         self.rhs[..self.primal]
             .iter_mut()
             .for_each(|r| *r /= self.mass_scale);
-        for (&i, &r) in self.rod_index.iter().zip(rods.iter()) {
-            if i != PINNED {
-                self.rhs[i as usize] = r / self.length_scale;
+        for (rod, &r) in self.rod_slots.iter().zip(rods.iter()) {
+            if let Some(rod) = rod {
+                self.rhs[rod.own as usize] = r / self.length_scale;
             }
         }
         for (slots, c) in self.constraint_slots.iter().zip(constraints.iter()) {
@@ -441,12 +403,10 @@ impl SaddleMatrix {
             }
         }
         scatter(model, &self.rhs[..self.primal], momentum);
-        for (&i, r) in self.rod_index.iter().zip(rods.iter_mut()) {
-            *r = if i == PINNED {
-                0.0
-            } else {
-                self.rhs[i as usize] * self.mass_scale / self.length_scale
-            };
+        for (rod, r) in self.rod_slots.iter().zip(rods.iter_mut()) {
+            *r = rod.as_ref().map_or(0.0, |rod| {
+                self.rhs[rod.own as usize] * self.mass_scale / self.length_scale
+            });
         }
         Ok(())
     }
@@ -459,10 +419,9 @@ struct Sink<'a> {
 
 impl HessianSink for Sink<'_> {
     fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>) {
-        let slots = self.matrix.vertex_slots[v.index()];
-        if slots[0] == NO_SLOT {
+        let Some(slots) = self.matrix.vertex_slots[v.index()] else {
             return;
-        }
+        };
         let values = self.matrix.lu.values_mut();
         for k in 0..9 {
             values[slots[k] as usize] += self.scale * block[(k / 3, k % 3)];
@@ -484,11 +443,56 @@ impl HessianSink for Sink<'_> {
 
 impl Sink<'_> {
     /// Adds a block and its transpose.
-    fn add_both(&mut self, [ab, ba]: &[[u32; 9]; 2], block: &Matrix3<f64>) {
+    fn add_both(&mut self, [ab, ba]: &[Block; 2], block: &Matrix3<f64>) {
         let values = self.matrix.lu.values_mut();
         for k in 0..9 {
             values[ab[k] as usize] += self.scale * block[(k / 3, k % 3)];
             values[ba[k] as usize] += self.scale * block[(k % 3, k / 3)];
         }
     }
+}
+
+/// Multiplier rows of the rods that are not pinned at both ends, from row `next` on.
+fn rod_slots(model: &SheetModel, layout: &mut Layout, next: &mut u32) -> Vec<Option<RodSlots>> {
+    let free = model.free_index();
+    let rods = model.rods().edges().iter().map(|e| e.map(|v| free[v]));
+    rods.map(|ends| {
+        if ends == [PINNED; 2] {
+            return None;
+        }
+        let own = *next;
+        *next += 1;
+        Some(RodSlots {
+            ends: ends.map(|i| (i != PINNED).then(|| EndSlots::new(layout, i, own))),
+            diagonal: layout.entry(own, own),
+            own,
+        })
+    })
+    .collect()
+}
+
+/// Rows of the equations of vertex constraints, from row `next` on.
+fn constraint_slots(
+    model: &SheetModel,
+    layout: &mut Layout,
+    next: &mut u32,
+) -> Vec<[Option<EquationSlots>; 2]> {
+    let free = model.free_index();
+    let mut equation = |i: u32| {
+        let own = *next;
+        *next += 1;
+        EquationSlots {
+            end: EndSlots::new(layout, i, own),
+            diagonal: layout.entry(own, own),
+            own,
+        }
+    };
+    let constraints = model.constraints().iter();
+    constraints
+        .map(|c| {
+            let i = free[c.vertex().index()];
+            let count = if i == PINNED { 0 } else { c.equation_count() };
+            [0, 1].map(|k| (k < count).then(|| equation(i)))
+        })
+        .collect()
 }

@@ -4,9 +4,9 @@ use crate::constraint::rows::point;
 use crate::iterate::Iterate;
 use crate::options::OptionsError;
 use crate::primal::PrimalMatrix;
-use crate::project::{Aim, Projector};
-use crate::reaction::Support;
 use crate::report::{Effort, StepError};
+use crate::restoration::{Restoration, RestorationGoal};
+use crate::support::Support;
 use crate::{SheetModel, SimulationError, State};
 use isosheet_mesh::{EdgeId, VertexId};
 use rand::{RngExt, SeedableRng};
@@ -35,12 +35,12 @@ pub fn project_positions(
     let mut matrix = PrimalMatrix::new(model)?;
     let mut effort = Effort::default();
     let mut moved = Iterate::without_contact(x.to_vec());
-    let strain = Projector::new(model).positions(
+    let strain = Restoration::new(model).positions(
         model,
         &mut matrix,
         None,
         &mut moved,
-        Aim {
+        RestorationGoal {
             tolerance,
             max_iterations: MAX_ITERATIONS,
             t: 0.0,

@@ -1,6 +1,6 @@
 //! Why mechanics in a chart fails.
 
-use crate::reaction::Support;
+use crate::support::Support;
 use isosheet_coords::ChartError;
 use isosheet_mesh::VertexId;
 use thiserror::Error;

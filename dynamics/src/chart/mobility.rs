@@ -27,7 +27,8 @@
 
 use super::{ChartDynamicsError, ChartMechanics, PositionUpdate};
 use crate::constraint::rows::point;
-use crate::reaction::{Balance, Support};
+use crate::reaction::Balance;
+use crate::support::Support;
 use isosheet_coords::linalg::norm_inf;
 use isosheet_coords::{ChartError, SaddlePoint};
 use isosheet_mesh::VertexId;

@@ -1,14 +1,11 @@
 //! Explicit integration in a chart, with the published step control.
 
 use super::contact::ChartContact;
-use super::energy_bound::EnergyBound;
 use super::stepping::{Stepper, Trial};
-use super::substep::ChartSubstep;
 use super::{
     ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, ContactImpulse, Rebase,
 };
 use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
-use crate::control::take_substep;
 use crate::reaction::{Balance, ForceTime, Reaction};
 use crate::{SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
@@ -410,7 +407,7 @@ impl ChartSimulation {
     }
 
     /// Estimate the condition number of C; above the limit rebase once, then refuse.
-    fn check_condition(&mut self) -> Result<(), ChartDynamicsError> {
+    pub(super) fn check_condition(&mut self) -> Result<(), ChartDynamicsError> {
         self.motion.since_check = 0;
         loop {
             let m = &self.stepper.mechanics;
@@ -441,43 +438,6 @@ impl ChartSimulation {
         self.motion.growth = 1.0;
         self.motion.is_fresh = true;
         Ok(())
-    }
-
-    /// Take one step.
-    ///
-    /// # Errors
-    /// [`ChartDynamicsError::StepTooSmall`] of the step control; with a fixed step the error of the step
-    /// itself. The state is that before the step then.
-    pub fn step(&mut self) -> Result<ChartStepReport, ChartDynamicsError> {
-        self.step_within(f64::INFINITY)
-    }
-
-    /// As [`ChartSimulation::step`], of at most `limit` seconds. A step cut short by the limit does not
-    /// enter [`ChartSimulation::step_range`] and leaves the step control where it was.
-    ///
-    /// # Errors
-    /// As [`ChartSimulation::step`].
-    pub fn step_within(&mut self, limit: f64) -> Result<ChartStepReport, ChartDynamicsError> {
-        let mut rebased = false;
-        if self.options.rebase == Rebase::WhenNeeded && !self.motion.is_fresh {
-            let margin = self
-                .stepper
-                .mechanics
-                .chart()
-                .margin(&self.motion.state.x)?;
-            let growth = self.motion.growth;
-            if margin < self.options.margin_limit || growth > self.options.growth_limit {
-                self.rebase()?;
-                rebased = true;
-            }
-        }
-        if self.motion.since_check >= self.options.condition_interval {
-            self.check_condition()?;
-        }
-        let bound = EnergyBound::new(self.options.control, self.motion.next_step);
-        let h = bound.planned().min(limit);
-        let mut substep = ChartSubstep::new(self, bound, h, rebased);
-        take_substep(&mut substep, h)
     }
 
     /// Impacts at the end of a step: energy lost and work of the bodies.

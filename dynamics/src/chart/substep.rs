@@ -5,12 +5,51 @@ use super::simulation::{ChartSimulation, StepRange};
 use super::stepping::Trial;
 use super::{ChartDynamicsError, ChartStepControl, ChartStepReport, Rebase};
 use crate::contact::{ActiveContacts, StepSpan};
-use crate::control::{Decision, Stepping};
+use crate::control::{Decision, Stepping, take_substep};
 
 /// Part of the planned step below which contact does not shorten a step: beyond, positions drown in round-off.
 const SHORTEST_CUT: f64 = 1e-10;
 /// How often contact may shorten a step. Each time the gap shrinks by nine tenths, so that 100 times are the range of f64.
 const MOST_CUTS: u32 = 100;
+
+impl ChartSimulation {
+    /// Take one step.
+    ///
+    /// # Errors
+    /// [`ChartDynamicsError::StepTooSmall`] of the step control; with a fixed step the error of the step
+    /// itself. The state is that before the step then.
+    pub fn step(&mut self) -> Result<ChartStepReport, ChartDynamicsError> {
+        self.step_within(f64::INFINITY)
+    }
+
+    /// As [`ChartSimulation::step`], of at most `limit` seconds. A step cut short by the limit does not
+    /// enter [`ChartSimulation::step_range`] and leaves the step control where it was.
+    ///
+    /// # Errors
+    /// As [`ChartSimulation::step`].
+    pub fn step_within(&mut self, limit: f64) -> Result<ChartStepReport, ChartDynamicsError> {
+        let mut rebased = false;
+        if self.options.rebase == Rebase::WhenNeeded && !self.motion.is_fresh {
+            let margin = self
+                .stepper
+                .mechanics
+                .chart()
+                .margin(&self.motion.state.x)?;
+            let growth = self.motion.growth;
+            if margin < self.options.margin_limit || growth > self.options.growth_limit {
+                self.rebase()?;
+                rebased = true;
+            }
+        }
+        if self.motion.since_check >= self.options.condition_interval {
+            self.check_condition()?;
+        }
+        let bound = EnergyBound::new(self.options.control, self.motion.next_step);
+        let h = bound.planned().min(limit);
+        let mut substep = ChartSubstep::new(self, bound, h, rebased);
+        take_substep(&mut substep, h)
+    }
+}
 
 /// A step to be proposed and committed.
 pub(super) struct ChartSubstep<'a> {
@@ -59,26 +98,42 @@ impl<'a> ChartSubstep<'a> {
         self.simulation.motion.t
     }
 
-    /// The error of a step that cannot be shortened.
-    fn too_small(&self, change: f64, refusal: Refusal) -> ChartDynamicsError {
-        let cause = match refusal {
-            Refusal::Failed(error) => match self.bound.control() {
-                ChartStepControl::Fixed(_) => return error,
-                ChartStepControl::Adaptive { .. } => error.to_string(),
-            },
-            Refusal::Energy(_) | Refusal::Blocked(_) => "the change is too large".to_owned(),
-        };
-        let (minimum, tolerance) = match self.bound.control() {
-            ChartStepControl::Adaptive { min, tolerance, .. } => (min, tolerance),
-            ChartStepControl::Fixed(h) => (h, f64::INFINITY),
-        };
-        ChartDynamicsError::StepTooSmall {
-            t: self.t(),
-            minimum,
-            tolerance,
-            change,
-            cause,
+    /// Contact allows a step of `shorter` seconds.
+    fn cut(&mut self, shorter: f64) -> Decision<ChartDynamicsError> {
+        self.cuts += 1;
+        if shorter < SHORTEST_CUT * self.bound.planned() || self.cuts > MOST_CUTS {
+            let t = self.t();
+            Decision::Stop(ChartDynamicsError::Contact { t, h: shorter })
+        } else {
+            Decision::Shorten(shorter)
         }
+    }
+
+    /// A step of `h` seconds changed the Hamiltonian by `change`, or failed with an error.
+    fn shorten(
+        &mut self,
+        h: f64,
+        change: f64,
+        error: Option<ChartDynamicsError>,
+    ) -> Decision<ChartDynamicsError> {
+        if let Verdict::Shorten(shorter) = self.bound.judge(h, change) {
+            self.rejected += 1;
+            return Decision::Shorten(shorter);
+        }
+        Decision::Stop(match (self.bound.control(), error) {
+            (ChartStepControl::Adaptive { min, tolerance, .. }, error) => {
+                ChartDynamicsError::StepTooSmall {
+                    t: self.t(),
+                    minimum: min,
+                    tolerance,
+                    change,
+                    cause: error.map_or("the change is too large".to_owned(), |e| e.to_string()),
+                }
+            }
+            (ChartStepControl::Fixed(_), Some(error)) => error,
+            // The bound of a fixed step refuses what is not a number, and nothing else.
+            (ChartStepControl::Fixed(_), None) => ChartDynamicsError::NotFinite { t: self.t() },
+        })
     }
 
     /// Makes the proposal the state; what can fail comes with a way back.
@@ -180,39 +235,13 @@ impl Stepping for ChartSubstep<'_> {
     fn decide(&mut self, refusal: Refusal, h: f64) -> Decision<ChartDynamicsError> {
         let may_rebase = self.simulation.options.rebase == Rebase::WhenNeeded
             && !self.simulation.motion.is_fresh;
-        let change = match &refusal {
-            Refusal::Blocked(part) => {
-                self.cuts += 1;
-                let shorter = part * h;
-                let is_too_short = shorter < SHORTEST_CUT * self.bound.planned();
-                return if is_too_short || self.cuts > MOST_CUTS {
-                    Decision::Stop(ChartDynamicsError::Contact {
-                        t: self.t(),
-                        h: shorter,
-                    })
-                } else {
-                    Decision::Shorten(shorter)
-                };
-            }
-            Refusal::Failed(ChartDynamicsError::Chart(_)) if may_rebase => {
-                return Decision::Restart;
-            }
+        match refusal {
+            Refusal::Blocked(part) => self.cut(part * h),
+            Refusal::Failed(ChartDynamicsError::Chart(_)) if may_rebase => Decision::Restart,
             // The edge lengths have drifted over many steps: a shorter one does not help.
-            Refusal::Failed(ChartDynamicsError::Diverged { .. }) => {
-                let Refusal::Failed(error) = refusal else {
-                    unreachable!("matched above")
-                };
-                return Decision::Stop(error);
-            }
-            Refusal::Failed(_) => f64::NAN,
-            Refusal::Energy(change) => *change,
-        };
-        match self.bound.judge(h, change) {
-            Verdict::Shorten(shorter) => {
-                self.rejected += 1;
-                Decision::Shorten(shorter)
-            }
-            Verdict::Accept | Verdict::TooSmall => Decision::Stop(self.too_small(change, refusal)),
+            Refusal::Failed(error @ ChartDynamicsError::Diverged { .. }) => Decision::Stop(error),
+            Refusal::Failed(error) => self.shorten(h, f64::NAN, Some(error)),
+            Refusal::Energy(change) => self.shorten(h, change, None),
         }
     }
 

@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// Penalty (relative to the masses) that a projection starts from. From 1e9 the projection is
 /// a Gauss-Newton step to round-off wherever the rods are independent.
-const PROJECTION_PENALTY: f64 = 1e9;
+const FIRST_PENALTY: f64 = 1e9;
 /// Bounds of the penalty while it adapts. Above 1e13 the masses drown in the round-off of the
 /// penalty and the matrix loses its definiteness; below 1e3 steps are too timid to be useful.
 const PENALTY_RANGE: (f64, f64) = (1e3, 1e13);
@@ -47,7 +47,7 @@ const LARGEST_OPENING: f64 = 0.05;
 ///
 /// Where there is contact its Hessian joins the mass matrix, so that the nearest positions are those that
 /// press least on it, and nothing is passed through on the way.
-pub(crate) struct Projector {
+pub(crate) struct Restoration {
     along: Vec<f64>,
     across: Vec<f64>,
     unit: Vec<f64>,
@@ -67,7 +67,7 @@ pub(crate) struct Projector {
 
 /// When a projection stops.
 #[derive(Clone, Copy)]
-pub(crate) struct Aim<'a> {
+pub(crate) struct RestorationGoal<'a> {
     /// Largest edge strain wanted.
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: usize,
@@ -78,13 +78,24 @@ pub(crate) struct Aim<'a> {
 }
 
 /// Contact that a projection has to keep.
-pub(crate) struct Held<'a, 'b> {
+pub(crate) struct RestorationContact<'a, 'b> {
     pub(crate) contact: &'a mut StepContact<'b>,
     /// Factor of its energy in the incremental potential, `h^2`.
     pub(crate) scale: f64,
 }
 
-impl Projector {
+/// How the linear system of an iteration went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Solved {
+    /// There is a step.
+    Yes,
+    /// The masses drown in the round-off of the penalty.
+    PenaltyTooLarge,
+    /// The linear algebra failed.
+    No,
+}
+
+impl Restoration {
     pub(crate) fn new(model: &SheetModel) -> Self {
         let (n, m) = (model.coordinate_count(), model.rods().len());
         Self {
@@ -103,123 +114,63 @@ impl Projector {
         }
     }
 
-    /// Projects an iterate in place; returns the strain reached, which exceeds `tolerance` if
-    /// `max_iterations` did not suffice.
+    /// Restores the lengths of an iterate in place; returns the strain reached, which exceeds `goal.tolerance` if
+    /// `goal.max_iterations` did not suffice.
     pub(crate) fn positions(
         &mut self,
         model: &SheetModel,
         matrix: &mut PrimalMatrix,
-        mut held: Option<Held<'_, '_>>,
+        mut contact: Option<RestorationContact<'_, '_>>,
         iterate: &mut Iterate,
-        aim: Aim<'_>,
+        goal: RestorationGoal<'_>,
         effort: &mut Effort,
     ) -> f64 {
-        let Aim {
-            tolerance,
-            max_iterations,
-            t,
-            loads,
-        } = aim;
-        let rods = model.rods();
+        let tolerance = goal.tolerance;
         // Where the sheet rests, what is left adds up from step to step.
-        let goal = if held.is_some() {
+        let target = if contact.is_some() {
             RESERVE * tolerance
         } else {
             tolerance
         };
-        let mut penalty = PROJECTION_PENALTY;
-        let mut opening = 1.0;
-        self.trail.clear();
-        // Every projection draws the same numbers, so that none depends on the ones before.
-        self.rng = ChaCha8Rng::seed_from_u64(0);
-        rods.residual_into(iterate.x(), &mut self.c);
-        for (i, c) in model.constraints().iter().enumerate() {
-            let pressed = loads.get(i).is_some_and(|l| l.x < 0.0);
-            self.vertex_rows.equality[i] = pressed || !c.is_one_sided();
-        }
-        self.vertex_rows.corrected.fill(false);
-        self.vertex_rows
-            .evaluate(model.constraints(), t, iterate.x());
+        let (mut penalty, mut opening) = (FIRST_PENALTY, 1.0);
+        self.begin(model, &goal, iterate);
         let mut strain = self.worst(model, iterate.x());
-        for _ in 0..max_iterations {
-            // The negation also stops at a strain that is not a number.
-            if strain <= goal || strain.is_nan() {
+        for _ in 0..goal.max_iterations {
+            if strain <= target || strain.is_nan() {
                 break;
             }
             effort.iterations += 1;
             effort.factorisations += 1;
-            for e in 0..rods.len() {
-                self.along[e] = penalty * self.unit[e];
-                self.w[e] = -self.along[e] * self.c[e];
-            }
-            self.across.fill(0.0);
-            let contact = held.as_ref().map(|h| &*h.contact);
-            if let Some(terms) = iterate.terms(contact)
-                && matrix.make_room(model, &terms).is_err()
-            {
-                break;
-            }
-            matrix.assemble(model, iterate.x(), &self.along, &self.across);
-            self.rhs.fill(0.0);
-            self.vertex_rows
-                .add_projection(penalty, &mut matrix.sink(model), &mut self.rhs);
-            if let Some(held) = &held
-                && let Some(terms) = iterate.terms(Some(held.contact))
-            {
-                matrix.add_contact(model, &terms, held.scale);
-                if self.trail.has_room() {
-                    self.contact_start.fill(0.0);
-                    terms.add_gradient(-held.scale, &mut self.contact_start);
+            match self.solve(model, matrix, contact.as_mut(), iterate, penalty) {
+                Solved::Yes => {}
+                Solved::PenaltyTooLarge if penalty > PENALTY_RANGE.0 => {
+                    penalty = (penalty * 1e-2).max(PENALTY_RANGE.0);
+                    continue;
                 }
+                Solved::PenaltyTooLarge | Solved::No => break,
             }
-            if matrix.factorize().is_err() {
-                if penalty <= PENALTY_RANGE.0 {
-                    break;
-                }
-                penalty = (penalty * 1e-2).max(PENALTY_RANGE.0);
-                continue;
-            }
-            rods.apply_transpose_add(iterate.x(), &self.w, &mut self.rhs);
-            matrix.solve(model, &self.rhs, &mut self.dx);
             let before = self.error(model);
             self.start.copy_from_slice(iterate.x());
-            let contact = held.as_mut().map(|h| &mut *h.contact);
-            let limit = iterate.safe_fraction(contact, &self.dx);
+            let geometry = contact.as_mut().map(|c| &mut *c.contact);
+            let limit = iterate.safe_fraction(geometry, &self.dx);
             if limit < SMALLEST_STEP {
                 // Contact is in the way; more pressure has to build up before.
                 break;
             }
-            let mut length = limit;
-            let after = loop {
-                for (i, xi) in iterate.x_mut().iter_mut().enumerate() {
-                    *xi = self.start[i] + length * self.dx[i];
-                }
-                rods.residual_into(iterate.x(), &mut self.c);
-                self.vertex_rows
-                    .evaluate(model.constraints(), t, iterate.x());
-                let after = self.error(model);
-                if after <= (1.0 - SUFFICIENT_DECREASE * length) * before || length < SMALLEST_STEP
-                {
-                    break after;
-                }
-                length *= 0.5;
-            };
-            self.keep_momentum(model, held.as_ref(), iterate);
+            let (length, after) = self.line_search(model, goal.t, iterate, limit, before);
+            self.keep_momentum(model, contact.as_ref(), iterate);
             if after > RESERVE * before && self.worst(model, iterate.x()) <= tolerance {
-                strain = self.worst(model, iterate.x());
-                break;
+                return self.worst(model, iterate.x());
             }
             if length < SMALLEST_STEP {
                 // Stationary, but not solved: the error lies across the range of G, which
                 // happens where a patch is flat and asks for a fold. A displacement of order
                 // sqrt(strain), in any direction, opens it.
-                penalty = PROJECTION_PENALTY;
+                penalty = FIRST_PENALTY;
                 let size = (opening * strain.sqrt()).min(LARGEST_OPENING);
-                self.unfold(model, held.as_mut(), iterate, size);
+                self.unfold(model, contact.as_mut(), iterate, size);
                 opening *= OPENING_GROWTH;
-                rods.residual_into(iterate.x(), &mut self.c);
-                self.vertex_rows
-                    .evaluate(model.constraints(), t, iterate.x());
+                self.evaluate(model, goal.t, iterate.x());
             } else if length < limit {
                 penalty *= 0.1;
             } else if limit == 1.0 && after > 0.1 * before {
@@ -229,6 +180,91 @@ impl Projector {
             strain = self.worst(model, iterate.x());
         }
         strain
+    }
+
+    /// Forgets earlier restorations and evaluates the constraints at the iterate.
+    fn begin(&mut self, model: &SheetModel, goal: &RestorationGoal<'_>, iterate: &Iterate) {
+        self.trail.clear();
+        // Every restoration draws the same numbers, so that none depends on the ones before.
+        self.rng = ChaCha8Rng::seed_from_u64(0);
+        for (i, c) in model.constraints().iter().enumerate() {
+            let is_loaded = goal.loads.get(i).is_some_and(|l| l.x < 0.0);
+            self.vertex_rows.equality[i] = is_loaded || !c.is_one_sided();
+        }
+        self.vertex_rows.corrected.fill(false);
+        self.evaluate(model, goal.t, iterate.x());
+    }
+
+    /// Evaluates the constraints.
+    fn evaluate(&mut self, model: &SheetModel, t: f64, x: &[f64]) {
+        model.rods().residual_into(x, &mut self.c);
+        self.vertex_rows.evaluate(model.constraints(), t, x);
+    }
+
+    /// Solves `(M + h^2 B'' + r G^T G) dx = -r G^T c`.
+    fn solve(
+        &mut self,
+        model: &SheetModel,
+        matrix: &mut PrimalMatrix,
+        contact: Option<&mut RestorationContact<'_, '_>>,
+        iterate: &mut Iterate,
+        penalty: f64,
+    ) -> Solved {
+        let rods = model.rods();
+        for e in 0..rods.len() {
+            self.along[e] = penalty * self.unit[e];
+            self.w[e] = -self.along[e] * self.c[e];
+        }
+        self.across.fill(0.0);
+        let geometry = contact.as_ref().map(|c| &*c.contact);
+        if let Some(terms) = iterate.terms(geometry)
+            && matrix.make_room(model, &terms).is_err()
+        {
+            return Solved::No;
+        }
+        matrix.assemble(model, iterate.x(), &self.along, &self.across);
+        self.rhs.fill(0.0);
+        self.vertex_rows
+            .add_projection(penalty, &mut matrix.sink(model), &mut self.rhs);
+        if let Some(contact) = contact
+            && let Some(terms) = iterate.terms(Some(contact.contact))
+        {
+            matrix.add_contact(model, &terms, contact.scale);
+            if self.trail.has_room() {
+                self.contact_start.fill(0.0);
+                terms.add_gradient(-contact.scale, &mut self.contact_start);
+            }
+        }
+        if matrix.factorize().is_err() {
+            return Solved::PenaltyTooLarge;
+        }
+        rods.apply_transpose_add(iterate.x(), &self.w, &mut self.rhs);
+        matrix.solve(model, &self.rhs, &mut self.dx);
+        Solved::Yes
+    }
+
+    /// Halves the step from `limit` on until the error decreases sufficiently; the part of the step and the error there.
+    fn line_search(
+        &mut self,
+        model: &SheetModel,
+        t: f64,
+        iterate: &mut Iterate,
+        limit: f64,
+        before: f64,
+    ) -> (f64, f64) {
+        let mut length = limit;
+        loop {
+            for (i, xi) in iterate.x_mut().iter_mut().enumerate() {
+                *xi = self.start[i] + length * self.dx[i];
+            }
+            self.evaluate(model, t, iterate.x());
+            let after = self.error(model);
+            let is_enough = after <= (1.0 - SUFFICIENT_DECREASE * length) * before;
+            if is_enough || length < SMALLEST_STEP {
+                return (length, after);
+            }
+            length *= 0.5;
+        }
     }
 
     /// Largest strain or relative violation of a vertex constraint, those being evaluated.
@@ -250,7 +286,7 @@ impl Projector {
     fn unfold(
         &mut self,
         model: &SheetModel,
-        held: Option<&mut Held<'_, '_>>,
+        held: Option<&mut RestorationContact<'_, '_>>,
         iterate: &mut Iterate,
         relative: f64,
     ) {
@@ -276,7 +312,7 @@ impl Projector {
     fn keep_momentum(
         &mut self,
         model: &SheetModel,
-        held: Option<&Held<'_, '_>>,
+        held: Option<&RestorationContact<'_, '_>>,
         iterate: &mut Iterate,
     ) {
         if !self.trail.has_room() {
@@ -319,12 +355,12 @@ impl Projector {
     ) -> f64 {
         let rods = model.rods();
         for e in 0..rods.len() {
-            self.along[e] = PROJECTION_PENALTY * self.unit[e];
+            self.along[e] = FIRST_PENALTY * self.unit[e];
         }
         self.across.fill(0.0);
         matrix.assemble(model, x, &self.along, &self.across);
         self.vertex_rows
-            .add_equalities(PROJECTION_PENALTY, &mut matrix.sink(model));
+            .add_equalities(FIRST_PENALTY, &mut matrix.sink(model));
         effort.factorisations += 1;
         if matrix.factorize().is_err() {
             return f64::INFINITY;
@@ -341,7 +377,7 @@ impl Projector {
             self.rhs.fill(0.0);
             let slip = self
                 .vertex_rows
-                .add_rates(PROJECTION_PENALTY, rates, v, &mut self.rhs);
+                .add_rates(FIRST_PENALTY, rates, v, &mut self.rhs);
             rate = rate.max(slip) / speed.max(f64::MIN_POSITIVE);
             if rate < 1e-15 {
                 break;
