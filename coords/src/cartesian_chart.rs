@@ -1,8 +1,10 @@
 //! A well-conditioned chart: Cartesian coordinates of well-chosen vertices.
 
-use crate::chart::{Chart, ChartError, RowPattern};
+use crate::chart::{Chart, ChartError};
 use crate::linearised::Linearised;
+use crate::newton::newton;
 use crate::realise::{check, check_length};
+use crate::row_pattern::RowPattern;
 use crate::select::{Selection, eliminate, exchange, pivoted_qr};
 use crate::system::RodSystem;
 use isosheet_mesh::VertexId;
@@ -163,7 +165,7 @@ impl Chart for CartesianChart {
         check("near", near, 3 * self.system.vertex_count())?;
         check_length("x", x.len(), near.len())?;
         x.copy_from_slice(near);
-        linear.newton(&self.system, self, q, x)?;
+        newton(self, linear, q, x)?;
         Ok(())
     }
 
@@ -173,8 +175,8 @@ impl Chart for CartesianChart {
         linear: &mut Linearised,
         x: &[f64],
     ) -> Result<DMatrix<f64>, ChartError> {
-        linear.factorize(system, self, x)?;
-        linear.jacobian()
+        self.linearise(system, linear, x)?;
+        Ok(linear.jacobian()?)
     }
 
     fn margin(&self, x: &[f64]) -> Result<f64, ChartError> {
@@ -204,8 +206,8 @@ impl Chart for CartesianChart {
         }
         self.take(independent);
         if choice == Choice::Exchange {
-            let mut linear = Linearised::new(&self.system, self)?;
-            linear.factorize(&self.system, self, x)?;
+            let mut linear = Linearised::new(&self.system, &self.pattern)?;
+            self.linearise(&self.system, &mut linear, x)?;
             let mut jacobian = linear.jacobian()?;
             let mut selection = self.selection.clone();
             exchange(&mut jacobian, &mut selection, EXCHANGE_BOUND);

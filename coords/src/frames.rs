@@ -5,7 +5,7 @@
 //! functions of the positions of the vertices they involve; gradients are exact and so is their
 //! rate along a velocity.
 
-use crate::placement::PlacementError;
+use crate::placement_error::PlacementError;
 use crate::vec3::{
     Scalar, Vec3, add, any_perpendicular, axpy, cross, dot, lift, neg, norm, scale, sub,
 };

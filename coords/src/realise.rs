@@ -10,10 +10,9 @@ pub use error::{AngleTriple, RealiseError};
 
 use crate::assignment::{Assignment, Rule};
 use crate::frames::{EdgeFrame, SphericalFrame};
-use crate::placement::{
-    Branch, PlacementError, branch_of, place_f, place_g, place_h, place_on_line,
-};
-use crate::vec3::{Vec3, cross, dot, norm, sub};
+use crate::placement::{Branch, branch_of, place_f, place_g, place_h, place_on_line};
+use crate::placement_error::PlacementError;
+use crate::vec3::{Vec3, at, cross, dot, norm, sub};
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
 
 /// Options of a [`FrontMap`].
@@ -128,7 +127,7 @@ impl FrontMap {
         let mut frames = Vec::with_capacity(self.assignment.order().len());
         for placing in self.assignment.order() {
             let v = placing.vertex;
-            let fail = |source| placement_error(v, &placing.rule, source);
+            let fail = |source| cannot_place(v, &placing.rule, source);
             frames.push(match placing.rule {
                 Rule::Pinned | Rule::Start { .. } | Rule::F { .. } => Frame::None,
                 Rule::H { known, .. } => {
@@ -212,7 +211,7 @@ impl FrontMap {
                 ) => {
                     q[k] = f
                         .coordinate([&at(x, a), &at(x, b), &p])
-                        .map_err(|s| placement_error(v, &placing.rule, s))?;
+                        .map_err(|s| cannot_place(v, &placing.rule, s))?;
                 }
                 _ => {}
             }
@@ -387,7 +386,7 @@ impl FrontMap {
                 height_squared,
             };
         }
-        placement_error(vertex, rule, source)
+        cannot_place(vertex, rule, source)
     }
 }
 
@@ -401,7 +400,7 @@ fn angle_from_lengths(a: f64, b: f64, c: f64) -> f64 {
     2.0 * top.max(0.0).sqrt().atan2(bottom.max(0.0).sqrt())
 }
 
-fn placement_error(vertex: VertexId, rule: &Rule, source: PlacementError) -> RealiseError {
+fn cannot_place(vertex: VertexId, rule: &Rule, source: PlacementError) -> RealiseError {
     RealiseError::Placement {
         vertex,
         known: rule.known().to_vec(),
@@ -420,11 +419,6 @@ fn farthest(p: &[Vec3<f64>; 3]) -> (usize, usize) {
     } else {
         (1, 2)
     }
-}
-
-pub(crate) fn at(x: &[f64], v: VertexId) -> Vec3<f64> {
-    let i = 3 * v.index();
-    [x[i], x[i + 1], x[i + 2]]
 }
 
 pub(crate) fn check_length(

@@ -16,7 +16,18 @@ pub(crate) struct Side {
     pub(crate) reversed: bool,
 }
 
-pub(crate) fn build(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Topology, TopologyError> {
+impl Topology {
+    /// Builds the adjacency of the triangles `faces`, each a triple of vertex indices below `vertex_count`.
+    ///
+    /// # Errors
+    /// A [`TopologyError`] when the faces are not an oriented surface that uses every vertex. Faces that are wound
+    /// inconsistently can be repaired first with [`orient_consistently`](crate::orient_consistently).
+    pub fn from_faces(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Self, TopologyError> {
+        build(vertex_count, faces)
+    }
+}
+
+fn build(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Topology, TopologyError> {
     check_faces(vertex_count, faces)?;
     let sides = sorted_sides(faces);
 

@@ -167,6 +167,7 @@ fn face_area(t: &Topology, x: &[f64], lengths: &[f64], f: FaceId) -> Result<f64,
             face: f,
             relative_altitude: 0.0,
             longest,
+            limit: Sheet::MIN_RELATIVE_ALTITUDE,
         });
     }
     if !LENGTH_RANGE.contains(&longest) {
@@ -183,6 +184,7 @@ fn face_area(t: &Topology, x: &[f64], lengths: &[f64], f: FaceId) -> Result<f64,
             face: f,
             relative_altitude,
             longest,
+            limit: Sheet::MIN_RELATIVE_ALTITUDE,
         });
     }
     Ok(0.5 * parallelogram)

@@ -1,6 +1,6 @@
 //! Which vertices, edges and faces meet where; no coordinates.
 
-use crate::{EdgeId, FaceId, HalfEdgeId, TopologyError, VertexId};
+use crate::{EdgeId, FaceId, HalfEdgeId, VertexId};
 
 /// The connectivity of an oriented triangulated surface, with or without boundary, of any number of components.
 ///
@@ -46,15 +46,6 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// Builds the adjacency of the triangles `faces`, each a triple of vertex indices below `vertex_count`.
-    ///
-    /// # Errors
-    /// A [`TopologyError`] when the faces are not an oriented surface that uses every vertex. Faces that are wound
-    /// inconsistently can be repaired first with [`orient_consistently`](crate::orient_consistently).
-    pub fn from_faces(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Self, TopologyError> {
-        crate::build::build(vertex_count, faces)
-    }
-
     /// The number of vertices V.
     #[inline]
     pub fn vertex_count(&self) -> usize {

@@ -1,10 +1,12 @@
 //! Sparse Cholesky factorisation of a symmetric positive definite matrix.
 
-use super::{LinalgError, Ordering, Pattern, elimination_order};
+use super::error::LinalgError;
+use super::ordering::{Ordering, elimination_order};
+use super::pattern::Pattern;
+use super::symbolic::{analyse, view};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::perm::PermRef;
-use faer::sparse::linalg::{SupernodalThreshold, cholesky as ch};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
+use faer::sparse::linalg::cholesky as ch;
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side};
 use std::num::NonZeroUsize;
 
@@ -218,40 +220,6 @@ impl Permuted {
         }
         SparseColMatRef::new(self.pattern.as_ref(), &self.values)
     }
-}
-
-pub(super) fn view(p: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
-    SymbolicSparseColMatRef::new_checked(p.rows(), p.cols(), p.col_ptr(), None, p.row_idx())
-}
-
-pub(super) fn analyse(
-    pattern: &Pattern,
-    order: Option<&[usize]>,
-) -> Result<ch::SymbolicCholesky<usize>, LinalgError> {
-    let n = pattern.cols();
-    let params = ch::CholeskySymbolicParams {
-        // faer's automatic choice takes the simplicial code too often: up to five times slower.
-        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-        ..Default::default()
-    };
-    let inverse: Vec<usize>;
-    let ordering = match order {
-        None => ch::SymmetricOrdering::Amd,
-        Some(forward) => {
-            let mut inv = vec![usize::MAX; n];
-            for (k, &i) in forward.iter().enumerate() {
-                inv[i] = k;
-            }
-            inverse = inv;
-            ch::SymmetricOrdering::Custom(PermRef::new_checked(forward, &inverse, n))
-        }
-    };
-    ch::factorize_symbolic_cholesky(view(pattern), Side::Lower, ordering, params).map_err(|e| {
-        LinalgError::Symbolic {
-            order: n,
-            reason: format!("{e:?}"),
-        }
-    })
 }
 
 #[cfg(test)]

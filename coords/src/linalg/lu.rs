@@ -1,7 +1,8 @@
 //! Sparse LU factorisation of a general square matrix.
 
-use super::llt::view;
-use super::{LinalgError, Pattern, norm_inf};
+use super::error::LinalgError;
+use super::pattern::{Pattern, norm_inf};
+use super::symbolic::view;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::{SupernodalThreshold, lu};

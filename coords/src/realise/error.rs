@@ -1,7 +1,7 @@
 //! Why a realisation fails.
 
 use crate::assignment::Closure;
-use crate::placement::PlacementError;
+use crate::placement_error::PlacementError;
 use isosheet_mesh::{EdgeId, VertexId};
 use thiserror::Error;
 
