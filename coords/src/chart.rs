@@ -85,7 +85,11 @@ pub enum ChartError {
     },
 }
 
-/// System coordinates of a rod system. See the module text for the notation.
+/// System coordinates of a rod system (Liu, Tang and Joneja 2007, Sec. 2.1).
+///
+/// A chart assigns n numbers q to a state x that has the right edge lengths, n the degrees of freedom. Its rows
+/// `s_k = dq_k/dx` form the sparse matrix S (n x unknowns); with the rows G of the length equations they make up the
+/// square matrix `A = [G; S]`, and `J = dx/dq = A^-1 [0; I]`.
 ///
 /// States x and velocities v are full slices, three values per vertex, with zero velocity at pinned
 /// vertices; entries of S refer to the unknowns of the [`crate::RodSystem`].
@@ -120,7 +124,7 @@ pub trait Chart: Send {
     /// `out = q1 - q0` with angles taken to (-pi, pi].
     fn difference(&self, q1: &[f64], q0: &[f64], out: &mut [f64]);
 
-    /// Positions with the right edge lengths and coordinates q, on the branch of the state `near`.
+    /// Positions with the right edge lengths and coordinates q (Eq. 4), on the branch of the state `near`.
     ///
     /// # Errors
     /// [`ChartError::Realise`] or [`ChartError::NotConverged`] when there is none near by.

@@ -46,13 +46,13 @@ pub struct Placed {
     pub height_squared: f64,
 }
 
-/// Rule h: the vertex at distance `length` from `known` in the direction with longitude `q[0]` and latitude `q[1]`.
+/// Rule h (Eq. 13): the vertex at distance `length` from `known` in the direction with longitude `q[0]` and latitude `q[1]`.
 #[must_use]
 pub fn place_h(known: &[f64; 3], length: f64, frame: &SphericalFrame, q: [f64; 2]) -> [f64; 3] {
     axpy(known, length, &frame.direction(q))
 }
 
-/// Rule g: the vertex at distances `lengths` from the two known vertices, turned by the angle `q`
+/// Rule g (Eq. 12): the vertex at distances `lengths` from the two known vertices, turned by the angle `q`
 /// about their line out of the carried reference direction of `frame`.
 ///
 /// The distance of the two known vertices is taken from their positions, so that the rule holds for
@@ -151,7 +151,7 @@ pub fn collinearity(known: [&[f64; 3]; 3]) -> f64 {
     area / (l[1] * l[2])
 }
 
-/// Rule f: the vertex at distances `lengths` from three known vertices.
+/// Rule f (Eq. 11): the vertex at distances `lengths` from three known vertices.
 ///
 /// The foot of the perpendicular in the plane of the three solves two linear equations (differences
 /// of squared lengths) and the height h is left from the first length. Flat states have `h = 0`, where rounding decides the sign of `h^2`: values within `tolerance`
@@ -219,13 +219,13 @@ pub fn branch_of(known: [&[f64; 3]; 3], position: &[f64; 3]) -> Branch {
 }
 
 /// A 3 x 3 derivative, row by row: entry `[i][j]` is the change of component i with input j.
-pub type Block = [[f64; 3]; 3];
+pub type PositionDerivative = [[f64; 3]; 3];
 
 /// First derivatives of rule h.
 #[derive(Clone, Copy, Debug)]
 pub struct JacobianH {
     /// With respect to the known vertex.
-    pub known: Block,
+    pub known: PositionDerivative,
     /// With respect to longitude and latitude, metres per radian.
     pub q: [[f64; 3]; 2],
 }
@@ -234,16 +234,16 @@ pub struct JacobianH {
 #[derive(Clone, Copy, Debug)]
 pub struct JacobianG {
     /// With respect to the two known vertices.
-    pub known: [Block; 2],
+    pub known: [PositionDerivative; 2],
     /// With respect to the angle, metres per radian.
     pub q: [f64; 3],
 }
 
 /// First derivatives of rule f, with respect to the three known vertices.
-pub type JacobianF = [Block; 3];
+pub type JacobianF = [PositionDerivative; 3];
 
 /// `column k of inv` times `row`.
-fn outer(inv: &Block, k: usize, row: &[f64; 3]) -> Block {
+fn outer(inv: &PositionDerivative, k: usize, row: &[f64; 3]) -> PositionDerivative {
     let mut b = [[0.0; 3]; 3];
     for i in 0..3 {
         for j in 0..3 {
@@ -253,15 +253,15 @@ fn outer(inv: &Block, k: usize, row: &[f64; 3]) -> Block {
     b
 }
 
-fn plus(a: &Block, b: &Block) -> Block {
+fn plus(a: &PositionDerivative, b: &PositionDerivative) -> PositionDerivative {
     [add(&a[0], &b[0]), add(&a[1], &b[1]), add(&a[2], &b[2])]
 }
 
-fn column(inv: &Block, k: usize) -> [f64; 3] {
+fn column(inv: &PositionDerivative, k: usize) -> [f64; 3] {
     [inv[0][k], inv[1][k], inv[2][k]]
 }
 
-/// Derivatives of [`place_h`] at a placed vertex.
+/// Derivatives of [`place_h`] at a placed vertex, the coefficients of Eq. 15.
 ///
 /// # Errors
 /// [`PlacementError::Pole`] at a pole of the frame.
@@ -284,7 +284,7 @@ pub fn jacobian_h(
     })
 }
 
-/// Derivatives of [`place_g`] at a placed vertex.
+/// Derivatives of [`place_g`] at a placed vertex, the coefficients of Eq. 15.
 ///
 /// # Errors
 /// [`PlacementError::Flat`] when the vertex lies on the line of the known ones, and the errors of [`EdgeFrame::gradient`].
@@ -307,7 +307,7 @@ pub fn jacobian_g(
     })
 }
 
-/// Derivatives of [`place_f`] at a placed vertex.
+/// Derivatives of [`place_f`] at a placed vertex, the coefficients of Eq. 15.
 ///
 /// # Errors
 /// [`PlacementError::Flat`] when the four vertices are coplanar: the two mirror images meet there

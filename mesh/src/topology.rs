@@ -88,7 +88,7 @@ impl Topology {
         self.edge_count() - self.boundary_edge_count
     }
 
-    /// chi = V - E + F: 1 for a disk, 0 for an annulus, 2 for a sphere, the sum over the components of several.
+    /// chi = V - E + F (Liu, Tang and Joneja 2007, Eq. 9): 1 for a disk, 0 for an annulus, 2 for a sphere, the sum over the components of several.
     #[inline]
     pub fn euler_characteristic(&self) -> i64 {
         self.vertex_count() as i64 - self.edge_count() as i64 + self.face_count() as i64

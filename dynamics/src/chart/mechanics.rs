@@ -180,7 +180,7 @@ impl ChartMechanics {
         Ok(())
     }
 
-    /// Velocities of the coordinates, `qdot = dH/dp = C^-1 p` (Eq. 18), and of the vertices, `v = J qdot`.
+    /// Velocities of the coordinates, `qdot = dH/dp = C^-1 p` (Eq. 18), and of the vertices, `v = J qdot` (Eq. 5).
     ///
     /// # Errors
     /// [`ChartDynamicsError::SingularMass`], [`ChartDynamicsError::Chart`].
@@ -214,7 +214,7 @@ impl ChartMechanics {
         Ok(0.5 * twice + self.model.potential_energy(t, x))
     }
 
-    /// `pdot = -dH/dq + Q` at (x, p), with v the velocities of the vertices that belong to p.
+    /// `pdot = -dH/dq + Q` (Eqs. 19 and 22) at (x, p), with v the velocities of the vertices that belong to p.
     ///
     /// With `A^T [mu; p] = M v` the velocity-squared term is
     ///
