@@ -296,7 +296,7 @@ impl EdgeFrame {
 
     /// Cosine of the angle between the reference edge and the current one. The frame is singular at -1.
     #[must_use]
-    pub fn alignment(&self, v1: &[f64; 3], v2: &[f64; 3]) -> f64 {
+    pub(crate) fn alignment(&self, v1: &[f64; 3], v2: &[f64; 3]) -> f64 {
         let e = sub(v2, v1);
         dot(&self.axis, &e) / norm(&e)
     }

@@ -6,14 +6,14 @@
 
 mod error;
 
-pub use error::{AngleTriple, RealiseError};
+pub use error::RealiseError;
 
 use crate::assignment::{Assignment, Placing, Rule};
 use crate::frames::{EdgeFrame, SphericalFrame};
 use crate::placement::{Branch, branch_of, place_f, place_g, place_h, place_on_line};
 use crate::placement_error::PlacementError;
 use crate::vec3::{Vec3, at, cross, dot, norm, sub};
-use isosheet_mesh::{EdgeId, Sheet, VertexId};
+use isosheet_mesh::{AngleTriple, EdgeId, Sheet, VertexId, angle_from_lengths};
 
 /// Options of a [`FrontMap`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -161,7 +161,7 @@ impl FrontMap {
     ///
     /// # Errors
     /// [`RealiseError::WrongLength`], [`RealiseError::NotFinite`].
-    pub fn frame_margin(&self, x: &[f64]) -> Result<f64, RealiseError> {
+    pub(crate) fn frame_margin(&self, x: &[f64]) -> Result<f64, RealiseError> {
         check("x", x, self.rest.len())?;
         let mut margin: f64 = 2.0;
         for (placing, frame) in self.assignment.order().iter().zip(&self.frames) {
@@ -411,16 +411,6 @@ impl FrontMap {
         }
         cannot_place(vertex, rule, source)
     }
-}
-
-/// Angle between the sides `a` and `b` of a triangle whose third side is `c` (Kahan's form, accurate
-/// for needles).
-fn angle_from_lengths(a: f64, b: f64, c: f64) -> f64 {
-    let (a, b) = (a.max(b), a.min(b));
-    let mu = if b >= c { c - (a - b) } else { b - (a - c) };
-    let top = ((a - b) + c) * mu;
-    let bottom = (a + (b + c)) * ((a - c) + b);
-    2.0 * top.max(0.0).sqrt().atan2(bottom.max(0.0).sqrt())
 }
 
 fn cannot_place(vertex: VertexId, rule: &Rule, source: PlacementError) -> RealiseError {

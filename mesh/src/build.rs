@@ -7,7 +7,7 @@ const MAX_ELEMENTS: usize = (u32::MAX / 6) as usize;
 
 /// One side of a face: the edge it lies on, by sorted ends, and where it comes from.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Side {
+pub(crate) struct FaceSide {
     pub(crate) low: u32,
     pub(crate) high: u32,
     pub(crate) face: u32,
@@ -156,12 +156,12 @@ pub(crate) fn check_faces(vertex_count: usize, faces: &[[u32; 3]]) -> Result<(),
 }
 
 /// All sides of all faces, sorted by their edge, so that the sides of one edge are neighbours.
-pub(crate) fn sorted_sides(faces: &[[u32; 3]]) -> Vec<Side> {
+pub(crate) fn sorted_sides(faces: &[[u32; 3]]) -> Vec<FaceSide> {
     let mut sides = Vec::with_capacity(3 * faces.len());
     for (k, f) in faces.iter().enumerate() {
         for corner in 0..3 {
             let (a, b) = (f[corner], f[(corner + 1) % 3]);
-            sides.push(Side {
+            sides.push(FaceSide {
                 low: a.min(b),
                 high: a.max(b),
                 face: k as u32,

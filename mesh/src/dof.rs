@@ -119,7 +119,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::generate::{self, Pattern, split_faces};
+    use crate::generate::{self, FaceSplit, split_faces};
     use crate::testing::{disks, octahedron, surfaces, torus};
     use crate::{LengthConstraints, Sheet};
 
@@ -244,9 +244,9 @@ mod tests {
             let t = topology(&soup);
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let n = t.vertex_count() + t.edge_count();
-            let split = Topology::from_faces(n, &split_faces(&t, |_| Pattern::OneToFour)).unwrap();
+            let split = Topology::from_faces(n, &split_faces(&t, |_| FaceSplit::OneToFour)).unwrap();
             let pick: Vec<usize> = t.face_ids().map(|_| rng.random_range(0..3)).collect();
-            let bisected = Topology::from_faces(n, &split_faces(&t, |f| Pattern::Bisect(pick[f]))).unwrap();
+            let bisected = Topology::from_faces(n, &split_faces(&t, |f| FaceSplit::Bisect(pick[f]))).unwrap();
             for fine in [split, bisected] {
                 fine.check_invariants();
                 prop_assert_eq!(Dof::of(&fine).total, Dof::of(&t).total + t.boundary_edge_count() as i64);

@@ -13,14 +13,14 @@ pub enum Degenerate {
     /// coordinates does not depend on the state; derivatives do not exist at the degenerate state itself.
     #[default]
     Carry,
-    /// Assign one coordinate ([`Rule::Turn`]) and keep the third edge as a closure, which makes another
+    /// Assign one coordinate ([`Rule::Turn`](super::Rule::Turn)) and keep the third edge as a closure, which makes another
     /// coordinate dependent. Needed wherever a crease line stays straight while the sheet folds along
     /// it: in the union-jack squares every inner vertex of degree 4 keeps one of its two crease lines
     /// straight at any state with the right lengths, and rule f is singular for one of the two choices.
     Assign,
 }
 
-/// Options of [`assign`].
+/// Options of [`assign`](super::assign).
 #[derive(Clone, Debug)]
 pub struct AssignmentOptions {
     /// Vertices held in place; default none.
