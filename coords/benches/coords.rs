@@ -43,7 +43,8 @@ fn placement(c: &mut Criterion) {
         map.coordinates(&bent, &mut q).expect("defined");
         let mut x = bent.clone();
         group.bench_function(BenchmarkId::new("realise", size), |b| {
-            // From 289/512 on round-off ends many of these placements: an answer too, at the same price up to there.
+            // From 289/512 on many of these realisations fail because of round-off; then the time up to the
+            // failure is measured.
             b.iter(|| {
                 black_box(
                     map.realise(black_box(&q), Guide::Near(&bent), &mut x)

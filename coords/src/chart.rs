@@ -3,8 +3,8 @@
 //! A chart assigns n numbers q to a state x that has the right edge lengths, n the degrees of
 //! freedom. Its rows `s_k = dq_k/dx` form the sparse matrix S (n x unknowns); with the rows of
 //! the length equations they make up the square matrix `A = [G; S]`, and `J = dx/dq = A^-1 [0; I]`.
-//! Nothing else is needed for dynamics, so a chart is a small thing: rows, their rate along a
-//! velocity, coordinates, and a way back to positions.
+//! Dynamics needs nothing else: a [`Chart`] gives its rows, their rate along a velocity, the values of its
+//! coordinates, and positions from these values.
 
 use crate::assignment::AssignmentError;
 use crate::linalg::LinalgError;
@@ -87,9 +87,9 @@ pub enum ChartError {
 
 /// System coordinates of a rod system (Liu, Tang and Joneja 2007, Sec. 2.1).
 ///
-/// A chart assigns n numbers q to a state x that has the right edge lengths, n the degrees of freedom. Its rows
-/// `s_k = dq_k/dx` form the sparse matrix S (n x unknowns); with the rows G of the length equations they make up the
-/// square matrix `A = [G; S]`, and `J = dx/dq = A^-1 [0; I]`.
+/// A chart assigns n numbers q to a state x that has the right edge lengths, n the degrees of freedom. Its
+/// rows `s_k = dq_k/dx` form the sparse matrix S (n x unknowns); with the rows G of the length equations they
+/// make up the square matrix `A = [G; S]`, and `J = dx/dq = A^-1 [0; I]`.
 ///
 /// States x and velocities v are full slices, three values per vertex, with zero velocity at pinned
 /// vertices; entries of S refer to the unknowns of the [`crate::RodSystem`].

@@ -196,7 +196,7 @@ pub struct ConditionRow {
 }
 
 /// Condition numbers of the mass matrix for three charts on bent union-jack squares of side 1 with
-/// lumped masses: what choosing coordinates by fronts costs, and what choosing them well saves.
+/// lumped masses, which compares coordinates assigned by fronts with selected Cartesian ones.
 ///
 /// # Errors
 /// [`ChartError`] when a chart is singular, which these states do not cause.

@@ -14,7 +14,7 @@ use num_dual::{Dual64, DualNum};
 /// Below this value of `1 + a . b` two unit vectors count as antiparallel.
 ///
 /// The aligning rotation turns about `a x b`, whose length is about `sqrt(2 (1 + a . b))`; at 1e-12
-/// the axis still has nine correct digits, below that it fades into rounding.
+/// the axis still has nine correct digits; below that it is dominated by rounding.
 const ANTIPARALLEL: f64 = 1e-12;
 
 /// Relative size below which a length that must not vanish counts as zero.

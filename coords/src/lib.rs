@@ -19,8 +19,8 @@
 //! ([`RodSystem`]). Sparse direct solvers over fixed patterns are in [`linalg`].
 //!
 //! ```
-//! use isosheet_coords::{Chart, CartesianChart, Choice, Linearised, RodSystem, Start, sys_coord_assnmt_single};
-//! use isosheet_coords::{BentState, bent_square};
+//! use isosheet_coords::{BentState, CartesianChart, Chart, Choice, Linearised, RodSystem, Start};
+//! use isosheet_coords::{bent_square, sys_coord_assnmt_single};
 //! use isosheet_mesh::{VertexId, generate};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

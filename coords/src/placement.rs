@@ -46,7 +46,8 @@ pub struct Placed {
     pub height_squared: f64,
 }
 
-/// Rule h (Eq. 13): the vertex at distance `length` from `known` in the direction with longitude `q[0]` and latitude `q[1]`.
+/// Rule h (Eq. 13): the vertex at distance `length` from `known` in the direction with longitude `q[0]` and
+/// latitude `q[1]`.
 #[must_use]
 pub fn place_h(known: &[f64; 3], length: f64, frame: &SphericalFrame, q: [f64; 2]) -> [f64; 3] {
     axpy(known, length, &frame.direction(q))
@@ -153,10 +154,11 @@ pub fn collinearity(known: [&[f64; 3]; 3]) -> f64 {
 
 /// Rule f (Eq. 11): the vertex at distances `lengths` from three known vertices.
 ///
-/// The foot of the perpendicular in the plane of the three solves two linear equations (differences
-/// of squared lengths) and the height h is left from the first length. Flat states have `h = 0`, where rounding decides the sign of `h^2`: values within `tolerance`
-/// of zero, relative to the squared first length, count as zero, which costs at most `tolerance / 2`
-/// of relative length. Below that the state violates Eq. 10 and is refused.
+/// The foot of the perpendicular in the plane of the three solves two linear equations (differences of
+/// squared lengths) and the height h is left from the first length. Flat states have `h = 0`, where rounding
+/// decides the sign of `h^2`: values within `tolerance` of zero, relative to the squared first length, count
+/// as zero, which costs at most `tolerance / 2` of relative length. Below that the state violates Eq. 10 and
+/// is refused.
 ///
 /// # Errors
 /// [`PlacementError::Collinear`] in the case of Fig. 7, see [`COLLINEAR`];
@@ -287,7 +289,8 @@ pub fn jacobian_h(
 /// Derivatives of [`place_g`] at a placed vertex, the coefficients of Eq. 15.
 ///
 /// # Errors
-/// [`PlacementError::Flat`] when the vertex lies on the line of the known ones, and the errors of [`EdgeFrame::gradient`].
+/// [`PlacementError::Flat`] when the vertex lies on the line of the known ones, and the errors of
+/// [`EdgeFrame::gradient`].
 pub fn jacobian_g(
     known: [&[f64; 3]; 2],
     frame: &EdgeFrame,

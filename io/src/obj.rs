@@ -1,7 +1,7 @@
 //! Reading Wavefront OBJ files.
 //!
-//! The reader is our own because a sheet needs what general readers do not keep: the numbering of the vertices (scenes hold
-//! "vertex 0"), vertices shared between groups, all digits, and the line of an error.
+//! This crate has its own reader because a sheet needs what general readers do not keep: the numbering of the
+//! vertices (scenes hold "vertex 0"), vertices shared between groups, all digits, and the line of an error.
 
 use std::path::{Path, PathBuf};
 
@@ -16,8 +16,9 @@ pub enum Polygons {
     /// Refuse the file. A polygon's diagonals would be creases that its author did not draw.
     #[default]
     Refuse,
-    /// Cut each polygon into triangles from that one of its corners which sees all others and needs the shortest cuts
-    /// (so a quad is cut along its shorter diagonal). [`ObjMesh::polygons`] tells how many there were.
+    /// Cut each polygon into triangles from that one of its corners which sees all others and needs the
+    /// shortest cuts (so a quad is cut along its shorter diagonal). [`ObjMesh::polygons`] tells how many
+    /// there were.
     Triangulate,
 }
 
@@ -46,7 +47,8 @@ impl ObjMesh {
         self.positions.len() / 3
     }
 
-    /// Removes vertices that belong to no face and renumbers the rest in order; returns how many were removed.
+    /// Removes vertices that belong to no face and renumbers the rest in order; returns how many were
+    /// removed.
     pub fn drop_unreferenced(&mut self) -> usize {
         let mut used = vec![false; self.vertex_count()];
         for &v in self.faces.iter().flatten() {
@@ -87,8 +89,9 @@ impl ObjMesh {
 
 /// Reads the vertices and faces of an OBJ file.
 ///
-/// Understood: `v`, `f` (indices from 1, or negative and counted backwards; texture and normal indices are skipped), line
-/// continuation by a backslash, comments. Groups, objects, materials, normals, texture coordinates, colours, lines and points are skipped.
+/// Understood: `v`, `f` (indices from 1, or negative and counted backwards; texture and normal indices are
+/// skipped), line continuation by a backslash, comments. Groups, objects, materials, normals, texture
+/// coordinates, colours, lines and points are skipped.
 ///
 /// # Errors
 /// [`ObjError`] with file, line and what is wrong.
@@ -101,7 +104,8 @@ pub fn read_obj(path: &Path, options: &ObjOptions) -> Result<ObjMesh, ObjError> 
     parse_obj(&bytes, path, options)
 }
 
-/// Reads a sheet from an OBJ file with default options: triangles only, an oriented surface that uses every vertex.
+/// Reads a sheet from an OBJ file with default options: triangles only, an oriented surface that uses every
+/// vertex.
 ///
 /// # Errors
 /// [`ObjError`] with file, line and what is wrong.

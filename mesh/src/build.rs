@@ -20,8 +20,8 @@ impl Topology {
     /// Builds the adjacency of the triangles `faces`, each a triple of vertex indices below `vertex_count`.
     ///
     /// # Errors
-    /// A [`TopologyError`] when the faces are not an oriented surface that uses every vertex. Faces that are wound
-    /// inconsistently can be repaired first with [`orient_consistently`](crate::orient_consistently).
+    /// A [`TopologyError`] when the faces are not an oriented surface that uses every vertex. Faces that are
+    /// wound inconsistently can be repaired first with [`orient_consistently`](crate::orient_consistently).
     pub fn from_faces(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Self, TopologyError> {
         build(vertex_count, faces)
     }

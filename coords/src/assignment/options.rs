@@ -1,4 +1,4 @@
-//! What an assignment may be told.
+//! Options of an assignment.
 
 use isosheet_mesh::VertexId;
 
@@ -13,9 +13,9 @@ pub enum Degenerate {
     /// coordinates does not depend on the state; derivatives do not exist at the degenerate state itself.
     #[default]
     Carry,
-    /// Assign one coordinate ([`Rule::Turn`](super::Rule::Turn)) and keep the third edge as a closure, which makes another
-    /// coordinate dependent. Needed wherever a crease line stays straight while the sheet folds along
-    /// it: in the union-jack squares every inner vertex of degree 4 keeps one of its two crease lines
+    /// Assign one coordinate ([`Rule::Turn`](super::Rule::Turn)) and keep the third edge as a closure, which
+    /// makes another coordinate dependent. Needed wherever a crease line stays straight while the sheet folds
+    /// along it: in the union-jack squares every inner vertex of degree 4 keeps one of its two crease lines
     /// straight at any state with the right lengths, and rule f is singular for one of the two choices.
     Assign,
 }
@@ -32,8 +32,8 @@ pub struct AssignmentOptions {
     pub degenerate: Degenerate,
     /// With [`Degenerate::Assign`], volume spanned by the unit vectors along the three edges below which
     /// rule f is given up. Default 0.2 (a fold of about 12 degrees): the rule with a closure is
-    /// valid away from the degenerate state as well and better conditioned near it, and with less an
-    /// explicit step easily runs past the turning point of a vertex.
+    /// valid away from the degenerate state as well and better conditioned near it. With a smaller volume an
+    /// explicit step easily passes the turning point of a vertex.
     pub volume: f64,
 }
 

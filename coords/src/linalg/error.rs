@@ -28,7 +28,7 @@ pub enum LinalgError {
     Symbolic {
         /// Order of the matrix.
         order: usize,
-        /// faer's own words.
+        /// The reason that faer gives.
         reason: String,
     },
 }

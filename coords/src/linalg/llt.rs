@@ -31,8 +31,8 @@ impl SparseLlt {
         Self::with_ordering(pattern, None)
     }
 
-    /// Analyses the lower-triangular `pattern` of unknowns that come in groups of `block`, as the three coordinates
-    /// of a vertex do, in the [best](Ordering::Best) order known for it.
+    /// Analyses the lower-triangular `pattern` of unknowns that come in groups of `block`, as the three
+    /// coordinates of a vertex do, in the [best](Ordering::Best) order known for it.
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
@@ -105,9 +105,10 @@ impl SparseLlt {
         result
     }
 
-    /// As [`SparseLlt::factorize`], with the dense blocks shared among threads: the same bits. Nothing here uses it, because it does
-    /// not pay: on two idle cores it takes as long on matrices of 867 unknowns and 1.3 to 3 times as long on those of 3267 to
-    /// 198 147, whose supernodes are too narrow to share. (`cargo xtask scale` measures it.)
+    /// As [`SparseLlt::factorize`], with the dense blocks shared among threads: the same bits. Nothing here
+    /// uses it, because it does not pay: on two idle cores it takes as long on matrices of 867 unknowns and
+    /// 1.3 to 3 times as long on those of 3267 to 198 147, whose supernodes are too narrow to share.
+    /// (`cargo xtask scale` measures it.)
     ///
     /// # Errors
     /// As [`SparseLlt::factorize`].
@@ -176,8 +177,8 @@ impl SparseLlt {
     }
 }
 
-/// The lower triangle in elimination order. faer permutes a matrix anew before each factorisation, a tenth of the time of small
-/// ones; here its values are gathered.
+/// The lower triangle in elimination order. faer permutes a matrix anew before each factorisation, a tenth of
+/// the time of small ones; here its values are gathered.
 struct Permuted {
     pattern: SymbolicSparseColMat<usize>,
     /// Place of each value in the pattern that was given.

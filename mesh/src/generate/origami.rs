@@ -75,17 +75,18 @@ impl FoldPattern {
     }
 }
 
-/// Miura's pattern, flat: `columns` x `rows` parallelograms with sides `straight` and `zigzag` (metres) and the acute angle
-/// `angle` (radians) between them, each cut in two along its shorter diagonal.
+/// Miura's pattern, flat: `columns` x `rows` parallelograms with sides `straight` and `zigzag` (metres) and
+/// the acute angle `angle` (radians) between them, each cut in two along its shorter diagonal.
 ///
-/// Vertex (i, j) has the index i + j (columns + 1). Its straight creases run along y from (i, j) to (i, j + 1), its zigzag
-/// creases from (i, j) to (i + 1, j), where odd i lie `zigzag cos(angle)` further along y. Zigzag j is a valley for even j and
-/// a mountain for odd j; the straight crease from (i, j) folds like zigzag j if i is odd and the other way if i is even
-/// (Miura, *Method of packaging and deployment of large membranes in space*, 1985).
+/// Vertex (i, j) has the index i + j (columns + 1). Its straight creases run along y from (i, j) to (i, j +
+/// 1), its zigzag creases from (i, j) to (i + 1, j), where odd i lie `zigzag cos(angle)` further along y.
+/// Zigzag j is a valley for even j and a mountain for odd j; the straight crease from (i, j) folds like
+/// zigzag j if i is odd and the other way if i is even (Miura, *Method of packaging and deployment of large
+/// membranes in space*, 1985).
 ///
 /// # Errors
-/// [`GenerateError`] for a count of zero, a length that is not positive, an angle that is not between 0 and pi/2, or
-/// too many faces.
+/// [`GenerateError`] for a count of zero, a length that is not positive, an angle that is not between 0 and
+/// pi/2, or too many faces.
 pub fn miura(
     columns: usize,
     rows: usize,
@@ -135,15 +136,16 @@ pub fn miura(
     Ok(FoldPattern::new(sheet, &creases))
 }
 
-/// A vertex of degree four whose sectors `a1, a2, pi - a1, pi - a2` allow it to fold flat (Kawasaki), with rigid triangles
-/// of the given radius (metres): vertex 0 in the middle, vertex k at the end of crease k for k = 1 to 4, crease 1 along x.
+/// A vertex of degree four whose sectors `a1, a2, pi - a1, pi - a2` allow it to fold flat (Kawasaki), with
+/// rigid triangles of the given radius (metres): vertex 0 in the middle, vertex k at the end of crease k for
+/// k = 1 to 4, crease 1 along x.
 ///
-/// Such a vertex has one degree of freedom and two ways to fold from the flat state, which the assignment of the
-/// creases tells apart: creases 2 and 4 alike or creases 1 and 3 alike, and the other two unlike.
+/// Such a vertex has one degree of freedom and two ways to fold from the flat state, which the assignment of
+/// the creases tells apart: creases 2 and 4 alike or creases 1 and 3 alike, and the other two unlike.
 ///
 /// # Errors
-/// [`GenerateError`] for angles that are not between 0 and pi, a radius that is not positive, or an assignment that is
-/// not three of a kind and one of the other (Maekawa).
+/// [`GenerateError`] for angles that are not between 0 and pi, a radius that is not positive, or an
+/// assignment that is not three of a kind and one of the other (Maekawa).
 pub fn degree_four(
     sectors: [f64; 2],
     radius: f64,

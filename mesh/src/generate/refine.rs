@@ -12,10 +12,12 @@ pub(crate) enum FaceSplit {
     Bisect(usize),
 }
 
-/// The 1-4 split of Liu, Tang and Joneja 2007, Fig. 1: every edge is halved and the midpoints of each face are joined.
+/// The 1-4 split of Liu, Tang and Joneja 2007, Fig. 1: every edge is halved and the midpoints of each face
+/// are joined.
 ///
-/// Vertex V + e of the result is the midpoint of edge e; faces 4f to 4f + 3 replace face f, the last being the middle
-/// one. V' = V + E, E' = 2E + 3F, F' = 4F. All four parts are similar to the face, so a one-way pattern stays one.
+/// Vertex V + e of the result is the midpoint of edge e; faces 4f to 4f + 3 replace face f, the last being
+/// the middle one. V' = V + E, E' = 2E + 3F, F' = 4F. All four parts are similar to the face, so a one-way
+/// pattern stays one.
 ///
 /// # Errors
 /// [`GenerateError::TooManyFaces`].
@@ -23,12 +25,14 @@ pub fn split_1_4(sheet: &Sheet) -> Result<Sheet, GenerateError> {
     split(sheet, |_| FaceSplit::OneToFour)
 }
 
-/// Refinement that carries the isotropic square M^k to M^(k+1) (Liu, Tang and Joneja 2007, Fig. 4), for any sheet.
+/// Refinement that carries the isotropic square M^k to M^(k+1) (Liu, Tang and Joneja 2007, Fig. 4), for any
+/// sheet.
 ///
-/// Every edge is halved; in each face the midpoint of the longest edge is joined to the opposite corner and to the other
-/// two midpoints, which is bisecting the face and then both halves. The counts are those of [`split_1_4`], but
-/// every old vertex now has twice its degree, because a crease runs from it into every face around it. Where two edges of
-/// a face have the same length within 1e-9, the lower edge index counts as the longer.
+/// Every edge is halved; in each face the midpoint of the longest edge is joined to the opposite corner and
+/// to the other two midpoints, which is bisecting the face and then both halves. The counts are those of
+/// [`split_1_4`], but every old vertex now has twice its degree, because a crease runs from it into every
+/// face around it. Where two edges of a face have the same length within 1e-9, the lower edge index counts as
+/// the longer.
 ///
 /// # Errors
 /// [`GenerateError::TooManyFaces`].
