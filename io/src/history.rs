@@ -30,8 +30,8 @@ pub struct HistoryRow {
     pub drift: f64,
     /// Largest relative change of an edge length.
     pub strain: f64,
-    /// Smallest distance between surfaces that could come into contact, in metres; empty in the file for a run
-    /// without contact.
+    /// Smallest distance between surfaces that could come into contact, in metres; empty in the file for a
+    /// run without contact.
     pub gap: Option<f64>,
 }
 
