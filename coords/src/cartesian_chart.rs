@@ -1,8 +1,10 @@
 //! A well-conditioned chart: Cartesian coordinates of well-chosen vertices.
 
-use crate::chart::{Chart, ChartError, RowPattern};
+use crate::chart::{Chart, ChartError};
 use crate::linearised::Linearised;
+use crate::newton::newton;
 use crate::realise::{check, check_length};
+use crate::row_pattern::RowPattern;
 use crate::select::{Selection, eliminate, exchange, pivoted_qr};
 use crate::system::RodSystem;
 use isosheet_mesh::VertexId;
@@ -31,10 +33,10 @@ pub enum Choice {
     /// Dense QR factorisation of G with column pivoting: the pivot columns are the dependent
     /// unknowns, the others the coordinates. Cubic in the number of unknowns.
     PivotedQr,
-    /// Sparse elimination of G^T with partial pivoting for a first choice, then exchanges of one
-    /// coordinate for one dependent unknown while an entry of J = dx/dq is larger than 1.2 (a
-    /// volume-maximising basis). The exchanges are few; they turn what elimination usually finds into
-    /// a bound that always holds. Needs J, unknowns x n, dense.
+    /// Sparse elimination of G^T with partial pivoting for a first choice, then exchanges of one coordinate
+    /// for one dependent unknown while an entry of J = dx/dq is larger than 1.2 (a volume-maximising basis).
+    /// The elimination alone usually satisfies this bound but does not guarantee it; few exchanges are
+    /// needed. Forms J, unknowns x n, as a dense matrix.
     Exchange,
     /// The sparse elimination alone.
     Elimination,
@@ -46,12 +48,12 @@ const DENSE_LIMIT: usize = 300;
 /// Largest size of J (entries) for which [`Choice::Auto`] forms it; 256 MB.
 const EXCHANGE_LIMIT: usize = 32_000_000;
 
-/// Exchanges stop when no entry of J is larger. At 1 they would go on for round-off; at 1.2 every
+/// Exchanges stop when no entry of J is larger. At 1 round-off would cause endless exchanges; at 1.2 every
 /// exchange grows the volume by a fifth, so that their number is bounded by a multiple of n.
 const EXCHANGE_BOUND: f64 = 1.2;
 
-/// Chart of n of the free unknowns, selected at a reference state so that the others depend on them
-/// gently.
+/// Chart of n of the free unknowns, selected at a reference state so that the derivatives of the others with
+/// respect to them are small.
 ///
 /// The coordinates are values in metres; rows of S are unit rows and do not change. Positions are found
 /// by Newton's method on `[c(x); S x - q]`. The selection serves a neighbourhood of its reference state;
@@ -163,7 +165,7 @@ impl Chart for CartesianChart {
         check("near", near, 3 * self.system.vertex_count())?;
         check_length("x", x.len(), near.len())?;
         x.copy_from_slice(near);
-        linear.newton(&self.system, self, q, x)?;
+        newton(self, linear, q, x)?;
         Ok(())
     }
 
@@ -173,8 +175,8 @@ impl Chart for CartesianChart {
         linear: &mut Linearised,
         x: &[f64],
     ) -> Result<DMatrix<f64>, ChartError> {
-        linear.factorize(system, self, x)?;
-        linear.jacobian()
+        self.linearise(system, linear, x)?;
+        Ok(linear.jacobian()?)
     }
 
     fn margin(&self, x: &[f64]) -> Result<f64, ChartError> {
@@ -204,8 +206,8 @@ impl Chart for CartesianChart {
         }
         self.take(independent);
         if choice == Choice::Exchange {
-            let mut linear = Linearised::new(&self.system, self)?;
-            linear.factorize(&self.system, self, x)?;
+            let mut linear = Linearised::new(&self.system, &self.pattern)?;
+            self.linearise(&self.system, &mut linear, x)?;
             let mut jacobian = linear.jacobian()?;
             let mut selection = self.selection.clone();
             exchange(&mut jacobian, &mut selection, EXCHANGE_BOUND);

@@ -3,13 +3,15 @@
 //! A chart assigns n numbers q to a state x that has the right edge lengths, n the degrees of
 //! freedom. Its rows `s_k = dq_k/dx` form the sparse matrix S (n x unknowns); with the rows of
 //! the length equations they make up the square matrix `A = [G; S]`, and `J = dx/dq = A^-1 [0; I]`.
-//! Nothing else is needed for dynamics, so a chart is a small thing: rows, their rate along a
-//! velocity, coordinates, and a way back to positions.
+//! Dynamics needs nothing else: a [`Chart`] gives its rows, their rate along a velocity, the values of its
+//! coordinates, and positions from these values.
 
 use crate::assignment::AssignmentError;
 use crate::linalg::LinalgError;
 use crate::linearised::Linearised;
+use crate::placement_error::PlacementError;
 use crate::realise::RealiseError;
+use crate::row_pattern::RowPattern;
 use crate::system::{RodSystem, SystemError};
 use isosheet_mesh::{MeshError, VertexId};
 use nalgebra::DMatrix;
@@ -57,7 +59,7 @@ pub enum ChartError {
         /// The vertex it belongs to.
         vertex: VertexId,
         /// The reason.
-        source: crate::placement::PlacementError,
+        source: PlacementError,
     },
     /// Newton's method for positions did not converge.
     #[error(
@@ -83,85 +85,11 @@ pub enum ChartError {
     },
 }
 
-/// Row-compressed pattern of S: columns of row k are `columns[starts[k]..starts[k + 1]]`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct RowPattern {
-    starts: Vec<usize>,
-    columns: Vec<u32>,
-}
-
-impl RowPattern {
-    /// A pattern without rows.
-    #[must_use]
-    pub fn new() -> Self {
-        Self {
-            starts: vec![0],
-            columns: Vec::new(),
-        }
-    }
-
-    /// Append a row with entries in the given unknowns.
-    pub fn push(&mut self, columns: impl IntoIterator<Item = u32>) {
-        self.columns.extend(columns);
-        self.starts.push(self.columns.len());
-    }
-
-    /// Number of rows.
-    #[must_use]
-    pub fn rows(&self) -> usize {
-        self.starts.len() - 1
-    }
-
-    /// Number of entries.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.columns.len()
-    }
-
-    /// Whether there is no entry.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.columns.is_empty()
-    }
-
-    /// Entries of row k: range into the values.
-    #[must_use]
-    pub fn range(&self, k: usize) -> std::ops::Range<usize> {
-        self.starts[k]..self.starts[k + 1]
-    }
-
-    /// The unknown of each entry.
-    #[must_use]
-    pub fn columns(&self) -> &[u32] {
-        &self.columns
-    }
-
-    /// `(row, unknown)` of each entry.
-    pub fn entries(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        (0..self.rows()).flat_map(move |k| self.range(k).map(move |i| (k as u32, self.columns[i])))
-    }
-
-    /// `S v` for `v` on the unknowns.
-    pub fn apply(&self, values: &[f64], v: &[f64], out: &mut [f64]) {
-        for (k, o) in out.iter_mut().enumerate() {
-            *o = self
-                .range(k)
-                .map(|i| values[i] * v[self.columns[i] as usize])
-                .sum();
-        }
-    }
-
-    /// `out += S^T p` on the unknowns.
-    pub fn add_transpose(&self, values: &[f64], p: &[f64], out: &mut [f64]) {
-        for (k, pk) in p.iter().enumerate() {
-            for i in self.range(k) {
-                out[self.columns[i] as usize] += values[i] * pk;
-            }
-        }
-    }
-}
-
-/// System coordinates of a rod system. See the module text for the notation.
+/// System coordinates of a rod system (Liu, Tang and Joneja 2007, Sec. 2.1).
+///
+/// A chart assigns n numbers q to a state x that has the right edge lengths, n the degrees of freedom. Its
+/// rows `s_k = dq_k/dx` form the sparse matrix S (n x unknowns); with the rows G of the length equations they
+/// make up the square matrix `A = [G; S]`, and `J = dx/dq = A^-1 [0; I]`.
 ///
 /// States x and velocities v are full slices, three values per vertex, with zero velocity at pinned
 /// vertices; entries of S refer to the unknowns of the [`crate::RodSystem`].
@@ -196,7 +124,7 @@ pub trait Chart: Send {
     /// `out = q1 - q0` with angles taken to (-pi, pi].
     fn difference(&self, q1: &[f64], q0: &[f64], out: &mut [f64]);
 
-    /// Positions with the right edge lengths and coordinates q, on the branch of the state `near`.
+    /// Positions with the right edge lengths and coordinates q (Eq. 4), on the branch of the state `near`.
     ///
     /// # Errors
     /// [`ChartError::Realise`] or [`ChartError::NotConverged`] when there is none near by.
@@ -207,6 +135,20 @@ pub trait Chart: Send {
         near: &[f64],
         x: &mut [f64],
     ) -> Result<(), ChartError>;
+
+    /// Factorise `A = [G; S]` at x, with the rods of `system`.
+    ///
+    /// # Errors
+    /// [`ChartError::Row`] where a coordinate has no gradient, [`ChartError::Linalg`].
+    fn linearise(
+        &self,
+        system: &RodSystem,
+        linear: &mut Linearised,
+        x: &[f64],
+    ) -> Result<(), ChartError> {
+        self.rows(x, linear.rows_mut())?;
+        Ok(linear.factorize(system, x)?)
+    }
 
     /// The dense Jacobian `J = dx/dq` at x, unknowns x n. Leaves `linear` factorised at x.
     ///

@@ -130,7 +130,7 @@ fn rows_are_gradients_and_rates_their_derivatives() {
 fn jacobians_invert_the_rows() {
     for case in cases() {
         let chart = case.chart.as_ref();
-        let mut linear = Linearised::new(&case.system, chart).unwrap();
+        let mut linear = Linearised::new(&case.system, chart.pattern()).unwrap();
         let jacobian = chart.jacobian(&case.system, &mut linear, &case.x).unwrap();
         let solved = linear.jacobian().unwrap();
         let size = jacobian.amax();
@@ -173,7 +173,7 @@ fn realisation_follows_the_jacobian() {
     for case in cases() {
         let chart = case.chart.as_ref();
         let n = chart.dimension();
-        let mut linear = Linearised::new(&case.system, chart).unwrap();
+        let mut linear = Linearised::new(&case.system, chart.pattern()).unwrap();
         let jacobian = chart.jacobian(&case.system, &mut linear, &case.x).unwrap();
         // A coordinate change that moves positions by about 1e-4.
         let mut dq: Vec<f64> = (0..n).map(|k| (0.7 + 2.3 * k as f64).sin()).collect();
@@ -219,7 +219,7 @@ proptest! {
         for chart in [Box::new(front(&sheet, &pins, &x)) as Box<dyn Chart>, Box::new(cartesian)] {
             let n = chart.dimension();
             prop_assert_eq!(n, system.dof());
-            let mut linear = Linearised::new(&system, chart.as_ref()).unwrap();
+            let mut linear = Linearised::new(&system, chart.pattern()).unwrap();
             let jacobian = chart.jacobian(&system, &mut linear, &x).unwrap();
             let mut q = vec![0.0; n];
             chart.coordinates(&x, &mut q).unwrap();
@@ -249,7 +249,7 @@ fn the_mass_matrix_solve_is_a_saddle_point_solve() {
         let chart = case.chart.as_ref();
         for kind in [MassKind::Lumped, MassKind::Consistent] {
             let mass = MassMatrix::from_density(&case.sheet, 0.3, kind).unwrap();
-            let mut linear = Linearised::new(&case.system, chart).unwrap();
+            let mut linear = Linearised::new(&case.system, chart.pattern()).unwrap();
             let jacobian = chart.jacobian(&case.system, &mut linear, &case.x).unwrap();
             let c = mass_matrix(&case.system, &mass, &jacobian);
             let qdot = nalgebra::DVector::from_fn(chart.dimension(), |k, _| (k as f64).cos());
@@ -372,7 +372,7 @@ fn flat_sheets_are_refused() {
             ..Default::default()
         };
         let outcome = FrontChart::new(&sheet, &options, sheet.positions()).and_then(|chart| {
-            let mut linear = Linearised::new(&system, &chart)?;
+            let mut linear = Linearised::new(&system, chart.pattern())?;
             chart.jacobian(&system, &mut linear, sheet.positions())
         });
         assert!(outcome.is_err(), "{degenerate:?}");

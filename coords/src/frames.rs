@@ -5,7 +5,7 @@
 //! functions of the positions of the vertices they involve; gradients are exact and so is their
 //! rate along a velocity.
 
-use crate::placement::PlacementError;
+use crate::placement_error::PlacementError;
 use crate::vec3::{
     Scalar, Vec3, add, any_perpendicular, axpy, cross, dot, lift, neg, norm, scale, sub,
 };
@@ -14,7 +14,7 @@ use num_dual::{Dual64, DualNum};
 /// Below this value of `1 + a . b` two unit vectors count as antiparallel.
 ///
 /// The aligning rotation turns about `a x b`, whose length is about `sqrt(2 (1 + a . b))`; at 1e-12
-/// the axis still has nine correct digits, below that it fades into rounding.
+/// the axis still has nine correct digits; below that it is dominated by rounding.
 const ANTIPARALLEL: f64 = 1e-12;
 
 /// Relative size below which a length that must not vanish counts as zero.
@@ -296,7 +296,7 @@ impl EdgeFrame {
 
     /// Cosine of the angle between the reference edge and the current one. The frame is singular at -1.
     #[must_use]
-    pub fn alignment(&self, v1: &[f64; 3], v2: &[f64; 3]) -> f64 {
+    pub(crate) fn alignment(&self, v1: &[f64; 3], v2: &[f64; 3]) -> f64 {
         let e = sub(v2, v1);
         dot(&self.axis, &e) / norm(&e)
     }

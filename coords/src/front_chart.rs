@@ -1,14 +1,17 @@
 //! The paper's chart: the coordinates that front propagation assigns.
 
 use crate::assignment::{Assignment, AssignmentOptions, Rule, assign};
-use crate::chart::{Chart, ChartError, RowPattern};
+use crate::chart::{Chart, ChartError};
 use crate::linalg::{Pattern, SparseLu};
 use crate::linearised::Linearised;
-use crate::placement::{PlacementError, jacobian_f, jacobian_g, jacobian_h};
-use crate::realise::{Frame, FrontMap, Guide, RealiseOptions, at, check, check_length};
+use crate::newton::newton;
+use crate::placement::{jacobian_f, jacobian_g, jacobian_h};
+use crate::placement_error::PlacementError;
+use crate::realise::{Frame, FrontMap, Guide, RealiseOptions, check, check_length};
+use crate::row_pattern::RowPattern;
 use crate::select::pivot_columns;
 use crate::system::RodSystem;
-use crate::vec3::Vec3;
+use crate::vec3::{Vec3, at};
 use isosheet_mesh::{Sheet, VertexId};
 use nalgebra::DMatrix;
 
@@ -311,7 +314,7 @@ impl FrontChart {
     /// # Errors
     /// [`ChartError::Row`] where a placement has no derivative. Charts with closures are refused with
     /// [`ChartError::RankDeficient`]: their coordinates are not those of the placements.
-    pub fn chain_jacobian(&self, x: &[f64]) -> Result<DMatrix<f64>, ChartError> {
+    fn chain_jacobian(&self, x: &[f64]) -> Result<DMatrix<f64>, ChartError> {
         check("x", x, 3 * self.system.vertex_count())?;
         if !self.assignment().closures().is_empty() {
             return Err(ChartError::RankDeficient {
@@ -441,7 +444,7 @@ impl Chart for FrontChart {
         }
         check("near", near, x.len())?;
         x.copy_from_slice(near);
-        linear.newton(&self.system, self, q, x)?;
+        newton(self, linear, q, x)?;
         Ok(())
     }
 
@@ -451,11 +454,11 @@ impl Chart for FrontChart {
         linear: &mut Linearised,
         x: &[f64],
     ) -> Result<DMatrix<f64>, ChartError> {
-        linear.factorize(system, self, x)?;
+        self.linearise(system, linear, x)?;
         if self.assignment().closures().is_empty() {
             self.chain_jacobian(x)
         } else {
-            linear.jacobian()
+            Ok(linear.jacobian()?)
         }
     }
 

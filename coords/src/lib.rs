@@ -19,8 +19,8 @@
 //! ([`RodSystem`]). Sparse direct solvers over fixed patterns are in [`linalg`].
 //!
 //! ```
-//! use isosheet_coords::{Chart, CartesianChart, Choice, Linearised, RodSystem, Start, sys_coord_assnmt_single};
-//! use isosheet_coords::{BentState, bent_square};
+//! use isosheet_coords::{BentState, CartesianChart, Chart, Choice, Linearised, RodSystem, Start};
+//! use isosheet_coords::{bent_square, sys_coord_assnmt_single};
 //! use isosheet_mesh::{VertexId, generate};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -33,8 +33,8 @@
 //! let x = bent_square(&sheet, 2, BentState::Cylinder);
 //! let system = RodSystem::new(&sheet, &[VertexId(0)])?;
 //! let chart = CartesianChart::new(system.clone(), Choice::Auto, &x)?;
-//! let mut linear = Linearised::new(&system, &chart)?;
-//! linear.factorize(&system, &chart, &x)?;
+//! let mut linear = Linearised::new(&system, chart.pattern())?;
+//! chart.linearise(&system, &mut linear, &x)?;
 //! let mut v = vec![0.0; system.unknowns()];
 //! linear.push(&[1.0; 32], &mut v)?;
 //! # Ok(())
@@ -51,8 +51,11 @@ mod frames;
 mod front_chart;
 pub mod linalg;
 mod linearised;
+mod newton;
 pub mod placement;
+mod placement_error;
 mod realise;
+mod row_pattern;
 mod saddle;
 mod select;
 mod system;
@@ -62,7 +65,7 @@ mod vec3;
 
 pub use assignment::{Assignment, AssignmentOptions, Rule, Start, assign, sys_coord_assnmt_single};
 pub use cartesian_chart::{CartesianChart, Choice};
-pub use chart::{Chart, ChartError, RowPattern};
+pub use chart::{Chart, ChartError};
 pub use condition::{
     BentState, ConditionRow, TableChart, bent_square, condition_table, mass_condition,
     mass_condition_estimate, mass_matrix,
@@ -70,7 +73,12 @@ pub use condition::{
 pub use frames::{EdgeFrame, EulerParameters, SphericalFrame};
 pub use front_chart::FrontChart;
 pub use linearised::Linearised;
-pub use placement::{Branch, PlacementError};
-pub use realise::{AngleTriple, FrontMap, Guide, RealiseError, RealiseOptions, RealiseReport};
+pub use placement::Branch;
+pub use placement_error::PlacementError;
+pub use realise::{FrontMap, Guide, RealiseError, RealiseOptions, RealiseReport};
+pub use row_pattern::RowPattern;
 pub use saddle::{SaddlePoint, apply_mass};
 pub use system::{RodSystem, SystemError};
+
+/// Dense matrices of the signatures, such as [`Chart::jacobian`]'s.
+pub use nalgebra;

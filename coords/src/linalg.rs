@@ -11,6 +11,7 @@
 //! ([`SparseLlt::factorize_on`]), and sequential solves are bitwise reproducible, which
 //! those on several threads are not.
 
+mod error;
 mod graph;
 mod ldlt;
 mod llt;
@@ -19,42 +20,11 @@ mod nested_dissection;
 mod ordering;
 mod pattern;
 mod separator;
+mod symbolic;
 
+pub use error::LinalgError;
 pub use ldlt::SparseLdlt;
 pub use llt::SparseLlt;
 pub use lu::SparseLu;
 pub use ordering::{Fill, Ordering, delay_multipliers, elimination_order};
 pub use pattern::{Pattern, norm_inf};
-
-/// Why a sparse factorisation or solve failed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum LinalgError {
-    /// A pivot of a Cholesky factorisation was not positive.
-    #[error(
-        "matrix of order {order} is not positive definite (pivot {index} in elimination order)"
-    )]
-    NotPositiveDefinite {
-        /// Order of the matrix.
-        order: usize,
-        /// Position of the pivot in elimination order.
-        index: usize,
-    },
-    /// The matrix is singular, structurally or to working precision.
-    #[error(
-        "matrix of order {order} is singular to working precision (backward error {backward_error:e})"
-    )]
-    Singular {
-        /// Order of the matrix.
-        order: usize,
-        /// Normwise backward error of the attempted solve; infinite if none was finite.
-        backward_error: f64,
-    },
-    /// The pattern is too large or memory ran out.
-    #[error("symbolic analysis of a matrix of order {order} failed: {reason}")]
-    Symbolic {
-        /// Order of the matrix.
-        order: usize,
-        /// faer's own words.
-        reason: String,
-    },
-}

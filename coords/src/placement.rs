@@ -14,8 +14,8 @@
 //! matrix N, `N dx` is a known linear form in the inputs. No inverse cosine is used anywhere.
 
 use crate::frames::{EdgeFrame, SphericalFrame};
+use crate::placement_error::PlacementError;
 use crate::vec3::{add, axpy, cross, dot, inverse, norm, scale, sub};
-use thiserror::Error;
 
 /// Below this sine of the smallest angle of their triangle, three known vertices count as
 /// collinear (Fig. 7).
@@ -24,58 +24,6 @@ use thiserror::Error;
 /// rounding divided by the sine; at 1e-9 seven digits are left, about as many as the height above the
 /// three has near a flat state. [`place_on_line`] in turn misses the third length by up to the sine.
 pub const COLLINEAR: f64 = 1e-9;
-
-/// Why a vertex cannot be placed, or a coordinate is not defined.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum PlacementError {
-    /// Two points that must differ coincide, or a coordinate is not finite.
-    #[error("two vertices coincide or are not finite (distance {distance})")]
-    Coincident {
-        /// Distance found, metres.
-        distance: f64,
-    },
-    /// The edge points along the polar axis of its spherical frame.
-    #[error("the edge points at the pole of its spherical frame (sine {sine:e}); rebase the chart")]
-    Pole {
-        /// Sine of the angle to the polar axis.
-        sine: f64,
-    },
-    /// The edge points against the reference edge of its frame.
-    #[error(
-        "the edge is antiparallel to its reference edge (1 + cosine {one_plus_cosine:e}); rebase the chart"
-    )]
-    Antiparallel {
-        /// One plus the cosine of the angle between the two.
-        one_plus_cosine: f64,
-    },
-    /// The vertex lies on the line it should turn about.
-    #[error(
-        "the vertex lies on the line of its two known neighbours (sine {sine:e}): its angle is undefined"
-    )]
-    OnAxis {
-        /// Sine of the angle at vertex I.
-        sine: f64,
-    },
-    /// The spheres around the known neighbours have no common point: Eq. 10 is violated.
-    #[error(
-        "no position keeps the edge lengths: the squared height would be {height_squared:e} of the squared edge length"
-    )]
-    OutOfReach {
-        /// Squared height (or radius) over squared length of the first edge; negative.
-        height_squared: f64,
-    },
-    /// Three known neighbours on a line: the degenerate case of Fig. 7.
-    #[error("the three known neighbours are collinear (sine {sine:e}): one coordinate is free")]
-    Collinear {
-        /// Sine of the smallest angle of their triangle.
-        sine: f64,
-    },
-    /// The position is at a fold of the map (flat configuration): it has no derivative there.
-    #[error(
-        "the placement has no derivative here: the vertex is in the plane of its known neighbours"
-    )]
-    Flat,
-}
 
 /// Which of the two mirror images rule f takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,13 +46,14 @@ pub struct Placed {
     pub height_squared: f64,
 }
 
-/// Rule h: the vertex at distance `length` from `known` in the direction with longitude `q[0]` and latitude `q[1]`.
+/// Rule h (Eq. 13): the vertex at distance `length` from `known` in the direction with longitude `q[0]` and
+/// latitude `q[1]`.
 #[must_use]
 pub fn place_h(known: &[f64; 3], length: f64, frame: &SphericalFrame, q: [f64; 2]) -> [f64; 3] {
     axpy(known, length, &frame.direction(q))
 }
 
-/// Rule g: the vertex at distances `lengths` from the two known vertices, turned by the angle `q`
+/// Rule g (Eq. 12): the vertex at distances `lengths` from the two known vertices, turned by the angle `q`
 /// about their line out of the carried reference direction of `frame`.
 ///
 /// The distance of the two known vertices is taken from their positions, so that the rule holds for
@@ -203,12 +152,13 @@ pub fn collinearity(known: [&[f64; 3]; 3]) -> f64 {
     area / (l[1] * l[2])
 }
 
-/// Rule f: the vertex at distances `lengths` from three known vertices.
+/// Rule f (Eq. 11): the vertex at distances `lengths` from three known vertices.
 ///
-/// The foot of the perpendicular in the plane of the three solves two linear equations (differences
-/// of squared lengths) and the height h is left from the first length. Flat states have `h = 0`, where rounding decides the sign of `h^2`: values within `tolerance`
-/// of zero, relative to the squared first length, count as zero, which costs at most `tolerance / 2`
-/// of relative length. Below that the state violates Eq. 10 and is refused.
+/// The foot of the perpendicular in the plane of the three solves two linear equations (differences of
+/// squared lengths) and the height h is left from the first length. Flat states have `h = 0`, where rounding
+/// decides the sign of `h^2`: values within `tolerance` of zero, relative to the squared first length, count
+/// as zero, which costs at most `tolerance / 2` of relative length. Below that the state violates Eq. 10 and
+/// is refused.
 ///
 /// # Errors
 /// [`PlacementError::Collinear`] in the case of Fig. 7, see [`COLLINEAR`];
@@ -271,13 +221,13 @@ pub fn branch_of(known: [&[f64; 3]; 3], position: &[f64; 3]) -> Branch {
 }
 
 /// A 3 x 3 derivative, row by row: entry `[i][j]` is the change of component i with input j.
-pub type Block = [[f64; 3]; 3];
+pub type PositionDerivative = [[f64; 3]; 3];
 
 /// First derivatives of rule h.
 #[derive(Clone, Copy, Debug)]
 pub struct JacobianH {
     /// With respect to the known vertex.
-    pub known: Block,
+    pub known: PositionDerivative,
     /// With respect to longitude and latitude, metres per radian.
     pub q: [[f64; 3]; 2],
 }
@@ -286,16 +236,16 @@ pub struct JacobianH {
 #[derive(Clone, Copy, Debug)]
 pub struct JacobianG {
     /// With respect to the two known vertices.
-    pub known: [Block; 2],
+    pub known: [PositionDerivative; 2],
     /// With respect to the angle, metres per radian.
     pub q: [f64; 3],
 }
 
 /// First derivatives of rule f, with respect to the three known vertices.
-pub type JacobianF = [Block; 3];
+pub type JacobianF = [PositionDerivative; 3];
 
 /// `column k of inv` times `row`.
-fn outer(inv: &Block, k: usize, row: &[f64; 3]) -> Block {
+fn outer(inv: &PositionDerivative, k: usize, row: &[f64; 3]) -> PositionDerivative {
     let mut b = [[0.0; 3]; 3];
     for i in 0..3 {
         for j in 0..3 {
@@ -305,15 +255,15 @@ fn outer(inv: &Block, k: usize, row: &[f64; 3]) -> Block {
     b
 }
 
-fn plus(a: &Block, b: &Block) -> Block {
+fn plus(a: &PositionDerivative, b: &PositionDerivative) -> PositionDerivative {
     [add(&a[0], &b[0]), add(&a[1], &b[1]), add(&a[2], &b[2])]
 }
 
-fn column(inv: &Block, k: usize) -> [f64; 3] {
+fn column(inv: &PositionDerivative, k: usize) -> [f64; 3] {
     [inv[0][k], inv[1][k], inv[2][k]]
 }
 
-/// Derivatives of [`place_h`] at a placed vertex.
+/// Derivatives of [`place_h`] at a placed vertex, the coefficients of Eq. 15.
 ///
 /// # Errors
 /// [`PlacementError::Pole`] at a pole of the frame.
@@ -336,10 +286,11 @@ pub fn jacobian_h(
     })
 }
 
-/// Derivatives of [`place_g`] at a placed vertex.
+/// Derivatives of [`place_g`] at a placed vertex, the coefficients of Eq. 15.
 ///
 /// # Errors
-/// [`PlacementError::Flat`] when the vertex lies on the line of the known ones, and the errors of [`EdgeFrame::gradient`].
+/// [`PlacementError::Flat`] when the vertex lies on the line of the known ones, and the errors of
+/// [`EdgeFrame::gradient`].
 pub fn jacobian_g(
     known: [&[f64; 3]; 2],
     frame: &EdgeFrame,
@@ -359,7 +310,7 @@ pub fn jacobian_g(
     })
 }
 
-/// Derivatives of [`place_f`] at a placed vertex.
+/// Derivatives of [`place_f`] at a placed vertex, the coefficients of Eq. 15.
 ///
 /// # Errors
 /// [`PlacementError::Flat`] when the four vertices are coplanar: the two mirror images meet there

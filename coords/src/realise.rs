@@ -6,15 +6,14 @@
 
 mod error;
 
-pub use error::{AngleTriple, RealiseError};
+pub use error::RealiseError;
 
-use crate::assignment::{Assignment, Rule};
+use crate::assignment::{Assignment, Placing, Rule};
 use crate::frames::{EdgeFrame, SphericalFrame};
-use crate::placement::{
-    Branch, PlacementError, branch_of, place_f, place_g, place_h, place_on_line,
-};
-use crate::vec3::{Vec3, cross, dot, norm, sub};
-use isosheet_mesh::{EdgeId, Sheet, VertexId};
+use crate::placement::{Branch, branch_of, place_f, place_g, place_h, place_on_line};
+use crate::placement_error::PlacementError;
+use crate::vec3::{Vec3, at, cross, dot, norm, sub};
+use isosheet_mesh::{AngleTriple, EdgeId, Sheet, VertexId, angle_from_lengths};
 
 /// Options of a [`FrontMap`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,7 +127,7 @@ impl FrontMap {
         let mut frames = Vec::with_capacity(self.assignment.order().len());
         for placing in self.assignment.order() {
             let v = placing.vertex;
-            let fail = |source| placement_error(v, &placing.rule, source);
+            let fail = |source| cannot_place(v, &placing.rule, source);
             frames.push(match placing.rule {
                 Rule::Pinned | Rule::Start { .. } | Rule::F { .. } => Frame::None,
                 Rule::H { known, .. } => {
@@ -162,7 +161,7 @@ impl FrontMap {
     ///
     /// # Errors
     /// [`RealiseError::WrongLength`], [`RealiseError::NotFinite`].
-    pub fn frame_margin(&self, x: &[f64]) -> Result<f64, RealiseError> {
+    pub(crate) fn frame_margin(&self, x: &[f64]) -> Result<f64, RealiseError> {
         check("x", x, self.rest.len())?;
         let mut margin: f64 = 2.0;
         for (placing, frame) in self.assignment.order().iter().zip(&self.frames) {
@@ -212,7 +211,7 @@ impl FrontMap {
                 ) => {
                     q[k] = f
                         .coordinate([&at(x, a), &at(x, b), &p])
-                        .map_err(|s| placement_error(v, &placing.rule, s))?;
+                        .map_err(|s| cannot_place(v, &placing.rule, s))?;
                 }
                 _ => {}
             }
@@ -259,72 +258,95 @@ impl FrontMap {
             }
         }
         let mut report = RealiseReport::default();
-        let tolerance = self.options.flat_tolerance;
         for (placing, frame) in self.assignment.order().iter().zip(&self.frames) {
             let v = placing.vertex;
-            let fail = |source| self.explain(v, &placing.rule, x, source);
-            let position = match (placing.rule, frame) {
-                (Rule::Pinned, _) => at(&self.pinned, v),
-                (Rule::Start { q: k }, _) => [q[k], q[k + 1], q[k + 2]],
-                (Rule::H { known, edge, q: k }, Frame::Spherical(f)) => {
-                    place_h(&at(x, known), self.length(edge), f, [q[k], q[k + 1]])
-                }
-                (
-                    Rule::G {
-                        known: [a, b],
-                        edges: [e, d],
-                        q: k,
-                    }
-                    | Rule::Turn {
-                        known: [a, b, _],
-                        edges: [e, d, _],
-                        q: k,
-                    },
-                    Frame::Edge(f),
-                ) => {
-                    let lengths = [self.length(e), self.length(d)];
-                    place_g([&at(x, a), &at(x, b)], lengths, f, q[k], tolerance)
-                        .map_err(fail)?
-                        .position
-                }
-                (Rule::F { known, edges, .. }, _) => {
-                    let k = known.map(|w| at(x, w));
-                    let lengths = edges.map(|e| self.length(e));
-                    let branch = match guide {
-                        Guide::Near(near) => Branch::Near(at(near, v)),
-                        Guide::Signs(signs) => signs[v.index()],
-                    };
-                    match place_f([&k[0], &k[1], &k[2]], lengths, branch, tolerance) {
-                        Ok(p) => {
-                            report.flat += usize::from(p.height_squared.abs() <= tolerance);
-                            p.position
-                        }
-                        Err(PlacementError::Collinear { sine }) => {
-                            let Guide::Near(near) = guide else {
-                                return Err(fail(PlacementError::Collinear { sine }));
-                            };
-                            report.on_line.push(v);
-                            let (i, j) = farthest(&k);
-                            place_on_line(
-                                [&k[i], &k[j]],
-                                [lengths[i], lengths[j]],
-                                &at(near, v),
-                                tolerance,
-                            )
-                            .map_err(fail)?
-                            .position
-                        }
-                        Err(e) => return Err(fail(e)),
-                    }
-                }
-                (rule, frame) => {
-                    unreachable!("frames are built with the rules: {rule:?} {frame:?}")
-                }
-            };
+            let position = self
+                .place(placing, frame, q, guide, x, &mut report)
+                .map_err(|source| self.explain(v, &placing.rule, x, source))?;
             x[3 * v.index()..3 * v.index() + 3].copy_from_slice(&position);
         }
         self.check_closures(x, &mut report)?;
         Ok(report)
+    }
+
+    /// The position of one vertex, from those of `x` that were placed before it.
+    fn place(
+        &self,
+        placing: &Placing,
+        frame: &Frame,
+        q: &[f64],
+        guide: Guide<'_>,
+        x: &[f64],
+        report: &mut RealiseReport,
+    ) -> Result<Vec3<f64>, PlacementError> {
+        let v = placing.vertex;
+        match (placing.rule, frame) {
+            (Rule::Pinned, _) => Ok(at(&self.pinned, v)),
+            (Rule::Start { q: k }, _) => Ok([q[k], q[k + 1], q[k + 2]]),
+            (Rule::H { known, edge, q: k }, Frame::Spherical(f)) => {
+                let angles = [q[k], q[k + 1]];
+                Ok(place_h(&at(x, known), self.length(edge), f, angles))
+            }
+            (
+                Rule::G {
+                    known: [a, b],
+                    edges: [e, d],
+                    q: k,
+                }
+                | Rule::Turn {
+                    known: [a, b, _],
+                    edges: [e, d, _],
+                    q: k,
+                },
+                Frame::Edge(f),
+            ) => {
+                let lengths = [self.length(e), self.length(d)];
+                let tolerance = self.options.flat_tolerance;
+                let placed = place_g([&at(x, a), &at(x, b)], lengths, f, q[k], tolerance)?;
+                Ok(placed.position)
+            }
+            (Rule::F { known, edges, .. }, _) => {
+                let known = known.map(|w| at(x, w));
+                let lengths = edges.map(|e| self.length(e));
+                self.place_from_three(v, &known, lengths, guide, report)
+            }
+            (rule, frame) => unreachable!("frames are built with the rules: {rule:?} {frame:?}"),
+        }
+    }
+
+    /// Rule f, or where the three known vertices are on a line (Fig. 7) the angle of the guide's state.
+    fn place_from_three(
+        &self,
+        v: VertexId,
+        known: &[Vec3<f64>; 3],
+        lengths: [f64; 3],
+        guide: Guide<'_>,
+        report: &mut RealiseReport,
+    ) -> Result<Vec3<f64>, PlacementError> {
+        let tolerance = self.options.flat_tolerance;
+        let branch = match guide {
+            Guide::Near(near) => Branch::Near(at(near, v)),
+            Guide::Signs(signs) => signs[v.index()],
+        };
+        let [a, b, c] = known;
+        match (place_f([a, b, c], lengths, branch, tolerance), guide) {
+            (Ok(placed), _) => {
+                report.flat += usize::from(placed.height_squared.abs() <= tolerance);
+                Ok(placed.position)
+            }
+            (Err(PlacementError::Collinear { .. }), Guide::Near(near)) => {
+                report.on_line.push(v);
+                let (i, j) = farthest(known);
+                let placed = place_on_line(
+                    [&known[i], &known[j]],
+                    [lengths[i], lengths[j]],
+                    &at(near, v),
+                    tolerance,
+                )?;
+                Ok(placed.position)
+            }
+            (Err(e), _) => Err(e),
+        }
     }
 
     fn check_closures(&self, x: &[f64], report: &mut RealiseReport) -> Result<(), RealiseError> {
@@ -387,21 +409,11 @@ impl FrontMap {
                 height_squared,
             };
         }
-        placement_error(vertex, rule, source)
+        cannot_place(vertex, rule, source)
     }
 }
 
-/// Angle between the sides `a` and `b` of a triangle whose third side is `c` (Kahan's form, accurate
-/// for needles).
-fn angle_from_lengths(a: f64, b: f64, c: f64) -> f64 {
-    let (a, b) = (a.max(b), a.min(b));
-    let mu = if b >= c { c - (a - b) } else { b - (a - c) };
-    let top = ((a - b) + c) * mu;
-    let bottom = (a + (b + c)) * ((a - c) + b);
-    2.0 * top.max(0.0).sqrt().atan2(bottom.max(0.0).sqrt())
-}
-
-fn placement_error(vertex: VertexId, rule: &Rule, source: PlacementError) -> RealiseError {
+fn cannot_place(vertex: VertexId, rule: &Rule, source: PlacementError) -> RealiseError {
     RealiseError::Placement {
         vertex,
         known: rule.known().to_vec(),
@@ -420,11 +432,6 @@ fn farthest(p: &[Vec3<f64>; 3]) -> (usize, usize) {
     } else {
         (1, 2)
     }
-}
-
-pub(crate) fn at(x: &[f64], v: VertexId) -> Vec3<f64> {
-    let i = 3 * v.index();
-    [x[i], x[i + 1], x[i + 2]]
 }
 
 pub(crate) fn check_length(

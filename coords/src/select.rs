@@ -7,8 +7,9 @@ use std::collections::BinaryHeap;
 
 /// Pivots below this fraction of the largest entry of their row of G count as zero.
 ///
-/// In a sheet folded by an angle t the smallest singular value of G is about t times the largest, so
-/// that everything flatter than this is refused as flat; a tenth of the digits of the Jacobian is left there.
+/// In a sheet folded by a small angle t the smallest singular value of G is about t times the largest. A
+/// state folded by less than 1e-9 is therefore refused as flat; at that angle about seven digits of the
+/// Jacobian are right.
 const RANK_TOLERANCE: f64 = 1e-9;
 
 /// Result of a selection.

@@ -1,7 +1,6 @@
 //! The length equations on the free unknowns: pinned vertices are eliminated.
 
-use crate::realise::at;
-use crate::vec3::{dot, norm, sub};
+use crate::vec3::{at, dot, norm, sub};
 use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId};
 use thiserror::Error;
 

@@ -102,7 +102,7 @@ pub(crate) fn bent(sheet: &Sheet, pins: &[VertexId], noise: f64, seed: u64) -> O
     }
     let system = RodSystem::new(sheet, pins).ok()?;
     let chart = CartesianChart::new(system.clone(), Choice::Auto, &x).ok()?;
-    let mut linear = Linearised::new(&system, &chart).ok()?;
+    let mut linear = Linearised::new(&system, chart.pattern()).ok()?;
     let mut q = vec![0.0; chart.dimension()];
     chart.coordinates(&x, &mut q).ok()?;
     let near = x.clone();

@@ -4,6 +4,7 @@
 //! are the rows of the chart, evaluated with dual numbers they give the exact rate of these rows
 //! along a velocity.
 
+use isosheet_mesh::VertexId;
 use num_dual::DualNum;
 
 /// A real scalar: `f64`, or a dual number over it.
@@ -12,6 +13,12 @@ impl<T: DualNum<Primitive = f64> + Copy> Scalar for T {}
 
 /// A three-vector.
 pub(crate) type Vec3<T> = [T; 3];
+
+/// The three values of vertex `v` in a slice of three values per vertex.
+pub(crate) fn at(x: &[f64], v: VertexId) -> Vec3<f64> {
+    let i = 3 * v.index();
+    [x[i], x[i + 1], x[i + 2]]
+}
 
 pub(crate) fn lift<T: Scalar>(a: &Vec3<f64>) -> Vec3<T> {
     [T::from(a[0]), T::from(a[1]), T::from(a[2])]

@@ -54,6 +54,7 @@
 //! takes moving pins ([`SheetModel::with_moving_pin`]) and vertices on curves and surfaces
 //! ([`SheetModel::with_constraint`]), one-sided ones the damped methods only. [`Simulation::reactions`] are the forces of pins and constraints on the sheet,
 //! [`Simulation::body_loads`] those of the sheet on the bodies.
+#![doc = include_str!("paper.md")]
 
 pub mod chart;
 mod checkpoint;

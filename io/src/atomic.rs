@@ -81,10 +81,11 @@ pub(crate) fn prepare_folder(path: &Path) -> Result<PathBuf, WriteError> {
     }
 }
 
-/// Writes a file so that it is either complete or not there: `write` fills a temporary file in the same folder, which then
-/// takes the name `path`, replacing an older file. Missing parent folders are created.
+/// Writes a file so that it is either complete or not there: `write` fills a temporary file in the same
+/// folder, which then takes the name `path`, replacing an older file. Missing parent folders are created.
 ///
-/// When `write` fails, when the process is killed or the disk is full, an older file of that name stays as it was.
+/// When `write` fails, when the process is killed or the disk is full, an older file of that name stays as it
+/// was.
 ///
 /// ```
 /// use std::io::Write;

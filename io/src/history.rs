@@ -30,7 +30,8 @@ pub struct HistoryRow {
     pub drift: f64,
     /// Largest relative change of an edge length.
     pub strain: f64,
-    /// Smallest distance between things that must not touch, in metres; empty in the file where nothing can touch.
+    /// Smallest distance between surfaces that could come into contact, in metres; empty in the file for a
+    /// run without contact.
     pub gap: Option<f64>,
 }
 
@@ -94,8 +95,8 @@ pub enum HistoryError {
     },
 }
 
-/// Writes a history row by row: every row is on disk when [`HistoryWriter::append`] returns, so that the file of an interrupted
-/// run ends with its last complete step.
+/// Writes a history row by row: every row is on disk when [`HistoryWriter::append`] returns, so that the file
+/// of an interrupted run ends with its last complete step.
 ///
 /// ```
 /// use isosheet_io::{HistoryRow, HistoryWriter, read_history};
@@ -132,7 +133,8 @@ impl HistoryWriter {
     /// Adds a row.
     ///
     /// # Errors
-    /// [`HistoryError::NotFinite`] naming the column, in which case nothing is written; [`HistoryError::File`].
+    /// [`HistoryError::NotFinite`] naming the column, in which case nothing is written;
+    /// [`HistoryError::File`].
     pub fn append(&mut self, row: &HistoryRow) -> Result<(), HistoryError> {
         let values = [
             ("t", row.t),
@@ -159,7 +161,8 @@ impl HistoryWriter {
         &self.path
     }
 
-    /// Formats a record in memory and writes it with one call, so that no half row is left by a crash of this process.
+    /// Formats a record in memory and writes it with one call, so that no half row is left by a crash of this
+    /// process.
     fn write_record(
         &mut self,
         record: impl FnOnce(&mut csv::Writer<&mut Vec<u8>>) -> csv::Result<()>,

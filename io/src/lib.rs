@@ -3,14 +3,15 @@
 //! | file | read | written |
 //! |---|---|---|
 //! | Wavefront OBJ | [`read_obj`], [`read_sheet`] | [`write_obj`], one per frame |
-//! | history CSV: `t,h,iterations,kinetic,potential,H,dH,strain,gap` | [`read_history`] | [`HistoryWriter`], row by row |
-//! | trajectory npz: `t`, `x` (T x V x 3), `faces`, `edges`, `rest_lengths` | [`Trajectory::read`] | [`Trajectory::write`] |
+//! | history CSV, see [`HistoryRow`] | [`read_history`] | [`HistoryWriter`], row by row |
+//! | trajectory npz, see [`Trajectory`] | [`Trajectory::read`] | [`Trajectory::write`] |
 //! | Matrix Market, coordinate format | | [`write_matrix_market`] |
 //! | summary JSON | [`read_json`] | [`write_json`] |
 //!
-//! Two rules hold for everything that is written: no number that is not finite gets into a file (a typed error says which one
-//! it was), and a file appears under its name only when it is complete ([`write_atomically`]). The one exception is
-//! the history, which grows by whole rows, so that what an interrupted run leaves behind can be read.
+//! Two rules hold for everything that is written: no number that is not finite gets into a file (a typed
+//! error says which one it was), and a file appears under its name only when it is complete
+//! ([`write_atomically`]). The one exception is the history, which grows by whole rows, so that what an
+//! interrupted run leaves behind can be read.
 
 mod atomic;
 mod finite;

@@ -57,11 +57,12 @@ pub enum MatrixMarketError {
     File(#[from] WriteError),
 }
 
-/// Writes the `rows` x `columns` matrix of the given `(row, column, value)` entries (indices from zero, each place at
-/// most once) in the coordinate format of Matrix Market, atomically. Lines of `comment` stand at its head.
+/// Writes the `rows` x `columns` matrix of the given `(row, column, value)` entries (indices from zero, each
+/// place at most once) in the coordinate format of Matrix Market, atomically. Lines of `comment` stand at its
+/// head.
 ///
-/// Numbers have as many digits as are needed to read them back exactly. The format: Boisvert, Pozo and Remington, *The
-/// Matrix Market Exchange Formats: Initial Design*, NISTIR 5935 (1996).
+/// Numbers have as many digits as are needed to read them back exactly. The format: Boisvert, Pozo and
+/// Remington, *The Matrix Market Exchange Formats: Initial Design*, NISTIR 5935 (1996).
 ///
 /// # Errors
 /// [`MatrixMarketError`]; nothing is written then.

@@ -1,7 +1,7 @@
 //! Reading Wavefront OBJ files.
 //!
-//! The reader is our own because a sheet needs what general readers do not keep: the numbering of the vertices (scenes hold
-//! "vertex 0"), vertices shared between groups, all digits, and the line of an error.
+//! This crate has its own reader because a sheet needs what general readers do not keep: the numbering of the
+//! vertices (scenes hold "vertex 0"), vertices shared between groups, all digits, and the line of an error.
 
 use std::path::{Path, PathBuf};
 
@@ -16,8 +16,9 @@ pub enum Polygons {
     /// Refuse the file. A polygon's diagonals would be creases that its author did not draw.
     #[default]
     Refuse,
-    /// Cut each polygon into triangles from that one of its corners which sees all others and needs the shortest cuts
-    /// (so a quad is cut along its shorter diagonal). [`ObjMesh::polygons`] tells how many there were.
+    /// Cut each polygon into triangles from that one of its corners which sees all others and needs the
+    /// shortest cuts (so a quad is cut along its shorter diagonal). [`ObjMesh::polygons`] tells how many
+    /// there were.
     Triangulate,
 }
 
@@ -46,7 +47,8 @@ impl ObjMesh {
         self.positions.len() / 3
     }
 
-    /// Removes vertices that belong to no face and renumbers the rest in order; returns how many were removed.
+    /// Removes vertices that belong to no face and renumbers the rest in order; returns how many were
+    /// removed.
     pub fn drop_unreferenced(&mut self) -> usize {
         let mut used = vec![false; self.vertex_count()];
         for &v in self.faces.iter().flatten() {
@@ -87,8 +89,9 @@ impl ObjMesh {
 
 /// Reads the vertices and faces of an OBJ file.
 ///
-/// Understood: `v`, `f` (indices from 1, or negative and counted backwards; texture and normal indices are skipped), line
-/// continuation by a backslash, comments. Groups, objects, materials, normals, texture coordinates, colours, lines and points are skipped.
+/// Understood: `v`, `f` (indices from 1, or negative and counted backwards; texture and normal indices are
+/// skipped), line continuation by a backslash, comments. Groups, objects, materials, normals, texture
+/// coordinates, colours, lines and points are skipped.
 ///
 /// # Errors
 /// [`ObjError`] with file, line and what is wrong.
@@ -101,7 +104,8 @@ pub fn read_obj(path: &Path, options: &ObjOptions) -> Result<ObjMesh, ObjError> 
     parse_obj(&bytes, path, options)
 }
 
-/// Reads a sheet from an OBJ file with default options: triangles only, an oriented surface that uses every vertex.
+/// Reads a sheet from an OBJ file with default options: triangles only, an oriented surface that uses every
+/// vertex.
 ///
 /// # Errors
 /// [`ObjError`] with file, line and what is wrong.
@@ -155,6 +159,9 @@ pub fn parse_obj(bytes: &[u8], path: &Path, options: &ObjOptions) -> Result<ObjM
         .finish(path, options)
         .map_err(|(line, problem)| error(line, problem))
 }
+
+/// What is wrong, with its line where there is one.
+type Located = (Option<usize>, ObjProblem);
 
 #[derive(Default)]
 struct Parser {
@@ -263,90 +270,89 @@ impl Parser {
         }
     }
 
-    fn finish(
-        self,
-        path: &Path,
-        options: &ObjOptions,
-    ) -> Result<ObjMesh, (Option<usize>, ObjProblem)> {
-        let count = self.positions.len() / 3;
-        if count == 0 {
-            return Err(match (self.ends.is_empty(), self.unknown) {
-                (false, _) => (
-                    None,
-                    ObjProblem::NoVertices {
-                        faces: self.ends.len(),
-                    },
-                ),
-                (true, Some((line, word))) => (Some(line), ObjProblem::NotObj { word }),
-                (true, None) => (None, ObjProblem::Empty),
-            });
+    fn finish(self, path: &Path, options: &ObjOptions) -> Result<ObjMesh, Located> {
+        if let Some(missing) = self.missing() {
+            return Err(missing);
         }
-        if self.ends.is_empty() {
-            let (lines, points) = (self.lines, self.points);
-            return Err((
-                None,
-                ObjProblem::NoFaces {
-                    vertices: count,
-                    lines,
-                    points,
-                },
-            ));
-        }
-        let at = |v: u32| {
-            let k = 3 * v as usize;
-            [
-                self.positions[k],
-                self.positions[k + 1],
-                self.positions[k + 2],
-            ]
-        };
-        let mut faces = Vec::with_capacity(self.ends.len());
-        let mut polygons = 0;
-        let mut start = 0;
-        for &(end, line) in &self.ends {
-            let fail = |problem| (Some(line), problem);
-            let mut face = Vec::with_capacity(end - start);
-            for &k in &self.corners[start..end] {
-                match u32::try_from(k) {
-                    Ok(v) if (v as usize) < count => face.push(v),
-                    _ => {
-                        return Err(fail(ObjProblem::IndexOutOfRange {
-                            index: k + 1,
-                            count,
-                        }));
-                    }
-                }
-            }
-            start = end;
-            match face[..] {
-                [a, b, c] => faces.push([a, b, c]),
-                [] | [_] | [_, _] => {
-                    return Err(fail(ObjProblem::TooFewCorners {
-                        corners: face.len(),
-                    }));
-                }
-                _ if options.polygons == Polygons::Refuse => {
-                    return Err(fail(ObjProblem::Polygon {
-                        corners: face.len(),
-                    }));
-                }
-                _ => {
-                    let cut = polygon::triangulate(&face, at);
-                    faces.extend(cut.ok_or_else(|| {
-                        fail(ObjProblem::ConcavePolygon {
-                            corners: face.len(),
-                        })
-                    })?);
-                    polygons += 1;
-                }
-            }
-        }
+        let (faces, polygons) = self.triangles(options)?;
         Ok(ObjMesh {
             positions: self.positions,
             faces,
             polygons,
             path: path.to_owned(),
         })
+    }
+
+    /// What a mesh needs and the file does not have.
+    fn missing(&self) -> Option<Located> {
+        let vertices = self.positions.len() / 3;
+        let faces = self.ends.len();
+        match (vertices, faces, &self.unknown) {
+            (0, 0, None) => Some((None, ObjProblem::Empty)),
+            (0, 0, Some((line, word))) => {
+                let word = word.clone();
+                Some((Some(*line), ObjProblem::NotObj { word }))
+            }
+            (0, _, _) => Some((None, ObjProblem::NoVertices { faces })),
+            (_, 0, _) => {
+                let (lines, points) = (self.lines, self.points);
+                let problem = ObjProblem::NoFaces {
+                    vertices,
+                    lines,
+                    points,
+                };
+                Some((None, problem))
+            }
+            _ => None,
+        }
+    }
+
+    /// The triangles of all faces, and how many faces were cut.
+    fn triangles(&self, options: &ObjOptions) -> Result<(Vec<[u32; 3]>, usize), Located> {
+        let mut faces = Vec::with_capacity(self.ends.len());
+        let mut polygons = 0;
+        let mut start = 0;
+        for &(end, line) in &self.ends {
+            let fail = |problem| (Some(line), problem);
+            let face = self.checked(&self.corners[start..end]).map_err(fail)?;
+            start = end;
+            let corners = face.len();
+            match face[..] {
+                [a, b, c] => faces.push([a, b, c]),
+                [] | [_] | [_, _] => return Err(fail(ObjProblem::TooFewCorners { corners })),
+                _ if options.polygons == Polygons::Refuse => {
+                    return Err(fail(ObjProblem::Polygon { corners }));
+                }
+                _ => {
+                    let cut = polygon::triangulate(&face, |v| self.position(v));
+                    faces.extend(cut.ok_or_else(|| fail(ObjProblem::ConcavePolygon { corners }))?);
+                    polygons += 1;
+                }
+            }
+        }
+        Ok((faces, polygons))
+    }
+
+    /// The corners of a face as vertex numbers, all of which the file has.
+    fn checked(&self, corners: &[i64]) -> Result<Vec<u32>, ObjProblem> {
+        let count = self.positions.len() / 3;
+        let vertex = |&k: &i64| match u32::try_from(k) {
+            Ok(v) if (v as usize) < count => Ok(v),
+            _ => Err(ObjProblem::IndexOutOfRange {
+                index: k + 1,
+                count,
+            }),
+        };
+        corners.iter().map(vertex).collect()
+    }
+
+    fn position(&self, v: u32) -> [f64; 3] {
+        let k = 3 * v as usize;
+        [
+            self.positions[k],
+            self.positions[k + 1],
+            self.positions[k + 2],
+        ]
     }
 }
 

@@ -2,8 +2,9 @@
 
 type Point = [f64; 3];
 
-/// Cuts a polygon into triangles that all contain one of its corners and are turned like the polygon as a whole; `None` when no
-/// corner sees all the others. A quad is cut along the shorter diagonal if both will do.
+/// Cuts a polygon into triangles that all contain one of its corners and are turned like the polygon as a
+/// whole; `None` when no corner sees all the others. A quad is cut along the shorter diagonal if both will
+/// do.
 pub(crate) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<Vec<[u32; 3]>> {
     let n = corners.len();
     let points: Vec<Point> = corners.iter().map(|&c| at(c)).collect();

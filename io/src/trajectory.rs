@@ -114,7 +114,8 @@ impl Trajectory {
     /// Adds a frame: time in seconds and positions (length 3V, metres).
     ///
     /// # Errors
-    /// [`TrajectoryError`] for a wrong length, a number that is not finite, or a time before the last; nothing is added then.
+    /// [`TrajectoryError`] for a wrong length, a number that is not finite, or a time before the last;
+    /// nothing is added then.
     pub fn push(&mut self, t: f64, x: &[f64]) -> Result<(), TrajectoryError> {
         let frame = self.t.len();
         if x.len() != 3 * self.vertex_count {
@@ -224,7 +225,8 @@ impl Trajectory {
     /// Reads an `.npz` file that [`Self::write`] wrote, or one of the same arrays.
     ///
     /// # Errors
-    /// [`TrajectoryError::Read`], or [`TrajectoryError::Array`] naming the array that is missing or does not fit the others.
+    /// [`TrajectoryError::Read`], or [`TrajectoryError::Array`] naming the array that is missing or does not
+    /// fit the others.
     pub fn read(path: &Path) -> Result<Self, TrajectoryError> {
         let read_error = |source| TrajectoryError::Read {
             path: path.to_owned(),

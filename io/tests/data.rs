@@ -1,7 +1,7 @@
 //! Other people's files: each is read or refused with a typed error, never a panic.
 //!
-//! The files are not part of the repository. Point `ISOSHEET_DATA` at the folder that has them; without it these
-//! tests say that they were skipped.
+//! The files are not part of the repository. Point `ISOSHEET_DATA` at the folder that has them; without it
+//! these tests say that they were skipped.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

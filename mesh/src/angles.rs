@@ -9,20 +9,21 @@ use crate::{EdgeId, FaceId, MeshError, Sheet, Topology, VertexId};
 
 /// The angle, in radians, between sides `a` and `b` of a triangle whose third side is `c`.
 ///
-/// Half-angle form `tan^2(angle/2) = (c^2 - (a - b)^2) / ((a + b)^2 - c^2)` with the differences of squares factored, so that
-/// no digits are lost near 0 and pi. Where the lengths make no triangle the result is 0 (`c < |a - b|`) or pi
-/// (`c > a + b`).
+/// Half-angle form `tan^2(angle/2) = (c^2 - (a - b)^2) / ((a + b)^2 - c^2)` with the differences of squares
+/// factored, so that no digits are lost near 0 and pi. Where the lengths make no triangle the result is 0
+/// (`c < |a - b|`) or pi (`c > a + b`).
 pub fn angle_from_lengths(a: f64, b: f64, c: f64) -> f64 {
     let short = (c - (a - b)) * (c + (a - b));
     let long = ((a + b) - c) * ((a + b) + c);
     2.0 * short.max(0.0).sqrt().atan2(long.max(0.0).sqrt())
 }
 
-/// The fold angle of an edge at positions `x` (length 3V), in radians within [-pi, pi]; `None` on the boundary.
+/// The fold angle of an edge at positions `x` (length 3V), in radians within [-pi, pi]; `None` on the
+/// boundary.
 ///
-/// Zero when flat, positive for a valley as seen from the side from which faces are counter-clockwise (the sign of the FOLD
-/// format). With the edge running along the unit vector e, the left face's normal nL and the right one's nR:
-/// `fold = atan2((nR x nL) . e, nL . nR)`, accurate at every angle.
+/// Zero when flat, positive for a valley as seen from the side from which faces are counter-clockwise (the
+/// sign of the FOLD format). With the edge running along the unit vector e, the left face's normal nL and the
+/// right one's nR: `fold = atan2((nR x nL) . e, nL . nR)`, accurate at every angle.
 ///
 /// # Panics
 /// If `x` is not of length 3V.
@@ -40,23 +41,24 @@ pub fn fold_angle(t: &Topology, x: &[f64], e: EdgeId) -> Option<f64> {
 
 /// The angles at one end of an interior edge (Liu, Tang and Joneja 2007, Sec. 2.4 and Fig. 5).
 ///
-/// Seen from the end, alpha and beta lie between the edge and the sides of its left and right face; they are fixed by the
-/// rest lengths. gamma lies between those two sides and changes as the edge folds. On the unit sphere about the end
-/// the three are the sides of a triangle whose angle opposite gamma is the dihedral angle, pi - |fold|.
+/// Seen from the end, alpha and beta lie between the edge and the sides of its left and right face; they are
+/// fixed by the rest lengths. gamma lies between those two sides and changes as the edge folds. On the unit
+/// sphere about the end the three are the sides of a triangle whose angle opposite gamma is the dihedral
+/// angle, pi - |fold|.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngleTriple {
     /// Between the edge and the other side of its left face, in radians.
     pub alpha: f64,
     /// Between the edge and the other side of its right face, in radians.
     pub beta: f64,
-    /// Between the two other sides, in radians. Where the distance of the two opposite vertices makes no triangle with
-    /// those sides, it is continued beyond pi, or below 0, in proportion to the excess.
+    /// Between the two other sides, in radians. Where the distance of the two opposite vertices makes no
+    /// triangle with those sides, it is continued beyond pi, or below 0, in proportion to the excess.
     pub gamma: f64,
 }
 
 impl AngleTriple {
-    /// The largest gamma that a fold can produce, reached when flat: alpha + beta, or 2 pi - alpha - beta when that sum
-    /// exceeds pi.
+    /// The largest gamma that a fold can produce, reached when flat: alpha + beta, or 2 pi - alpha - beta
+    /// when that sum exceeds pi.
     pub fn flat(&self) -> f64 {
         let sum = self.alpha + self.beta;
         sum.min(TAU - sum)
@@ -72,10 +74,11 @@ impl AngleTriple {
         (self.gamma - self.shut()).min(self.flat() - self.gamma)
     }
 
-    /// The size of the fold angle, in radians within [0, pi], from the spherical triangle of the three angles; incompatible
-    /// triples give that of the nearer end of the range.
+    /// The size of the fold angle, in radians within [0, pi], from the spherical triangle of the three
+    /// angles; incompatible triples give that of the nearer end of the range.
     ///
-    /// `tan^2(fold/2) = sin s sin(s - gamma) / (sin(s - alpha) sin(s - beta))`, `s = (alpha + beta + gamma) / 2`.
+    /// `tan^2(fold/2) = sin s sin(s - gamma) / (sin(s - alpha) sin(s - beta))`,
+    /// `s = (alpha + beta + gamma) / 2`.
     pub fn fold(&self) -> f64 {
         let gamma = self.gamma.clamp(self.shut(), self.flat());
         let s = 0.5 * (self.alpha + self.beta + gamma);
@@ -93,28 +96,30 @@ impl AngleTriple {
 ///
 /// `|alpha - beta| <= gamma <= min(alpha + beta, 2 pi - alpha - beta)`,
 ///
-/// the triangle inequalities of the sphere. The bound of Eq. 10 alone is necessary but not sufficient: it lacks the reverse
-/// inequality, and where alpha + beta > pi it says nothing at all, since gamma never exceeds pi.
+/// the triangle inequalities of the sphere. The bound of Eq. 10 alone is necessary but not sufficient: it
+/// lacks the reverse inequality, and where alpha + beta > pi it says nothing at all, since gamma never
+/// exceeds pi.
 ///
 /// # The two triples of an edge are equivalent
 ///
-/// Let the edge have length l, and let the vertices opposite to it in the left and right face have the distances
-/// `h_L, h_R > 0` from the edge's line and the coordinates `s_L, s_R` along it. Folding by the angle f puts the two
-/// vertices at the distance d with
+/// Let the edge have length l, and let the vertices opposite to it in the left and right face have the
+/// distances `h_L, h_R > 0` from the edge's line and the coordinates `s_L, s_R` along it. Folding by the
+/// angle f puts the two vertices at the distance d with
 ///
 /// `d^2 = (s_L - s_R)^2 + h_L^2 + h_R^2 + 2 h_L h_R cos f`,
 ///
 /// so a fold angle exists if and only if d lies between its values for f = pi (shut) and f = 0 (flat).
 ///
-/// **Claim.** The triple at either end is compatible if and only if d lies in that range. Hence one is if and only if
-/// the other is.
+/// **Claim.** The triple at either end is compatible if and only if d lies in that range. Hence one is if and
+/// only if the other is.
 ///
-/// *Proof.* Take an end and let `r_L`, `r_R` be the lengths of the sides from it to the two opposite vertices, which the
-/// rest shape fixes. By the law of cosines gamma is a strictly increasing function of d (continued as such beyond the
-/// d that make a triangle), and it is the angle between two rays that make the angles alpha and beta with the edge's line
-/// and enclose the dihedral angle pi - f there. So gamma takes its smallest value |alpha - beta| at the d of f = pi and its
-/// largest, min(alpha + beta, 2 pi - alpha - beta), at the d of f = 0. Being increasing, it lies between these values exactly
-/// when d lies between those distances. The range of d does not depend on the end chosen. ∎
+/// *Proof.* Take an end and let `r_L`, `r_R` be the lengths of the sides from it to the two opposite
+/// vertices, which the rest shape fixes. By the law of cosines gamma is a strictly increasing function of d
+/// (continued as such beyond the d that make a triangle), and it is the angle between two rays that make the
+/// angles alpha and beta with the edge's line and enclose the dihedral angle pi - f there. So gamma takes its
+/// smallest value |alpha - beta| at the d of f = pi and its largest, min(alpha + beta, 2 pi - alpha - beta),
+/// at the d of f = 0. Being increasing, it lies between these values exactly when d lies between those
+/// distances. The range of d does not depend on the end chosen. ∎
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeAngles {
     /// The edge.
@@ -130,8 +135,8 @@ pub struct EdgeAngles {
 impl EdgeAngles {
     /// The angles of an interior edge at positions `x` (length 3V); `None` on the boundary.
     ///
-    /// alpha, beta and the sides come from the rest lengths; only the distance of the two opposite vertices is
-    /// taken from `x`, so that the answer is defined in strained states too.
+    /// alpha, beta and the sides come from the rest lengths; only the distance of the two opposite vertices
+    /// is taken from `x`, so that the answer is defined in strained states too.
     ///
     /// # Panics
     /// If `x` is not of length 3V.
@@ -175,7 +180,8 @@ impl EdgeAngles {
         })
     }
 
-    /// How far the distance lies inside its range, relative to the largest distance; negative when incompatible.
+    /// How far the distance lies inside its range, relative to the largest distance; negative when
+    /// incompatible.
     pub fn margin(&self) -> f64 {
         (self.distance - self.range[0]).min(self.range[1] - self.distance) / self.range[1]
     }
@@ -228,14 +234,15 @@ pub enum AngleError {
     },
 }
 
-/// Relative tolerance of [`check_compatibility`] that suits states computed in `f64`: exactly flat and shut folds lie on the
-/// bounds, which rounding passes by about 1e-15.
+/// Relative tolerance of [`check_compatibility`] that suits states computed in `f64`: exactly flat and shut
+/// folds lie on the bounds, which rounding passes by about 1e-15.
 pub const COMPATIBILITY_TOLERANCE: f64 = 1e-9;
 
-/// Checks the compatibility condition of every interior edge at positions `x` (length 3V); the edge violated most is
-/// reported.
+/// Checks the compatibility condition of every interior edge at positions `x` (length 3V); the edge violated
+/// most is reported.
 ///
-/// A distance may lie outside its range by `tolerance` times its largest value, see [`COMPATIBILITY_TOLERANCE`].
+/// A distance may lie outside its range by `tolerance` times its largest value, see
+/// [`COMPATIBILITY_TOLERANCE`].
 ///
 /// # Errors
 /// [`AngleError::Incompatible`] with edge and angles.
@@ -271,7 +278,8 @@ impl Sheet {
         [0, 1, 2].map(|i| angle_from_lengths(l[i], l[(i + 2) % 3], l[(i + 1) % 3]))
     }
 
-    /// The sum of the angles of all faces at a vertex, in radians: 2 pi at an interior vertex of a developable sheet.
+    /// The sum of the angles of all faces at a vertex, in radians: 2 pi at an interior vertex of a
+    /// developable sheet.
     pub fn angle_sum(&self, v: VertexId) -> f64 {
         let t = self.topology();
         let at_v = |&f: &FaceId| {
@@ -284,12 +292,13 @@ impl Sheet {
         t.vertex_faces(v).iter().map(at_v).sum()
     }
 
-    /// The interior vertex whose angle sum differs most from 2 pi, with the defect 2 pi - sum in radians; `None` without an
-    /// interior vertex.
+    /// The interior vertex whose angle sum differs most from 2 pi, with the defect 2 pi - sum in radians;
+    /// `None` without an interior vertex.
     ///
-    /// The defect is the Gaussian curvature at the vertex. It depends on the lengths alone, so it is the same in every
-    /// state. A sheet can be laid flat near every vertex if and only if all defects vanish; a component without holes can then
-    /// be laid flat as a whole. (A cone cut off at its tip has no defect, one hole, and cannot.)
+    /// The defect is the Gaussian curvature at the vertex. It depends on the lengths alone, so it is the same
+    /// in every state. A sheet can be laid flat near every vertex if and only if all defects vanish; a
+    /// component without holes can then be laid flat as a whole. (A cone cut off at its tip has no defect,
+    /// one hole, and cannot.)
     pub fn flatness_defect(&self) -> Option<(VertexId, f64)> {
         let t = self.topology();
         let interior = t.vertex_ids().filter(|&v| !t.is_boundary_vertex(v));

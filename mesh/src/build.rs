@@ -7,7 +7,7 @@ const MAX_ELEMENTS: usize = (u32::MAX / 6) as usize;
 
 /// One side of a face: the edge it lies on, by sorted ends, and where it comes from.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Side {
+pub(crate) struct FaceSide {
     pub(crate) low: u32,
     pub(crate) high: u32,
     pub(crate) face: u32,
@@ -16,7 +16,18 @@ pub(crate) struct Side {
     pub(crate) reversed: bool,
 }
 
-pub(crate) fn build(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Topology, TopologyError> {
+impl Topology {
+    /// Builds the adjacency of the triangles `faces`, each a triple of vertex indices below `vertex_count`.
+    ///
+    /// # Errors
+    /// A [`TopologyError`] when the faces are not an oriented surface that uses every vertex. Faces that are
+    /// wound inconsistently can be repaired first with [`orient_consistently`](crate::orient_consistently).
+    pub fn from_faces(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Self, TopologyError> {
+        build(vertex_count, faces)
+    }
+}
+
+fn build(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Topology, TopologyError> {
     check_faces(vertex_count, faces)?;
     let sides = sorted_sides(faces);
 
@@ -145,12 +156,12 @@ pub(crate) fn check_faces(vertex_count: usize, faces: &[[u32; 3]]) -> Result<(),
 }
 
 /// All sides of all faces, sorted by their edge, so that the sides of one edge are neighbours.
-pub(crate) fn sorted_sides(faces: &[[u32; 3]]) -> Vec<Side> {
+pub(crate) fn sorted_sides(faces: &[[u32; 3]]) -> Vec<FaceSide> {
     let mut sides = Vec::with_capacity(3 * faces.len());
     for (k, f) in faces.iter().enumerate() {
         for corner in 0..3 {
             let (a, b) = (f[corner], f[(corner + 1) % 3]);
-            sides.push(Side {
+            sides.push(FaceSide {
                 low: a.min(b),
                 high: a.max(b),
                 face: k as u32,
@@ -163,17 +174,21 @@ pub(crate) fn sorted_sides(faces: &[[u32; 3]]) -> Vec<Side> {
     sides
 }
 
-/// Walks round every vertex. Two faces share at most one edge here (duplicates are gone), so the walk never branches.
-fn build_fans(t: &mut Topology) -> Result<(), TopologyError> {
-    let n = t.vertex_count();
-    // Faces at each vertex in index order, as (face, corner).
-    let mut start = vec![0u32; n + 1];
-    for f in &t.faces {
+/// A face and which of its corners, 0 to 2.
+type Corner = (FaceId, u8);
+
+/// The corners at every vertex in face order, as row pointers and entries.
+fn corners_at_vertices(
+    faces: &[[VertexId; 3]],
+    vertex_count: usize,
+) -> Result<(Vec<u32>, Vec<Corner>), TopologyError> {
+    let mut start = vec![0u32; vertex_count + 1];
+    for f in faces {
         for v in f {
             start[v.index() + 1] += 1;
         }
     }
-    for v in 0..n {
+    for v in 0..vertex_count {
         if start[v + 1] == 0 {
             return Err(TopologyError::UnreferencedVertex {
                 vertex: VertexId::from_index(v),
@@ -182,14 +197,20 @@ fn build_fans(t: &mut Topology) -> Result<(), TopologyError> {
         start[v + 1] += start[v];
     }
     let mut fill = start.clone();
-    let mut corners = vec![(FaceId(0), 0u8); 3 * t.faces.len()];
-    for (k, f) in t.faces.iter().enumerate() {
+    let mut corners = vec![(FaceId(0), 0u8); 3 * faces.len()];
+    for (k, f) in faces.iter().enumerate() {
         for (corner, v) in f.iter().enumerate() {
             corners[fill[v.index()] as usize] = (FaceId::from_index(k), corner as u8);
             fill[v.index()] += 1;
         }
     }
+    Ok((start, corners))
+}
 
+/// Lists the edges and faces at every vertex in counter-clockwise order.
+fn build_fans(t: &mut Topology) -> Result<(), TopologyError> {
+    let n = t.vertex_count();
+    let (start, corners) = corners_at_vertices(&t.faces, n)?;
     let mut vertex_faces = Vec::with_capacity(3 * t.faces.len());
     let mut vertex_edges = Vec::with_capacity(2 * t.edges.len());
     let mut edge_start = Vec::with_capacity(n + 1);
@@ -200,34 +221,13 @@ fn build_fans(t: &mut Topology) -> Result<(), TopologyError> {
         let first = here
             .iter()
             .find(|&&(f, c)| t.is_boundary_edge(t.face_edges[f.index()][c as usize]));
-        let (first_face, first_corner) = *first.unwrap_or(&here[0]);
         if first.is_some() {
             t.boundary_vertex_count += 1;
         }
-        let (mut face, mut corner) = (first_face, first_corner as usize);
-        let mut reached = 0;
-        loop {
-            vertex_faces.push(face);
-            vertex_edges.push(t.face_edges[face.index()][corner]);
-            reached += 1;
-            let leave = t.face_edges[face.index()][(corner + 2) % 3];
-            let [l, r] = t.edge_faces[leave.index()];
-            let next = if l == Some(face) { r } else { l };
-            match next {
-                None => {
-                    vertex_edges.push(leave);
-                    break;
-                }
-                Some(f) if f == first_face => break,
-                Some(f) => {
-                    face = f;
-                    corner = match t.faces[f.index()].iter().position(|w| w.index() == v) {
-                        Some(c) => c,
-                        None => unreachable!("a face across an edge at a vertex has that vertex"),
-                    };
-                }
-            }
-        }
+        let first = *first.unwrap_or(&here[0]);
+        let before = vertex_faces.len();
+        walk_fan(t, v, first, &mut vertex_faces, &mut vertex_edges);
+        let reached = vertex_faces.len() - before;
         if reached != here.len() {
             let vertex = VertexId::from_index(v);
             return Err(TopologyError::BowTieVertex {
@@ -243,6 +243,40 @@ fn build_fans(t: &mut Topology) -> Result<(), TopologyError> {
     t.vertex_edge_start = edge_start;
     t.vertex_edges = vertex_edges;
     Ok(())
+}
+
+/// Walks round the vertex `v` from face to face across their common edges, from the corner `first` to
+/// the boundary or back to it, and appends the faces and edges met.
+///
+/// Two faces share at most one edge here (duplicate faces are refused before), so the walk never branches.
+fn walk_fan(
+    t: &Topology,
+    v: usize,
+    first: Corner,
+    faces: &mut Vec<FaceId>,
+    edges: &mut Vec<EdgeId>,
+) {
+    let (mut face, mut corner) = (first.0, first.1 as usize);
+    loop {
+        faces.push(face);
+        edges.push(t.face_edges[face.index()][corner]);
+        let leave = t.face_edges[face.index()][(corner + 2) % 3];
+        let [l, r] = t.edge_faces[leave.index()];
+        match if l == Some(face) { r } else { l } {
+            None => {
+                edges.push(leave);
+                return;
+            }
+            Some(f) if f == first.0 => return,
+            Some(f) => {
+                face = f;
+                corner = match t.faces[f.index()].iter().position(|w| w.index() == v) {
+                    Some(c) => c,
+                    None => unreachable!("a face across an edge at a vertex has that vertex"),
+                };
+            }
+        }
+    }
 }
 
 fn label_components(t: &mut Topology) {

@@ -27,8 +27,8 @@ pub struct CreaseLine {
     pub ends: LineEnds,
     /// Its length, in metres.
     pub length: f64,
-    /// Its angle against the x axis in the rest positions, in radians within [0, pi); that of the chord from its first to its
-    /// last vertex, as seen from +z.
+    /// Its angle against the x axis in the rest positions, in radians within [0, pi); that of the chord from
+    /// its first to its last vertex, as seen from +z.
     pub direction: f64,
 }
 
@@ -45,13 +45,14 @@ pub struct FoldingDirection {
 
 /// The straight crease lines of a flat sheet (Liu, Tang and Joneja 2007, Sec. 2.3).
 ///
-/// A flat sheet of rigid triangles can be folded along a straight line while all else stays flat if and only if the line
-/// consists of edges and runs from boundary to boundary: an edge that ends at an interior vertex without going
-/// straight on cannot fold alone. So the lines with [`LineEnds::Through`] are the directions in which the mesh folds.
+/// A flat sheet of rigid triangles can be folded along a straight line while all else stays flat if and only
+/// if the line consists of edges and runs from boundary to boundary: an edge that ends at an interior vertex
+/// without going straight on cannot fold alone. So the lines with [`LineEnds::Through`] are the directions in
+/// which the mesh folds.
 ///
-/// The one-way grid has such lines along its rows, its columns and one diagonal, and none along the other diagonal. The
-/// union-jack grid has them along rows, columns and both diagonals; [`Self::anisotropy`] puts a number to the difference.
-/// An irregular mesh has hardly any.
+/// The one-way grid has such lines along its rows, its columns and one diagonal, and none along the other
+/// diagonal. The union-jack grid has them along rows, columns and both diagonals; [`Self::anisotropy`] puts a
+/// number to the difference. An irregular mesh has hardly any.
 ///
 /// ```
 /// use isosheet_mesh::{CreasePattern, generate};
@@ -71,11 +72,12 @@ pub struct CreasePattern {
 }
 
 impl CreasePattern {
-    /// A tolerance in radians that suits sheets made by formula, or read from files with at least seven digits.
+    /// A tolerance in radians that suits sheets made by formula, or read from files with at least seven
+    /// digits.
     pub const TOLERANCE: f64 = 1e-5;
 
-    /// Finds the lines of `sheet`. Two edges at an interior vertex are one line when the face angles between them add up
-    /// to pi within `tolerance` radians on both sides, which depends on the rest lengths only.
+    /// Finds the lines of `sheet`. Two edges at an interior vertex are one line when the face angles between
+    /// them add up to pi within `tolerance` radians on both sides, which depends on the rest lengths only.
     pub fn of(sheet: &Sheet, tolerance: f64) -> Self {
         let t = sheet.topology();
         let next = continuations(sheet, tolerance);
@@ -144,12 +146,13 @@ impl CreasePattern {
         out
     }
 
-    /// How unevenly the fold lines are spread over the directions: |sum l exp(2 i direction)| / sum l over the lines that
-    /// run through, between 0 and 1; `None` without such a line.
+    /// How unevenly the fold lines are spread over the directions: |sum l exp(2 i direction)| / sum l over
+    /// the lines that run through, between 0 and 1; `None` without such a line.
     ///
-    /// This is the relative difference of the eigenvalues of the tensor sum l d d^T. It is 1 when all lines are parallel,
-    /// positive for the one-way grid (rows and columns cancel, the diagonals do not) and 0 for the union-jack square.
-    /// Zero does not mean that all directions are alike: the union jack still has four preferred ones.
+    /// This is the relative difference of the eigenvalues of the tensor sum l d d^T. It is 1 when all lines
+    /// are parallel, positive for the one-way grid (rows and columns cancel, the diagonals do not) and 0 for
+    /// the union-jack square. Zero does not mean that all directions are alike: the union jack still has four
+    /// preferred ones.
     pub fn anisotropy(&self) -> Option<f64> {
         let (mut c, mut s, mut total) = (0.0, 0.0, 0.0);
         for l in self.through_lines() {

@@ -4,8 +4,8 @@ use crate::Topology;
 
 /// The degrees of freedom of a sheet of rigid triangles, by counting.
 ///
-/// V vertices in space have 3V coordinates; each of the E edges takes one away by fixing a length (Liu, Tang and
-/// Joneja 2007, Sec. 2.2):
+/// V vertices in space have 3V coordinates; each of the E edges takes one away by fixing a length (Liu, Tang
+/// and Joneja 2007, Sec. 2.2):
 ///
 /// `DOF = 3V - E`.
 ///
@@ -15,36 +15,38 @@ use crate::Topology;
 /// `3V - E = B + 3 chi`.
 ///
 /// *Proof.* Count the sides of all faces: an interior edge is a side of two faces, a boundary edge of one, so
-/// `3F = 2E - B`. Then `3 chi + B = 3V - 3E + 3F + B = 3V - 3E + 2E = 3V - E`. All terms are sums over the components, so the
-/// identity holds for each and for all together. ∎
+/// `3F = 2E - B`. Then `3 chi + B = 3V - 3E + 3F + B = 3V - 3E + 2E = 3V - E`. All terms are sums over the
+/// components, so the identity holds for each and for all together. ∎
 ///
 /// A disk has B + 3, an annulus B, a closed sphere 6 and a closed torus 0.
 ///
 /// **Lemma 1.** Splitting every face into four by halving every edge gives `DOF' = DOF + B`.
 ///
-/// *Proof.* Halving doubles the boundary edges and changes neither the surface nor its Euler characteristic (indeed
-/// `V' = V + E`, `E' = 2E + 3F`, `F' = 4F`, so `chi' = V + E - 2E - 3F + 4F = chi`). By the identity
+/// *Proof.* Halving doubles the boundary edges and changes neither the surface nor its Euler characteristic
+/// (indeed `V' = V + E`, `E' = 2E + 3F`, `F' = 4F`, so `chi' = V + E - 2E - 3F + 4F = chi`). By the identity
 /// `DOF' = 2B + 3 chi = DOF + B`. ∎
 ///
-/// The paper states this for a disk. Nothing in the proof asks for one: the lemma holds for sheets with holes and handles, of
-/// several components and without boundary (which gain nothing), and for any way of joining the midpoints inside the faces,
-/// since the inside does not enter.
+/// The paper states this for a disk. Nothing in the proof asks for one: the lemma holds for sheets with holes
+/// and handles, of several components and without boundary (which gain nothing), and for any way of joining
+/// the midpoints inside the faces, since the inside does not enter.
 ///
-/// **Lemma 2.** The isotropic square has DOF 11, 19, 35, 67, ...: `DOF(M^(k+1)) = 2 DOF(M^k) - 3` and `DOF(M^0) = 11`.
+/// **Lemma 2.** The isotropic square has DOF 11, 19, 35, 67, ...: `DOF(M^(k+1)) = 2 DOF(M^k) - 3` and
+/// `DOF(M^0) = 11`.
 ///
-/// *Proof.* M^0 has B = 8 and chi = 1, hence 11. M^(k+1) is M^k with every edge halved and the faces rejoined, so Lemma 1
-/// applies, and for a disk `B = DOF - 3`: `DOF' = DOF + B = 2 DOF - 3`. ∎
+/// *Proof.* M^0 has B = 8 and chi = 1, hence 11. M^(k+1) is M^k with every edge halved and the faces
+/// rejoined, so Lemma 1 applies, and for a disk `B = DOF - 3`: `DOF' = DOF + B = 2 DOF - 3`. ∎
 ///
-/// So Lemma 2 is a case of Lemma 1 and holds for every disk; in general `DOF' = 2 DOF - 3 chi`. In closed form
-/// `DOF(M^k) = 2^(k+3) + 3`.
+/// So Lemma 2 is a case of Lemma 1 and holds for every disk; in general `DOF' = 2 DOF - 3 chi`. In closed
+/// form `DOF(M^k) = 2^(k+3) + 3`.
 ///
-/// # When the count is the truth
+/// # When the count is exact
 ///
-/// The count is the dimension of the space of motions where the E equations are independent. They are at almost every
-/// position of a disk or of any surface that can be capped to a sphere, because the triangulated spheres are generically
-/// rigid and hence independent (H. Gluck, "Almost all simply connected closed surfaces are rigid", 1975). They are *not* in the
-/// flat state as soon as there is an interior vertex or a hole: see [`flat_redundancy`](Self::flat_redundancy). A closed torus
-/// has more equations than unknowns, and its count of internal degrees of freedom is negative.
+/// The count is the dimension of the space of motions where the E equations are independent. They are at
+/// almost every position of a disk or of any surface that can be capped to a sphere, because the triangulated
+/// spheres are generically rigid and hence independent (H. Gluck, "Almost all simply connected closed
+/// surfaces are rigid", 1975). They are *not* in the flat state as soon as there is an interior vertex or a
+/// hole: see [`flat_redundancy`](Self::flat_redundancy). A closed torus has more equations than unknowns, and
+/// its count of internal degrees of freedom is negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dof {
     /// 3V - E.
@@ -86,16 +88,17 @@ impl Dof {
             .collect()
     }
 
-    /// How many of the E length equations are redundant, to first order, in a state in which every component is flat.
+    /// How many of the E length equations are redundant, to first order, in a state in which every component
+    /// is flat.
     ///
-    /// `V_i + 3 (C - chi)`, with `V_i` interior vertices and C components: 9 of the 56 equations of the 25/32 mesh, 49
-    /// of the 208 of the 81/128 mesh.
+    /// `V_i + 3 (C - chi)`, with `V_i` interior vertices and C components: 9 of the 56 equations of the 25/32
+    /// mesh, 49 of the 208 of the 81/128 mesh.
     ///
-    /// *Proof.* In a flat component the rows of G have no entry in the normal direction. Within the plane the mesh is
-    /// infinitesimally rigid: a triangle is, and faces that share an edge move as one. So the rank is that of a
-    /// plane framework that only moves rigidly, 2V - 3 for the component and 2V - 3C in all. What is left is
-    /// `E - 2V + 3C = V - (3V - E) + 3C = V - B - 3 chi + 3C`, and `V - B = V_i` because a manifold has as many boundary
-    /// vertices as boundary edges. ∎
+    /// *Proof.* In a flat component the rows of G have no entry in the normal direction. Within the plane the
+    /// mesh is infinitesimally rigid: a triangle is, and faces that share an edge move as one. So the rank is
+    /// that of a plane framework that only moves rigidly, 2V - 3 for the component and 2V - 3C in all. What
+    /// is left is `E - 2V + 3C = V - (3V - E) + 3C = V - B - 3 chi + 3C`, and `V - B = V_i` because a
+    /// manifold has as many boundary vertices as boundary edges. ∎
     pub fn flat_redundancy(t: &Topology) -> i64 {
         t.interior_vertex_count() as i64
             + 3 * (t.component_count() as i64 - t.euler_characteristic())
@@ -119,7 +122,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::generate::{self, Pattern, split_faces};
+    use crate::generate::{self, FaceSplit, split_faces};
     use crate::testing::{disks, octahedron, surfaces, torus};
     use crate::{LengthConstraints, Sheet};
 
@@ -244,9 +247,9 @@ mod tests {
             let t = topology(&soup);
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let n = t.vertex_count() + t.edge_count();
-            let split = Topology::from_faces(n, &split_faces(&t, |_| Pattern::OneToFour)).unwrap();
+            let split = Topology::from_faces(n, &split_faces(&t, |_| FaceSplit::OneToFour)).unwrap();
             let pick: Vec<usize> = t.face_ids().map(|_| rng.random_range(0..3)).collect();
-            let bisected = Topology::from_faces(n, &split_faces(&t, |f| Pattern::Bisect(pick[f]))).unwrap();
+            let bisected = Topology::from_faces(n, &split_faces(&t, |f| FaceSplit::Bisect(pick[f]))).unwrap();
             for fine in [split, bisected] {
                 fine.check_invariants();
                 prop_assert_eq!(Dof::of(&fine).total, Dof::of(&t).total + t.boundary_edge_count() as i64);
@@ -268,7 +271,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
-        /// At a generic position of a disk the equations are independent, so the count is the number of motions.
+        /// At a generic position of a disk the equations are independent, so the count is the number of
+        /// motions.
         #[test]
         fn count_is_the_number_of_motions_of_a_crumpled_disk(soup in disks(), seed in any::<u64>()) {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);

@@ -3,8 +3,8 @@
 use crate::{FaceId, MeshError, Sheet, VertexId};
 
 impl Sheet {
-    /// The sheet of the faces for which `keep` holds; vertices that are then in no face are dropped, the others keep
-    /// their order.
+    /// The sheet of the faces for which `keep` holds; vertices that are then in no face are dropped, the
+    /// others keep their order.
     ///
     /// # Errors
     /// [`MeshError`] when no face is left or the rest hangs together at a vertex only.
@@ -35,7 +35,8 @@ impl Sheet {
         Self::new(positions, &faces)
     }
 
-    /// All the given sheets as one mesh of several components; vertices and faces follow one another in the order given.
+    /// All the given sheets as one mesh of several components; vertices and faces follow one another in the
+    /// order given.
     ///
     /// # Errors
     /// [`MeshError`] when `sheets` is empty or too large.

@@ -149,8 +149,7 @@ pub enum MeshError {
     },
     /// The corners of a face lie on a line, or at one point.
     #[error(
-        "{face} has no area: its altitude over its longest edge is {relative_altitude:e} of that edge ({longest:e} long), less than {limit:e}; remove the face or move its corners apart",
-        limit = crate::Sheet::MIN_RELATIVE_ALTITUDE
+        "{face} has no area: its altitude over its longest edge is {relative_altitude:e} of that edge ({longest:e} long), less than {limit:e}; remove the face or move its corners apart"
     )]
     ZeroAreaFace {
         /// The face.
@@ -159,6 +158,8 @@ pub enum MeshError {
         relative_altitude: f64,
         /// The length of the longest edge, in metres.
         longest: f64,
+        /// The smallest relative altitude that is accepted.
+        limit: f64,
     },
     /// A length or area over- or underflows.
     #[error(

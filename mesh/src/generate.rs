@@ -16,9 +16,9 @@ pub use grid::{
     Diagonals, anisotropic_grid, grid, isotropic_rectangle, isotropic_square, ladder, strip,
 };
 pub use octagon::{octagon_244, octagon_249};
-pub use origami::{Assignment, FoldPattern, degree_four, miura};
+pub use origami::{FoldAssignment, FoldPattern, degree_four, miura};
 pub use refine::{refine_isotropic, split_1_4};
 pub use round::{annulus, disk, fan, regular_polygon};
 
 #[cfg(test)]
-pub(crate) use refine::{Pattern, split_faces};
+pub(crate) use refine::{FaceSplit, split_faces};

@@ -17,8 +17,8 @@ macro_rules! id {
 
             /// The id with the given array index.
             ///
-            /// A [`Topology`](crate::Topology) never holds more than `u32::MAX / 2` elements of one kind, so any index
-            /// that came from one fits.
+            /// A [`Topology`](crate::Topology) never holds more than `u32::MAX / 2` elements of one kind, so
+            /// any index that came from one fits.
             #[inline]
             pub const fn from_index(index: usize) -> Self {
                 debug_assert!(index <= u32::MAX as usize, "an id does not fit 32 bits");
@@ -50,8 +50,8 @@ id!(
     "face"
 );
 id!(
-    /// One of the two directions of an edge: half-edge `2 e + s` belongs to edge `e`, running from its first to its
-    /// second end for `s = 0` and back for `s = 1`.
+    /// One of the two directions of an edge: half-edge `2 e + s` belongs to edge `e`, running from its first
+    /// to its second end for `s = 0` and back for `s = 1`.
     HalfEdgeId,
     "half-edge"
 );

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::{EdgeId, FaceId, HalfEdgeId, Topology, VertexId};
 
 impl Topology {
-    /// Checks every invariant of the adjacency against the face list, by other means than those that built it.
+    /// Checks every invariant of the adjacency against the face list, by other means than those that built
+    /// it.
     ///
     /// Slow (it builds ordered maps); meant for tests.
     ///

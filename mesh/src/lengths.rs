@@ -52,11 +52,12 @@ impl LengthConstraints {
         }
     }
 
-    /// The same constraints with other lengths (metres), for an edge that is to shorten or a crease that is driven.
+    /// The same constraints with other lengths (metres), for an edge that is to shorten or a crease that is
+    /// driven.
     ///
     /// # Errors
-    /// [`MeshError::WrongEdgeCount`] for a wrong number of lengths, [`MeshError::LengthOutOfRange`] for one that is not
-    /// positive and finite.
+    /// [`MeshError::WrongEdgeCount`] for a wrong number of lengths, [`MeshError::LengthOutOfRange`] for one
+    /// that is not positive and finite.
     pub fn with_lengths(mut self, lengths: Vec<f64>) -> Result<Self, MeshError> {
         if lengths.len() != self.edges.len() {
             return Err(MeshError::WrongEdgeCount {
@@ -196,7 +197,8 @@ impl LengthConstraints {
         }
     }
 
-    /// The largest relative change of length over all edges, `max | |x_a - x_b| / l - 1 |`; NaN if any position is.
+    /// The largest relative change of length over all edges, `max | |x_a - x_b| / l - 1 |`; NaN if any
+    /// position is.
     ///
     /// # Panics
     /// If `x` is not of length 3V.

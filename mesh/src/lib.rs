@@ -1,18 +1,20 @@
 //! Triangle meshes whose edges are rigid rods: topology, rest data, counts and generators.
 //!
-//! * [`Topology`]: who meets whom, without coordinates; validates what it is built from.
+//! * [`Topology`]: adjacency of vertices, edges and faces, without coordinates; validates the faces it is
+//!   built from.
 //! * [`Sheet`]: a topology with rest positions, lengths and areas.
 //! * [`LengthConstraints`] and [`MassMatrix`]: what the dynamics needs of the rest shape.
 //! * [`Dof`]: degrees of freedom by counting, with the two lemmas.
-//! * [`EdgeAngles`], [`check_compatibility`], [`fold_angle`]: angles of any state; [`CreasePattern`]: where the sheet folds straight.
+//! * [`EdgeAngles`], [`check_compatibility`], [`fold_angle`]: angles of any state; [`CreasePattern`]: where
+//!   the sheet folds straight.
 //! * [`orient_consistently`]: repair on request.
 //! * [`generate`]: squares, grids and other sheets made by formula.
 //!
 //! Conventions: SI units, radians, `f64`; positions are flat arrays `x0 y0 z0 x1 y1 z1 ...`; faces are
 //! counter-clockwise as seen from +z in the flat state.
 //!
-//! The model is that of Y.-J. Liu, K. Tang and A. Joneja, "Modeling dynamic developable meshes by the Hamilton principle",
-//! Computer-Aided Design 39 (2007) 719-731.
+//! The model is that of Y.-J. Liu, K. Tang and A. Joneja, "Modeling dynamic developable meshes by the
+//! Hamilton principle", Computer-Aided Design 39 (2007) 719-731.
 
 mod angles;
 mod build;

@@ -5,12 +5,12 @@ use crate::{MeshError, Sheet, Topology};
 /// How the mass of a uniform sheet is distributed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MassKind {
-    /// A third of each face's mass sits at each of its corners, as in Liu, Tang and Joneja 2007. The rotary inertia of
-    /// each triangle about its centroid is four times that of a uniform plate.
+    /// A third of each face's mass sits at each of its corners, as in Liu, Tang and Joneja 2007. The rotary
+    /// inertia of each triangle about its centroid is four times that of a uniform plate.
     #[default]
     Lumped,
-    /// The consistent matrix: m/6 on the diagonal and m/12 off it for a face of mass m. It gives the exact kinetic
-    /// energy of a uniform triangle that moves rigidly, or indeed affinely.
+    /// The consistent matrix: m/6 on the diagonal and m/12 off it for a face of mass m. It gives the exact
+    /// kinetic energy of a uniform triangle that moves rigidly, or indeed affinely.
     Consistent,
 }
 
@@ -119,8 +119,8 @@ impl MassMatrix {
         self.vertex.iter().sum::<f64>() + 2.0 * off
     }
 
-    /// The mass that gravity attaches to each vertex, in kilograms: the row sums, a third of the incident faces' mass
-    /// in either kind.
+    /// The mass that gravity attaches to each vertex, in kilograms: the row sums, a third of the incident
+    /// faces' mass in either kind.
     pub fn row_sums(&self, topology: &Topology) -> Vec<f64> {
         let mut sums = self.vertex.clone();
         if let Some(edge) = &self.edge {
@@ -209,7 +209,8 @@ mod tests {
         }
     }
 
-    /// Uniform plate a x b turning about its centre: T = m w^2 (a^2 + b^2) / 24; in plane and about an axis in the plane.
+    /// Uniform plate a x b turning about its centre: T = m w^2 (a^2 + b^2) / 24; in plane and about an axis
+    /// in the plane.
     #[test]
     fn consistent_mass_is_exact_for_a_turning_plate() {
         let (a, b, m, w) = (0.3, 0.7, 0.25, 1.9);

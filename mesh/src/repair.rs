@@ -7,9 +7,9 @@ use crate::{FaceId, TopologyError, VertexId};
 
 /// Reverses faces so that neighbours run along their common edge in opposite directions.
 ///
-/// Faces are visited breadth first from the lowest face of every component. In each component the winding of the majority
-/// stays (that of its lowest face on a tie), so as few faces as possible are reversed. A reversed face `[a, b, c]`
-/// becomes `[a, c, b]`.
+/// Faces are visited breadth first from the lowest face of every component. In each component the winding of
+/// the majority stays (that of its lowest face on a tie), so as few faces as possible are reversed. A
+/// reversed face `[a, b, c]` becomes `[a, c, b]`.
 ///
 /// Returns the reversed faces, ascending; empty when nothing was wrong.
 ///
@@ -22,9 +22,9 @@ use crate::{FaceId, TopologyError, VertexId};
 /// ```
 ///
 /// # Errors
-/// [`TopologyError::NonOrientable`] for a Moebius band and its like, [`TopologyError::NonManifoldEdge`] where more than two
-/// faces meet, and what is wrong with single faces (index out of range, repeated vertex, duplicate). The faces are
-/// then unchanged.
+/// [`TopologyError::NonOrientable`] for a Moebius band and its like, [`TopologyError::NonManifoldEdge`] where
+/// more than two faces meet, and what is wrong with single faces (index out of range, repeated vertex,
+/// duplicate). The faces are then unchanged.
 pub fn orient_consistently(
     vertex_count: usize,
     faces: &mut [[u32; 3]],
@@ -136,8 +136,8 @@ mod tests {
     }
 
     proptest! {
-        /// Any faces of an oriented surface may be turned over: repair finds an oriented surface again, turning at most half
-        /// of each component, and calling it twice changes nothing.
+        /// Any faces of an oriented surface may be turned over: repair finds an oriented surface again,
+        /// turning at most half of each component, and calling it twice changes nothing.
         #[test]
         fn turned_faces_are_turned_back((n, faces) in surfaces(), seed in any::<u64>()) {
             let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);

@@ -5,8 +5,8 @@ use crate::{EdgeId, FaceId, MeshError, Topology, VertexId};
 
 /// A triangle mesh with its rest positions: the edge lengths and face areas that every later state keeps.
 ///
-/// Positions are a flat array `x0 y0 z0 x1 y1 z1 ...` in metres. A sheet need not be planar or developable: see
-/// [`Sheet::check_developable`].
+/// Positions are a flat array `x0 y0 z0 x1 y1 z1 ...` in metres. A sheet need not be planar or developable:
+/// see [`Sheet::check_developable`].
 ///
 /// ```
 /// let sheet = isosheet_mesh::Sheet::new(
@@ -29,18 +29,19 @@ pub struct Sheet {
 const LENGTH_RANGE: std::ops::RangeInclusive<f64> = 1e-70..=1e70;
 
 impl Sheet {
-    /// A face whose altitude over its longest edge is less than this part of that edge is refused as having no area.
+    /// A face whose altitude over its longest edge is less than this part of that edge is refused as having
+    /// no area.
     ///
-    /// The bound is relative, so it does not depend on the unit. It leaves four digits above the round-off of coordinates
-    /// that are a hundred times larger than the triangle (1e-14 of its size), and is far below any triangle that can
-    /// be computed with: the angles of one at the bound are known to about six digits.
+    /// The bound is relative, so it does not depend on the unit. It leaves four digits above the round-off of
+    /// coordinates that are a hundred times larger than the triangle (1e-14 of its size), and is far below
+    /// any triangle that can be computed with: the angles of one at the bound are known to about six digits.
     pub const MIN_RELATIVE_ALTITUDE: f64 = 1e-10;
 
     /// Builds a sheet from the rest positions (length 3V, metres) and the corners of its faces.
     ///
     /// # Errors
-    /// [`MeshError`] when the length of `positions` is not a multiple of three, a coordinate is not finite, the
-    /// faces are not an oriented surface, or a face has no area.
+    /// [`MeshError`] when the length of `positions` is not a multiple of three, a coordinate is not finite,
+    /// the faces are not an oriented surface, or a face has no area.
     pub fn new(positions: Vec<f64>, faces: &[[u32; 3]]) -> Result<Self, MeshError> {
         if !positions.len().is_multiple_of(3) {
             return Err(MeshError::WrongLength {
@@ -55,7 +56,8 @@ impl Sheet {
     /// Builds a sheet from a topology and rest positions.
     ///
     /// # Errors
-    /// [`MeshError`] when `positions` does not have length 3V, a coordinate is not finite, or a face has no area.
+    /// [`MeshError`] when `positions` does not have length 3V, a coordinate is not finite, or a face has no
+    /// area.
     pub fn from_topology(topology: Topology, positions: Vec<f64>) -> Result<Self, MeshError> {
         check_positions(&topology, &positions)?;
         let lengths: Vec<f64> = topology
@@ -167,6 +169,7 @@ fn face_area(t: &Topology, x: &[f64], lengths: &[f64], f: FaceId) -> Result<f64,
             face: f,
             relative_altitude: 0.0,
             longest,
+            limit: Sheet::MIN_RELATIVE_ALTITUDE,
         });
     }
     if !LENGTH_RANGE.contains(&longest) {
@@ -183,6 +186,7 @@ fn face_area(t: &Topology, x: &[f64], lengths: &[f64], f: FaceId) -> Result<f64,
             face: f,
             relative_altitude,
             longest,
+            limit: Sheet::MIN_RELATIVE_ALTITUDE,
         });
     }
     Ok(0.5 * parallelogram)

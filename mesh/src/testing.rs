@@ -9,8 +9,8 @@ use crate::Topology;
 /// A face list under construction, with its vertex count.
 pub(crate) type Soup = (usize, Vec<[u32; 3]>);
 
-/// An arbitrary triangulated disk, grown from one triangle by `steps` random moves: an ear on a boundary edge, a
-/// triangle across a boundary corner, a vertex inside a face, a flip of an inner edge.
+/// An arbitrary triangulated disk, grown from one triangle by `steps` random moves: an ear on a boundary
+/// edge, a triangle across a boundary corner, a vertex inside a face, a flip of an inner edge.
 pub(crate) fn random_disk(rng: &mut impl Rng, steps: usize) -> Soup {
     let mut n = 3u32;
     let mut faces = vec![[0, 1, 2]];

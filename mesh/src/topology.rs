@@ -1,19 +1,20 @@
-//! Which vertices, edges and faces meet where; no coordinates.
+//! Adjacency of vertices, edges and faces, without coordinates.
 
-use crate::{EdgeId, FaceId, HalfEdgeId, TopologyError, VertexId};
+use crate::{EdgeId, FaceId, HalfEdgeId, VertexId};
 
-/// The connectivity of an oriented triangulated surface, with or without boundary, of any number of components.
+/// The connectivity of an oriented triangulated surface, with or without boundary, of any number of
+/// components.
 ///
-/// Everything is kept in flat arrays (compressed rows for the fans of the vertices), so that memory is O(V + E + F);
-/// building takes O(F log F).
+/// Everything is kept in flat arrays (compressed rows for the fans of the vertices), so that memory is O(V +
+/// E + F); building takes O(F log F).
 ///
 /// Order and direction are fixed by the faces:
 /// * edges are sorted by their (smaller, larger) vertex index;
-/// * an interior edge runs from its smaller to its larger vertex, a boundary edge runs as its only face does, so
-///   that the left face always exists;
-/// * the faces and edges at a vertex are listed counter-clockwise as seen from the side from which the faces are
-///   counter-clockwise. At a boundary vertex the list runs from one boundary edge to the other; at an interior vertex it
-///   starts at the face of lowest index.
+/// * an interior edge runs from its smaller to its larger vertex, a boundary edge runs as its only face does,
+///   so that the left face always exists;
+/// * the faces and edges at a vertex are listed counter-clockwise as seen from the side from which the faces
+///   are counter-clockwise. At a boundary vertex the list runs from one boundary edge to the other; at an
+///   interior vertex it starts at the face of lowest index.
 ///
 /// ```
 /// use isosheet_mesh::{EdgeId, FaceId, Topology, VertexId};
@@ -46,15 +47,6 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// Builds the adjacency of the triangles `faces`, each a triple of vertex indices below `vertex_count`.
-    ///
-    /// # Errors
-    /// A [`TopologyError`] when the faces are not an oriented surface that uses every vertex. Faces that are wound
-    /// inconsistently can be repaired first with [`orient_consistently`](crate::orient_consistently).
-    pub fn from_faces(vertex_count: usize, faces: &[[u32; 3]]) -> Result<Self, TopologyError> {
-        crate::build::build(vertex_count, faces)
-    }
-
     /// The number of vertices V.
     #[inline]
     pub fn vertex_count(&self) -> usize {
@@ -97,7 +89,8 @@ impl Topology {
         self.edge_count() - self.boundary_edge_count
     }
 
-    /// chi = V - E + F: 1 for a disk, 0 for an annulus, 2 for a sphere, the sum over the components of several.
+    /// chi = V - E + F (Liu, Tang and Joneja 2007, Eq. 9): 1 for a disk, 0 for an annulus, 2 for a sphere,
+    /// the sum over the components of several.
     #[inline]
     pub fn euler_characteristic(&self) -> i64 {
         self.vertex_count() as i64 - self.edge_count() as i64 + self.face_count() as i64
@@ -288,7 +281,8 @@ impl Topology {
         self.component_count
     }
 
-    /// The component of a vertex, below [`Self::component_count`]; components are numbered by their lowest vertex.
+    /// The component of a vertex, below [`Self::component_count`]; components are numbered by their lowest
+    /// vertex.
     #[inline]
     pub fn vertex_component(&self, v: VertexId) -> usize {
         self.vertex_component[v.index()] as usize

@@ -3,7 +3,7 @@
 use isosheet_dynamics::{
     CreaseSpring, CreaseSprings, Interpolation, Method, Profile, SheetModel, Simulation, State,
 };
-use isosheet_mesh::generate::{Assignment, FoldPattern, degree_four, miura};
+use isosheet_mesh::generate::{FoldAssignment, FoldPattern, degree_four, miura};
 use isosheet_mesh::{EdgeId, MassKind, VertexId, fold_angle};
 use isosheet_tests::{DegreeFour, FoldingMode, Miura, max_difference};
 
@@ -105,11 +105,11 @@ fn is_zigzag(pattern: &FoldPattern, e: EdgeId) -> bool {
 fn miura_springs(pattern: &FoldPattern, [zigzag, straight, panel]: [f64; 3]) -> Vec<CreaseSpring> {
     let edges = pattern.sheet.topology().edge_ids();
     edges
-        .filter(|e| pattern.assignment(*e) != Assignment::Boundary)
+        .filter(|e| pattern.assignment(*e) != FoldAssignment::Boundary)
         .map(|e| {
             let assignment = pattern.assignment(e);
             let stiffness = match assignment {
-                Assignment::Flat => panel,
+                FoldAssignment::Flat => panel,
                 _ if is_zigzag(pattern, e) => zigzag,
                 _ => straight,
             };
@@ -142,7 +142,7 @@ fn miura_errors(stiffness: [f64; 3]) -> [f64; 3] {
     };
     let zigzags = folds(|p, e| p.assignment(e).sign() != 0.0 && is_zigzag(p, e));
     let straights = folds(|p, e| p.assignment(e).sign() != 0.0 && !is_zigzag(p, e));
-    let panels = folds(|p, e| p.assignment(e) == Assignment::Flat);
+    let panels = folds(|p, e| p.assignment(e) == FoldAssignment::Flat);
     let mean = zigzags.iter().sum::<f64>() / zigzags.len() as f64;
     let expected = MIURA.straight_fold(0.5 * mean);
     let largest =

@@ -1,6 +1,6 @@
 //! Rigid origami with one degree of freedom: the fold angles of a vertex of degree four and of Miura's pattern.
 
-use isosheet_mesh::generate::Assignment;
+use isosheet_mesh::generate::FoldAssignment;
 
 /// One of the two ways in which a flat-foldable vertex of degree four folds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,12 +46,12 @@ impl DegreeFour {
     }
 
     /// Mountains and valleys of a mode with the first crease a valley.
-    pub fn assignment(&self, mode: FoldingMode) -> [Assignment; 4] {
+    pub fn assignment(&self, mode: FoldingMode) -> [FoldAssignment; 4] {
         self.angles(mode, 1.0).map(|angle| {
             if angle > 0.0 {
-                Assignment::Valley
+                FoldAssignment::Valley
             } else {
-                Assignment::Mountain
+                FoldAssignment::Mountain
             }
         })
     }
@@ -136,7 +136,7 @@ mod tests {
                 };
                 let [a, b] = t.edges()[e.index()];
                 let size = match (p.assignment(e), b.index() - a.index()) {
-                    (Assignment::Flat, _) => 0.0,
+                    (FoldAssignment::Flat, _) => 0.0,
                     (_, 1) => m.zigzag_fold(theta),
                     _ => m.straight_fold(theta),
                 };

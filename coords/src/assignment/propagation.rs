@@ -1,8 +1,9 @@
 //! The front, the marks and the choice of rules.
 
-use super::{Assignment, AssignmentOptions, Closure, Degenerate, Placing, Rule};
+use super::options::{AssignmentOptions, Degenerate};
+use super::rules::{Assignment, Closure, Placing, Rule};
 use crate::placement::{COLLINEAR, collinearity};
-use crate::vec3::{Vec3, cross, dot, norm, scale, sub};
+use crate::vec3::{Vec3, at, cross, dot, norm, scale, sub};
 use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -177,7 +178,7 @@ impl<'a> Propagation<'a> {
     /// Unit vectors from known vertices to `v`.
     fn directions(&self, v: VertexId, known: &[VertexId; 3]) -> [Vec3<f64>; 3] {
         known.map(|w| {
-            let d = sub(&point(self.state, v), &point(self.state, w));
+            let d = sub(&at(self.state, v), &at(self.state, w));
             scale(&d, 1.0 / norm(&d))
         })
     }
@@ -201,7 +202,7 @@ impl<'a> Propagation<'a> {
         let mut consider = |triple: [usize; 3], hub: bool| {
             let chosen = triple.map(|i| known[i].1);
             let sine = |x: &[f64]| {
-                let p = chosen.map(|w| point(x, w));
+                let p = chosen.map(|w| at(x, w));
                 collinearity([&p[0], &p[1], &p[2]])
             };
             // A consecutive triple wins unless it is degenerate.
@@ -237,11 +238,6 @@ impl<'a> Propagation<'a> {
         }
         best
     }
-}
-
-fn point(x: &[f64], v: VertexId) -> Vec3<f64> {
-    let i = 3 * v.index();
-    [x[i], x[i + 1], x[i + 2]]
 }
 
 /// Volume spanned by three vectors.

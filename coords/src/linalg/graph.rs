@@ -13,8 +13,8 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// The graph of a symmetric matrix given by its lower triangle, with each group of `block` consecutive unknowns as
-    /// one vertex.
+    /// The graph of a symmetric matrix given by its lower triangle, with each group of `block` consecutive
+    /// unknowns as one vertex.
     pub(super) fn of_blocks(pattern: &Pattern, block: usize) -> Self {
         let n = pattern.cols().div_ceil(block);
         let mut edges = Vec::new();

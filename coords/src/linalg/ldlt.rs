@@ -1,7 +1,8 @@
 //! Sparse `L D L^T` factorisation of a symmetric quasi-definite or saddle-point matrix.
 
-use super::llt::{analyse, view};
-use super::{LinalgError, Pattern, norm_inf};
+use super::error::LinalgError;
+use super::pattern::{Pattern, norm_inf};
+use super::symbolic::{analyse, view};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::cholesky as ch;

@@ -1,10 +1,12 @@
 //! Sparse Cholesky factorisation of a symmetric positive definite matrix.
 
-use super::{LinalgError, Ordering, Pattern, elimination_order};
+use super::error::LinalgError;
+use super::ordering::{Ordering, elimination_order};
+use super::pattern::Pattern;
+use super::symbolic::{analyse, view};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::perm::PermRef;
-use faer::sparse::linalg::{SupernodalThreshold, cholesky as ch};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
+use faer::sparse::linalg::cholesky as ch;
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side};
 use std::num::NonZeroUsize;
 
@@ -29,8 +31,8 @@ impl SparseLlt {
         Self::with_ordering(pattern, None)
     }
 
-    /// Analyses the lower-triangular `pattern` of unknowns that come in groups of `block`, as the three coordinates
-    /// of a vertex do, in the [best](Ordering::Best) order known for it.
+    /// Analyses the lower-triangular `pattern` of unknowns that come in groups of `block`, as the three
+    /// coordinates of a vertex do, in the [best](Ordering::Best) order known for it.
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
@@ -103,9 +105,10 @@ impl SparseLlt {
         result
     }
 
-    /// As [`SparseLlt::factorize`], with the dense blocks shared among threads: the same bits. Nothing here uses it, because it does
-    /// not pay: on two idle cores it takes as long on matrices of 867 unknowns and 1.3 to 3 times as long on those of 3267 to
-    /// 198 147, whose supernodes are too narrow to share. (`cargo xtask scale` measures it.)
+    /// As [`SparseLlt::factorize`], with the dense blocks shared among threads: the same bits. Nothing here
+    /// uses it, because it does not pay: on two idle cores it takes as long on matrices of 867 unknowns and
+    /// 1.3 to 3 times as long on those of 3267 to 198 147, whose supernodes are too narrow to share.
+    /// (`cargo xtask scale` measures it.)
     ///
     /// # Errors
     /// As [`SparseLlt::factorize`].
@@ -174,8 +177,8 @@ impl SparseLlt {
     }
 }
 
-/// The lower triangle in elimination order. faer permutes a matrix anew before each factorisation, a tenth of the time of small
-/// ones; here its values are gathered.
+/// The lower triangle in elimination order. faer permutes a matrix anew before each factorisation, a tenth of
+/// the time of small ones; here its values are gathered.
 struct Permuted {
     pattern: SymbolicSparseColMat<usize>,
     /// Place of each value in the pattern that was given.
@@ -218,40 +221,6 @@ impl Permuted {
         }
         SparseColMatRef::new(self.pattern.as_ref(), &self.values)
     }
-}
-
-pub(super) fn view(p: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
-    SymbolicSparseColMatRef::new_checked(p.rows(), p.cols(), p.col_ptr(), None, p.row_idx())
-}
-
-pub(super) fn analyse(
-    pattern: &Pattern,
-    order: Option<&[usize]>,
-) -> Result<ch::SymbolicCholesky<usize>, LinalgError> {
-    let n = pattern.cols();
-    let params = ch::CholeskySymbolicParams {
-        // faer's automatic choice takes the simplicial code too often: up to five times slower.
-        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-        ..Default::default()
-    };
-    let inverse: Vec<usize>;
-    let ordering = match order {
-        None => ch::SymmetricOrdering::Amd,
-        Some(forward) => {
-            let mut inv = vec![usize::MAX; n];
-            for (k, &i) in forward.iter().enumerate() {
-                inv[i] = k;
-            }
-            inverse = inv;
-            ch::SymmetricOrdering::Custom(PermRef::new_checked(forward, &inverse, n))
-        }
-    };
-    ch::factorize_symbolic_cholesky(view(pattern), Side::Lower, ordering, params).map_err(|e| {
-        LinalgError::Symbolic {
-            order: n,
-            reason: format!("{e:?}"),
-        }
-    })
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Sparse LU factorisation of a general square matrix.
 
-use super::llt::view;
-use super::{LinalgError, Pattern, norm_inf};
+use super::error::LinalgError;
+use super::pattern::{Pattern, norm_inf};
+use super::symbolic::view;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::{SupernodalThreshold, lu};
@@ -132,7 +133,7 @@ impl SparseLu {
     }
 
     /// Solves `A^T x = b` in place, without refinement or check.
-    pub fn solve_transpose(&mut self, rhs: &mut [f64]) {
+    fn solve_transpose(&mut self, rhs: &mut [f64]) {
         let n = self.order();
         lu::LuRef::new_unchecked(&self.symbolic, &self.factor).solve_transpose_in_place_with_conj(
             Conj::No,
@@ -149,7 +150,7 @@ impl SparseLu {
     /// [`LinalgError::Singular`] if the result is not finite or its backward error is far
     /// above round-off.
     pub fn solve_refined(&mut self, rhs: &mut [f64]) -> Result<f64, LinalgError> {
-        self.refined(rhs, Side::Normal)
+        self.refined(rhs, Operator::Normal)
     }
 
     /// As [`SparseLu::solve_refined`] for `A^T x = b`.
@@ -157,21 +158,21 @@ impl SparseLu {
     /// # Errors
     /// As [`SparseLu::solve_refined`].
     pub fn solve_transpose_refined(&mut self, rhs: &mut [f64]) -> Result<f64, LinalgError> {
-        self.refined(rhs, Side::Transpose)
+        self.refined(rhs, Operator::Transpose)
     }
 
-    fn refined(&mut self, x: &mut [f64], side: Side) -> Result<f64, LinalgError> {
+    fn refined(&mut self, x: &mut [f64], operator: Operator) -> Result<f64, LinalgError> {
         let mut b = std::mem::take(&mut self.rhs);
         let mut r = std::mem::take(&mut self.residual);
         b.copy_from_slice(x);
         let norm_a = self.pattern.inf_norm(&self.values, &mut r);
-        self.solve_side(x, side);
+        self.solve_once(x, operator);
         let mut error = f64::INFINITY;
         for k in 0..=REFINEMENT_STEPS {
             r.copy_from_slice(&b);
-            match side {
-                Side::Normal => self.pattern.sub_product(&self.values, x, &mut r),
-                Side::Transpose => self.pattern.sub_transpose_product(&self.values, x, &mut r),
+            match operator {
+                Operator::Normal => self.pattern.sub_product(&self.values, x, &mut r),
+                Operator::Transpose => self.pattern.sub_transpose_product(&self.values, x, &mut r),
             }
             let scale = norm_a * norm_inf(x) + norm_inf(&b);
             let now = if scale == 0.0 {
@@ -188,7 +189,7 @@ impl SparseLu {
             if k == REFINEMENT_STEPS || stalled || error < f64::EPSILON {
                 break;
             }
-            self.solve_side(&mut r, side);
+            self.solve_once(&mut r, operator);
             for (xi, ri) in x.iter_mut().zip(&r) {
                 *xi += ri;
             }
@@ -205,16 +206,17 @@ impl SparseLu {
         }
     }
 
-    fn solve_side(&mut self, x: &mut [f64], side: Side) {
-        match side {
-            Side::Normal => self.solve(x),
-            Side::Transpose => self.solve_transpose(x),
+    fn solve_once(&mut self, x: &mut [f64], operator: Operator) {
+        match operator {
+            Operator::Normal => self.solve(x),
+            Operator::Transpose => self.solve_transpose(x),
         }
     }
 }
 
+/// The matrix of a solve: A or its transpose.
 #[derive(Debug, Clone, Copy)]
-enum Side {
+enum Operator {
     Normal,
     Transpose,
 }

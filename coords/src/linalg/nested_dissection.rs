@@ -6,13 +6,13 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 
-/// Parts up to this size are ordered by minimum degree. From 60 to 300 the operations of the factorisation change by
-/// 2 %, and smaller parts take longer to find.
+/// Parts up to this size are ordered by minimum degree. From 60 to 300 the operations of the factorisation
+/// change by 2 %, and smaller parts take longer to find.
 const LEAF: usize = 120;
 
-/// An elimination order of the graph (`order[k]` is eliminated k-th) by nested dissection
-/// (George, "Nested dissection of a regular finite element mesh", SIAM J. Numer. Anal. 10, 1973): planar meshes of
-/// `V` vertices get factors with O(V log V) entries for O(V^1.5) operations.
+/// An elimination order of the graph (`order[k]` is eliminated k-th) by nested dissection (George, "Nested
+/// dissection of a regular finite element mesh", SIAM J. Numer. Anal. 10, 1973): planar meshes of `V`
+/// vertices get factors with O(V log V) entries for O(V^1.5) operations.
 pub(super) fn nested_dissection(graph: &Graph) -> Vec<usize> {
     let mut work = Dissection {
         graph,
@@ -70,8 +70,8 @@ impl Dissection<'_> {
         self.dissect(&induced, &inner);
     }
 
-    /// Appends a part by minimum degree. The separators around it are eliminated later and all coupled by then, so
-    /// they stand by as a clique: without them the degrees along the rim would be too low.
+    /// Appends a part by minimum degree. The separators around it are eliminated later and all coupled by
+    /// then, so a clique represents them: without it the degrees on the rim of the part would be too low.
     fn finish(&mut self, names: &[u32]) {
         let mut all = names.to_vec();
         all.sort_unstable();

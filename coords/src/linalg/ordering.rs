@@ -16,13 +16,14 @@ pub enum Ordering {
     Best,
 }
 
-/// Number of groups from which nested dissection is tried. On isotropic squares it needs as many operations as minimum
-/// degree at 4000 vertices, three quarters at 16 000 and two thirds at 65 000, and takes six times as long to find.
+/// Number of groups from which nested dissection is tried. On isotropic squares it needs as many operations
+/// as minimum degree at 4000 vertices, three quarters at 16 000 and two thirds at 65 000, and takes six times
+/// as long to find.
 const LARGE: usize = 4000;
 
-/// An elimination order (`order[k]` is eliminated k-th) of a symmetric matrix given by its lower triangle, whose
-/// unknowns come in groups of `block`, as the three coordinates of a vertex do. Groups stay together, so the order is
-/// found on the graph of the groups, which has a ninth of the entries where `block` is three.
+/// An elimination order (`order[k]` is eliminated k-th) of a symmetric matrix given by its lower triangle,
+/// whose unknowns come in groups of `block`, as the three coordinates of a vertex do. Groups stay together,
+/// so the order is found on the graph of the groups, which has a ninth of the entries where `block` is three.
 ///
 /// # Panics
 /// If `block` does not divide the order of the matrix.
@@ -68,8 +69,8 @@ pub struct Fill {
 }
 
 impl Fill {
-    /// The fill of the matrix with this lower triangle in groups of `block` unknowns, each eliminated together, in an
-    /// order that [`elimination_order`] returned.
+    /// The fill of the matrix with this lower triangle in groups of `block` unknowns, each eliminated
+    /// together, in an order that [`elimination_order`] returned.
     pub fn new(pattern: &Pattern, block: usize, order: &[usize]) -> Self {
         let groups: Vec<usize> = order.iter().step_by(block).map(|i| i / block).collect();
         Self::of_graph(&Graph::of_blocks(pattern, block), &groups, block)
@@ -318,8 +319,8 @@ mod tests {
 
     #[test]
     fn fill_of_nested_dissection_grows_as_theory_says() {
-        // O(V log V) entries and O(V^1.5) operations on planar meshes: with every level the entries per vertex grow by
-        // the same amount.
+        // O(V log V) entries and O(V^1.5) operations on planar meshes: with every level the entries per
+        // vertex grow by the same amount.
         let fill = |level| {
             let sheet = isosheet_mesh::generate::isotropic_square(level, 1.0).expect("valid");
             let pattern = of_sheet(&sheet);

@@ -97,7 +97,7 @@ impl Pattern {
     }
 
     /// `y -= A^T x` for the full matrix with these `values`.
-    pub fn sub_transpose_product(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+    pub(crate) fn sub_transpose_product(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
         for c in 0..self.cols {
             let mut s = 0.0;
             for k in self.col_ptr[c]..self.col_ptr[c + 1] {

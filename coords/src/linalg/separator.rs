@@ -13,18 +13,18 @@ pub(super) enum Part {
     Separator,
 }
 
-/// Share of the vertices that is given to either side beforehand. The rest, in the middle, is where the separator
-/// may lie: more room finds shorter separators of parts less equal. For the isotropic square of 16641 vertices the
-/// factorisation takes 7.7e8 operations with 0.4, 6.0e8 with 0.33 and 5.7e8 with 0.25, for irregular meshes 2.7e8 with
-/// any of them; the time to find the order doubles from 0.4 to 0.25.
+/// Share of the vertices that is given to either side beforehand. The rest, in the middle, is where the
+/// separator may lie: more room gives shorter separators and less equal parts. For the isotropic square of
+/// 16641 vertices the factorisation takes 7.7e8 operations with 0.4, 6.0e8 with 0.33 and 5.7e8 with 0.25, for
+/// irregular meshes 2.7e8 with any of them; the time to find the order doubles from 0.4 to 0.25.
 const GIVEN: f64 = 0.3;
 
 /// A vertex separator of a connected graph: the smallest, in proportion to the parts, of four minimum cuts.
 ///
-/// Each cut runs across one of the directions that four vertices far apart define: with the distances `d_a` to `d_d`
-/// from them, vertices are sorted by `d_a - d_b`, `d_a + d_c - d_b - d_d` and so on, the first and the last
-/// [`GIVEN`] are joined to a source and a sink, and a maximum flow with unit vertex capacities between them finds the
-/// minimum vertex cut (Menger). `None` if a side would be empty.
+/// Each cut runs across one of the directions that four vertices far apart define: with the distances `d_a`
+/// to `d_d` from them, vertices are sorted by `d_a - d_b`, `d_a + d_c - d_b - d_d` and so on, the first and
+/// the last [`GIVEN`] are joined to a source and a sink, and a maximum flow with unit vertex capacities
+/// between them finds the minimum vertex cut (Menger). `None` if a side would be empty.
 pub(super) fn separate(graph: &Graph) -> Option<Vec<Part>> {
     let [a, b, c, d] = landmarks(graph);
     let key = |plus: [&[u32]; 2], minus: [&[u32]; 2]| -> Vec<i64> {
@@ -348,7 +348,8 @@ mod tests {
 
     #[test]
     fn a_cut_is_as_large_as_the_flow() {
-        // Against brute force: the smallest vertex set whose removal parts source and sink, in small random graphs.
+        // Against brute force: the smallest vertex set whose removal parts source and sink, in small random
+        // graphs.
         use rand::{RngExt, SeedableRng};
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
         for _ in 0..200 {

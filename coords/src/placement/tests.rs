@@ -35,7 +35,7 @@ fn moved(x: &[f64; 3], j: usize, t: f64) -> [f64; 3] {
     y
 }
 
-fn block_column(b: &Block, j: usize) -> [f64; 3] {
+fn block_column(b: &PositionDerivative, j: usize) -> [f64; 3] {
     [b[0][j], b[1][j], b[2][j]]
 }
 

@@ -1,34 +1,9 @@
 //! Why a realisation fails.
 
 use crate::assignment::Closure;
-use crate::placement::PlacementError;
-use isosheet_mesh::{EdgeId, VertexId};
+use crate::placement_error::PlacementError;
+use isosheet_mesh::{AngleTriple, EdgeId, VertexId};
 use thiserror::Error;
-
-/// The angles of Eq. 10 at one end of an edge, radians (Fig. 5).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AngleTriple {
-    /// Angle of the first triangle at the end, from its edge lengths.
-    pub alpha: f64,
-    /// Angle of the second triangle at the end, from its edge lengths.
-    pub beta: f64,
-    /// Angle between the two outer edges at the end, from positions.
-    pub gamma: f64,
-}
-
-impl AngleTriple {
-    /// Whether a position exists for the common edge: the spherical triangle inequalities
-    /// `|alpha - beta| <= gamma <= min(alpha + beta, 2 pi - alpha - beta)`.
-    ///
-    /// Eq. 10 states `gamma <= alpha + beta`; the other two bounds are needed as well for
-    /// triangles of different shape and for obtuse pairs.
-    #[must_use]
-    pub fn is_compatible(&self) -> bool {
-        let sum = self.alpha + self.beta;
-        (self.alpha - self.beta).abs() <= self.gamma
-            && self.gamma <= sum.min(2.0 * std::f64::consts::PI - sum)
-    }
-}
 
 /// Why a state cannot be realised, or coordinates cannot be read from it.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -44,7 +19,7 @@ pub enum RealiseError {
         edge: EdgeId,
         /// The end of it that is being placed; the angles are those at the other end.
         vertex: VertexId,
-        /// The angles.
+        /// The angles, gamma from positions; [`AngleTriple::margin`] is negative.
         angles: AngleTriple,
         /// Squared height over the squared length of the first edge; negative.
         height_squared: f64,

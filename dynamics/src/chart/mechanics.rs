@@ -81,7 +81,7 @@ impl ChartMechanics {
                 expected: system.dof(),
             });
         }
-        let linear = Linearised::new(&system, chart.as_ref())?;
+        let linear = Linearised::new(&system, chart.pattern())?;
         let solver = kind.build(&system, model.mass())?;
         let work = Work {
             full: vec![0.0; model.coordinate_count()],
@@ -131,7 +131,7 @@ impl ChartMechanics {
     /// [`ChartDynamicsError::Chart`].
     pub fn rebase(&mut self, x: &[f64]) -> Result<(), ChartDynamicsError> {
         self.chart.rebase(x)?;
-        self.linear = Linearised::new(&self.system, self.chart.as_ref())?;
+        self.linear = Linearised::new(&self.system, self.chart.pattern())?;
         self.solver = self.kind.build(&self.system, self.model.mass())?;
         Ok(())
     }
@@ -142,8 +142,7 @@ impl ChartMechanics {
     /// [`ChartDynamicsError::Chart`] where the chart is singular, as in flat states of sheets with
     /// inner vertices; [`ChartDynamicsError::SingularMass`].
     pub fn at(&mut self, x: &[f64]) -> Result<(), ChartDynamicsError> {
-        self.linear
-            .factorize(&self.system, self.chart.as_ref(), x)?;
+        self.chart.linearise(&self.system, &mut self.linear, x)?;
         self.solver.prepare(
             &self.system,
             self.chart.as_ref(),
@@ -181,7 +180,7 @@ impl ChartMechanics {
         Ok(())
     }
 
-    /// Velocities of the coordinates, `qdot = dH/dp = C^-1 p` (Eq. 18), and of the vertices, `v = J qdot`.
+    /// Velocities of the coordinates, `qdot = dH/dp = C^-1 p` (Eq. 18), and of the vertices, `v = J qdot` (Eq. 5).
     ///
     /// # Errors
     /// [`ChartDynamicsError::SingularMass`], [`ChartDynamicsError::Chart`].
@@ -215,7 +214,7 @@ impl ChartMechanics {
         Ok(0.5 * twice + self.model.potential_energy(t, x))
     }
 
-    /// `pdot = -dH/dq + Q` at (x, p), with v the velocities of the vertices that belong to p.
+    /// `pdot = -dH/dq + Q` (Eqs. 19 and 22) at (x, p), with v the velocities of the vertices that belong to p.
     ///
     /// With `A^T [mu; p] = M v` the velocity-squared term is
     ///

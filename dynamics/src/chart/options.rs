@@ -38,7 +38,8 @@ pub enum ChartStepControl {
     ///
     /// The error of a step grows with its square, so that a rejected step is shortened by the
     /// square root of tolerance over change, and after an accepted one the next is lengthened by it,
-    /// at most twofold.
+    /// at most twofold. The square is that of the remainder of the Taylor series (Eq. 23), which the
+    /// paper bounds by the change of the Hamiltonian (Eq. 24).
     Adaptive {
         /// Bound on `|H(t + h) - H(t)|`, joules.
         tolerance: f64,

@@ -33,7 +33,7 @@ pub trait MassSolver: Send {
     /// When the mass matrix is singular to working precision.
     fn velocity(&mut self, p: &[f64], qdot: &mut [f64]) -> Result<(), ChartDynamicsError>;
 
-    /// The derivative `dH/dp_j = sum_i p_i d(qdot_i)/dp_j` (Sec. 4.1). Equal to [`MassSolver::velocity`]
+    /// The derivative `dH/dp_j = sum_i p_i d(qdot_i)/dp_j` (Eq. 22). Equal to [`MassSolver::velocity`]
     /// because C is symmetric; the published method computes it separately, from minors.
     ///
     /// # Errors

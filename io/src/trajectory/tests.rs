@@ -38,7 +38,8 @@ fn comes_back_bit_for_bit() {
     assert!(Trajectory::read(&path).unwrap().is_empty());
 }
 
-/// The directory of the archive: entries carry a fixed date (1980-01-01 00:00, `0x0021` and 0 in the format) and no clock.
+/// The directory of the archive: entries carry a fixed date (1980-01-01 00:00, `0x0021` and 0 in the format)
+/// and no clock.
 #[test]
 fn equal_trajectories_are_equal_files() {
     let dir = tempfile::tempdir().unwrap();

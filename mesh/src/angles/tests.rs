@@ -3,7 +3,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::generate;
 
-/// Two triangles on the edge from (0, 0, 0) to (0, l, 0), the left one to the left (-x) of it, folded by `fold`.
+/// Two triangles on the edge from (0, 0, 0) to (0, l, 0), the left one to the left (-x) of it, folded by
+/// `fold`.
 fn hinge(l: f64, left: [f64; 2], right: [f64; 2], fold: f64) -> (Sheet, Vec<f64>) {
     // left, right: distance from the edge's line, coordinate along it.
     let flat = vec![
@@ -56,7 +57,8 @@ fn angles_from_lengths_keep_their_digits() {
 
 #[test]
 fn the_paper_bound_is_not_enough_beyond_a_straight_angle() {
-    // At the first end alpha + beta > pi: gamma <= pi < alpha + beta always holds, but the flat gamma is 2 pi - sum.
+    // At the first end alpha + beta > pi: gamma <= pi < alpha + beta always holds, but the flat gamma is 2 pi
+    // - sum.
     let (s, x) = hinge(1.0, [0.6, -0.4], [0.6, -0.4], 0.0);
     let a = EdgeAngles::at(&s, &x, hinge_edge(&s)).unwrap();
     assert!(a.ends[0].alpha + a.ends[0].beta > PI);
@@ -152,7 +154,8 @@ fn wing() -> impl Strategy<Value = [f64; 2]> {
 }
 
 proptest! {
-    /// In any folded state the triples are compatible, measured gamma is theirs, and the fold angle comes back.
+    /// In any folded state the triples are compatible, measured gamma is theirs, and the fold angle comes
+    /// back.
     #[test]
     fn folds_are_compatible(l in 0.2..2.0f64, left in wing(), right in wing(), fold in -PI..PI) {
         let (s, x) = hinge(l, left, right, fold);

@@ -16,16 +16,16 @@ const JITTER: f64 = 0.35;
 /// Interior points keep this part of the spacing from the outline, so that no flat triangle leans on it.
 const CLEARANCE: f64 = 0.55;
 
-/// An irregular triangulation of the polygon `outline` (corners in order, metres, either direction) with edges about
-/// `spacing` long.
+/// An irregular triangulation of the polygon `outline` (corners in order, metres, either direction) with
+/// edges about `spacing` long.
 ///
-/// The sides are cut into equal parts; inside lies a jittered triangular lattice, smoothed a little; the triangulation is
-/// the constrained Delaunay one. The same arguments give the same mesh; another `seed` gives another. Boundary vertices
-/// come first, in the order of the outline.
+/// The sides are cut into equal parts; inside lies a jittered triangular lattice, smoothed a little; the
+/// triangulation is the constrained Delaunay one. The same arguments give the same mesh; another `seed` gives
+/// another. Boundary vertices come first, in the order of the outline.
 ///
 /// # Errors
-/// [`GenerateError`] for a spacing that is not positive, an outline of fewer than three corners, with a corner that
-/// is not finite, with a side of no length or with crossing sides, or more than 2^24 faces.
+/// [`GenerateError`] for a spacing that is not positive, an outline of fewer than three corners, with a
+/// corner that is not finite, with a side of no length or with crossing sides, or more than 2^24 faces.
 pub fn delaunay(outline: &[[f64; 2]], spacing: f64, seed: u64) -> Result<Sheet, GenerateError> {
     check_size("spacing", spacing)?;
     let (min, max) = check_outline(outline)?;
@@ -78,8 +78,8 @@ pub fn delaunay_square(side: f64, spacing: f64, seed: u64) -> Result<Sheet, Gene
     )
 }
 
-/// Triangulates `points`, whose first `boundary` are the outline in order, after `rounds` of moving every other point to
-/// the area-weighted mean of the centroids of its triangles.
+/// Triangulates `points`, whose first `boundary` are the outline in order, after `rounds` of moving every
+/// other point to the area-weighted mean of the centroids of its triangles.
 pub(crate) fn relaxed(
     mut points: Vec<[f64; 2]>,
     boundary: usize,

@@ -6,17 +6,19 @@ use crate::Sheet;
 /// How the cells of a rectangular grid are cut into two triangles each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Diagonals {
-    /// Alternating, so that the cells of even parity (i + j even) are cut from lower left to upper right and the others
-    /// the other way: the isotropic or "union jack" pattern of Liu, Tang and Joneja 2007, Fig. 4. Vertices of even
-    /// parity have degree 8 inside, those of odd parity 4.
+    /// Alternating, so that the cells of even parity (i + j even) are cut from lower left to upper right and
+    /// the others the other way: the isotropic or "union jack" pattern of Liu, Tang and Joneja 2007, Fig. 4.
+    /// Vertices of even parity have degree 8 inside, those of odd parity 4.
     UnionJack,
-    /// All from lower right to upper left: the anisotropic pattern of Figs. 1 and 3. Interior vertices have degree 6.
+    /// All from lower right to upper left: the anisotropic pattern of Figs. 1 and 3. Interior vertices have
+    /// degree 6.
     Falling,
     /// All from lower left to upper right: the mirror image of the former.
     Rising,
 }
 
-/// A flat rectangle `[0, width] x [0, height]` (metres) of `columns` x `rows` cells, each cut into two triangles.
+/// A flat rectangle `[0, width] x [0, height]` (metres) of `columns` x `rows` cells, each cut into two
+/// triangles.
 ///
 /// Vertex (i, j) has the index i + j (columns + 1) and lies at (i width / columns, j height / rows, 0).
 ///
@@ -70,8 +72,8 @@ fn grid_faces(columns: usize, rows: usize, diagonals: Diagonals) -> Vec<[u32; 3]
     faces
 }
 
-/// The isotropic square M^level of side `side` (metres): a grid of 2^(level + 1) cells each way, cut in the union-jack
-/// pattern (Liu, Tang and Joneja 2007, Fig. 4).
+/// The isotropic square M^level of side `side` (metres): a grid of 2^(level + 1) cells each way, cut in the
+/// union-jack pattern (Liu, Tang and Joneja 2007, Fig. 4).
 ///
 /// Levels 0 to 4 have 9/8, 25/32, 81/128, 289/512 and 1089/2048 vertices/faces. Vertex (i, j) has the index
 /// i + j (2^(level + 1) + 1).
@@ -90,8 +92,9 @@ pub fn isotropic_square(level: u32, side: f64) -> Result<Sheet, GenerateError> {
     grid(n, n, side, side, Diagonals::UnionJack)
 }
 
-/// The isotropic rectangle of `columns` x `rows` coarse rectangles at refinement `level`: each coarse rectangle is cut into
-/// 2^level x 2^level smaller ones and each of those into eight triangles about its centre (Fig. 4).
+/// The isotropic rectangle of `columns` x `rows` coarse rectangles at refinement `level`: each coarse
+/// rectangle is cut into 2^level x 2^level smaller ones and each of those into eight triangles about its
+/// centre (Fig. 4).
 ///
 /// With one column and one row of equal sides this is [`isotropic_square`]. Numbering is that of [`grid`].
 ///
@@ -116,7 +119,8 @@ pub fn isotropic_rectangle(
     )
 }
 
-/// The one-way grid of Liu, Tang and Joneja 2007, Figs. 1 and 3: all diagonals run from lower right to upper left.
+/// The one-way grid of Liu, Tang and Joneja 2007, Figs. 1 and 3: all diagonals run from lower right to upper
+/// left.
 ///
 /// # Errors
 /// As [`grid`].
@@ -129,10 +133,11 @@ pub fn anisotropic_grid(
     grid(columns, rows, width, height, Diagonals::Falling)
 }
 
-/// A strip of one row of `cells` cells along x; no interior vertex, so that its lengths are independent even when flat.
+/// A strip of one row of `cells` cells along x; no interior vertex, so that its lengths are independent even
+/// when flat.
 ///
-/// With [`Diagonals::UnionJack`] the creases zigzag, otherwise they are parallel. Vertex i is at the bottom of rung i,
-/// vertex i + cells + 1 at its top.
+/// With [`Diagonals::UnionJack`] the creases zigzag, otherwise they are parallel. Vertex i is at the bottom
+/// of rung i, vertex i + cells + 1 at its top.
 ///
 /// # Errors
 /// As [`grid`].
@@ -145,11 +150,13 @@ pub fn strip(
     grid(cells, 1, length, width, diagonals)
 }
 
-/// A strip of `rows` rungs of two vertices each, numbered downwards (along -y): the mesh of the hanging chain.
+/// A strip of `rows` rungs of two vertices each, numbered downwards (along -y): the mesh of the hanging
+/// chain.
 ///
-/// Rung k is at y = -k `spacing`; vertices 2k and 2k + 1 are at x = 0 and x = `rung` (metres). Held at the first rung, with
-/// equal vertex masses, it hangs and swings as `rows` - 1 equal beads on a string do: the side rods carry all the
-/// weight, rungs and diagonals none. Turn it upright with `map_positions(|[x, y, z]| [x, -z, y])`.
+/// Rung k is at y = -k `spacing`; vertices 2k and 2k + 1 are at x = 0 and x = `rung` (metres). Held at the
+/// first rung, with equal vertex masses, it hangs and swings as `rows` - 1 equal beads on a string do: the
+/// side rods carry all the weight, rungs and diagonals none. Turn it upright with
+/// `map_positions(|[x, y, z]| [x, -z, y])`.
 ///
 /// # Errors
 /// [`GenerateError`] for fewer than two rows or a size that is not positive.

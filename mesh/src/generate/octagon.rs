@@ -7,19 +7,21 @@ use super::error::{GenerateError, check_size};
 use super::isotropic_square;
 use crate::Sheet;
 
-/// A regular octagon with exactly 244 vertices and 440 faces, the counts of Liu, Tang and Joneja 2007, Fig. 15.
+/// A regular octagon with exactly 244 vertices and 440 faces, the counts of Liu, Tang and Joneja 2007, Fig.
+/// 15.
 ///
-/// Any triangulated disk with 46 boundary edges and 198 interior vertices has these counts; the paper does not say more
-/// of its mesh. Here the two vertical sides are cut into 5 parts and the others into 6; inside lies a lattice of
-/// equilateral triangles, smoothed a little towards the sides, and the triangulation is the Delaunay one. All but 14 interior
-/// vertices have degree 6. `radius` (metres) is that of the circumscribed circle about the origin. Boundary vertices
-/// come first, counter-clockwise from the angle pi/8.
+/// Any triangulated disk with 46 boundary edges and 198 interior vertices has these counts; the paper does
+/// not say more of its mesh. Here the two vertical sides are cut into 5 parts and the others into 6; inside
+/// lies a lattice of equilateral triangles, smoothed a little towards the sides, and the triangulation is the
+/// Delaunay one. All but 14 interior vertices have degree 6. `radius` (metres) is that of the circumscribed
+/// circle about the origin. Boundary vertices come first, counter-clockwise from the angle pi/8.
 ///
 /// # Errors
 /// [`GenerateError::Size`] for a radius that is not positive.
 pub fn octagon_244(radius: f64) -> Result<Sheet, GenerateError> {
     const SIDE_PARTS: [usize; 8] = [6, 6, 6, 5, 6, 6, 6, 5];
-    /// Edge of the lattice for radius 1; any value from 0.1168 to 0.1177 leaves 198 points with the clearance below.
+    /// Edge of the lattice for radius 1; any value from 0.1168 to 0.1177 leaves 198 points with the clearance
+    /// below.
     const SPACING: f64 = 0.1172;
     /// Lattice points keep this part of the spacing from the sides.
     const CLEARANCE: f64 = 0.8;
@@ -44,7 +46,8 @@ pub fn octagon_244(radius: f64) -> Result<Sheet, GenerateError> {
     let reach = FRAC_PI_8.cos() - CLEARANCE * SPACING;
     for j in -12i32..=12 {
         for i in -20i32..=20 {
-            // The origin is the middle of a lattice edge, so the lattice has the two mirror lines of the side parts.
+            // The origin is the middle of a lattice edge, so the lattice has the two mirror lines of the side
+            // parts.
             let x = SPACING * (f64::from(i) + 0.5 + 0.5 * f64::from(j));
             let y = SPACING * 0.75f64.sqrt() * f64::from(j);
             if normals.iter().all(|n| n[0] * x + n[1] * y < reach) {
@@ -56,10 +59,11 @@ pub fn octagon_244(radius: f64) -> Result<Sheet, GenerateError> {
     Ok(unit.map_positions(|p| p.map(|c| radius * c))?)
 }
 
-/// The octagon with 249 vertices and 448 faces that is left of the 16 x 16 union-jack square of side `side` (metres) when
-/// four cells are cut off each corner along the diagonals.
+/// The octagon with 249 vertices and 448 faces that is left of the 16 x 16 union-jack square of side `side`
+/// (metres) when four cells are cut off each corner along the diagonals.
 ///
-/// It has all the symmetries of the square; four sides are side/2 long and four side sqrt(2)/4, so it is not regular.
+/// It has all the symmetries of the square; four sides are side/2 long and four side sqrt(2)/4, so it is not
+/// regular.
 ///
 /// # Errors
 /// [`GenerateError::Size`] for a side that is not positive.

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// What an edge of a crease pattern is meant to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Assignment {
+pub enum FoldAssignment {
     /// The boundary of the sheet.
     Boundary,
     /// Folds away from the side from which faces are counter-clockwise: a negative fold angle.
@@ -17,7 +17,7 @@ pub enum Assignment {
     Flat,
 }
 
-impl Assignment {
+impl FoldAssignment {
     /// The sign of the fold angle: -1, 0 or 1.
     pub fn sign(self) -> f64 {
         match self {
@@ -42,7 +42,7 @@ pub struct FoldPattern {
     /// The sheet, flat.
     pub sheet: Sheet,
     /// One entry for each edge.
-    pub assignments: Vec<Assignment>,
+    pub assignments: Vec<FoldAssignment>,
 }
 
 impl FoldPattern {
@@ -50,20 +50,20 @@ impl FoldPattern {
     ///
     /// # Panics
     /// If there is no such edge.
-    pub fn assignment(&self, e: EdgeId) -> Assignment {
+    pub fn assignment(&self, e: EdgeId) -> FoldAssignment {
         self.assignments[e.index()]
     }
 
     /// A sheet whose interior edges are flat but for the creases, given by their ends.
-    fn new(sheet: Sheet, creases: &[(usize, usize, Assignment)]) -> Self {
+    fn new(sheet: Sheet, creases: &[(usize, usize, FoldAssignment)]) -> Self {
         let t = sheet.topology();
-        let mut assignments: Vec<Assignment> = t
+        let mut assignments: Vec<FoldAssignment> = t
             .edge_ids()
             .map(|e| {
                 if t.is_boundary_edge(e) {
-                    Assignment::Boundary
+                    FoldAssignment::Boundary
                 } else {
-                    Assignment::Flat
+                    FoldAssignment::Flat
                 }
             })
             .collect();
@@ -75,17 +75,18 @@ impl FoldPattern {
     }
 }
 
-/// Miura's pattern, flat: `columns` x `rows` parallelograms with sides `straight` and `zigzag` (metres) and the acute angle
-/// `angle` (radians) between them, each cut in two along its shorter diagonal.
+/// Miura's pattern, flat: `columns` x `rows` parallelograms with sides `straight` and `zigzag` (metres) and
+/// the acute angle `angle` (radians) between them, each cut in two along its shorter diagonal.
 ///
-/// Vertex (i, j) has the index i + j (columns + 1). Its straight creases run along y from (i, j) to (i, j + 1), its zigzag
-/// creases from (i, j) to (i + 1, j), where odd i lie `zigzag cos(angle)` further along y. Zigzag j is a valley for even j and
-/// a mountain for odd j; the straight crease from (i, j) folds like zigzag j if i is odd and the other way if i is even
-/// (Miura, *Method of packaging and deployment of large membranes in space*, 1985).
+/// Vertex (i, j) has the index i + j (columns + 1). Its straight creases run along y from (i, j) to (i, j +
+/// 1), its zigzag creases from (i, j) to (i + 1, j), where odd i lie `zigzag cos(angle)` further along y.
+/// Zigzag j is a valley for even j and a mountain for odd j; the straight crease from (i, j) folds like
+/// zigzag j if i is odd and the other way if i is even (Miura, *Method of packaging and deployment of large
+/// membranes in space*, 1985).
 ///
 /// # Errors
-/// [`GenerateError`] for a count of zero, a length that is not positive, an angle that is not between 0 and pi/2, or
-/// too many faces.
+/// [`GenerateError`] for a count of zero, a length that is not positive, an angle that is not between 0 and
+/// pi/2, or too many faces.
 pub fn miura(
     columns: usize,
     rows: usize,
@@ -114,11 +115,11 @@ pub fn miura(
         let zigzag = if j % 2 == 0 { 1 } else { -1 };
         for i in 0..=columns {
             if i < columns && j > 0 && j < rows {
-                creases.push((at(i, j), at(i + 1, j), Assignment::of_sign(zigzag)));
+                creases.push((at(i, j), at(i + 1, j), FoldAssignment::of_sign(zigzag)));
             }
             if j < rows && i > 0 && i < columns {
                 let sign = if i % 2 == 1 { zigzag } else { -zigzag };
-                creases.push((at(i, j), at(i, j + 1), Assignment::of_sign(sign)));
+                creases.push((at(i, j), at(i, j + 1), FoldAssignment::of_sign(sign)));
             }
             if i < columns && j < rows {
                 let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
@@ -135,19 +136,20 @@ pub fn miura(
     Ok(FoldPattern::new(sheet, &creases))
 }
 
-/// A vertex of degree four whose sectors `a1, a2, pi - a1, pi - a2` allow it to fold flat (Kawasaki), with rigid triangles
-/// of the given radius (metres): vertex 0 in the middle, vertex k at the end of crease k for k = 1 to 4, crease 1 along x.
+/// A vertex of degree four whose sectors `a1, a2, pi - a1, pi - a2` allow it to fold flat (Kawasaki), with
+/// rigid triangles of the given radius (metres): vertex 0 in the middle, vertex k at the end of crease k for
+/// k = 1 to 4, crease 1 along x.
 ///
-/// Such a vertex has one degree of freedom and two ways to fold from the flat state, which the assignment of the
-/// creases tells apart: creases 2 and 4 alike or creases 1 and 3 alike, and the other two unlike.
+/// Such a vertex has one degree of freedom and two ways to fold from the flat state, which the assignment of
+/// the creases tells apart: creases 2 and 4 alike or creases 1 and 3 alike, and the other two unlike.
 ///
 /// # Errors
-/// [`GenerateError`] for angles that are not between 0 and pi, a radius that is not positive, or an assignment that is
-/// not three of a kind and one of the other (Maekawa).
+/// [`GenerateError`] for angles that are not between 0 and pi, a radius that is not positive, or an
+/// assignment that is not three of a kind and one of the other (Maekawa).
 pub fn degree_four(
     sectors: [f64; 2],
     radius: f64,
-    assignments: [Assignment; 4],
+    assignments: [FoldAssignment; 4],
 ) -> Result<FoldPattern, GenerateError> {
     for (name, angle) in ["sectors[0]", "sectors[1]"].into_iter().zip(sectors) {
         check_angle(name, angle, [0.0, PI])?;
@@ -185,16 +187,20 @@ mod tests {
         let t = p.sheet.topology();
         assert_eq!((t.vertex_count(), t.face_count()), (35, 48));
         let count = |kind| p.assignments.iter().filter(|k| **k == kind).count();
-        assert_eq!(count(Assignment::Boundary), 20);
-        assert_eq!(count(Assignment::Flat), 24, "one diagonal for each panel");
+        assert_eq!(count(FoldAssignment::Boundary), 20);
         assert_eq!(
-            count(Assignment::Mountain) + count(Assignment::Valley),
+            count(FoldAssignment::Flat),
+            24,
+            "one diagonal for each panel"
+        );
+        assert_eq!(
+            count(FoldAssignment::Mountain) + count(FoldAssignment::Valley),
             4 * 5 + 3 * 6
         );
         assert!((p.sheet.area() - 24.0 * a * b * angle.sin()).abs() < 1e-15);
         for (e, l) in t.edge_ids().zip(p.sheet.lengths()) {
             match p.assignment(e) {
-                Assignment::Flat => assert!(*l < a.hypot(b), "the shorter diagonal"),
+                FoldAssignment::Flat => assert!(*l < a.hypot(b), "the shorter diagonal"),
                 _ => assert!((l - a).abs() < 1e-15 || (l - b).abs() < 1e-15),
             }
         }
@@ -223,7 +229,7 @@ mod tests {
             Err(GenerateError::Angle { name: "angle", .. })
         ));
         assert!(miura(2, 2, 1.0, 1.0, f64::NAN).is_err());
-        use Assignment::{Flat, Mountain, Valley};
+        use FoldAssignment::{Flat, Mountain, Valley};
         for wrong in [
             [Valley; 4],
             [Valley, Mountain, Valley, Mountain],

@@ -5,30 +5,34 @@ use crate::{Sheet, Topology};
 
 /// How a face is cut into four once a vertex sits in the middle of each of its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Pattern {
+pub(crate) enum FaceSplit {
     /// Join the three midpoints.
     OneToFour,
     /// Join the midpoint of edge k of the face to the opposite corner and to the other two midpoints.
     Bisect(usize),
 }
 
-/// The 1-4 split of Liu, Tang and Joneja 2007, Fig. 1: every edge is halved and the midpoints of each face are joined.
+/// The 1-4 split of Liu, Tang and Joneja 2007, Fig. 1: every edge is halved and the midpoints of each face
+/// are joined.
 ///
-/// Vertex V + e of the result is the midpoint of edge e; faces 4f to 4f + 3 replace face f, the last being the middle
-/// one. V' = V + E, E' = 2E + 3F, F' = 4F. All four parts are similar to the face, so a one-way pattern stays one.
+/// Vertex V + e of the result is the midpoint of edge e; faces 4f to 4f + 3 replace face f, the last being
+/// the middle one. V' = V + E, E' = 2E + 3F, F' = 4F. All four parts are similar to the face, so a one-way
+/// pattern stays one.
 ///
 /// # Errors
 /// [`GenerateError::TooManyFaces`].
 pub fn split_1_4(sheet: &Sheet) -> Result<Sheet, GenerateError> {
-    split(sheet, |_| Pattern::OneToFour)
+    split(sheet, |_| FaceSplit::OneToFour)
 }
 
-/// Refinement that carries the isotropic square M^k to M^(k+1) (Liu, Tang and Joneja 2007, Fig. 4), for any sheet.
+/// Refinement that carries the isotropic square M^k to M^(k+1) (Liu, Tang and Joneja 2007, Fig. 4), for any
+/// sheet.
 ///
-/// Every edge is halved; in each face the midpoint of the longest edge is joined to the opposite corner and to the other
-/// two midpoints, which is bisecting the face and then both halves. The counts are those of [`split_1_4`], but
-/// every old vertex now has twice its degree, because a crease runs from it into every face around it. Where two edges of
-/// a face have the same length within 1e-9, the lower edge index counts as the longer.
+/// Every edge is halved; in each face the midpoint of the longest edge is joined to the opposite corner and
+/// to the other two midpoints, which is bisecting the face and then both halves. The counts are those of
+/// [`split_1_4`], but every old vertex now has twice its degree, because a crease runs from it into every
+/// face around it. Where two edges of a face have the same length within 1e-9, the lower edge index counts as
+/// the longer.
 ///
 /// # Errors
 /// [`GenerateError::TooManyFaces`].
@@ -48,11 +52,11 @@ pub fn refine_isotropic(sheet: &Sheet) -> Result<Sheet, GenerateError> {
                 best
             }
         });
-        Pattern::Bisect(longest.unwrap_or(0))
+        FaceSplit::Bisect(longest.unwrap_or(0))
     })
 }
 
-fn split(sheet: &Sheet, pattern: impl Fn(usize) -> Pattern) -> Result<Sheet, GenerateError> {
+fn split(sheet: &Sheet, pattern: impl Fn(usize) -> FaceSplit) -> Result<Sheet, GenerateError> {
     let t = sheet.topology();
     check_faces(4 * t.face_count() as u128)?;
     let mut positions = sheet.positions().to_vec();
@@ -64,7 +68,7 @@ fn split(sheet: &Sheet, pattern: impl Fn(usize) -> Pattern) -> Result<Sheet, Gen
 }
 
 /// The faces of the refined mesh; vertex V + e is the midpoint of edge e.
-pub(crate) fn split_faces(t: &Topology, pattern: impl Fn(usize) -> Pattern) -> Vec<[u32; 3]> {
+pub(crate) fn split_faces(t: &Topology, pattern: impl Fn(usize) -> FaceSplit) -> Vec<[u32; 3]> {
     let n = t.vertex_count() as u32;
     let mut faces = Vec::with_capacity(4 * t.face_count());
     for f in t.face_ids() {
@@ -72,7 +76,7 @@ pub(crate) fn split_faces(t: &Topology, pattern: impl Fn(usize) -> Pattern) -> V
         // m[i] lies between corners i and i + 1.
         let m = t.face_edges(f).map(|e| n + e.0);
         match pattern(f.index()) {
-            Pattern::OneToFour => {
+            FaceSplit::OneToFour => {
                 faces.extend([
                     [c[0], m[0], m[2]],
                     [m[0], c[1], m[1]],
@@ -80,7 +84,7 @@ pub(crate) fn split_faces(t: &Topology, pattern: impl Fn(usize) -> Pattern) -> V
                     [m[0], m[1], m[2]],
                 ]);
             }
-            Pattern::Bisect(k) => {
+            FaceSplit::Bisect(k) => {
                 let (a, b, apex) = (c[k], c[(k + 1) % 3], c[(k + 2) % 3]);
                 let (base, right, left) = (m[k], m[(k + 1) % 3], m[(k + 2) % 3]);
                 faces.extend([

@@ -7,9 +7,10 @@ use crate::Sheet;
 
 /// A flat regular polygon about the origin, its first corner on the x axis.
 ///
-/// Ring r of 1 ..= `rings` is the polygon scaled by r / rings with r edges per side, so that each of the `sides` sectors
-/// is cut into rings^2 similar triangles. V = 1 + sides rings (rings + 1) / 2, F = sides rings^2. With one ring it is a
-/// wheel: one interior vertex of degree `sides`. `radius` (metres) is that of the circumscribed circle.
+/// Ring r of 1 ..= `rings` is the polygon scaled by r / rings with r edges per side, so that each of the
+/// `sides` sectors is cut into rings^2 similar triangles. V = 1 + sides rings (rings + 1) / 2, F = sides
+/// rings^2. With one ring it is a wheel: one interior vertex of degree `sides`. `radius` (metres) is that of
+/// the circumscribed circle.
 ///
 /// # Errors
 /// [`GenerateError`] for fewer than three sides, no ring, or a radius that is not positive.
@@ -28,7 +29,8 @@ pub fn regular_polygon(sides: usize, rings: usize, radius: f64) -> Result<Sheet,
 
 /// A flat disk about the origin: the triangulation of a hexagon of `rings` rings, with each ring on a circle.
 ///
-/// V = 1 + 3 rings (rings + 1), F = 6 rings^2; 6 rings vertices lie on the circle of radius `radius` (metres).
+/// V = 1 + 3 rings (rings + 1), F = 6 rings^2; 6 rings vertices lie on the circle of radius `radius`
+/// (metres).
 ///
 /// # Errors
 /// [`GenerateError`] for no ring or a radius that is not positive.
@@ -86,14 +88,14 @@ fn rings_about_centre(
     Ok(Sheet::new(positions, &faces)?)
 }
 
-/// A flat fan: `triangles` equal isosceles triangles with legs `radius` (metres) about a common apex at the origin,
-/// together `opening` radians wide, starting on the x axis.
+/// A flat fan: `triangles` equal isosceles triangles with legs `radius` (metres) about a common apex at the
+/// origin, together `opening` radians wide, starting on the x axis.
 ///
 /// The apex is vertex 0 and lies on the boundary; use [`regular_polygon`] with one ring for a closed wheel.
 ///
 /// # Errors
-/// [`GenerateError`] for no triangle, a size that is not positive, an opening of 2 pi or more (the ends would meet), or
-/// a triangle of pi or more.
+/// [`GenerateError`] for no triangle, a size that is not positive, an opening of 2 pi or more (the ends would
+/// meet), or a triangle of pi or more.
 pub fn fan(triangles: usize, radius: f64, opening: f64) -> Result<Sheet, GenerateError> {
     check_count("triangles", triangles, 1)?;
     check_size("radius", radius)?;
@@ -119,8 +121,8 @@ pub fn fan(triangles: usize, radius: f64, opening: f64) -> Result<Sheet, Generat
 
 /// A flat ring about the origin between the radii `inner` and `outer` (metres).
 ///
-/// `rings` + 1 circles of `segments` vertices each; every second circle is turned by half a segment, so that the 2
-/// segments rings triangles are isosceles. chi = 0, two boundary loops.
+/// `rings` + 1 circles of `segments` vertices each; every second circle is turned by half a segment, so that
+/// the 2 segments rings triangles are isosceles. chi = 0, two boundary loops.
 ///
 /// # Errors
 /// [`GenerateError`] for fewer than three segments, no ring, or radii that are not positive and ascending.

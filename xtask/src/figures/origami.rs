@@ -5,7 +5,7 @@ use super::{Context, Effort, Made, Picture, degrees};
 use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
 use crate::runs::{self, Alike, Creases, Fold, RunSummary, Staged};
 use anyhow::{Context as _, Result};
-use isosheet_mesh::generate::Assignment;
+use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{VertexId, fold_angle};
 use isosheet_tests::DegreeFour;
 use serde_json::json;
@@ -89,7 +89,7 @@ impl Folded {
                 continue;
             };
             match pattern.assignment(e) {
-                Assignment::Flat => flats.push(fold),
+                FoldAssignment::Flat => flats.push(fold),
                 a if scene.is_driven(&pattern, e) => zigzags.push(a.sign() * fold),
                 a => straights.push(a.sign() * fold),
             }

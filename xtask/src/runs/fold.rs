@@ -5,7 +5,7 @@ use anyhow::Result;
 use isosheet_dynamics::{
     CreaseSpring, CreaseSprings, Interpolation, Method, Profile, SheetModel, Simulation, State,
 };
-use isosheet_mesh::generate::{Assignment, FoldPattern, degree_four, miura};
+use isosheet_mesh::generate::{FoldAssignment, FoldPattern, degree_four, miura};
 use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
 use isosheet_tests::{DegreeFour, FoldingMode, Miura};
 use serde::{Deserialize, Serialize};
@@ -144,8 +144,8 @@ impl Fold {
         for edge in t.edge_ids() {
             let assignment = pattern.assignment(edge);
             let share = match assignment {
-                Assignment::Boundary => continue,
-                Assignment::Flat => self.panel,
+                FoldAssignment::Boundary => continue,
+                FoldAssignment::Flat => self.panel,
                 _ if self.is_driven(pattern, edge) => 1.0,
                 _ => self.hint,
             };

@@ -129,8 +129,8 @@ impl<'a> Task<'a> {
             .transpose()?;
         match &chart {
             Some(chart) => {
-                let mut linear = Linearised::new(&body.system, chart)?;
-                linear.factorize(&body.system, chart, body.sheet.positions())?;
+                let mut linear = Linearised::new(&body.system, chart.pattern())?;
+                chart.linearise(&body.system, &mut linear, body.sheet.positions())?;
                 let top = &mut rhs[..body.system.unknowns()];
                 chart.pattern().add_transpose(linear.rows(), &p, top);
             }
@@ -187,12 +187,12 @@ impl<'a> Task<'a> {
         };
         let x = self.body.sheet.positions();
         let system = &self.body.system;
-        let mut linear = Linearised::new(system, chart)?;
+        let mut linear = Linearised::new(system, chart.pattern())?;
         let mut formed: Result<(DMatrix<f64>, DMatrix<f64>), isosheet_coords::ChartError> =
             Ok(Default::default());
         let form = shortest(limit, || {
-            formed = linear
-                .factorize(system, chart, x)
+            formed = chart
+                .linearise(system, &mut linear, x)
                 .and_then(|()| chart.jacobian(system, &mut linear, x))
                 .map(|j| (mass_matrix(system, &self.body.mass, &j), j));
         });

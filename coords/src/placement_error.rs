@@ -1,0 +1,55 @@
+//! Why a frame has no angle, or a vertex no position.
+
+use thiserror::Error;
+
+/// Why a vertex cannot be placed, or a coordinate is not defined.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum PlacementError {
+    /// Two points that must differ coincide, or a coordinate is not finite.
+    #[error("two vertices coincide or are not finite (distance {distance})")]
+    Coincident {
+        /// Distance found, metres.
+        distance: f64,
+    },
+    /// The edge points along the polar axis of its spherical frame.
+    #[error("the edge points at the pole of its spherical frame (sine {sine:e}); rebase the chart")]
+    Pole {
+        /// Sine of the angle to the polar axis.
+        sine: f64,
+    },
+    /// The edge points against the reference edge of its frame.
+    #[error(
+        "the edge is antiparallel to its reference edge (1 + cosine {one_plus_cosine:e}); rebase the chart"
+    )]
+    Antiparallel {
+        /// One plus the cosine of the angle between the two.
+        one_plus_cosine: f64,
+    },
+    /// The vertex lies on the line it should turn about.
+    #[error(
+        "the vertex lies on the line of its two known neighbours (sine {sine:e}): its angle is undefined"
+    )]
+    OnAxis {
+        /// Sine of the angle at vertex I.
+        sine: f64,
+    },
+    /// The spheres around the known neighbours have no common point: Eq. 10 is violated.
+    #[error(
+        "no position keeps the edge lengths: the squared height would be {height_squared:e} of the squared edge length"
+    )]
+    OutOfReach {
+        /// Squared height (or radius) over squared length of the first edge; negative.
+        height_squared: f64,
+    },
+    /// Three known neighbours on a line: the degenerate case of Fig. 7.
+    #[error("the three known neighbours are collinear (sine {sine:e}): one coordinate is free")]
+    Collinear {
+        /// Sine of the smallest angle of their triangle.
+        sine: f64,
+    },
+    /// The position is at a fold of the map (flat configuration): it has no derivative there.
+    #[error(
+        "the placement has no derivative here: the vertex is in the plane of its known neighbours"
+    )]
+    Flat,
+}
