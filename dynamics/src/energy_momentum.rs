@@ -5,7 +5,7 @@ use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, Step
 use crate::options::OptionsError;
 use crate::primal::{dot, strain_floor, velocity_round_off};
 use crate::reaction::Balance;
-use crate::report::{Effort, Path, StepError, not_converged};
+use crate::report::{SolverEffort, StepError, StepOutcome, not_converged};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
@@ -248,15 +248,15 @@ impl Integrator for EnergyMomentum {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<(), StepError> {
         let (model, state, h) = (scene.model, attempt.state, attempt.h);
         self.begin(model, &attempt);
-        let (residual, path) = self.solve(model, state, h, effort)?;
+        let (residual, outcome) = self.solve(model, state, h, effort)?;
         let moment = &mut proposal.moment;
         // Impulses of dependent rods are not unique, and what a regularised solve makes of round-off in their
         // lengths would buckle the next step: they are found anew there.
-        if path == Path::Newton {
+        if outcome == StepOutcome::Newton {
             let constraints = self.constraints.full_impulses();
             moment
                 .history
@@ -273,7 +273,7 @@ impl Integrator for EnergyMomentum {
         moment.state.x.copy_from_slice(&self.x1);
         moment.state.t = state.t + h;
         let work = h * dot(&self.applied, &self.w);
-        proposal.account = StepAccount::without_contact(residual, work, path);
+        proposal.account = StepAccount::without_contact(residual, work, outcome);
         Ok(())
     }
 }
@@ -307,15 +307,15 @@ impl EnergyMomentum {
         model: &SheetModel,
         state: &State,
         h: f64,
-        effort: &mut Effort,
-    ) -> Result<(f64, Path), StepError> {
+        effort: &mut SolverEffort,
+    ) -> Result<(f64, StepOutcome), StepError> {
         let strain_tolerance = self
             .options
             .strain_tolerance
             .max(strain_floor(model, state));
         let (mut residual, mut strain) = self.residuals(model, state, h);
         let mut previous = f64::INFINITY;
-        let mut path = Path::Newton;
+        let mut outcome = StepOutcome::Newton;
         let mut iterations = 0;
         let converged = loop {
             if residual <= self.options.tolerance && strain <= strain_tolerance {
@@ -359,7 +359,7 @@ impl EnergyMomentum {
                     effort,
                 )
                 .map_err(|source| StepError::Linalg { t: state.t, source })?;
-            path = path.max(used);
+            outcome = outcome.max(used);
             for (w, d) in self.w.iter_mut().zip(&self.momentum) {
                 *w += d;
             }
@@ -372,6 +372,6 @@ impl EnergyMomentum {
         if !converged {
             return Err(not_converged(state.t, h, effort, residual, strain));
         }
-        Ok((residual, path))
+        Ok((residual, outcome))
     }
 }

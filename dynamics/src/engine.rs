@@ -11,9 +11,9 @@ use crate::integrator::{
 };
 use crate::rank::rod_rank;
 use crate::reaction::Balance;
-use crate::report::{Path, StepError, Tally};
+use crate::report::{StepError, StepOutcome, StepTotals};
 use crate::subdivision::Subdivision;
-use crate::taut::held_by_lines;
+use crate::taut::vertices_on_taut_lines;
 use crate::{Fallback, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable};
 use isosheet_mesh::VertexId;
 
@@ -42,7 +42,7 @@ impl Engine {
         method: Method,
         mut state: State,
     ) -> Result<Self, SimulationError> {
-        let held = held_by_lines(&model, &state.x);
+        let held = vertices_on_taut_lines(&model, &state.x);
         model.hold(&held);
         model.clear_velocities(&held, &mut state.v);
         Self::with_held(model, method, state, held)
@@ -155,7 +155,7 @@ impl Engine {
     }
 
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
-    pub(crate) fn advance(&mut self, h: f64, tally: &mut Tally) -> Result<(), StepError> {
+    pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals) -> Result<(), StepError> {
         let lengths = Subdivision::new(self.state().t, h, self.control.min_fraction);
         let mut run = Substeps {
             engine: self,
@@ -163,14 +163,14 @@ impl Engine {
             memory: Memory::All,
             proposer: Proposer::Method,
             pending: Pending::default(),
-            tally,
+            totals,
         };
         while !run.lengths.is_finished() {
             let h = run.lengths.length();
             match take_substep(&mut run, h) {
                 Ok(()) => (),
                 Err(Stop::Taut(excess)) => {
-                    run.tally.taut = Some(excess);
+                    run.totals.taut = Some(excess);
                     return Ok(());
                 }
                 Err(Stop::Error(error)) => return Err(error),
@@ -218,7 +218,7 @@ struct Substeps<'a> {
     memory: Memory,
     proposer: Proposer,
     pending: Pending,
-    tally: &'a mut Tally,
+    totals: &'a mut StepTotals,
 }
 
 /// Who proposes.
@@ -270,7 +270,7 @@ impl Stepping for Substeps<'_> {
             contact: contact.as_mut().map(RunContact::step),
         };
         let attempt = Attempt::new(moment, h, self.memory);
-        let effort = &mut self.tally.effort;
+        let effort = &mut self.totals.effort;
         let is_fallback = self.proposer == Proposer::Fallback;
         match fallback {
             Some(fallback) if is_fallback => fallback.propose(scene, attempt, proposal, effort)?,
@@ -306,7 +306,7 @@ impl Stepping for Substeps<'_> {
         if matches!(refusal, StepError::NonFiniteMotion { .. }) {
             return Decision::Stop(Stop::Error(refusal));
         }
-        self.tally.rejected += 1;
+        self.totals.rejected += 1;
         let looks_back = self.memory > Memory::Restart && self.engine.moment.history.looks_back();
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
         if self.proposer == Proposer::Fallback {
@@ -342,25 +342,25 @@ impl Stepping for Substeps<'_> {
         engine.has_moved = true;
         // The end of the step is set by the caller, free of accumulated round-off.
         engine.moment.state.t = self.lengths.advance();
-        let tally = &mut *self.tally;
+        let totals = &mut *self.totals;
         if engine.model.has_driven_potentials() {
             let (before, after) = (&engine.proposal.moment.state, &engine.moment.state);
             let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
-            tally.work += engine.model.potential_work(ends.0, ends.1);
+            totals.work += engine.model.potential_work(ends.0, ends.1);
         }
-        tally.substeps += 1;
-        tally.residual = tally.residual.max(step.residual);
-        tally.path = tally.path.max(step.path);
-        tally.work += exchange.forces + exchange.supports + exchange.bodies;
-        tally.friction += step.contact.friction;
+        totals.substeps += 1;
+        totals.residual = totals.residual.max(step.residual);
+        totals.outcome = totals.outcome.max(step.outcome);
+        totals.work += exchange.forces + exchange.supports + exchange.bodies;
+        totals.friction += step.contact.friction;
         let dissipated = damp(&engine.model, &mut engine.moment.state, h);
-        tally.dissipated += dissipated;
+        totals.dissipated += dissipated;
         engine.account.spend(dissipated);
         if self.proposer == Proposer::Fallback {
             // What implicit Euler remembers means nothing to the method that was asked for.
             engine.moment.history.previous = None;
             engine.moment.history.multipliers.clear();
-            tally.path = Path::Fallback;
+            totals.outcome = StepOutcome::Fallback;
         }
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         Ok(())

@@ -6,7 +6,7 @@ use crate::integrator::{
 use crate::minimiser::Minimiser;
 use crate::minimiser::problem::StepProblem;
 use crate::options::OptionsError;
-use crate::report::{Effort, StepError};
+use crate::report::{SolverEffort, StepError};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use serde::{Deserialize, Serialize};
@@ -99,7 +99,7 @@ impl Integrator for ImplicitEuler {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<(), StepError> {
         proposal.moment.history.previous = None;
         two_step(&mut self.minimiser, scene, attempt, None, proposal, effort)
@@ -149,7 +149,7 @@ impl Integrator for Bdf2 {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<(), StepError> {
         let (state, h) = (attempt.state, attempt.h);
         let previous = attempt
@@ -188,7 +188,7 @@ fn two_step(
     attempt: Attempt<'_>,
     previous: Option<&State>,
     proposal: &mut Proposal,
-    effort: &mut Effort,
+    effort: &mut SolverEffort,
 ) -> Result<(), StepError> {
     let (state, h) = (attempt.state, attempt.h);
     let w = previous.map_or(0.0, |before| h / (state.t - before.t));
@@ -235,7 +235,7 @@ fn two_step(
     proposal.account = StepAccount {
         residual: minimum.residual,
         work,
-        path: minimum.path,
+        outcome: minimum.outcome,
         contact,
     };
     Ok(())

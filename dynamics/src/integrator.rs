@@ -3,7 +3,7 @@
 use crate::contact::{ContactState, ContactWork, StepContact};
 use crate::history::{History, Multipliers};
 use crate::reaction::{Balance, ForceTime};
-use crate::report::{Effort, Path, StepError};
+use crate::report::{SolverEffort, StepError, StepOutcome};
 use crate::{SheetModel, State};
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,7 @@ pub(crate) struct StepAccount {
     /// Work of the non-conservative forces, joules.
     pub(crate) work: f64,
     /// How the sub-step was obtained.
-    pub(crate) path: Path,
+    pub(crate) outcome: StepOutcome,
     /// What contact did; zero without contact.
     pub(crate) contact: ContactWork,
 }
@@ -59,7 +59,7 @@ impl Proposal {
                 model,
                 traits,
             ),
-            account: StepAccount::without_contact(0.0, 0.0, Path::Newton),
+            account: StepAccount::without_contact(0.0, 0.0, StepOutcome::Newton),
         }
     }
 }
@@ -72,7 +72,7 @@ impl Moment {
             history: History::default(),
             balance: match traits.demand {
                 RodDemand::Independent => Balance::new(model, ForceTime::Mean),
-                RodDemand::Nothing => Balance::with_trail(model, ForceTime::End),
+                RodDemand::Nothing => Balance::with_unassigned(model, ForceTime::End),
             },
             contacts: None,
         }
@@ -108,11 +108,11 @@ impl Moment {
 }
 
 impl StepAccount {
-    pub(crate) fn without_contact(residual: f64, work: f64, path: Path) -> Self {
+    pub(crate) fn without_contact(residual: f64, work: f64, outcome: StepOutcome) -> Self {
         Self {
             residual,
             work,
-            path,
+            outcome,
             contact: ContactWork::default(),
         }
     }
@@ -207,7 +207,7 @@ pub(crate) trait Integrator: Send {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<(), StepError>;
 
     /// What the method asks of a scene and what it can take.

@@ -99,7 +99,7 @@ mod state;
 mod subdivision;
 mod support;
 mod taut;
-mod trail;
+mod unassigned;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use constraint::VertexConstraint;
@@ -122,7 +122,7 @@ pub use projection_step::ProjectionStepOptions;
 pub use rank::{RodRank, rod_rank};
 pub use rattle::RattleOptions;
 pub use reaction::Reaction;
-pub use report::{Path, StepError, StepReport};
+pub use report::{StepError, StepOutcome, StepReport};
 pub use simulation::Simulation;
 pub use simulation_error::SimulationError;
 pub use start::{leave_flat, project_positions};

@@ -96,7 +96,7 @@ pub enum Fallback {
     #[default]
     Refuse,
     /// Take the step with implicit Euler, which accepts any state, and carry on with the
-    /// integrator asked for. Reported as [`Path::Fallback`](crate::Path::Fallback); costs the energy that implicit
+    /// integrator asked for. Reported as [`StepOutcome::Fallback`](crate::StepOutcome::Fallback); costs the energy that implicit
     /// Euler loses in that step.
     ImplicitEuler(ImplicitOptions),
 }

@@ -12,7 +12,7 @@ use crate::history::History;
 use crate::integrator::Attempt;
 use crate::primal::strain_floor;
 use crate::reaction::{Balance, ForceTime};
-use crate::report::{self, Effort, Path, StepError};
+use crate::report::{self, SolverEffort, StepError, StepOutcome};
 use crate::restoration::{Restoration, RestorationContact, RestorationGoal};
 use augmented_lagrangian::{AugmentedLagrangian, Rounds};
 use isosheet_coords::linalg::LinalgError;
@@ -64,7 +64,7 @@ pub(crate) struct Minimum {
     /// Relative Newton decrement before the last iteration.
     pub(crate) residual: f64,
     /// What it took.
-    pub(crate) path: Path,
+    pub(crate) outcome: StepOutcome,
 }
 
 /// A strategy of the table at [`Minimiser`].
@@ -99,7 +99,7 @@ impl Minimiser {
         Ok(Self {
             lagrangian: Lagrangian::new(model)?,
             restoration: Restoration::new(model),
-            balance: Balance::with_trail(model, ForceTime::End),
+            balance: Balance::with_unassigned(model, ForceTime::End),
             remembered: vec![0.0; model.rods().len()],
             prediction: vec![0.0; n],
             applied: vec![0.0; n],
@@ -167,7 +167,7 @@ impl Minimiser {
     pub(crate) fn minimise(
         &mut self,
         mut problem: StepProblem<'_>,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<(Minimum, ContactWork), StepError> {
         let problem = &mut problem;
         self.lagrangian.begin(problem);
@@ -210,7 +210,7 @@ impl Minimiser {
         &mut self,
         strategy: Strategy,
         problem: &mut StepProblem<'_>,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<Minimum, StepError> {
         match strategy {
             Strategy::Sqp(regularisation) => {
@@ -226,8 +226,8 @@ impl Minimiser {
                     let strain = problem.model.rods().max_strain(self.x());
                     not_converged(problem, effort, f64::INFINITY, strain)
                 })?;
-                let path = Path::Newton;
-                Ok(Minimum { residual, path })
+                let outcome = StepOutcome::Newton;
+                Ok(Minimum { residual, outcome })
             }
             Strategy::FromPrediction => {
                 self.lagrangian.clear_multipliers();
@@ -242,7 +242,7 @@ impl Minimiser {
                 let minimum =
                     AugmentedLagrangian::new(self, problem, Rounds::Exact, effort).run()?;
                 Ok(Minimum {
-                    path: minimum.path.max(Path::Globalised),
+                    outcome: minimum.outcome.max(StepOutcome::Globalised),
                     ..minimum
                 })
             }
@@ -256,7 +256,7 @@ impl Minimiser {
         problem: &mut StepProblem<'_>,
         tolerance: f64,
         most: usize,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> f64 {
         let per = 1.0 / (problem.h * problem.h);
         let is_last = tolerance <= self.strain_tolerance(problem);
@@ -280,7 +280,9 @@ impl Minimiser {
             .restoration
             .positions(model, matrix, held, iterate, aim, effort);
         if is_last {
-            self.balance.trail.append(&self.restoration.trail, per);
+            self.balance
+                .unassigned
+                .append(&self.restoration.unassigned, per);
         }
         strain
     }
@@ -342,7 +344,7 @@ impl Minimiser {
 /// The error of a minimisation that did not converge.
 fn not_converged(
     problem: &StepProblem<'_>,
-    effort: &Effort,
+    effort: &SolverEffort,
     residual: f64,
     strain: f64,
 ) -> StepError {

@@ -146,13 +146,13 @@ impl PrimalMatrix {
         });
     }
 
-    /// Sets the values: `along[e] = r_e`, `across[e] = p_e`.
+    /// Sets the values: `axial[e] = r_e`, `transverse[e] = p_e`.
     pub(crate) fn assemble(
         &mut self,
         model: &SheetModel,
         x: &[f64],
-        along: &[f64],
-        across: &[f64],
+        axial: &[f64],
+        transverse: &[f64],
     ) {
         let values = self.llt.values_mut();
         values.fill(0.0);
@@ -167,7 +167,7 @@ impl PrimalMatrix {
         for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
             let (ia, ib) = (3 * a, 3 * b);
             let d = [x[ia] - x[ib], x[ia + 1] - x[ib + 1], x[ia + 2] - x[ib + 2]];
-            let (r, p) = (along[e], across[e]);
+            let (r, p) = (axial[e], transverse[e]);
             let block = [
                 r * d[0] * d[0] + p,
                 r * d[1] * d[0],

@@ -8,7 +8,7 @@ use crate::model::PINNED;
 use crate::options::OptionsError;
 use crate::primal::{PrimalMatrix, strain_floor};
 use crate::reaction::{Balance, ForceTime};
-use crate::report::{Effort, Path, StepError, not_converged};
+use crate::report::{SolverEffort, StepError, StepOutcome, not_converged};
 use crate::restoration::{Restoration, RestorationGoal};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
@@ -85,7 +85,7 @@ impl ProjectionStep {
             x: vec![0.0; n],
             v: vec![0.0; n],
             none: vec![0.0; model.rods().len()],
-            balance: Balance::with_trail(model, ForceTime::End),
+            balance: Balance::with_unassigned(model, ForceTime::End),
         })
     }
 
@@ -108,8 +108,8 @@ impl ProjectionStep {
         self.balance
             .add_applied(model, state.t, &state.x, &state.v, 1.0);
         self.balance.finish(model);
-        let trail = &mut self.balance.trail;
-        trail.append(&self.restoration.trail, 1.0 / (h * h));
+        let unassigned = &mut self.balance.unassigned;
+        unassigned.append(&self.restoration.unassigned, 1.0 / (h * h));
         for i in 0..self.x.len() {
             self.acceleration[i] = if free[i / 3] == PINNED {
                 0.0
@@ -120,7 +120,7 @@ impl ProjectionStep {
         let mass = model.mass();
         mass.apply(model.topology(), &self.acceleration, &mut self.force);
         let equalities = &self.restoration.vertex_rows.equality;
-        trail.push(&self.x, equalities, self.force.iter().copied());
+        unassigned.push(&self.x, equalities, self.force.iter().copied());
         if model.has_drives() {
             // The work of what moves needs them.
             self.balance.settle(model, state.t + h);
@@ -128,7 +128,11 @@ impl ProjectionStep {
     }
 
     /// `acceleration = M^-1 force`.
-    fn accelerate(&mut self, model: &SheetModel, effort: &mut Effort) -> Result<(), LinalgError> {
+    fn accelerate(
+        &mut self,
+        model: &SheetModel,
+        effort: &mut SolverEffort,
+    ) -> Result<(), LinalgError> {
         if model.mass().edge.is_none() {
             for (i, a) in self.acceleration.iter_mut().enumerate() {
                 *a = self.force[i] / model.mass().vertex[i / 3];
@@ -157,7 +161,7 @@ impl Integrator for ProjectionStep {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<(), StepError> {
         let (model, state, h) = (scene.model, attempt.state, attempt.h);
         self.predict(model, state, h, effort)?;
@@ -189,7 +193,7 @@ impl Integrator for ProjectionStep {
         moment.state.x.copy_from_slice(&self.x);
         moment.state.v.copy_from_slice(&self.v);
         moment.state.t = end;
-        proposal.account = StepAccount::without_contact(residual, work, Path::Newton);
+        proposal.account = StepAccount::without_contact(residual, work, StepOutcome::Newton);
         Ok(())
     }
 }
@@ -201,7 +205,7 @@ impl ProjectionStep {
         model: &SheetModel,
         state: &State,
         h: f64,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<(), StepError> {
         model.potential_force(state.t, &state.x, &mut self.force);
         model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
@@ -239,7 +243,7 @@ impl ProjectionStep {
         model: &SheetModel,
         state: &State,
         h: f64,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<f64, StepError> {
         let tolerance = self
             .options

@@ -7,7 +7,7 @@ use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, Step
 use crate::options::OptionsError;
 use crate::primal::{dot, strain_floor, velocity_round_off};
 use crate::reaction::{Balance, ForceTime};
-use crate::report::{Effort, Path, StepError, not_converged};
+use crate::report::{SolverEffort, StepError, StepOutcome, not_converged};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
@@ -150,8 +150,8 @@ impl Rattle {
         state: &State,
         multipliers: &mut Multipliers,
         h: f64,
-        effort: &mut Effort,
-    ) -> Result<(f64, Path), StepError> {
+        effort: &mut SolverEffort,
+    ) -> Result<(f64, StepOutcome), StepError> {
         let tolerance = self
             .options
             .strain_tolerance
@@ -177,7 +177,7 @@ impl Rattle {
         self.u.copy_from_slice(&state.v);
         mean_pin_velocities(model, state, h, &mut self.x1, &mut self.u);
         let (mut residual, mut strain) = self.residuals(model, state, h);
-        let mut path = Path::Newton;
+        let mut outcome = StepOutcome::Newton;
         let mut iterations = 0;
         // At least one iteration, unless there is nothing but round-off to correct.
         let floor = strain_floor(model, state);
@@ -210,7 +210,7 @@ impl Rattle {
                     effort,
                 )
                 .map_err(|source| StepError::Linalg { t: state.t, source })?;
-            path = path.max(used);
+            outcome = outcome.max(used);
             for (u, d) in self.u.iter_mut().zip(&self.momentum) {
                 *u += d;
             }
@@ -222,7 +222,7 @@ impl Rattle {
         }
         let constraints = self.constraints.full_impulses();
         multipliers.set(h, &self.impulse, constraints);
-        Ok((residual, path))
+        Ok((residual, outcome))
     }
 
     /// How far the velocity in `momentum`, with the impulses in `rods`, is from solving its two
@@ -331,7 +331,7 @@ impl Rattle {
         state: &mut State,
         multipliers: &mut Multipliers,
         h: f64,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<StepAccount, StepError> {
         model.potential_force(state.t, &state.x, &mut self.force);
         model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
@@ -339,7 +339,7 @@ impl Rattle {
             self.kick[i] = 0.5 * h * (self.force[i] + self.applied[i]);
         }
         let mut work: f64 = 0.5 * h * dot(&self.applied, &state.v);
-        let (residual, path) = self.solve_positions(model, state, multipliers, h, effort)?;
+        let (residual, outcome) = self.solve_positions(model, state, multipliers, h, effort)?;
         // Velocity: the momentum after the second half kick, projected onto G(x1) v = 0.
         model.potential_force(state.t + h, &self.x1, &mut self.force);
         model.applied_force(state.t + h, &self.x1, &self.u, &mut self.applied);
@@ -391,7 +391,7 @@ impl Rattle {
         Ok(StepAccount::without_contact(
             residual,
             work,
-            path.max(projected),
+            outcome.max(projected),
         ))
     }
 }
@@ -418,7 +418,7 @@ impl Integrator for Rattle {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<(), StepError> {
         let moment = &mut proposal.moment;
         moment.state.copy_from(attempt.state);
@@ -459,7 +459,7 @@ impl Integrator for RattleComposition {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<(), StepError> {
         let (model, h) = (scene.model, attempt.h);
         let a = 1.0 / (4.0 - 4.0_f64.cbrt());
@@ -468,7 +468,7 @@ impl Integrator for RattleComposition {
         let multipliers = &mut moment.history.multipliers;
         multipliers.copy_from(attempt.multipliers());
         moment.balance.clear();
-        let mut total = StepAccount::without_contact(0.0, 0.0, Path::Newton);
+        let mut total = StepAccount::without_contact(0.0, 0.0, StepOutcome::Newton);
         for part in [a, a, 1.0 - 4.0 * a, a, a] {
             let state = &mut moment.state;
             let done = self
@@ -476,7 +476,7 @@ impl Integrator for RattleComposition {
                 .advance(model, state, multipliers, part * h, effort)?;
             total.residual = total.residual.max(done.residual);
             total.work += done.work;
-            total.path = total.path.max(done.path);
+            total.outcome = total.outcome.max(done.outcome);
             moment.balance.add_share(&self.rattle.balance, part);
         }
         moment.state.t = attempt.state.t + h;

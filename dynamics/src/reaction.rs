@@ -4,7 +4,7 @@ use crate::SheetModel;
 use crate::constraint::rows::{VertexRows, add, point};
 use crate::contact::ContactTerms;
 use crate::support::Support;
-use crate::trail::Trail;
+use crate::unassigned::UnassignedMomentum;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -71,7 +71,7 @@ pub(crate) struct Balance {
     /// When.
     pub time: ForceTime,
     /// Newtons that are not shared out between the supports yet.
-    pub(crate) trail: Trail,
+    pub(crate) unassigned: UnassignedMomentum,
     /// Room for intermediate results, `3V`.
     #[serde(skip)]
     work: Vec<f64>,
@@ -90,15 +90,15 @@ impl Balance {
             multipliers: vec![Vector3::zeros(); m],
             constraints: vec![Vector3::zeros(); m],
             time,
-            trail: Trail::default(),
+            unassigned: UnassignedMomentum::default(),
             work: vec![0.0; n],
         }
     }
 
     /// With room for what is shared out later.
-    pub(crate) fn with_trail(model: &SheetModel, time: ForceTime) -> Self {
+    pub(crate) fn with_unassigned(model: &SheetModel, time: ForceTime) -> Self {
         Self {
-            trail: Trail::new(model),
+            unassigned: UnassignedMomentum::new(model),
             ..Self::new(model, time)
         }
     }
@@ -116,7 +116,7 @@ impl Balance {
             .apply(model.topology(), &self.work, &mut self.pins);
         self.multipliers.fill(Vector3::zeros());
         self.constraints.fill(Vector3::zeros());
-        self.trail.clear();
+        self.unassigned.clear();
         true
     }
 
@@ -141,7 +141,7 @@ impl Balance {
         self.multipliers.clone_from(&other.multipliers);
         self.constraints.clone_from(&other.constraints);
         self.time = other.time;
-        self.trail.copy_from(&other.trail);
+        self.unassigned.copy_from(&other.unassigned);
     }
 
     /// The forces alone, without room for further ones.
@@ -151,7 +151,7 @@ impl Balance {
             multipliers: self.multipliers.clone(),
             constraints: self.constraints.clone(),
             time: self.time,
-            trail: self.trail.compact(),
+            unassigned: self.unassigned.compact(),
             work: Vec::new(),
         }
     }
@@ -248,7 +248,7 @@ impl Balance {
         }
     }
 
-    /// Leaves only what is at pins; what is at free vertices at positions `x` goes to the trail,
+    /// Leaves only what is at pins; what is at free vertices at positions `x` goes to the unassigned,
     /// for the rods and the vertex constraints `active`.
     pub(crate) fn leave(&mut self, model: &SheetModel, x: &[f64], active: &[bool]) {
         self.work.copy_from_slice(&self.pins);
@@ -256,7 +256,7 @@ impl Balance {
             add(&mut self.work, c.vertex(), &-f);
         }
         model.clear_pinned(&mut self.work);
-        self.trail.push(x, active, self.work.iter().copied());
+        self.unassigned.push(x, active, self.work.iter().copied());
         self.finish(model);
     }
 
@@ -271,10 +271,10 @@ impl Balance {
         }
     }
 
-    /// Adds the shares of the trail of a step that ended at time `t`.
+    /// Adds the shares of the unassigned of a step that ended at time `t`.
     pub(crate) fn settle(&mut self, model: &SheetModel, t: f64) {
-        let shares = self.trail.shares(model, t);
-        self.trail.clear();
+        let shares = self.unassigned.shares(model, t);
+        self.unassigned.clear();
         for (p, share) in self.pins.iter_mut().zip(&shares.pins) {
             *p += share;
         }
@@ -282,9 +282,9 @@ impl Balance {
         self.finish(model);
     }
 
-    /// The forces, with the shares of the trail of a step that ended at time `t`.
+    /// The forces, with the shares of the unassigned of a step that ended at time `t`.
     pub(crate) fn reactions(&self, model: &SheetModel, t: f64) -> Vec<Reaction> {
-        let shares = self.trail.shares(model, t);
+        let shares = self.unassigned.shares(model, t);
         let pins = model.pins().into_iter().map(|v| Reaction {
             support: Support::Pin(v),
             force: point(&self.pins, v) + point(&shares.pins, v),

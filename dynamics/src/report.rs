@@ -9,7 +9,7 @@ use isosheet_mesh::{EdgeId, VertexId};
 /// How a step was obtained.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Path {
+pub enum StepOutcome {
     /// Newton's method alone.
     Newton,
     /// Newton's method with a modified, positive definite matrix or shortened steps, as near
@@ -70,7 +70,7 @@ pub struct StepReport {
     /// Set where the step stopped at a taut state (see [`Unsatisfiable`](crate::Unsatisfiable)).
     pub taut: Option<Excess>,
     /// How the hardest sub-step was obtained.
-    pub path: Path,
+    pub outcome: StepOutcome,
 }
 
 impl StepReport {
@@ -285,7 +285,7 @@ pub enum StepError {
 
 /// Counters of attempted sub-steps, filled also when they fail.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Effort {
+pub(crate) struct SolverEffort {
     /// Newton iterations.
     pub(crate) iterations: usize,
     /// Matrix factorisations.
@@ -294,26 +294,26 @@ pub(crate) struct Effort {
 
 /// What was done on the way to the end of a step, kept also if the step fails half-way.
 #[derive(Debug)]
-pub(crate) struct Tally {
+pub(crate) struct StepTotals {
     pub(crate) substeps: usize,
     pub(crate) rejected: usize,
-    pub(crate) effort: Effort,
+    pub(crate) effort: SolverEffort,
     pub(crate) residual: f64,
-    pub(crate) path: Path,
+    pub(crate) outcome: StepOutcome,
     pub(crate) work: f64,
     pub(crate) dissipated: f64,
     pub(crate) friction: f64,
     pub(crate) taut: Option<Excess>,
 }
 
-impl Default for Tally {
+impl Default for StepTotals {
     fn default() -> Self {
         Self {
             substeps: 0,
             rejected: 0,
-            effort: Effort::default(),
+            effort: SolverEffort::default(),
             residual: 0.0,
-            path: Path::Newton,
+            outcome: StepOutcome::Newton,
             work: 0.0,
             dissipated: 0.0,
             friction: 0.0,
@@ -326,7 +326,7 @@ impl Default for Tally {
 pub(crate) fn not_converged(
     t: f64,
     h: f64,
-    effort: &Effort,
+    effort: &SolverEffort,
     residual: f64,
     strain: f64,
 ) -> StepError {

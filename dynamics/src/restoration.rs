@@ -5,8 +5,8 @@ use crate::constraint::rows::VertexRows;
 use crate::contact::StepContact;
 use crate::iterate::Iterate;
 use crate::primal::{PrimalMatrix, penalties};
-use crate::report::Effort;
-use crate::trail::Trail;
+use crate::report::SolverEffort;
+use crate::unassigned::UnassignedMomentum;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -48,8 +48,8 @@ const LARGEST_OPENING: f64 = 0.05;
 /// Where there is contact its Hessian joins the mass matrix, so that the nearest positions are those that
 /// press least on it, and nothing is passed through on the way.
 pub(crate) struct Restoration {
-    along: Vec<f64>,
-    across: Vec<f64>,
+    axial: Vec<f64>,
+    transverse: Vec<f64>,
     unit: Vec<f64>,
     c: Vec<f64>,
     w: Vec<f64>,
@@ -59,7 +59,7 @@ pub(crate) struct Restoration {
     /// Minus the gradient of contact at `start`, newtons times the factor of its energy.
     contact_start: Vec<f64>,
     /// Momentum that the iterations of the last projection of positions gave, kilogram metres.
-    pub(crate) trail: Trail,
+    pub(crate) unassigned: UnassignedMomentum,
     /// Vertices on curves and surfaces.
     pub(crate) vertex_rows: VertexRows,
     rng: ChaCha8Rng,
@@ -99,8 +99,8 @@ impl Restoration {
     pub(crate) fn new(model: &SheetModel) -> Self {
         let (n, m) = (model.coordinate_count(), model.rods().len());
         Self {
-            along: vec![0.0; m],
-            across: vec![0.0; m],
+            axial: vec![0.0; m],
+            transverse: vec![0.0; m],
             unit: penalties(model, 1.0),
             c: vec![0.0; m],
             w: vec![0.0; m],
@@ -108,7 +108,7 @@ impl Restoration {
             dx: vec![0.0; n],
             start: vec![0.0; n],
             contact_start: vec![0.0; n],
-            trail: Trail::new(model),
+            unassigned: UnassignedMomentum::new(model),
             vertex_rows: VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0),
             rng: ChaCha8Rng::seed_from_u64(0),
         }
@@ -123,7 +123,7 @@ impl Restoration {
         mut contact: Option<RestorationContact<'_, '_>>,
         iterate: &mut Iterate,
         goal: RestorationGoal<'_>,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> f64 {
         let tolerance = goal.tolerance;
         // Where the sheet rests, what is left adds up from step to step.
@@ -184,7 +184,7 @@ impl Restoration {
 
     /// Forgets earlier restorations and evaluates the constraints at the iterate.
     fn begin(&mut self, model: &SheetModel, goal: &RestorationGoal<'_>, iterate: &Iterate) {
-        self.trail.clear();
+        self.unassigned.clear();
         // Every restoration draws the same numbers, so that none depends on the ones before.
         self.rng = ChaCha8Rng::seed_from_u64(0);
         for (i, c) in model.constraints().iter().enumerate() {
@@ -212,17 +212,17 @@ impl Restoration {
     ) -> Solved {
         let rods = model.rods();
         for e in 0..rods.len() {
-            self.along[e] = penalty * self.unit[e];
-            self.w[e] = -self.along[e] * self.c[e];
+            self.axial[e] = penalty * self.unit[e];
+            self.w[e] = -self.axial[e] * self.c[e];
         }
-        self.across.fill(0.0);
+        self.transverse.fill(0.0);
         let geometry = contact.as_ref().map(|c| &*c.contact);
         if let Some(terms) = iterate.terms(geometry)
             && matrix.make_room(model, &terms).is_err()
         {
             return Solved::No;
         }
-        matrix.assemble(model, iterate.x(), &self.along, &self.across);
+        matrix.assemble(model, iterate.x(), &self.axial, &self.transverse);
         self.rhs.fill(0.0);
         self.vertex_rows
             .add_projection(penalty, &mut matrix.sink(model), &mut self.rhs);
@@ -230,7 +230,7 @@ impl Restoration {
             && let Some(terms) = iterate.terms(Some(contact.contact))
         {
             matrix.add_contact(model, &terms, contact.scale);
-            if self.trail.has_room() {
+            if self.unassigned.has_room() {
                 self.contact_start.fill(0.0);
                 terms.add_gradient(-contact.scale, &mut self.contact_start);
             }
@@ -315,7 +315,7 @@ impl Restoration {
         held: Option<&RestorationContact<'_, '_>>,
         iterate: &mut Iterate,
     ) {
-        if !self.trail.has_room() {
+        if !self.unassigned.has_room() {
             return;
         }
         for ((d, x), x0) in self.dx.iter_mut().zip(iterate.x()).zip(&self.start) {
@@ -326,7 +326,7 @@ impl Restoration {
             .apply(model.topology(), &self.dx, &mut self.rhs);
         let active = &self.vertex_rows.active;
         let sum = self
-            .trail
+            .unassigned
             .push(&self.start, active, self.rhs.iter().copied());
         if let Some(held) = held
             && let Some(terms) = iterate.terms(Some(held.contact))
@@ -351,14 +351,14 @@ impl Restoration {
         x: &[f64],
         v: &mut [f64],
         rates: &[Vector3<f64>],
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> f64 {
         let rods = model.rods();
         for e in 0..rods.len() {
-            self.along[e] = FIRST_PENALTY * self.unit[e];
+            self.axial[e] = FIRST_PENALTY * self.unit[e];
         }
-        self.across.fill(0.0);
-        matrix.assemble(model, x, &self.along, &self.across);
+        self.transverse.fill(0.0);
+        matrix.assemble(model, x, &self.axial, &self.transverse);
         self.vertex_rows
             .add_equalities(FIRST_PENALTY, &mut matrix.sink(model));
         effort.factorisations += 1;
@@ -383,7 +383,7 @@ impl Restoration {
                 break;
             }
             for e in 0..rods.len() {
-                self.w[e] = -self.along[e] * self.c[e];
+                self.w[e] = -self.axial[e] * self.c[e];
             }
             rods.apply_transpose_add(x, &self.w, &mut self.rhs);
             matrix.solve(model, &self.rhs, &mut self.dx);

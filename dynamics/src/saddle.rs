@@ -4,7 +4,7 @@ use crate::constraint::conservative::SaddleBlocks;
 use crate::layout::{DIAGONAL, FULL, Layout, Slots};
 use crate::model::PINNED;
 use crate::primal::{gather, scatter};
-use crate::report::{Effort, Path};
+use crate::report::{SolverEffort, StepOutcome};
 use crate::{HessianSink, SheetModel};
 use isosheet_coords::linalg::{LinalgError, SparseLu};
 use isosheet_mesh::{EdgeId, VertexId};
@@ -222,7 +222,7 @@ impl SaddleMatrix {
     /// and, on success, the solution.
     ///
     /// Where the matrix is singular, the rods being dependent, a regularised one takes its
-    /// place, and the path returned says so.
+    /// place, and the outcome returned says so.
     pub(crate) fn solve(
         &mut self,
         model: &SheetModel,
@@ -230,8 +230,8 @@ impl SaddleMatrix {
         momentum: &mut [f64],
         rods: &mut [f64],
         constraints: &mut [Vector2<f64>],
-        effort: &mut Effort,
-    ) -> Result<Path, LinalgError> {
+        effort: &mut SolverEffort,
+    ) -> Result<StepOutcome, LinalgError> {
         let mut attempt = |delta: f64| {
             effort.factorisations += 1;
             self.assemble(model, system, delta);
@@ -239,8 +239,8 @@ impl SaddleMatrix {
             self.back_substitute(model, momentum, rods, constraints)
         };
         match attempt(0.0) {
-            Ok(()) => Ok(Path::Newton),
-            Err(_) => attempt(REGULARISATION).map(|()| Path::Globalised),
+            Ok(()) => Ok(StepOutcome::Newton),
+            Err(_) => attempt(REGULARISATION).map(|()| StepOutcome::Globalised),
         }
     }
 

@@ -6,7 +6,7 @@ use crate::checkpoint::{Checkpoint, CheckpointError, EnergySums, Motion, SheetFi
 use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact};
 use crate::engine::Engine as FreeEngine;
 use crate::reaction::Reaction;
-use crate::report::{StepError, StepReport, Tally};
+use crate::report::{StepError, StepReport, StepTotals};
 use crate::simulation_error::SimulationError;
 use crate::start::{check_finite, check_motions, check_state};
 use crate::{Method, SheetModel, State, StepControl};
@@ -292,17 +292,17 @@ impl Simulation {
         }
         self.check_forces()?;
         let end = start + h;
-        let mut tally = Tally::default();
+        let mut totals = StepTotals::default();
         let done = match &mut self.engine {
-            Engine::Free(engine) => engine.advance(h, &mut tally),
-            Engine::Chart(chart) => chart.advance(end, &mut tally),
+            Engine::Free(engine) => engine.advance(h, &mut totals),
+            Engine::Chart(chart) => chart.advance(end, &mut totals),
         };
-        self.energy.work += tally.work;
-        self.energy.dissipated += tally.dissipated;
-        self.energy.friction += tally.friction;
+        self.energy.work += totals.work;
+        self.energy.dissipated += totals.dissipated;
+        self.energy.friction += totals.friction;
         done?;
         self.check_energies()?;
-        Ok(self.report(h, &tally))
+        Ok(self.report(h, &totals))
     }
 
     /// Refuses energies that are not finite.
@@ -325,7 +325,7 @@ impl Simulation {
     }
 
     /// What a step of `h` seconds did.
-    fn report(&self, h: f64, tally: &Tally) -> StepReport {
+    fn report(&self, h: f64, totals: &StepTotals) -> StepReport {
         let model = self.model();
         let State { t, x, v } = self.state();
         let (kinetic, potential) = (model.kinetic_energy(v), self.potential_energy());
@@ -338,11 +338,11 @@ impl Simulation {
         StepReport {
             t: *t,
             h,
-            substeps: tally.substeps,
-            rejected: tally.rejected,
-            iterations: tally.effort.iterations,
-            factorisations: tally.effort.factorisations,
-            residual: tally.residual,
+            substeps: totals.substeps,
+            rejected: totals.rejected,
+            iterations: totals.effort.iterations,
+            factorisations: totals.effort.factorisations,
+            residual: totals.residual,
             kinetic,
             potential,
             work,
@@ -350,10 +350,10 @@ impl Simulation {
             friction,
             energy_drift: kinetic + potential - work + dissipated + friction - start,
             strain: model.rods().max_strain(x),
-            taut: tally.taut,
+            taut: totals.taut,
             violation: model.largest_violation(*t, x),
             gap: self.contacts().map(ActiveContacts::gap),
-            path: tally.path,
+            outcome: totals.outcome,
         }
     }
 

@@ -4,7 +4,7 @@ use crate::constraint::rows::point;
 use crate::iterate::Iterate;
 use crate::options::OptionsError;
 use crate::primal::PrimalMatrix;
-use crate::report::{Effort, StepError};
+use crate::report::{SolverEffort, StepError};
 use crate::restoration::{Restoration, RestorationGoal};
 use crate::support::Support;
 use crate::{SheetModel, SimulationError, State};
@@ -33,7 +33,7 @@ pub fn project_positions(
     OptionsError::check_range("tolerance", tolerance, 1e-15, 1.0)?;
     check_count(model, x)?;
     let mut matrix = PrimalMatrix::new(model)?;
-    let mut effort = Effort::default();
+    let mut effort = SolverEffort::default();
     let mut moved = Iterate::without_contact(x.to_vec());
     let strain = Restoration::new(model).positions(
         model,

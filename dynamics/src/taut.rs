@@ -14,7 +14,7 @@ const NO_SLACK: f64 = 1e-12;
 /// order, which stalls every method; as pins they cost nothing.
 ///
 /// `x`: positions, `3V`, metres.
-pub(crate) fn held_by_lines(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
+pub(crate) fn vertices_on_taut_lines(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
     let topology = model.topology();
     let mut held: Vec<bool> = model.free_index().iter().map(|i| *i == PINNED).collect();
     let mut other = vec![false; held.len()];
@@ -75,7 +75,10 @@ mod tests {
             .unwrap();
         let mut x = sheet.positions().to_vec();
         change(&mut x);
-        let mut found: Vec<u32> = held_by_lines(&model, &x).iter().map(|v| v.0).collect();
+        let mut found: Vec<u32> = vertices_on_taut_lines(&model, &x)
+            .iter()
+            .map(|v| v.0)
+            .collect();
         found.sort_unstable();
         found
     }
@@ -107,6 +110,6 @@ mod tests {
             .and_then(|m| m.with_pins(&[VertexId(0)]))
             .and_then(|m| m.with_moving_pin(VertexId(4), |_| [1.0, 0.0, 0.0]))
             .unwrap();
-        assert!(held_by_lines(&moving, sheet.positions()).is_empty());
+        assert!(vertices_on_taut_lines(&moving, sheet.positions()).is_empty());
     }
 }

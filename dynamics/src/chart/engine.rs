@@ -4,7 +4,7 @@ use super::{ChartDynamicsError, ChartSimulation};
 use crate::checkpoint::{CheckpointError, InChart};
 use crate::contact::Contact;
 use crate::reaction::{Reaction, supports};
-use crate::report::{Path, StepError, Tally};
+use crate::report::{StepError, StepOutcome, StepTotals};
 use crate::simulation_error::SimulationError;
 use crate::{SheetModel, State};
 use isosheet_coords::Chart;
@@ -81,9 +81,9 @@ impl ChartEngine {
     }
 
     /// Advances to the time `end`.
-    pub(crate) fn advance(&mut self, end: f64, tally: &mut Tally) -> Result<(), StepError> {
+    pub(crate) fn advance(&mut self, end: f64, totals: &mut StepTotals) -> Result<(), StepError> {
         let (chart, state) = (&mut self.simulation, &mut self.state);
-        tally.path = Path::Chart;
+        totals.outcome = StepOutcome::Chart;
         let failed = |t: f64, source: ChartDynamicsError| StepError::Chart {
             t,
             source: Box::new(source),
@@ -96,7 +96,7 @@ impl ChartEngine {
             if left <= TIME_ROUND_OFF * end.abs() {
                 break Ok(());
             }
-            if tally.substeps + tally.rejected >= limit {
+            if totals.substeps + totals.rejected >= limit {
                 let t = chart.time();
                 break Err(failed(t, ChartDynamicsError::TooManySteps { t, limit }));
             }
@@ -113,18 +113,18 @@ impl ChartEngine {
                 Ok(report) => report,
                 Err(error) => break Err(failed(chart.time(), error)),
             };
-            tally.substeps += 1;
-            tally.rejected += report.rejected as usize;
-            tally.work += report.driven;
-            tally.dissipated += report.damped;
-            tally.friction += report.impact;
-            tally.path = tally.path.max(if report.rebased {
-                Path::Rebased
+            totals.substeps += 1;
+            totals.rejected += report.rejected as usize;
+            totals.work += report.driven;
+            totals.dissipated += report.damped;
+            totals.friction += report.impact;
+            totals.outcome = totals.outcome.max(if report.rebased {
+                StepOutcome::Rebased
             } else {
-                Path::Chart
+                StepOutcome::Chart
             });
             if has_forces {
-                tally.work += applied
+                totals.work += applied
                     .iter()
                     .zip(chart.positions().iter().zip(&state.x))
                     .map(|(f, (new, old))| f * (new - old))

@@ -190,7 +190,7 @@ impl ChartMechanics {
         qdot: &mut [f64],
         v: &mut [f64],
     ) -> Result<(), ChartDynamicsError> {
-        self.solver.hamiltonian_gradient(p, qdot)?;
+        self.solver.momentum_gradient(p, qdot)?;
         self.linear.push(qdot, &mut self.work.reduced)?;
         self.system.scatter(&self.work.reduced, v);
         Ok(())

@@ -1,7 +1,7 @@
 //! Explicit integration in a chart, with the published step control.
 
 use super::contact::ChartContact;
-use super::stepping::{Stepper, Trial};
+use super::stepping::{PhaseState, Stepper};
 use super::{
     ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, ContactImpulse, Rebase,
 };
@@ -57,7 +57,7 @@ pub struct StepRange {
 pub(crate) struct ChartMotion {
     /// Time, seconds.
     pub(super) t: f64,
-    pub(super) state: Trial,
+    pub(super) state: PhaseState,
     /// Energy after velocity damping, joules.
     pub(super) hamiltonian: f64,
     /// Planned length of the next step, seconds.
@@ -176,7 +176,7 @@ impl ChartSimulation {
         let mut simulation = Self {
             motion: ChartMotion {
                 t,
-                state: Trial {
+                state: PhaseState {
                     x: x.to_vec(),
                     q,
                     p,
@@ -453,7 +453,7 @@ impl ChartSimulation {
             let points = contact.points();
             let opened = self
                 .stepper
-                .opened(self.motion.t, &self.motion.state, points, least);
+                .separated(self.motion.t, &self.motion.state, points, least);
             let span = StepSpan {
                 t0: self.motion.t,
                 h: 0.0,
@@ -493,7 +493,7 @@ impl ChartSimulation {
         self.motion.hamiltonian = potential + kinetic * damping * damping;
         if driven && damping < 1.0 {
             // Moving supports keep their velocities.
-            let Trial { x, p, .. } = &mut self.motion.state;
+            let PhaseState { x, p, .. } = &mut self.motion.state;
             self.stepper.close_momenta((self.motion.t, h), x, p)?;
             self.motion.hamiltonian = self.stepper.mechanics.hamiltonian(self.motion.t, x, p)?;
         }

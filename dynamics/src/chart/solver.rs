@@ -38,7 +38,7 @@ pub trait MassSolver: Send {
     ///
     /// # Errors
     /// As [`MassSolver::velocity`].
-    fn hamiltonian_gradient(
+    fn momentum_gradient(
         &mut self,
         p: &[f64],
         gradient: &mut [f64],
@@ -261,7 +261,7 @@ impl MassSolver for CramerSolver {
         check(qdot)
     }
 
-    fn hamiltonian_gradient(
+    fn momentum_gradient(
         &mut self,
         p: &[f64],
         gradient: &mut [f64],

@@ -19,7 +19,7 @@ const POWER_STEPS: usize = 6;
 
 /// A state in phase space, with the positions that belong to it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Trial {
+pub(crate) struct PhaseState {
     pub(super) x: Vec<f64>,
     pub(super) q: Vec<f64>,
     pub(super) p: Vec<f64>,
@@ -57,7 +57,7 @@ impl Stepper {
         })
     }
 
-    pub(super) fn velocities(&mut self, s: &Trial) -> Result<Vec<f64>, ChartDynamicsError> {
+    pub(super) fn velocities(&mut self, s: &PhaseState) -> Result<Vec<f64>, ChartDynamicsError> {
         let mut qdot = vec![0.0; s.q.len()];
         let mut v = vec![0.0; s.x.len()];
         self.mechanics.at(&s.x)?;
@@ -66,7 +66,7 @@ impl Stepper {
     }
 
     /// New reference state for the chart; coordinates and momenta of `s` are replaced.
-    pub(super) fn rebase(&mut self, s: &mut Trial) -> Result<(), ChartDynamicsError> {
+    pub(super) fn rebase(&mut self, s: &mut PhaseState) -> Result<(), ChartDynamicsError> {
         let v = self.velocities(s)?;
         self.mechanics.rebase(&s.x)?;
         self.mechanics.at(&s.x)?;
@@ -165,7 +165,7 @@ impl Stepper {
     pub(super) fn impact(
         &mut self,
         time: (f64, f64),
-        s: &mut Trial,
+        s: &mut PhaseState,
         points: &[ContactPoint],
         restitution: f64,
     ) -> Result<Option<Impact>, ChartDynamicsError> {
@@ -190,13 +190,13 @@ impl Stepper {
 
     /// The least displacement in the mass metric that opens all gaps to `least`, lengths and closures kept: the state there
     /// with the same velocities.
-    pub(super) fn opened(
+    pub(super) fn separated(
         &mut self,
         t: f64,
-        s: &Trial,
+        s: &PhaseState,
         points: &[ContactPoint],
         least: f64,
-    ) -> Result<Trial, ChartDynamicsError> {
+    ) -> Result<PhaseState, ChartDynamicsError> {
         let v = self.velocities(s)?;
         self.mobility.at(&self.mechanics, t, &s.x)?;
         let mean_mass = self.mechanics.model().mean_mass();
@@ -217,7 +217,7 @@ impl Stepper {
     pub(super) fn balance(
         &mut self,
         time: (f64, f64),
-        s: &Trial,
+        s: &PhaseState,
         balance: &mut Balance,
     ) -> Result<(), ChartDynamicsError> {
         let v = self.velocities(s)?;
@@ -230,9 +230,9 @@ impl Stepper {
     pub(super) fn attempt(
         &mut self,
         t: f64,
-        s: &Trial,
+        s: &PhaseState,
         h: f64,
-    ) -> Result<Trial, ChartDynamicsError> {
+    ) -> Result<PhaseState, ChartDynamicsError> {
         let mut trial = match self.method {
             ChartMethod::ForwardEuler => self.forward_euler(t, s, h),
             ChartMethod::SymplecticEuler => self.symplectic_euler(t, s, h),
@@ -247,7 +247,12 @@ impl Stepper {
         Ok(trial)
     }
 
-    fn forward_euler(&mut self, t: f64, s: &Trial, h: f64) -> Result<Trial, ChartDynamicsError> {
+    fn forward_euler(
+        &mut self,
+        t: f64,
+        s: &PhaseState,
+        h: f64,
+    ) -> Result<PhaseState, ChartDynamicsError> {
         let (mut qdot, mut pdot) = (vec![0.0; s.q.len()], vec![0.0; s.q.len()]);
         let mut v = vec![0.0; s.x.len()];
         self.open(t, &s.x)?;
@@ -259,7 +264,12 @@ impl Stepper {
         Ok(trial)
     }
 
-    fn symplectic_euler(&mut self, t: f64, s: &Trial, h: f64) -> Result<Trial, ChartDynamicsError> {
+    fn symplectic_euler(
+        &mut self,
+        t: f64,
+        s: &PhaseState,
+        h: f64,
+    ) -> Result<PhaseState, ChartDynamicsError> {
         let (mut qdot, mut pdot) = (vec![0.0; s.q.len()], vec![0.0; s.q.len()]);
         let mut v = vec![0.0; s.x.len()];
         self.open(t, &s.x)?;
@@ -295,10 +305,10 @@ impl Stepper {
     fn finish(
         &mut self,
         (t, h): (f64, f64),
-        s: &Trial,
+        s: &PhaseState,
         qdot: &[f64],
         v: &[f64],
-        trial: &mut Trial,
+        trial: &mut PhaseState,
     ) -> Result<(), ChartDynamicsError> {
         let mut new_velocity = Vec::new();
         if self.equations == Equations::Reformed {
@@ -323,7 +333,12 @@ impl Stepper {
         self.close_momenta((t + h, h), &trial.x, &mut trial.p)
     }
 
-    fn runge_kutta(&mut self, t: f64, s: &Trial, h: f64) -> Result<Trial, ChartDynamicsError> {
+    fn runge_kutta(
+        &mut self,
+        t: f64,
+        s: &PhaseState,
+        h: f64,
+    ) -> Result<PhaseState, ChartDynamicsError> {
         let n = s.q.len();
         let mut stage = s.clone();
         let mut near = s.x.clone();

@@ -2,7 +2,7 @@
 
 use super::energy_bound::{EnergyBound, Verdict};
 use super::simulation::{ChartSimulation, StepRange};
-use super::stepping::Trial;
+use super::stepping::PhaseState;
 use super::{ChartDynamicsError, ChartStepControl, ChartStepReport, Rebase};
 use crate::contact::{ActiveContacts, StepSpan};
 use crate::control::{Decision, Stepping, take_substep};
@@ -62,7 +62,7 @@ pub(super) struct ChartSubstep<'a> {
     rejected: u32,
     is_rebased: bool,
     /// The state at the end of the proposal.
-    trial: Option<Trial>,
+    trial: Option<PhaseState>,
 }
 
 /// Why a step in a chart is not taken as proposed.
@@ -137,7 +137,7 @@ impl<'a> ChartSubstep<'a> {
     }
 
     /// Makes the proposal the state; what can fail comes with a way back.
-    fn apply(&mut self, trial: Trial, h: f64) -> Result<ChartStepReport, ChartDynamicsError> {
+    fn apply(&mut self, trial: PhaseState, h: f64) -> Result<ChartStepReport, ChartDynamicsError> {
         let simulation = &mut *self.simulation;
         simulation.motion.growth = simulation.stepper.growth()?;
         let motion = &mut simulation.motion;

@@ -81,7 +81,7 @@ fn four_solvers_agree() {
             let (mut qdot, mut gradient) = (vec![0.0; n], vec![0.0; n]);
             m.solver().velocity(&reference, &mut qdot).unwrap();
             m.solver()
-                .hamiltonian_gradient(&reference, &mut gradient)
+                .momentum_gradient(&reference, &mut gradient)
                 .unwrap();
             let size = qdot.iter().fold(0.0f64, |s, v| s.max(v.abs()));
             for (a, b) in qdot.iter().zip(&gradient) {

@@ -3,7 +3,7 @@
 use super::lagrangian::{Definiteness, Merit, RodLoad};
 use super::problem::StepProblem;
 use super::{FRICTION_SETTLED, Minimiser, Minimum, not_converged};
-use crate::report::{Effort, Path, StepError};
+use crate::report::{SolverEffort, StepError, StepOutcome};
 
 /// Part of the promised decrease that has to come true (Armijo's condition).
 const ARMIJO: f64 = 1e-4;
@@ -45,10 +45,10 @@ pub(super) struct AugmentedLagrangian<'a, 'b> {
     minimiser: &'a mut Minimiser,
     problem: &'a mut StepProblem<'b>,
     rounds: Rounds,
-    effort: &'a mut Effort,
+    effort: &'a mut SolverEffort,
     stiffness: f64,
     residual: f64,
-    path: Path,
+    outcome: StepOutcome,
 }
 
 impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
@@ -56,7 +56,7 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
         minimiser: &'a mut Minimiser,
         problem: &'a mut StepProblem<'b>,
         rounds: Rounds,
-        effort: &'a mut Effort,
+        effort: &'a mut SolverEffort,
     ) -> Self {
         Self {
             stiffness: minimiser.options.stiffness,
@@ -65,7 +65,7 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
             rounds,
             effort,
             residual: f64::INFINITY,
-            path: Path::Newton,
+            outcome: StepOutcome::Newton,
         }
     }
 
@@ -110,7 +110,7 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
             if strain <= tolerance {
                 return Ok(Minimum {
                     residual: self.residual,
-                    path: self.path,
+                    outcome: self.outcome,
                 });
             }
             // Constraints at the iterate.
@@ -158,15 +158,15 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
             let length;
             (length, merit) = self.line_search(limit, slope, &merit);
             if length < 1.0 {
-                self.path = self.path.max(Path::Globalised);
+                self.outcome = self.outcome.max(StepOutcome::Globalised);
             }
             if length < NEARLY_FULL || !is_converged {
                 continue;
             }
             let lagrangian = &mut self.minimiser.lagrangian;
-            if hessian == Definiteness::Modified && self.path != Path::BranchSeeded {
+            if hessian == Definiteness::Modified && self.outcome != StepOutcome::BranchSeeded {
                 // No slope left, but the curvature is negative somewhere: a saddle, where the sheet could fold either way.
-                self.path = Path::BranchSeeded;
+                self.outcome = StepOutcome::BranchSeeded;
                 lagrangian.perturb(self.problem, options.seed);
             } else if friction_updates < options.max_friction_updates
                 && lagrangian.renew_friction(self.problem) > FRICTION_SETTLED
@@ -192,7 +192,7 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
                 source,
             })?;
         if hessian == Definiteness::Modified {
-            self.path = self.path.max(Path::Globalised);
+            self.outcome = self.outcome.max(StepOutcome::Globalised);
         }
         let slope = lagrangian.solve(self.problem.model);
         if slope.is_finite() {

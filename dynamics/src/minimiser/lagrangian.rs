@@ -7,7 +7,7 @@ use crate::contact::StepSpan;
 use crate::iterate::Iterate;
 use crate::model::PINNED;
 use crate::primal::{PrimalMatrix, dot, penalties};
-use crate::report::Effort;
+use crate::report::SolverEffort;
 use isosheet_coords::linalg::LinalgError;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -51,8 +51,8 @@ pub(crate) struct Lagrangian {
     pub(super) start: Vec<f64>,
     /// Where prescribed motions end, at the pinned vertices.
     end: Vec<f64>,
-    along: Vec<f64>,
-    across: Vec<f64>,
+    axial: Vec<f64>,
+    transverse: Vec<f64>,
     difference: Vec<f64>,
     weighted: Vec<f64>,
     /// Changes of length errors, for linearised constraints.
@@ -110,8 +110,8 @@ impl Lagrangian {
             dx: vec![0.0; n],
             start: vec![0.0; n],
             end: vec![0.0; n],
-            along: vec![0.0; m],
-            across: vec![0.0; m],
+            axial: vec![0.0; m],
+            transverse: vec![0.0; m],
             difference: vec![0.0; n],
             weighted: vec![0.0; n],
             change: vec![0.0; m],
@@ -252,15 +252,15 @@ impl Lagrangian {
         &mut self,
         problem: &StepProblem<'_>,
         load: RodLoad,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<Definiteness, LinalgError> {
         if let Some(terms) = self.iterate.terms(problem.contact()) {
             self.matrix.make_room(problem.model, &terms)?;
         }
         for e in 0..self.c.len() {
-            self.along[e] = self.penalty(e);
+            self.axial[e] = self.penalty(e);
         }
-        self.across.copy_from_slice(match load {
+        self.transverse.copy_from_slice(match load {
             RodLoad::Multipliers => &self.multipliers,
             RodLoad::Estimates => &self.density,
         });
@@ -286,13 +286,13 @@ impl Lagrangian {
     /// semidefinite part. (With multipliers far from the estimates the part along the rod stays as it is.)
     fn project_rods(&mut self, model: &SheetModel, load: RodLoad) {
         for e in 0..self.c.len() {
-            if self.across[e] < 0.0 {
+            if self.transverse[e] < 0.0 {
                 if load == RodLoad::Estimates {
                     let l = model.rods().lengths()[e];
                     let squared = (l * l + 2.0 * self.c[e]).max(f64::MIN_POSITIVE);
-                    self.along[e] = (self.along[e] + self.across[e] / squared).max(0.0);
+                    self.axial[e] = (self.axial[e] + self.transverse[e] / squared).max(0.0);
                 }
-                self.across[e] = 0.0;
+                self.transverse[e] = 0.0;
             }
         }
     }
@@ -301,7 +301,7 @@ impl Lagrangian {
     fn assemble(&mut self, problem: &StepProblem<'_>, part: HessianPart) {
         let model = problem.model;
         self.matrix
-            .assemble(model, self.iterate.x(), &self.along, &self.across);
+            .assemble(model, self.iterate.x(), &self.axial, &self.transverse);
         self.vertex_rows
             .add_hessian(part, &mut self.matrix.sink(model));
         if let Some(terms) = self.iterate.terms(problem.contact()) {

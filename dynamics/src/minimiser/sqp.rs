@@ -3,7 +3,7 @@
 use super::lagrangian::{Definiteness, Merit, RodLoad};
 use super::problem::StepProblem;
 use super::{FRICTION_SETTLED, Minimiser};
-use crate::report::Effort;
+use crate::report::SolverEffort;
 
 /// Regularisation of the linear systems of sequential quadratic programming.
 ///
@@ -86,7 +86,7 @@ pub(super) struct Sqp<'a, 'b> {
     minimiser: &'a mut Minimiser,
     problem: &'a mut StepProblem<'b>,
     regularisation: Regularisation,
-    effort: &'a mut Effort,
+    effort: &'a mut SolverEffort,
     limits: Limits,
     /// Steps left before the iteration counts as failed.
     steps_left: usize,
@@ -117,7 +117,7 @@ impl<'a, 'b> Sqp<'a, 'b> {
         minimiser: &'a mut Minimiser,
         problem: &'a mut StepProblem<'b>,
         regularisation: Regularisation,
-        effort: &'a mut Effort,
+        effort: &'a mut SolverEffort,
     ) -> Self {
         // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that mends lengths
         // against the barrier.

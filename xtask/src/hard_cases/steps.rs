@@ -5,7 +5,7 @@ use super::naive::{TEXTBOOK, textbook, textbook_step};
 use super::scenes::{STRAIN, apart, bumped, course, damped, hanging, methods};
 use super::{Case, Effort, Findings, plot};
 use anyhow::Result;
-use isosheet_dynamics::{Path, SheetModel, Simulation, State, leave_flat};
+use isosheet_dynamics::{SheetModel, Simulation, State, StepOutcome, leave_flat};
 use isosheet_mesh::MassKind;
 use isosheet_tests::Pendulum;
 
@@ -210,7 +210,7 @@ fn free_fall(effort: Effort) -> Result<Findings> {
             let mut newton = true;
             let c = course(&mut run, h, steps, |r, s| {
                 n += 1;
-                newton &= r.path == Path::Newton;
+                newton &= r.outcome == StepOutcome::Newton;
                 if n > 2 {
                     for (i, (new, old)) in s.v.iter().zip(&before).enumerate() {
                         let g = if i % 3 == 2 { -9.8 } else { 0.0 };

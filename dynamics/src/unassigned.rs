@@ -7,7 +7,7 @@ use isosheet_coords::linalg::norm_inf;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Entries that a trail has room for; projections need three to six iterations. What comes later joins the last one.
+/// Entries that a unassigned has room for; projections need three to six iterations. What comes later joins the last one.
 const ROOM: usize = 16;
 /// Penalty relative to the masses: beyond, the masses drown in round-off.
 const PENALTY: f64 = 1e9;
@@ -20,7 +20,7 @@ const BALANCED: f64 = 1e-12;
 /// The parts of a step's change of momentum that no multiplier is known for, each with the positions whose rods and vertex
 /// constraints gave it: iterations of a projection, and what a minimisation left.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Trail {
+pub(crate) struct UnassignedMomentum {
     entries: Vec<Entry>,
     len: usize,
 }
@@ -35,7 +35,7 @@ struct Entry {
     momentum: Vec<f64>,
 }
 
-/// Forces of the supports that a trail asks for.
+/// Forces of the supports that a unassigned asks for.
 pub(crate) struct Shares {
     /// At pinned vertices; `3V`.
     pub(crate) pins: Vec<f64>,
@@ -43,7 +43,7 @@ pub(crate) struct Shares {
     pub(crate) loads: Vec<(Vector3<f64>, Vector3<f64>)>,
 }
 
-impl Trail {
+impl UnassignedMomentum {
     /// With room, except where nothing holds the sheet. (The default has none.)
     pub(crate) fn new(model: &SheetModel) -> Self {
         let n = model.coordinate_count();
@@ -97,7 +97,7 @@ impl Trail {
         &mut entry.momentum
     }
 
-    /// Takes over another trail, in place.
+    /// Takes over another unassigned, in place.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         if self.entries.len() < other.len {
             self.clone_from(other);
@@ -107,7 +107,7 @@ impl Trail {
         }
     }
 
-    /// Adds a multiple of another trail.
+    /// Adds a multiple of another unassigned.
     pub(crate) fn append(&mut self, other: &Self, factor: f64) {
         for entry in &other.entries[..other.len] {
             let momentum = entry.momentum.iter().map(|m| factor * m);
