@@ -5,7 +5,7 @@ use crate::interrupt::{self, Interrupted};
 use crate::progress::{self, Progress};
 use crate::store::{Draft, Extent, Store};
 use anyhow::{Context, Result, ensure};
-use isosheet_dynamics::{Path as SolverPath, Simulation, StepReport};
+use isosheet_dynamics::{Simulation, StepOutcome, StepReport};
 use isosheet_io::{
     HistoryRow, HistoryWriter, Trajectory, frame_path, write_atomically, write_json, write_obj,
 };
@@ -343,10 +343,10 @@ impl RunSummary {
         if let Some(gap) = r.gap.filter(|g| g.is_finite()) {
             self.smallest_gap = Some(self.smallest_gap.map_or(gap, |g| g.min(gap)));
         }
-        self.paths[match r.path {
-            SolverPath::Newton => 0,
-            SolverPath::Globalised => 1,
-            SolverPath::BranchSeeded => 2,
+        self.paths[match r.outcome {
+            StepOutcome::Newton => 0,
+            StepOutcome::Globalised => 1,
+            StepOutcome::BranchSeeded => 2,
             _ => 3,
         }] += 1;
     }
