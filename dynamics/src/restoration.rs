@@ -62,7 +62,6 @@ pub(crate) struct Restoration {
     pub(crate) unassigned: UnassignedMomentum,
     /// Vertices on curves and surfaces.
     pub(crate) vertex_rows: VertexRows,
-    rng: ChaCha8Rng,
 }
 
 /// When a projection stops.
@@ -110,7 +109,6 @@ impl Restoration {
             contact_start: vec![0.0; n],
             unassigned: UnassignedMomentum::new(model),
             vertex_rows: VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0),
-            rng: ChaCha8Rng::seed_from_u64(0),
         }
     }
 
@@ -185,8 +183,6 @@ impl Restoration {
     /// Forgets earlier restorations and evaluates the constraints at the iterate.
     fn begin(&mut self, model: &SheetModel, goal: &RestorationGoal<'_>, iterate: &Iterate) {
         self.unassigned.clear();
-        // Every restoration draws the same numbers, so that none depends on the ones before.
-        self.rng = ChaCha8Rng::seed_from_u64(0);
         for (i, c) in model.constraints().iter().enumerate() {
             let is_loaded = goal.loads.get(i).is_some_and(|l| l.x < 0.0);
             self.vertex_rows.equality[i] = is_loaded || !c.is_one_sided();
@@ -290,9 +286,10 @@ impl Restoration {
         iterate: &mut Iterate,
         relative: f64,
     ) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed_of(iterate.x()));
         for (i, d) in self.dx.iter_mut().enumerate() {
             let size = relative * model.shortest_rod(i / 3);
-            *d = self.rng.random_range(-size..=size);
+            *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
         let part = iterate.safe_fraction(held.map(|h| &mut *h.contact), &self.dx);
@@ -404,4 +401,12 @@ impl Restoration {
             .sum::<f64>();
         (rods + self.vertex_rows.squared_error()).sqrt()
     }
+}
+
+/// A seed that depends on positions to the last bit: a displacement that did not help is not drawn again, and none depends on
+/// what was done before.
+fn seed_of(x: &[f64]) -> u64 {
+    x.iter().fold(0, |seed: u64, x| {
+        seed.rotate_left(7).wrapping_add(x.to_bits())
+    })
 }

@@ -7,7 +7,7 @@ use isosheet_coords::{
 use isosheet_dynamics::chart::{
     ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind,
 };
-use isosheet_dynamics::{Method, Path, Simulation, State, StepControl};
+use isosheet_dynamics::{Method, Simulation, State, StepControl, StepOutcome};
 
 const BUMP: f64 = 0.1;
 
@@ -54,7 +54,10 @@ fn runge_kutta_in_both_charts_follows_the_chart_free_motion() {
             };
             let mut run = in_chart(level, chart, options);
             let report = run.step(0.1).expect("accepted");
-            assert!(matches!(report.path, Path::Chart | Path::Rebased));
+            assert!(matches!(
+                report.outcome,
+                StepOutcome::Chart | StepOutcome::Rebased
+            ));
             assert!(
                 report.substeps >= 200 && report.strain < 1e-11,
                 "{report:?}"

@@ -2,7 +2,8 @@
 
 use crate::scenes::{bumped, corner, gap, hanging, held, methods};
 use isosheet_dynamics::{
-    Fallback, Method, Path, SheetModel, Simulation, State, StepControl, StepError, leave_flat,
+    Fallback, Method, SheetModel, Simulation, State, StepControl, StepError, StepOutcome,
+    leave_flat,
 };
 use isosheet_mesh::{MassKind, VertexId, generate};
 
@@ -77,10 +78,13 @@ fn fallback_carries_a_conservative_run_off_flat() {
     for _ in 0..60 {
         let report = run.step(1.0 / 60.0).expect("accepted");
         assert!(report.strain < 1e-11);
-        paths.push(report.path);
+        paths.push(report.outcome);
     }
-    assert_eq!(paths[0], Path::Fallback);
-    let fallbacks = paths.iter().filter(|p| **p == Path::Fallback).count();
+    assert_eq!(paths[0], StepOutcome::Fallback);
+    let fallbacks = paths
+        .iter()
+        .filter(|p| **p == StepOutcome::Fallback)
+        .count();
     assert!(fallbacks < 20, "{fallbacks} of 60 steps fell back");
 }
 
