@@ -206,12 +206,19 @@ impl<'a, 'b> Sqp<'a, 'b> {
         let stiffness = self.regularisation.stiffness();
         let (model, merit_stiffness) = (self.problem.model, self.limits.merit_stiffness);
         let constraint_stiffness = self.minimiser.options.stiffness;
+        // Length errors that the step before has left within the tolerance are round-off: to correct them would be motion along
+        // nearly dependent rods. (The balance of momentum holds after every pass.)
+        let strain_tolerance = self.minimiser.strain_tolerance(self.problem);
         let lagrangian = &mut self.minimiser.lagrangian;
         self.effort.iterations += 1;
         lagrangian.set_stiffness(stiffness, stiffness);
         let hessian = lagrangian
             .factorize(self.problem, RodLoad::Multipliers, self.effort)
             .ok()?;
+        let is_first = self.steps_left + 1 == self.limits.steps;
+        if is_first && model.rods().max_strain(lagrangian.iterate.x()) <= strain_tolerance {
+            lagrangian.c.fill(0.0);
+        }
         for _ in 0..self.regularisation.passes() {
             lagrangian.set_gradient(self.problem);
             lagrangian.solve(model);
@@ -231,7 +238,7 @@ impl<'a, 'b> Sqp<'a, 'b> {
             if self.regularisation == Regularisation::Strong && strain > MAX_LINEARISED_STRAIN {
                 return None;
             }
-            if change <= MULTIPLIERS_SETTLED * largest {
+            if strain <= strain_tolerance || change <= MULTIPLIERS_SETTLED * largest {
                 break;
             }
         }
