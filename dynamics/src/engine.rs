@@ -428,3 +428,6 @@ fn damp(model: &SheetModel, state: &mut State, h: f64) -> f64 {
 /// the rods is named as the reason of a failure: the referee integrations of the smoothest
 /// known runs pass values down to 1e-6 only with steps of a microsecond.
 const DEPENDENT_RODS: f64 = 1e-5;
+
+#[cfg(test)]
+mod tests;
