@@ -298,8 +298,9 @@ impl Stepping for Substeps<'_> {
         // The conservative methods keep the energy by themselves, and the fallback is the last resort.
         if integrator.traits().demand == RodDemand::Nothing && !is_fallback {
             self.pending.account = account.after(model, before, after, &exchange)?;
+            return Ok(());
         }
-        Ok(())
+        check_energy(model, after)
     }
 
     fn decide(&mut self, refusal: StepError, _h: f64) -> Decision<Stop> {
@@ -365,6 +366,19 @@ impl Stepping for Substeps<'_> {
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         Ok(())
     }
+}
+
+/// Refuses a state whose energy is not finite.
+fn check_energy(model: &SheetModel, state: &State) -> Result<(), StepError> {
+    let value = model.kinetic_energy(&state.v) + model.potential_energy(state.t, &state.x);
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(StepError::NonFiniteEnergy {
+        quantity: "the energy at the end of the step",
+        value,
+        t: state.t,
+    })
 }
 
 /// Refuses arrays of the wrong length.
