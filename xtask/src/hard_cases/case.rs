@@ -134,11 +134,7 @@ impl Shortfall {
         match self {
             Self::Value([a, b]) => format!("{} to {}", number(*a), number(*b)),
             Self::Stops { at: [a, b], saying } => {
-                format!(
-                    "stops after {} to {} s: “{saying}”",
-                    number(*a),
-                    number(*b)
-                )
+                format!("stops after {} to {} s: “{saying}”", number(*a), number(*b))
             }
         }
     }

@@ -258,13 +258,14 @@ fn free_fall(effort: Effort) -> Result<Findings> {
                 "BDF2" => 4.9 * (t * t + 1.5 * h * h),
                 _ => 4.9 * t * t,
             };
-            // M^1 flies on; M^2 stops, as measured, after 0.02125 s and at the start.
-            let stops = match name {
-                "RATTLE" => Some([5e-3, 0.1]),
-                "RATTLE composition" => Some([0.0, 0.02]),
+            // M^1 flies on; M^2 stops, as measured, after 0.02125 s and at the start, M^3 flies on and stops after 0.428 s.
+            let stops = match (name, effort) {
+                ("RATTLE", Effort::Standard) => Some([5e-3, 0.1]),
+                ("RATTLE composition", Effort::Standard) => Some([0.0, 0.02]),
+                ("RATTLE composition", Effort::Full) => Some([0.1, 0.99]),
                 _ => None,
             };
-            let stops = stops.filter(|_| displaced == 0.0 && effort != Effort::Quick);
+            let stops = stops.filter(|_| displaced == 0.0);
             let off = (0..3)
                 .map(|k| now[k] - start[k] - throw[k] * t + if k == 2 { fall } else { 0.0 })
                 .fold(0.0_f64, |m, d| m.max(d.abs()));
