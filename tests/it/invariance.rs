@@ -339,30 +339,36 @@ fn strain_and_energy_of_random_sheets() {
     });
 }
 
-/// Not a number after a given time, while it is switched on.
-#[derive(Debug)]
+/// Not a number after a given time: its energy while the first switch is on, its gradient while the second is.
+#[derive(Debug, Clone)]
 struct Broken {
-    on: Arc<AtomicBool>,
+    switches: Arc<[AtomicBool; 2]>,
     after: f64,
 }
 
 impl Broken {
-    fn value(&self, t: f64) -> f64 {
-        if t > self.after && self.on.load(Ordering::Relaxed) {
+    fn value(&self, t: f64, switch: usize) -> f64 {
+        if t > self.after && self.switches[switch].load(Ordering::Relaxed) {
             f64::NAN
         } else {
             0.0
+        }
+    }
+
+    fn set(&self, on: [bool; 2]) {
+        for (switch, on) in self.switches.iter().zip(on) {
+            switch.store(on, Ordering::Relaxed);
         }
     }
 }
 
 impl Potential for Broken {
     fn energy(&self, t: f64, _x: &[f64]) -> f64 {
-        self.value(t)
+        self.value(t, 0)
     }
 
     fn add_gradient(&self, t: f64, _x: &[f64], gradient: &mut [f64]) {
-        gradient[4] += self.value(t);
+        gradient[4] += self.value(t, 1);
     }
 }
 
@@ -370,13 +376,12 @@ impl Potential for Broken {
 fn failed_steps_leave_no_trace() {
     check(8, &scenes(), |scene| {
         for (name, method) in methods() {
-            let on = Arc::new(AtomicBool::new(false));
+            let broken = Broken {
+                switches: Arc::default(),
+                after: 5.5 * scene.h,
+            };
             let mut runs = [(); 2].map(|()| {
-                let broken = Broken {
-                    on: on.clone(),
-                    after: 5.5 * scene.h,
-                };
-                let model = scene.model().with_potential(broken);
+                let model = scene.model().with_potential(broken.clone());
                 Simulation::new(model, scene.start(), method.clone()).expect("valid")
             });
             for k in 0..12 {
@@ -389,14 +394,14 @@ fn failed_steps_leave_no_trace() {
                 }
                 if k >= 6 {
                     assert!(disturbed.step(1e-30).is_err(), "{name}: time stands still");
-                    on.store(true, Ordering::Relaxed);
+                    broken.set([true, k % 2 == 1]);
                     let before = disturbed.checkpoint();
                     assert!(disturbed.step(scene.h).is_err(), "{name}, step {k}");
                     assert!(
                         disturbed.checkpoint() == before,
                         "{name}, step {k}: a trace"
                     );
-                    on.store(false, Ordering::Relaxed);
+                    broken.set([false, false]);
                 }
                 let same = disturbed.step(scene.h).expect("as before");
                 assert_eq!(
