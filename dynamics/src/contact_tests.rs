@@ -9,13 +9,13 @@ use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use nalgebra::{Isometry3, Vector3};
 
 /// A floor at height `z(t)` below all vertices.
-struct Floor {
+pub(crate) struct Floor {
     height: fn(f64) -> f64,
     laws: ContactLaws,
 }
 
 impl Floor {
-    fn new(height: fn(f64) -> f64) -> Self {
+    pub(crate) fn new(height: fn(f64) -> f64) -> Self {
         Self {
             height,
             laws: ContactLaws {
@@ -102,14 +102,15 @@ impl Contact for Floor {
 }
 
 /// A sheet of 1 m and 0.1 kg, shifted by `z`.
-fn sheet(level: u32, z: f64) -> (Sheet, State) {
+pub(crate) fn sheet(level: u32, z: f64) -> (Sheet, State) {
     let sheet = generate::isotropic_square(level, 1.0).unwrap();
     let mut x = sheet.positions().to_vec();
     x.iter_mut().skip(2).step_by(3).for_each(|x| *x += z);
     (sheet, State::at_rest(x))
 }
 
-fn model(sheet: &Sheet) -> SheetModel {
+/// That sheet under gravity.
+pub(crate) fn model(sheet: &Sheet) -> SheetModel {
     SheetModel::new(sheet, 0.1, MassKind::Lumped)
         .unwrap()
         .with_gravity()

@@ -55,7 +55,7 @@ impl EnergyAccount {
     /// The account after a step.
     ///
     /// # Errors
-    /// [`StepError::EnergyGain`] if the step gains too much.
+    /// [`StepError::EnergyGain`] if the step gains too much, [`StepError::NonFiniteEnergy`] if that is not known.
     pub(crate) fn after(
         &self,
         model: &SheetModel,
@@ -72,6 +72,14 @@ impl EnergyAccount {
             - exchange.forces
             - exchange.supports
             - exchange.bodies;
+        if !gain.is_finite() {
+            // A comparison with a bound would let it pass, and spoil the account for good.
+            return Err(StepError::NonFiniteEnergy {
+                quantity: "the energy gained in the step",
+                value: gain,
+                t: after.t,
+            });
+        }
         let size = norm_inf(&after.x);
         let noise = POSITION_NOISE * size / (after.t - before.t);
         let energies = kinetic[0] + potential[0].abs() + potential[1].abs();

@@ -298,8 +298,9 @@ impl Stepping for Substeps<'_> {
         // The conservative methods keep the energy by themselves, and the fallback is the last resort.
         if integrator.traits().demand == RodDemand::Nothing && !is_fallback {
             self.pending.account = account.after(model, before, after, &exchange)?;
+            return Ok(());
         }
-        Ok(())
+        check_energy(model, after)
     }
 
     fn decide(&mut self, refusal: StepError, _h: f64) -> Decision<Stop> {
@@ -367,6 +368,19 @@ impl Stepping for Substeps<'_> {
     }
 }
 
+/// Refuses a state whose energy is not finite.
+fn check_energy(model: &SheetModel, state: &State) -> Result<(), StepError> {
+    let value = model.kinetic_energy(&state.v) + model.potential_energy(state.t, &state.x);
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(StepError::NonFiniteEnergy {
+        quantity: "the energy at the end of the step",
+        value,
+        t: state.t,
+    })
+}
+
 /// Refuses arrays of the wrong length.
 fn check_lengths(model: &SheetModel, motion: &FreeMotion) -> Result<(), CheckpointError> {
     let (n, m, k) = (
@@ -428,3 +442,6 @@ fn damp(model: &SheetModel, state: &mut State, h: f64) -> f64 {
 /// the rods is named as the reason of a failure: the referee integrations of the smoothest
 /// known runs pass values down to 1e-6 only with steps of a microsecond.
 const DEPENDENT_RODS: f64 = 1e-5;
+
+#[cfg(test)]
+mod tests;

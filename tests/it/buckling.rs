@@ -116,12 +116,29 @@ fn a_strip_jams_between_walls_without_touching() {
         if step == 79 {
             // What the nip has paid for is stored in bending or lost.
             let stored = report.hamiltonian() - before;
-            assert!(stored > 0.0 && stored < report.work, "{report:?}");
-            assert!(report.energy_drift.abs() < 0.2 * report.work, "{report:?}");
+            // Measured, in shares of the work of 2.65 mJ: stored 0.82, lost to friction 0.28, damped 0.007; the error of the trapezoidal
+            // rule for the work of jamming pins is 0.105.
+            let share = |energy: f64| energy / report.work;
+            assert!((2.2e-3..3.1e-3).contains(&report.work), "{report:?}");
+            assert!((0.7..0.95).contains(&share(stored)), "{report:?}");
+            assert!((0.2..0.36).contains(&share(report.friction)), "{report:?}");
+            assert!(
+                (0.003..0.014).contains(&share(report.dissipated)),
+                "{report:?}"
+            );
+            assert!(
+                (0.05..0.15).contains(&share(report.energy_drift)),
+                "{report:?}"
+            );
         }
     }
     // The walls let it buckle, and hold the buckle: it carries more than a strip that is hinged at the plate.
     let bends = LENGTH * (1.0 - 1.5 / cells as f64);
     let hinged = 2.0457 * RIGIDITY * WIDTH * (PI / bends).powi(2);
-    assert!(largest > hinged, "{largest} N against {hinged} N");
+    // Measured: 5.5 times as much.
+    let ratio = largest / hinged;
+    assert!(
+        (4.5..6.5).contains(&ratio),
+        "{largest} N against {hinged} N"
+    );
 }

@@ -58,42 +58,78 @@ fn tumbling(method: Method) -> Simulation {
 }
 
 #[test]
-fn momenta_of_a_free_sheet() {
+fn linear_momentum_of_a_free_sheet() {
     for (name, method) in methods() {
         let mut run = tumbling(method);
-        let moments = |run: &Simulation| {
-            let State { x, v, .. } = run.state();
-            (
-                run.model().linear_momentum(v),
-                run.model().angular_momentum(x, v),
-            )
-        };
-        let (linear, angular) = moments(&run);
-        let mut drift = 0.0_f64;
+        let linear = run.model().linear_momentum(&run.state().v);
         for _ in 0..50 {
-            drift = drift.max(run.step(4e-3).expect("accepted").energy_drift.abs());
+            run.step(4e-3).expect("accepted");
         }
-        let (linear_end, angular_end) = moments(&run);
-        let lost = gap(&linear, &linear_end);
+        let lost = gap(&linear, &run.model().linear_momentum(&run.state().v));
         // Projections solve with rods 1e9 to 1e13 times as stiff as the masses: round-off.
         let bound = if name == "projection" { 1e-8 } else { 1e-13 };
         assert!(
             lost < bound,
             "{name}: linear momentum {lost:e} of {linear:?}"
         );
-        let lost = gap(&angular, &angular_end);
-        match name {
-            // Their rods push along directions of the iterates, which is exact in the limit only.
-            "implicit Euler" | "BDF2" | "projection" => {
+    }
+}
+
+/// Shares of the angular momentum, along its direction at the start, and of the energy that a tumbling sheet loses in 0.2 s, and
+/// the largest change of the angular momentum in any direction.
+fn losses(method: &Method, steps: u32) -> [f64; 3] {
+    let mut run = tumbling(method.clone());
+    let moments = |run: &Simulation| {
+        let State { x, v, .. } = run.state();
+        (run.model().angular_momentum(x, v), run.energy())
+    };
+    let (start, energy) = moments(&run);
+    for _ in 0..steps {
+        run.step(0.2 / f64::from(steps)).expect("accepted");
+    }
+    let (end, energy_end) = moments(&run);
+    let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let kept = dot(start, end) / dot(start, start);
+    [1.0 - kept, 1.0 - energy_end / energy, gap(&start, &end)]
+}
+
+#[test]
+fn conservative_methods_keep_the_angular_momentum() {
+    for (name, method) in methods().into_iter().skip(3) {
+        let [_, energy, change] = losses(&method, 50);
+        assert!(change < 1e-15, "{name}: angular momentum {change:e}");
+        if name == "energy-momentum" {
+            assert!(energy.abs() < 1e-13, "energy {energy:e}");
+        }
+    }
+}
+
+/// The rods of the damped methods push along directions at the end of the step, which is exact in the limit only: they lose
+/// angular momentum and energy by their order of accuracy. Measured at 50 steps: 9.47e-4 and 2.17e-3 (implicit Euler), 2.44e-5
+/// and 5.61e-5 (BDF2), 4.80e-4 and 1.10e-3 (projection).
+#[test]
+fn damped_methods_lose_angular_momentum_and_energy_by_their_order() {
+    let expected = [
+        ("implicit Euler", [9.47e-4, 2.17e-3], 1.0),
+        ("BDF2", [2.44e-5, 5.61e-5], 2.0),
+        ("projection", [4.80e-4, 1.10e-3], 1.0),
+    ];
+    for ((name, method), (same, shares, order)) in methods().into_iter().zip(expected) {
+        assert_eq!(name, same);
+        let runs = [50, 100, 200].map(|steps| losses(&method, steps));
+        for (k, what) in ["angular momentum", "energy"].into_iter().enumerate() {
+            let lost = runs.map(|r| r[k]);
+            let ratio = lost[0] / shares[k];
+            assert!(
+                (0.98..1.02).contains(&ratio),
+                "{name}: {what} lost: {lost:?}"
+            );
+            for found in orders(&lost) {
                 assert!(
-                    lost < 0.2 * angular[2].abs(),
-                    "{name}: angular momentum {lost:e}"
+                    (found - order).abs() < 0.03,
+                    "{name}: {what} lost: {lost:?}"
                 );
             }
-            _ => assert!(lost < 1e-12, "{name}: angular momentum {lost:e}"),
-        }
-        if name == "energy-momentum" {
-            assert!(drift < 1e-13, "energy {drift:e}");
         }
     }
 }

@@ -32,37 +32,46 @@ fn flat_start_is_never_rejected() {
 }
 
 #[test]
-fn conservative_methods_refuse_a_loaded_flat_sheet_and_say_why_or_move_it_right() {
-    for (name, method) in methods().into_iter().skip(3) {
+fn energy_momentum_refuses_a_loaded_flat_sheet_and_says_why() {
+    let mut run = hanging(1, 0.0, Method::EnergyMomentum(Default::default()));
+    let error = run.step(1.0 / 60.0).expect_err("flat and loaded");
+    let StepError::RankDeficient {
+        t,
+        rank_deficiency,
+        smallest_singular_value,
+    } = error
+    else {
+        panic!("{error}");
+    };
+    // Nine interior vertices, as many dependent rods; the short steps before the refusal may have folded some of them.
+    assert!((1..=9).contains(&rank_deficiency), "{rank_deficiency}");
+    assert!(
+        smallest_singular_value < 1e-5,
+        "{smallest_singular_value:e}"
+    );
+    // It gives up in the first tenth of the step, at the last state that it vouches for.
+    assert!(t == run.state().t && t < 0.1 / 60.0, "{t} s");
+    assert!(run.energy().abs() < 1e-10, "{:e} J", run.energy());
+    let strain = run.model().rods().max_strain(&run.state().x);
+    assert!(strain < 1e-12, "{strain:e}");
+}
+
+/// Many short steps find the way out of the flat state; they keep the energy to a millionth (RATTLE) and the hundred thousandth part
+/// (its composition) of the 1.3 mJ that the fall releases.
+#[test]
+fn rattle_leaves_a_loaded_flat_sheet_by_short_steps() {
+    for (name, method) in methods().into_iter().skip(4) {
         let mut run = hanging(1, 0.0, method);
-        match run.step(1.0 / 60.0) {
-            // Many short steps may find the way.
-            Ok(report) => {
-                let fallen = report.kinetic;
-                assert!(
-                    report.energy_drift.abs() < 1e-3 * fallen,
-                    "{name}: {report:?}"
-                );
-                assert!(
-                    report.strain < 1e-12 && report.substeps > 1,
-                    "{name}: {report:?}"
-                );
-            }
-            Err(StepError::RankDeficient {
-                rank_deficiency,
-                smallest_singular_value,
-                ..
-            }) => {
-                // Nine interior vertices, as many dependent rods; a step or two of regularised
-                // motion may have folded some of them by less than is needed.
-                assert!(
-                    rank_deficiency <= 9 && smallest_singular_value < 1e-5,
-                    "{name}"
-                );
-            }
-            Err(other) => panic!("{name}: {other}"),
-        }
-        assert!(run.state().x.iter().all(|x| x.is_finite()), "{name}");
+        let report = run
+            .step(1.0 / 60.0)
+            .unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert!((8..=64).contains(&report.substeps), "{name}: {report:?}");
+        assert!(
+            (1.25e-3..1.35e-3).contains(&report.kinetic),
+            "{name}: {report:?}"
+        );
+        let drift = report.energy_drift.abs() / report.kinetic;
+        assert!(drift < 1e-4 && report.strain < 1e-12, "{name}: {report:?}");
     }
 }
 

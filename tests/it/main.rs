@@ -11,6 +11,7 @@ mod contact;
 mod flat;
 mod forces;
 mod impacts;
+mod invariance;
 mod orders;
 mod origami;
 mod robust;

@@ -58,8 +58,14 @@ fn rest_stays_rest_and_translation_goes_on() {
 
 #[test]
 fn damped_methods_do_not_create_energy() {
-    // Strips far from square, checkerboard masses: from exactly flat, step by step.
-    for (width, ratio) in [(0.02, 1.0), (0.005, 1.0), (1.0, 1e4)] {
+    // Strips far from square, checkerboard masses: from exactly flat, step by step. With the shares of the largest kinetic
+    // energy that implicit Euler, BDF2 and the projection have lost after 30 steps; measured: 0.237, 0.031, 0.164;
+    // 0.254, 0.021, 0.205; 0.245, 0.029, 0.074.
+    for (width, ratio, shares) in [
+        (0.02, 1.0, [0.2..0.27, 0.025..0.04, 0.14..0.19]),
+        (0.005, 1.0, [0.21..0.3, 0.015..0.03, 0.17..0.24]),
+        (1.0, 1e4, [0.2..0.29, 0.02..0.04, 0.05..0.1]),
+    ] {
         let square = generate::isotropic_square(1, 1.0).expect("valid");
         let positions = square
             .positions()
@@ -71,7 +77,7 @@ fn damped_methods_do_not_create_energy() {
             .map(|i| if i % 2 == 0 { 0.004 } else { 0.004 * ratio })
             .collect();
         let mass = MassMatrix::from_vertex_masses(masses).expect("positive");
-        for (name, method) in methods().into_iter().take(3) {
+        for ((name, method), share) in methods().into_iter().zip(shares) {
             let model = SheetModel::with_mass(&sheet, mass.clone())
                 .expect("valid")
                 .with_gravity()
@@ -80,26 +86,32 @@ fn damped_methods_do_not_create_energy() {
             let weight = 9.8 * mass.total();
             let start = State::at_rest(sheet.positions().to_vec());
             let mut run = Simulation::new(model, start, method).expect("valid");
-            let mut last = 0.0;
+            let (mut last, mut kinetic) = (0.0, 0.0_f64);
             for k in 0..30 {
                 let what = format!("{name}, width {width}, mass ratio {ratio}, step {k}");
-                match run.step(1.0 / 60.0) {
-                    Ok(report) => {
-                        // The bound that every sub-step keeps: a tenth of the kinetic energy.
-                        let energy = report.hamiltonian();
-                        let slack = 0.12 * report.substeps as f64 * report.kinetic;
-                        assert!(
-                            energy < last + slack + 1e-9 * weight,
-                            "{what}: {energy} J after {last} J"
-                        );
-                        assert!(energy < 0.5 * weight, "{what}: {energy} J from rest");
-                        last = energy;
-                    }
-                    // Giving up is allowed on the hardest of them, with the reason; lying is not.
-                    Err(StepError::StepTooSmall { .. }) => break,
-                    Err(e) => panic!("{what}: {e}"),
-                }
+                let report = run
+                    .step(1.0 / 60.0)
+                    .unwrap_or_else(|e| panic!("{what}: {e}"));
+                // The bound that every sub-step keeps: a tenth of the kinetic energy.
+                let energy = report.hamiltonian();
+                let slack = 0.1 * report.substeps as f64 * report.kinetic;
+                assert!(
+                    energy < last + slack + 1e-9 * weight,
+                    "{what}: {energy} J after {last} J"
+                );
+                // And all steps together: a fiftieth.
+                kinetic = kinetic.max(report.kinetic);
+                assert!(
+                    energy < 0.02 * kinetic + 1e-9 * weight,
+                    "{what}: {energy} J from rest"
+                );
+                last = energy;
             }
+            let lost = -last / kinetic;
+            assert!(
+                share.contains(&lost),
+                "{name}, width {width}, mass ratio {ratio}: {lost} of {kinetic} J lost"
+            );
         }
     }
 }
@@ -107,28 +119,52 @@ fn damped_methods_do_not_create_energy() {
 #[test]
 fn changing_steps_do_not_feed_energy() {
     let problem = Pendulum::default();
+    // Energy errors of the steps, of the energy at the start, least and largest. The damped methods have lost between 5.88 % and 7.1 %
+    // at the end. Errors measured of the others: below 3e-12 (energy-momentum), -3.4e-4 to
+    // 2.5e-5 (RATTLE), -2.7e-8 to 0 (its composition).
+    let bounds = [
+        ("implicit Euler", [-0.075, 1e-12]),
+        ("BDF2", [-0.075, 1e-12]),
+        ("projection", [-0.075, 1e-12]),
+        ("energy-momentum", [-1e-11, 1e-11]),
+        ("RATTLE", [-4e-4, 4e-5]),
+        ("RATTLE composition", [-4e-8, 4e-9]),
+    ];
     for short in [1e-3, 1e-4, 1e-5] {
-        for (name, method) in methods() {
+        for ((name, method), (same, [low, high])) in methods().into_iter().zip(bounds) {
+            assert_eq!(name, same);
             let mut run = Simulation::new(problem.model(), problem.start(), method).expect("valid");
             let scale = run.energy().abs();
+            let mut drift = 0.0;
             for k in 0..60 {
                 let h = if k % 2 == 0 { 1e-2 } else { short };
                 let report = run.step(h).expect("accepted");
+                drift = report.energy_drift / scale;
                 assert!(
-                    report.energy_drift < 0.02 * scale,
-                    "{name}, {short:e} s: {} J",
-                    report.energy_drift
+                    (low..=high).contains(&drift),
+                    "{name}, {short:e} s, step {k}: {drift:e} of the energy"
                 );
+            }
+            // Each damped method loses some in every step, the conservative ones next to nothing.
+            if ["implicit Euler", "BDF2", "projection"].contains(&name) {
+                assert!(drift < -0.055, "{name}, {short:e} s: lost {drift:e}");
             }
         }
     }
 }
 
 #[test]
-fn rattle_keeps_the_momentum_of_a_flat_sheet_or_refuses() {
+fn a_flat_sheet_in_flight_keeps_its_momentum_until_rods_answer_round_off() {
     let sheet = bumped(2, 0.0);
     for (name, method) in methods().into_iter().skip(3) {
         for speed in [1.0, 100.0] {
+            // RATTLE solves for the impulses of dependent rods also where round-off alone loads them, and stops there:
+            // at 1 m/s in the second step, its composition in the first. Energy-momentum does not ask for them.
+            let steps = match (name, speed) {
+                ("RATTLE", 1.0) => 1,
+                ("RATTLE composition", 1.0) => 0,
+                _ => 4,
+            };
             let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
                 .expect("valid")
                 .with_gravity();
@@ -138,17 +174,20 @@ fn rattle_keeps_the_momentum_of_a_flat_sheet_or_refuses() {
                 .collect();
             let mut run =
                 Simulation::new(model, State::moving(x, v), method.clone()).expect("valid");
-            for _ in 0..4 {
-                if let Err(error) = run.step(1.0 / 60.0) {
-                    assert!(
-                        matches!(error, StepError::RankDeficient { .. }),
-                        "{name}: {error}"
-                    );
-                    break;
+            for k in 0..4 {
+                let what = format!("{name} at {speed} m/s, step {k}");
+                let done = run.step(1.0 / 60.0);
+                match done.map(|r| r.rejected) {
+                    Ok(rejected) => assert!(k < steps && rejected == 0, "{what}: {rejected}"),
+                    // One rod for each of the 49 interior vertices.
+                    Err(StepError::RankDeficient {
+                        rank_deficiency, ..
+                    }) => assert!(k >= steps && rank_deficiency == 49, "{what}"),
+                    Err(error) => panic!("{what}: {error}"),
                 }
                 let p = run.model().linear_momentum(&run.state().v);
                 let lost = (p[0] - 0.1 * speed).abs();
-                assert!(lost < 1e-7 * speed, "{name} at {speed} m/s: lost {lost:e}");
+                assert!(lost < 1e-14 * speed, "{what}: lost {lost:e}");
             }
         }
     }
@@ -191,13 +230,26 @@ fn no_report_holds_a_nan() {
 
         let model = held(1, 0.05).with_force(BreaksLater);
         let mut run = Simulation::new(model, start(), method).expect("valid");
-        for _ in 0..3 {
-            match run.step(1e-2) {
-                Ok(report) => assert!(report.work.is_finite(), "{name}: {report:?}"),
-                Err(_) => break,
-            }
-            assert!(run.state().x.iter().all(|x| x.is_finite()), "{name}");
+        // The damped methods ask for the force at the start of a step, the others within it.
+        let damped = ["implicit Euler", "BDF2", "projection"].contains(&name);
+        for _ in 0..if damped { 2 } else { 1 } {
+            let report = run.step(1e-2).unwrap_or_else(|e| panic!("{name}: {e}"));
+            assert_eq!(report.work, 0.0, "{name}");
         }
+        match run.step(1e-2).expect_err("the force is not a number") {
+            StepError::NonFiniteForce { vertex, t, .. } if damped => {
+                assert!(
+                    vertex == VertexId(1) && t == 0.02,
+                    "{name}: {vertex}, {t} s"
+                );
+            }
+            StepError::StepTooSmall { t, .. } if !damped => {
+                assert!((0.01..0.015).contains(&t), "{name}: {t} s");
+            }
+            error => panic!("{name}: {error}"),
+        }
+        let State { x, v, .. } = run.state();
+        assert!(x.iter().chain(v).all(|x| x.is_finite()), "{name}");
     }
     let mut nowhen = start();
     nowhen.t = f64::NAN;
@@ -214,11 +266,18 @@ fn projection_refuses_nonsense_and_leaves_positions_alone() {
     }
     assert!(project_positions(&model, &mut [0.0; 4], 1e-9).is_err());
     assert!(leave_flat(&model, &mut [0.0; 4], 0.1, 0).is_err());
-    // All vertices in one point: no direction to go.
+    // All vertices in one point, where no rod has a direction.
     let mut point = vec![1.0; good.len()];
-    if project_positions(&model, &mut point, 1e-12).is_err() {
-        assert!(point.iter().all(|x| *x == 1.0), "unchanged on failure");
-    }
+    let strain = project_positions(&model, &mut point, 1e-12).expect("unfolds");
+    assert!(strain <= 1e-12 && model.rods().max_strain(&point) == strain);
+    // A rod of rest length 1 m from a pin to one 3 m away: no positions have the lengths.
+    let far = VertexId(24);
+    let torn = held(1, 0.05).with_pins(&[far]).expect("exists");
+    let mut apart = good.clone();
+    apart[3 * far.index()] += 2.0;
+    let before = apart.clone();
+    assert!(project_positions(&torn, &mut apart, 1e-12).is_err());
+    assert_eq!(apart, before, "unchanged on failure");
     let masses = MassMatrix::from_vertex_masses(vec![1.0; 24]).expect("positive");
     let error = SheetModel::with_mass(&bumped(1, 0.0), masses).err();
     assert!(error.expect("refused").to_string().contains("24"));

@@ -1,5 +1,6 @@
 //! What a hard case is, and what is found in it.
 
+use super::scenes::Course;
 use crate::draw::Drawing;
 use crate::figures::{Picture, PictureRef, Table};
 use anyhow::Result;
@@ -77,8 +78,10 @@ pub(crate) enum Verdict {
     Passed,
     /// Out of bounds, and known to be: an open limitation.
     Limitation,
-    /// Declared an open limitation, and within its bounds here.
+    /// Declared an open limitation, and within its bounds here: the declaration is wrong.
     Cured,
+    /// Out of bounds, but by less than the open limitation declares: the declaration is wrong.
+    Improved,
     Failed,
 }
 
@@ -88,10 +91,62 @@ impl Verdict {
         match self {
             Self::Passed => "pass",
             Self::Limitation => "open limitation",
-            Self::Cured => "pass, though declared a limitation",
+            Self::Cured => "FAIL (cured: remove the declaration)",
+            Self::Improved => "FAIL (better than declared: correct the declaration)",
             Self::Failed => "FAIL",
         }
     }
+
+    /// Whether the report fails by it.
+    pub(super) fn is_failure(self) -> bool {
+        match self {
+            Self::Passed | Self::Limitation => false,
+            Self::Cured | Self::Improved | Self::Failed => true,
+        }
+    }
+}
+
+/// What an open limitation does, instead of keeping the bound.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Shortfall {
+    /// The number lies between these two, outside of its bound.
+    Value([f64; 2]),
+    /// The run stops between these two times, seconds.
+    Stops {
+        at: [f64; 2],
+        /// Part of the error message.
+        saying: String,
+    },
+}
+
+impl Shortfall {
+    /// A run that stops between two times, seconds, with an error message that holds the given text.
+    pub(super) fn stops(at: [f64; 2], saying: &str) -> Self {
+        Self::Stops {
+            at,
+            saying: saying.to_owned(),
+        }
+    }
+
+    /// For people.
+    pub(super) fn text(&self) -> String {
+        match self {
+            Self::Value([a, b]) => format!("{} to {}", number(*a), number(*b)),
+            Self::Stops { at: [a, b], saying } => {
+                format!("stops after {} to {} s: “{saying}”", number(*a), number(*b))
+            }
+        }
+    }
+}
+
+/// An open limitation: a bound that is known not to be kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Limitation {
+    /// Why.
+    pub(crate) why: String,
+    /// What happens instead.
+    pub(crate) shortfall: Shortfall,
 }
 
 /// A measured number and its bound.
@@ -101,8 +156,10 @@ pub(crate) struct Check {
     /// The number; `None` when the run did not get so far or it is not finite.
     pub(crate) value: Option<f64>,
     pub(crate) bound: Bound,
-    /// Why it is known to fail, for an open limitation.
-    pub(crate) limitation: Option<String>,
+    /// Set if the bound is known not to be kept.
+    pub(crate) limitation: Option<Limitation>,
+    /// When the run ended early, seconds.
+    pub(crate) stopped: Option<f64>,
     /// What was said instead of a number.
     pub(crate) remark: Option<String>,
 }
@@ -113,9 +170,35 @@ impl Check {
         match (holds, &self.limitation) {
             (true, None) => Verdict::Passed,
             (true, Some(_)) => Verdict::Cured,
-            (false, Some(_)) => Verdict::Limitation,
+            (false, Some(limitation)) => self.compare(&limitation.shortfall),
             (false, None) => Verdict::Failed,
         }
+    }
+
+    /// The verdict on a check out of bounds, for which a shortfall is declared.
+    fn compare(&self, shortfall: &Shortfall) -> Verdict {
+        match shortfall {
+            Shortfall::Value(range) => match (self.value, self.bound) {
+                (Some(v), Bound::AtMost(_)) => place(-v, range.map(|r| -r)),
+                (Some(v), Bound::AtLeast(_)) => place(v, *range),
+                (None, _) => Verdict::Failed,
+            },
+            Shortfall::Stops { at, saying } => match (self.stopped, &self.remark) {
+                (Some(t), Some(remark)) if remark.contains(saying) => place(t, *at),
+                _ => Verdict::Failed,
+            },
+        }
+    }
+}
+
+/// Compares a quantity of which more is better with what is declared.
+fn place(value: f64, [a, b]: [f64; 2]) -> Verdict {
+    if value < a.min(b) {
+        Verdict::Failed
+    } else if value > a.max(b) {
+        Verdict::Improved
+    } else {
+        Verdict::Limitation
     }
 }
 
@@ -181,6 +264,7 @@ impl Findings {
             value: value.is_finite().then_some(value),
             bound,
             limitation: None,
+            stopped: None,
             remark: None,
         });
         &mut self.checks[at]
@@ -207,9 +291,19 @@ impl Findings {
 }
 
 impl Check {
-    /// Declares that this is known to fail, and why.
-    pub(super) fn limited(&mut self, why: &str) -> &mut Self {
-        self.limitation = Some(why.to_owned());
+    /// Declares that the bound is known not to be kept, why, and what happens instead.
+    pub(super) fn limited(&mut self, why: &str, shortfall: Shortfall) -> &mut Self {
+        self.limitation = Some(Limitation {
+            why: why.to_owned(),
+            shortfall,
+        });
+        self
+    }
+
+    /// Notes when and why the run ended, if it did so early.
+    pub(super) fn ended(&mut self, course: &Course) -> &mut Self {
+        self.stopped = course.refusal.as_ref().map(|_| course.end);
+        self.remark = course.said();
         self
     }
 
@@ -239,10 +333,15 @@ impl Record {
     /// The worst verdict of the checks.
     pub(super) fn verdict(&self) -> Verdict {
         let has = |v| self.checks.iter().any(|c| c.verdict() == v);
-        [Verdict::Failed, Verdict::Limitation, Verdict::Cured]
-            .into_iter()
-            .find(|v| has(*v))
-            .unwrap_or(Verdict::Passed)
+        [
+            Verdict::Failed,
+            Verdict::Cured,
+            Verdict::Improved,
+            Verdict::Limitation,
+        ]
+        .into_iter()
+        .find(|v| has(*v))
+        .unwrap_or(Verdict::Passed)
     }
 }
 
@@ -266,6 +365,7 @@ pub(super) fn number(v: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use isosheet_dynamics::StepError;
 
     #[test]
     fn verdicts_and_numbers() {
@@ -274,16 +374,69 @@ mod tests {
         assert_eq!(f.at_most("b", f64::NAN, 2.0).verdict(), Verdict::Failed);
         assert_eq!(f.at_least("c", 1.0, 2.0).verdict(), Verdict::Failed);
         assert_eq!(
-            f.at_least("c", 1.0, 2.0).limited("x").verdict(),
-            Verdict::Limitation
-        );
-        assert_eq!(
-            f.at_least("d", 3.0, 2.0).limited("x").verdict(),
-            Verdict::Cured
-        );
-        assert_eq!(
             [0.0, 12.0, 0.25, 1e-12, 123456.0].map(number),
             ["0", "12", "0.25", "1.0e-12", "1.2e5"]
         );
+    }
+
+    #[test]
+    fn a_declared_limitation_is_checked_on_both_sides() {
+        let mut f = Findings::default();
+        let declared = Shortfall::Value([3.0, 5.0]);
+        let mut most = |v| {
+            f.at_most("a", v, 2.0)
+                .limited("x", declared.clone())
+                .verdict()
+        };
+        assert_eq!(most(4.0), Verdict::Limitation);
+        assert_eq!(most(1.0), Verdict::Cured);
+        assert_eq!(most(2.5), Verdict::Improved);
+        assert_eq!(most(6.0), Verdict::Failed);
+        assert_eq!(most(f64::NAN), Verdict::Failed);
+        let mut least = |v| {
+            f.at_least("b", v, 9.0)
+                .limited("x", declared.clone())
+                .verdict()
+        };
+        assert_eq!(least(4.0), Verdict::Limitation);
+        assert_eq!(least(9.0), Verdict::Cured);
+        assert_eq!(least(6.0), Verdict::Improved);
+        assert_eq!(least(2.0), Verdict::Failed);
+        let failures = [
+            (Verdict::Passed, false),
+            (Verdict::Limitation, false),
+            (Verdict::Cured, true),
+            (Verdict::Improved, true),
+            (Verdict::Failed, true),
+        ];
+        for (verdict, fails) in failures {
+            assert_eq!(verdict.is_failure(), fails, "{verdict:?}");
+        }
+    }
+
+    #[test]
+    fn a_declared_error_has_to_come_in_its_time() {
+        let mut f = Findings::default();
+        let declared = Shortfall::stops([1.0, 2.0], "step size 0.5 s");
+        let mut stopped = |t: Option<f64>, value: f64, h: f64| {
+            let course = Course {
+                end: t.unwrap_or(3.0),
+                refusal: t.map(|t| StepError::StepSize { h, t }),
+                ..Course::default()
+            };
+            let check = f.at_most("a", value, 2.0);
+            check
+                .limited("x", declared.clone())
+                .ended(&course)
+                .verdict()
+        };
+        let none = f64::NAN;
+        assert_eq!(stopped(Some(1.5), none, 0.5), Verdict::Limitation);
+        // Too early, later than declared, with another error, not at all.
+        assert_eq!(stopped(Some(0.5), none, 0.5), Verdict::Failed);
+        assert_eq!(stopped(Some(2.5), none, 0.5), Verdict::Improved);
+        assert_eq!(stopped(Some(1.5), none, 0.25), Verdict::Failed);
+        assert_eq!(stopped(None, 1.0, 0.5), Verdict::Cured);
+        assert_eq!(stopped(None, 3.0, 0.5), Verdict::Failed);
     }
 }

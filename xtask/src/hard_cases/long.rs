@@ -5,7 +5,7 @@ use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook, textbook_step
 use super::scenes::{
     FRAME, STRAIN, apart, at_rest, bumped, course, energy_momentum, hanging, held, methods, upright,
 };
-use super::{Case, Effort, Findings, plot};
+use super::{Case, Effort, Findings, Shortfall, plot};
 use crate::interrupt;
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
@@ -65,7 +65,7 @@ fn rest(effort: Effort) -> Result<Findings> {
             c.if_finished(worst),
             1e-9,
         )
-        .remark(c.said());
+        .ended(&c);
         lines.push(plot::curve(k, name, points));
     }
     f.here =
@@ -216,9 +216,13 @@ fn million(effort: Effort) -> Result<Findings> {
             c.steps as f64,
             steps as f64,
         );
-        check.remark(c.said());
+        check.ended(&c);
         if let Some(why) = limitation {
-            check.limited(why);
+            // Measured: 8.84 s.
+            check.limited(
+                why,
+                Shortfall::stops([4.0, 20.0], "the length constraints are dependent"),
+            );
         }
         f.at_most(
             format!("M^1 {what}: largest energy error, of the largest kinetic energy"),

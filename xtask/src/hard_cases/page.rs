@@ -25,7 +25,7 @@ pub(super) fn write(store: &Store, records: &[Record], effort: Effort) -> Result
                 .checks
                 .iter()
                 .map(|c| json!({ "what": c.what, "value": c.value, "bound": c.bound, "verdict": c.verdict(),
-                                 "limitation": c.limitation, "remark": c.remark }))
+                                 "limitation": c.limitation, "stopped": c.stopped, "remark": c.remark }))
                 .collect();
             json!({ "case": r.name, "title": r.title, "verdict": r.verdict(), "naive": r.naive, "checks": checks,
                     "seconds": r.wall })
@@ -42,7 +42,10 @@ pub(super) fn write(store: &Store, records: &[Record], effort: Effort) -> Result
 fn measured(check: &Check) -> String {
     match (check.value, &check.remark) {
         (Some(v), _) => number(v),
-        (None, Some(_)) => "stopped".into(),
+        (None, Some(_)) => match check.stopped {
+            Some(t) => format!("stopped after {} s", number(t)),
+            None => "stopped".into(),
+        },
         (None, None) => "no number".into(),
     }
 }
@@ -50,8 +53,8 @@ fn measured(check: &Check) -> String {
 fn badge(verdict: Verdict) -> String {
     let class = match verdict {
         Verdict::Passed => "good",
-        Verdict::Limitation | Verdict::Cured => "open",
-        Verdict::Failed => "bad",
+        Verdict::Limitation => "open",
+        Verdict::Cured | Verdict::Improved | Verdict::Failed => "bad",
     };
     format!("<span class=\"verdict {class}\">{}</span>", verdict.text())
 }
@@ -92,9 +95,9 @@ fn summary(out: &mut String, records: &[Record]) {
          <div class=\"scroll\"><table><thead><tr><th>Case</th><th>Checks</th><th>Naive method</th><th>isosheet</th></tr></thead><tbody>",
         records.len(),
         checks().count(),
-        count(Verdict::Passed) + count(Verdict::Cured),
+        count(Verdict::Passed),
         count(Verdict::Limitation),
-        count(Verdict::Failed),
+        checks().filter(|c| c.verdict().is_failure()).count(),
     );
     for r in records {
         let _ = write!(
@@ -146,7 +149,11 @@ fn section(out: &mut String, store: &Store, r: &Record) -> Result<()> {
     out.push_str("<div class=\"scroll\"><table><thead><tr><th>Check</th><th>Measured</th><th>Bound</th><th>Verdict</th></tr></thead><tbody>");
     for c in &r.checks {
         let mut what = escape(&c.what);
-        for text in [&c.limitation, &c.remark].into_iter().flatten() {
+        let declared = c
+            .limitation
+            .as_ref()
+            .map(|l| format!("{} Declared: {}.", l.why, l.shortfall.text()));
+        for text in [&declared, &c.remark].into_iter().flatten() {
             let _ = write!(what, "<br><small>{}</small>", escape(text));
         }
         let _ = write!(
@@ -176,7 +183,9 @@ fn section(out: &mut String, store: &Store, r: &Record) -> Result<()> {
 
 fn csv(records: &[Record]) -> String {
     let quote = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
-    let mut out = String::from("case,check,value,bound_kind,bound,verdict,limitation,remark\n");
+    let mut out = String::from(
+        "case,check,value,bound_kind,bound,verdict,limitation,declared,stopped_s,remark\n",
+    );
     for r in records {
         for c in &r.checks {
             let (kind, bound) = match c.bound {
@@ -185,12 +194,18 @@ fn csv(records: &[Record]) -> String {
             };
             let _ = writeln!(
                 out,
-                "{},{},{},{kind},{bound:e},{},{},{}",
+                "{},{},{},{kind},{bound:e},{},{},{},{},{}",
                 r.name,
                 quote(&c.what),
                 c.value.map_or(String::new(), |v| format!("{v:e}")),
                 c.verdict().text(),
-                quote(c.limitation.as_deref().unwrap_or_default()),
+                quote(c.limitation.as_ref().map_or("", |l| &l.why)),
+                quote(
+                    &c.limitation
+                        .as_ref()
+                        .map_or(String::new(), |l| l.shortfall.text())
+                ),
+                c.stopped.map_or(String::new(), |t| format!("{t:e}")),
                 quote(c.remark.as_deref().unwrap_or_default()),
             );
         }
@@ -218,11 +233,15 @@ pub(super) fn table(records: &[Record]) -> String {
         for c in r.checks.iter().filter(|c| c.verdict() != Verdict::Passed) {
             let _ = writeln!(
                 out,
-                "  {}: {}, {} ({})",
+                "  {}: {}, {} ({}){}",
                 c.verdict().text(),
                 c.what,
                 measured(c),
-                c.bound.text()
+                c.bound.text(),
+                c.limitation.as_ref().map_or(String::new(), |l| format!(
+                    "; declared: {}",
+                    l.shortfall.text()
+                ))
             );
         }
     }

@@ -3,7 +3,7 @@
 use super::case::number;
 use super::naive::{TEXTBOOK, textbook_step};
 use super::scenes::{STRAIN, apart, conservative, course, methods};
-use super::{Case, Effort, Findings, plot};
+use super::{Case, Effort, Findings, Shortfall, plot};
 use crate::interrupt;
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
@@ -281,13 +281,23 @@ fn closed(effort: Effort) -> Result<Findings> {
                 c.if_finished(bent),
                 *bound,
             )
-            .remark(c.said());
-            let dependent = what.starts_with("box") && conservative().iter().any(|m| m.0 == name);
-            if dependent {
-                f.checks.last_mut().into_iter().for_each(|c| {
-                    c.limited(DEPENDENT);
-                });
-            }
+            .ended(&c);
+            // Measured: 1.2e-7 s, 0.068 s, 0 s.
+            let stops = match name {
+                "energy-momentum" => Some([0.0, 1e-4]),
+                "RATTLE" => Some([0.02, 0.15]),
+                "RATTLE composition" => Some([0.0, 1e-3]),
+                _ => None,
+            };
+            let dependent = stops
+                .filter(|_| what.starts_with("box"))
+                .map(|at| Shortfall::stops(at, "the length constraints are dependent"));
+            let declare = |f: &mut Findings| {
+                if let (Some(check), Some(declared)) = (f.checks.last_mut(), &dependent) {
+                    check.limited(DEPENDENT, declared.clone());
+                }
+            };
+            declare(&mut f);
             if name == "RATTLE composition" {
                 // Fourth order: the spin of 3 rad/s turns by 6e-3 rad in a step.
                 f.at_most(
@@ -295,19 +305,17 @@ fn closed(effort: Effort) -> Result<Findings> {
                     c.if_finished(apart(&run.state().x, &exact)),
                     1e-6,
                 )
-                .remark(c.said());
+                .ended(&c);
+                declare(&mut f);
             }
             if name == "energy-momentum" {
                 f.at_most(
                     format!("{what}, {name}: energy error, of the kinetic energy"),
                     c.if_finished(c.drift / c.kinetic),
                     1e-10,
-                );
-            }
-            if dependent && name != "RATTLE" {
-                f.checks.last_mut().into_iter().for_each(|c| {
-                    c.limited(DEPENDENT);
-                });
+                )
+                .ended(&c);
+                declare(&mut f);
             }
         }
     }

@@ -103,6 +103,8 @@ pub(super) struct Course {
     pub(super) gain: f64,
     /// Largest kinetic energy, joules.
     pub(super) kinetic: f64,
+    /// Time at its end, seconds.
+    pub(super) end: f64,
     /// Why it ended early.
     pub(super) refusal: Option<StepError>,
 }
@@ -149,6 +151,7 @@ pub(super) fn course(
             }
         }
     }
+    course.end = run.state().t;
     Ok(course)
 }
 
