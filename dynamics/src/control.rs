@@ -7,7 +7,7 @@
 //! | made, and within its bounds | commit | commit |
 //! | refused: would create energy, has a history | restart as a one-step method | |
 //! | refused: the chart is singular there | | restart from a new reference state |
-//! | refused, the step may be shortened | halve | shorten by Eq. 23, by contact to its safe part |
+//! | refused, the step may be shortened | halve | shorten by the bound of Sec. 4.2, by contact to its safe part |
 //! | refused, a fallback is allowed | fall back to implicit Euler | |
 //! | refused otherwise | stop | stop |
 

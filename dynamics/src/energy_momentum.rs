@@ -11,7 +11,7 @@ use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
 use serde::{Deserialize, Serialize};
 
-/// Options of [`EnergyMomentum`].
+/// Options of [`Method::EnergyMomentum`](crate::Method::EnergyMomentum).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct EnergyMomentumOptions {
@@ -55,19 +55,7 @@ const QUADRATIC_FROM: usize = 6;
 /// See [`QUADRATIC_FROM`].
 const QUADRATIC_BELOW: f64 = 1e-2;
 
-/// The energy-momentum step (after Simo and Gonzalez): with the midpoint velocity
-/// `w = (v0 + v1) / 2`, `x1 = x0 + h w`, `xm = (x0 + x1) / 2`,
-///
-/// ```text
-/// 2 M (w - v0) = h f + G(xm)^T L,    c(x1) = 0.
-/// ```
-///
-/// Because `c` is quadratic, `G(xm)` is its exact discrete gradient: the rods do no work, and
-/// energy, linear and angular momentum are conserved to the tolerance of the solver. Potentials
-/// that are not linear enter by Gonzalez' discrete gradient. Second order, symmetric.
-///
-/// Solved by Newton's method with one sparse LU per iteration, in the impulses `L`, which stay
-/// moderate where the multipliers `L / h` do not.
+/// The energy-momentum method, see [`Method::EnergyMomentum`](crate::Method::EnergyMomentum).
 pub(crate) struct EnergyMomentum {
     options: EnergyMomentumOptions,
     matrix: SaddleMatrix,

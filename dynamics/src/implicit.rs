@@ -11,7 +11,8 @@ use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use serde::{Deserialize, Serialize};
 
-/// Options of [`ImplicitEuler`] and [`Bdf2`].
+/// Options of [`Method::ImplicitEuler`](crate::Method::ImplicitEuler) and
+/// [`Method::Bdf2`](crate::Method::Bdf2).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImplicitOptions {
@@ -64,15 +65,7 @@ impl ImplicitOptions {
     }
 }
 
-/// Implicit Euler, `M (v1 - v0) = h f(x1) + G(x1)^T L, x1 = x0 + h v1, c(x1) = 0`.
-///
-/// Equivalently `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)`
-/// over all positions with the rest lengths, which is how it is found: by sequential quadratic programming along
-/// the manifold of rest lengths, and where that fails by an augmented Lagrangian, minimised by Newton's method with line search (without
-/// contact, fine sheets and slivers the other way round); then a projection that makes the lengths exact. Non-conservative forces are taken at the start of the step.
-///
-/// First order, strongly dissipative, stable at any step. A sheet that starts exactly flat
-/// needs no special treatment.
+/// Implicit Euler, see [`Method::ImplicitEuler`](crate::Method::ImplicitEuler).
 pub(crate) struct ImplicitEuler {
     minimiser: Minimiser,
 }
@@ -110,19 +103,7 @@ impl Integrator for ImplicitEuler {
 /// unstable from 1 + sqrt 2 on.
 const MAX_STEP_RATIO: f64 = 2.0 + 1e-9;
 
-/// The second-order backward differentiation formula, with the ratio `w = h / h_previous`:
-///
-/// ```text
-/// x1 = a x0 - b x_ + k h v1,   M v1 = M (a v0 - b v_) + k h f(x1) + G(x1)^T L,   c(x1) = 0,
-/// a = (1 + w)^2 / (1 + 2w),  b = w^2 / (1 + 2w),  k = (1 + w) / (1 + 2w)
-/// ```
-///
-/// (`x_`, `v_` one step before `x0`, `v0`). The same minimisation as [`ImplicitEuler`] with the
-/// effective step `k h`, at the same price, but second order and far less dissipative: it
-/// keeps the motions that the step resolves and damps the ones that it does not. The first
-/// step, the first after the state was changed from outside, and one that is more than twice as
-/// long as the one before are implicit Euler (`w = 0`).
-/// Non-conservative forces are taken at the start of the step, which makes them first order.
+/// The second-order backward differentiation formula, see [`Method::Bdf2`](crate::Method::Bdf2).
 pub(crate) struct Bdf2 {
     minimiser: Minimiser,
 }

@@ -10,22 +10,82 @@ use crate::{SheetModel, SimulationError};
 use serde::{Deserialize, Serialize};
 
 /// Which chart-free integrator moves the sheet.
+///
+/// In the formulas `x0` and `v0` are positions and velocities at the start of a step of `h` seconds, `x1` and
+/// `v1` those at its end; `M` is the mass matrix, `f` the force (newtons), `c(x) = 0` the length constraints
+/// with Jacobian `G`, and `L` the impulses of the rods. Velocity damping
+/// ([`SheetModel::with_damping`]) acts after the step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Method {
-    /// Implicit Euler with the constraints in the step: first order, strongly damped, takes any
-    /// state.
+    /// Implicit Euler with the constraints in the step:
+    ///
+    /// ```text
+    /// M (v1 - v0) = h f(x1) + G(x1)^T L,   x1 = x0 + h v1,   c(x1) = 0.
+    /// ```
+    ///
+    /// Equivalently `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)` over
+    /// all positions with the rest lengths. The minimum is found by sequential quadratic programming along
+    /// the manifold of rest lengths, first strongly and then weakly regularised, and where that fails by an
+    /// augmented Lagrangian, minimised by Newton's method with a line search; a projection then makes the
+    /// lengths exact. In contact the strongly regularised form is left out, and both forms where supports or
+    /// bodies move as well. Non-conservative forces are taken at the start of the step.
+    ///
+    /// First order, strongly dissipative, stable at any step. A sheet that starts exactly flat needs no
+    /// special treatment.
     ImplicitEuler(ImplicitOptions),
-    /// The second-order backward differentiation formula with the constraints in the step:
-    /// second order, lightly damped, takes any state. The default: at the price of implicit
-    /// Euler it loses a sixth to a half as much energy.
+    /// The second-order backward differentiation formula with the constraints in the step, with the ratio
+    /// `w = h / h_` of the step to the one before:
+    ///
+    /// ```text
+    /// x1 = a x0 - b x_ + k h v1,   M v1 = M (a v0 - b v_) + k h f(x1) + G(x1)^T L,   c(x1) = 0,
+    /// a = (1 + w)^2 / (1 + 2w),   b = w^2 / (1 + 2w),   k = (1 + w) / (1 + 2w).
+    /// ```
+    ///
+    /// Here `x_` and `v_` belong to the time one step before `x0` and `v0`. The minimisation is that of
+    /// [`Method::ImplicitEuler`] with the effective step `k h`, at the same price. The method is second order
+    /// and lightly damped, and takes any state: it keeps the motions that the step resolves and damps the
+    /// ones that it does not. The first step, the first after the state was changed from outside, and a step
+    /// that is more than twice as long as the one before are implicit Euler (`w = 0`). Non-conservative forces
+    /// are taken at the start of the step, which makes them first order.
+    ///
+    /// The default: at the price of implicit Euler it loses a sixth to a half as much energy.
     Bdf2(ImplicitOptions),
-    /// Predict and project: first order, damped, cheapest, takes any state.
+    /// Predicts the positions with the forces, projects them onto the rest lengths, takes the velocity from
+    /// the displacement and projects the velocity onto `G(x1) v = 0`, in the manner of Goldenthal et al.,
+    /// "Efficient simulation of inextensible cloth", ACM Transactions on Graphics 26 (2007).
+    ///
+    /// First order, dissipative, stable at any step, cheapest; takes any state, because the linear systems
+    /// are positive definite at any rank of `G`.
     Projection(ProjectionStepOptions),
-    /// Energy-momentum: second order, conserves energy and momenta.
+    /// The energy-momentum method (after Simo and Gonzalez): with the midpoint velocity
+    /// `w = (v0 + v1) / 2`, `x1 = x0 + h w` and `xm = (x0 + x1) / 2`,
+    ///
+    /// ```text
+    /// 2 M (w - v0) = h f + G(xm)^T L,   c(x1) = 0.
+    /// ```
+    ///
+    /// Because `c` is quadratic, `G(xm)` is its exact discrete gradient: the rods do no work, and energy,
+    /// linear and angular momentum are conserved to the tolerance of the solver. Potentials that are not
+    /// linear enter by Gonzalez' discrete gradient. Second order, symmetric.
+    ///
+    /// The equations are solved by Newton's method with one sparse LU factorisation in each iteration. The
+    /// unknowns are the impulses `L`, which stay moderate where the multipliers `L / h` do not.
     EnergyMomentum(EnergyMomentumOptions),
-    /// RATTLE: second order, symplectic.
+    /// RATTLE (Andersen 1983; Hairer, Lubich and Wanner, "Geometric Numerical Integration", Sec. VII.1.4):
+    ///
+    /// ```text
+    /// M (u - v0) = h/2 f(x0) + G(x0)^T L,   x1 = x0 + h u,   c(x1) = 0,
+    /// M (v1 - u) = h/2 f(x1) + G(x1)^T L',                   G(x1) v1 = 0.
+    /// ```
+    ///
+    /// Second order, symmetric, symplectic; momenta are conserved to round-off. The method needs independent
+    /// rods: next to a flat state its steps shrink with the smallest singular value of `G`, and where the
+    /// rods are dependent and loaded it has no solution, which is reported as
+    /// [`StepError::RankDeficient`](crate::StepError::RankDeficient).
     Rattle(RattleOptions),
-    /// Suzuki's fourth-order composition of RATTLE.
+    /// Suzuki's composition of five RATTLE steps of the lengths `a h, a h, (1 - 4a) h, a h, a h` with
+    /// `a = 1 / (4 - 4^(1/3))`: fourth order, symmetric, symplectic, with error constants far below those of
+    /// the composition of three steps (Hairer, Lubich and Wanner, Example II.4.3).
     RattleComposition(RattleOptions),
 }
 

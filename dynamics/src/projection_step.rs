@@ -14,7 +14,7 @@ use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use serde::{Deserialize, Serialize};
 
-/// Options of [`ProjectionStep`].
+/// Options of [`Method::Projection`](crate::Method::Projection).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ProjectionStepOptions {
@@ -45,11 +45,7 @@ impl ProjectionStepOptions {
 /// Allowance for round-off and for the tolerance of the lengths when two distances are compared.
 const DISTANCE_SLACK: f64 = 1e-6;
 
-/// Predict with the forces, project the positions onto the lengths, take the velocity from
-/// the displacement and project it onto `G(x1) v = 0`
-/// (in the manner of Goldenthal et al., "Efficient simulation of inextensible cloth", 2007).
-///
-/// First order, dissipative, stable at any step, positive definite solves at any rank.
+/// Prediction and projection, see [`Method::Projection`](crate::Method::Projection).
 pub(crate) struct ProjectionStep {
     options: ProjectionStepOptions,
     matrix: PrimalMatrix,

@@ -14,7 +14,8 @@ use isosheet_coords::linalg::{LinalgError, norm_inf};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-/// Options of [`Rattle`] and [`RattleComposition`].
+/// Options of [`Method::Rattle`](crate::Method::Rattle) and
+/// [`Method::RattleComposition`](crate::Method::RattleComposition).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RattleOptions {
@@ -43,17 +44,7 @@ impl RattleOptions {
     }
 }
 
-/// RATTLE (Andersen 1983; Hairer, Lubich and Wanner, "Geometric numerical integration",
-/// Sec. VII.1.4):
-///
-/// ```text
-/// M (u - v0) = h/2 f(x0) + G(x0)^T L,   x1 = x0 + h u,   c(x1) = 0,
-/// M (v1 - u) = h/2 f(x1) + G(x1)^T L',                   G(x1) v1 = 0.
-/// ```
-///
-/// Second order, symmetric, symplectic; momenta conserved to round-off. It needs independent
-/// rods: next to a flat state its steps shrink with the smallest singular value of `G`, and
-/// where the rods are dependent and loaded it has no solution, which is reported.
+/// RATTLE, see [`Method::Rattle`](crate::Method::Rattle).
 pub(crate) struct Rattle {
     options: RattleOptions,
     matrix: SaddleMatrix,
@@ -431,9 +422,7 @@ impl Integrator for Rattle {
     }
 }
 
-/// Suzuki's composition of five RATTLE steps of lengths `a, a, 1 - 4a, a, a` times `h` with
-/// `a = 1 / (4 - 4^(1/3))`: fourth order, symmetric, symplectic, with error constants far below
-/// those of the three-step composition (Hairer, Lubich and Wanner, Example II.4.3).
+/// Suzuki's composition of RATTLE steps, see [`Method::RattleComposition`](crate::Method::RattleComposition).
 pub(crate) struct RattleComposition {
     rattle: Rattle,
 }

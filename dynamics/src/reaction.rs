@@ -41,24 +41,9 @@ pub(crate) enum ForceTime {
 }
 
 /// Forces of all supports in the last accepted step, from the integrator's own balance of momentum: at a pin
-/// `R = M a - f + G^T lambda` with the discrete acceleration and multipliers (tension positive) of the
-/// step, at a vertex constraint `R = -J^T mu`.
-///
-/// The reactions of a step of `h` seconds ([`crate::Simulation::reactions`]), the forces of bodies on the sheet and the weight add up to the
-/// rate of change of the momentum `p = sum M v` that belongs to the method (before velocity damping, which acts after the step):
-///
-/// | method | rate of `p` | weight and other forces |
-/// |---|---|---|
-/// | BDF2 | `(3/2 p1 - 2 p0 + 1/2 p_) / h`; after a restart as implicit Euler | at the end |
-/// | implicit Euler | `(p1 - p0) / h` | at the end |
-/// | projection, energy-momentum, RATTLE | `(p1 - p0) / h` | over the step |
-///
-/// (for BDF2 with steps in the ratio `w`: `(p1 - (1 + b) p0 + b p_) / (k h)`, `b = w^2 / (1 + 2w)`, `k = (1 + w) / (1 + 2w)`.) The difference
-/// quotient `(p1 - p0) / h` of a BDF2 step is another number, and misses the forces by as much as they change.
-///
-/// The conservative methods keep this balance to round-off. In the damped ones two things are left over: what Newton's method leaves at free
-/// vertices, which shrinks with its tolerance, and, where there is contact, the change of its forces by the projection that
-/// ends a step, beyond first order.
+/// `R = M a - f + G^T lambda` with the discrete acceleration and the multipliers (tension positive) of the
+/// step, at a vertex constraint `R = -J^T mu`. [`Simulation::reactions`](crate::Simulation::reactions) says
+/// for each method which rate of the momentum they balance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Balance {
     /// At pinned vertices the force of the pin, elsewhere zero; `3V`, newtons.

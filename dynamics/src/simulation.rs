@@ -225,12 +225,32 @@ impl Simulation {
         }
     }
 
-    /// Forces of the pins and vertex constraints on the sheet in the last accepted sub-step, pins first; empty before the first
-    /// step. In charts those at the end of the step. See [`Balance`](crate::Balance) for when in the step they act and what they
-    /// balance.
+    /// Forces of the pins and vertex constraints on the sheet in the last accepted sub-step, newtons, pins
+    /// first; empty before the first step. In charts the forces at the end of the step.
     ///
-    /// For the damped methods this factorises a matrix of the size of a step's for every iteration of the last projection: ask only
-    /// when the forces are wanted.
+    /// The forces come from the integrator's own balance of momentum: at a pin `R = M a - f + G^T lambda` with
+    /// the discrete acceleration `a` and the multipliers `lambda` (tension positive) of the sub-step, at a
+    /// vertex constraint with Jacobian `J` and multipliers `mu` `R = -J^T mu`. The reactions of a sub-step of
+    /// `h` seconds, the forces of bodies on the sheet, the weight and the other forces add up to the rate of
+    /// change of the momentum `p = sum M v` that belongs to the method, before velocity damping, which acts
+    /// after the step:
+    ///
+    /// | method | rate of `p` | weight and other forces |
+    /// |---|---|---|
+    /// | BDF2 | `(3/2 p1 - 2 p0 + 1/2 p_) / h`; after a restart as implicit Euler | at the end |
+    /// | implicit Euler | `(p1 - p0) / h` | at the end |
+    /// | projection, energy-momentum, RATTLE | `(p1 - p0) / h` | over the step |
+    ///
+    /// For BDF2 with steps in the ratio `w` the rate is `(p1 - (1 + b) p0 + b p_) / (k h)` with
+    /// `b = w^2 / (1 + 2w)` and `k = (1 + w) / (1 + 2w)`. The difference quotient `(p1 - p0) / h` of a BDF2
+    /// step is another number, and differs from the sum of the forces by as much as they change in the step.
+    ///
+    /// The conservative methods keep this balance to round-off. The damped methods leave two things over: what
+    /// Newton's method leaves at free vertices, which shrinks with its tolerance, and, where there is contact,
+    /// the change of the contact forces by the projection that ends a step, beyond first order.
+    ///
+    /// For the damped methods this call factorises a matrix of the size of a step's for every iteration of the
+    /// last projection: ask only when the forces are wanted.
     pub fn reactions(&self) -> Vec<Reaction> {
         match &self.engine {
             Engine::Free(engine) => {

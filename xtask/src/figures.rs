@@ -32,7 +32,7 @@ use serde_json::Value;
 /// How much work to put in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Effort {
+pub(crate) enum RenderEffort {
     /// What the figures show.
     Full,
     /// Seconds: short runs, small pictures.
@@ -96,7 +96,7 @@ pub(crate) struct Made {
 pub(crate) struct Context<'a> {
     /// Where runs are kept.
     pub(crate) store: &'a Store,
-    pub(crate) effort: Effort,
+    pub(crate) effort: RenderEffort,
 }
 
 /// Makes a figure.

@@ -2,7 +2,7 @@
 
 pub(crate) mod html;
 
-use crate::figures::{Effort, Record};
+use crate::figures::{Record, RenderEffort};
 use crate::reproduce::unit;
 use crate::selection::Selection;
 use crate::store::{Extent, Store};
@@ -10,7 +10,7 @@ use anyhow::Result;
 use serde_json::json;
 
 /// Writes the report anew.
-pub(crate) fn write(store: &Store, effort: Effort) -> Result<()> {
+pub(crate) fn write(store: &Store, effort: RenderEffort) -> Result<()> {
     let mut records = Vec::new();
     for figure in Selection::all().iter() {
         let Some(stamp) = store
@@ -20,8 +20,15 @@ pub(crate) fn write(store: &Store, effort: Effort) -> Result<()> {
             continue;
         };
         let record: Record = serde_json::from_value(stamp.facts)?;
-        let quick = stamp.options["effort"] == serde_json::to_value(Effort::Quick)?;
-        records.push((record, if quick { Effort::Quick } else { Effort::Full }));
+        let quick = stamp.options["effort"] == serde_json::to_value(RenderEffort::Quick)?;
+        records.push((
+            record,
+            if quick {
+                RenderEffort::Quick
+            } else {
+                RenderEffort::Full
+            },
+        ));
     }
     let page = html::page(&records, &mut |path| store.read(path))?;
     store.write("index.html", page.as_bytes())?;

@@ -1,7 +1,7 @@
 //! `reproduce-figures`: makes what is asked for and not up to date, then writes the report.
 
 use crate::cli::ReproduceArgs;
-use crate::figures::{self, Context, Effort, Made, PictureRef, Record};
+use crate::figures::{self, Context, Made, PictureRef, Record, RenderEffort};
 use crate::interrupt::Interrupted;
 use crate::progress;
 use crate::store::{Extent, Store};
@@ -14,9 +14,9 @@ use std::time::Instant;
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
     let store = Store::open(&args.out)?;
     let effort = if args.quick {
-        Effort::Quick
+        RenderEffort::Quick
     } else {
-        Effort::Full
+        RenderEffort::Full
     };
     claim(&store, effort)?;
     let context = Context {
@@ -65,15 +65,15 @@ const EFFORT: &str = ".stamps/effort.json";
 
 /// Keeps quick and full results apart, which share the names of figures and runs: full results are not replaced by quick
 /// ones, and quick ones are removed before the first full one is made.
-fn claim(store: &Store, effort: Effort) -> Result<()> {
+fn claim(store: &Store, effort: RenderEffort) -> Result<()> {
     let recorded = store.read(EFFORT).ok();
-    let recorded = recorded.and_then(|text| serde_json::from_slice::<Effort>(&text).ok());
+    let recorded = recorded.and_then(|text| serde_json::from_slice::<RenderEffort>(&text).ok());
     match (recorded, effort) {
-        (Some(Effort::Full), Effort::Quick) => bail!(
+        (Some(RenderEffort::Full), RenderEffort::Quick) => bail!(
             "{} is for results without --quick, which are not mixed with quick ones; choose another folder with --out",
             store.root().display()
         ),
-        (Some(Effort::Quick), Effort::Full) => {
+        (Some(RenderEffort::Quick), RenderEffort::Full) => {
             progress::note("quick results", "removed");
             store.clear()?;
         }

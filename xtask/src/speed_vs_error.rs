@@ -26,7 +26,7 @@ use crate::interrupt::Interrupted;
 use crate::store::{Extent, Stamp, Store};
 use crate::{Outcome, interrupt, progress};
 use anyhow::Result;
-use effort::Effort;
+use effort::StudyEffort;
 use problem::Problem;
 use serde::Serialize;
 use serde_json::json;
@@ -48,11 +48,11 @@ pub(crate) enum Part {
 
 impl Part {
     /// All parts that an effort has time for.
-    fn all(effort: Effort) -> Vec<Self> {
+    fn all(effort: StudyEffort) -> Vec<Self> {
         let costly = [Problem::Strip(64), Problem::Sheet(2), Problem::Sheet(3)];
         let mut all: Vec<Self> = Problem::ALL
             .into_iter()
-            .filter(|p| effort != Effort::Quick || !costly.contains(p))
+            .filter(|p| effort != StudyEffort::Quick || !costly.contains(p))
             .map(Self::Problem)
             .collect();
         all.extend([Self::Hanging, Self::Tablecloth, Self::Solvers]);
@@ -90,11 +90,11 @@ impl FromStr for Part {
 /// Runs the command.
 pub(crate) fn run(args: &SpeedArgs) -> Result<Outcome> {
     let effort = if args.quick {
-        Effort::Quick
+        StudyEffort::Quick
     } else if args.full {
-        Effort::Full
+        StudyEffort::Full
     } else {
-        Effort::Usual
+        StudyEffort::Usual
     };
     if let Some(folder) = &args.matrices {
         return matrices::write(folder, effort);
@@ -133,7 +133,7 @@ fn unit(part: Part) -> String {
     format!("speed-{part}")
 }
 
-fn options(effort: Effort) -> serde_json::Value {
+fn options(effort: StudyEffort) -> serde_json::Value {
     json!({ "effort": effort })
 }
 
@@ -144,7 +144,7 @@ fn stamp(store: &Store, part: Part) -> Option<Stamp> {
         .filter(|s| s.extent == Extent::Complete)
 }
 
-fn make(store: &Store, part: Part, effort: Effort) -> Result<()> {
+fn make(store: &Store, part: Part, effort: StudyEffort) -> Result<()> {
     match part {
         Part::Problem(problem) => {
             let study = study::make(problem, effort)?;
@@ -183,7 +183,7 @@ fn plot_title(problem: Problem) -> String {
 fn keep(
     store: &Store,
     part: Part,
-    effort: Effort,
+    effort: StudyEffort,
     csv: &str,
     plots: &[(String, Drawing, String)],
     facts: &impl Serialize,
@@ -213,7 +213,7 @@ mod tests {
 
     #[test]
     fn parts_read_back() {
-        for part in Part::all(Effort::Full) {
+        for part in Part::all(StudyEffort::Full) {
             assert_eq!(part.to_string().parse::<Part>().unwrap(), part);
         }
         let error = "sun".parse::<Part>().unwrap_err().to_string();

@@ -2,7 +2,7 @@
 
 use super::marks::{self, Marks};
 use super::sequence::{View, choose, sequence};
-use super::{Context, Effort, Made, Picture};
+use super::{Context, Made, Picture, RenderEffort};
 use crate::runs::{self, RunSummary, Scene, Shape, Staged};
 use anyhow::{Context as _, Result};
 use serde_json::json;
@@ -12,15 +12,15 @@ use serde_json::json;
 const TIMES: [f64; 10] = [0.0, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.6, 8.0];
 
 /// The scene of the figure with mesh M^level, with contact of the sheet with itself.
-pub(crate) fn scene(level: u32, effort: Effort) -> Scene {
+pub(crate) fn scene(level: u32, effort: RenderEffort) -> Scene {
     without_contact(level, effort).with_self_contact()
 }
 
 /// The same passing through itself.
-pub(crate) fn without_contact(level: u32, effort: Effort) -> Scene {
+pub(crate) fn without_contact(level: u32, effort: RenderEffort) -> Scene {
     match effort {
-        Effort::Full => Scene::paper(level, 480),
-        Effort::Quick => Scene::paper(level, 12),
+        RenderEffort::Full => Scene::paper(level, 480),
+        RenderEffort::Quick => Scene::paper(level, 12),
     }
 }
 
@@ -36,7 +36,7 @@ pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made
         json!({ "run": summary, "without_contact": free }),
     );
     if figure == 12 {
-        if context.effort == Effort::Full {
+        if context.effort == RenderEffort::Full {
             let finer = self::scene(3, context.effort);
             runs::ensure(context.store, &finer)?;
             pictures.push(picture("fig12-m3.png".into(), &finer, context)?);
@@ -81,8 +81,8 @@ pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made
 /// The concentration of folds in the runs of M^1 to M^3.
 fn concentration(context: &Context<'_>) -> Result<Vec<Marks>> {
     let levels: &[(u32, &str)] = match context.effort {
-        Effort::Full => &[(1, "M¹"), (2, "M²"), (3, "M³")],
-        Effort::Quick => &[(1, "M¹"), (2, "M²")],
+        RenderEffort::Full => &[(1, "M¹"), (2, "M²"), (3, "M³")],
+        RenderEffort::Quick => &[(1, "M¹"), (2, "M²")],
     };
     let of = |&(level, name): &(u32, &str)| {
         let scene = scene(level, context.effort);
@@ -100,7 +100,7 @@ fn describe(
     context: &Context<'_>,
 ) -> Result<String> {
     let end = match context.effort {
-        Effort::Full => {
+        RenderEffort::Full => {
             let trajectory = runs::trajectory(context.store, scene)?;
             let last = trajectory
                 .frame(trajectory.len() - 1)
@@ -114,7 +114,7 @@ fn describe(
                 runs::PLATE
             )
         }
-        Effort::Quick => "Cut short.".to_owned(),
+        RenderEffort::Quick => "Cut short.".to_owned(),
     };
     Ok(format!(
         "A square of office paper, {:.0} mm, {:.0} g/m² ({:.2} g), lumped masses, {} with velocity damping {:.0}/s, contact of the sheet \

@@ -2,7 +2,7 @@
 
 use super::folds::{Folds, Hem};
 use super::sequence::{View, choose, sequence};
-use super::{Context, Effort, Made, Picture, Table};
+use super::{Context, Made, Picture, RenderEffort, Table};
 use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
 use crate::runs::{self, Cloth, Drape, Outline, RunSummary, SelfContact, Staged};
 use anyhow::{Context as _, Result};
@@ -22,7 +22,7 @@ const RADII: [f64; 2] = [0.6, 0.33];
 
 /// Cloths on a table with everything but the shapes alike: 0.2 kg/m2, damping 2/s, friction 0.3 on the table and on itself, let go
 /// where contact just begins to act.
-fn scene(name: &str, cloth: Cloth, table: Outline, effort: Effort) -> Drape {
+fn scene(name: &str, cloth: Cloth, table: Outline, effort: RenderEffort) -> Drape {
     Drape {
         name: name.into(),
         cloth,
@@ -36,8 +36,8 @@ fn scene(name: &str, cloth: Cloth, table: Outline, effort: Effort) -> Drape {
         damping: 2.0,
         frame: 1.0 / 60.0,
         frames: match effort {
-            Effort::Full => 480,
-            Effort::Quick => 8,
+            RenderEffort::Full => 480,
+            RenderEffort::Quick => 8,
         },
     }
 }
@@ -50,7 +50,7 @@ const ACTIVATION: f64 = 5e-3;
 const STIFFNESS: f64 = 1e-3;
 
 /// The scene of Fig. 14 on M^level.
-pub(super) fn rectangle(level: u32, effort: Effort) -> Drape {
+pub(super) fn rectangle(level: u32, effort: RenderEffort) -> Drape {
     let cloth = Cloth::UnionJack { half: CLOTH, level };
     scene(
         &format!("drape-m{level}"),
@@ -61,7 +61,7 @@ pub(super) fn rectangle(level: u32, effort: Effort) -> Drape {
 }
 
 /// The scene of Fig. 15 with the paper's counts.
-pub(super) fn octagon(effort: Effort) -> Drape {
+pub(super) fn octagon(effort: RenderEffort) -> Drape {
     let table = Outline::Regular {
         sides: 8,
         radius: RADII[1],
@@ -75,7 +75,7 @@ pub(super) fn octagon(effort: Effort) -> Drape {
 }
 
 /// A polygon with an irregular mesh.
-fn polygon(name: &str, sides: u32, spacing: f64, seed: u64, effort: Effort) -> Drape {
+fn polygon(name: &str, sides: u32, spacing: f64, seed: u64, effort: RenderEffort) -> Drape {
     let [outline, table] = RADII.map(|radius| Outline::Regular { sides, radius });
     scene(
         name,
@@ -90,7 +90,7 @@ fn polygon(name: &str, sides: u32, spacing: f64, seed: u64, effort: Effort) -> D
 }
 
 /// A polygon with a mesh of rings.
-fn ringed(sides: u32, rings: u32, effort: Effort) -> Drape {
+fn ringed(sides: u32, rings: u32, effort: RenderEffort) -> Drape {
     let [radius, table] = RADII;
     let cloth = Cloth::Rings {
         sides,
@@ -291,12 +291,12 @@ fn profiles(all: &[Draped]) -> Plot {
 }
 
 /// What holds for a run, in words.
-fn describe(d: &Draped, effort: Effort) -> String {
+fn describe(d: &Draped, effort: RenderEffort) -> String {
     let r = &d.run;
     let rest = match (r.at_rest_from, effort) {
         (Some(t), _) => format!("at rest from {t:.1} s on"),
-        (None, Effort::Quick) => "cut short".to_owned(),
-        (None, Effort::Full) => format!(
+        (None, RenderEffort::Quick) => "cut short".to_owned(),
+        (None, RenderEffort::Full) => format!(
             "kinetic energy at the end {:.0e} of the potential energy released",
             r.motion_left
         ),
@@ -317,13 +317,17 @@ pub(super) fn fig14(context: &Context<'_>) -> Result<Made> {
     let effort = context.effort;
     let table = Outline::Rectangle { half: TABLE };
     let outline = Outline::Rectangle { half: CLOTH };
-    let spacing = if effort == Effort::Full { 0.08 } else { 0.15 };
+    let spacing = if effort == RenderEffort::Full {
+        0.08
+    } else {
+        0.15
+    };
     let irregular = Cloth::Irregular {
         outline,
         spacing,
         seed: 1,
     };
-    let fine = if effort == Effort::Full { 3 } else { 1 };
+    let fine = if effort == RenderEffort::Full { 3 } else { 1 };
     let all = vec![
         drape("M²", rectangle(2, effort), context)?,
         drape(
@@ -373,7 +377,11 @@ const SIDES: [u32; 6] = [4, 6, 8, 12, 16, 48];
 
 pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
     let effort = context.effort;
-    let fine = if effort == Effort::Full { 0.045 } else { 0.2 };
+    let fine = if effort == RenderEffort::Full {
+        0.045
+    } else {
+        0.2
+    };
     let octagons = vec![
         drape("244/440", octagon(effort), context)?,
         drape(
@@ -385,8 +393,8 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
     ];
     let mut polygons = Vec::new();
     let (sides, spacing): (&[u32], f64) = match effort {
-        Effort::Full => (&SIDES, 0.06),
-        Effort::Quick => (&SIDES[..1], 0.2),
+        RenderEffort::Full => (&SIDES, 0.06),
+        RenderEffort::Quick => (&SIDES[..1], 0.2),
     };
     for n in sides {
         let label = if *n == 48 {
@@ -402,8 +410,8 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
     }
     let round = polygons.len() - 1;
     let of_rings = match effort {
-        Effort::Full => &RINGS[..],
-        Effort::Quick => &RINGS[2..3],
+        RenderEffort::Full => &RINGS[..],
+        RenderEffort::Quick => &RINGS[2..3],
     };
     for &(n, rings) in of_rings {
         let label = format!("~n~ = {n}, rings");

@@ -1,7 +1,7 @@
 //! Beyond the paper: a strip of paper is fed into a bent guide, and passes or jams.
 
 use super::sequence::{View, choose, sequence};
-use super::{Context, Effort, Made, Picture, Table};
+use super::{Context, Made, Picture, RenderEffort, Table};
 use crate::draw::{
     Anchor, Axis, Colour, Drawing, Legend, Line, Plot, Series, Stroke, TEXT, Vertical, column,
     palette, row,
@@ -31,10 +31,10 @@ const COLOURS: [Colour; 4] = [
     palette::VERMILION,
 ];
 
-fn scene((radius, outlet): (f64, Outlet), effort: Effort) -> Feed {
+fn scene((radius, outlet): (f64, Outlet), effort: RenderEffort) -> Feed {
     let (cells, frames) = match effort {
-        Effort::Full => ([30, 2], 320),
-        Effort::Quick => ([12, 2], 12),
+        RenderEffort::Full => ([30, 2], 320),
+        RenderEffort::Quick => ([12, 2], 12),
     };
     let (ending, after) = match outlet {
         Outlet::Open => ("", 0.1),

@@ -1,7 +1,7 @@
 //! Beyond the paper: crease patterns folded by driven angles.
 
 use super::sequence::{View, choose, sequence};
-use super::{Context, Effort, Made, Picture, degrees};
+use super::{Context, Made, Picture, RenderEffort, degrees};
 use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
 use crate::runs::{self, Alike, Creases, Fold, RunSummary, Staged};
 use anyhow::{Context as _, Result};
@@ -16,10 +16,10 @@ const FULL: f64 = 150.0 * std::f64::consts::PI / 180.0;
 /// Sectors of the vertex of degree four, radians.
 const SECTORS: [f64; 2] = [1.0, 1.5];
 
-fn scene(name: &str, creases: Creases, effort: Effort) -> Fold {
+fn scene(name: &str, creases: Creases, effort: RenderEffort) -> Fold {
     let frames = match effort {
-        Effort::Full => 150,
-        Effort::Quick => 15,
+        RenderEffort::Full => 150,
+        RenderEffort::Quick => 15,
     };
     Fold {
         name: name.into(),
@@ -40,8 +40,8 @@ fn scene(name: &str, creases: Creases, effort: Effort) -> Fold {
 }
 
 /// The Miura pattern of the figure.
-pub(super) fn miura(effort: Effort) -> Fold {
-    let n = if effort == Effort::Full { 10 } else { 4 };
+pub(super) fn miura(effort: RenderEffort) -> Fold {
+    let n = if effort == RenderEffort::Full { 10 } else { 4 };
     let creases = Creases::Miura {
         panels: [n, n],
         sides: [0.02, 0.02],
@@ -50,7 +50,7 @@ pub(super) fn miura(effort: Effort) -> Fold {
     scene("origami-miura", creases, effort)
 }
 
-fn vertex(mode: Alike, effort: Effort) -> Fold {
+fn vertex(mode: Alike, effort: RenderEffort) -> Fold {
     let (name, radius) = match mode {
         Alike::Odd => ("origami-vertex-odd", 0.05),
         Alike::Even => ("origami-vertex-even", 0.05),

@@ -1,6 +1,6 @@
 //! Fig. 10: the paper's table of performance, with ours beside it.
 
-use super::{Context, Effort, Made, Picture, Table, crumple, drape, stamping};
+use super::{Context, Made, Picture, RenderEffort, Table, crumple, drape, stamping};
 use crate::runs::{self, ChartScene, ChartScheme, ChartSummary, Fate, RunSummary, Scene};
 use anyhow::Result;
 use isosheet_coords::condition_table;
@@ -87,13 +87,17 @@ fn runs_of(figure: u8, context: &Context<'_>) -> Result<[RunSummary; 2]> {
 }
 
 /// The paper's scheme on a mesh, with ever more help.
-fn variants(level: u32, effort: Effort) -> [(&'static str, ChartScene); 6] {
+fn variants(level: u32, effort: RenderEffort) -> [(&'static str, ChartScene); 6] {
     let run = |bump, tolerance, scheme| ChartScene {
         scene: crumple::without_contact(level, effort),
         bump,
         tolerance,
         steps: [1e-6, 0.25],
-        patience: if effort == Effort::Full { 60.0 } else { 0.5 },
+        patience: if effort == RenderEffort::Full {
+            60.0
+        } else {
+            0.5
+        },
         scheme,
     };
     [
@@ -204,10 +208,10 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
 }
 
 /// Why the coordinates of the front do not carry far: the condition number of their mass matrix.
-fn condition(effort: Effort) -> Result<Picture> {
+fn condition(effort: RenderEffort) -> Result<Picture> {
     let levels = match effort {
-        Effort::Full => 0..5,
-        Effort::Quick => 0..2,
+        RenderEffort::Full => 0..5,
+        RenderEffort::Quick => 0..2,
     };
     let alt = "Condition number of the mass matrix in the paper's coordinates and in chosen Cartesian ones, by mesh level";
     Ok(Picture {

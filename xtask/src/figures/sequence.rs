@@ -1,6 +1,6 @@
 //! The frames of a run as a grid of shaded pictures.
 
-use super::Effort;
+use super::RenderEffort;
 use crate::interrupt;
 use crate::render::{Camera, Labelled, Look, SheetPicture, Solid, montage, render};
 use crate::runs::Staged;
@@ -49,13 +49,13 @@ pub(super) fn sequence(
     trajectory: &Trajectory,
     frames: &[usize],
     view: &View<'_>,
-    effort: Effort,
+    effort: RenderEffort,
 ) -> Result<Vec<u8>> {
     let sheet = scene.sheet()?;
     let bodies = scene.bodies()?;
     let height = match effort {
-        Effort::Full => 470,
-        Effort::Quick => 170,
+        RenderEffort::Full => 470,
+        RenderEffort::Quick => 170,
     };
     let states: Vec<&[f64]> = frames
         .iter()

@@ -1,6 +1,6 @@
 //! How soft a sheet is, by mesh level: what the paper says of Figs. 11 and 12 by eye.
 
-use super::{Context, Effort, Picture, Table, crumple};
+use super::{Context, Picture, RenderEffort, Table, crumple};
 use crate::draw::{Axis, Colour, Legend, Line, Marker, Plot, Series, palette, row};
 use crate::runs::{self, Member, Scene, Staged};
 use anyhow::Result;
@@ -88,8 +88,8 @@ fn smallest(values: &[f64]) -> f64 {
 
 pub(super) fn make(context: &Context<'_>) -> Result<Softness> {
     let (levels, members) = match context.effort {
-        Effort::Full => (0..4, MEMBERS),
-        Effort::Quick => (0..2, 2),
+        RenderEffort::Full => (0..4, MEMBERS),
+        RenderEffort::Quick => (0..2, 2),
     };
     let mut all = Vec::new();
     for level in levels {

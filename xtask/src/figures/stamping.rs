@@ -1,17 +1,17 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
 use super::sequence::{View, choose, sequence};
-use super::{Context, Effort, Made, Picture};
+use super::{Context, Made, Picture, RenderEffort};
 use crate::draw::{Axis, Legend, Line, Plot, Series, palette};
 use crate::runs::{self, SelfContact, Stamping};
 use anyhow::Result;
 use serde_json::json;
 
 /// The scene of the figure.
-pub(super) fn scene(effort: Effort) -> Stamping {
+pub(super) fn scene(effort: RenderEffort) -> Stamping {
     Stamping {
         name: "stamping".into(),
-        level: if effort == Effort::Full { 3 } else { 1 },
+        level: if effort == RenderEffort::Full { 3 } else { 1 },
         side: 0.5,
         weight: 3.9,
         die: 0.09,
@@ -26,7 +26,7 @@ pub(super) fn scene(effort: Effort) -> Stamping {
         contact: SelfContact::Friction(0.1),
         damping: 2.0,
         frame: 1.0 / 60.0,
-        frames: if effort == Effort::Full { 144 } else { 8 },
+        frames: if effort == RenderEffort::Full { 144 } else { 8 },
     }
 }
 

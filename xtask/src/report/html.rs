@@ -1,6 +1,6 @@
 //! The page: one file, pictures inside. Its parts serve other reports as well.
 
-use crate::figures::{Effort, PictureRef, Record, Table};
+use crate::figures::{PictureRef, Record, RenderEffort, Table};
 use crate::selection::PAPER;
 use crate::store::StoreError;
 use base64::Engine;
@@ -20,7 +20,7 @@ th{font-weight:600}@media(max-width:44rem){.texts{grid-template-columns:1fr}}";
 
 /// The page for the given figures; `read` gives the bytes of a picture.
 pub(super) fn page(
-    records: &[(Record, Effort)],
+    records: &[(Record, RenderEffort)],
     read: &mut dyn FnMut(&str) -> Result<Vec<u8>, StoreError>,
 ) -> Result<String, StoreError> {
     let mut out = String::new();
@@ -34,7 +34,7 @@ pub(super) fn page(
                   <p>Every picture is computed by isosheet. Beside each: what is shown in Y.-J. Liu, K. Tang and A. Joneja, \
                   <i>Modeling dynamic developable meshes by the Hamilton principle</i>, Computer-Aided Design 39 (2007) \
                   719–731, and what is measured here. SI units, z upwards.</p>");
-    if records.iter().any(|(_, e)| *e == Effort::Quick) {
+    if records.iter().any(|(_, e)| *e == RenderEffort::Quick) {
         out.push_str("<p class=\"note\">Some figures below were made with <code>--quick</code>: their runs are cut short and \
                       show that the programs work, not what they find.</p>");
     }
@@ -48,11 +48,11 @@ pub(super) fn page(
 fn section(
     out: &mut String,
     record: &Record,
-    effort: Effort,
+    effort: RenderEffort,
     read: &mut dyn FnMut(&str) -> Result<Vec<u8>, StoreError>,
 ) -> Result<(), StoreError> {
     let n = record.figure;
-    let quick = if effort == Effort::Quick {
+    let quick = if effort == RenderEffort::Quick {
         " (quick)"
     } else {
         ""
@@ -187,7 +187,7 @@ mod tests {
                 vec![1, 2, 3]
             })
         };
-        let html = page(&[(record, Effort::Full)], &mut read).unwrap();
+        let html = page(&[(record, RenderEffort::Full)], &mut read).unwrap();
         for part in [
             "A &lt; B",
             "<figure><svg width=\"130.00pt\" height=\"65.00pt\"></svg></figure>",

@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 /// How much time the study may take, with the limits that follow. Times are wall times in seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Effort {
+pub(crate) enum StudyEffort {
     /// Seconds, shows that everything works.
     Quick,
     /// Some ten minutes.
@@ -16,7 +16,7 @@ pub(crate) enum Effort {
     Full,
 }
 
-impl Effort {
+impl StudyEffort {
     fn of<T>(self, [quick, usual, full]: [T; 3]) -> T {
         match self {
             Self::Quick => quick,

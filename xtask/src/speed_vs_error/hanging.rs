@@ -1,7 +1,7 @@
 //! A work that other programs have been measured on as well: the hanging sheet.
 
 use super::analysis::short;
-use super::effort::Effort;
+use super::effort::StudyEffort;
 use super::problem::{bumped, corner};
 use super::scheme::DEFAULT;
 use crate::figures::{Table, rounded};
@@ -89,7 +89,7 @@ fn methods() -> [(&'static str, Method, f64); 6] {
 }
 
 /// Runs the work on all meshes.
-pub(crate) fn make(effort: Effort) -> Result<Vec<Hanging>> {
+pub(crate) fn make(effort: StudyEffort) -> Result<Vec<Hanging>> {
     let levels = 1..=effort.hanging_level();
     let bar = Progress::start("hanging sheet", levels.clone().count() * methods().len());
     let mut rows = Vec::new();

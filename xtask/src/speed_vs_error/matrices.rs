@@ -1,6 +1,6 @@
 //! The matrices of the solver study, and their Matrix Market files.
 
-use super::effort::Effort;
+use super::effort::StudyEffort;
 use crate::{Outcome, interrupt, progress};
 use anyhow::Result;
 use isosheet_coords::linalg::Pattern;
@@ -188,7 +188,7 @@ impl Body {
 }
 
 /// Writes the matrices of all sizes of an effort.
-pub(crate) fn write(folder: &Path, effort: Effort) -> Result<Outcome> {
+pub(crate) fn write(folder: &Path, effort: StudyEffort) -> Result<Outcome> {
     for body in Body::all(effort.solver_level()) {
         let body = body?;
         let kinds = [
@@ -273,7 +273,7 @@ mod tests {
     #[test]
     fn files_are_written() {
         let folder = tempfile::tempdir().unwrap();
-        write(folder.path(), Effort::Quick).unwrap();
+        write(folder.path(), StudyEffort::Quick).unwrap();
         let text = std::fs::read_to_string(folder.path().join("pair-saddle.mtx")).unwrap();
         assert!(text.starts_with("%%MatrixMarket matrix coordinate real symmetric\n% saddle"));
         assert!(

@@ -1,7 +1,7 @@
 //! The page: conclusions first, then every part with its plot and tables.
 
 use super::analysis::Measure;
-use super::effort::Effort;
+use super::effort::StudyEffort;
 use super::hanging::{self, Hanging};
 use super::problem::Problem;
 use super::scheme::DEFAULT;
@@ -24,7 +24,7 @@ struct Results {
 }
 
 /// Writes the page from all parts that were made with this effort.
-pub(crate) fn write(store: &Store, effort: Effort) -> Result<()> {
+pub(crate) fn write(store: &Store, effort: StudyEffort) -> Result<()> {
     let results = read(store, effort)?;
     let mut pictures = |name: &str| -> Result<String> {
         let bytes = store.read(&format!("plots/{name}.svg"))?;
@@ -35,7 +35,7 @@ pub(crate) fn write(store: &Store, effort: Effort) -> Result<()> {
     Ok(())
 }
 
-fn read(store: &Store, effort: Effort) -> Result<Results> {
+fn read(store: &Store, effort: StudyEffort) -> Result<Results> {
     let facts = |part| {
         stamp(store, part)
             .filter(|s| s.options == options(effort))
@@ -63,7 +63,7 @@ fn read(store: &Store, effort: Effort) -> Result<Results> {
 
 fn page(
     results: &Results,
-    effort: Effort,
+    effort: StudyEffort,
     picture: &mut dyn FnMut(&str) -> Result<String>,
 ) -> Result<String> {
     let mut out = format!(
@@ -72,7 +72,7 @@ fn page(
          <style>{STYLE}</style></head><body><h1>Speed against error</h1>"
     );
     paragraph(&mut out, &intro());
-    if effort == Effort::Quick {
+    if effort == StudyEffort::Quick {
         out.push_str(
             "<p class=\"note\">Made with <code>--quick</code>: the runs are far too short to conclude anything from them. They show \
              that the command works.</p>",

@@ -5,7 +5,7 @@ mod report;
 
 pub(crate) use report::{conclusions, csv, plot, table};
 
-use super::effort::Effort;
+use super::effort::StudyEffort;
 use super::matrices::{Body, STIFFNESS, Sparse};
 use crate::interrupt;
 use crate::progress::Progress;
@@ -71,7 +71,7 @@ const SCHUR: &str = "sparse Cholesky, Schur complement";
 const PRIMAL: &str = "sparse Cholesky, primal";
 
 /// Runs all solvers on all sizes.
-pub(crate) fn make(effort: Effort) -> Result<Vec<SolverRow>> {
+pub(crate) fn make(effort: StudyEffort) -> Result<Vec<SolverRow>> {
     let bar = Progress::start("linear solvers", effort.solver_level() as usize + 2);
     let limit = effort.solver();
     let mut rows: Vec<SolverRow> = Vec::new();
@@ -422,7 +422,7 @@ mod tests {
     /// All solvers give the same velocities, whatever system they solve.
     #[test]
     fn the_solvers_agree() {
-        let rows = make(Effort::Quick).unwrap();
+        let rows = make(StudyEffort::Quick).unwrap();
         for solver in SOLVERS {
             let here: Vec<&SolverRow> = rows.iter().filter(|r| r.solver == solver).collect();
             assert!(here.len() >= 2, "{solver} ran on {} sizes", here.len());

@@ -1,7 +1,7 @@
 //! The study of one problem: all methods, all steps; its table, its plot, its words.
 
 use super::analysis::{Measure, advice, cheapest, first_clause, on_front, order, short};
-use super::effort::Effort;
+use super::effort::StudyEffort;
 use super::measure::{Point, sweep};
 use super::problem::{CHECKPOINTS, Problem};
 use super::reference::{self, Reference};
@@ -22,7 +22,7 @@ pub(crate) struct Study {
 }
 
 /// Runs all methods on a problem.
-pub(crate) fn make(problem: Problem, effort: Effort) -> Result<Study> {
+pub(crate) fn make(problem: Problem, effort: StudyEffort) -> Result<Study> {
     let schemes = Scheme::all();
     let bar = Progress::start(problem.to_string(), schemes.len() + 1);
     let reference = reference::compute(problem, effort.reference(problem))?;
@@ -437,7 +437,7 @@ mod tests {
 
     #[test]
     fn a_quick_study_of_the_pendulum_holds_together() {
-        let study = make(Problem::Pendulum, Effort::Quick).unwrap();
+        let study = make(Problem::Pendulum, StudyEffort::Quick).unwrap();
         let csv = study.csv();
         assert_eq!(csv.lines().count(), 1 + study.points.len());
         assert!(csv.contains("pendulum,\"BDF2 (default)\","), "{csv}");

@@ -1,7 +1,7 @@
 //! A work with contact that other programs have been measured on as well: the tablecloth.
 
 use super::analysis::short;
-use super::effort::Effort;
+use super::effort::StudyEffort;
 use super::hanging::{BUMP, percent};
 use super::problem::bumped;
 use crate::figures::{Table, rounded};
@@ -101,7 +101,7 @@ impl Tablecloth {
 }
 
 /// Runs the work on all meshes.
-pub(crate) fn make(effort: Effort) -> Result<Vec<Tablecloth>> {
+pub(crate) fn make(effort: StudyEffort) -> Result<Vec<Tablecloth>> {
     let levels = effort.tablecloth_levels();
     let bar = Progress::start("tablecloth", 2 * levels.clone().count());
     let mut rows = Vec::new();

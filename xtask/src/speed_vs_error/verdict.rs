@@ -153,13 +153,13 @@ pub(crate) fn concerns(problem: Problem) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::speed_vs_error::effort::Effort;
+    use crate::speed_vs_error::effort::StudyEffort;
     use crate::speed_vs_error::study;
 
     /// Made-up points in a real study: the words follow the numbers.
     #[test]
     fn words_follow_the_numbers() {
-        let mut study = study::make(Problem::Triangle, Effort::Quick).unwrap();
+        let mut study = study::make(Problem::Triangle, StudyEffort::Quick).unwrap();
         let mut one = study.points[0].clone();
         one.failure = None;
         let mut at = |scheme: &str, wall, energy, strain| {
