@@ -4,7 +4,7 @@
 use super::*;
 use crate::contact_tests::{Floor, model, sheet};
 use crate::integrator::{MethodTraits, StepAccount};
-use crate::report::{Effort, not_converged};
+use crate::report::{SolverEffort, not_converged};
 use isosheet_mesh::{MassKind, generate};
 use serde::Serialize;
 use std::sync::{Arc, Mutex};
@@ -40,7 +40,7 @@ impl Integrator for Scripted {
         _scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut Effort,
+        effort: &mut SolverEffort,
     ) -> Result<(), StepError> {
         let mut seen = self.seen.lock().unwrap();
         let answer = self.script.get(seen.len()).copied();
@@ -76,7 +76,7 @@ impl Integrator for Scripted {
         let multipliers = &mut moment.history.multipliers;
         (multipliers.step, multipliers.rods) = (h, vec![h]);
         moment.balance.pins.fill(h);
-        proposal.account = StepAccount::without_contact(h, 0.0, Path::Newton);
+        proposal.account = StepAccount::without_contact(h, 0.0, StepOutcome::Newton);
         Ok(())
     }
 
@@ -102,7 +102,7 @@ fn scripted(script: &[Answer], control: StepControl) -> (Engine, Arc<Mutex<Vec<S
         script: Vec::new(),
         seen: seen.clone(),
     });
-    engine.advance(0.125, &mut Tally::default()).unwrap();
+    engine.advance(0.125, &mut StepTotals::default()).unwrap();
     seen.lock().unwrap().clear();
     engine.integrator = Box::new(Scripted {
         script: script.to_vec(),
@@ -114,13 +114,13 @@ fn scripted(script: &[Answer], control: StepControl) -> (Engine, Arc<Mutex<Vec<S
 /// The step of the tests, seconds: a power of two, so that sub-steps have no round-off.
 const H: f64 = 0.5;
 
-fn attempts(script: &[Answer]) -> (Vec<Seen>, Tally) {
+fn attempts(script: &[Answer]) -> (Vec<Seen>, StepTotals) {
     let (mut engine, seen) = scripted(script, StepControl::default());
-    let mut tally = Tally::default();
-    engine.advance(H, &mut tally).unwrap();
+    let mut totals = StepTotals::default();
+    engine.advance(H, &mut totals).unwrap();
     assert_eq!(engine.state().t, 0.125 + H);
     let seen = seen.lock().unwrap().clone();
-    (seen, tally)
+    (seen, totals)
 }
 
 /// Every bit that a checkpoint keeps.
@@ -131,7 +131,7 @@ fn bits(value: &impl Serialize) -> Vec<u8> {
 #[test]
 fn an_energy_gain_is_answered_by_one_restart_and_then_by_halving() {
     use Answer::Gain;
-    let (seen, tally) = attempts(&[Gain; 4]);
+    let (seen, totals) = attempts(&[Gain; 4]);
     let first: Vec<(f64, Memory)> = seen[..5].iter().map(|s| (s.h, s.memory)).collect();
     let expected = [
         (H, Memory::All),
@@ -143,7 +143,7 @@ fn an_energy_gain_is_answered_by_one_restart_and_then_by_halving() {
     assert_eq!(first, expected);
     // What was committed is remembered again.
     assert!(seen[5..].iter().all(|s| s.memory == Memory::All));
-    assert_eq!((tally.rejected, tally.substeps), (4, seen.len() - 4));
+    assert_eq!((totals.rejected, totals.substeps), (4, seen.len() - 4));
 }
 
 #[test]
@@ -171,10 +171,10 @@ fn no_problem_is_proposed_twice() {
         let script: Vec<Answer> = (0..6)
             .map(|k| answers[number / 3_usize.pow(k) % 3])
             .collect();
-        let (seen, tally) = attempts(&script);
+        let (seen, totals) = attempts(&script);
         let refused = script.iter().filter(|a| **a != Answer::Accept).count();
         // A script that outlasts the step cannot have been used up.
-        assert!(tally.rejected <= refused && tally.rejected + tally.substeps == seen.len());
+        assert!(totals.rejected <= refused && totals.rejected + totals.substeps == seen.len());
         for (k, s) in seen.iter().enumerate() {
             assert!(!seen[..k].contains(s), "{script:?}: {s:?} again");
         }
@@ -202,8 +202,8 @@ fn a_step_that_fails_altogether_changes_nothing() {
         };
         let (mut engine, seen) = scripted(&[answer; 20], control);
         let before = bits(&engine.motion());
-        let mut tally = Tally::default();
-        let error = engine.advance(H, &mut tally).unwrap_err();
+        let mut totals = StepTotals::default();
+        let error = engine.advance(H, &mut totals).unwrap_err();
         let StepError::StepTooSmall { t, min_step, cause } = error else {
             panic!("{error}");
         };
@@ -213,10 +213,10 @@ fn a_step_that_fails_altogether_changes_nothing() {
         // Five lengths, and one restart after a gain.
         let count = seen.lock().unwrap().len();
         assert_eq!(count, if gains { 6 } else { 5 });
-        assert_eq!((tally.rejected, tally.substeps), (count, 0));
-        assert_eq!(tally.effort.iterations, count);
+        assert_eq!((totals.rejected, totals.substeps), (count, 0));
+        assert_eq!(totals.effort.iterations, count);
         assert_eq!(
-            (tally.work, tally.dissipated, tally.friction),
+            (totals.work, totals.dissipated, totals.friction),
             (0.0, 0.0, 0.0)
         );
         assert!(bits(&engine.motion()) == before, "{answer:?} left a trace");
@@ -234,10 +234,10 @@ fn a_step_that_fails_half_way_keeps_what_was_committed() {
     let mut script = vec![Diverge, Accept];
     script.extend([Diverge; 5]);
     let (mut engine, _) = scripted(&script, control.clone());
-    assert!(engine.advance(H, &mut Tally::default()).is_err());
+    assert!(engine.advance(H, &mut StepTotals::default()).is_err());
     let (mut half, _) = scripted(&[], control);
     half.moment.history.multipliers.clear();
-    half.advance(0.5 * H, &mut Tally::default()).unwrap();
+    half.advance(0.5 * H, &mut StepTotals::default()).unwrap();
     assert!(bits(&engine.motion()) == bits(&half.motion()));
 }
 
@@ -268,16 +268,19 @@ fn the_fallback_starts_without_a_history() {
             };
             let attempt = Attempt::new(&engine.moment, H, memory);
             method
-                .propose(scene, attempt, &mut proposal, &mut Effort::default())
+                .propose(scene, attempt, &mut proposal, &mut SolverEffort::default())
                 .unwrap();
             bits(&(&proposal.moment.state.x, &proposal.moment.state.v))
         };
         let without = expected(&mut engine, Memory::Restart);
         let with = expected(&mut engine, Memory::All);
         assert!(with != without, "the multipliers make no difference");
-        let mut tally = Tally::default();
-        engine.advance(H, &mut tally).unwrap();
-        assert_eq!((tally.path, tally.substeps), (Path::Fallback, 1));
+        let mut totals = StepTotals::default();
+        engine.advance(H, &mut totals).unwrap();
+        assert_eq!(
+            (totals.outcome, totals.substeps),
+            (StepOutcome::Fallback, 1)
+        );
         let smallest = seen.lock().unwrap().last().map(|s| s.h);
         assert_eq!(smallest, Some(0.25 * H));
         let State { x, v, .. } = engine.state();
@@ -313,12 +316,12 @@ fn propose(engine: &mut Engine, start: &Moment, h: f64) -> Result<Vec<u8>, StepE
         contact: contact.as_mut().map(RunContact::step),
     };
     let attempt = Attempt::new(start, h, Memory::All);
-    let effort = &mut Effort::default();
+    let effort = &mut SolverEffort::default();
     integrator.propose(scene, attempt, proposal, effort)?;
     let StepAccount {
         residual,
         work,
-        path,
+        outcome,
         contact,
     } = proposal.account;
     let contact = [
@@ -327,7 +330,7 @@ fn propose(engine: &mut Engine, start: &Moment, h: f64) -> Result<Vec<u8>, StepE
         contact.friction,
         contact.length_slack,
     ];
-    let account = (residual, work, path, contact);
+    let account = (residual, work, outcome, contact);
     Ok(bits(&(&proposal.moment.compact(), account)))
 }
 
@@ -338,7 +341,7 @@ fn check_purity(mut engine: Engine, what: &str) -> Moment {
     let h = 1.0 / 240.0;
     let mut moments = vec![engine.moment.clone()];
     for _ in 0..12 {
-        engine.advance(h, &mut Tally::default()).unwrap();
+        engine.advance(h, &mut StepTotals::default()).unwrap();
         moments.push(engine.moment.clone());
     }
     let start = moments.last().unwrap();
