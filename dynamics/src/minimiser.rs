@@ -179,7 +179,7 @@ impl Minimiser {
                 self.lagrangian.begin(problem);
             }
             let found = self.apply(*strategy, problem, effort);
-            let is_minimum = found.is_ok() && self.is_below(bound.as_ref(), problem);
+            let is_minimum = found.is_ok() && self.is_below(bound.as_ref(), *strategy, problem);
             outcome = Some(found);
             if is_minimum {
                 break;
@@ -318,9 +318,20 @@ impl Minimiser {
 
     /// Whether the incremental potential at the iterate is not above `bound`, but for what the
     /// tolerance of the lengths and round-off allow.
-    fn is_below(&mut self, bound: Option<&Merit>, problem: &StepProblem<'_>) -> bool {
+    /// (Of sequential quadratic programming no allowance is made for the lengths: at rest its multipliers are those of round-off, and to
+    /// correct round-off in the lengths of a nearly flat sheet would set it in motion.)
+    fn is_below(
+        &mut self,
+        bound: Option<&Merit>,
+        strategy: Strategy,
+        problem: &StepProblem<'_>,
+    ) -> bool {
         let Some(bound) = bound else { return true };
         let now = self.lagrangian.merit(problem);
+        let rod_scale = match strategy {
+            Strategy::Sqp(_) => 0.0,
+            Strategy::FromPrediction | Strategy::FromStart => now.rod_scale.max(bound.rod_scale),
+        };
         let length_slack = if problem.has_contact() {
             problem.h * problem.h * self.length_slack(problem)
         } else {
@@ -328,7 +339,7 @@ impl Minimiser {
         };
         let slack = length_slack
             + COMPARISON_SLACK * (now.round_off + bound.round_off)
-            + COMPARISON_SLACK * self.options.strain_tolerance * now.rod_scale.max(bound.rod_scale);
+            + COMPARISON_SLACK * self.options.strain_tolerance * rod_scale;
         now.potential <= bound.potential + slack
     }
 

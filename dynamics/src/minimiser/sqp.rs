@@ -11,8 +11,8 @@ use crate::report::SolverEffort;
 /// the regularisation is taken out again by passes of the method of multipliers with the same factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Regularisation {
-    /// Rods 1e10 times as stiff as the masses, which keeps the momentum to round-off, and two passes. Stands its ground
-    /// where rods are nearly dependent and no finite multipliers exist: what they cannot hold is left over.
+    /// Rods 1e10 times as stiff as the masses, which keeps the momentum to round-off, and one pass: what nearly dependent rods
+    /// cannot hold is left over, and multipliers stay moderate where there are no finite ones.
     Strong,
     /// Rods 1e13 times as stiff (beyond, the masses drown in the round-off of the penalty) and up to four passes. The
     /// first leaves what the stiffness lets through along nearly dependent rods, as in a sheet that lies flat, the
@@ -30,7 +30,7 @@ impl Regularisation {
 
     fn passes(self) -> usize {
         match self {
-            Self::Strong => 2,
+            Self::Strong => 1,
             Self::Weak => 4,
         }
     }
@@ -206,19 +206,16 @@ impl<'a, 'b> Sqp<'a, 'b> {
         let stiffness = self.regularisation.stiffness();
         let (model, merit_stiffness) = (self.problem.model, self.limits.merit_stiffness);
         let constraint_stiffness = self.minimiser.options.stiffness;
-        // Length errors that the step before has left within the tolerance are round-off: to correct them would be motion along
-        // nearly dependent rods. (The balance of momentum holds after every pass.)
+        // Linearised lengths within the tolerance need no further pass. (The balance of momentum holds after every pass.)
         let strain_tolerance = self.minimiser.strain_tolerance(self.problem);
         let lagrangian = &mut self.minimiser.lagrangian;
         self.effort.iterations += 1;
-        lagrangian.set_stiffness(stiffness, stiffness);
+        // Vertex constraints stay as soft as in the merit function: their curvature goes by the multiplier estimates, which a
+        // large penalty would make those of length errors.
+        lagrangian.set_stiffness(stiffness, constraint_stiffness);
         let hessian = lagrangian
             .factorize(self.problem, RodLoad::Multipliers, self.effort)
             .ok()?;
-        let is_first = self.steps_left + 1 == self.limits.steps;
-        if is_first && model.rods().max_strain(lagrangian.iterate.x()) <= strain_tolerance {
-            lagrangian.c.fill(0.0);
-        }
         for _ in 0..self.regularisation.passes() {
             lagrangian.set_gradient(self.problem);
             lagrangian.solve(model);
