@@ -16,6 +16,7 @@ mod error;
 mod impact;
 mod mechanics;
 mod mobility;
+mod motion;
 mod options;
 mod simulation;
 mod solver;
@@ -25,8 +26,8 @@ mod substep;
 pub use error::ChartDynamicsError;
 pub use impact::ContactImpulse;
 pub use mechanics::{ChartMechanics, Equations};
+pub(crate) use motion::ChartMotion;
 pub use options::{ChartMethod, ChartOptions, ChartStepControl, PositionUpdate, Rebase};
-pub(crate) use simulation::ChartMotion;
 pub use simulation::{ChartSimulation, ChartStepReport, StepRange};
 pub use solver::{
     CholeskySolver, CramerSolver, DenseLuSolver, MassSolver, MassSolverKind, SaddleSolver,

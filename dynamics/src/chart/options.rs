@@ -100,6 +100,53 @@ pub struct ChartOptions {
     pub max_steps: usize,
 }
 
+impl ChartStepControl {
+    fn validate(self) -> Result<(), ChartDynamicsError> {
+        const REMEDY: &str = "give a positive step in seconds";
+        match self {
+            Self::Fixed(h) => positive("fixed step", h, REMEDY),
+            Self::Adaptive {
+                tolerance,
+                min,
+                max,
+            } => {
+                positive(
+                    "energy tolerance",
+                    tolerance,
+                    "give a positive energy in joules",
+                )?;
+                positive("smallest step", min, REMEDY)?;
+                positive("largest step", max, REMEDY)?;
+                if min > max {
+                    return Err(ChartDynamicsError::Option {
+                        option: "smallest step",
+                        value: min,
+                        remedy: "give a value below the largest step",
+                    });
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Refuses a value that is not positive and finite.
+fn positive(
+    option: &'static str,
+    value: f64,
+    remedy: &'static str,
+) -> Result<(), ChartDynamicsError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(ChartDynamicsError::Option {
+            option,
+            value,
+            remedy,
+        })
+    }
+}
+
 impl Default for ChartOptions {
     fn default() -> Self {
         Self {
@@ -127,42 +174,7 @@ impl ChartOptions {
     /// # Errors
     /// [`ChartDynamicsError::Option`], [`ChartDynamicsError::Combination`].
     pub fn validate(&self) -> Result<(), ChartDynamicsError> {
-        let positive = |option, value: f64, remedy| {
-            if value > 0.0 && value.is_finite() {
-                Ok(())
-            } else {
-                Err(ChartDynamicsError::Option {
-                    option,
-                    value,
-                    remedy,
-                })
-            }
-        };
-        match self.control {
-            ChartStepControl::Fixed(h) => {
-                positive("fixed step", h, "give a positive step in seconds")?;
-            }
-            ChartStepControl::Adaptive {
-                tolerance,
-                min,
-                max,
-            } => {
-                positive(
-                    "energy tolerance",
-                    tolerance,
-                    "give a positive energy in joules",
-                )?;
-                positive("smallest step", min, "give a positive step in seconds")?;
-                positive("largest step", max, "give a positive step in seconds")?;
-                if min > max {
-                    return Err(ChartDynamicsError::Option {
-                        option: "smallest step",
-                        value: min,
-                        remedy: "give a value below the largest step",
-                    });
-                }
-            }
-        }
+        self.control.validate()?;
         positive(
             "condition limit",
             self.condition_limit,

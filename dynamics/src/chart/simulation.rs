@@ -1,6 +1,7 @@
 //! Explicit integration in a chart, with the published step control.
 
 use super::contact::ChartContact;
+use super::motion::ChartMotion;
 use super::stepping::{PhaseState, Stepper};
 use super::{
     ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, ContactImpulse, Rebase,
@@ -9,7 +10,6 @@ use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
 use crate::reaction::{Balance, ForceTime, Reaction};
 use crate::{SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// What one step did.
@@ -50,37 +50,6 @@ pub struct StepRange {
     pub max: f64,
     /// Number of steps.
     pub steps: u64,
-}
-
-/// Where a motion in a chart is: all that the next step depends on besides model, contact and options.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ChartMotion {
-    /// Time, seconds.
-    pub(super) t: f64,
-    pub(super) state: PhaseState,
-    /// Energy after velocity damping, joules.
-    pub(super) hamiltonian: f64,
-    /// Planned length of the next step, seconds.
-    pub(super) next_step: f64,
-    /// Smallest and largest step so far; none before the first.
-    pub(super) range: Option<StepRange>,
-    /// Steps since the condition number was estimated.
-    pub(super) since_check: u32,
-    /// Growth of the largest eigenvalue of C since the reference state.
-    pub(super) growth: f64,
-    /// Whether the present state is the chart's reference state.
-    pub(super) is_fresh: bool,
-    /// Positions at which the chart was rebased last; none if it is as its user built it.
-    reference: Option<Vec<f64>>,
-    /// Largest eigenvalue of C at the reference state, and the vector of the power iteration.
-    eigenvalue: f64,
-    eigenvector: Vec<f64>,
-    /// Where the pins are held that the chart does not eliminate.
-    pins: Vec<Vector3<f64>>,
-    /// Forces of the supports now, in scenes where they move.
-    pub(super) balance: Option<Balance>,
-    /// Impulses of contacts at the end of the last step.
-    pub(super) impulses: Vec<ContactImpulse>,
 }
 
 /// A sheet moving in a chart.
@@ -128,24 +97,10 @@ impl ChartSimulation {
         options: ChartOptions,
         start: &State,
     ) -> Result<Self, ChartDynamicsError> {
+        options.validate()?;
+        check_start(&model, start)?;
         let State { t, x, v } = start;
         let t = *t;
-        options.validate()?;
-        for (what, slice) in [("x", x), ("v", v)] {
-            if slice.len() != model.coordinate_count() {
-                return Err(ChartDynamicsError::WrongLength {
-                    what,
-                    found: slice.len(),
-                    expected: model.coordinate_count(),
-                });
-            }
-        }
-        if !(t.is_finite() && x.iter().chain(v).all(|c| c.is_finite())) {
-            return Err(ChartDynamicsError::NotFinite { t });
-        }
-        if let Some(index) = model.constraints().iter().position(|c| c.is_one_sided()) {
-            return Err(ChartDynamicsError::OneSided { index });
-        }
         let mut mechanics = ChartMechanics::new(model, chart, options.solver)?;
         let strain = mechanics.system().max_strain(x);
         if strain > options.strain_limit {
@@ -173,28 +128,16 @@ impl ChartSimulation {
         };
         stepper.close_momenta((t, step), x, &mut p)?;
         let hamiltonian = stepper.mechanics.hamiltonian(t, x, &p)?;
+        let x = x.clone();
+        let state = PhaseState {
+            x,
+            q,
+            p,
+            hamiltonian,
+        };
+        let pins = stepper.mobility.pin_positions();
         let mut simulation = Self {
-            motion: ChartMotion {
-                t,
-                state: PhaseState {
-                    x: x.to_vec(),
-                    q,
-                    p,
-                    hamiltonian,
-                },
-                hamiltonian,
-                next_step: step,
-                range: None,
-                since_check: 0,
-                growth: 1.0,
-                is_fresh: true,
-                reference: None,
-                eigenvector: Vec::new(),
-                eigenvalue: 0.0,
-                pins: stepper.mobility.pin_positions(),
-                balance: None,
-                impulses: Vec::new(),
-            },
+            motion: ChartMotion::start(t, state, step, pins),
             stepper,
             options,
             contact: None,
@@ -205,79 +148,6 @@ impl ChartSimulation {
             simulation.motion.balance = Some(simulation.new_balance(step)?);
         }
         Ok(simulation)
-    }
-
-    /// What a checkpoint keeps.
-    pub(crate) fn motion(&self) -> ChartMotion {
-        let (eigenvalue, eigenvector) = self.stepper.power();
-        ChartMotion {
-            eigenvalue,
-            eigenvector: eigenvector.to_vec(),
-            balance: self.motion.balance.as_ref().map(Balance::compact),
-            ..self.motion.clone()
-        }
-    }
-
-    /// Back to a motion of the same chart.
-    pub(super) fn restore(&mut self, motion: ChartMotion) {
-        self.stepper
-            .set_power(motion.eigenvalue, &motion.eigenvector);
-        self.motion = motion;
-    }
-
-    /// Goes on from a checkpoint, with the chart as its user built it at the start.
-    pub(crate) fn resume(
-        model: SheetModel,
-        mut chart: Box<dyn Chart>,
-        options: ChartOptions,
-        motion: ChartMotion,
-    ) -> Result<Self, ChartDynamicsError> {
-        let n = model.coordinate_count();
-        let reference = motion.reference.as_ref().unwrap_or(&motion.state.x);
-        for (what, found, expected) in [
-            ("x", motion.state.x.len(), n),
-            ("the reference state", reference.len(), n),
-        ] {
-            if found != expected {
-                return Err(ChartDynamicsError::WrongLength {
-                    what,
-                    found,
-                    expected,
-                });
-            }
-        }
-        if let Some(reference) = &motion.reference {
-            chart.rebase(reference)?;
-        }
-        let mechanics = ChartMechanics::new(model, chart, options.solver)?;
-        let n = mechanics.dimension();
-        for (what, found) in [
-            ("q", motion.state.q.len()),
-            ("p", motion.state.p.len()),
-            ("the power iteration", motion.eigenvector.len()),
-        ] {
-            if found != n {
-                return Err(ChartDynamicsError::WrongLength {
-                    what,
-                    found,
-                    expected: n,
-                });
-            }
-        }
-        let mut stepper = Stepper::new(mechanics, &options, &motion.state.x)?;
-        stepper.mobility.set_pin_positions(&motion.pins);
-        stepper.set_power(motion.eigenvalue, &motion.eigenvector);
-        let balance = motion.balance.as_ref().map(|kept| {
-            let mut balance = Balance::new(stepper.mechanics.model(), ForceTime::End);
-            balance.copy_from(kept);
-            balance
-        });
-        Ok(Self {
-            stepper,
-            options,
-            motion: ChartMotion { balance, ..motion },
-            contact: None,
-        })
     }
 
     /// Adds contact with bodies and of the sheet with itself, by impulses on the momenta.
@@ -516,5 +386,26 @@ impl ChartSimulation {
         let work = after.drive_work(model, self.motion.balance.as_ref(), start, end);
         self.motion.balance = Some(after);
         Ok(work)
+    }
+}
+
+/// Refuses a state of the wrong length or with values that are not finite, and supports that a chart cannot have.
+fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsError> {
+    let State { t, x, v } = start;
+    for (what, slice) in [("x", x), ("v", v)] {
+        if slice.len() != model.coordinate_count() {
+            return Err(ChartDynamicsError::WrongLength {
+                what,
+                found: slice.len(),
+                expected: model.coordinate_count(),
+            });
+        }
+    }
+    if !(t.is_finite() && x.iter().chain(v).all(|c| c.is_finite())) {
+        return Err(ChartDynamicsError::NotFinite { t: *t });
+    }
+    match model.constraints().iter().position(|c| c.is_one_sided()) {
+        Some(index) => Err(ChartDynamicsError::OneSided { index }),
+        None => Ok(()),
     }
 }
