@@ -1,7 +1,8 @@
-//! Closure equations: vertices that are held beyond the pins that a chart eliminates.
+//! Closure equations: supports beyond the pins that a chart eliminates.
 //!
-//! A chart x(q) keeps the edge lengths and the pins it was built with. Whatever else holds vertices (further pins, fixed or
-//! moving, curves, surfaces) are equations `Phi(x(q), t) = 0`, and Hamilton's equations get multipliers,
+//! A chart x(q) keeps the edge lengths and the pins it was built with. Whatever else holds vertices (further
+//! pins, fixed or moving, curves, surfaces) are equations `Phi(x(q), t) = 0`, and Hamilton's equations get
+//! multipliers,
 //!
 //! ```text
 //! qdot = dH/dp,   pdot = -dH/dq + Q + K^T lambda,   K = N J,   N = dPhi/dx.
@@ -14,16 +15,16 @@
 //! N P N^T lambda = -(N a + gamma),   P = J C^-1 J^T,
 //! ```
 //!
-//! `a` the accelerations without the multipliers. P is the same in every chart: the velocities that impulses on the vertices cause
-//! where the rods hold, one solve with the saddle-point matrix,
+//! `a` the accelerations without the multipliers. P is the same in every chart: the velocities that impulses
+//! on the vertices cause where the rods hold, one solve with the saddle-point matrix,
 //!
 //! ```text
 //! [ M  G^T ] [ P f ]   [ f ]
 //! [ G   0  ] [ mu  ] = [ 0 ].
 //! ```
 //!
-//! So neither `a` nor the small matrix `D = N P N^T` lose digits to an ill-conditioned chart. Dependent equations (two pins at
-//! the ends of one rod) are met by least squares: D is inverted on its range.
+//! So neither `a` nor the small matrix `D = N P N^T` lose digits to an ill-conditioned chart. Dependent
+//! equations (two pins at the ends of one rod) are met by least squares: D is inverted on its range.
 
 mod projection;
 
@@ -35,8 +36,8 @@ use isosheet_coords::SaddlePoint;
 use isosheet_mesh::VertexId;
 use nalgebra::{DMatrix, DVector, Matrix2x3, SymmetricEigen, Vector2, Vector3};
 
-/// Eigenvalues of D, scaled to unit vertex masses so that they are at most one for each row, that count as zero. The
-/// saddle-point solve leaves about 1e-14; a closure within 1e-5 radians of a dead point has 1e-10.
+/// Eigenvalues of D, scaled to unit vertex masses so that they are at most one for each row, that count as
+/// zero. The saddle-point solve leaves about 1e-14; a closure within 1e-5 radians of a dead point has 1e-10.
 const RANK_TOLERANCE: f64 = 1e-11;
 
 /// One scalar closure equation; its gradient is zero but at one vertex.
@@ -86,7 +87,7 @@ pub(super) struct Mobility {
     inverse: DMatrix<f64>,
     rank: usize,
     mu: Vec<f64>,
-    still: Vec<f64>,
+    no_rates: Vec<f64>,
 }
 
 impl Mobility {
@@ -109,16 +110,16 @@ impl Mobility {
             inverse: DMatrix::zeros(0, 0),
             rank: 0,
             mu: vec![0.0; system.equations()],
-            still: vec![0.0; system.equations()],
+            no_rates: vec![0.0; system.equations()],
         })
     }
 
-    /// Where the pins are held that are free in the chart; fixed ones.
+    /// Positions of the fixed pins of the model that are free in the chart.
     pub(super) fn pin_positions(&self) -> Vec<Vector3<f64>> {
         self.pins.iter().map(|(_, x)| *x).collect()
     }
 
-    /// Sets where the pins are held that are free in the chart.
+    /// Sets the positions of the fixed pins of the model that are free in the chart.
     pub(super) fn set_pin_positions(&mut self, positions: &[Vector3<f64>]) {
         for ((_, x), kept) in self.pins.iter_mut().zip(positions) {
             *x = *kept;
@@ -199,7 +200,7 @@ impl Mobility {
             force.fill(0.0);
             row.push(1.0, &mut force);
             self.saddle
-                .solve(&force, &self.still, column, &mut self.mu)?;
+                .solve(&force, &self.no_rates, column, &mut self.mu)?;
         }
         let root = DVector::from_iterator(
             m,
@@ -241,21 +242,23 @@ impl Mobility {
         }
     }
 
-    /// Velocities on the unknowns that impulses on the unknowns cause where rods and closures hold. At the state of
-    /// [`Mobility::at`].
+    /// Velocities on the unknowns that impulses on the unknowns cause where rods and closures hold. At the
+    /// state of [`Mobility::at`].
     pub(super) fn respond(
         &mut self,
         impulse: &[f64],
         v: &mut [f64],
     ) -> Result<(), ChartDynamicsError> {
-        self.saddle.solve(impulse, &self.still, v, &mut self.mu)?;
+        self.saddle
+            .solve(impulse, &self.no_rates, v, &mut self.mu)?;
         let lambda = self.multipliers(self.rows.iter().map(|r| r.apply(v)));
         self.give_way(&lambda, v);
         Ok(())
     }
 
-    /// Changes velocities `v` (full) to the nearest in the mass metric that keep the closures: the change, on the unknowns.
-    /// Motions are differentiated over parts of the time `span`. At the state of [`Mobility::at`].
+    /// Changes velocities `v` (full) to the nearest in the mass metric that keep the closures: the change, on
+    /// the unknowns. Motions are differentiated over parts of the time `span`. At the state of
+    /// [`Mobility::at`].
     pub(super) fn velocity_change(
         &self,
         mechanics: &ChartMechanics,
@@ -297,8 +300,8 @@ impl Mobility {
         rates
     }
 
-    /// The velocity term gamma, metres per second squared: the second derivative of `Phi` on the straight path from `x` with
-    /// velocity `v`.
+    /// The velocity term gamma, metres per second squared: the second derivative of `Phi` on the straight
+    /// path from `x` with velocity `v`.
     fn bends(
         &self,
         mechanics: &ChartMechanics,
@@ -321,7 +324,8 @@ impl Mobility {
         bends
     }
 
-    /// Accelerations on the unknowns, and the forces `N^T lambda` of the closures. At the state of [`Mobility::at`].
+    /// Accelerations on the unknowns, and the forces `N^T lambda` of the closures. At the state of
+    /// [`Mobility::at`].
     fn accelerations(
         &mut self,
         mechanics: &mut ChartMechanics,

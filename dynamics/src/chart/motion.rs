@@ -32,7 +32,7 @@ pub(crate) struct ChartMotion {
     /// Largest eigenvalue of C at the reference state, and the vector of the power iteration.
     pub(super) eigenvalue: f64,
     pub(super) eigenvector: Vec<f64>,
-    /// Where the pins are held that the chart does not eliminate.
+    /// Positions of the fixed pins that the chart does not eliminate.
     pub(super) pins: Vec<Vector3<f64>>,
     /// Forces of the supports now, in scenes where they move.
     pub(super) balance: Option<Balance>,

@@ -56,7 +56,7 @@ pub enum Rebase {
     /// Take the current state as new reference and form the momenta anew from the velocities.
     #[default]
     WhenNeeded,
-    /// Refuse to go on.
+    /// Return an error.
     Never,
 }
 
@@ -85,18 +85,21 @@ pub struct ChartOptions {
     /// chart is rebased, default 4: J is about twice as large then, well before a
     /// singularity of the chart. Tracked by one power iteration per step.
     pub growth_limit: f64,
-    /// Chart margin ([`Chart::margin`](isosheet_coords::Chart::margin)) below which the chart is rebased, default 0.1.
+    /// Chart margin ([`Chart::margin`](isosheet_coords::Chart::margin)) below which the chart is rebased,
+    /// default 0.1.
     pub margin_limit: f64,
     /// Largest edge strain of the initial state, default 1e-6.
     pub strain_limit: f64,
-    /// Coefficient of restitution `e` of impacts, see [`ChartSimulation::with_contact`](super::ChartSimulation::with_contact):
-    /// a single contact that approaches at a speed parts at `e` times that speed. From 0, the default, to 1.
+    /// Coefficient of restitution `e` of impacts, see
+    /// [`ChartSimulation::with_contact`](super::ChartSimulation::with_contact): a single contact that
+    /// approaches at a speed parts at `e` times that speed. From 0, the default, to 1.
     pub restitution: f64,
     /// Edge strain at which a run is given up as diverged, default 0.5. Only the linear position update
     /// ever strains edges.
     pub failure_strain: f64,
-    /// Most steps, rejected ones included, in one call of [`Simulation::step`](crate::Simulation::step), default 2^20: a
-    /// step control that crawls along a singularity ends with an error instead of taking hours.
+    /// Most steps, rejected ones included, in one call of [`Simulation::step`](crate::Simulation::step),
+    /// default 2^20: a step control that crawls along a singularity ends with an error instead of taking
+    /// hours.
     pub max_steps: usize,
 }
 

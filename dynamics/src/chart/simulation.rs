@@ -35,7 +35,8 @@ pub struct ChartStepReport {
     pub gap: Option<f64>,
     /// Largest edge strain after the step.
     pub strain: f64,
-    /// Work done over the step by moving pins and vertex constraints, and by moving bodies in impacts, joules.
+    /// Work done over the step by moving pins and vertex constraints, and by moving bodies in impacts,
+    /// joules.
     pub driven: f64,
     /// Whether the chart was rebased before the step.
     pub rebased: bool,
@@ -60,8 +61,8 @@ pub struct ChartSimulation {
     pub(super) contact: Option<ChartContact>,
 }
 
-/// Gaps below this part of the activation distance are opened to it: the curvature of the path brings a sheet that lies or
-/// slides closer by the squared step each step, which no impulse sees.
+/// Gaps below this part of the activation distance are opened to it: the curvature of the path brings a sheet
+/// that lies or slides closer by the squared step each step, which no impulse sees.
 const LEAST_GAP: f64 = 0.1;
 
 impl ChartSimulation {
@@ -83,14 +84,16 @@ impl ChartSimulation {
 
     /// Start from a state. Only the part of the velocities that keeps edge lengths and closures is used.
     ///
-    /// The chart eliminates all fixed pins of the model or some of them. The others, moving pins and vertices on curves and
-    /// surfaces are held by closure equations `Phi(x(q), t) = 0`: multipliers in the equations of motion from their second
-    /// derivative in time, and after every step positions and momenta are brought back onto them, the nearest ones in the mass metric.
-    /// Equations that depend on others, as for two pins at the ends of one rod, are met by least squares.
+    /// The chart eliminates all fixed pins of the model or some of them. The others, moving pins and vertices
+    /// on curves and surfaces are held by closure equations `Phi(x(q), t) = 0`: multipliers in the equations
+    /// of motion from their second derivative in time, and after every step positions and momenta are brought
+    /// back onto them, the nearest ones in the mass metric. Equations that depend on others, as for two pins
+    /// at the ends of one rod, are met by least squares.
     ///
     /// # Errors
-    /// Invalid options; a state with the wrong edge lengths or off its supports; [`ChartDynamicsError::Chart`] for states
-    /// where the chart is singular (flat sheets) or too ill-conditioned; [`ChartDynamicsError::OneSided`].
+    /// Invalid options; a state with the wrong edge lengths or off its supports;
+    /// [`ChartDynamicsError::Chart`] for states where the chart is singular (flat sheets) or too
+    /// ill-conditioned; [`ChartDynamicsError::OneSided`].
     pub fn from_state(
         model: SheetModel,
         chart: Box<dyn Chart>,
@@ -153,18 +156,20 @@ impl ChartSimulation {
     /// Adds contact with bodies and of the sheet with itself, by impulses on the momenta.
     ///
     /// The paper applies collision forces to momenta and does not say how; this is our choice. A step whose
-    /// displacement is not proven free of contact ([`crate::contact::ContactSet::safe_fraction`]) is taken anew as short as that
-    /// allows, so that every gap stays positive. At the end of each step all contacts within the activation distance that approach
-    /// get impulses together, `p += J^T R^T l`, with [`ChartOptions::restitution`] and Coulomb friction with the kinetic
-    /// coefficient, of which the energy never grows. The barrier of the contact is not used; a sheet rebounds at gaps
-    /// below its activation distance: choose that small. Gaps that the curvature of the path has closed to a tenth of it are
+    /// displacement is not proven free of contact ([`crate::contact::ContactSet::safe_fraction`]) is taken
+    /// anew as short as that allows, so that every gap stays positive. At the end of each step all contacts
+    /// within the activation distance that approach get impulses together, `p += J^T R^T l`, with
+    /// [`ChartOptions::restitution`] and Coulomb friction with the kinetic coefficient, of which the energy
+    /// never grows. The barrier of the contact is not used; a sheet rebounds at gaps below its activation
+    /// distance: choose that small. Gaps that the curvature of the path has closed to a tenth of it are
     /// opened to that again.
     ///
-    /// A sheet that lies on a body keeps still in forward Euler, the paper's method, which moves with the momenta that the impulses
-    /// left. The other methods move with what forces make of them in the step, and creep by the acceleration along the body
-    /// times the squared step, each step, against friction too.
+    /// A sheet that lies on a body stays at rest in forward Euler, the paper's method, which moves with the
+    /// momenta that the impulses left. The other methods move with what forces make of them in the step, and
+    /// creep by the acceleration along the body times the squared step, each step, against friction too.
     ///
-    /// Reactions do not contain the impulses that supports answer impacts with, nor does the work of moving pins.
+    /// Reactions do not contain the impulses that supports answer impacts with, nor does the work of moving
+    /// pins.
     ///
     /// # Errors
     /// [`ContactError`] if something touches already or the contact belongs to another sheet.
@@ -187,8 +192,8 @@ impl ChartSimulation {
         self.contact.as_ref().map(ChartContact::active)
     }
 
-    /// The impulses of contacts at the end of the last step, zero ones of contacts that do not press included; empty if nothing
-    /// approached.
+    /// The impulses of contacts at the end of the last step, zero ones of contacts that do not press
+    /// included; empty if nothing approached.
     #[must_use]
     pub fn impulses(&self) -> &[ContactImpulse] {
         &self.motion.impulses
@@ -202,9 +207,9 @@ impl ChartSimulation {
         Ok(balance)
     }
 
-    /// Forces of the pins and vertex constraints on the sheet at the present state, pins first, from Hamilton's equations with all
-    /// multipliers. Where closures depend on each other how they share a force is arbitrary (the shortest multipliers in
-    /// the mass metric); the sums are not.
+    /// Forces of the pins and vertex constraints on the sheet at the present state, pins first, from
+    /// Hamilton's equations with all multipliers. Where closures depend on each other how they share a force
+    /// is arbitrary (the shortest multipliers in the mass metric); the sums are not.
     ///
     /// # Errors
     /// [`ChartDynamicsError::Chart`] where the chart is singular.
@@ -389,7 +394,8 @@ impl ChartSimulation {
     }
 }
 
-/// Refuses a state of the wrong length or with values that are not finite, and supports that a chart cannot have.
+/// Refuses a state of the wrong length or with values that are not finite, and supports that a chart cannot
+/// have.
 fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsError> {
     let State { t, x, v } = start;
     for (what, slice) in [("x", x), ("v", v)] {

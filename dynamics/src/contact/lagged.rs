@@ -228,7 +228,8 @@ impl LaggedFriction {
         }
     }
 
-    /// Calls `add` with each body under friction, the force on it (newtons) and where in space it acts (metres).
+    /// Calls `add` with each body under friction, the force on it (newtons) and where in space it acts
+    /// (metres).
     pub(super) fn body_forces(
         &self,
         x: &[f64],

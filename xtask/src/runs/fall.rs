@@ -9,7 +9,8 @@ use isosheet_mesh::{MassKind, MassMatrix};
 /// Acceleration of gravity of the scenes, m/s2.
 const GRAVITY: f64 = 9.8;
 
-/// Time and depth of the centre of mass (seconds, sides) while a sheet falls from exactly flat, frame by frame.
+/// Time and depth of the centre of mass (seconds, sides) while a sheet falls from exactly flat, frame by
+/// frame.
 ///
 /// # Errors
 /// Ctrl-C and errors of the simulation.
@@ -32,8 +33,9 @@ pub(crate) fn fall(scene: &Scene) -> Result<Vec<[f64; 2]>> {
 
 /// The same for the sheet welded to a rigid plate that turns about the held corner.
 ///
-/// With d half a diagonal, m the mass and I the moment of inertia of the vertex masses about the line through the corner across the
-/// diagonal, the angle a below the horizon obeys `I a'' = m g d cos a - c I a'`; damping c as in the scene.
+/// With d half a diagonal, m the mass and I the moment of inertia of the vertex masses about the line through
+/// the corner across the diagonal, the angle a below the horizon obeys `I a'' = m g d cos a - c I a'`;
+/// damping c as in the scene.
 pub(crate) fn plate_fall(scene: &Scene) -> Result<Vec<[f64; 2]>> {
     let sheet = scene.sheet()?;
     let mass = MassMatrix::from_total(&sheet, 1.0, MassKind::Lumped)?.vertex;

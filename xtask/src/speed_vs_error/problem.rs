@@ -164,8 +164,8 @@ impl Problem {
         })
     }
 
-    /// The problem at a state by a method without a chart; with contact where the method takes it. The inner error is
-    /// that of the method.
+    /// The problem at a state by a method without a chart; with contact where the method takes it. The inner
+    /// error is that of the method.
     pub(crate) fn simulation(
         self,
         method: &Method,

@@ -8,8 +8,8 @@ use isosheet_coords::linalg::norm_inf;
 /// Strain and relative violation at which a projection onto lengths and closures has converged.
 const TOLERANCE: f64 = 1e-13;
 
-/// Strain and relative violation that are accepted where it goes no further: ten times that, and the round-off of coordinates that
-/// are large against the rods.
+/// Strain and relative violation that are accepted where it goes no further: ten times that, and the
+/// round-off of coordinates that are large against the rods.
 const ACCEPTED: f64 = 1e-12;
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
@@ -30,7 +30,8 @@ impl Mobility {
         worst
     }
 
-    /// Refuses a state whose closures are off by more than `limit`, relative to the shortest rod at the vertex.
+    /// Refuses a state whose closures are off by more than `limit`, relative to the shortest rod at the
+    /// vertex.
     pub(in crate::chart) fn check(
         &mut self,
         mechanics: &ChartMechanics,
@@ -57,8 +58,9 @@ impl Mobility {
         }
     }
 
-    /// Newton's method for the nearest positions in the mass metric that meet the closures at time `t` and, unless positions are
-    /// updated linearly, have the right lengths. Pins end where they belong to the last bit.
+    /// Newton's method for the nearest positions in the mass metric that meet the closures at time `t` and,
+    /// unless positions are updated linearly, have the right lengths. Pins end where they belong to the last
+    /// bit.
     pub(in crate::chart) fn project(
         &mut self,
         mechanics: &ChartMechanics,
