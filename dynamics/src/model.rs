@@ -238,7 +238,7 @@ impl SheetModel {
     }
 
     /// Mean vertex mass, kilograms: the mass scale of tolerances.
-    pub fn mean_mass(&self) -> f64 {
+    pub(crate) fn mean_mass(&self) -> f64 {
         self.mean_mass
     }
 
@@ -297,7 +297,7 @@ impl SheetModel {
     }
 
     /// Whether every potential is linear, so that its force is constant.
-    pub fn has_constant_forces(&self) -> bool {
+    pub(crate) fn has_constant_forces(&self) -> bool {
         self.potentials
             .iter()
             .all(|p| p.shape() == PotentialShape::Linear)
