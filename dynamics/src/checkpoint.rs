@@ -21,8 +21,8 @@ const MAGIC: &[u8; 8] = b"isosheet";
 /// momenta.
 ///
 /// Model and contact are supplied again by [`Simulation::resume`](crate::Simulation::resume), because they
-/// may hold functions. A simulation that is resumed continues bit for bit as it would have continued without a
-/// stop.
+/// may hold functions. A simulation that is resumed continues bit for bit as it would have continued without
+/// a stop.
 ///
 /// # Format
 /// [`Checkpoint::to_bytes`]: the eight bytes `isosheet`, the version (little-endian `u32`), the fields in the

@@ -35,10 +35,10 @@
 //!
 //! Constraints that leave a vertex no room at all, such as two pins that stretch a straight line of rods
 //! taut, are approached only as far as the square root of round-off allows: a step may be refused there
-//! ([`StepError::StepTooSmall`]); with pins at rest the vertices of the line become pins, and cost nothing. A banner of 81
-//! vertices that hangs by two corners may still be refused when it comes to hang straight, exactly flat and
-//! taut. So may one on meshes graded over many orders of magnitude. Conservative runs on fine, nearly flat
-//! sheets are slow: the exact motion flutters on ever smaller scales there.
+//! ([`StepError::StepTooSmall`]); with pins at rest the vertices of the line become pins, and cost nothing. A
+//! banner of 81 vertices that hangs by two corners may still be refused when it comes to hang straight,
+//! exactly flat and taut. So may one on meshes graded over many orders of magnitude. Conservative runs on
+//! fine, nearly flat sheets are slow: the exact motion flutters on ever smaller scales there.
 //!
 //! # Conventions
 //!

@@ -22,8 +22,8 @@ const SUFFICIENT_DECREASE: f64 = 0.1;
 /// A line search that has halved its step this often has stalled.
 const SMALLEST_STEP: f64 = 1e-2;
 
-/// Part of the tolerance that is the goal of a projection with contact. It keeps what round-off adds in later steps
-/// below the tolerance, and so a sheet at rest from having to fold.
+/// Part of the tolerance that is the goal of a projection with contact. It keeps what round-off adds in later
+/// steps below the tolerance, and so a sheet at rest from having to fold.
 const RESERVE: f64 = 0.1;
 /// Passes of the method of multipliers: each contracts by the penalty, except along rods that are dependent.
 const PASSES: usize = 3;
