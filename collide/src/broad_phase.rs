@@ -277,7 +277,7 @@ impl BroadPhase {
     }
 
     /// Pairs of this mesh with another since the last updates of both; `out` is overwritten.
-    pub fn candidates_with(&self, other: &Self, out: &mut CrossCandidates) {
+    pub(crate) fn candidates_with(&self, other: &Self, out: &mut CrossCandidates) {
         out.vertex_face.clear();
         out.face_vertex.clear();
         out.edge_edge.clear();

@@ -121,9 +121,9 @@ impl CcdOptions {
         let start: [Vector3<f64>; N] = std::array::from_fn(|i| x[i] - x[0]);
         let motion: [Vector3<f64>; N] = std::array::from_fn(|i| dx[i] - dx[0]);
         let far = |list: &[Vector3<f64>; N]| list.iter().map(Vector3::amax).fold(0.0, f64::max);
-        // The largest coordinate during the motion, also before the subtraction: what the caller
-        // makes of the time returned is rounded there. (Of the whole motion, not of the part up to the limit: the time must
-        // not depend on the order in which pairs are asked for.)
+        // The largest coordinate during the motion, also before the subtraction: what the caller makes of the
+        // time returned is rounded there. (Of the whole motion, not of the part up to the limit: the time
+        // must not depend on the order in which pairs are asked for.)
         let size = far(x) + far(dx);
         let round_off = ROUND_OFF * size;
         let mut t = 0.0;

@@ -1,5 +1,5 @@
-//! Steps of each integrator, and what they assemble, at the paper's mesh sizes and the next: a sheet of 1 m and 0.1 kg held
-//! at a corner, in mid-fall.
+//! Steps of each integrator, and what they assemble, at the paper's mesh sizes and the next: a sheet of 1 m
+//! and 0.1 kg held at a corner, in mid-fall.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use isosheet_coords::{CartesianChart, Choice, RodSystem};
@@ -52,8 +52,8 @@ fn simulation(sheet: &Sheet, level: u32, start: State, method: Method) -> Simula
     Simulation::new(model, start, method).expect("valid")
 }
 
-/// What is summed over the mesh in every iteration of a step; the matrix and its factorisation are in the benches of the
-/// coordinates.
+/// What is summed over the mesh in every iteration of a step; the matrix and its factorisation are in the
+/// benches of the coordinates.
 fn assembly(c: &mut Criterion) {
     let mut group = c.benchmark_group("assembly");
     for (level, size) in SIZES {
@@ -80,7 +80,8 @@ fn assembly(c: &mut Criterion) {
     group.finish();
 }
 
-/// Explicit steps in a chart of well-chosen Cartesian coordinates. The choice is dense and takes seconds at the largest size.
+/// Explicit steps in a chart of well-chosen Cartesian coordinates. The choice is dense and takes seconds at
+/// the largest size.
 fn chart_steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("step in a chart");
     let h = 1e-5;

@@ -4,8 +4,8 @@
 //! * [`MassSolver`]: `qdot = C^-1 p` by Cramer's minors as published, by dense factorisations, or by one
 //!   sparse saddle-point solve;
 //! * [`ChartMechanics`]: p, H and their derivatives at a state;
-//! * [`ChartSimulation`]: forward Euler with the published step control, symplectic Euler and
-//!   Runge-Kutta in a chart, in the published, re-formed and full equations of motion. A chart eliminates the pins it was
+//! * [`ChartSimulation`]: forward Euler with the published step control, symplectic Euler and Runge-Kutta in
+//!   a chart, in the published, re-formed and full equations of motion. A chart eliminates the pins it was
 //!   built with; more pins, moving ones, curves and surfaces are closure equations
 //!   ([`ChartSimulation::from_state`]). Contact acts by impulses ([`ChartSimulation::with_contact`]).
 
@@ -16,6 +16,7 @@ mod error;
 mod impact;
 mod mechanics;
 mod mobility;
+mod motion;
 mod options;
 mod simulation;
 mod solver;
@@ -25,8 +26,8 @@ mod substep;
 pub use error::ChartDynamicsError;
 pub use impact::ContactImpulse;
 pub use mechanics::{ChartMechanics, Equations};
+pub(crate) use motion::ChartMotion;
 pub use options::{ChartMethod, ChartOptions, ChartStepControl, PositionUpdate, Rebase};
-pub(crate) use simulation::ChartMotion;
 pub use simulation::{ChartSimulation, ChartStepReport, StepRange};
 pub use solver::{
     CholeskySolver, CramerSolver, DenseLuSolver, MassSolver, MassSolverKind, SaddleSolver,

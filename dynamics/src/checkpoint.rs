@@ -9,22 +9,25 @@ use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Version of the format. It grows with every change of the fields, because the binary format does not name them.
+/// Version of the format. It grows with every change of the fields, because the binary format does not name
+/// them.
 const VERSION: u32 = 1;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";
 
-/// Everything that the next step depends on besides the model and the contact: state, history of multistep methods,
-/// multipliers, energy sums, method and options, and in a chart its reference state, coordinates and momenta.
+/// Everything that the next step depends on besides the model and the contact: state, history of multistep
+/// methods, multipliers, energy sums, method and options, and in a chart its reference state, coordinates and
+/// momenta.
 ///
-/// Model and contact are supplied again by [`Simulation::resume`](crate::Simulation::resume), because they may hold
-/// functions. A simulation that is resumed goes on bit for bit as it would have gone on without a stop.
+/// Model and contact are supplied again by [`Simulation::resume`](crate::Simulation::resume), because they
+/// may hold functions. A simulation that is resumed continues bit for bit as it would have continued without
+/// a stop.
 ///
 /// # Format
 /// [`Checkpoint::to_bytes`]: the eight bytes `isosheet`, the version (little-endian `u32`), the fields in the
-/// `postcard` encoding, and the CRC-32 of all that as a little-endian `u32`. [`Checkpoint::to_json`]: the same fields by name,
-/// numbers with as many digits as a round trip needs.
+/// `postcard` encoding, and the CRC-32 of all that as a little-endian `u32`. [`Checkpoint::to_json`]: the
+/// same fields by name, numbers with as many digits as a round trip needs.
 ///
 /// ```
 /// use isosheet_dynamics::{Checkpoint, Method, SheetModel, Simulation, State};

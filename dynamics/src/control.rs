@@ -2,14 +2,17 @@
 //!
 //! An integrator proposes a sub-step or refuses to; nothing but [`take_substep`] commits one:
 //!
-//! | proposal | chart-free ([`Subdivision`](crate::subdivision::Subdivision)) | in a chart ([`EnergyBound`](crate::chart::EnergyBound), Sec. 4.2) |
+//! | proposal | without a chart ([`Subdivision`]) | in a chart ([`EnergyBound`], Sec. 4.2) |
 //! |---|---|---|
 //! | made, and within its bounds | commit | commit |
 //! | refused: would create energy, has a history | restart as a one-step method | |
 //! | refused: the chart is singular there | | restart from a new reference state |
-//! | refused, the step may be shortened | halve | shorten by the bound of Sec. 4.2, by contact to its safe part |
+//! | refused, the step may be shortened | halve | shorten by that bound, by contact to its safe part |
 //! | refused, a fallback is allowed | fall back to implicit Euler | |
 //! | refused otherwise | stop | stop |
+//!
+//! [`Subdivision`]: crate::subdivision::Subdivision
+//! [`EnergyBound`]: crate::chart::energy_bound::EnergyBound
 
 /// What to do after a refusal.
 #[derive(Debug)]

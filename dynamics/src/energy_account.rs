@@ -9,23 +9,23 @@ use serde::{Deserialize, Serialize};
 /// through can feed implicit methods; shorter steps, and steps of implicit Euler, do not let them.
 const MAX_GAIN: f64 = 0.1;
 
-/// Share of the largest kinetic energy so far that all steps together may gain: second-order methods err to either side
-/// by about that at the longest steps that resolve a motion.
+/// Share of the largest kinetic energy so far that all steps together may gain: second-order methods err to
+/// either side by about that at the longest steps that resolve a motion.
 const MAX_NET_GAIN: f64 = 0.02;
 
 /// Relative displacement that the tolerance of the lengths leaves open: over a short step it looks
 /// like a velocity.
 const POSITION_NOISE: f64 = 1e-11;
 
-/// Round-off of the energies and of the work, relative to their sizes: the projections that end a step leave 1e-12 of the
-/// lengths, and forces of rods above the weight do work over that.
+/// Round-off of the energies and of the work, relative to their sizes: the projections that end a step leave
+/// 1e-12 of the lengths, and forces of rods above the weight do work over that.
 const RELATIVE_ROUND_OFF: f64 = 1e-9;
 
 /// The work of bodies, pins and moving constraints is known to the accuracy of the trapezoidal rule only.
 const DRIVES: f64 = 5.0;
 
-/// Gains and losses of the steps of a damped method, which should but lose: numerical errors alone, without the work of
-/// forces, bodies and supports.
+/// Gains and losses of the steps of a damped method, which should but lose: numerical errors alone, without
+/// the work of forces, bodies and supports.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EnergyAccount {
     /// Sum of all gains, losses being negative, joules.
@@ -96,7 +96,8 @@ impl EnergyAccount {
                     && net > MAX_NET_GAIN * largest.max(kinetic[1]) + unknown(round_off)
         };
         if is_too_much(round_off) {
-            // Forces far above the weight do work over the noise of positions, which energies near zero do not show.
+            // Forces far above the weight do work over the noise of positions, which energies near zero do
+            // not show.
             round_off += POSITION_NOISE * size * force_sum(model, after);
             if is_too_much(round_off) {
                 return Err(StepError::EnergyGain {

@@ -121,9 +121,9 @@ impl EnergyMomentum {
         }
     }
 
-    /// Whether the forces alone leave the rods as they are, as in free fall: then the midpoint velocity is what they make of it, the
-    /// impulses are zero, and there is no system to solve, whose rods, dependent in a flat sheet, would answer round-off in their
-    /// lengths with impulses. Asked of lumped masses only.
+    /// Whether the forces alone leave the rods as they are, as in free fall: then the midpoint velocity is
+    /// what they make of it, the impulses are zero, and there is no system to solve, whose rods, dependent in
+    /// a flat sheet, would answer round-off in their lengths with impulses. Asked of lumped masses only.
     fn falls_freely(&mut self, model: &SheetModel, state: &State, h: f64) -> bool {
         if model.mass().edge.is_some() || model.has_drives() || !model.constraints().is_empty() {
             return false;
@@ -138,11 +138,11 @@ impl EnergyMomentum {
         }
         let rods = model.rods();
         rods.apply(&self.xm, &self.w, &mut self.rods);
-        let still = 16.0 * f64::EPSILON * norm_inf(&self.w);
+        let round_off = 16.0 * f64::EPSILON * norm_inf(&self.w);
         self.rods
             .iter()
             .zip(rods.lengths())
-            .all(|(r, l)| r.abs() <= still * l)
+            .all(|(r, l)| r.abs() <= round_off * l)
     }
 
     /// Mean forces of the supports over the step.

@@ -22,19 +22,21 @@ pub struct Excess {
 const STIFFNESS: f64 = 1e9;
 /// Most Newton iterations; taut rods converge in about ten.
 const MAX_ITERATIONS: usize = 100;
-/// Forces on free vertices, relative to those at the supports, up to which the stretched sheet is in equilibrium.
+/// Forces on free vertices, relative to those at the supports, up to which the stretched sheet is in
+/// equilibrium.
 const BALANCED: f64 = 1e-6;
 /// Strain below which lengths that were not met are a matter of convergence.
 const MET: f64 = 1e-7;
 /// Line searches that halve this often have stalled.
 const MAX_HALVINGS: usize = 30;
 
-/// Looks for positions with the rest lengths and the supports where they are at time `t`, and says by how much they fail
-/// to exist.
+/// Looks for positions with the rest lengths and the supports where they are at time `t`, and says by how
+/// much they fail to exist.
 ///
-/// The least squares of the lengths, `E = sum_e p_e c_e^2 / 2`, are minimised by Newton's method from the state. Where the minimum is not zero
-/// the tensions `w_e = p_e c_e` are in equilibrium at all free vertices: by Farkas' lemma for the linearised lengths no small motion
-/// meets them, and the support that bears the force `F` has to give way by `sum_e w_e c_e / |F|`.
+/// The least squares of the lengths, `E = sum_e p_e c_e^2 / 2`, are minimised by Newton's method from the
+/// state. Where the minimum is not zero the tensions `w_e = p_e c_e` are in equilibrium at all free vertices:
+/// by Farkas' lemma for the linearised lengths no small motion meets them, and the support that bears the
+/// force `F` has to give way by `sum_e w_e c_e / |F|`.
 pub(crate) fn excess(model: &SheetModel, state: &State, t: f64) -> Option<Excess> {
     let mut fit = Fit::new(model, state, t)?;
     let mut energy = fit.energy();

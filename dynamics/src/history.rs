@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 /// Memory of a method: everything besides the state, the model and the options that its next step depends on.
 ///
-/// A history belongs to one accepted state. It is replaced when a proposal is committed and never changed in between.
+/// A history belongs to one accepted state. It is replaced when a proposal is committed and never changed in
+/// between.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct History {
     /// The accepted state before the present one, for two-step methods.

@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImplicitOptions {
-    /// Penalty of the rods in the augmented Lagrangian, relative to the masses: rods are
-    /// `stiffness` times as stiff as the inertia term. Default 1e4: where steps along the manifold fail, a hundred times
-    /// more needs several times the Newton iterations, a hundred times less twice the projections.
+    /// Penalty of the rods in the augmented Lagrangian, relative to the masses: rods are `stiffness` times as
+    /// stiff as the inertia term. Default 1e4: where steps along the manifold fail, a hundred times more
+    /// needs several times the Newton iterations, a hundred times less twice the projections.
     pub stiffness: f64,
     /// Newton's method stops when the decrease it still promises is this fraction of the
     /// inertia term of the incremental potential. Default 1e-4, far below the error of the
@@ -162,7 +162,8 @@ const MINIMISING: MethodTraits = MethodTraits {
     contact: ContactSupport::Barrier,
 };
 
-/// Proposes the step of the two-step formula, or of implicit Euler where there is no state before the present one.
+/// Proposes the step of the two-step formula, or of implicit Euler where there is no state before the present
+/// one.
 fn two_step(
     minimiser: &mut Minimiser,
     scene: Scene<'_>,

@@ -179,7 +179,8 @@ impl<'a> Attempt<'a> {
         &self.history.couplings
     }
 
-    /// Impulses of the step before and their factor in this one, the ratio of the steps: zero if there are none.
+    /// Impulses of the step before and their factor in this one, the ratio of the steps: zero if there are
+    /// none.
     pub(crate) fn scaled_multipliers(&self) -> (f64, &'a Multipliers) {
         let last = self.multipliers();
         let ratio = if last.step == 0.0 {
@@ -193,8 +194,8 @@ impl<'a> Attempt<'a> {
 
 /// A one-step or multistep method, as a function from a moment to a proposal.
 ///
-/// An integrator owns work arrays and factorisations, and nothing that a later step depends on: after a refusal, and
-/// after a proposal that is not committed, it answers the same question with the same bits.
+/// An integrator owns work arrays and factorisations, and nothing that a later step depends on: after a
+/// refusal, and after a proposal that is not committed, it answers the same question with the same bits.
 pub(crate) trait Integrator: Send {
     /// Proposes a sub-step. On success `proposal` is complete; after an error its contents have no meaning.
     ///

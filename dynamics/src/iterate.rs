@@ -34,7 +34,10 @@ impl ContactIterate {
         let bodies = BodyMotions::over(contact.geometry, span);
         let progress = bodies.first_progress();
         let zeros = vec![0.0; x0.len()];
-        let set = ContactSet::of(contact.geometry, held(&bodies, progress, x0, &zeros));
+        let set = ContactSet::of(
+            contact.geometry,
+            motion_at_rest(&bodies, progress, x0, &zeros),
+        );
         let active = ActiveContacts::at(contact.geometry, &set, progress, x0);
         let mut new = Self {
             bodies,
@@ -58,7 +61,7 @@ impl ContactIterate {
     fn restart(&mut self, contact: &mut StepContact<'_>, span: StepSpan, x0: &[f64]) {
         self.bodies.update(contact.geometry, span);
         self.progress = self.bodies.first_progress();
-        let motion = held(&self.bodies, self.progress, x0, &self.zeros);
+        let motion = motion_at_rest(&self.bodies, self.progress, x0, &self.zeros);
         self.set.update(contact.geometry, motion);
         self.update(contact, x0);
         self.set_start(contact, x0);
@@ -84,7 +87,12 @@ impl ContactIterate {
 }
 
 /// No motion: bodies and sheet stay where they are.
-fn held<'a>(bodies: &'a BodyMotions, s: f64, x: &'a [f64], zeros: &'a [f64]) -> JointMotion<'a> {
+fn motion_at_rest<'a>(
+    bodies: &'a BodyMotions,
+    s: f64,
+    x: &'a [f64],
+    zeros: &'a [f64],
+) -> JointMotion<'a> {
     JointMotion {
         bodies,
         progress: [s; 2],

@@ -2,8 +2,8 @@
 
 use isosheet_coords::linalg::Pattern;
 
-/// Collects the entries of a matrix. What [`Layout::entry`] returns is a place-holder until [`Layout::finish`] gives the
-/// slots that place-holders stand for.
+/// Collects the entries of a matrix. What [`Layout::entry`] returns is a place-holder until
+/// [`Layout::finish`] gives the slots that place-holders stand for.
 #[derive(Debug, Default)]
 pub(crate) struct Layout {
     entries: Vec<(u32, u32)>,

@@ -26,19 +26,19 @@
 //! a folded state, displace the sheet with [`leave_flat`], or allow a [`Fallback`].
 //!
 //! Every accepted step has the rest lengths to the tolerance of its method (a relative 1e-12 or better by
-//! default, or the round-off of the coordinates where that is larger), finite energies, and, with a
-//! damped method, an energy gain of at most a tenth of the kinetic energy in a step and a fiftieth of the largest
-//! kinetic energy in all steps together: compressed rods that
-//! snap through can feed any implicit method. Such steps are taken with implicit Euler, or shortened.
+//! default, or the round-off of the coordinates where that is larger), finite energies, and, with a damped
+//! method, an energy gain of at most a tenth of the kinetic energy in a step and a fiftieth of the largest
+//! kinetic energy in all steps together: compressed rods that snap through can feed any implicit method. Such
+//! steps are taken with implicit Euler, or shortened.
 //!
 //! # Limits
 //!
-//! Constraints that leave a vertex no room at all, such as two pins that stretch a straight line of
-//! rods taut, are approached only as far as the square root of round-off allows: a step may be
-//! refused there ([`StepError::StepTooSmall`]); with pins at rest the line is held, and costs nothing. A banner of 81 vertices that hangs by
-//! two corners may still be refused when it comes to hang straight, exactly flat and taut. So may one on meshes graded over many orders of
-//! magnitude. Conservative runs on fine, nearly flat sheets are slow: the exact motion flutters on
-//! ever smaller scales there.
+//! Constraints that leave a vertex no room at all, such as two pins that stretch a straight line of rods
+//! taut, are approached only as far as the square root of round-off allows: a step may be refused there
+//! ([`StepError::StepTooSmall`]); with pins at rest the vertices of the line become pins, and cost nothing. A
+//! banner of 81 vertices that hangs by two corners may still be refused when it comes to hang straight,
+//! exactly flat and taut. So may one on meshes graded over many orders of magnitude. Conservative runs on
+//! fine, nearly flat sheets are slow: the exact motion flutters on ever smaller scales there.
 //!
 //! # Conventions
 //!
@@ -48,12 +48,13 @@
 //!
 //! # Contact, constraints and reactions
 //!
-//! [`Simulation::with_contact`] takes a [`contact::Contact`]: a barrier potential whose Hessian couples more vertices
-//! than the mesh does, and a bound on every displacement. BDF2 and implicit Euler take it; in a chart contact acts by impulses
-//! ([`ChartSimulation::with_contact`](chart::ChartSimulation::with_contact)). Every method
-//! takes moving pins ([`SheetModel::with_moving_pin`]) and vertices on curves and surfaces
-//! ([`SheetModel::with_constraint`]), one-sided ones the damped methods only. [`Simulation::reactions`] are the forces of pins and constraints on the sheet,
-//! [`Simulation::body_loads`] those of the sheet on the bodies.
+//! [`Simulation::with_contact`] takes a [`contact::Contact`]: a barrier potential whose Hessian couples more
+//! vertices than the mesh does, and a bound on every displacement. BDF2 and implicit Euler take it; in a
+//! chart contact acts by impulses ([`ChartSimulation::with_contact`](chart::ChartSimulation::with_contact)).
+//! Every method takes moving pins ([`SheetModel::with_moving_pin`]) and vertices on curves and surfaces
+//! ([`SheetModel::with_constraint`]), one-sided ones the damped methods only. [`Simulation::reactions`] are
+//! the forces of pins and constraints on the sheet, [`Simulation::body_loads`] those of the sheet on the
+//! bodies.
 #![doc = include_str!("paper.md")]
 
 pub mod chart;

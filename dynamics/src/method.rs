@@ -45,8 +45,8 @@ pub enum Method {
     /// [`Method::ImplicitEuler`] with the effective step `k h`, at the same price. The method is second order
     /// and lightly damped, and takes any state: it keeps the motions that the step resolves and damps the
     /// ones that it does not. The first step, the first after the state was changed from outside, and a step
-    /// that is more than twice as long as the one before are implicit Euler (`w = 0`). Non-conservative forces
-    /// are taken at the start of the step, which makes them first order.
+    /// that is more than twice as long as the one before are implicit Euler (`w = 0`). Non-conservative
+    /// forces are taken at the start of the step, which makes them first order.
     ///
     /// The default: at the price of implicit Euler it loses a sixth to a half as much energy.
     Bdf2(ImplicitOptions),
@@ -145,7 +145,7 @@ pub enum Unsatisfiable {
     #[default]
     Refuse,
     /// Stop at the taut state, the last one accepted: [`Simulation::step`](crate::Simulation::step) succeeds,
-    /// time stands still, and the report says so ([`StepReport::taut`](crate::StepReport::taut)).
+    /// time does not advance, and the report says so ([`StepReport::taut`](crate::StepReport::taut)).
     StopTaut,
 }
 
@@ -155,9 +155,9 @@ pub enum Fallback {
     /// Return the error.
     #[default]
     Refuse,
-    /// Take the step with implicit Euler, which accepts any state, and carry on with the
-    /// integrator asked for. Reported as [`StepOutcome::Fallback`](crate::StepOutcome::Fallback); costs the energy that implicit
-    /// Euler loses in that step.
+    /// Take the step with implicit Euler, which accepts any state, and carry on with the integrator asked
+    /// for. Reported as [`StepOutcome::Fallback`](crate::StepOutcome::Fallback); costs the energy that
+    /// implicit Euler loses in that step.
     ImplicitEuler(ImplicitOptions),
 }
 

@@ -27,11 +27,12 @@ const MULTIPLIER_RATIOS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 const FOLD_PART: f64 = 0.1;
 /// Relative change of friction's normal forces below which they count as settled.
 const FRICTION_SETTLED: f64 = 0.05;
-/// Allowance for round-off, in units of its estimate, when two values of the incremental potential are compared.
+/// Allowance for round-off, in units of its estimate, when two values of the incremental potential are
+/// compared.
 const COMPARISON_SLACK: f64 = 10.0;
 
-/// Finds the positions with the rest lengths that minimise the incremental potential of a step: a minimisation that always
-/// descends, in place of a root finder that may not converge.
+/// Finds the positions with the rest lengths that minimise the incremental potential of a step: a
+/// minimisation that always descends, in place of a root finder that may not converge.
 ///
 /// Strategies are tried in this order until one ends at a minimum that is not above the start:
 ///
@@ -249,8 +250,9 @@ impl Minimiser {
         }
     }
 
-    /// Restores the lengths at the iterate to `tolerance` in at most `most` iterations, where multipliers and contact hold
-    /// their own; the strain reached. The forces of the supports are those before, with their share in the restoration.
+    /// Restores the lengths at the iterate to `tolerance` in at most `most` iterations, where multipliers and
+    /// contact hold their own; the strain reached. The forces of the supports are those before, with their
+    /// share in the restoration.
     fn restore(
         &mut self,
         problem: &mut StepProblem<'_>,

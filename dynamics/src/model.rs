@@ -1,14 +1,14 @@
 //! The mechanical system: rods, masses, pins, potentials and forces.
 
-use crate::constraint::rows::point;
-use crate::constraint::{ConstrainedVertex, VertexConstraint};
-use crate::motion::{MotionError, PointMotion};
+mod supports;
+
+use crate::constraint::VertexConstraint;
+use crate::motion::MotionError;
 use crate::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
-use crate::support::Support;
 use isosheet_mesh::{
     LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
 };
-use nalgebra::Vector3;
+use supports::MovingPin;
 
 /// Why a model cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -57,13 +57,6 @@ pub enum ModelError {
         /// The rate given, 1/s.
         rate: f64,
     },
-}
-
-/// A pinned vertex in prescribed motion.
-#[derive(Debug)]
-struct MovingPin {
-    vertex: usize,
-    motion: PointMotion,
 }
 
 /// Marks a vertex without unknowns in [`SheetModel::free_index`].
@@ -188,200 +181,6 @@ impl SheetModel {
         Ok(self)
     }
 
-    /// Pins vertices where they are: they lose their unknowns (the single external point
-    /// constraint of Sec. 3.3 is one such vertex).
-    ///
-    /// # Errors
-    /// [`ModelError::NoSuchVertex`].
-    pub fn with_pins(mut self, pins: &[VertexId]) -> Result<Self, ModelError> {
-        for &v in pins {
-            match self.free_index.get_mut(v.index()) {
-                Some(i) => *i = PINNED,
-                None => {
-                    return Err(ModelError::NoSuchVertex {
-                        vertex: v,
-                        vertex_count: self.free_index.len(),
-                    });
-                }
-            }
-        }
-        self.number_free();
-        Ok(self)
-    }
-
-    /// Pins vertices of the sheet where they are.
-    pub(crate) fn hold(&mut self, vertices: &[VertexId]) {
-        for v in vertices {
-            self.free_index[v.index()] = PINNED;
-        }
-        self.number_free();
-    }
-
-    /// Sets the velocities of some vertices to zero.
-    pub(crate) fn clear_velocities(&self, vertices: &[VertexId], v: &mut [f64]) {
-        for i in vertices {
-            v[3 * i.index()..3 * i.index() + 3].fill(0.0);
-        }
-    }
-
-    fn number_free(&mut self) {
-        let mut next = 0;
-        for i in self.free_index.iter_mut().filter(|i| **i != PINNED) {
-            *i = next;
-            next += 1;
-        }
-        self.free_count = next as usize;
-    }
-
-    /// Pins a vertex to a prescribed motion: a [`PointProfile`](crate::PointProfile), or a function of time
-    /// (seconds) that returns its position (metres).
-    ///
-    /// The start state has to have it there. Like any pin it has no unknowns.
-    ///
-    /// ```
-    /// use isosheet_dynamics::{PointProfile, Profile, SheetModel};
-    /// use isosheet_mesh::{MassKind, VertexId, generate};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let sheet = generate::isotropic_square(1, 0.2)?;
-    /// let shake = PointProfile {
-    ///     offset: sheet.position(VertexId(0)),
-    ///     z: Profile::Sine { mean: 0.0, amplitude: 0.01, frequency: 2.0, phase: 0.0 },
-    ///     ..PointProfile::default()
-    /// };
-    /// let [x, y, z] = sheet.position(VertexId(24));
-    /// let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?
-    ///     .with_moving_pin(VertexId(0), shake)?
-    ///     .with_moving_pin(VertexId(24), move |t: f64| [x, y, z + 0.01 * t.powi(3)])?;
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Errors
-    /// [`ModelError::NoSuchVertex`], [`ModelError::Motion`].
-    pub fn with_moving_pin(
-        self,
-        v: VertexId,
-        motion: impl Into<PointMotion>,
-    ) -> Result<Self, ModelError> {
-        let motion = motion.into();
-        motion
-            .validate()
-            .map_err(|source| ModelError::Motion { vertex: v, source })?;
-        let mut model = self.with_pins(&[v])?;
-        let vertex = v.index();
-        model.moving_pins.retain(|pin| pin.vertex != vertex);
-        model.moving_pins.push(MovingPin { vertex, motion });
-        Ok(model)
-    }
-
-    /// Constrains a vertex to a curve or surface. The start state has to have it there.
-    ///
-    /// # Errors
-    /// [`ModelError::NoSuchVertex`], [`ModelError::Motion`].
-    pub fn with_constraint(mut self, constraint: VertexConstraint) -> Result<Self, ModelError> {
-        let vertex = constraint.vertex();
-        if vertex.index() >= self.free_index.len() {
-            return Err(ModelError::NoSuchVertex {
-                vertex,
-                vertex_count: self.free_index.len(),
-            });
-        }
-        constraint
-            .validate_motion()
-            .map_err(|source| ModelError::Motion { vertex, source })?;
-        self.constraints.push(constraint);
-        Ok(self)
-    }
-
-    /// The vertices on curves and surfaces.
-    pub fn constraints(&self) -> &[VertexConstraint] {
-        &self.constraints
-    }
-
-    /// Masses and lengths at the vertices of the constraints, one for each constraint.
-    pub(crate) fn constrained_vertices(&self) -> Vec<ConstrainedVertex> {
-        let vertices = self.constraints.iter().map(VertexConstraint::vertex);
-        let scales = vertices.map(|vertex| ConstrainedVertex {
-            vertex,
-            mass: if self.is_pinned(vertex) {
-                0.0
-            } else {
-                self.mass.vertex[vertex.index()]
-            },
-            length: self.shortest_rod(vertex.index()),
-        });
-        scales.collect()
-    }
-
-    /// Largest distance by which a vertex constraint is broken, metres; `None` if there is none.
-    pub fn largest_violation(&self, t: f64, x: &[f64]) -> Option<f64> {
-        self.constraints
-            .iter()
-            .map(|c| c.violation(t, &point(x, c.vertex())))
-            // `max` would pass over a value that is not a number.
-            .reduce(|m, v| if v.is_nan() { v } else { m.max(v) })
-    }
-
-    /// The first support whose motion is not finite at time `t`, and the value.
-    pub(crate) fn find_bad_motion(&self, t: f64) -> Option<(Support, f64)> {
-        let pins = self.moving_pins.iter().flat_map(|pin| {
-            let at = pin.motion.position(t);
-            at.map(|c| (Support::Pin(VertexId(pin.vertex as u32)), c))
-        });
-        let constraints = self.constraints.iter().enumerate().flat_map(|(index, c)| {
-            let vertex = c.vertex();
-            c.bad_pose(t)
-                .map(|value| (Support::Constraint { index, vertex }, value))
-        });
-        pins.chain(constraints).find(|(_, c)| !c.is_finite())
-    }
-
-    /// Whether pins or vertex constraints move.
-    pub(crate) fn has_drives(&self) -> bool {
-        !self.moving_pins.is_empty() || self.constraints.iter().any(VertexConstraint::moves)
-    }
-
-    /// Whether anything holds the sheet.
-    pub(crate) fn has_supports(&self) -> bool {
-        self.free_count < self.free_index.len() || !self.constraints.is_empty()
-    }
-
-    /// Sets the velocities of pins in prescribed motion at time `t`; of functions by differences over a part
-    /// of the time `span`.
-    pub(crate) fn set_pin_velocities(&self, t: f64, span: f64, v: &mut [f64]) {
-        for pin in &self.moving_pins {
-            let rate = pin.motion.velocity(t, span);
-            v[3 * pin.vertex..3 * pin.vertex + 3].copy_from_slice(rate.as_slice());
-        }
-    }
-
-    /// Rates `dc/dt` of the vertex constraints at fixed positions, metres per second.
-    pub(crate) fn constraint_rates(&self, t: f64, span: f64, x: &[f64]) -> Vec<Vector3<f64>> {
-        let constraints = self.constraints.iter();
-        constraints
-            .map(|c| c.rate(t, span, &point(x, c.vertex())))
-            .collect()
-    }
-
-    /// Moves the pins in prescribed motion to where they are at time `t`.
-    pub(crate) fn place_pins(&self, t: f64, x: &mut [f64]) {
-        for pin in &self.moving_pins {
-            x[3 * pin.vertex..3 * pin.vertex + 3].copy_from_slice(&pin.motion.position(t));
-        }
-    }
-
-    /// The motion of a pin, if one is prescribed.
-    pub(crate) fn pin_motion(&self, v: VertexId) -> Option<&PointMotion> {
-        let pin = self.moving_pins.iter().find(|p| p.vertex == v.index())?;
-        Some(&pin.motion)
-    }
-
-    /// The vertices in prescribed motion.
-    pub(crate) fn moving_pins(&self) -> impl Iterator<Item = usize> + '_ {
-        self.moving_pins.iter().map(|pin| pin.vertex)
-    }
-
     /// Connectivity.
     pub fn topology(&self) -> &Topology {
         &self.topology
@@ -412,19 +211,6 @@ impl SheetModel {
         self.damping
     }
 
-    /// Whether the vertex is pinned.
-    pub fn is_pinned(&self, v: VertexId) -> bool {
-        self.free_index[v.index()] == PINNED
-    }
-
-    /// The pinned vertices.
-    pub fn pins(&self) -> Vec<VertexId> {
-        self.topology
-            .vertex_ids()
-            .filter(|&v| self.is_pinned(v))
-            .collect()
-    }
-
     /// Number of vertices that are not pinned.
     pub fn free_count(&self) -> usize {
         self.free_count
@@ -452,7 +238,7 @@ impl SheetModel {
     }
 
     /// Mean vertex mass, kilograms: the mass scale of tolerances.
-    pub fn mean_mass(&self) -> f64 {
+    pub(crate) fn mean_mass(&self) -> f64 {
         self.mean_mass
     }
 
@@ -511,7 +297,7 @@ impl SheetModel {
     }
 
     /// Whether every potential is linear, so that its force is constant.
-    pub fn has_constant_forces(&self) -> bool {
+    pub(crate) fn has_constant_forces(&self) -> bool {
         self.potentials
             .iter()
             .all(|p| p.shape() == PotentialShape::Linear)

@@ -91,16 +91,18 @@ pub enum RunEnd {
     Complete,
     /// An observer ended it.
     Stopped,
-    /// The step control stopped at a taut state, see [`Unsatisfiable::StopTaut`](crate::Unsatisfiable::StopTaut).
+    /// The step control stopped at a taut state, see
+    /// [`Unsatisfiable::StopTaut`](crate::Unsatisfiable::StopTaut).
     Taut,
 }
 
-/// Part of a step by which the duration of a run may differ from a whole number of steps, to allow for round-off.
+/// Part of a step by which the duration of a run may differ from a whole number of steps, to allow for
+/// round-off.
 const ROUND_OFF: f64 = 1e-9;
 
 impl Simulation {
-    /// Advances by `duration` seconds in steps of `step` seconds, the last one shorter where the duration asks for it, and
-    /// shows every step to the observers, in their order.
+    /// Advances by `duration` seconds in steps of `step` seconds, the last one shorter where the duration
+    /// asks for it, and shows every step to the observers, in their order.
     ///
     /// ```
     /// use isosheet_dynamics::{Frames, History, Method, RunEnd, SheetModel, Simulation, State};
@@ -122,8 +124,8 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// As [`Simulation::step`]; [`StepError::StepSize`] if the duration is not positive and finite. What the observers
-    /// have kept up to then stays with them.
+    /// As [`Simulation::step`]; [`StepError::StepSize`] if the duration is not positive and finite. What the
+    /// observers have kept up to then stays with them.
     pub fn run(
         &mut self,
         duration: f64,

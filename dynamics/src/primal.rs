@@ -29,7 +29,8 @@ pub(crate) struct PrimalMatrix {
     /// Slots of each edge block and whether its rows belong to end `b` (else to `a`).
     edge_slots: Vec<Option<([u32; 9], bool)>>,
     rhs: Vec<f64>,
-    /// Pairs of free vertices (in free numbers, larger first) that contact couples beyond the mesh's edges, sorted.
+    /// Pairs of free vertices (in free numbers, larger first) that contact couples beyond the mesh's edges,
+    /// sorted.
     extra: Vec<[u32; 2]>,
     couplings: Vec<[u32; 2]>,
 }
@@ -92,8 +93,8 @@ impl PrimalMatrix {
         Ok(())
     }
 
-    /// The pairs of free vertices (in free numbers, larger first, sorted) beyond the edges of the mesh that there is room
-    /// for on account of contact.
+    /// The pairs of free vertices (in free numbers, larger first, sorted) beyond the edges of the mesh that
+    /// there is room for on account of contact.
     pub(crate) fn extra_pairs(&self) -> &[[u32; 2]] {
         &self.extra
     }

@@ -85,8 +85,9 @@ impl ProjectionStep {
         })
     }
 
-    /// Mean forces of the supports over the step: what forces and inertia, up to the prediction, ask for at the supports
-    /// themselves, and their share in the projections. Pins move at the speed that they end with.
+    /// Mean forces of the supports over the step: what forces and inertia, up to the prediction, ask for at
+    /// the supports themselves, and their share in the projections. Pins move at the speed that they end
+    /// with.
     fn set_balance(&mut self, model: &SheetModel, state: &State, h: f64) {
         let (free, v) = (model.free_index(), &self.v);
         let predicted = |i: usize| (self.predicted[i] - state.x[i]) / h;
@@ -263,8 +264,8 @@ impl ProjectionStep {
         if strain > tolerance || strain.is_nan() {
             return Err(not_converged(state.t, h, effort, 0.0, strain));
         }
-        // Where nothing moves that holds it, the start has the rest lengths too: a projection that ends further away than it is not
-        // the nearest point, and would create energy.
+        // Where nothing moves that holds it, the start has the rest lengths too: a projection that ends
+        // further away than it is not the nearest point, and would create energy.
         let distance = |x: &[f64], v: &mut Vec<f64>, predicted: &[f64]| {
             for i in 0..x.len() {
                 v[i] = x[i] - predicted[i];

@@ -314,8 +314,8 @@ impl Rattle {
         balance.finish(model);
     }
 
-    /// One step of any sign, of a state and the multipliers that belong to it. The forces of the supports over the
-    /// step are in `self.balance` afterwards.
+    /// One step of any sign, of a state and the multipliers that belong to it. The forces of the supports
+    /// over the step are in `self.balance` afterwards.
     fn advance(
         &mut self,
         model: &SheetModel,

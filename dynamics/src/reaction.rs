@@ -48,8 +48,8 @@ pub(crate) enum ForceTime {
 pub(crate) struct Balance {
     /// At pinned vertices the force of the pin, elsewhere zero; `3V`, newtons.
     pub pins: Vec<f64>,
-    /// Of each vertex constraint the multipliers of its equations, newtons. Of the damped methods, here and in the other two, without
-    /// the share that supports have in projections.
+    /// Of each vertex constraint the multipliers of its equations, newtons. Of the damped methods, here and
+    /// in the other two, without the share that supports have in projections.
     pub multipliers: Vec<Vector3<f64>>,
     /// Of each vertex constraint its force on the vertex, newtons.
     pub constraints: Vec<Vector3<f64>>,
@@ -286,8 +286,9 @@ impl Balance {
         pins.chain(constraints).collect()
     }
 
-    /// Work that moving pins and vertex constraints do on the sheet in a step from `x0` at `t0` to `x1` at `t1`, joules: with the
-    /// mean forces or, where they are known at the end, by the trapezoidal rule with those of the step before.
+    /// Work that moving pins and vertex constraints do on the sheet in a step from `x0` at `t0` to `x1` at
+    /// `t1`, joules: with the mean forces or, where they are known at the end, by the trapezoidal rule with
+    /// those of the step before.
     pub(crate) fn drive_work(
         &self,
         model: &SheetModel,

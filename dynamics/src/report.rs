@@ -51,8 +51,9 @@ pub struct StepReport {
     pub kinetic: f64,
     /// Potential energy at the end, contact included, joules.
     pub potential: f64,
-    /// Work done since the start by the non-conservative forces, by moving bodies, pins and vertex constraints, and by
-    /// changing driven potentials ([`Potential::is_driven`](crate::Potential::is_driven)), joules.
+    /// Work done since the start by the non-conservative forces, by moving bodies, pins and vertex
+    /// constraints, and by changing driven potentials
+    /// ([`Potential::is_driven`](crate::Potential::is_driven)), joules.
     pub work: f64,
     /// Energy taken out by velocity damping since the start, joules.
     pub dissipated: f64,
@@ -65,7 +66,8 @@ pub struct StepReport {
     pub strain: f64,
     /// Smallest gap to an obstacle or between parts of the sheet, metres; `None` without contact.
     pub gap: Option<f64>,
-    /// Largest distance by which a vertex constraint is broken at the end, metres; `None` without constraints.
+    /// Largest distance by which a vertex constraint is broken at the end, metres; `None` without
+    /// constraints.
     pub violation: Option<f64>,
     /// Set where the step stopped at a taut state (see [`Unsatisfiable`](crate::Unsatisfiable)).
     pub taut: Option<Excess>,

@@ -22,8 +22,8 @@ const SUFFICIENT_DECREASE: f64 = 0.1;
 /// A line search that has halved its step this often has stalled.
 const SMALLEST_STEP: f64 = 1e-2;
 
-/// Part of the tolerance that a projection with contact aims for. It keeps what round-off adds in later steps
-/// below the tolerance, and so a sheet at rest from having to fold.
+/// Part of the tolerance that is the goal of a projection with contact. It keeps what round-off adds in later
+/// steps below the tolerance, and so a sheet at rest from having to fold.
 const RESERVE: f64 = 0.1;
 /// Passes of the method of multipliers: each contracts by the penalty, except along rods that are dependent.
 const PASSES: usize = 3;
@@ -72,7 +72,8 @@ pub(crate) struct RestorationGoal<'a> {
     pub(crate) max_iterations: usize,
     /// Time of the vertex constraints, seconds.
     pub(crate) t: f64,
-    /// What loads the vertex constraints already: one-sided ones under load are kept as equalities. May be empty.
+    /// What loads the vertex constraints already: one-sided ones under load are kept as equalities. May be
+    /// empty.
     pub(crate) loads: &'a [Vector3<f64>],
 }
 
@@ -112,8 +113,8 @@ impl Restoration {
         }
     }
 
-    /// Restores the lengths of an iterate in place; returns the strain reached, which exceeds `goal.tolerance` if
-    /// `goal.max_iterations` did not suffice.
+    /// Restores the lengths of an iterate in place; returns the strain reached, which exceeds
+    /// `goal.tolerance` if `goal.max_iterations` did not suffice.
     pub(crate) fn positions(
         &mut self,
         model: &SheetModel,
@@ -239,7 +240,8 @@ impl Restoration {
         Solved::Yes
     }
 
-    /// Halves the step from `limit` on until the error decreases sufficiently; the part of the step and the error there.
+    /// Halves the step from `limit` on until the error decreases sufficiently; the part of the step and the
+    /// error there.
     fn line_search(
         &mut self,
         model: &SheetModel,
@@ -282,7 +284,7 @@ impl Restoration {
     fn unfold(
         &mut self,
         model: &SheetModel,
-        held: Option<&mut RestorationContact<'_, '_>>,
+        contact: Option<&mut RestorationContact<'_, '_>>,
         iterate: &mut Iterate,
         relative: f64,
     ) {
@@ -292,7 +294,7 @@ impl Restoration {
             *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
-        let part = iterate.safe_fraction(held.map(|h| &mut *h.contact), &self.dx);
+        let part = iterate.safe_fraction(contact.map(|c| &mut *c.contact), &self.dx);
         for (xi, d) in iterate.x_mut().iter_mut().zip(&self.dx) {
             *xi += part * d;
         }
@@ -309,7 +311,7 @@ impl Restoration {
     fn keep_momentum(
         &mut self,
         model: &SheetModel,
-        held: Option<&RestorationContact<'_, '_>>,
+        contact: Option<&RestorationContact<'_, '_>>,
         iterate: &mut Iterate,
     ) {
         if !self.unassigned.has_room() {
@@ -325,13 +327,13 @@ impl Restoration {
         let sum = self
             .unassigned
             .push(&self.start, active, self.rhs.iter().copied());
-        if let Some(held) = held
-            && let Some(terms) = iterate.terms(Some(held.contact))
+        if let Some(RestorationContact { contact, scale }) = contact
+            && let Some(terms) = iterate.terms(Some(contact))
         {
             for (s, g) in sum.iter_mut().zip(&self.contact_start) {
                 *s += g;
             }
-            terms.add_gradient(held.scale, sum);
+            terms.add_gradient(*scale, sum);
         }
     }
 
@@ -403,8 +405,8 @@ impl Restoration {
     }
 }
 
-/// A seed that depends on positions to the last bit: a displacement that did not help is not drawn again, and none depends on
-/// what was done before.
+/// A seed that depends on positions to the last bit: a displacement that did not help is not drawn again, and
+/// none depends on what was done before.
 fn seed_of(x: &[f64]) -> u64 {
     x.iter().fold(0, |seed: u64, x| {
         seed.rotate_left(7).wrapping_add(x.to_bits())

@@ -218,8 +218,8 @@ impl SaddleMatrix {
         })
     }
 
-    /// Assembles, factorises and solves. `momentum` (`3V`), `rods` and `constraints` hold the right-hand sides
-    /// and, on success, the solution.
+    /// Assembles, factorises and solves. `momentum` (`3V`), `rods` and `constraints` hold the right-hand
+    /// sides and, on success, the solution.
     ///
     /// Where the matrix is singular, the rods being dependent, a regularised one takes its
     /// place, and the outcome returned says so.

@@ -54,9 +54,10 @@ enum Engine {
 impl Simulation {
     /// A simulation of `model` from `state` by one of the chart-free methods.
     ///
-    /// Velocities of pinned vertices are set to zero, or to those of their motion. Vertices on a straight line of rods between two pins at
-    /// rest cannot move either, and become pins: the upper edge of a banner that hangs by its corners. (The tension that would hold them against a
-    /// force across the line is infinite; as pins they have a share of the reactions.)
+    /// Velocities of pinned vertices are set to zero, or to those of their motion. Vertices on a straight
+    /// line of rods between two pins at rest cannot move either, and become pins: the upper edge of a banner
+    /// that hangs by its corners. (The tension that would hold them against a force across the line is
+    /// infinite; as pins they have a share of the reactions.)
     ///
     /// # Errors
     /// [`SimulationError`] if the options or the state make no sense, or the state does not
@@ -79,8 +80,8 @@ impl Simulation {
     /// A simulation of `model` from `state` in system coordinates: the paper's scheme and its
     /// relatives (see [`chart`](crate::chart)).
     ///
-    /// Of the velocities only the part that keeps the lengths is used. Supports that the chart does not eliminate are held by
-    /// closure equations, see [`ChartSimulation::from_state`].
+    /// Of the velocities only the part that keeps the lengths is used. Supports that the chart does not
+    /// eliminate are held by closure equations, see [`ChartSimulation::from_state`].
     ///
     /// # Errors
     /// [`SimulationError`] if the options or the state make no sense, or the chart is singular or
@@ -122,11 +123,12 @@ impl Simulation {
         Checkpoint::new(self.sheet, self.energy, motion)
     }
 
-    /// Goes on from a checkpoint of a chart-free method, with the model and the contact that it was made with: bit
-    /// for bit as the simulation would have gone on that the checkpoint was made of.
+    /// Continues from a checkpoint of a chart-free method, with the model and the contact that it was made
+    /// with: bit for bit as the simulation would have continued that the checkpoint was made of.
     ///
     /// # Errors
-    /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of simulation.
+    /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of
+    /// simulation.
     pub fn resume(
         model: SheetModel,
         contact: Option<Box<dyn Contact>>,
@@ -138,14 +140,15 @@ impl Simulation {
         };
         let engine = FreeEngine::resume(model, contact, *motion)?;
         let engine = Engine::Free(Box::new(engine));
-        Ok(Self::going_on(engine, checkpoint.sheet, checkpoint.energy))
+        Ok(Self::resumed(engine, checkpoint.sheet, checkpoint.energy))
     }
 
-    /// Goes on from a checkpoint of a simulation in a chart, with the model, the chart and the contact that it was
-    /// started with: bit for bit as the simulation would have gone on.
+    /// Continues from a checkpoint of a simulation in a chart, with the model, the chart and the contact that
+    /// it was started with: bit for bit as the simulation would have continued.
     ///
     /// # Errors
-    /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of simulation.
+    /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of
+    /// simulation.
     pub fn resume_in_chart(
         model: SheetModel,
         chart: Box<dyn Chart>,
@@ -158,10 +161,10 @@ impl Simulation {
         };
         let engine = ChartEngine::resume(model, chart, contact, *motion)?;
         let engine = Engine::Chart(Box::new(engine));
-        Ok(Self::going_on(engine, checkpoint.sheet, checkpoint.energy))
+        Ok(Self::resumed(engine, checkpoint.sheet, checkpoint.energy))
     }
 
-    fn going_on(engine: Engine, sheet: SheetFingerprint, energy: EnergySums) -> Self {
+    fn resumed(engine: Engine, sheet: SheetFingerprint, energy: EnergySums) -> Self {
         let mut simulation = Self {
             engine,
             sheet,
@@ -184,8 +187,8 @@ impl Simulation {
         Ok(self)
     }
 
-    /// Adds contact with bodies and of the sheet with itself: a barrier that keeps every gap positive at every
-    /// accepted step; in a chart impulses, see [`ChartSimulation::with_contact`].
+    /// Adds contact with bodies and of the sheet with itself: a barrier that keeps every gap positive at
+    /// every accepted step; in a chart impulses, see [`ChartSimulation::with_contact`].
     ///
     /// # Errors
     /// [`SimulationError::Contact`] if the method has no place for contact or something touches already.
@@ -209,8 +212,8 @@ impl Simulation {
         }
     }
 
-    /// What the sheet does to the bodies, in the order in which they were added; empty without contact, and in charts, where
-    /// impulses act ([`ChartSimulation::impulses`]).
+    /// What the sheet does to the bodies, in the order in which they were added; empty without contact, and
+    /// in charts, where impulses act ([`ChartSimulation::impulses`]).
     pub fn body_loads(&self) -> Vec<BodyLoad> {
         self.barrier().map_or_else(Vec::new, |(contact, contacts)| {
             contact.loads(contacts, &self.state().x)
@@ -228,12 +231,12 @@ impl Simulation {
     /// Forces of the pins and vertex constraints on the sheet in the last accepted sub-step, newtons, pins
     /// first; empty before the first step. In charts the forces at the end of the step.
     ///
-    /// The forces come from the integrator's own balance of momentum: at a pin `R = M a - f + G^T lambda` with
-    /// the discrete acceleration `a` and the multipliers `lambda` (tension positive) of the sub-step, at a
-    /// vertex constraint with Jacobian `J` and multipliers `mu` `R = -J^T mu`. The reactions of a sub-step of
-    /// `h` seconds, the forces of bodies on the sheet, the weight and the other forces add up to the rate of
-    /// change of the momentum `p = sum M v` that belongs to the method, before velocity damping, which acts
-    /// after the step:
+    /// The forces come from the integrator's own balance of momentum: at a pin `R = M a - f + G^T lambda`
+    /// with the discrete acceleration `a` and the multipliers `lambda` (tension positive) of the sub-step, at
+    /// a vertex constraint with Jacobian `J` and multipliers `mu` `R = -J^T mu`. The reactions of a sub-step
+    /// of `h` seconds, the forces of bodies on the sheet, the weight and the other forces add up to the rate
+    /// of change of the momentum `p = sum M v` that belongs to the method, before velocity damping, which
+    /// acts after the step:
     ///
     /// | method | rate of `p` | weight and other forces |
     /// |---|---|---|
@@ -245,12 +248,12 @@ impl Simulation {
     /// `b = w^2 / (1 + 2w)` and `k = (1 + w) / (1 + 2w)`. The difference quotient `(p1 - p0) / h` of a BDF2
     /// step is another number, and differs from the sum of the forces by as much as they change in the step.
     ///
-    /// The conservative methods keep this balance to round-off. The damped methods leave two things over: what
-    /// Newton's method leaves at free vertices, which shrinks with its tolerance, and, where there is contact,
-    /// the change of the contact forces by the projection that ends a step, beyond first order.
+    /// The conservative methods keep this balance to round-off. The damped methods leave two things over:
+    /// what Newton's method leaves at free vertices, which shrinks with its tolerance, and, where there is
+    /// contact, the change of the contact forces by the projection that ends a step, beyond first order.
     ///
-    /// For the damped methods this call factorises a matrix of the size of a step's for every iteration of the
-    /// last projection: ask only when the forces are wanted.
+    /// For the damped methods this call factorises a matrix of the size of a step's for every iteration of
+    /// the last projection: ask only when the forces are wanted.
     pub fn reactions(&self) -> Vec<Reaction> {
         match &self.engine {
             Engine::Free(engine) => {

@@ -1,7 +1,7 @@
 //! Lengths of the sub-steps of a step: halves of halves, on a binary grid that ends at the step exactly.
 
-/// Sub-steps accepted after a refusal before a longer one is tried: a singular state takes a few steps to pass, and
-/// trying too soon is what most refusals were.
+/// Sub-steps accepted after a refusal before a longer one is tried: a singular state takes a few steps to
+/// pass, and trying too soon is what most refusals were.
 const PATIENCE: usize = 4;
 
 /// Sub-steps `h / 2^k` of a step of `h` seconds.

@@ -5,21 +5,22 @@ use crate::model::PINNED;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 
-/// Slack of a line, relative to its length, that counts as none: the tolerance of the lengths. (Twice the slack is the square of the
-/// slope that is left.)
+/// Slack of a line, relative to its length, that counts as none: the tolerance of the lengths. (Twice the
+/// slack is the square of the slope that is left.)
 const NO_SLACK: f64 = 1e-12;
 
-/// Free vertices that cannot move because rods in a straight line hold them between two pins at rest, or between such vertices:
-/// the edge of a banner that hangs by both ends. There the length constraints are independent of each other and yet leave no motion to second
-/// order, which stalls every method; as pins they cost nothing.
+/// Free vertices that cannot move because rods in a straight line hold them between two pins at rest, or
+/// between such vertices: the edge of a banner that hangs by both ends. There the length constraints are
+/// independent of each other and yet leave no motion to second order, which stalls every method; as pins they
+/// cost nothing.
 ///
 /// `x`: positions, `3V`, metres.
 pub(crate) fn vertices_on_taut_lines(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
     let topology = model.topology();
-    let mut held: Vec<bool> = model.free_index().iter().map(|i| *i == PINNED).collect();
-    let mut other = vec![false; held.len()];
+    let mut fixed: Vec<bool> = model.free_index().iter().map(|i| *i == PINNED).collect();
+    let mut other = vec![false; fixed.len()];
     for v in model.moving_pins() {
-        (held[v], other[v]) = (false, true);
+        (fixed[v], other[v]) = (false, true);
     }
     for c in model.constraints() {
         other[c.vertex().index()] = true;
@@ -28,13 +29,13 @@ pub(crate) fn vertices_on_taut_lines(model: &SheetModel, x: &[f64]) -> Vec<Verte
     // A line of more rods than this has been round the sheet.
     let longest = topology.vertex_count();
     let mut found = Vec::new();
-    let mut from: Vec<VertexId> = topology.vertex_ids().filter(|v| held[v.index()]).collect();
+    let mut from: Vec<VertexId> = topology.vertex_ids().filter(|v| fixed[v.index()]).collect();
     while let Some(start) = from.pop() {
         let origin = at(start);
         let starts = topology.neighbours(start).filter(|v| !other[v.index()]);
         for first in starts {
             let (mut line, mut last, mut length) = (Vec::new(), first, (at(first) - origin).norm());
-            while !held[last.index()] && line.len() < longest {
+            while !fixed[last.index()] && line.len() < longest {
                 line.push(last);
                 let ahead = topology.neighbours(last).find_map(|next| {
                     let longer = length + (at(next) - at(last)).norm();
@@ -50,9 +51,9 @@ pub(crate) fn vertices_on_taut_lines(model: &SheetModel, x: &[f64]) -> Vec<Verte
                 }
             }
             // (An empty line: a rod between two pins.)
-            if held[last.index()] {
+            if fixed[last.index()] {
                 for v in line {
-                    held[v.index()] = true;
+                    fixed[v.index()] = true;
                     found.push(v);
                     from.push(v);
                 }

@@ -7,18 +7,19 @@ use isosheet_coords::linalg::norm_inf;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Entries that a unassigned has room for; projections need three to six iterations. What comes later joins the last one.
+/// Entries that a unassigned has room for; projections need three to six iterations. What comes later joins
+/// the last one.
 const ROOM: usize = 16;
 /// Penalty relative to the masses: beyond, the masses drown in round-off.
 const PENALTY: f64 = 1e9;
-/// Passes of the method of multipliers: each contracts what is left by the penalty, except along rods that are
-/// nearly dependent.
+/// Passes of the method of multipliers: each contracts what is left by the penalty, except along rods that
+/// are nearly dependent.
 const MAX_PASSES: usize = 30;
 /// Part of the momentum that may be left: the sum of the supports' forces is as good.
 const BALANCED: f64 = 1e-12;
 
-/// The parts of a step's change of momentum that no multiplier is known for, each with the positions whose rods and vertex
-/// constraints gave it: iterations of a projection, and what a minimisation left.
+/// The parts of a step's change of momentum that no multiplier is known for, each with the positions whose
+/// rods and vertex constraints gave it: iterations of a projection, and what a minimisation left.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct UnassignedMomentum {
     entries: Vec<Entry>,
@@ -75,8 +76,8 @@ impl UnassignedMomentum {
         self.len = 0;
     }
 
-    /// Adds momentum given at positions `x` by the rods and the vertex constraints `active`, and returns where more of it may be
-    /// added.
+    /// Adds momentum given at positions `x` by the rods and the vertex constraints `active`, and returns
+    /// where more of it may be added.
     pub(crate) fn push(
         &mut self,
         x: &[f64],
@@ -115,8 +116,9 @@ impl UnassignedMomentum {
         }
     }
 
-    /// Forces of the supports that, with tensions of the rods, give every entry's momentum `f`: `f = -G(x)^T m - J(x, t)^T n` at free
-    /// vertices, in the sense of least squares in the inverse of the mass matrix, and what is missing at pinned ones.
+    /// Forces of the supports that, with tensions of the rods, give every entry's momentum `f`:
+    /// `f = -G(x)^T m - J(x, t)^T n` at free vertices, in the sense of least squares in the inverse of the
+    /// mass matrix, and what is missing at pinned ones.
     ///
     /// A factorisation for each entry. Where the linear algebra fails the entry is left out.
     pub(crate) fn shares(&self, model: &SheetModel, t: f64) -> Shares {

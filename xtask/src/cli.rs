@@ -18,27 +18,33 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Make the figures and the table of Liu, Tang and Joneja 2007 with this workspace
     ///
-    /// Figures 1-15 are those of the paper; 16, a paper jam, and 17, origami, are applications that it only names.
-    /// Writes DIR/index.html (self-contained), DIR/figures, DIR/runs and DIR/summary.json. What is already there and was made
-    /// by the same program with the same options is kept; Ctrl-C stops at the next frame, and the same command continues.
+    /// Figures 1-15 are those of the paper; 16, a paper jam, and 17, origami, are applications that it only
+    /// names. Writes DIR/index.html (self-contained), DIR/figures, DIR/runs and DIR/summary.json. What is
+    /// already there and was made by the same program with the same options is kept; Ctrl-C stops at the next
+    /// frame, and the same command continues.
     ReproduceFigures(ReproduceArgs),
     /// Tabulate and plot the condition numbers of three systems of coordinates, by mesh level
     ///
     /// Writes DIR/condition.csv and DIR/condition.svg and prints the table.
     ConditionTable(ConditionArgs),
-    /// Measure time against errors: every method on every problem, the hanging sheet and the tablecloth of other programs, the linear solvers
+    /// Measure time against errors: every method on every problem, the hanging sheet and the tablecloth of
+    /// other programs, the linear solvers
     ///
-    /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG). What is already there and was made
-    /// by the same program with the same effort is kept. Times are wall times on one core: leave the machine alone meanwhile.
+    /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG). What is already
+    /// there and was made by the same program with the same effort is kept. Times are wall times on one core:
+    /// leave the machine alone meanwhile.
     SpeedVsError(SpeedArgs),
-    /// Measure what a step costs as the mesh is refined, without and with contact: time, memory, fill, fitted powers
+    /// Measure what a step costs as the mesh is refined, without and with contact: time, memory, fill, fitted
+    /// powers
     ///
-    /// Writes DIR/scale.html (self-contained), DIR/scale.csv, DIR/draping.csv, DIR/scale.svg and DIR/scale.png and prints the tables.
+    /// Writes DIR/scale.html (self-contained), DIR/scale.csv, DIR/draping.csv, DIR/scale.svg and
+    /// DIR/scale.png and prints the tables.
     Scale(ScaleArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///
-    /// Writes DIR/index.html (self-contained), DIR/verdicts.csv, DIR/verdicts.json and DIR/figures, and prints a table. The exit code is
-    /// 0 unless a case fails that is not declared an open limitation. Finished cases are kept, as in `reproduce-figures`.
+    /// Writes DIR/index.html (self-contained), DIR/verdicts.csv, DIR/verdicts.json and DIR/figures, and
+    /// prints a table. The exit code is 0 unless a case fails that is not declared an open limitation.
+    /// Finished cases are kept, as in `reproduce-figures`.
     HardCases(HardCasesArgs),
 }
 
@@ -57,8 +63,8 @@ pub(crate) struct SpeedArgs {
     #[arg(long)]
     pub(crate) full: bool,
 
-    /// What to measure, separated by commas: problems (pendulum, triangle, strip-2, ..., sheet-3, cloth-2), hanging, tablecloth, solvers; all
-    /// when left out
+    /// What to measure, separated by commas: problems (pendulum, triangle, strip-2, ..., sheet-3, cloth-2),
+    /// hanging, tablecloth, solvers; all when left out
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub(crate) problems: Vec<Part>,
 

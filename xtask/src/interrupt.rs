@@ -1,6 +1,8 @@
 //! Ctrl-C: the first one asks the work to stop at the next frame, a second one ends the process at once.
 
 use anyhow::Context;
+use isosheet_dynamics::{Simulation, StepReport};
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static REQUESTED: AtomicBool = AtomicBool::new(false);
@@ -31,5 +33,14 @@ pub(crate) fn check() -> Result<(), Interrupted> {
         Err(Interrupted)
     } else {
         Ok(())
+    }
+}
+
+/// An observer that ends a run after the step in which Ctrl-C was pressed. [`check`] says whether it did.
+pub(crate) fn observe(_simulation: &Simulation, _report: &StepReport) -> ControlFlow<()> {
+    if requested() {
+        ControlFlow::Break(())
+    } else {
+        ControlFlow::Continue(())
     }
 }

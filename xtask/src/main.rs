@@ -6,8 +6,8 @@
 //! * `scale`: time, memory and fill of a step against the size of the mesh.
 //! * `hard-cases`: what the solvers do where others break.
 //!
-//! The exit code is 0 when everything was made, 1 on failure, 2 for a command line that makes no sense and 130 when
-//! stopped with Ctrl-C.
+//! The exit code is 0 when everything was made, 1 on failure, 2 for a command line that makes no sense and
+//! 130 when stopped with Ctrl-C.
 
 mod cli;
 mod condition;
@@ -59,7 +59,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// An error with its causes, each unless the text before holds it already: many of our messages name their cause.
+/// An error with its causes, each unless the text before holds it already: many of our messages name their
+/// cause.
 fn explain(error: &anyhow::Error) -> String {
     let mut text = error.to_string();
     for cause in error.chain().skip(1).map(ToString::to_string) {

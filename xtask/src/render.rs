@@ -1,4 +1,5 @@
-//! A small renderer for shaded pictures of sheets: z-buffer, two-sided colours, ambient occlusion, thin wires.
+//! A small renderer for shaded pictures of sheets: z-buffer, two-sided colours, ambient occlusion, thin
+//! wires.
 
 mod camera;
 mod canvas;

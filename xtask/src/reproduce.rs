@@ -63,8 +63,8 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
 /// Where the folder keeps the effort that its results were made with.
 const EFFORT: &str = ".stamps/effort.json";
 
-/// Keeps quick and full results apart, which share the names of figures and runs: full results are not replaced by quick
-/// ones, and quick ones are removed before the first full one is made.
+/// Keeps quick and full results apart, which share the names of figures and runs: full results are not
+/// replaced by quick ones, and quick ones are removed before the first full one is made.
 fn claim(store: &Store, effort: RenderEffort) -> Result<()> {
     let recorded = store.read(EFFORT).ok();
     let recorded = recorded.and_then(|text| serde_json::from_slice::<RenderEffort>(&text).ok());

@@ -56,8 +56,8 @@ pub(crate) struct Results {
     pub(crate) draping: Vec<DrapeRow>,
 }
 
-/// One row of each kind for each level, coarse to fine, so that the peak of the memory is that of the level; `None` when
-/// stopped.
+/// One row of each kind for each level, coarse to fine, so that the peak of the memory is that of the level;
+/// `None` when stopped.
 fn measured(levels: impl Iterator<Item = u32>) -> Result<Option<Results>> {
     let mut results = Results {
         hanging: Vec::new(),

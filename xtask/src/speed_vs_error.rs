@@ -1,8 +1,8 @@
-//! `speed-vs-error`: time against errors of every method on problems with known motion, on two works that other programs have
-//! been measured on, and of the linear solvers.
+//! `speed-vs-error`: time against errors of every method on problems with known motion, on two works that
+//! other programs have been measured on, and of the linear solvers.
 //!
-//! Every part is kept in the output folder with what it found, so that an interrupted run continues where it stopped, and
-//! the page is written from what is there.
+//! Every part is kept in the output folder with what it found, so that an interrupted run continues where it
+//! stopped, and the page is written from what is there.
 
 mod analysis;
 mod barrier;

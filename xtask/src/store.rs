@@ -1,11 +1,12 @@
 //! The output folder: nothing half-written, and a record of what is up to date.
 //!
-//! Each piece of work (a *unit*: a figure or a run) is made in a working folder inside `.stamps` and moved into place when it
-//! is complete; its stamp in `.stamps` is removed before and written after that. A stamp counts only while its options,
-//! the program and the files it lists are the same, so a rerun makes again whatever changed or was cut short.
+//! Each piece of work (a *unit*: a figure or a run) is made in a working folder inside `.stamps` and moved
+//! into place when it is complete; its stamp in `.stamps` is removed before and written after that. A stamp
+//! counts only while its options, the program and the files it lists are the same, so a rerun makes again
+//! whatever changed or was cut short.
 //!
-//! The lock file in `.stamps` also marks a folder as the program's own: a folder that has other files and not this one is
-//! refused, and only what lies in `.stamps` is ever cleaned up.
+//! The lock file in `.stamps` also marks a folder as the program's own: a folder that has other files and not
+//! this one is refused, and only what lies in `.stamps` is ever cleaned up.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -88,8 +89,8 @@ pub(crate) struct Store {
 }
 
 impl Store {
-    /// Creates the folder when missing, checks that it is empty or this program's own and that it can be written to, locks it
-    /// and removes what a killed process left.
+    /// Creates the folder when missing, checks that it is empty or this program's own and that it can be
+    /// written to, locks it and removes what a killed process left.
     pub(crate) fn open(root: &Path) -> Result<Self, StoreError> {
         let unwritable = |source| StoreError::Unwritable {
             folder: root.to_owned(),

@@ -2,8 +2,8 @@
 
 use super::ChartStepControl;
 
-/// Part of the step that the bound would allow which is taken: the change of the Hamiltonian is known at one step length
-/// only.
+/// Part of the step that the bound would allow which is taken: the change of the Hamiltonian is known at one
+/// step length only.
 const SAFETY: f64 = 0.9;
 /// Bounds of the factor by which a refused step is shortened.
 const SHORTENING: (f64, f64) = (0.1, 0.9);
@@ -12,11 +12,13 @@ const SHORTENING_AFTER_FAILURE: f64 = 0.25;
 /// Largest factor by which the next step is longer than one that was accepted.
 const GROWTH: f64 = 2.0;
 
-/// The step control of Sec. 4.2: the largest step that changes the Hamiltonian by less than a tolerance `eps`.
+/// The step control of Sec. 4.2: the largest step that changes the Hamiltonian by less than a tolerance
+/// `eps`.
 ///
-/// The terms that the scheme (20) leaves out of the Taylor series (23) are bounded by a multiple of `h^2` (24), so that a step
-/// is "inversely proportional to the square root of the change of Hamiltonian": a step `h` that changes `H` by
-/// `dH` allows one of `h sqrt(eps / |dH|)`. With [`ChartStepControl::Fixed`] every step is accepted.
+/// The terms that the scheme (20) leaves out of the Taylor series (23) are bounded by a multiple of `h^2`
+/// (24), so that a step is "inversely proportional to the square root of the change of Hamiltonian": a step
+/// `h` that changes `H` by `dH` allows one of `h sqrt(eps / |dH|)`. With [`ChartStepControl::Fixed`] every
+/// step is accepted.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EnergyBound {
     control: ChartStepControl,
@@ -49,8 +51,8 @@ impl EnergyBound {
         self.control
     }
 
-    /// Judges a step of `h` seconds that changes the Hamiltonian by `change` (joules, absolute value); NaN if the step
-    /// itself failed.
+    /// Judges a step of `h` seconds that changes the Hamiltonian by `change` (joules, absolute value); NaN if
+    /// the step itself failed.
     pub(super) fn judge(&self, h: f64, change: f64) -> Verdict {
         match self.control {
             ChartStepControl::Fixed(_) if change.is_nan() => Verdict::TooSmall,
@@ -108,7 +110,7 @@ mod tests {
             assert!(h * h < 1e-6);
             planned = bound.next(h, h * h);
         }
-        // Each step aims at nine tenths of the bound.
+        // The goal of each step is nine tenths of the bound.
         assert!((0.9e-3..1e-3).contains(&planned), "{planned}");
     }
 

@@ -44,13 +44,13 @@ struct Work {
 impl ChartMechanics {
     /// The mechanics of a model in a chart.
     ///
-    /// Pins that the chart eliminates have to be fixed pins of the model. The model's other pins are free in the
-    /// chart; [`ChartSimulation`](super::ChartSimulation) holds them by closure equations.
+    /// Pins that the chart eliminates have to be fixed pins of the model. The model's other pins are free in
+    /// the chart; [`ChartSimulation`](super::ChartSimulation) holds them by closure equations.
     ///
     /// # Errors
     /// [`ChartDynamicsError::Chart`], [`ChartDynamicsError::TooManyCoordinates`]; and
-    /// [`ChartDynamicsError::WrongLength`], [`ChartDynamicsError::OtherPins`] or [`ChartDynamicsError::MovingPin`] when
-    /// the chart belongs to another sheet or to other pins.
+    /// [`ChartDynamicsError::WrongLength`], [`ChartDynamicsError::OtherPins`] or
+    /// [`ChartDynamicsError::MovingPin`] when the chart belongs to another sheet or to other pins.
     pub fn new(
         model: SheetModel,
         chart: Box<dyn Chart>,
@@ -180,7 +180,8 @@ impl ChartMechanics {
         Ok(())
     }
 
-    /// Velocities of the coordinates, `qdot = dH/dp = C^-1 p` (Eq. 18), and of the vertices, `v = J qdot` (Eq. 5).
+    /// Velocities of the coordinates, `qdot = dH/dp = C^-1 p` (Eq. 18), and of the vertices, `v = J qdot`
+    /// (Eq. 5).
     ///
     /// # Errors
     /// [`ChartDynamicsError::SingularMass`], [`ChartDynamicsError::Chart`].
@@ -214,7 +215,8 @@ impl ChartMechanics {
         Ok(0.5 * twice + self.model.potential_energy(t, x))
     }
 
-    /// `pdot = -dH/dq + Q` (Eqs. 19 and 22) at (x, p), with v the velocities of the vertices that belong to p.
+    /// `pdot = -dH/dq + Q` (Eqs. 19 and 22) at (x, p), with v the velocities of the vertices that belong to
+    /// p.
     ///
     /// With `A^T [mu; p] = M v` the velocity-squared term is
     ///

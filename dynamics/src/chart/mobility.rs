@@ -1,7 +1,8 @@
-//! Closure equations: vertices that are held beyond the pins that a chart eliminates.
+//! Closure equations: supports beyond the pins that a chart eliminates.
 //!
-//! A chart x(q) keeps the edge lengths and the pins it was built with. Whatever else holds vertices (further pins, fixed or
-//! moving, curves, surfaces) are equations `Phi(x(q), t) = 0`, and Hamilton's equations get multipliers,
+//! A chart x(q) keeps the edge lengths and the pins it was built with. Whatever else holds vertices (further
+//! pins, fixed or moving, curves, surfaces) are equations `Phi(x(q), t) = 0`, and Hamilton's equations get
+//! multipliers,
 //!
 //! ```text
 //! qdot = dH/dp,   pdot = -dH/dq + Q + K^T lambda,   K = N J,   N = dPhi/dx.
@@ -14,39 +15,29 @@
 //! N P N^T lambda = -(N a + gamma),   P = J C^-1 J^T,
 //! ```
 //!
-//! `a` the accelerations without the multipliers. P is the same in every chart: the velocities that impulses on the vertices cause
-//! where the rods hold, one solve with the saddle-point matrix,
+//! `a` the accelerations without the multipliers. P is the same in every chart: the velocities that impulses
+//! on the vertices cause where the rods hold, one solve with the saddle-point matrix,
 //!
 //! ```text
 //! [ M  G^T ] [ P f ]   [ f ]
 //! [ G   0  ] [ mu  ] = [ 0 ].
 //! ```
 //!
-//! So neither `a` nor the small matrix `D = N P N^T` lose digits to an ill-conditioned chart. Dependent equations (two pins at
-//! the ends of one rod) are met by least squares: D is inverted on its range.
+//! So neither `a` nor the small matrix `D = N P N^T` lose digits to an ill-conditioned chart. Dependent
+//! equations (two pins at the ends of one rod) are met by least squares: D is inverted on its range.
 
-use super::{ChartDynamicsError, ChartMechanics, PositionUpdate};
+mod projection;
+
+use super::{ChartDynamicsError, ChartMechanics};
 use crate::constraint::rows::point;
 use crate::reaction::Balance;
 use crate::support::Support;
-use isosheet_coords::linalg::norm_inf;
-use isosheet_coords::{ChartError, SaddlePoint};
+use isosheet_coords::SaddlePoint;
 use isosheet_mesh::VertexId;
 use nalgebra::{DMatrix, DVector, Matrix2x3, SymmetricEigen, Vector2, Vector3};
 
-/// Strain and relative violation at which a projection onto lengths and closures has converged.
-const TOLERANCE: f64 = 1e-13;
-
-/// Strain and relative violation that are accepted where it goes no further: ten times that, and the round-off of coordinates that
-/// are large against the rods.
-const ACCEPTED: f64 = 1e-12;
-const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
-
-/// Most Newton iterations of a projection; three or four are usual.
-const ITERATIONS: usize = 20;
-
-/// Eigenvalues of D, scaled to unit vertex masses so that they are at most one for each row, that count as zero. The
-/// saddle-point solve leaves about 1e-14; a closure within 1e-5 radians of a dead point has 1e-10.
+/// Eigenvalues of D, scaled to unit vertex masses so that they are at most one for each row, that count as
+/// zero. The saddle-point solve leaves about 1e-14; a closure within 1e-5 radians of a dead point has 1e-10.
 const RANK_TOLERANCE: f64 = 1e-11;
 
 /// One scalar closure equation; its gradient is zero but at one vertex.
@@ -96,7 +87,7 @@ pub(super) struct Mobility {
     inverse: DMatrix<f64>,
     rank: usize,
     mu: Vec<f64>,
-    still: Vec<f64>,
+    no_rates: Vec<f64>,
 }
 
 impl Mobility {
@@ -119,16 +110,16 @@ impl Mobility {
             inverse: DMatrix::zeros(0, 0),
             rank: 0,
             mu: vec![0.0; system.equations()],
-            still: vec![0.0; system.equations()],
+            no_rates: vec![0.0; system.equations()],
         })
     }
 
-    /// Where the pins are held that are free in the chart; fixed ones.
+    /// Positions of the fixed pins of the model that are free in the chart.
     pub(super) fn pin_positions(&self) -> Vec<Vector3<f64>> {
         self.pins.iter().map(|(_, x)| *x).collect()
     }
 
-    /// Sets where the pins are held that are free in the chart.
+    /// Sets the positions of the fixed pins of the model that are free in the chart.
     pub(super) fn set_pin_positions(&mut self, positions: &[Vector3<f64>]) {
         for ((_, x), kept) in self.pins.iter_mut().zip(positions) {
             *x = *kept;
@@ -209,7 +200,7 @@ impl Mobility {
             force.fill(0.0);
             row.push(1.0, &mut force);
             self.saddle
-                .solve(&force, &self.still, column, &mut self.mu)?;
+                .solve(&force, &self.no_rates, column, &mut self.mu)?;
         }
         let root = DVector::from_iterator(
             m,
@@ -251,21 +242,23 @@ impl Mobility {
         }
     }
 
-    /// Velocities on the unknowns that impulses on the unknowns cause where rods and closures hold. At the state of
-    /// [`Mobility::at`].
+    /// Velocities on the unknowns that impulses on the unknowns cause where rods and closures hold. At the
+    /// state of [`Mobility::at`].
     pub(super) fn respond(
         &mut self,
         impulse: &[f64],
         v: &mut [f64],
     ) -> Result<(), ChartDynamicsError> {
-        self.saddle.solve(impulse, &self.still, v, &mut self.mu)?;
+        self.saddle
+            .solve(impulse, &self.no_rates, v, &mut self.mu)?;
         let lambda = self.multipliers(self.rows.iter().map(|r| r.apply(v)));
         self.give_way(&lambda, v);
         Ok(())
     }
 
-    /// Changes velocities `v` (full) to the nearest in the mass metric that keep the closures: the change, on the unknowns.
-    /// Motions are differentiated over parts of the time `span`. At the state of [`Mobility::at`].
+    /// Changes velocities `v` (full) to the nearest in the mass metric that keep the closures: the change, on
+    /// the unknowns. Motions are differentiated over parts of the time `span`. At the state of
+    /// [`Mobility::at`].
     pub(super) fn velocity_change(
         &self,
         mechanics: &ChartMechanics,
@@ -307,8 +300,8 @@ impl Mobility {
         rates
     }
 
-    /// The velocity term gamma, metres per second squared: the second derivative of `Phi` on the straight path from `x` with
-    /// velocity `v`.
+    /// The velocity term gamma, metres per second squared: the second derivative of `Phi` on the straight
+    /// path from `x` with velocity `v`.
     fn bends(
         &self,
         mechanics: &ChartMechanics,
@@ -331,7 +324,8 @@ impl Mobility {
         bends
     }
 
-    /// Accelerations on the unknowns, and the forces `N^T lambda` of the closures. At the state of [`Mobility::at`].
+    /// Accelerations on the unknowns, and the forces `N^T lambda` of the closures. At the state of
+    /// [`Mobility::at`].
     fn accelerations(
         &mut self,
         mechanics: &mut ChartMechanics,
@@ -432,106 +426,6 @@ impl Mobility {
         balance.add_loads(loads);
         balance.finish(model);
         Ok(())
-    }
-
-    /// The row furthest off, by its place, and its relative violation; infinite if it is not a number.
-    fn worst(&self) -> Option<(usize, f64)> {
-        let mut worst: Option<(usize, f64)> = None;
-        for (i, row) in self.rows.iter().enumerate() {
-            let off = row.value.abs() / row.length;
-            let off = if off.is_nan() { f64::INFINITY } else { off };
-            if worst.is_none_or(|(_, w)| off > w) {
-                worst = Some((i, off));
-            }
-        }
-        worst
-    }
-
-    /// Refuses a state whose closures are off by more than `limit`, relative to the shortest rod at the vertex.
-    pub(super) fn check(
-        &mut self,
-        mechanics: &ChartMechanics,
-        t: f64,
-        x: &[f64],
-        limit: f64,
-    ) -> Result<(), ChartDynamicsError> {
-        self.at(mechanics, t, x)?;
-        match self.worst() {
-            Some((row, off)) if off > limit => Err(self.not_met(t, row)),
-            _ => Ok(()),
-        }
-    }
-
-    fn not_met(&self, t: f64, row: usize) -> ChartDynamicsError {
-        let support = self.rows[row].support;
-        let squares = self.rows.iter().filter(|r| r.support == support);
-        ChartDynamicsError::Closure {
-            t,
-            support,
-            distance: squares.map(|r| r.value * r.value).sum::<f64>().sqrt(),
-            rank: self.rank,
-            equations: self.rows.len(),
-        }
-    }
-
-    /// Newton's method for the nearest positions in the mass metric that meet the closures at time `t` and, unless positions are
-    /// updated linearly, have the right lengths. Pins end where they belong to the last bit.
-    pub(super) fn project(
-        &mut self,
-        mechanics: &ChartMechanics,
-        t: f64,
-        position: PositionUpdate,
-        x: &mut [f64],
-    ) -> Result<(), ChartDynamicsError> {
-        let system = mechanics.system();
-        let mut lack = vec![0.0; system.equations()];
-        let idle = vec![0.0; system.unknowns()];
-        let mut step = idle.clone();
-        let size = norm_inf(x) / mechanics.model().mean_length();
-        let accepted = ACCEPTED.max(ROUND_OFF * size);
-        let mut before = f64::INFINITY;
-        for _ in 0..ITERATIONS {
-            self.place(mechanics, t, x);
-            let strain = match position {
-                PositionUpdate::Linear => 0.0,
-                PositionUpdate::Exact | PositionUpdate::Projected => system.max_strain(x),
-            };
-            let error = strain.max(self.worst().map_or(0.0, |(_, off)| off));
-            let stalled = error > 0.5 * before && error <= accepted;
-            if error <= TOLERANCE || stalled {
-                for &(vertex, start) in &self.pins {
-                    let target = mechanics.model().pin_motion(vertex);
-                    let target = target.map_or(start, |m| m.position(t).into());
-                    let i = 3 * vertex.index();
-                    x[i..i + 3].copy_from_slice(target.as_slice());
-                }
-                return Ok(());
-            }
-            if !error.is_finite() {
-                return Err(ChartDynamicsError::NotFinite { t });
-            }
-            before = error;
-            self.factorize(mechanics, x)?;
-            if position != PositionUpdate::Linear {
-                system.residual(x, &mut lack);
-                lack.iter_mut().for_each(|c| *c = -*c);
-            }
-            self.saddle.solve(&idle, &lack, &mut step, &mut self.mu)?;
-            let lambda = self.multipliers(self.rows.iter().map(|row| row.apply(&step) + row.value));
-            self.give_way(&lambda, &mut step);
-            system.add_scaled(1.0, &step, x);
-        }
-        self.place(mechanics, t, x);
-        let strain = system.max_strain(x);
-        match self.worst() {
-            Some((row, off)) if off > TOLERANCE => Err(self.not_met(t, row)),
-            _ => Err(ChartError::NotConverged {
-                iterations: ITERATIONS,
-                residual: strain,
-                tolerance: TOLERANCE,
-            }
-            .into()),
-        }
     }
 }
 

@@ -56,7 +56,7 @@ pub enum Rebase {
     /// Take the current state as new reference and form the momenta anew from the velocities.
     #[default]
     WhenNeeded,
-    /// Refuse to go on.
+    /// Return an error.
     Never,
 }
 
@@ -85,19 +85,69 @@ pub struct ChartOptions {
     /// chart is rebased, default 4: J is about twice as large then, well before a
     /// singularity of the chart. Tracked by one power iteration per step.
     pub growth_limit: f64,
-    /// Chart margin ([`Chart::margin`](isosheet_coords::Chart::margin)) below which the chart is rebased, default 0.1.
+    /// Chart margin ([`Chart::margin`](isosheet_coords::Chart::margin)) below which the chart is rebased,
+    /// default 0.1.
     pub margin_limit: f64,
     /// Largest edge strain of the initial state, default 1e-6.
     pub strain_limit: f64,
-    /// Coefficient of restitution `e` of impacts, see [`ChartSimulation::with_contact`](super::ChartSimulation::with_contact):
-    /// a single contact that approaches at a speed parts at `e` times that speed. From 0, the default, to 1.
+    /// Coefficient of restitution `e` of impacts, see
+    /// [`ChartSimulation::with_contact`](super::ChartSimulation::with_contact): a single contact that
+    /// approaches at a speed parts at `e` times that speed. From 0, the default, to 1.
     pub restitution: f64,
     /// Edge strain at which a run is given up as diverged, default 0.5. Only the linear position update
     /// ever strains edges.
     pub failure_strain: f64,
-    /// Most steps, rejected ones included, in one call of [`Simulation::step`](crate::Simulation::step), default 2^20: a
-    /// step control that crawls along a singularity ends with an error instead of taking hours.
+    /// Most steps, rejected ones included, in one call of [`Simulation::step`](crate::Simulation::step),
+    /// default 2^20: a step control that crawls along a singularity ends with an error instead of taking
+    /// hours.
     pub max_steps: usize,
+}
+
+impl ChartStepControl {
+    fn validate(self) -> Result<(), ChartDynamicsError> {
+        const REMEDY: &str = "give a positive step in seconds";
+        match self {
+            Self::Fixed(h) => positive("fixed step", h, REMEDY),
+            Self::Adaptive {
+                tolerance,
+                min,
+                max,
+            } => {
+                positive(
+                    "energy tolerance",
+                    tolerance,
+                    "give a positive energy in joules",
+                )?;
+                positive("smallest step", min, REMEDY)?;
+                positive("largest step", max, REMEDY)?;
+                if min > max {
+                    return Err(ChartDynamicsError::Option {
+                        option: "smallest step",
+                        value: min,
+                        remedy: "give a value below the largest step",
+                    });
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Refuses a value that is not positive and finite.
+fn positive(
+    option: &'static str,
+    value: f64,
+    remedy: &'static str,
+) -> Result<(), ChartDynamicsError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(ChartDynamicsError::Option {
+            option,
+            value,
+            remedy,
+        })
+    }
 }
 
 impl Default for ChartOptions {
@@ -127,42 +177,7 @@ impl ChartOptions {
     /// # Errors
     /// [`ChartDynamicsError::Option`], [`ChartDynamicsError::Combination`].
     pub fn validate(&self) -> Result<(), ChartDynamicsError> {
-        let positive = |option, value: f64, remedy| {
-            if value > 0.0 && value.is_finite() {
-                Ok(())
-            } else {
-                Err(ChartDynamicsError::Option {
-                    option,
-                    value,
-                    remedy,
-                })
-            }
-        };
-        match self.control {
-            ChartStepControl::Fixed(h) => {
-                positive("fixed step", h, "give a positive step in seconds")?;
-            }
-            ChartStepControl::Adaptive {
-                tolerance,
-                min,
-                max,
-            } => {
-                positive(
-                    "energy tolerance",
-                    tolerance,
-                    "give a positive energy in joules",
-                )?;
-                positive("smallest step", min, "give a positive step in seconds")?;
-                positive("largest step", max, "give a positive step in seconds")?;
-                if min > max {
-                    return Err(ChartDynamicsError::Option {
-                        option: "smallest step",
-                        value: min,
-                        remedy: "give a value below the largest step",
-                    });
-                }
-            }
-        }
+        self.control.validate()?;
         positive(
             "condition limit",
             self.condition_limit,

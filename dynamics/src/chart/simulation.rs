@@ -1,6 +1,7 @@
 //! Explicit integration in a chart, with the published step control.
 
 use super::contact::ChartContact;
+use super::motion::ChartMotion;
 use super::stepping::{PhaseState, Stepper};
 use super::{
     ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, ContactImpulse, Rebase,
@@ -9,7 +10,6 @@ use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
 use crate::reaction::{Balance, ForceTime, Reaction};
 use crate::{SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// What one step did.
@@ -35,7 +35,8 @@ pub struct ChartStepReport {
     pub gap: Option<f64>,
     /// Largest edge strain after the step.
     pub strain: f64,
-    /// Work done over the step by moving pins and vertex constraints, and by moving bodies in impacts, joules.
+    /// Work done over the step by moving pins and vertex constraints, and by moving bodies in impacts,
+    /// joules.
     pub driven: f64,
     /// Whether the chart was rebased before the step.
     pub rebased: bool,
@@ -52,37 +53,6 @@ pub struct StepRange {
     pub steps: u64,
 }
 
-/// Where a motion in a chart is: all that the next step depends on besides model, contact and options.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ChartMotion {
-    /// Time, seconds.
-    pub(super) t: f64,
-    pub(super) state: PhaseState,
-    /// Energy after velocity damping, joules.
-    pub(super) hamiltonian: f64,
-    /// Planned length of the next step, seconds.
-    pub(super) next_step: f64,
-    /// Smallest and largest step so far; none before the first.
-    pub(super) range: Option<StepRange>,
-    /// Steps since the condition number was estimated.
-    pub(super) since_check: u32,
-    /// Growth of the largest eigenvalue of C since the reference state.
-    pub(super) growth: f64,
-    /// Whether the present state is the chart's reference state.
-    pub(super) is_fresh: bool,
-    /// Positions at which the chart was rebased last; none if it is as its user built it.
-    reference: Option<Vec<f64>>,
-    /// Largest eigenvalue of C at the reference state, and the vector of the power iteration.
-    eigenvalue: f64,
-    eigenvector: Vec<f64>,
-    /// Where the pins are held that the chart does not eliminate.
-    pins: Vec<Vector3<f64>>,
-    /// Forces of the supports now, in scenes where they move.
-    pub(super) balance: Option<Balance>,
-    /// Impulses of contacts at the end of the last step.
-    pub(super) impulses: Vec<ContactImpulse>,
-}
-
 /// A sheet moving in a chart.
 pub struct ChartSimulation {
     pub(super) stepper: Stepper,
@@ -91,8 +61,8 @@ pub struct ChartSimulation {
     pub(super) contact: Option<ChartContact>,
 }
 
-/// Gaps below this part of the activation distance are opened to it: the curvature of the path brings a sheet that lies or
-/// slides closer by the squared step each step, which no impulse sees.
+/// Gaps below this part of the activation distance are opened to it: the curvature of the path brings a sheet
+/// that lies or slides closer by the squared step each step, which no impulse sees.
 const LEAST_GAP: f64 = 0.1;
 
 impl ChartSimulation {
@@ -114,38 +84,26 @@ impl ChartSimulation {
 
     /// Start from a state. Only the part of the velocities that keeps edge lengths and closures is used.
     ///
-    /// The chart eliminates all fixed pins of the model or some of them. The others, moving pins and vertices on curves and
-    /// surfaces are held by closure equations `Phi(x(q), t) = 0`: multipliers in the equations of motion from their second
-    /// derivative in time, and after every step positions and momenta are brought back onto them, the nearest ones in the mass metric.
-    /// Equations that depend on others, as for two pins at the ends of one rod, are met by least squares.
+    /// The chart eliminates all fixed pins of the model or some of them. The others, moving pins and vertices
+    /// on curves and surfaces are held by closure equations `Phi(x(q), t) = 0`: multipliers in the equations
+    /// of motion from their second derivative in time, and after every step positions and momenta are brought
+    /// back onto them, the nearest ones in the mass metric. Equations that depend on others, as for two pins
+    /// at the ends of one rod, are met by least squares.
     ///
     /// # Errors
-    /// Invalid options; a state with the wrong edge lengths or off its supports; [`ChartDynamicsError::Chart`] for states
-    /// where the chart is singular (flat sheets) or too ill-conditioned; [`ChartDynamicsError::OneSided`].
+    /// Invalid options; a state with the wrong edge lengths or off its supports;
+    /// [`ChartDynamicsError::Chart`] for states where the chart is singular (flat sheets) or too
+    /// ill-conditioned; [`ChartDynamicsError::OneSided`].
     pub fn from_state(
         model: SheetModel,
         chart: Box<dyn Chart>,
         options: ChartOptions,
         start: &State,
     ) -> Result<Self, ChartDynamicsError> {
+        options.validate()?;
+        check_start(&model, start)?;
         let State { t, x, v } = start;
         let t = *t;
-        options.validate()?;
-        for (what, slice) in [("x", x), ("v", v)] {
-            if slice.len() != model.coordinate_count() {
-                return Err(ChartDynamicsError::WrongLength {
-                    what,
-                    found: slice.len(),
-                    expected: model.coordinate_count(),
-                });
-            }
-        }
-        if !(t.is_finite() && x.iter().chain(v).all(|c| c.is_finite())) {
-            return Err(ChartDynamicsError::NotFinite { t });
-        }
-        if let Some(index) = model.constraints().iter().position(|c| c.is_one_sided()) {
-            return Err(ChartDynamicsError::OneSided { index });
-        }
         let mut mechanics = ChartMechanics::new(model, chart, options.solver)?;
         let strain = mechanics.system().max_strain(x);
         if strain > options.strain_limit {
@@ -173,28 +131,16 @@ impl ChartSimulation {
         };
         stepper.close_momenta((t, step), x, &mut p)?;
         let hamiltonian = stepper.mechanics.hamiltonian(t, x, &p)?;
+        let x = x.clone();
+        let state = PhaseState {
+            x,
+            q,
+            p,
+            hamiltonian,
+        };
+        let pins = stepper.mobility.pin_positions();
         let mut simulation = Self {
-            motion: ChartMotion {
-                t,
-                state: PhaseState {
-                    x: x.to_vec(),
-                    q,
-                    p,
-                    hamiltonian,
-                },
-                hamiltonian,
-                next_step: step,
-                range: None,
-                since_check: 0,
-                growth: 1.0,
-                is_fresh: true,
-                reference: None,
-                eigenvector: Vec::new(),
-                eigenvalue: 0.0,
-                pins: stepper.mobility.pin_positions(),
-                balance: None,
-                impulses: Vec::new(),
-            },
+            motion: ChartMotion::start(t, state, step, pins),
             stepper,
             options,
             contact: None,
@@ -207,94 +153,23 @@ impl ChartSimulation {
         Ok(simulation)
     }
 
-    /// What a checkpoint keeps.
-    pub(crate) fn motion(&self) -> ChartMotion {
-        let (eigenvalue, eigenvector) = self.stepper.power();
-        ChartMotion {
-            eigenvalue,
-            eigenvector: eigenvector.to_vec(),
-            balance: self.motion.balance.as_ref().map(Balance::compact),
-            ..self.motion.clone()
-        }
-    }
-
-    /// Back to a motion of the same chart.
-    pub(super) fn restore(&mut self, motion: ChartMotion) {
-        self.stepper
-            .set_power(motion.eigenvalue, &motion.eigenvector);
-        self.motion = motion;
-    }
-
-    /// Goes on from a checkpoint, with the chart as its user built it at the start.
-    pub(crate) fn resume(
-        model: SheetModel,
-        mut chart: Box<dyn Chart>,
-        options: ChartOptions,
-        motion: ChartMotion,
-    ) -> Result<Self, ChartDynamicsError> {
-        let n = model.coordinate_count();
-        let reference = motion.reference.as_ref().unwrap_or(&motion.state.x);
-        for (what, found, expected) in [
-            ("x", motion.state.x.len(), n),
-            ("the reference state", reference.len(), n),
-        ] {
-            if found != expected {
-                return Err(ChartDynamicsError::WrongLength {
-                    what,
-                    found,
-                    expected,
-                });
-            }
-        }
-        if let Some(reference) = &motion.reference {
-            chart.rebase(reference)?;
-        }
-        let mechanics = ChartMechanics::new(model, chart, options.solver)?;
-        let n = mechanics.dimension();
-        for (what, found) in [
-            ("q", motion.state.q.len()),
-            ("p", motion.state.p.len()),
-            ("the power iteration", motion.eigenvector.len()),
-        ] {
-            if found != n {
-                return Err(ChartDynamicsError::WrongLength {
-                    what,
-                    found,
-                    expected: n,
-                });
-            }
-        }
-        let mut stepper = Stepper::new(mechanics, &options, &motion.state.x)?;
-        stepper.mobility.set_pin_positions(&motion.pins);
-        stepper.set_power(motion.eigenvalue, &motion.eigenvector);
-        let balance = motion.balance.as_ref().map(|kept| {
-            let mut balance = Balance::new(stepper.mechanics.model(), ForceTime::End);
-            balance.copy_from(kept);
-            balance
-        });
-        Ok(Self {
-            stepper,
-            options,
-            motion: ChartMotion { balance, ..motion },
-            contact: None,
-        })
-    }
-
     /// Adds contact with bodies and of the sheet with itself, by impulses on the momenta.
     ///
     /// The paper applies collision forces to momenta and does not say how; this is our choice. A step whose
-    /// displacement is not proven free of contact ([`crate::contact::ContactSet::safe_fraction`]) is taken anew as short as that
-    /// allows, so that every gap stays positive. At the end of each step all contacts within the activation distance that approach
-    /// get impulses together, `p += J^T R^T l`, with [`ChartOptions::restitution`] and Coulomb friction with the kinetic
-    /// coefficient, of which the energy never grows. The barrier of the contact is not used; a sheet rebounds at gaps
-    /// below its activation distance: choose that small. Gaps that the curvature of the path has closed to a tenth of it are
+    /// displacement is not proven free of contact ([`crate::contact::ContactSet::safe_fraction`]) is taken
+    /// anew as short as that allows, so that every gap stays positive. At the end of each step all contacts
+    /// within the activation distance that approach get impulses together, `p += J^T R^T l`, with
+    /// [`ChartOptions::restitution`] and Coulomb friction with the kinetic coefficient, of which the energy
+    /// never grows. The barrier of the contact is not used; a sheet rebounds at gaps below its activation
+    /// distance: choose that small. Gaps that the curvature of the path has closed to a tenth of it are
     /// opened to that again.
     ///
-    /// A sheet that lies on a body keeps still in forward Euler, the paper's method, which moves with the momenta that the impulses
-    /// left. The other methods move with what forces make of them in the step, and creep by the acceleration along the body
-    /// times the squared step, each step, against friction too.
+    /// A sheet that lies on a body stays at rest in forward Euler, the paper's method, which moves with the
+    /// momenta that the impulses left. The other methods move with what forces make of them in the step, and
+    /// creep by the acceleration along the body times the squared step, each step, against friction too.
     ///
-    /// Reactions do not contain the impulses that supports answer impacts with, nor does the work of moving pins.
+    /// Reactions do not contain the impulses that supports answer impacts with, nor does the work of moving
+    /// pins.
     ///
     /// # Errors
     /// [`ContactError`] if something touches already or the contact belongs to another sheet.
@@ -317,8 +192,8 @@ impl ChartSimulation {
         self.contact.as_ref().map(ChartContact::active)
     }
 
-    /// The impulses of contacts at the end of the last step, zero ones of contacts that do not press included; empty if nothing
-    /// approached.
+    /// The impulses of contacts at the end of the last step, zero ones of contacts that do not press
+    /// included; empty if nothing approached.
     #[must_use]
     pub fn impulses(&self) -> &[ContactImpulse] {
         &self.motion.impulses
@@ -332,9 +207,9 @@ impl ChartSimulation {
         Ok(balance)
     }
 
-    /// Forces of the pins and vertex constraints on the sheet at the present state, pins first, from Hamilton's equations with all
-    /// multipliers. Where closures depend on each other how they share a force is arbitrary (the shortest multipliers in
-    /// the mass metric); the sums are not.
+    /// Forces of the pins and vertex constraints on the sheet at the present state, pins first, from
+    /// Hamilton's equations with all multipliers. Where closures depend on each other how they share a force
+    /// is arbitrary (the shortest multipliers in the mass metric); the sums are not.
     ///
     /// # Errors
     /// [`ChartDynamicsError::Chart`] where the chart is singular.
@@ -516,5 +391,27 @@ impl ChartSimulation {
         let work = after.drive_work(model, self.motion.balance.as_ref(), start, end);
         self.motion.balance = Some(after);
         Ok(work)
+    }
+}
+
+/// Refuses a state of the wrong length or with values that are not finite, and supports that a chart cannot
+/// have.
+fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsError> {
+    let State { t, x, v } = start;
+    for (what, slice) in [("x", x), ("v", v)] {
+        if slice.len() != model.coordinate_count() {
+            return Err(ChartDynamicsError::WrongLength {
+                what,
+                found: slice.len(),
+                expected: model.coordinate_count(),
+            });
+        }
+    }
+    if !(t.is_finite() && x.iter().chain(v).all(|c| c.is_finite())) {
+        return Err(ChartDynamicsError::NotFinite { t: *t });
+    }
+    match model.constraints().iter().position(|c| c.is_one_sided()) {
+        Some(index) => Err(ChartDynamicsError::OneSided { index }),
+        None => Ok(()),
     }
 }

@@ -110,8 +110,8 @@ impl Stepper {
         Ok(())
     }
 
-    /// `pdot` with the multipliers of the closures, at the state given to [`Stepper::open`]. Motions of supports are
-    /// differentiated over parts of the time `span`.
+    /// `pdot` with the multipliers of the closures, at the state given to [`Stepper::open`]. Motions of
+    /// supports are differentiated over parts of the time `span`.
     fn momentum_rate(
         &mut self,
         time: (f64, f64),
@@ -139,8 +139,8 @@ impl Stepper {
         self.mechanics.at(x)
     }
 
-    /// Brings momenta onto the closures: the nearest velocities in the mass metric that keep them. The mechanics has to be at
-    /// the state.
+    /// Brings momenta onto the closures: the nearest velocities in the mass metric that keep them. The
+    /// mechanics has to be at the state.
     pub(super) fn close_momenta(
         &mut self,
         time: (f64, f64),
@@ -188,8 +188,8 @@ impl Stepper {
         Ok(Some(impact))
     }
 
-    /// The least displacement in the mass metric that opens all gaps to `least`, lengths and closures kept: the state there
-    /// with the same velocities.
+    /// The least displacement in the mass metric that opens all gaps to `least`, lengths and closures kept:
+    /// the state there with the same velocities.
     pub(super) fn separated(
         &mut self,
         t: f64,

@@ -7,9 +7,11 @@ use super::{ChartDynamicsError, ChartStepControl, ChartStepReport, Rebase};
 use crate::contact::{ActiveContacts, StepSpan};
 use crate::control::{Decision, Stepping, take_substep};
 
-/// Part of the planned step below which contact does not shorten a step: beyond, positions drown in round-off.
+/// Part of the planned step below which contact does not shorten a step: beyond, positions drown in
+/// round-off.
 const SHORTEST_CUT: f64 = 1e-10;
-/// How often contact may shorten a step. Each time the gap shrinks by nine tenths, so that 100 times are the range of f64.
+/// How often contact may shorten a step. Each time the gap shrinks by nine tenths, so that 100 times are the
+/// range of f64.
 const MOST_CUTS: u32 = 100;
 
 impl ChartSimulation {

@@ -135,8 +135,8 @@ enum Shape {
 /// * a surface, its level (a signed distance, or near the surface like one): one equation;
 /// * a curve, the vector from its closest point, `r(p) = p - q(s(p))`: three equations of rank two on the
 ///   curve. Its Jacobian there is the projector across the curve, so the two independent equations are
-///   perfectly conditioned, and as smooth as the curve. No frame has to be transported along the curve, none is
-///   undefined where a curve closes or is straight, and no unknown is added.
+///   perfectly conditioned, and as smooth as the curve. No frame has to be transported along the curve, none
+///   is undefined where a curve closes or is straight, and no unknown is added.
 ///
 /// A constraint so touches its vertex's own 3x3 block of the matrices and nothing else.
 ///

@@ -4,7 +4,7 @@ use super::curve::{round, straight};
 use super::{ConstraintError, Curve, CurvePoint};
 use nalgebra::Vector3;
 
-/// Straight sides joined by circular arcs; goes on straight beyond its ends.
+/// Straight sides joined by circular arcs; it continues straight beyond its ends.
 ///
 /// Corners are rounded because at a sharp one the motion of a vertex has no velocity.
 #[derive(Debug, Clone, PartialEq)]

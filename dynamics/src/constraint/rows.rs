@@ -65,9 +65,9 @@ impl VertexRows {
         }
     }
 
-    /// Replaces the multipliers by their first-order estimates after the step `-dx`, the equations being linearised:
-    /// `L + p (c - J dx)`, of one-sided constraints the negative part. Returns the largest change and the largest
-    /// multiplier, kilogram metres.
+    /// Replaces the multipliers by their first-order estimates after the step `-dx`, the equations being
+    /// linearised: `L + p (c - J dx)`, of one-sided constraints the negative part. Returns the largest change
+    /// and the largest multiplier, kilogram metres.
     pub(crate) fn update_after(&mut self, dx: &[f64]) -> [f64; 2] {
         let mut largest = [0.0_f64; 2];
         for i in 0..self.multipliers.len() {
@@ -136,12 +136,12 @@ impl VertexRows {
 
     /// Size of the multipliers' terms, and energy of the round-off of positions of the given size.
     pub(crate) fn scales(&self, size: f64) -> (f64, f64) {
-        let (mut load, mut still) = (0.0, 0.0);
+        let (mut load, mut round_off) = (0.0, 0.0);
         for (i, v) in self.vertices.iter().enumerate() {
             load += self.multipliers[i].norm() * v.length;
-            still += self.penalties[i] * (f64::EPSILON * (size + v.length)).powi(2);
+            round_off += self.penalties[i] * (f64::EPSILON * (size + v.length)).powi(2);
         }
-        (load, still)
+        (load, round_off)
     }
 
     /// Adds the gradient of [`VertexRows::value`].

@@ -4,7 +4,7 @@ use super::{ConstraintError, Curve, CurvePoint};
 use nalgebra::Vector3;
 
 /// A cubic spline through points, twice continuously differentiable, with the distance of the points as the
-/// parameter: open with natural ends (it goes on straight beyond them, without a jump in curvature), or
+/// parameter: open with natural ends (it continues straight beyond them, without a jump in curvature), or
 /// closed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline {

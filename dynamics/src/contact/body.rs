@@ -129,7 +129,7 @@ impl BodyMotions {
     }
 
     /// Whether a body moves, if only by spinning.
-    pub fn any_moves(&self) -> bool {
+    pub(crate) fn any_moves(&self) -> bool {
         self.list.iter().any(|m| m.material.moves())
     }
 
@@ -203,34 +203,34 @@ impl BodyPlace {
     }
 
     /// Velocity of the surface at a place in space times the duration of the step, metres.
-    pub fn step_velocity(&self, place: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn step_velocity(&self, place: &Vector3<f64>) -> Vector3<f64> {
         let surface = &self.motion.surface;
         surface.shift + surface.turn.cross(&(place - self.origin))
     }
 
     /// Angular velocity of the surface times the duration of the step, radians.
-    pub fn step_turn(&self) -> Vector3<f64> {
+    pub(crate) fn step_turn(&self) -> Vector3<f64> {
         self.motion.surface.turn
     }
 
     /// The material point at a place in space, in the frame of the material, metres.
-    pub fn material_point(&self, place: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn material_point(&self, place: &Vector3<f64>) -> Vector3<f64> {
         let point = Point3::from(*place);
         self.material.inverse_transform_point(&point).coords
     }
 
     /// The place in space of a material point, metres.
-    pub fn material_place(&self, point: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn material_place(&self, point: &Vector3<f64>) -> Vector3<f64> {
         moved(&self.material, point)
     }
 
     /// The place in space of a material point at the start of the step, metres.
-    pub fn material_start(&self, point: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn material_start(&self, point: &Vector3<f64>) -> Vector3<f64> {
         moved(&self.motion.material.start, point)
     }
 
     /// The place in space of a material point at the end of the step, metres.
-    pub fn material_end(&self, point: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn material_end(&self, point: &Vector3<f64>) -> Vector3<f64> {
         moved(&self.motion.material.end, point)
     }
 }

@@ -28,7 +28,7 @@ impl Coefficients {
     }
 
     /// Whether there is no friction.
-    pub fn is_frictionless(&self) -> bool {
+    pub(crate) fn is_frictionless(&self) -> bool {
         self.rest == 0.0
     }
 
@@ -137,7 +137,7 @@ impl Friction {
     }
 
     /// `f(y) / y`, one over metres: finite at rest, where it is `2 mu_s / e`.
-    pub fn force_over_distance(&self, y: f64) -> f64 {
+    pub(crate) fn force_over_distance(&self, y: f64) -> f64 {
         let e = self.smoothing;
         let u = y / e;
         if u < 1.0 {
@@ -149,7 +149,7 @@ impl Friction {
     }
 
     /// `df/dy`, one over metres.
-    pub fn force_slope(&self, y: f64) -> f64 {
+    pub(crate) fn force_slope(&self, y: f64) -> f64 {
         let e = self.smoothing;
         let u = y / e;
         if u < 1.0 {

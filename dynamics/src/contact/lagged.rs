@@ -162,7 +162,7 @@ impl LaggedFriction {
 
     /// The largest change of a normal force since `before`, relative to the largest normal force; zero
     /// without friction.
-    pub fn change_since(&self, before: &Self) -> f64 {
+    pub(crate) fn change_since(&self, before: &Self) -> f64 {
         let (old, new) = (&before.contacts, &self.contacts);
         let (mut i, mut j) = (0, 0);
         let (mut change, mut largest) = (0.0_f64, 0.0_f64);
@@ -199,7 +199,7 @@ impl LaggedFriction {
     }
 
     /// Work of the bodies against friction over the whole step, with its forces at the end, joules.
-    pub fn body_work(&self, x: &[f64], bodies: &[BodyPlace]) -> f64 {
+    pub(crate) fn body_work(&self, x: &[f64], bodies: &[BodyPlace]) -> f64 {
         let mut work = 0.0;
         for c in &self.contacts {
             if let Some(body) = c.key.body.map(|b| &bodies[b as usize]) {
@@ -228,7 +228,8 @@ impl LaggedFriction {
         }
     }
 
-    /// Calls `add` with each body under friction, the force on it (newtons) and where in space it acts (metres).
+    /// Calls `add` with each body under friction, the force on it (newtons) and where in space it acts
+    /// (metres).
     pub(super) fn body_forces(
         &self,
         x: &[f64],

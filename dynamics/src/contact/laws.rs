@@ -51,7 +51,7 @@ impl ContactLaws {
     }
 
     /// Whether there is no friction anywhere.
-    pub fn is_frictionless(&self) -> bool {
+    pub(crate) fn is_frictionless(&self) -> bool {
         let mut all = self.bodies.iter().chain([&self.itself]);
         all.all(Coefficients::is_frictionless)
     }

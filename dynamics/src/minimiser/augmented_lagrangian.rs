@@ -1,4 +1,5 @@
-//! Newton's method on the augmented Lagrangian, in rounds of the method of multipliers, and the restoration that ends them.
+//! Newton's method on the augmented Lagrangian, in rounds of the method of multipliers, and the restoration
+//! that ends them.
 
 use super::lagrangian::{Definiteness, Merit, RodLoad};
 use super::problem::StepProblem;
@@ -11,15 +12,15 @@ const ARMIJO: f64 = 1e-4;
 const NEARLY_FULL: f64 = 0.2;
 /// Part of a Newton step below which the line search accepts whatever it has come to.
 const SMALLEST_LENGTH: f64 = 1e-9;
-/// Largest number of iterations in which bodies and pins have to get to the ends of their motions. They arrive in one or two
-/// where nothing is in the way; a step that needs more is better halved.
+/// Largest number of iterations in which bodies and pins have to get to the ends of their motions. They
+/// arrive in one or two where nothing is in the way; a step that needs more is better halved.
 const MAX_DRIVEN: usize = 20;
-/// Largest number of rounds of the method of multipliers in contact. A sheet that lies flat resists a restoration of its lengths:
-/// it would have to fold against the barrier, by the root of the length error. Multipliers take the load instead, and
-/// each round shrinks the error by the penalty.
+/// Largest number of rounds of the method of multipliers in contact. A sheet that lies flat resists a
+/// restoration of its lengths: it would have to fold against the barrier, by the root of the length error.
+/// Multipliers take the load instead, and each round shrinks the error by the penalty.
 const MAX_ROUNDS_IN_CONTACT: usize = 12;
-/// Growth of the penalty from round to round. Ten keeps Newton's method close to its quadratic range: with thirty
-/// a sheet draping on a floor needs twice the iterations.
+/// Growth of the penalty from round to round. Ten keeps Newton's method close to its quadratic range: with
+/// thirty a sheet draping on a floor needs twice the iterations.
 const GROWTH: f64 = 10.0;
 /// Tolerance of the rounds after the first: they only shift load from the penalty to the multipliers.
 const LOOSE_TOLERANCE: f64 = 1e-2;
@@ -31,14 +32,14 @@ const SMALL_STRAIN: f64 = 1e-5;
 pub(super) enum Rounds {
     /// Rounds after the first are solved loosely, and end where the restoration is a small displacement.
     Loose,
-    /// All rounds are solved exactly, and leave nothing to the restoration: for nearly flat sheets, which fold by the root of
-    /// their length error.
+    /// All rounds are solved exactly, and leave nothing to the restoration: for nearly flat sheets, which
+    /// fold by the root of their length error.
     Exact,
 }
 
-/// Minimises the augmented Lagrangian by Newton's method with line search; its Hessian is tried as it is and, where it is
-/// indefinite, projected. In contact, rounds with growing penalties follow (Nocedal and Wright, "Numerical
-/// Optimization", 2006, Sec. 17.3). At the end the lengths are restored exactly.
+/// Minimises the augmented Lagrangian by Newton's method with line search; its Hessian is tried as it is and,
+/// where it is indefinite, projected. In contact, rounds with growing penalties follow (Nocedal and Wright,
+/// "Numerical Optimization", 2006, Sec. 17.3). At the end the lengths are restored exactly.
 ///
 /// Positive definite at any rank of the rods, and with no need of finite multipliers.
 pub(super) struct AugmentedLagrangian<'a, 'b> {
@@ -165,7 +166,8 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
             }
             let lagrangian = &mut self.minimiser.lagrangian;
             if hessian == Definiteness::Modified && self.outcome != StepOutcome::BranchSeeded {
-                // No slope left, but the curvature is negative somewhere: a saddle, where the sheet could fold either way.
+                // No slope left, but the curvature is negative somewhere: a saddle, where the sheet could
+                // fold either way.
                 self.outcome = StepOutcome::BranchSeeded;
                 lagrangian.perturb(self.problem, options.seed);
             } else if friction_updates < options.max_friction_updates
@@ -208,7 +210,8 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
         }
     }
 
-    /// Halves the step from `limit` on until the augmented Lagrangian decreases; the part of the step and the value there.
+    /// Halves the step from `limit` on until the augmented Lagrangian decreases; the part of the step and the
+    /// value there.
     fn line_search(&mut self, limit: f64, slope: f64, before: &Merit) -> (f64, Merit) {
         let mut length = limit;
         loop {

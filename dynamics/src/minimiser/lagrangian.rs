@@ -13,8 +13,8 @@ use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Size of the perturbation that leaves a saddle, in lengths of a vertex's shortest rod: large enough to leave the
-/// saddle (folds grow by factors of ten per iteration there), too small to be seen.
+/// Size of the perturbation that leaves a saddle, in lengths of a vertex's shortest rod: large enough to
+/// leave the saddle (folds grow by factors of ten per iteration there), too small to be seen.
 const BRANCH_PERTURBATION: f64 = 1e-4;
 
 /// Bound on the number of operations that a term of the value goes through, for its round-off.
@@ -28,7 +28,8 @@ const POSITION_OPERATIONS: f64 = 64.0;
 /// L(x) = Phi(x) + sum_e (L_e + r_e c_e(x) / 2) c_e(x) + (terms of the vertex constraints, see VertexRows),
 /// ```
 ///
-/// with the multipliers `L_e` of the rods (`h^2` times force densities, tension positive) and penalties `r_e`.
+/// with the multipliers `L_e` of the rods (`h^2` times force densities, tension positive) and penalties
+/// `r_e`.
 pub(crate) struct Lagrangian {
     pub(super) iterate: Iterate,
     pub(super) matrix: PrimalMatrix,
@@ -163,8 +164,8 @@ impl Lagrangian {
         model.rods().residual_into(x, &mut self.c);
         self.vertex_rows.evaluate(model.constraints(), t, x);
         let size = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        // Round-off of c is that of the squared lengths; and where inertia alone has the right lengths already, nothing
-        // but the round-off of the positions is left to minimise.
+        // Round-off of c is that of the squared lengths; and where inertia alone has the right lengths
+        // already, nothing but the round-off of the positions is left to minimise.
         let (mut rods, mut rod_scale, mut squares) = (0.0, 0.0, 0.0);
         for (e, l) in model.rods().lengths().iter().enumerate() {
             let (m, p, c) = (self.multipliers[e], self.penalty(e), self.c[e]);
@@ -191,8 +192,8 @@ impl Lagrangian {
         }
     }
 
-    /// Sets the gradient at the iterate, whose constraints have to be current. While bodies or pins move, with
-    /// what the rest of their motions will change the gradient by, to first order.
+    /// Sets the gradient at the iterate, whose constraints have to be current. While bodies or pins move,
+    /// with what the rest of their motions will change the gradient by, to first order.
     pub(super) fn set_gradient(&mut self, problem: &StepProblem<'_>) {
         let (model, t, h) = (problem.model, problem.t(), problem.h);
         let x = self.iterate.x();
@@ -242,9 +243,9 @@ impl Lagrangian {
         }
     }
 
-    /// Factorises the Hessian at the iterate; where it is indefinite, a positive definite part: the rods' geometric
-    /// stiffness and the curvature of vertex constraints projected onto the semidefinite matrices, and if that
-    /// does not help, without the curvature of the potentials.
+    /// Factorises the Hessian at the iterate; where it is indefinite, a positive definite part: the rods'
+    /// geometric stiffness and the curvature of vertex constraints projected onto the semidefinite matrices,
+    /// and if that does not help, without the curvature of the potentials.
     ///
     /// # Errors
     /// [`LinalgError`] if even that cannot be factorised, which takes a coefficient that is not a number.
@@ -282,8 +283,9 @@ impl Lagrangian {
         Ok(Definiteness::Modified)
     }
 
-    /// Replaces each rod's own Hessian, with eigenvalues `p` across and `p + r |d|^2` along the rod, by its positive
-    /// semidefinite part. (With multipliers far from the estimates the part along the rod stays as it is.)
+    /// Replaces each rod's own Hessian, with eigenvalues `p` across and `p + r |d|^2` along the rod, by its
+    /// positive semidefinite part. (With multipliers far from the estimates the part along the rod stays as
+    /// it is.)
     fn project_rods(&mut self, model: &SheetModel, load: RodLoad) {
         for e in 0..self.c.len() {
             if self.transverse[e] < 0.0 {
@@ -327,15 +329,15 @@ impl Lagrangian {
         -dot(&self.dx, &self.gradient)
     }
 
-    /// Begins a line search at the iterate: the largest part of the step `-dx` that is safe, pinned vertices going to
-    /// their ends.
+    /// Begins a line search at the iterate: the largest part of the step `-dx` that is safe, pinned vertices
+    /// going to their ends.
     pub(super) fn begin_line_search(&mut self, problem: &mut StepProblem<'_>) -> f64 {
         self.start.copy_from_slice(self.iterate.x());
         self.safe_part(problem)
     }
 
-    /// Brings the iterate back to the start of the line search, where contact knows the motion that the next trial is
-    /// part of.
+    /// Brings the iterate back to the start of the line search, where contact knows the motion that the next
+    /// trial is part of.
     pub(super) fn return_to_start(&mut self, problem: &mut StepProblem<'_>) {
         self.iterate.x_mut().copy_from_slice(&self.start);
         self.safe_part(problem);
@@ -378,8 +380,8 @@ impl Lagrangian {
         self.iterate.advance_bodies(part);
     }
 
-    /// Puts the iterate where inertia alone would take the sheet, unless contact is in the way, and pins and bodies to
-    /// the ends of their motions.
+    /// Puts the iterate where inertia alone would take the sheet, unless contact is in the way, and pins and
+    /// bodies to the ends of their motions.
     pub(super) fn predict(&mut self, problem: &mut StepProblem<'_>) {
         self.start.copy_from_slice(problem.prediction);
         problem.model.place_pins(problem.t(), &mut self.start);

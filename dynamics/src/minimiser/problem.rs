@@ -3,11 +3,11 @@
 use crate::contact::StepContact;
 use crate::{SheetModel, State};
 
-/// Minimise `Phi(x) = |x - x^|_M^2 / 2 + h^2 (V(x, t) + B(x) + D(x - x0) - f . x)` over the positions with the rest
-/// lengths and with the vertex constraints kept at time `t`.
+/// Minimise `Phi(x) = |x - x^|_M^2 / 2 + h^2 (V(x, t) + B(x) + D(x - x0) - f . x)` over the positions with
+/// the rest lengths and with the vertex constraints kept at time `t`.
 ///
-/// `x^` is where inertia alone would take the sheet, `V` the potentials, `B` and `D` contact and its friction, `f` the
-/// non-conservative forces at the start of the step.
+/// `x^` is where inertia alone would take the sheet, `V` the potentials, `B` and `D` contact and its
+/// friction, `f` the non-conservative forces at the start of the step.
 pub(crate) struct StepProblem<'a> {
     /// The sheet.
     pub(crate) model: &'a SheetModel,

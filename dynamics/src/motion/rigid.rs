@@ -189,7 +189,7 @@ impl RigidProfile {
     }
 
     /// Whether the body never moves.
-    pub fn is_still(&self) -> bool {
+    pub(crate) fn is_still(&self) -> bool {
         match self {
             Self::Displacement(displacement) => displacement.is_still(),
             Self::Keyframes { keys } => keys.iter().all(|k| k.pose == keys[0].pose),
@@ -321,7 +321,7 @@ impl RigidMotion {
     }
 
     /// Whether the body is known never to move; of a function nothing is known.
-    pub fn is_still(&self) -> bool {
+    pub(crate) fn is_still(&self) -> bool {
         match self {
             Self::Profile(profile) => profile.is_still(),
             Self::Custom(_) => false,

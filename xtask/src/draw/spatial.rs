@@ -37,8 +37,8 @@ pub(crate) fn unit(a: &[f64; 3]) -> [f64; 3] {
 }
 
 impl View {
-    /// Seen from the given azimuth (degrees, counter-clockwise from the x axis) and elevation (degrees above the
-    /// horizon); `scale` points per metre.
+    /// Seen from the given azimuth (degrees, counter-clockwise from the x axis) and elevation (degrees above
+    /// the horizon); `scale` points per metre.
     pub(crate) fn from(azimuth: f64, elevation: f64, scale: f64) -> Self {
         let (sa, ca) = azimuth.to_radians().sin_cos();
         let (se, ce) = elevation.to_radians().sin_cos();
@@ -84,8 +84,8 @@ impl View {
     }
 }
 
-/// Points on the circular arc about `centre` that starts at the radius `u` and turns towards `w` (both perpendicular to the
-/// axis, of equal length) by `angle` radians.
+/// Points on the circular arc about `centre` that starts at the radius `u` and turns towards `w` (both
+/// perpendicular to the axis, of equal length) by `angle` radians.
 pub(crate) fn arc(centre: &[f64; 3], u: &[f64; 3], w: &[f64; 3], angle: f64) -> Vec<[f64; 3]> {
     let n = 2 + (angle.abs() / 0.06) as usize;
     (0..=n)

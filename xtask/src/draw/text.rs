@@ -1,7 +1,7 @@
 //! Text with subscripts, superscripts and slanted letters.
 //!
-//! `_{..}` lowers, `^{..}` raises, `~..~` slants. The SVG backend knows none of these, so they travel through it as private
-//! characters ([`encode`]) and become `<tspan>` elements in the file ([`decode`]).
+//! `_{..}` lowers, `^{..}` raises, `~..~` slants. The SVG backend knows none of these, so they travel through
+//! it as private characters ([`encode`]) and become `<tspan>` elements in the file ([`decode`]).
 
 /// Size of subscripts and superscripts relative to the text.
 const SCRIPT: f64 = 0.72;

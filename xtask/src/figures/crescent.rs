@@ -12,10 +12,11 @@ pub(super) struct Crescent {
     pub(super) edges: usize,
     /// Curvature of the best circle through their midpoints, with the fold angles as weights, per metre.
     pub(super) curvature: f64,
-    /// Angle in which the circle's centre sees the midpoints, radians: of a crescent about 2, of a straight fold about 0.
+    /// Angle in which the circle's centre sees the midpoints, radians: of a crescent about 2, of a straight
+    /// fold about 0.
     pub(super) opening: f64,
-    /// Mean square distance of the midpoints from the circle over that from the best straight line: 1 if bending the line brings
-    /// nothing, 0 for an arc.
+    /// Mean square distance of the midpoints from the circle over that from the best straight line: 1 if
+    /// bending the line brings nothing, 0 for an arc.
     pub(super) straightness: f64,
 }
 
@@ -23,8 +24,8 @@ pub(super) struct Crescent {
 const FEWEST: usize = 5;
 
 impl Crescent {
-    /// Of the sharp edges (fold angles in radians) the connected set that carries most fold; none if it has fewer than five edges
-    /// or all midpoints lie on a line.
+    /// Of the sharp edges (fold angles in radians) the connected set that carries most fold; none if it has
+    /// fewer than five edges or all midpoints lie on a line.
     pub(super) fn largest(sheet: &Sheet, sharp: &[(f64, EdgeId)]) -> Option<Self> {
         let ends = |e: EdgeId| ends(sheet, e);
         let mut sets: Vec<Vec<(f64, EdgeId)>> = Vec::new();
@@ -53,9 +54,10 @@ impl Crescent {
         Self::fit(&points)
     }
 
-    /// Of points with weights, `[x, y, w]`, by Taubin's fit (1991): the smallest mean of F² over that of |∇F|² among all
-    /// F = A (x² + y²) + B x + C y + D. To first order it is the mean square distance from the curve F = 0; lines, A = 0, are among
-    /// them and have exactly that, so that no circle is worse than the best line.
+    /// Of points with weights, `[x, y, w]`, by Taubin's fit (1991): the smallest mean of F² over that of
+    /// |∇F|² among all F = A (x² + y²) + B x + C y + D. To first order it is the mean square distance from
+    /// the curve F = 0; lines, A = 0, are among them and have exactly that, so that no circle is worse than
+    /// the best line.
     fn fit(points: &[[f64; 3]]) -> Option<Self> {
         if points.len() < FEWEST {
             return None;
@@ -194,8 +196,8 @@ mod tests {
         let arc = Crescent::largest(&sheet, &sharp).expect("an arc");
         assert!((0.5 * side * arc.curvature - 1.0).abs() < 0.05, "{arc:?}");
         assert!((arc.opening - 0.5 * PI).abs() < 0.15, "{arc:?}");
-        // Across the ring the mean square distance is (0.1 r)^2 / 3; a quarter turn bent straight adds the variance of r cos(angle) over
-        // +-45 degrees, 0.00774 r^2.
+        // Across the ring the mean square distance is (0.1 r)^2 / 3; a quarter turn bent straight adds the
+        // variance of r cos(angle) over +-45 degrees, 0.00774 r^2.
         let expected = 0.01 / 3.0 / (0.01 / 3.0 + 0.00774);
         assert!((arc.straightness - expected).abs() < 0.05, "{arc:?}");
         assert!(arc.edges < sharp.len(), "{arc:?}");

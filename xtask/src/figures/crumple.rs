@@ -7,8 +7,8 @@ use crate::runs::{self, RunSummary, Scene, Shape, Staged};
 use anyhow::{Context as _, Result};
 use serde_json::json;
 
-/// Times of the pictures, seconds. The fall takes the first third of a second; then the sheet swings, crumples and comes to
-/// rest.
+/// Times of the pictures, seconds. The fall takes the first third of a second; then the sheet swings,
+/// crumples and comes to rest.
 const TIMES: [f64; 10] = [0.0, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.6, 8.0];
 
 /// The scene of the figure with mesh M^level, with contact of the sheet with itself.

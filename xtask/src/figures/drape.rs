@@ -1,4 +1,5 @@
-//! Fig. 14: a rectangular cloth on a rectangular table. Fig. 15: an octagonal one on an octagonal table, and on towards the round.
+//! Fig. 14: a rectangular cloth on a rectangular table. Fig. 15: an octagonal one on an octagonal table, and
+//! on towards the round.
 
 use super::folds::{Folds, Hem};
 use super::sequence::{View, choose, sequence};
@@ -12,16 +13,16 @@ use serde_json::{Value, json};
 /// Times of the pictures, seconds.
 const TIMES: [f64; 6] = [0.0, 0.15, 0.3, 0.6, 1.2, 8.0];
 
-/// Half the sides of the rectangular cloth and of its table, metres: 1.2 m x 0.9 m over 0.58 m x 0.435 m, similar rectangles, so that
-/// the diagonals of the mesh lead through the table's corners.
+/// Half the sides of the rectangular cloth and of its table, metres: 1.2 m x 0.9 m over 0.58 m x 0.435 m,
+/// similar rectangles, so that the diagonals of the mesh lead through the table's corners.
 const CLOTH: [f64; 2] = [0.6, 0.45];
 const TABLE: [f64; 2] = [0.29, 0.2175];
 
 /// Circumscribed radius of the polygonal cloths and tables, metres.
 const RADII: [f64; 2] = [0.6, 0.33];
 
-/// Cloths on a table with everything but the shapes alike: 0.2 kg/m2, damping 2/s, friction 0.3 on the table and on itself, let go
-/// where contact just begins to act.
+/// Cloths on a table with everything but the shapes alike: 0.2 kg/m2, damping 2/s, friction 0.3 on the table
+/// and on itself, let go where contact just begins to act.
 fn scene(name: &str, cloth: Cloth, table: Outline, effort: RenderEffort) -> Drape {
     Drape {
         name: name.into(),
@@ -45,8 +46,9 @@ fn scene(name: &str, cloth: Cloth, table: Outline, effort: RenderEffort) -> Drap
 /// Gap below which contact acts, metres.
 const ACTIVATION: f64 = 5e-3;
 
-/// Stiffness of the contact barrier, joules: the few vertices at the table's edge carry all that hangs over it, so the barrier is
-/// an order of magnitude stiffer than one that is chosen for the mean weight of a vertex.
+/// Stiffness of the contact barrier, joules: the few vertices at the table's edge carry all that hangs over
+/// it, so the barrier is an order of magnitude stiffer than one that is chosen for the mean weight of a
+/// vertex.
 const STIFFNESS: f64 = 1e-3;
 
 /// The scene of Fig. 14 on M^level.
@@ -111,8 +113,8 @@ struct Draped {
     run: RunSummary,
     folds: Folds,
     hem: Hem,
-    /// How far the hem hangs below the table, as part of its distance from the table in the flat cloth (means over the vertices of
-    /// the hem): 1 for a cloth that hangs straight down.
+    /// How far the hem hangs below the table, as part of its distance from the table in the flat cloth (means
+    /// over the vertices of the hem): 1 for a cloth that hangs straight down.
     drop: f64,
     /// Internal degrees of freedom.
     internal: i64,
@@ -212,7 +214,8 @@ fn fold_table(all: &[Draped]) -> Table {
     }
 }
 
-/// Bending at the corner lines that is this many times as dense as on the mean of the overhang makes principal folds.
+/// Bending at the corner lines that is this many times as dense as on the mean of the overhang makes
+/// principal folds.
 const PRINCIPAL: f64 = 1.25;
 
 /// Whether folds gather at the corners, in words.
@@ -369,7 +372,8 @@ pub(super) fn fig14(context: &Context<'_>) -> Result<Made> {
     })
 }
 
-/// Corners and rings of the polygons with about as many faces as the octagon, whose rings are as wide as the cells of M³.
+/// Corners and rings of the polygons with about as many faces as the octagon, whose rings are as wide as the
+/// cells of M³.
 const RINGS: [(u32, u32); 5] = [(4, 11), (6, 9), (8, 8), (12, 7), (16, 6)];
 
 /// Corners of the irregular polygons of the study; the last stands for the circle.

@@ -62,7 +62,8 @@ pub(super) fn make() -> Result<Made> {
 fn panel(sheet: &Sheet, coarser: Option<&Sheet>) -> Drawing {
     let mut d = Drawing::new();
     flat_faces(&mut d, sheet, SIDE, |_| style::FACE);
-    // The split keeps the old vertices and puts vertex V + e in the middle of edge e: halves of old edges have an old end.
+    // The split keeps the old vertices and puts vertex V + e in the middle of edge e: halves of old edges
+    // have an old end.
     let old = coarser.map_or(usize::MAX, |c| c.topology().vertex_count());
     let is_new = |e: EdgeId| {
         sheet.topology().edges()[e.index()]

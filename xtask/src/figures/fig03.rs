@@ -107,7 +107,8 @@ fn draw_lines(sheet: &Sheet, pattern: &CreasePattern) -> Drawing {
     d
 }
 
-/// Half-lines from a point in each of the eight directions, as long as the total length of the crease lines along them.
+/// Half-lines from a point in each of the eight directions, as long as the total length of the crease lines
+/// along them.
 fn rose(sheet: &Sheet, pattern: &CreasePattern) -> Drawing {
     let mut d = Drawing::new();
     let unit = 9.0 / sheet.area().sqrt();

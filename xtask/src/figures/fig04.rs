@@ -71,7 +71,8 @@ pub(super) fn make() -> Result<Made> {
     })
 }
 
-/// The rectangles of an isotropic square: stars of vertices in the middle of eight triangles that share no triangle.
+/// The rectangles of an isotropic square: stars of vertices in the middle of eight triangles that share no
+/// triangle.
 struct Rectangles {
     /// Their corners in order.
     cells: Vec<[VertexId; 4]>,

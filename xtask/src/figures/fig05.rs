@@ -140,8 +140,8 @@ fn panel(view: &View, x: &[[f64; 3]; 4], time: &str) -> Drawing {
     let prime = [String::new(), "′".to_owned()];
     for (k, (apex, other)) in [(a, b), (b, a)].into_iter().enumerate() {
         let prime = &prime[k];
-        // Where along the arc the name stands, how far outside of it and how much higher, points. At the far end of the folded
-        // pair gamma's arc runs over the others, whose names stand outside then.
+        // Where along the arc the name stands, how far outside of it and how much higher, points. At the far
+        // end of the folded pair gamma's arc runs over the others, whose names stand outside then.
         let crowded = k == 0 && time != "0";
         let inside = if crowded { 8.0 } else { -11.0 };
         let gamma =

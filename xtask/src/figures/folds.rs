@@ -7,20 +7,22 @@ use std::f64::consts::TAU;
 
 /// The folds of the part of a cloth that hangs over the edge of its table.
 ///
-/// Bending is edge length times size of the fold angle: it does not depend on how many edges share a fold. The first row
-/// of cells along the table's edge is left out, where every cloth bends over that edge.
+/// Bending is edge length times size of the fold angle: it does not depend on how many edges share a fold.
+/// The first row of cells along the table's edge is left out, where every cloth bends over that edge.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Folds {
-    /// Bending per edge length within one mean edge of a line from a table corner to its cloth corner, over that of the whole
-    /// overhang: 1 if folds do not care for corners.
+    /// Bending per edge length within one mean edge of a line from a table corner to its cloth corner, over
+    /// that of the whole overhang: 1 if folds do not care for corners.
     pub(super) density_at_corners: f64,
     /// Part of the overhang's bending that lies there.
     pub(super) share_at_corners: f64,
     /// Part of the overhang's edge length that lies there.
     pub(super) length_at_corners: f64,
-    /// Mean angle between an edge and the line of its nearest corner, degrees, weighted by bending and by length alone.
+    /// Mean angle between an edge and the line of its nearest corner, degrees, weighted by bending and by
+    /// length alone.
     pub(super) angle: [f64; 2],
-    /// Of the edges with the largest bending that together carry half of it: how many, and how many of them at corners.
+    /// Of the edges with the largest bending that together carry half of it: how many, and how many of them
+    /// at corners.
     pub(super) strongest: [usize; 2],
     /// Distance from the nearest corner line (in mean edges) and bending density over the mean, in bins.
     pub(super) profile: Vec<[f64; 2]>,
@@ -125,18 +127,19 @@ fn creases(sheet: &Sheet, x: &[f64], table: &Outline, cloth: &Outline) -> Vec<Cr
     t.edge_ids().filter_map(crease).collect()
 }
 
-/// The hem of a cloth at rest, by angle about the middle of the table: its distance from the axis, divided by that of the flat
-/// cloth, so that corners of the outline do not count as folds.
+/// The hem of a cloth at rest, by angle about the middle of the table: its distance from the axis, divided by
+/// that of the flat cloth, so that corners of the outline do not count as folds.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Hem {
     /// Number of folds: outward bulges of the hem that stand out by [`PROMINENCE`].
     pub(super) folds: usize,
-    /// Spread (standard deviation over mean) of the angles between neighbouring folds: 0 for a uniform pattern.
+    /// Spread (standard deviation over mean) of the angles between neighbouring folds: 0 for a uniform
+    /// pattern.
     pub(super) spacing_spread: f64,
     /// Spread of how far the folds stand out.
     pub(super) size_spread: f64,
-    /// The wave number with the largest part of the variance of the hem's distance from the axis, and that part: 1 for a
-    /// single wave all round.
+    /// The wave number with the largest part of the variance of the hem's distance from the axis, and that
+    /// part: 1 for a single wave all round.
     pub(super) wave: (usize, f64),
     /// Angle (degrees) and relative distance from the axis.
     pub(super) curve: Vec<[f64; 2]>,
@@ -222,8 +225,8 @@ fn resample(points: &[[f64; 2]]) -> Vec<f64> {
         .collect()
 }
 
-/// Maxima of a closed curve that stand out by at least `least`: place and prominence, the smaller descent to the lowest
-/// point before something higher on either side.
+/// Maxima of a closed curve that stand out by at least `least`: place and prominence, the smaller descent to
+/// the lowest point before something higher on either side.
 fn peaks(curve: &[f64], least: f64) -> Vec<(usize, f64)> {
     let n = curve.len();
     let descent = |k: usize, step: usize| {
@@ -292,7 +295,8 @@ mod tests {
             .map_positions(|[x, y, z]| [x - 1.0, y - 1.0, z])
             .unwrap();
         let [table, cloth] = [0.25, 1.0].map(|h| Outline::Rectangle { half: [h, h] });
-        // A pyramid: flat faces, creased along the diagonals alone. It is not isometric, which does not matter here.
+        // A pyramid: flat faces, creased along the diagonals alone. It is not isometric, which does not
+        // matter here.
         let pyramid: Vec<f64> = sheet
             .positions()
             .as_chunks::<3>()

@@ -11,8 +11,8 @@ use anyhow::{Context as _, Result};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
-/// Radii of the bends, metres, and their outlets: three that let the strip through, and the second one again with something
-/// stuck in it.
+/// Radii of the bends, metres, and their outlets: three that let the strip through, and the second one again
+/// with something stuck in it.
 const CASES: [(f64, Outlet); 4] = [
     (0.045, Outlet::Open),
     (0.02, Outlet::Open),
@@ -70,7 +70,8 @@ fn scene((radius, outlet): (f64, Outlet), effort: RenderEffort) -> Feed {
 struct Fed {
     scene: Feed,
     run: RunSummary,
-    /// Way of the nip (metres) and force of the nip on the strip along its way (newtons), mean over [`WINDOW`] frames.
+    /// Way of the nip (metres) and force of the nip on the strip along its way (newtons), mean over
+    /// [`WINDOW`] frames.
     force: Vec<[f64; 2]>,
     /// Whether the nip slipped.
     jammed: bool,
@@ -78,7 +79,8 @@ struct Fed {
     profiles: Vec<Vec<[f64; 2]>>,
 }
 
-/// The force is drawn as the mean over this many frames: contact of single vertices with single facets makes it rough.
+/// The force is drawn as the mean over this many frames: contact of single vertices with single facets makes
+/// it rough.
 const WINDOW: usize = 5;
 
 impl Fed {
@@ -136,7 +138,8 @@ impl Fed {
             .position(|p| p.last().is_some_and(|end| end[1] < near))
     }
 
-    /// Frames in which a force larger than `passing` stops growing after the strip has reached the plate, and the forces.
+    /// Frames in which a force larger than `passing` stops growing after the strip has reached the plate, and
+    /// the forces.
     fn buckles(&self, passing: f64) -> Vec<(usize, f64)> {
         let Some(first) = self.arrival() else {
             return Vec::new();
@@ -161,7 +164,8 @@ impl Fed {
         self.profiles.get(frame).map_or(0.0, |p| -p[0][0])
     }
 
-    /// The fold angle at each rung in the straight part of the channel: x (metres), turn (radians, positive upwards).
+    /// The fold angle at each rung in the straight part of the channel: x (metres), turn (radians, positive
+    /// upwards).
     fn turns(&self, frame: usize) -> Vec<[f64; 2]> {
         let Some(line) = self.profiles.get(frame) else {
             return Vec::new();
@@ -179,7 +183,8 @@ impl Fed {
             .collect()
     }
 
-    /// Where the strip is bent most in the straight part at a frame: x (metres) and turn of the rung (radians).
+    /// Where the strip is bent most in the straight part at a frame: x (metres) and turn of the rung
+    /// (radians).
     fn sharpest(&self, frame: usize) -> [f64; 2] {
         let turns = self.turns(frame);
         let largest = turns
@@ -200,7 +205,8 @@ impl Fed {
         bent.windows(2).filter(|w| w[0] * w[1] < 0.0).count()
     }
 
-    /// Buckling loads of a straight strip of a length between clamps, and between a clamp and a hinge, newtons.
+    /// Buckling loads of a straight strip of a length between clamps, and between a clamp and a hinge,
+    /// newtons.
     fn euler(&self, length: f64) -> [f64; 2] {
         let bending = self.scene.rigidity * self.scene.size[1] * (PI / length).powi(2);
         // The root of tan z = z over pi, squared.

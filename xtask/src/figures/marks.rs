@@ -10,11 +10,12 @@ use serde::Serialize;
 /// Part of the inner edges that counts as marks.
 const SHARPEST: f64 = 0.05;
 
-/// An edge counts as one of the sharpest if its fold angle is at least this part of the last one's: a symmetric sheet has folds that
-/// are equal but for round-off.
+/// An edge counts as one of the sharpest if its fold angle is at least this part of the last one's: a
+/// symmetric sheet has folds that are equal but for round-off.
 const TIE: f64 = 0.99;
 
-/// What this part of the edges would carry if fold angles were normally distributed: E(|x|; |x| > 1.96 s) / E|x| = exp(-1.96^2 / 2).
+/// What this part of the edges would carry if fold angles were normally distributed: E(|x|; |x| > 1.96 s) /
+/// E|x| = exp(-1.96^2 / 2).
 const NORMAL: f64 = 0.146_5;
 
 /// The concentration of folds over a run.
@@ -24,8 +25,8 @@ pub(super) struct Marks {
     /// Inner edges, and how many of them are the sharpest.
     pub(super) edges: usize,
     pub(super) sharpest: usize,
-    /// Time, part of the sum of all sizes of fold angles that the sharpest edges carry then, and the part of the sharpest edges
-    /// at the end that are among the sharpest already.
+    /// Time, part of the sum of all sizes of fold angles that the sharpest edges carry then, and the part of
+    /// the sharpest edges at the end that are among the sharpest already.
     pub(super) shares: Vec<[f64; 3]>,
     /// Shape of the largest connected mark at the end, if it has any.
     pub(super) shape: Option<Crescent>,

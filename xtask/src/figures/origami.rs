@@ -70,8 +70,8 @@ struct Folded {
     straight: f64,
     /// Mean width and depth of the panels over those when flat.
     size: [f64; 2],
-    /// Largest difference of a straight crease from its exact fold, of any panel from flat (radians), of any distance of two
-    /// vertices from the exact one (metres).
+    /// Largest difference of a straight crease from its exact fold, of any panel from flat (radians), of any
+    /// distance of two vertices from the exact one (metres).
     errors: [f64; 3],
 }
 
@@ -150,7 +150,8 @@ fn vertex_angles(scene: &Fold, context: &Context<'_>) -> Result<Vec<[f64; 4]>> {
         .collect()
 }
 
-/// Folds below this say more about round-off than about kinematics: the lengths, kept to 1e-12, fix an angle to that over the angle.
+/// Folds below this say more about round-off than about kinematics: the lengths, kept to 1e-12, fix an angle
+/// to that over the angle.
 const LEAST: f64 = 0.05;
 
 fn lines(name: &str, points: Vec<[f64; 2]>) -> Series {

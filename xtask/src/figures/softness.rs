@@ -13,8 +13,8 @@ const MEMBERS: u64 = 8;
 /// Random displacement at the start of a fall, mean edge lengths: two hundredths of a millimetre on M^3.
 const BUMP: f64 = 1e-3;
 
-/// Time at which the first moments of the fall are compared, seconds: a plate has sunk by a twentieth of the side then, and every
-/// sheet is still far from its first swing.
+/// Time at which the first moments of the fall are compared, seconds: a plate has sunk by a twentieth of the
+/// side then, and every sheet is still far from its first swing.
 const EARLY: f64 = 0.05;
 
 /// Frame of the first moments, seconds: the three curves are so close that frames of 1/60 s would blur them.
@@ -34,7 +34,8 @@ struct Level {
     faces: usize,
     internal: i64,
     falls: Vec<Member>,
-    /// Time and freedom of the fall: how far the centre of mass is between that of the rigid plate (0) and free fall (1).
+    /// Time and freedom of the fall: how far the centre of mass is between that of the rigid plate (0) and
+    /// free fall (1).
     freedom: Vec<[f64; 2]>,
 }
 

@@ -15,8 +15,8 @@ pub(crate) struct Camera {
     half_height: f64,
 }
 
-/// A point of the picture: x and y from -1 to 1 (y upwards, x in units of half the height), and a depth that is linear in the
-/// picture, larger for what is nearer.
+/// A point of the picture: x and y from -1 to 1 (y upwards, x in units of half the height), and a depth that
+/// is linear in the picture, larger for what is nearer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projected {
     pub(crate) x: f64,
@@ -25,8 +25,8 @@ pub(crate) struct Projected {
 }
 
 impl Camera {
-    /// A camera in the direction of the given azimuth and elevation (degrees) from the target; the picture shows `height` metres
-    /// at the target.
+    /// A camera in the direction of the given azimuth and elevation (degrees) from the target; the picture
+    /// shows `height` metres at the target.
     pub(crate) fn new(
         target: [f64; 3],
         azimuth: f64,
@@ -57,8 +57,8 @@ impl Camera {
         (size[0] / size[1].max(1e-9)).clamp(1.0 / 3.0, 3.0)
     }
 
-    /// The same camera, framed so that all points are inside the picture with a margin (part of its height), which has
-    /// the given width over height.
+    /// The same camera, framed so that all points are inside the picture with a margin (part of its height),
+    /// which has the given width over height.
     pub(crate) fn framing(
         &self,
         points: impl Iterator<Item = [f64; 3]> + Clone,

@@ -7,13 +7,15 @@ use crate::draw::spatial::{axpy, cross, dot, sub, unit};
 /// Rays sent from every point, on a fixed spiral: pictures are the same at every run.
 const RAYS: usize = 40;
 
-/// How far in from its corner of a face a point lies, as part of the way to the centroid: a point on a crease would count the
-/// neighbouring face as touching.
+/// How far in from its corner of a face a point lies, as part of the way to the centroid: a point on a crease
+/// would count the neighbouring face as touching.
 const INSET: f64 = 0.25;
 
-/// Openness (0 dark to 1 free) at the three corners of every piece, on its front or back side. A piece is a face or a part of one.
+/// Openness (0 dark to 1 free) at the three corners of every piece, on its front or back side. A piece is a
+/// face or a part of one.
 ///
-/// Rays are distributed by the cosine law; a face hides what is behind it out to `reach`, less and less with distance.
+/// Rays are distributed by the cosine law; a face hides what is behind it out to `reach`, less and less with
+/// distance.
 pub(super) fn openness(
     pieces: &[Piece],
     faces: &[[usize; 3]],

@@ -1,4 +1,5 @@
-//! The paper's own scheme on the same sheet: forward Euler in system coordinates, with the published step control.
+//! The paper's own scheme on the same sheet: forward Euler in system coordinates, with the published step
+//! control.
 
 use super::{Scene, Staged};
 use crate::interrupt;
@@ -23,7 +24,8 @@ pub(crate) struct ChartScene {
     pub(crate) scene: Scene,
     /// Random displacement at the start, mean edge lengths; 0 is exactly flat.
     pub(crate) bump: f64,
-    /// Bound on the change of the Hamiltonian in a step, as part of the energy that the fall of half a side releases.
+    /// Bound on the change of the Hamiltonian in a step, as part of the energy that the fall of half a side
+    /// releases.
     pub(crate) tolerance: f64,
     /// Smallest and largest step, seconds.
     pub(crate) steps: [f64; 2],
@@ -36,13 +38,16 @@ pub(crate) struct ChartScene {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum ChartScheme {
-    /// As published: coordinates of `sys_coord_assnmt_single`, momenta carried over, positions to first order.
+    /// As published: coordinates of `sys_coord_assnmt_single`, momenta carried over, positions to first
+    /// order.
     Published,
-    /// The same, with a coordinate for every vertex whose three known neighbours do not determine it (Fig. 7).
+    /// The same, with a coordinate for every vertex whose three known neighbours do not determine it (Fig.
+    /// 7).
     FreeCreases,
     /// The same, with momenta formed anew from the velocities after every step.
     Reformed,
-    /// The same, with positions projected onto the edge lengths, in a well-conditioned chart that is renewed when needed.
+    /// The same, with positions projected onto the edge lengths, in a well-conditioned chart that is renewed
+    /// when needed.
     Projected,
 }
 

@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Everything that decides how a run goes: the cloth starts exactly flat, horizontal and at rest, with its middle above that of
-/// the table.
+/// Everything that decides how a run goes: the cloth starts exactly flat, horizontal and at rest, with its
+/// middle above that of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Drape {
     /// Name of the folder of the run.
@@ -94,7 +94,8 @@ pub(crate) enum Cloth {
     },
     /// The octagon with the paper's counts 244/440.
     Octagon { radius: f64 },
-    /// A regular polygon in concentric rings of triangles: the lines from the middle to the corners are edges.
+    /// A regular polygon in concentric rings of triangles: the lines from the middle to the corners are
+    /// edges.
     Rings { sides: u32, radius: f64, rings: u32 },
 }
 

@@ -3,32 +3,39 @@
 use super::{Scene, Shape, Staged};
 use crate::interrupt;
 use anyhow::Result;
+use isosheet_dynamics::Frames;
 use isosheet_mesh::{MassKind, MassMatrix};
 
 /// Acceleration of gravity of the scenes, m/s2.
 const GRAVITY: f64 = 9.8;
 
-/// Time and depth of the centre of mass (seconds, sides) while a sheet falls from exactly flat, frame by frame.
+/// Time and depth of the centre of mass (seconds, sides) while a sheet falls from exactly flat, frame by
+/// frame.
 ///
 /// # Errors
 /// Ctrl-C and errors of the simulation.
 pub(crate) fn fall(scene: &Scene) -> Result<Vec<[f64; 2]>> {
     let sheet = scene.sheet()?;
     let mut simulation = scene.simulation(&sheet)?;
-    let mut curve = vec![[0.0, 0.0]];
-    for _ in 0..scene.frames {
-        interrupt::check()?;
-        let report = simulation.step(scene.frame)?;
-        let shape = Shape::of(scene, &sheet, &simulation.state().x)?;
-        curve.push([report.t, shape.centre_depth]);
-    }
-    Ok(curve)
+    let mut frames = Frames::every(1);
+    let duration = scene.frames as f64 * scene.frame;
+    simulation.run(
+        duration,
+        scene.frame,
+        &mut [&mut frames, &mut interrupt::observe],
+    )?;
+    interrupt::check()?;
+    let later = frames.states()[1..]
+        .iter()
+        .map(|s| Ok([s.t, Shape::of(scene, &sheet, &s.x)?.centre_depth]));
+    std::iter::once(Ok([0.0, 0.0])).chain(later).collect()
 }
 
 /// The same for the sheet welded to a rigid plate that turns about the held corner.
 ///
-/// With d half a diagonal, m the mass and I the moment of inertia of the vertex masses about the line through the corner across the
-/// diagonal, the angle a below the horizon obeys `I a'' = m g d cos a - c I a'`; damping c as in the scene.
+/// With d half a diagonal, m the mass and I the moment of inertia of the vertex masses about the line through
+/// the corner across the diagonal, the angle a below the horizon obeys `I a'' = m g d cos a - c I a'`;
+/// damping c as in the scene.
 pub(crate) fn plate_fall(scene: &Scene) -> Result<Vec<[f64; 2]>> {
     let sheet = scene.sheet()?;
     let mass = MassMatrix::from_total(&sheet, 1.0, MassKind::Lumped)?.vertex;

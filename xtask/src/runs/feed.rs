@@ -10,8 +10,9 @@ use isosheet_mesh::generate::{Diagonals, grid};
 use isosheet_mesh::{MassKind, Sheet, VertexId};
 use serde::{Deserialize, Serialize};
 
-/// Everything that decides how a run goes: the strip starts flat and at rest in the middle of the channel, its leading edge
-/// where the bend begins. A nip holds the last two rungs, so that the strip leaves it straight, and moves along.
+/// Everything that decides how a run goes: the strip starts flat and at rest in the middle of the channel,
+/// its leading edge where the bend begins. A nip holds the last two rungs, so that the strip leaves it
+/// straight, and moves along.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Feed {
     /// Name of the folder of the run.
@@ -64,8 +65,8 @@ impl Feed {
     }
 }
 
-/// Penalty of the rods, ten times the default: the paper's bending resists a step a thousand times as much as its inertia does,
-/// and the rods have to be stiffer than both.
+/// Penalty of the rods, ten times the default: the paper's bending resists a step a thousand times as much as
+/// its inertia does, and the rods have to be stiffer than both.
 const ROD_STIFFNESS: f64 = 1e5;
 
 /// Force with which moving pins push a sheet along x, newtons.

@@ -59,7 +59,8 @@ impl Alike {
     }
 }
 
-/// Everything that decides how a run goes: the sheet starts exactly flat and at rest, free in space, without gravity.
+/// Everything that decides how a run goes: the sheet starts exactly flat and at rest, free in space, without
+/// gravity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Fold {
     /// Name of the folder of the run.
@@ -67,13 +68,14 @@ pub(crate) struct Fold {
     pub(crate) creases: Creases,
     /// Mass of a square metre, kilograms.
     pub(crate) weight: f64,
-    /// Rest angle of the driven creases in the end, radians, and the time that it takes to get there, seconds.
+    /// Rest angle of the driven creases in the end, radians, and the time that it takes to get there,
+    /// seconds.
     pub(crate) full: f64,
     pub(crate) duration: f64,
     /// Stiffness of the driven creases, newtons (newton metres per radian and metre of crease).
     pub(crate) drive: f64,
-    /// Stiffness of the edges inside panels, and of creases that are told only to which side they fold, as multiples of
-    /// that of the drive.
+    /// Stiffness of the edges inside panels, and of creases that are told only to which side they fold, as
+    /// multiples of that of the drive.
     pub(crate) panel: f64,
     pub(crate) hint: f64,
     /// Rate of the velocity damping, 1/s.

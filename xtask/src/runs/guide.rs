@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-/// A channel between two walls: straight along +x at height 0, a quarter turn downwards that starts at x = 0, straight down.
+/// A channel between two walls: straight along +x at height 0, a quarter turn downwards that starts at x = 0,
+/// straight down.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Guide {
     /// Radius of the middle line in the bend, metres; at least half the channel.

@@ -45,13 +45,13 @@ pub(crate) struct RunSummary {
     pub(crate) rejected: usize,
     pub(crate) iterations: usize,
     pub(crate) factorisations: usize,
-    /// Shortest and longest step, seconds; where a frame was subdivided, the mean of its sub-steps counts. `None` without a
-    /// step.
+    /// Shortest and longest step, seconds; where a frame was subdivided, the mean of its sub-steps counts.
+    /// `None` without a step.
     pub(crate) step_range: Option<[f64; 2]>,
     /// Largest relative edge length error.
     pub(crate) max_strain: f64,
-    /// Smallest gap between the sheet and a body or itself at the end of a frame, metres; `None` without contact or if nothing
-    /// ever came within reach.
+    /// Smallest gap between the sheet and a body or itself at the end of a frame, metres; `None` without
+    /// contact or if nothing ever came within reach.
     pub(crate) smallest_gap: Option<f64>,
     /// The energy balance at the end.
     pub(crate) energy: Energy,
@@ -131,7 +131,8 @@ pub(crate) fn trajectory(store: &Store, scene: &impl Staged) -> Result<Trajector
     Ok(Trajectory::read(&path)?)
 }
 
-/// Columns of loads.csv: time (s), body, force (N) and torque about the body's origin (N m) of the sheet on the body.
+/// Columns of loads.csv: time (s), body, force (N) and torque about the body's origin (N m) of the sheet on
+/// the body.
 const LOADS: &str = "t,body,fx,fy,fz,mx,my,mz";
 
 /// Time and force of the sheet on a body in a run that [`ensure()`] has made: seconds, newtons.
@@ -144,7 +145,8 @@ pub(crate) fn forces(store: &Store, scene: &impl Staged, body: usize) -> Result<
     Ok(of_body.collect())
 }
 
-/// Columns of supports.csv: time (s) and the sum of the forces (N) of all pins and vertex constraints on the sheet.
+/// Columns of supports.csv: time (s) and the sum of the forces (N) of all pins and vertex constraints on the
+/// sheet.
 const SUPPORTS: &str = "t,fx,fy,fz";
 
 /// Time and force of all supports on the sheet in a run that [`ensure()`] has made: seconds, newtons.

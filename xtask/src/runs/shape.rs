@@ -14,16 +14,17 @@ pub(crate) struct Shape {
     pub(crate) corner_depth: f64,
     /// Largest horizontal distance between two vertices.
     pub(crate) extent: f64,
-    /// Total bending: the sum of edge length times size of the fold angle, radians times sides. Unlike the fold angles
-    /// themselves it does not depend on how many edges share a bend.
+    /// Total bending: the sum of edge length times size of the fold angle, radians times sides. Unlike the
+    /// fold angles themselves it does not depend on how many edges share a bend.
     pub(crate) bending: f64,
 }
 
 /// Depth of the centre of mass of a rigid square plate that hangs from a corner, sides: half a diagonal.
 pub(crate) const PLATE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// Depth of the centre of mass that no unstretchable square sheet can exceed, sides: no point hangs deeper than its distance
-/// from the pin on the sheet, and the mean distance from a corner is `(sqrt 2 + ln(1 + sqrt 2)) / 3`.
+/// Depth of the centre of mass that no unstretchable square sheet can exceed, sides: no point hangs deeper
+/// than its distance from the pin on the sheet, and the mean distance from a corner is
+/// `(sqrt 2 + ln(1 + sqrt 2)) / 3`.
 pub(crate) const LIMIT: f64 = 0.765_195_716_464_212_7;
 
 impl Shape {
@@ -108,8 +109,8 @@ mod tests {
     fn a_sheet_folded_in_half_along_the_diagonal_has_the_centroid_of_a_triangle() {
         let scene = Scene::paper(1, 1);
         let sheet = scene.sheet().unwrap();
-        // In the plane of the triangle with corners pin (0, 0), far (0, -sqrt 2) and side (h, -h), then turned so that the centroid
-        // is below the pin.
+        // In the plane of the triangle with corners pin (0, 0), far (0, -sqrt 2) and side (h, -h), then
+        // turned so that the centroid is below the pin.
         let h = std::f64::consts::FRAC_1_SQRT_2;
         let tilt = (h / 3.0f64).atan2((2f64.sqrt() + h) / 3.0);
         let (s, c) = tilt.sin_cos();

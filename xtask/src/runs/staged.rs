@@ -6,7 +6,8 @@ use isosheet_dynamics::Simulation;
 use isosheet_mesh::Sheet;
 use serde::Serialize;
 
-/// A scene that starts at rest and is run frame by frame. Serialised it is everything that decides how the run goes.
+/// A scene that starts at rest and is run frame by frame. Serialised it is everything that decides how the
+/// run goes.
 pub(crate) trait Staged: Serialize {
     /// Name of the folder of the run.
     fn name(&self) -> &str;

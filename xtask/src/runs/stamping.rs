@@ -13,8 +13,8 @@ use nalgebra::Isometry3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Everything that decides how a run goes: the blank starts flat and at rest on the frame, its middle at the origin, the die just
-/// below it.
+/// Everything that decides how a run goes: the blank starts flat and at rest on the frame, its middle at the
+/// origin, the die just below it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Stamping {
     /// Name of the folder of the run.
@@ -94,8 +94,8 @@ impl Stamping {
     }
 }
 
-/// Surface of a square plate with a square hole in it about the z axis: half the sides of plate and hole, heights of its lower and upper
-/// face.
+/// Surface of a square plate with a square hole in it about the z axis: half the sides of plate and hole,
+/// heights of its lower and upper face.
 fn frame([outer, inner]: [f64; 2], heights: [f64; 2]) -> Result<TriangleSurface> {
     // Vertex 8 level + 4 ring + corner: below and above, outside and inside, counter-clockwise.
     let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];

@@ -10,15 +10,16 @@ use isosheet_mesh::{MassKind, VertexId};
 use nalgebra::Isometry3;
 use std::time::Instant;
 
-/// Height of the bump of the cloth, metres. Ten centimetres keep the length equations independent; of a nearly flat cloth on a table
-/// they are not, and from 16 641 vertices on the number of iterations would hide the price of the size.
+/// Height of the bump of the cloth, metres. Ten centimetres keep the length equations independent; of a
+/// nearly flat cloth on a table they are not, and from 16 641 vertices on the number of iterations would hide
+/// the price of the size.
 pub(super) const BUMP: f64 = 0.1;
 
 /// Half of the table's side, half of its thickness, metres.
 const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
 
-/// Part of the activation distance between the table and the lowest part of the cloth above it at the start: the gap at which
-/// a contact carries its own vertex.
+/// Part of the activation distance between the table and the lowest part of the cloth above it at the start:
+/// the gap at which a contact carries its own vertex.
 const START: f64 = 0.95;
 
 /// A few steps of the draping sheet at one mesh size. Means are over the steps that were timed.
@@ -50,7 +51,8 @@ pub(crate) struct DrapeRow {
     pub(crate) stopped: Option<String>,
 }
 
-/// Measures up to `steps` steps after a first one that is not timed, or as many as begin within `patience` seconds.
+/// Measures up to `steps` steps after a first one that is not timed, or as many as begin within `patience`
+/// seconds.
 pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRow> {
     let sheet = bumped(level, BUMP)?;
     let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)?.with_gravity();

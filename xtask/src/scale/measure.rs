@@ -9,9 +9,10 @@ use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
-/// Length of a step, seconds. The finer the mesh, the sooner a sheet that starts all but flat comes to states that its
-/// length equations barely determine, where a step takes hundreds of factorisations: with 66 049 vertices after 3 ms, with
-/// 4225 after 15 ms. Steps this short stay before them at every size, so that what is measured is the price of the size.
+/// Length of a step, seconds. The finer the mesh, the sooner a sheet that starts all but flat comes to states
+/// that its length equations barely determine, where a step takes hundreds of factorisations: with 66 049
+/// vertices after 3 ms, with 4225 after 15 ms. Steps this short stay before them at every size, so that what
+/// is measured is the price of the size.
 pub(crate) const STEP: f64 = 2.5e-4;
 
 /// Stiffness of the rods relative to the masses in the matrices that the orders are compared on.
@@ -60,7 +61,8 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Parts of a step's time, seconds: factorisations and solves, their numbers times what one of each takes alone.
+    /// Parts of a step's time, seconds: factorisations and solves, their numbers times what one of each takes
+    /// alone.
     pub(super) fn linear(&self) -> [f64; 2] {
         let best = self.best();
         let solves = self.iterations.max(self.factorisations);
@@ -97,8 +99,8 @@ fn corner(level: u32) -> VertexId {
     VertexId(n * (n - 1))
 }
 
-/// Measures one level: orders of elimination, and `steps` steps of the hanging sheet after a first one that is not
-/// timed.
+/// Measures one level: orders of elimination, and `steps` steps of the hanging sheet after a first one that
+/// is not timed.
 pub(crate) fn measure(level: u32, steps: usize) -> Result<Row> {
     let sheet = bumped(level, BUMP)?;
     let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)?

@@ -243,12 +243,13 @@ const POWER: f64 = 1.5;
 /// Memory for the sheet of 66 049 vertices, bytes: 8 GiB.
 const MEMORY: (u32, f64) = (7, 8.0 * 1024.0 * 1024.0 * 1024.0);
 
-/// Largest relative deviation of the entries of the factor from `a V log V + b V`. (Entries that grow as `V^1.5` deviate by 60 % over three
-/// decades.)
+/// Largest relative deviation of the entries of the factor from `a V log V + b V`. (Entries that grow as
+/// `V^1.5` deviate by 60 % over three decades.)
 const STRAIGHT: f64 = 0.15;
 
-/// `a`, `b` of `a V log2 V + b V` entries of the factor, with the least squares of relative deviations, and the largest of these. (Plain
-/// powers mislead: the term linear in V is negative, and makes what grows as V log V look faster.)
+/// `a`, `b` of `a V log2 V + b V` entries of the factor, with the least squares of relative deviations, and
+/// the largest of these. (Plain powers mislead: the term linear in V is negative, and makes what grows as V
+/// log V look faster.)
 fn logarithmic(rows: &[Row]) -> Option<[f64; 3]> {
     let points: Vec<[f64; 2]> = points(rows, |r| {
         let v = r.vertices as f64;

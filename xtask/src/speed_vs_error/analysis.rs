@@ -30,7 +30,8 @@ impl Measure {
         }
     }
 
-    /// The largest error that is of use: coarser runs are cheap, but no motion. Position errors of sheets of 1 m.
+    /// The largest error that is of use: coarser runs are cheap, but no motion. Position errors of sheets of
+    /// 1 m.
     pub(crate) fn useful(self) -> f64 {
         match self {
             Self::Position => 0.05,
@@ -62,8 +63,8 @@ pub(crate) fn exponent(points: &[[f64; 2]]) -> Option<f64> {
 /// Points that a fitted order rests on: the finest ones, before floors are reached.
 const FITTED: usize = 4;
 
-/// Order of a method: the slope of its error over its step, from the finest runs whose error is ten times above `floor` and
-/// whose steps were taken as asked for.
+/// Order of a method: the slope of its error over its step, from the finest runs whose error is ten times
+/// above `floor` and whose steps were taken as asked for.
 pub(crate) fn order(points: &[Point], scheme: &str, measure: Measure, floor: f64) -> Option<f64> {
     let usable: Vec<[f64; 2]> = points
         .iter()
@@ -93,8 +94,8 @@ pub(crate) fn cheapest<'a>(
         .min_by(|a, b| a.wall.total_cmp(&b.wall))
 }
 
-/// The largest and smallest useful error of the points of a method that no other method reaches in less time (beyond noise)
-/// with as small an error: its part of the front.
+/// The largest and smallest useful error of the points of a method that no other method reaches in less time
+/// (beyond noise) with as small an error: its part of the front.
 pub(crate) fn on_front(points: &[Point], scheme: &str, measure: Measure) -> Option<[f64; 2]> {
     points
         .iter()
@@ -159,7 +160,8 @@ pub(crate) fn advice(points: &[Point], measure: Measure) -> String {
     text
 }
 
-/// The first clause of an error message, without what to do about it: up to the first semicolon outside brackets.
+/// The first clause of an error message, without what to do about it: up to the first semicolon outside
+/// brackets.
 pub(crate) fn first_clause(message: &str) -> &str {
     let mut depth = 0;
     let end = message.find(|c| {

@@ -10,11 +10,13 @@ use crate::progress::Progress;
 use crate::scale::factorisation_time;
 use anyhow::Result;
 use isosheet_dynamics::{
-    ImplicitOptions, Method, ProjectionStepOptions, SheetModel, Simulation, State,
+    ImplicitOptions, Method, ProjectionStepOptions, RunEnd, SheetModel, Simulation, State,
+    StepReport,
 };
 use isosheet_mesh::MassKind;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// What the work is, in words.
@@ -157,26 +159,25 @@ fn run(level: u32, name: &str, method: &Method, step: f64, patience: f64) -> Res
         failure: None,
     };
     let clock = Instant::now();
-    for _ in 0..(DURATION / step).round() as usize {
-        interrupt::check()?;
-        match simulation.step(step) {
-            Ok(report) => {
-                row.strain = row.strain.max(report.strain);
-                row.drift = row.drift.max(report.energy_drift.abs());
-                row.factorisations += report.factorisations;
-                row.steps += report.substeps;
-                row.rejected += report.rejected;
-            }
-            Err(error) => {
-                row.failure = Some(error.to_string());
-                break;
-            }
-        }
+    let mut watch = |_: &Simulation, report: &StepReport| {
+        row.strain = row.strain.max(report.strain);
+        row.drift = row.drift.max(report.energy_drift.abs());
+        row.factorisations += report.factorisations;
+        row.steps += report.substeps;
+        row.rejected += report.rejected;
         if clock.elapsed().as_secs_f64() > patience {
-            row.failure = Some(format!("given up after {patience} s of wall time"));
-            break;
+            return ControlFlow::Break(());
         }
-    }
+        ControlFlow::Continue(())
+    };
+    let end = simulation.run(DURATION, step, &mut [&mut watch, &mut interrupt::observe]);
+    interrupt::check()?;
+    row.failure = match end {
+        Ok(RunEnd::Stopped) => Some(format!("given up after {patience} s of wall time")),
+        // No support of this scene moves, so that no run ends taut.
+        Ok(RunEnd::Complete | RunEnd::Taut) => None,
+        Err(error) => Some(error.to_string()),
+    };
     row.reached = simulation.state().t;
     let wall = clock.elapsed().as_secs_f64();
     row.wall = if row.reached > 0.0 {
@@ -188,10 +189,6 @@ fn run(level: u32, name: &str, method: &Method, step: f64, patience: f64) -> Res
     if released > 0.0 {
         row.balance = (simulation.energy() - energy) / released;
         row.drift /= released;
-    }
-    // The last step may have taken long without the run being unfinished.
-    if row.reached > DURATION - 0.5 * step {
-        row.failure = None;
     }
     Ok(row)
 }

@@ -15,7 +15,8 @@ use std::time::Instant;
 pub(crate) struct Point {
     /// Name of the method.
     pub(crate) scheme: String,
-    /// Step asked for, seconds, or of adaptive methods the bound on the change of energy, parts of the energy scale.
+    /// Step asked for, seconds, or of adaptive methods the bound on the change of energy, parts of the energy
+    /// scale.
     pub(crate) fineness: f64,
     /// Mean step taken, seconds.
     pub(crate) step: f64,
@@ -31,8 +32,8 @@ pub(crate) struct Point {
     pub(crate) errors: Option<Errors>,
     /// Errors up to the last checkpoint that was reached, of runs that did not come to the end.
     pub(crate) partial: Option<Errors>,
-    /// Simulated time, seconds; of runs that did not come to the end that of the last checkpoint that was reached, if any, to which
-    /// the wall time belongs as well.
+    /// Simulated time, seconds; of runs that did not come to the end that of the last checkpoint that was
+    /// reached, if any, to which the wall time belongs as well.
     pub(crate) reached: f64,
     /// Why a run did not come to the end.
     pub(crate) failure: Option<String>,
@@ -65,8 +66,8 @@ struct Pass {
 /// Most repetitions of short runs.
 const REPETITIONS: usize = 5;
 
-/// Measures a method at `intervals` steps between checkpoints, or with a tolerance relative to the energy scale.
-/// Runs that take longer than `patience` seconds are given up.
+/// Measures a method at `intervals` steps between checkpoints, or with a tolerance relative to the energy
+/// scale. Runs that take longer than `patience` seconds are given up.
 pub(crate) fn point(
     problem: Problem,
     scheme: &Scheme,
@@ -249,8 +250,8 @@ const MOST: f64 = 5.0;
 /// Runs that fail in a row, before the first checkpoint, after which finer ones are not tried.
 const FAILURES: usize = 5;
 
-/// Measures a method over its steps or tolerances, coarse to fine, until a run takes longer than `limit` seconds or
-/// refining makes no difference.
+/// Measures a method over its steps or tolerances, coarse to fine, until a run takes longer than `limit`
+/// seconds or refining makes no difference.
 pub(crate) fn sweep(
     problem: Problem,
     scheme: &Scheme,

@@ -1,4 +1,5 @@
-//! The hanging sheet and the tablecloth as other programs did them: figures measured once, on another occasion and machine.
+//! The hanging sheet and the tablecloth as other programs did them: figures measured once, on another
+//! occasion and machine.
 
 use crate::figures::Table;
 

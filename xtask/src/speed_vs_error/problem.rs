@@ -164,8 +164,8 @@ impl Problem {
         })
     }
 
-    /// The problem at a state by a method without a chart; with contact where the method takes it. The inner error is
-    /// that of the method.
+    /// The problem at a state by a method without a chart; with contact where the method takes it. The inner
+    /// error is that of the method.
     pub(crate) fn simulation(
         self,
         method: &Method,
@@ -342,9 +342,7 @@ mod tests {
         let method = Method::RattleComposition(Default::default());
         let mut run =
             Simulation::new(problem.model().unwrap(), problem.start().unwrap(), method).unwrap();
-        for _ in 0..400 {
-            run.step(end / 400.0).unwrap();
-        }
+        run.run(end, end / 400.0, &mut []).unwrap();
         let gap = max_difference(&run.state().x, &exact[1]);
         assert!(gap < 1e-10, "{gap:e} m");
     }

@@ -37,7 +37,8 @@ pub(crate) struct Growth {
     pub(crate) rate: f64,
 }
 
-/// Largest distance between the reference and its second opinion at which it is compared with, metres (sheets are 1 m).
+/// Largest distance between the reference and its second opinion at which it is compared with, metres (sheets
+/// are 1 m).
 const TRUST: f64 = 1e-5;
 
 impl Reference {
@@ -134,8 +135,8 @@ pub(crate) fn compute(problem: Problem, budget: f64) -> Result<Reference> {
     })
 }
 
-/// Halves the steps until nothing changes any more or the budget in seconds is used up; with an `order`, the last two runs are
-/// then extrapolated to steps of zero. `None` when there are no two runs.
+/// Halves the steps until nothing changes any more or the budget in seconds is used up; with an `order`, the
+/// last two runs are then extrapolated to steps of zero. `None` when there are no two runs.
 fn refine(
     problem: Problem,
     scheme: &Scheme,

@@ -30,7 +30,8 @@ pub(crate) enum Kind {
         method: ChartMethod,
         solver: MassSolverKind,
     },
-    /// The scheme of Liu, Tang and Joneja 2007: forward Euler, momenta carried over, positions to first order.
+    /// The scheme of Liu, Tang and Joneja 2007: forward Euler, momenta carried over, positions to first
+    /// order.
     Paper {
         degenerate: Degenerate,
         stepping: Stepping,
@@ -71,10 +72,12 @@ pub(crate) enum StartError {
     Simulation(#[from] SimulationError),
 }
 
-/// Largest number of coordinates for which the paper's scheme uses Cramer's rule, as published; beyond, dense LU.
+/// Largest number of coordinates for which the paper's scheme uses Cramer's rule, as published; beyond, dense
+/// LU.
 const CRAMER: usize = 16;
 
-/// Most steps of the paper's scheme between two checkpoints, a second or so. The finest runs that finish take some 10^4.
+/// Most steps of the paper's scheme between two checkpoints, a second or so. The finest runs that finish take
+/// some 10^4.
 const CRAWL: usize = 1 << 17;
 
 /// The same with more coordinates than [`CRAMER`].

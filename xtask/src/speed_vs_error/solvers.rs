@@ -339,7 +339,8 @@ impl<'a> Task<'a> {
 /// Steps of the method of multipliers that make up one solve with the primal matrix.
 const MULTIPLIER_STEPS: usize = 4;
 
-/// Most degrees of freedom for which a chart is chosen and the dense matrix formed: choosing coordinates is dense work too.
+/// Most degrees of freedom for which a chart is chosen and the dense matrix formed: choosing coordinates is
+/// dense work too.
 const LARGEST_CHART: usize = 300;
 
 /// A factorised sparse matrix.
@@ -400,7 +401,8 @@ fn minors(c: &DMatrix<f64>, determinant: f64, p: &[f64]) -> DVector<f64> {
     })
 }
 
-/// The shortest time of repeated runs, seconds: at most 20 of them, and no more once a tenth of the limit is used up.
+/// The shortest time of repeated runs, seconds: at most 20 of them, and no more once a tenth of the limit is
+/// used up.
 fn shortest(limit: f64, mut work: impl FnMut()) -> f64 {
     let mut best = f64::INFINITY;
     let clock = Instant::now();

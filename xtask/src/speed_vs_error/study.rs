@@ -179,7 +179,8 @@ impl Study {
         text
     }
 
-    /// Smallest and largest ratio of the default's time to that of the cheapest method with as small a position error.
+    /// Smallest and largest ratio of the default's time to that of the cheapest method with as small a
+    /// position error.
     fn default_price(&self) -> Option<[f64; 2]> {
         let ratios: Vec<f64> = self
             .of(DEFAULT)

@@ -342,7 +342,8 @@ pub(crate) fn table(rows: &[Tablecloth]) -> Table {
     }
 }
 
-/// The mesh of the targets, the wall seconds for a simulated second asked for and hoped for, and the largest strain.
+/// The mesh of the targets, the wall seconds for a simulated second asked for and hoped for, and the largest
+/// strain.
 const TARGET: (u32, f64, f64, f64) = (3, 0.7, 0.17, 1e-10);
 
 /// What the rows say.

@@ -133,7 +133,8 @@ fn impacts_never_add_energy() {
     assert!(lossy > 50, "{lossy} of the problems lose energy");
 }
 
-/// One contact without friction parts at e times the speed; with enough friction and no restitution it sticks.
+/// One contact without friction parts at e times the speed; with enough friction and no restitution it
+/// sticks.
 #[test]
 fn one_contact_follows_newtons_law() {
     let mut stuck = 0;
