@@ -18,6 +18,7 @@ mod mechanics;
 mod mobility;
 mod motion;
 mod options;
+mod resume;
 mod simulation;
 mod solver;
 mod stepping;
@@ -27,8 +28,9 @@ pub use error::ChartDynamicsError;
 pub use impact::ContactImpulse;
 pub use mechanics::{ChartMechanics, Equations};
 pub(crate) use motion::ChartMotion;
+pub use motion::StepRange;
 pub use options::{ChartMethod, ChartOptions, ChartStepControl, PositionUpdate, Rebase};
-pub use simulation::{ChartSimulation, ChartStepReport, StepRange};
+pub use simulation::{ChartSimulation, ChartStepReport};
 pub use solver::{
     CholeskySolver, CramerSolver, DenseLuSolver, MassSolver, MassSolverKind, SaddleSolver,
 };

@@ -14,6 +14,7 @@ impl Topology {
     /// With a description of the first invariant that does not hold.
     pub fn check_invariants(&self) {
         self.check_edges();
+        self.check_face_edges();
         self.check_fans();
         self.check_counts();
     }
@@ -91,6 +92,9 @@ impl Topology {
                 }
             }
         }
+    }
+
+    fn check_face_edges(&self) {
         for f in self.face_ids() {
             let (c, e) = (self.faces[f.index()], self.face_edges(f));
             for i in 0..3 {

@@ -1,7 +1,7 @@
 //! Explicit integration in a chart, with the published step control.
 
 use super::contact::ChartContact;
-use super::motion::ChartMotion;
+use super::motion::{ChartMotion, StepRange};
 use super::stepping::{PhaseState, Stepper};
 use super::{
     ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, ContactImpulse, Rebase,
@@ -40,17 +40,6 @@ pub struct ChartStepReport {
     pub driven: f64,
     /// Whether the chart was rebased before the step.
     pub rebased: bool,
-}
-
-/// Smallest and largest step of a run: the column "Step size min/max" of Fig. 10.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StepRange {
-    /// Smallest, seconds.
-    pub min: f64,
-    /// Largest, seconds.
-    pub max: f64,
-    /// Number of steps.
-    pub steps: u64,
 }
 
 /// A sheet moving in a chart.

@@ -1,0 +1,84 @@
+//! What a checkpoint keeps of a motion in a chart, and how a simulation continues from it.
+
+use super::motion::ChartMotion;
+use super::simulation::ChartSimulation;
+use super::stepping::Stepper;
+use super::{ChartDynamicsError, ChartMechanics, ChartOptions};
+use crate::SheetModel;
+use crate::reaction::{Balance, ForceTime};
+use isosheet_coords::Chart;
+
+impl ChartSimulation {
+    /// What a checkpoint keeps.
+    pub(crate) fn motion(&self) -> ChartMotion {
+        let (eigenvalue, eigenvector) = self.stepper.power();
+        ChartMotion {
+            eigenvalue,
+            eigenvector: eigenvector.to_vec(),
+            balance: self.motion.balance.as_ref().map(Balance::compact),
+            ..self.motion.clone()
+        }
+    }
+
+    /// Back to a motion of the same chart.
+    pub(super) fn restore(&mut self, motion: ChartMotion) {
+        self.stepper
+            .set_power(motion.eigenvalue, &motion.eigenvector);
+        self.motion = motion;
+    }
+
+    /// Continues from a checkpoint, with the chart as its user built it at the start.
+    pub(crate) fn resume(
+        model: SheetModel,
+        mut chart: Box<dyn Chart>,
+        options: ChartOptions,
+        motion: ChartMotion,
+    ) -> Result<Self, ChartDynamicsError> {
+        let n = model.coordinate_count();
+        let reference = motion.reference.as_ref().unwrap_or(&motion.state.x);
+        for (what, found, expected) in [
+            ("x", motion.state.x.len(), n),
+            ("the reference state", reference.len(), n),
+        ] {
+            if found != expected {
+                return Err(ChartDynamicsError::WrongLength {
+                    what,
+                    found,
+                    expected,
+                });
+            }
+        }
+        if let Some(reference) = &motion.reference {
+            chart.rebase(reference)?;
+        }
+        let mechanics = ChartMechanics::new(model, chart, options.solver)?;
+        let n = mechanics.dimension();
+        for (what, found) in [
+            ("q", motion.state.q.len()),
+            ("p", motion.state.p.len()),
+            ("the power iteration", motion.eigenvector.len()),
+        ] {
+            if found != n {
+                return Err(ChartDynamicsError::WrongLength {
+                    what,
+                    found,
+                    expected: n,
+                });
+            }
+        }
+        let mut stepper = Stepper::new(mechanics, &options, &motion.state.x)?;
+        stepper.mobility.set_pin_positions(&motion.pins);
+        stepper.set_power(motion.eigenvalue, &motion.eigenvector);
+        let balance = motion.balance.as_ref().map(|kept| {
+            let mut balance = Balance::new(stepper.mechanics.model(), ForceTime::End);
+            balance.copy_from(kept);
+            balance
+        });
+        Ok(Self {
+            stepper,
+            options,
+            motion: ChartMotion { balance, ..motion },
+            contact: None,
+        })
+    }
+}
