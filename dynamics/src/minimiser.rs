@@ -43,12 +43,16 @@ const COMPARISON_SLACK: f64 = 10.0;
 /// | [`AugmentedLagrangian`] | the prediction, without multipliers | third | second |
 /// | [`AugmentedLagrangian`], exact rounds | the start, without multipliers | last | last |
 ///
+/// Sheets with slivers, without contact, begin with the augmented Lagrangian from the prediction, and are left to weakly regularised
+/// programming after that.
+///
 /// With contact every displacement is cut to the part that is proven to bring nothing into contact. Pins and
 /// bodies in motion start where they were and advance with the iterates.
 pub(crate) struct Minimiser {
     options: ImplicitOptions,
     lagrangian: Lagrangian,
     restoration: Restoration,
+    faces: Faces,
     /// Forces of the supports at the result.
     pub(crate) balance: Balance,
     /// Multipliers of the step before, scaled to this one; zero where there are none.
@@ -57,6 +61,41 @@ pub(crate) struct Minimiser {
     pub(crate) prediction: Vec<f64>,
     /// Non-conservative forces, constant over the step.
     pub(crate) applied: Vec<f64>,
+}
+
+/// Altitude of a face, in parts of its longest side, from which rods 1e10 times as stiff as the masses hold the face: a length
+/// error `d` of the long sides moves the apex of a face of altitude `a l` by `d l / a`, so that slimmer faces need less than the
+/// 1e-10 that such rods let through for an error of 1e-4 in the altitude.
+const SLIMMEST: f64 = 1e-3;
+
+/// What the slimmest face of a sheet allows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Faces {
+    /// Any strategy.
+    Compact,
+    /// Strategies that are exact in the altitudes of slivers first.
+    Slivers,
+}
+
+impl Faces {
+    fn of(model: &SheetModel) -> Self {
+        let lengths = model.rods().lengths();
+        let is_sliver = |f| {
+            let mut sides = model.topology().face_edges(f).map(|e| lengths[e.index()]);
+            sides.sort_by(f64::total_cmp);
+            let [c, b, a] = sides;
+            // Four times the area, without cancellation (Kahan, "Miscalculating area and angles of a needle-like
+            // triangle", 2014).
+            let area = ((a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))).sqrt();
+            // (Rounded lengths of a sliver may make no triangle.)
+            area.is_nan() || 0.5 * area < SLIMMEST * a * a
+        };
+        if model.topology().face_ids().any(is_sliver) {
+            Self::Slivers
+        } else {
+            Self::Compact
+        }
+    }
 }
 
 /// How a minimisation ended.
@@ -78,14 +117,20 @@ enum Strategy {
 
 impl Strategy {
     /// In the order in which they are tried.
-    fn list(problem: &StepProblem<'_>) -> &'static [Self] {
+    fn list(problem: &StepProblem<'_>, faces: Faces) -> &'static [Self] {
         const ALL: [Strategy; 4] = [
             Strategy::Sqp(Regularisation::Strong),
             Strategy::Sqp(Regularisation::Weak),
             Strategy::FromPrediction,
             Strategy::FromStart,
         ];
+        const SLIVERS: [Strategy; 3] = [
+            Strategy::FromPrediction,
+            Strategy::Sqp(Regularisation::Weak),
+            Strategy::FromStart,
+        ];
         match (problem.has_contact(), problem.model.has_drives()) {
+            (false, _) if faces == Faces::Slivers => &SLIVERS,
             (false, _) => &ALL,
             // Resting in contact is a matter of nearly dependent rods.
             (true, false) => &ALL[1..],
@@ -100,6 +145,7 @@ impl Minimiser {
         Ok(Self {
             lagrangian: Lagrangian::new(model)?,
             restoration: Restoration::new(model),
+            faces: Faces::of(model),
             balance: Balance::with_unassigned(model, ForceTime::End),
             remembered: vec![0.0; model.rods().len()],
             prediction: vec![0.0; n],
@@ -175,7 +221,7 @@ impl Minimiser {
         let is_driven = self.lagrangian.is_driven(problem) || problem.model.has_drives();
         let bound = (!is_driven).then(|| self.lagrangian.merit(problem));
         let mut outcome = None;
-        for (rank, strategy) in Strategy::list(problem).iter().enumerate() {
+        for (rank, strategy) in Strategy::list(problem, self.faces).iter().enumerate() {
             if rank > 0 {
                 self.lagrangian.begin(problem);
             }

@@ -10,7 +10,6 @@ use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
 use crate::reaction::{Balance, ForceTime, Reaction};
 use crate::{SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
-use serde::{Deserialize, Serialize};
 
 /// What one step did.
 #[derive(Clone, Copy, Debug, PartialEq)]
