@@ -43,7 +43,7 @@ const COMPARISON_SLACK: f64 = 10.0;
 /// | [`AugmentedLagrangian`] | the prediction, without multipliers | third | second |
 /// | [`AugmentedLagrangian`], exact rounds | the start, without multipliers | last | last |
 ///
-/// Sheets with slivers, without contact, begin with the augmented Lagrangian from the prediction, and are left to weakly regularised
+/// Sheets with slivers, without contact, begin with the augmented Lagrangian from the prediction and its own multipliers, and are left to weakly regularised
 /// programming after that.
 ///
 /// With contact every displacement is cut to the part that is proven to bring nothing into contact. Pins and
@@ -277,7 +277,15 @@ impl Minimiser {
                 Ok(Minimum { residual, outcome })
             }
             Strategy::FromPrediction => {
-                self.lagrangian.clear_multipliers();
+                // The multipliers of sequential quadratic programming grow without bound where rods are nearly dependent, and
+                // are no start here; those of this strategy, which slivers begin with, are.
+                match self.faces {
+                    Faces::Slivers => {
+                        let remembered = &self.remembered;
+                        self.lagrangian.multipliers.copy_from_slice(remembered);
+                    }
+                    Faces::Compact => self.lagrangian.clear_multipliers(),
+                }
                 self.lagrangian.predict(problem);
                 AugmentedLagrangian::new(self, problem, Rounds::Loose, effort).run()
             }
