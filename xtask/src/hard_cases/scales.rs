@@ -184,7 +184,7 @@ const FLUTTER: &str = "The energy of a heavy vertex gives a light one the root o
 fn flutters(method: &str, ratio: f64, bump: f64) -> Option<[f64; 2]> {
     match (method, ratio, bump == 0.0) {
         ("projection", 1e8, true) => Some([0.05, 0.5]),
-        ("projection", 1e6, true) => Some([0.1, 0.35]),
+        ("projection", 1e6, true) => Some([0.05, 0.35]),
         ("projection", 1e8, false) => Some([0.02, 0.1]),
         ("energy-momentum", 1e8, false) => Some([0.03, 0.1]),
         _ => None,
