@@ -43,8 +43,8 @@ const COMPARISON_SLACK: f64 = 10.0;
 /// | [`AugmentedLagrangian`] | the prediction, without multipliers | third | second |
 /// | [`AugmentedLagrangian`], exact rounds | the start, without multipliers | last | last |
 ///
-/// Sheets with slivers, without contact, begin with the augmented Lagrangian from the prediction and its own multipliers, and are left to weakly regularised
-/// programming after that.
+/// Sheets with slivers, without contact, begin with the augmented Lagrangian from the prediction and its own
+/// multipliers, and are left to weakly regularised programming after that.
 ///
 /// With contact every displacement is cut to the part that is proven to bring nothing into contact. Pins and
 /// bodies in motion start where they were and advance with the iterates.
@@ -63,9 +63,10 @@ pub(crate) struct Minimiser {
     pub(crate) applied: Vec<f64>,
 }
 
-/// Altitude of a face, in parts of its longest side, from which rods 1e10 times as stiff as the masses hold the face: a length
-/// error `d` of the long sides moves the apex of a face of altitude `a l` by `d l / a`, so that slimmer faces need less than the
-/// 1e-10 that such rods let through for an error of 1e-4 in the altitude.
+/// Altitude of a face, in parts of its longest side, from which rods 1e10 times as stiff as the masses hold
+/// the face: a length error `d` of the long sides moves the apex of a face of altitude `a l` by `d l / a`, so
+/// that slimmer faces need less than the 1e-10 that such rods let through for an error of 1e-4 in the
+/// altitude.
 const SLIMMEST: f64 = 1e-3;
 
 /// What the slimmest face of a sheet allows.
@@ -84,8 +85,8 @@ impl Faces {
             let mut sides = model.topology().face_edges(f).map(|e| lengths[e.index()]);
             sides.sort_by(f64::total_cmp);
             let [c, b, a] = sides;
-            // Four times the area, without cancellation (Kahan, "Miscalculating area and angles of a needle-like
-            // triangle", 2014).
+            // Four times the area, without cancellation (Kahan, "Miscalculating area and angles of a
+            // needle-like triangle", 2014).
             let area = ((a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))).sqrt();
             // (Rounded lengths of a sliver may make no triangle.)
             area.is_nan() || 0.5 * area < SLIMMEST * a * a
@@ -277,8 +278,9 @@ impl Minimiser {
                 Ok(Minimum { residual, outcome })
             }
             Strategy::FromPrediction => {
-                // The multipliers of sequential quadratic programming grow without bound where rods are nearly dependent, and
-                // are no start here; those of this strategy, which slivers begin with, are.
+                // The multipliers of sequential quadratic programming grow without bound where rods are
+                // nearly dependent, and are no start here; those of this strategy, which slivers begin with,
+                // are.
                 match self.faces {
                     Faces::Slivers => {
                         let remembered = &self.remembered;
@@ -372,10 +374,10 @@ impl Minimiser {
         self.balance.leave(model, x, &rows.active);
     }
 
-    /// Whether the incremental potential at the iterate is not above `bound`, but for what the
-    /// tolerance of the lengths and round-off allow.
-    /// (Of sequential quadratic programming no allowance is made for the lengths: at rest its multipliers are those of round-off, and to
-    /// correct round-off in the lengths of a nearly flat sheet would set it in motion.)
+    /// Whether the incremental potential at the iterate is not above `bound`, but for what the tolerance of
+    /// the lengths and round-off allow. (Of sequential quadratic programming no allowance is made for the
+    /// lengths: at rest its multipliers are those of round-off, and to correct round-off in the lengths of a
+    /// nearly flat sheet would set it in motion.)
     fn is_below(
         &mut self,
         bound: Option<&Merit>,

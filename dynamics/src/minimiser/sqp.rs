@@ -7,16 +7,18 @@ use crate::report::SolverEffort;
 
 /// Regularisation of the linear systems of sequential quadratic programming.
 ///
-/// With penalties `r` the regularised saddle-point system `[H G^T; G -1/r]` is solved by elimination of the multipliers, and
-/// the regularisation is taken out again by passes of the method of multipliers with the same factor.
+/// With penalties `r` the regularised saddle-point system `[H G^T; G -1/r]` is solved by elimination of the
+/// multipliers, and the regularisation is taken out again by passes of the method of multipliers with the
+/// same factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Regularisation {
-    /// Rods 1e10 times as stiff as the masses, which keeps the momentum to round-off, and one pass: what nearly dependent rods
-    /// cannot hold is left over, and multipliers stay moderate where there are no finite ones.
+    /// Rods 1e10 times as stiff as the masses, which keeps the momentum to round-off, and one pass: what
+    /// nearly dependent rods cannot hold is left over, and multipliers stay moderate where there are no
+    /// finite ones.
     Strong,
-    /// Rods 1e13 times as stiff (beyond, the masses drown in the round-off of the penalty) and up to four passes. The
-    /// first leaves what the stiffness lets through along nearly dependent rods, as in a sheet that lies flat, the
-    /// fourth nothing that can be seen in the imbalance of forces.
+    /// Rods 1e13 times as stiff (beyond, the masses drown in the round-off of the penalty) and up to four
+    /// passes. The first leaves what the stiffness lets through along nearly dependent rods, as in a sheet
+    /// that lies flat, the fourth nothing that can be seen in the imbalance of forces.
     Weak,
 }
 
@@ -36,33 +38,35 @@ impl Regularisation {
     }
 }
 
-/// Edge strain of the linearised rods up to which a strongly regularised step is taken. A sheet hanging by a corner, of 2000
-/// triangles, stays below, also where it is nearly flat; one pulled with a million times its weight does not, nor do
-/// masses in the ratio of 1e8.
+/// Edge strain of the linearised rods up to which a strongly regularised step is taken. A sheet hanging by a
+/// corner, of 2000 triangles, stays below, also where it is nearly flat; one pulled with a million times its
+/// weight does not, nor do masses in the ratio of 1e8.
 const MAX_LINEARISED_STRAIN: f64 = 1e-7;
-/// Change of the multipliers, relative to the largest, from which a pass is not worth its solve. With 1e-3 a sheet at rest on a
-/// table needs three times as many steps.
+/// Change of the multipliers, relative to the largest, from which a pass is not worth its solve. With 1e-3 a
+/// sheet at rest on a table needs three times as many steps.
 const MULTIPLIERS_SETTLED: f64 = 1e-4;
-/// Largest number of steps in contact. A draping sheet needs three to six, one at rest two to six, an impact more where
-/// contact cuts them.
+/// Largest number of steps in contact. A draping sheet needs three to six, one at rest two to six, an impact
+/// more where contact cuts them.
 const MAX_STEPS_IN_CONTACT: usize = 20;
-/// Largest number of steps without contact. A hanging sheet of 2000 triangles needs up to 50 at 60 steps a second.
+/// Largest number of steps without contact. A hanging sheet of 2000 triangles needs up to 50 at 60 steps a
+/// second.
 const MAX_STEPS: usize = 80;
-/// Edge strain that iterates may have. Between 1e-13 and 1e-1 the number of steps is the same; that of restorations goes from
-/// four per step to hardly any.
+/// Edge strain that iterates may have. Between 1e-13 and 1e-1 the number of steps is the same; that of
+/// restorations goes from four per step to hardly any.
 const ITERATE_STRAIN: f64 = 1e-2;
-/// Largest number of iterations of a restoration of an iterate: more are a sign that the step is not a small one.
+/// Largest number of iterations of a restoration of an iterate: more are a sign that the step is not a small
+/// one.
 const MAX_RESTORATION: usize = 12;
-/// Largest number of iterations of the last restoration. Clamped strips, whose rods lock, need up to 40; with 12 half as many
-/// steps again end in the augmented Lagrangian.
+/// Largest number of iterations of the last restoration. Clamped strips, whose rods lock, need up to 40; with
+/// 12 half as many steps again end in the augmented Lagrangian.
 const MAX_LAST_RESTORATION: usize = 40;
 /// Edge strain from which the last restoration is a small displacement.
 const SMALL_STRAIN: f64 = 1e-5;
 /// Largest number of step halvings in contact; after these the augmented Lagrangian is used.
 const MAX_HALVINGS_IN_CONTACT: usize = 2;
-/// Largest number of step halvings without contact, where the augmented Lagrangian takes longer. With two, a third of
-/// the steps of a hanging sheet of 2000 triangles uses it; with 30, a thousand steps a second need half as many factorisations
-/// more.
+/// Largest number of step halvings without contact, where the augmented Lagrangian takes longer. With two, a
+/// third of the steps of a hanging sheet of 2000 triangles uses it; with 30, a thousand steps a second need
+/// half as many factorisations more.
 const MAX_HALVINGS: usize = 8;
 /// Part of the promised decrease that has to come true (Armijo's condition).
 const ARMIJO: f64 = 1e-4;
@@ -73,15 +77,16 @@ const ARMIJO: f64 = 1e-4;
 /// (M + h^2 (V + B + D)'' + P) dx + G^T L = -grad Phi,   G dx = -c
 /// ```
 ///
-/// with `P` the geometric stiffness of the rods under the multipliers of the step before (its positive part where the matrix is
-/// indefinite). Every step is cut to its safe part in contact, brought near the manifold of rest lengths where it is far from it,
-/// and halved where the Lagrangian `Phi + L . c`, without contact augmented, does not decrease. At the end the
-/// lengths are restored exactly. (Nocedal and Wright, "Numerical Optimization", 2006, chapter 18; regularised as in Gill, Kungurtsev
-/// and Robinson, Math. Program. 163, 2017; restoration as in Waechter and Biegler, Math. Program. 106, 2006.)
+/// with `P` the geometric stiffness of the rods under the multipliers of the step before (its positive part
+/// where the matrix is indefinite). Every step is cut to its safe part in contact, brought near the manifold
+/// of rest lengths where it is far from it, and halved where the Lagrangian `Phi + L . c`, without contact
+/// augmented, does not decrease. At the end the lengths are restored exactly. (Nocedal and Wright, "Numerical
+/// Optimization", 2006, chapter 18; regularised as in Gill, Kungurtsev and Robinson, Math. Program. 163,
+/// 2017; restoration as in Waechter and Biegler, Math. Program. 106, 2006.)
 ///
-/// A sheet that lies flat is held up by rods that are nearly dependent, with multipliers that grow as the inverse of its fold
-/// angles; the augmented Lagrangian needs a dozen rounds to find them. Here they are the solution of a linear system,
-/// and motions that are small or blocked by contact converge in a few steps.
+/// A sheet that lies flat is held up by rods that are nearly dependent, with multipliers that grow as the
+/// inverse of its fold angles; the augmented Lagrangian needs a dozen rounds to find them. Here they are the
+/// solution of a linear system, and motions that are small or blocked by contact converge in a few steps.
 pub(super) struct Sqp<'a, 'b> {
     minimiser: &'a mut Minimiser,
     problem: &'a mut StepProblem<'b>,
@@ -119,8 +124,8 @@ impl<'a, 'b> Sqp<'a, 'b> {
         regularisation: Regularisation,
         effort: &'a mut SolverEffort,
     ) -> Self {
-        // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that mends lengths
-        // against the barrier.
+        // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that
+        // mends lengths against the barrier.
         let limits = if problem.has_contact() {
             Limits {
                 steps: MAX_STEPS_IN_CONTACT,
@@ -190,7 +195,6 @@ impl<'a, 'b> Sqp<'a, 'b> {
             lagrangian.set_stiffness(stiffness, stiffness);
             lagrangian.place_pins(self.problem);
             let start = lagrangian.merit(self.problem).value;
-            lagrangian.begin_line_search(self.problem);
             lagrangian.predict(self.problem);
             if lagrangian.merit(self.problem).value >= start {
                 lagrangian.begin(self.problem);
@@ -206,12 +210,13 @@ impl<'a, 'b> Sqp<'a, 'b> {
         let stiffness = self.regularisation.stiffness();
         let (model, merit_stiffness) = (self.problem.model, self.limits.merit_stiffness);
         let constraint_stiffness = self.minimiser.options.stiffness;
-        // Linearised lengths within the tolerance need no further pass. (The balance of momentum holds after every pass.)
+        // Linearised lengths within the tolerance need no further pass. (The balance of momentum holds after
+        // every pass.)
         let strain_tolerance = self.minimiser.strain_tolerance(self.problem);
         let lagrangian = &mut self.minimiser.lagrangian;
         self.effort.iterations += 1;
-        // Vertex constraints stay as soft as in the merit function: their curvature goes by the multiplier estimates, which a
-        // large penalty would make those of length errors.
+        // Vertex constraints stay as soft as in the merit function: their curvature goes by the multiplier
+        // estimates, which a large penalty would make those of length errors.
         lagrangian.set_stiffness(stiffness, constraint_stiffness);
         let hessian = lagrangian
             .factorize(self.problem, RodLoad::Multipliers, self.effort)
@@ -251,8 +256,8 @@ impl<'a, 'b> Sqp<'a, 'b> {
         })
     }
 
-    /// Goes on by up to `limit` of the step, not far from the manifold; the part of the step, or nothing if it does not
-    /// decrease the merit function.
+    /// Goes on by up to `limit` of the step, not far from the manifold; the part of the step, or nothing if
+    /// it does not decrease the merit function.
     fn line_search(&mut self, limit: f64, direction: &Direction) -> Option<f64> {
         let mut length = limit;
         for _ in 0..=self.limits.halvings {
@@ -275,14 +280,16 @@ impl<'a, 'b> Sqp<'a, 'b> {
         None
     }
 
-    /// Whether the last restoration will be a small displacement. (In contact the lengths of iterates are exact enough.)
+    /// Whether the last restoration will be a small displacement. (In contact the lengths of iterates are
+    /// exact enough.)
     fn is_near(&self) -> bool {
         let x = self.minimiser.lagrangian.iterate.x();
         self.problem.has_contact() || self.problem.model.rods().max_strain(x) <= SMALL_STRAIN
     }
 
-    /// Begins anew from a point that has converged but is no minimum: a saddle, where the sheet could fold either way, or one
-    /// with friction that belongs to other normal forces. Returns false if there is no reason to.
+    /// Begins anew from a point that has converged but is no minimum: a saddle, where the sheet could fold
+    /// either way, or one with friction that belongs to other normal forces. Returns false if there is no
+    /// reason to.
     fn goes_on(&mut self, direction: &Direction) -> bool {
         let options = &self.minimiser.options;
         let is_saddle = direction.hessian == Definiteness::Modified
