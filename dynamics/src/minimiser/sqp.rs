@@ -45,12 +45,11 @@ const MAX_LINEARISED_STRAIN: f64 = 1e-7;
 /// Change of the multipliers, relative to the largest, from which a pass is not worth its solve. With 1e-3 a
 /// sheet at rest on a table needs three times as many steps.
 const MULTIPLIERS_SETTLED: f64 = 1e-4;
-/// Largest number of steps in contact. A draping sheet needs three to six, one at rest two to six, an impact
-/// more where contact cuts them.
-const MAX_STEPS_IN_CONTACT: usize = 20;
-/// Largest number of steps without contact. A hanging sheet of 2000 triangles needs up to 50 at 60 steps a
-/// second.
-const MAX_STEPS: usize = 80;
+/// Part of [`ImplicitOptions::max_iterations`](crate::ImplicitOptions::max_iterations) that is the largest number
+/// of steps in contact, 20 by default: a draping sheet needs three to six steps, a sheet at rest two to six, an
+/// impact more where contact cuts them. (Without contact all iterations may be used: a hanging sheet of 2000
+/// triangles needs up to 50 at 60 steps a second.)
+const PART_IN_CONTACT: usize = 4;
 /// Edge strain that iterates may have. Between 1e-13 and 1e-1 the number of steps is the same; that of
 /// restorations goes from four per step to hardly any.
 const ITERATE_STRAIN: f64 = 1e-2;
@@ -126,15 +125,16 @@ impl<'a, 'b> Sqp<'a, 'b> {
     ) -> Self {
         // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that
         // mends lengths against the barrier.
+        let steps = minimiser.options.max_iterations;
         let limits = if problem.has_contact() {
             Limits {
-                steps: MAX_STEPS_IN_CONTACT,
+                steps: steps.div_ceil(PART_IN_CONTACT),
                 halvings: MAX_HALVINGS_IN_CONTACT,
                 merit_stiffness: 0.0,
             }
         } else {
             Limits {
-                steps: MAX_STEPS,
+                steps,
                 halvings: MAX_HALVINGS,
                 merit_stiffness: minimiser.options.stiffness,
             }
