@@ -27,9 +27,9 @@ pub struct ImplicitOptions {
     /// Largest relative edge length error of an accepted step. Default 1e-12. Round-off sets a
     /// floor of a few units in the last place of the coordinates.
     pub strain_tolerance: f64,
-    /// Largest number of Newton iterations of one minimisation: of sequential quadratic programming (a quarter of
-    /// this number in contact; the count begins anew after a renewal of friction or a perturbation of a saddle),
-    /// or of one round of the augmented Lagrangian. Default 80.
+    /// Largest number of Newton iterations of one minimisation: of sequential quadratic programming (a
+    /// quarter of this number in contact; the count begins anew after a renewal of friction or a perturbation
+    /// of a saddle), or of one round of the augmented Lagrangian. Default 80.
     pub max_iterations: usize,
     /// Largest number of iterations of one restoration of the lengths. Default 400; sequential quadratic
     /// programming gives up after at most 40 of these.

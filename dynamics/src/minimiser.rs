@@ -4,6 +4,8 @@ mod augmented_lagrangian;
 mod lagrangian;
 pub(crate) mod problem;
 mod sqp;
+#[cfg(test)]
+mod tests;
 
 use crate::ImplicitOptions;
 use crate::SheetModel;
@@ -20,9 +22,6 @@ use lagrangian::{Lagrangian, Merit};
 use problem::StepProblem;
 use sqp::{Regularisation, Sqp};
 
-/// Ratios of squared steps over which multipliers are carried; beyond, the motion has changed too
-/// much for them to be of use.
-const MULTIPLIER_RATIOS: std::ops::RangeInclusive<f64> = 0.05..=20.0;
 /// Part of the largest fold that the tolerance of the lengths allows by which contact at rest may move.
 const FOLD_PART: f64 = 0.1;
 /// Relative change of friction's normal forces below which they count as settled.
@@ -176,10 +175,12 @@ impl Minimiser {
         h: f64,
     ) -> Result<(), LinalgError> {
         let last = attempt.multipliers();
-        let ratio = (h / last.step).powi(2);
         self.remembered.fill(0.0);
         self.lagrangian.clear_multipliers();
-        if MULTIPLIER_RATIOS.contains(&ratio) {
+        // Whatever the ratio: what holds a sheet at rest, or parts whose rods lock, is the same in shorter
+        // steps.
+        if last.step > 0.0 {
+            let ratio = (h / last.step).powi(2);
             for (m, l) in self.remembered.iter_mut().zip(&last.rods) {
                 *m = ratio * l;
             }

@@ -45,10 +45,10 @@ const MAX_LINEARISED_STRAIN: f64 = 1e-7;
 /// Change of the multipliers, relative to the largest, from which a pass is not worth its solve. With 1e-3 a
 /// sheet at rest on a table needs three times as many steps.
 const MULTIPLIERS_SETTLED: f64 = 1e-4;
-/// Part of [`ImplicitOptions::max_iterations`](crate::ImplicitOptions::max_iterations) that is the largest number
-/// of steps in contact, 20 by default: a draping sheet needs three to six steps, a sheet at rest two to six, an
-/// impact more where contact cuts them. (Without contact all iterations may be used: a hanging sheet of 2000
-/// triangles needs up to 50 at 60 steps a second.)
+/// Part of [`ImplicitOptions::max_iterations`](crate::ImplicitOptions::max_iterations) that is the largest
+/// number of steps in contact, 20 by default: a draping sheet needs three to six steps, a sheet at rest two
+/// to six, an impact more where contact cuts them. (Without contact all iterations may be used: a hanging
+/// sheet of 2000 triangles needs up to 50 at 60 steps a second.)
 const PART_IN_CONTACT: usize = 4;
 /// Edge strain that iterates may have. Between 1e-13 and 1e-1 the number of steps is the same; that of
 /// restorations goes from four per step to hardly any.
@@ -291,16 +291,19 @@ impl<'a, 'b> Sqp<'a, 'b> {
     /// either way, or one with friction that belongs to other normal forces. Returns false if there is no
     /// reason to.
     fn goes_on(&mut self, direction: &Direction) -> bool {
-        let options = &self.minimiser.options;
-        let is_saddle = direction.hessian == Definiteness::Modified
+        let may_be_saddle = direction.hessian == Definiteness::Modified
             && self.regularisation == Regularisation::Strong
             && !self.is_perturbed;
-        if is_saddle {
+        let Minimiser {
+            options,
+            lagrangian,
+            ..
+        } = &mut *self.minimiser;
+        let least = options.tolerance * direction.before.inertia;
+        if may_be_saddle && lagrangian.leave_saddle(self.problem, options.seed, least) {
             self.is_perturbed = true;
-            let seed = options.seed;
-            self.minimiser.lagrangian.perturb(self.problem, seed);
         } else if self.friction_updates < options.max_friction_updates
-            && self.minimiser.lagrangian.renew_friction(self.problem) > FRICTION_SETTLED
+            && lagrangian.renew_friction(self.problem) > FRICTION_SETTLED
         {
             self.friction_updates += 1;
         } else {
