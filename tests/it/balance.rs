@@ -83,8 +83,8 @@ fn momentum(simulation: &Simulation) -> Vector3<f64> {
     momenta.map(|p| Vector3::from(*p)).sum()
 }
 
-/// Discrete rate of change of momentum in the last step of `h` seconds, by the method's own formula, from the momenta at
-/// its end, at its start and one step before.
+/// Discrete rate of change of momentum in the last step of `h` seconds, by the method's own formula, from
+/// the momenta at the end of the step, at its start and one step before.
 fn rate(
     method: &Method,
     h: f64,
@@ -97,8 +97,9 @@ fn rate(
     }
 }
 
-/// Largest failure of `rate = sum of reactions - sum of loads on bodies + weight` in 60 steps: in the first one, which starts from
-/// exactly flat, and in the others, over the weight and over the sum of the sizes of all forces.
+/// Largest failure of `rate = sum of reactions - sum of loads on bodies + weight` in 60 steps. `first` is
+/// that of the first step, which starts from exactly flat, relative to the weight; `of_weight` is that of
+/// the other steps relative to the weight, `of_forces` relative to the sum of the magnitudes of all forces.
 #[derive(Debug, Default)]
 struct Imbalance {
     first: f64,
@@ -117,7 +118,8 @@ fn imbalance(held: Held, method: &Method, mass: MassKind) -> Imbalance {
     for step in 0..60 {
         let report = simulation.step(h).expect("accepted");
         let new = momentum(&simulation);
-        // Reactions are those of the last sub-step; and a damped step that is repeated has dropped its history.
+        // The reactions are those of the last sub-step, and a damped step that is repeated has dropped its
+        // history.
         if report.rejected > 0 {
             older = None;
         }
@@ -194,8 +196,9 @@ fn implicit(tolerance: f64) -> [Method; 2] {
 
 #[test]
 fn supports_of_the_implicit_methods_balance_the_change_of_momentum() {
-    // In an exactly flat sheet rods are dependent: what round-off asks of them converges slowly. Beyond, what is left is the
-    // momentum that Newton's method leaves at free vertices, by the root of its tolerance.
+    // In an exactly flat sheet rods are dependent, and what round-off asks of them converges slowly. In
+    // later steps the imbalance is the momentum that Newton's method leaves at free vertices, in proportion
+    // to the square root of its tolerance.
     for (tolerance, first, bound) in [
         (1e-12, 2e-4, 1e-5),
         (ImplicitOptions::default().tolerance, 2e-3, 1e-2),
@@ -216,7 +219,8 @@ fn supports_of_the_implicit_methods_balance_the_change_of_momentum() {
 
 #[test]
 fn supports_of_the_projection_method_balance_the_change_of_momentum() {
-    // (Where a one-sided constraint stops the sheet it opens flat patches by a random displacement, momentum from nowhere.)
+    // One-sided constraints are left out: where one stops the sheet, flat patches are left by a random
+    // displacement, which adds momentum that no support accounts for.
     for held in two_sided() {
         for mass in MASSES {
             let found = imbalance(held, &Method::Projection(Default::default()), mass);
@@ -248,8 +252,8 @@ fn supports_of_the_conservative_methods_balance_the_change_of_momentum() {
 
 #[test]
 fn contact_balances_the_change_of_momentum_but_for_its_curvature() {
-    // The projection that ends a step changes the forces of contact to first order by what it balances; the rest is
-    // of second order and not balanced.
+    // The projection that ends a step changes the contact forces. The change of first order is balanced by
+    // the projection itself; the rest is of second order and is not balanced.
     let none = Held::default();
     let all = Held {
         pin: true,

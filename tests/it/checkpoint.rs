@@ -55,7 +55,8 @@ fn compare(name: &str, start: impl Fn() -> Simulation, model: impl Fn() -> Sheet
     });
 }
 
-/// Runs `2 N` steps, and `N` with a checkpoint and `N` more, and compares states, reports, support forces and what bodies bear.
+/// Runs `2 N` steps without interruption, and `N` steps, a checkpoint and `N` more steps; compares states,
+/// reports, support forces and loads on bodies.
 fn compare_with(
     name: &str,
     h: f64,

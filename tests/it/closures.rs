@@ -50,8 +50,9 @@ fn off_pins(x: &[f64], start: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The paper's one external point in the chart, three more pins as closures, two of their nine equations dependent: orders of
-/// all methods on the exact motion of the parallel linkage.
+/// The chart has the paper's one external point, and three more pins are closures, two of whose nine
+/// equations are dependent. The orders of all methods are measured against the exact motion of the parallel
+/// linkage.
 #[test]
 fn a_parallel_linkage_swings_as_a_pendulum() {
     let linkage = Linkage::default();
@@ -159,8 +160,8 @@ fn reactions_of_a_hanging_trapezoid() {
     }
 }
 
-/// A bent sheet held at two corners, a vertex on a circle and one on a sphere: against RATTLE's composition of fourth order
-/// without a chart.
+/// A bent sheet with two pinned corners, one vertex on a circle and one on a sphere. The reference is
+/// RATTLE's composition of fourth order without a chart.
 fn crowded() -> (SheetModel, State, [VertexId; 2]) {
     let sheet = bent();
     let (second, third, fourth) = (VertexId(0), VertexId(4), VertexId(24));

@@ -260,8 +260,8 @@ fn a_dropped_sheet_loses_what_friction_and_damping_take() {
     }
 }
 
-/// A floor that slides away at a constant speed takes a plate along: of its work half is lost to friction and half is
-/// kinetic energy in the end, `W = m v^2`.
+/// A floor that moves sideways at a constant speed drags a plate along by friction. Half of the floor's
+/// work is lost to friction and half is kinetic energy in the end, `W = m v^2`.
 #[test]
 fn a_conveyor_does_work_by_friction() {
     const SPEED: f64 = 0.5;

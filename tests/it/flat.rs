@@ -43,7 +43,8 @@ fn energy_momentum_refuses_a_loaded_flat_sheet_and_says_why() {
     else {
         panic!("{error}");
     };
-    // Nine interior vertices, as many dependent rods; the short steps before the refusal may have folded some of them.
+    // The sheet has nine interior vertices and as many dependent rods; the short steps before the refusal
+    // may have folded some of the vertices.
     assert!((1..=9).contains(&rank_deficiency), "{rank_deficiency}");
     assert!(
         smallest_singular_value < 1e-5,
@@ -56,8 +57,8 @@ fn energy_momentum_refuses_a_loaded_flat_sheet_and_says_why() {
     assert!(strain < 1e-12, "{strain:e}");
 }
 
-/// Many short steps find the way out of the flat state; they keep the energy to a millionth (RATTLE) and the hundred thousandth part
-/// (its composition) of the 1.3 mJ that the fall releases.
+/// Many short steps lead out of the flat state. They keep the energy to one part in 1e6 (RATTLE) and one
+/// part in 1e5 (its composition) of the 1.3 mJ that the fall releases.
 #[test]
 fn rattle_leaves_a_loaded_flat_sheet_by_short_steps() {
     for (name, method) in methods().into_iter().skip(4) {

@@ -58,9 +58,11 @@ fn rest_stays_rest_and_translation_goes_on() {
 
 #[test]
 fn damped_methods_do_not_create_energy() {
-    // Strips far from square, checkerboard masses: from exactly flat, step by step. With the shares of the largest kinetic
-    // energy that implicit Euler, BDF2 and the projection have lost after 30 steps; measured: 0.237, 0.031, 0.164;
-    // 0.254, 0.021, 0.205; 0.245, 0.029, and of the projection, whose random displacements off flat patches differ with every change, 0.07 to 0.16.
+    // Strips far from square and checkerboard masses, from exactly flat, step by step. The last column
+    // bounds the shares of the largest kinetic energy that implicit Euler, BDF2 and the projection have
+    // lost after 30 steps. Measured: 0.237, 0.031, 0.164 for the first scene; 0.254, 0.021, 0.205 for the
+    // second; 0.245, 0.029 and 0.07 to 0.16 for the third, where the result of the projection depends on
+    // random displacements off flat patches.
     for (width, ratio, shares) in [
         (0.02, 1.0, [0.2..0.27, 0.025..0.04, 0.14..0.19]),
         (0.005, 1.0, [0.21..0.3, 0.015..0.03, 0.17..0.24]),
@@ -119,9 +121,9 @@ fn damped_methods_do_not_create_energy() {
 #[test]
 fn changing_steps_do_not_feed_energy() {
     let problem = Pendulum::default();
-    // Energy errors of the steps, of the energy at the start, least and largest. The damped methods have lost between 5.88 % and 7.1 %
-    // at the end. Errors measured of the others: below 3e-12 (energy-momentum), -3.4e-4 to
-    // 2.5e-5 (RATTLE), -2.7e-8 to 0 (its composition).
+    // Least and largest energy error of the steps, relative to the energy at the start. The damped methods
+    // have lost between 5.88 % and 7.1 % at the end. Errors measured for the others: below 3e-12
+    // (energy-momentum), -3.4e-4 to 2.5e-5 (RATTLE), -2.7e-8 to 0 (its composition).
     let bounds = [
         ("implicit Euler", [-0.075, 1e-12]),
         ("BDF2", [-0.075, 1e-12]),
@@ -158,8 +160,9 @@ fn a_flat_sheet_in_flight_keeps_its_momentum_until_rods_answer_round_off() {
     let sheet = bumped(2, 0.0);
     for (name, method) in methods().into_iter().skip(3) {
         for speed in [1.0, 100.0] {
-            // RATTLE solves for the impulses of dependent rods also where round-off alone loads them, and stops there:
-            // at 1 m/s in the second step, its composition in the first. Energy-momentum does not ask for them.
+            // RATTLE solves for the impulses of dependent rods also where round-off alone loads them, and
+            // stops there: at 1 m/s RATTLE in the second step and its composition in the first.
+            // Energy-momentum does not solve for these impulses.
             let steps = match (name, speed) {
                 ("RATTLE", 1.0) => 1,
                 ("RATTLE composition", 1.0) => 0,

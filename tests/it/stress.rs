@@ -118,8 +118,8 @@ fn a_sheet_is_crumpled_between_closing_plates() {
     );
     scene.run(0.35, H, |_, _| ());
     let [low, high] = extent(scene.x(), 0);
-    // The plates end 0.5 SIDE + 2 margin apart; the folds stay between them but for the reach of the barrier, and the sides that the
-    // plates do not touch keep their length.
+    // The plates end 0.5 SIDE + 2 margin apart. The folds fill the space between them except for the reach
+    // of the barrier, and the sides that the plates do not touch keep their length.
     let room = 0.5 * SIDE + 2.0 * margin;
     assert!(
         (0.93 * room..room).contains(&(high - low)),
@@ -155,7 +155,8 @@ fn a_sheet_is_crumpled_from_four_sides() {
         0.2,
     );
     scene.run(0.35, H, |_, _| ());
-    // The plates are 0.6 SIDE + 2 margin apart, and the sheet fills what is between them, but for the reach of the barrier.
+    // The plates are 0.6 SIDE + 2 margin apart, and the sheet fills the space between them except for the
+    // reach of the barrier.
     let room = 0.6 * SIDE + 2.0 * margin;
     for axis in [0, 1] {
         let [low, high] = extent(scene.x(), axis);
@@ -304,7 +305,8 @@ fn a_strip_is_pulled_through_a_ring() {
 
 #[test]
 fn a_sheet_is_crumpled_between_closing_spheres() {
-    // Weightless, from exactly flat: they pass each other with little between them, and the sheet goes round both.
+    // Without gravity, from exactly flat: the spheres pass each other with a small gap between them, and
+    // the sheet goes round both.
     let (radius, margin) = (0.06, 2e-3);
     for (between, mu) in [(0.01, 0.0), (0.004, 0.2), (0.003, 0.3)] {
         let sheet = square(2);
@@ -327,14 +329,15 @@ fn a_sheet_is_crumpled_between_closing_spheres() {
         let mut scene = Scene::new(model, start, vec![ball(1.0), ball(-1.0)], mu);
         scene.run(0.45, H, |_, _| ());
         let ([left, right], [low, high]) = (extent(scene.x(), 0), extent(scene.x(), 2));
-        // A sheet that is turned by its spheres but not wrapped round them keeps its width to a few percent; which way it folds, along
-        // its sides or a diagonal, is left to round-off.
-        // Measured: 0.67 to 0.81 of it.
+        // A sheet that is turned by the spheres but not wrapped round them keeps its width to a few
+        // percent. Round-off decides whether it folds along its sides or along a diagonal. Measured: 0.67
+        // to 0.81 of the width.
         assert!(
             (0.6 * SIDE..0.85 * SIDE).contains(&(right - left)),
             "from {left} to {right} m"
         );
-        // Its outer parts stand on end, one up, one down. Measured: 0.885 to 0.93; no two points are further apart than the diagonal.
+        // The outer parts stand on end, one upwards and one downwards. Measured: 0.885 to 0.93 of the side;
+        // no two points are further apart than the diagonal.
         assert!(
             (0.85 * SIDE..2.0_f64.sqrt() * SIDE).contains(&(high - low)),
             "from {low} to {high} m"
@@ -401,10 +404,12 @@ fn a_strip_is_wrapped_round_a_cylinder_and_unrolled() {
     let up = wound(scene.x());
     scene.run(2.0 * half + 0.2, H, |_, _| ());
     let down = wound(scene.x());
-    // One and a quarter turns of the cylinder take up 0.236 m and more over the layer below; of 0.3 m the rest, 0.064 m or less, hangs
-    // from a height of no more than the radius. Measured: -0.057 m.
+    // One and a quarter turns round the cylinder, each over the layer below, take up 0.236 m or more. What
+    // is left of 0.3 m, 0.064 m or less, hangs from a height of no more than the radius. Measured: -0.057
+    // m.
     assert!((-0.064..-0.03).contains(&up), "wound up to {up} m");
-    // Unrolled it hangs from the pins at the height of the axis, over all its length but for waves. Measured: -0.291 m.
+    // Once unrolled the sheet hangs from the pins at the height of the axis; its length is used up except
+    // for waves. Measured: -0.291 m.
     assert!((-0.3..-0.28).contains(&down), "unrolled to {down} m");
 }
 

@@ -1,4 +1,5 @@
-//! The paper's coordinates and its scheme: condition, error that does not go away, the degenerate placement of Fig. 7.
+//! The paper's coordinates and its scheme: condition, an error that does not vanish with the step, the
+//! degenerate placement of Fig. 7.
 
 use super::case::number;
 use super::scenes::{STRAIN, apart, bumped, corner, course, hanging, held, methods};
@@ -116,7 +117,8 @@ enum Coordinates {
     Cartesian,
 }
 
-/// Relative error, in the largest norm, of the velocities found from the momenta of known ones; the reason if there are none.
+/// Known velocities are turned into momenta and found from these again. Returns the relative error of the
+/// result in the largest norm, or the reason why there is none.
 fn velocity_error(
     level: u32,
     coordinates: Coordinates,
@@ -126,7 +128,8 @@ fn velocity_error(
     let pin = VertexId(0);
     let x = bent_square(&sheet, level, BentState::Noise);
     let bent = Sheet::new(x.clone(), &sheet.face_indices())?;
-    // Velocities with the right lengths: a smooth field, projected by a short step, at the positions that it leads to.
+    // Velocities that keep the lengths: a smooth field, projected by a short step, at the positions at the
+    // end of this step.
     let field = x
         .chunks(3)
         .flat_map(|p| [0.3 * p[1], 0.5 * p[2], p[0] * p[1]])
@@ -372,7 +375,8 @@ fn collinear(effort: Effort) -> Result<Findings> {
         error,
         1e-14,
     );
-    // Every interior vertex of degree 4 keeps one straight crease: the bumped M^0 has four of them on its boundary side.
+    // Every interior vertex of degree 4 keeps one straight crease; the bumped M^1 has four of them next to
+    // its boundary.
     let sheet = bumped(1, 0.1)?;
     let chart = |degenerate| {
         let options = AssignmentOptions {

@@ -149,7 +149,8 @@ const TWIN: f64 = 1e-10;
 /// A map of positions onto those of the reference.
 type Back = Box<dyn Fn(&[f64]) -> Vec<f64>>;
 
-/// A scene that moves like the reference: its sheet, pin, gravity, and the map of its positions onto those of the reference.
+/// A scene that moves like the reference: its sheet, pin and gravity, and the map of its positions onto
+/// those of the reference.
 struct Image {
     sheet: Sheet,
     pin: VertexId,

@@ -209,7 +209,8 @@ fn nearest(sheet: &Sheet, target: [f64; 2]) -> VertexId {
         .unwrap_or(VertexId(0))
 }
 
-/// Depth of the centre of area below a height, and the area of the shadow straight below (overlaps counted once for each layer).
+/// Depth of the centre of area below a height, and the area of the vertical projection, in which overlaps
+/// count once for each layer.
 fn shape(sheet: &Sheet, x: &[f64], top: f64) -> (f64, f64) {
     let (mut depth, mut shadow) = (0.0, 0.0);
     for (face, area) in sheet.topology().faces().iter().zip(sheet.face_areas()) {

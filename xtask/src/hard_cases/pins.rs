@@ -309,9 +309,10 @@ fn taut(effort: Effort) -> Result<Findings> {
 /// Mass of each vertex of the strip, kilograms.
 const BEAD: f64 = 0.01;
 
-/// Slowest transverse mode and its frequency of beads on a string of tension `force` / 2 in each column, held at one end, free at
-/// the other: `m w^2 = (F / L) x` with x the smallest eigenvalue of the second-difference matrix with one free end,
-/// `x = 4 sin^2(pi / (4 n + 2))`, displacement of bead k proportional to `sin(k pi / (2 n + 1))`.
+/// Slowest transverse mode and its frequency of a string with beads, of tension `force` / 2 in each column,
+/// fixed at one end and free at the other: `m w^2 = (F / L) x` with x the smallest eigenvalue of the
+/// second-difference matrix with one free end, `x = 4 sin^2(pi / (4 n + 2))`, displacement of bead k
+/// proportional to `sin(k pi / (2 n + 1))`.
 fn string_mode(n: usize, force: f64, spacing: f64) -> (Vec<f64>, f64) {
     let angle = std::f64::consts::PI / (2 * n + 1) as f64;
     let x = 4.0 * (0.5 * angle).sin().powi(2);

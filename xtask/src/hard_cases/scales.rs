@@ -24,7 +24,8 @@ pub(crate) const SLIVERS: Case = Case {
 const ALTITUDE: &str = "The lengths determine the altitude only to their own error times the square of the aspect: a strain of 1e-12 is all of an altitude of 1e-6. \
                         A method that lets its lengths err by 1e-12 loses its way; the conservative one, exact to rounding, does not.";
 
-/// A triangle with a pinned edge of length `base` and altitude `altitude`, and its motion from rest at angle 1 rad from hanging.
+/// A triangle with a pinned edge of length `base` and altitude `altitude`, and its motion from rest at 1
+/// rad to the vertical.
 fn needle(base: f64, altitude: f64) -> Result<(SheetModel, Vec<f64>)> {
     let (s, c) = 1.0_f64.sin_cos();
     let x = vec![
@@ -179,8 +180,8 @@ const SNAP: &str = "At 0.442 s the heavy apexes have pulled the light hinge flat
 const FLUTTER: &str = "The energy of a heavy vertex gives a light one the root of the mass ratio times its speed: the light vertices flutter at time scales of \
                        1e-4 of a step, and no sub-step allowed (6e-5 of a step) resolves that.";
 
-/// Between which times (seconds) a method stops at a checkerboard of masses. Measured: implicit Euler 0.697 s, the projection 0.1875 s from
-/// flat and 0.0473 s from a bump, energy-momentum 0.0537 s.
+/// Between which times (seconds) a method stops at a checkerboard of masses. Measured: implicit Euler 0.697
+/// s, the projection 0.1875 s from flat and 0.0473 s from a bump, energy-momentum 0.0537 s.
 fn flutters(method: &str, ratio: f64, bump: f64) -> Option<[f64; 2]> {
     match (method, ratio, bump == 0.0) {
         ("projection", 1e8, true) => Some([0.05, 0.5]),

@@ -9,11 +9,12 @@ use std::f64::consts::PI;
 /// The length of a step wherever a case does not say otherwise, seconds.
 pub(super) const FRAME: f64 = 1.0 / 60.0;
 
-/// What is promised of the relative edge length error of accepted steps, unless rounding of the coordinates is larger.
+/// Bound for the relative edge length error of accepted steps, unless the rounding of the coordinates is
+/// larger.
 pub(super) const STRAIN: f64 = 1e-12;
 
-/// What is promised at positions of the given sheet: [`STRAIN`], or four units in the last place of the largest coordinate over the
-/// shortest rod where that is larger.
+/// Bound for the relative edge length error at positions of the given sheet: [`STRAIN`], or four units in
+/// the last place of the largest coordinate over the shortest rod where that is larger.
 pub(super) fn strain_bound(sheet: &Sheet) -> f64 {
     let size = sheet
         .positions()
