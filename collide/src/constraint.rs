@@ -51,7 +51,7 @@ impl Obstacle {
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let sheet = generate::isotropic_square(1, 1.0)?;
-    /// let ball = Obstacle::still(
+    /// let ball = Obstacle::fixed(
     ///     Shape::Sphere { radius: 0.5 },
     ///     Isometry3::translation(0.0, 0.0, -0.5),
     /// )?;

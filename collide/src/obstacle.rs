@@ -261,8 +261,8 @@ impl Obstacle {
     /// # Errors
     /// [`ObstacleError`] naming the length that is not positive, or the number of the pose that is not
     /// finite.
-    pub fn still(shape: Shape, pose: Isometry3<f64>) -> Result<Self, ObstacleError> {
-        Self::new(shape, RigidProfile::still(pose))
+    pub fn fixed(shape: Shape, pose: Isometry3<f64>) -> Result<Self, ObstacleError> {
+        Self::new(shape, RigidProfile::fixed(pose))
     }
 
     /// Its form.

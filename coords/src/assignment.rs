@@ -31,7 +31,7 @@ use thiserror::Error;
 /// Where the propagation of `sys_coord_assnmt_single` starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// The external point constraint of the paper: the vertex is held, its three coordinates are removed.
+    /// The external point constraint of the paper: the vertex is pinned, its three coordinates are removed.
     Pinned(VertexId),
     /// A free vertex with its three Cartesian coordinates.
     Free(VertexId),

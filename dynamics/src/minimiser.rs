@@ -306,9 +306,9 @@ impl Minimiser {
         }
     }
 
-    /// Restores the lengths at the iterate to `tolerance` in at most `most` iterations, where multipliers and
-    /// contact hold their own; the strain reached. The forces of the supports are those before, with their
-    /// share in the restoration.
+    /// Restores the lengths at the iterate to `tolerance` in at most `most` iterations, against the given
+    /// loads of the supports and the contact forces. Returns the strain reached. The forces of the supports
+    /// are those before, with their share in the restoration.
     fn restore(
         &mut self,
         problem: &mut StepProblem<'_>,
@@ -323,20 +323,20 @@ impl Minimiser {
         }
         let (model, t) = (problem.model, problem.t());
         let lagrangian = &mut self.lagrangian;
-        let aim = RestorationGoal {
+        let goal = RestorationGoal {
             tolerance,
             max_iterations: most.min(self.options.max_projections),
             t,
             loads: &lagrangian.vertex_rows.multipliers,
         };
-        let held = problem.contact_mut().map(|contact| RestorationContact {
+        let contact = problem.contact_mut().map(|contact| RestorationContact {
             contact,
             scale: 1.0 / per,
         });
         let (matrix, iterate) = (&mut lagrangian.matrix, &mut lagrangian.iterate);
         let strain = self
             .restoration
-            .positions(model, matrix, held, iterate, aim, effort);
+            .positions(model, matrix, contact, iterate, goal, effort);
         if is_last {
             self.balance
                 .unassigned

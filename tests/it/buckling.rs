@@ -90,7 +90,7 @@ fn a_strip_jams_between_walls_without_touching() {
     let mut contacts = Contacts::new(&model, options).expect("valid");
     let wall = |half: [f64; 3], x: f64, z: f64| {
         let pose = Isometry3::translation(x, 0.5 * WIDTH, z);
-        Obstacle::still(Shape::Cuboid { half }, pose).expect("valid")
+        Obstacle::fixed(Shape::Cuboid { half }, pose).expect("valid")
     };
     // A channel of 10 mm, closed a millimetre before the leading edge.
     for body in [

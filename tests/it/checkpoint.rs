@@ -297,7 +297,7 @@ fn contacts(model: &SheetModel) -> Contacts {
     let table = Shape::Cuboid {
         half: [0.03, 0.03, 0.01],
     };
-    let table = Obstacle::still(table, Isometry3::translation(0.1, 0.1, -0.0305)).expect("valid");
+    let table = Obstacle::fixed(table, Isometry3::translation(0.1, 0.1, -0.0305)).expect("valid");
     let ball = Profile::Ramp {
         from: 0.0,
         to: 0.03,
@@ -434,7 +434,7 @@ fn charts_with_closures_drives_and_impacts_go_on_bit_for_bit() {
     };
     let floor = |model: &SheetModel| {
         let pose = Isometry3::translation(0.0, 0.0, low - 1e-3);
-        let floor = Obstacle::still(Shape::HalfSpace, pose).expect("valid");
+        let floor = Obstacle::fixed(Shape::HalfSpace, pose).expect("valid");
         Contacts::new(model, ContactOptions::for_sheet(model))
             .and_then(|c| c.with_body(floor, Coefficients::equal(0.3)))
             .expect("valid")

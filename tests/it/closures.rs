@@ -1,4 +1,4 @@
-//! Vertices held by closure equations in a chart.
+//! Vertices constrained by closure equations in a chart.
 
 use crate::scenes::{corner, gap};
 use isosheet_coords::{
@@ -335,7 +335,7 @@ fn closures_that_cannot_be_met_say_so() {
     let moving = begin(moving.expect("exists"), &[VertexId(0)]);
     let vertex = VertexId(0);
     assert_eq!(moving, Some(ChartDynamicsError::MovingPin { vertex }));
-    // Pins that leave no freedom make no chart; as closures they hold the sheet still.
+    // Pins that leave no freedom make no chart; as closures they fix the whole sheet.
     let full: Vec<VertexId> = (0..8).map(VertexId).collect();
     let model = model().with_pins(&full).expect("exist");
     let system = RodSystem::from_parts(model.topology(), model.rods().lengths(), &full);
@@ -343,9 +343,9 @@ fn closures_that_cannot_be_met_say_so() {
     assert!(matches!(none.err(), Some(ChartError::System(_))));
     let chart = cartesian(&model, &[VertexId(0)], &start.x);
     let options = fixed(ChartMethod::RungeKutta4, 1e-2);
-    let mut still = ChartSimulation::from_state(model, chart, options, &start).expect("valid");
+    let mut run = ChartSimulation::from_state(model, chart, options, &start).expect("valid");
     for _ in 0..10 {
-        still.step().expect("held");
+        run.step().expect("fixed");
     }
-    assert!(gap(still.positions(), &start.x) < 1e-12);
+    assert!(gap(run.positions(), &start.x) < 1e-12);
 }

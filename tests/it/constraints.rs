@@ -1,4 +1,4 @@
-//! Vertices on curves and surfaces, moving pins, and the forces that hold a sheet.
+//! Vertices on curves and surfaces, moving pins, and the forces of these supports.
 
 use isosheet_dynamics::constraint::{Circle, Line, Plane, Side, Sphere};
 use isosheet_dynamics::{
@@ -158,7 +158,7 @@ fn a_sheet_slides_down_a_line_at_g_sin() {
             (moved / exact - 1.0).abs() < allowed,
             "{name}: {moved} {exact}"
         );
-        // Lines push across themselves only.
+        // The force of a line is perpendicular to it.
         let want = 0.3 * G * slope.cos();
         let push = sum(&simulation);
         // Newton's method of the damped methods stops at the round-off of the energy, which is a force of

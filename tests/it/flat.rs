@@ -1,6 +1,6 @@
 //! Exactly flat and otherwise rank-deficient states.
 
-use crate::scenes::{bumped, corner, gap, hanging, held, methods};
+use crate::scenes::{bumped, corner, gap, hanging, methods, pinned};
 use isosheet_dynamics::{
     Fallback, Method, SheetModel, Simulation, State, StepControl, StepError, StepOutcome,
     leave_flat,
@@ -100,7 +100,7 @@ fn fallback_carries_a_conservative_run_off_flat() {
 
 #[test]
 fn leaving_flat_lets_conservative_methods_run() {
-    let model = held(1, 0.0);
+    let model = pinned(1, 0.0);
     let mut x = bumped(1, 0.0).positions().to_vec();
     leave_flat(&model, &mut x, 1e-2, 7).expect("projected");
     let method = Method::EnergyMomentum(Default::default());
@@ -173,7 +173,7 @@ fn bad_states_are_refused() {
     let sheet = bumped(1, 0.05);
     let mut x = sheet.positions().to_vec();
     x[3] += 0.01;
-    let error = Simulation::new(held(1, 0.05), State::at_rest(x), Method::default());
+    let error = Simulation::new(pinned(1, 0.05), State::at_rest(x), Method::default());
     let message = error.err().expect("refused").to_string();
     assert!(
         message.contains("edge") && message.contains("rest length"),
@@ -182,11 +182,11 @@ fn bad_states_are_refused() {
 
     let mut x = sheet.positions().to_vec();
     x[7] = f64::NAN;
-    let error = Simulation::new(held(1, 0.05), State::at_rest(x), Method::default());
+    let error = Simulation::new(pinned(1, 0.05), State::at_rest(x), Method::default());
     assert!(error.err().expect("refused").to_string().contains("NaN"));
 
     let short = State::at_rest(vec![0.0; 6]);
-    assert!(Simulation::new(held(1, 0.05), short, Method::default()).is_err());
+    assert!(Simulation::new(pinned(1, 0.05), short, Method::default()).is_err());
 
     let mut run = hanging(1, 0.05, Method::default());
     for h in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -195,6 +195,6 @@ fn bad_states_are_refused() {
             "{h}"
         );
     }
-    assert!(held(1, 0.0).with_pins(&[VertexId(1000)]).is_err());
+    assert!(pinned(1, 0.0).with_pins(&[VertexId(1000)]).is_err());
     assert_eq!(corner(1), VertexId(20));
 }

@@ -24,7 +24,7 @@ fn floor(model: &SheetModel, pose: Isometry3<f64>, friction: f64) -> Contacts {
         activation: 1e-4,
         ..ContactOptions::for_sheet(model)
     };
-    let body = Obstacle::still(Shape::HalfSpace, pose).expect("valid");
+    let body = Obstacle::fixed(Shape::HalfSpace, pose).expect("valid");
     Contacts::new(model, options)
         .expect("valid")
         .with_body(body, Coefficients::equal(friction))

@@ -193,9 +193,9 @@ fn scenes() -> impl Strategy<Value = Scene> {
 }
 
 fn frames() -> impl Strategy<Value = Isometry3<f64>> {
-    (vectors(1.0), vectors(3.0)).prop_map(|(way, turn)| {
+    (vectors(1.0), vectors(3.0)).prop_map(|(shift, turn)| {
         let turn = Rotation3::new(turn);
-        Isometry3::from_parts(way.into(), turn.into())
+        Isometry3::from_parts(shift.into(), turn.into())
     })
 }
 

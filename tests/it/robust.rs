@@ -1,6 +1,6 @@
 //! States and scenes that have broken integrators before.
 
-use crate::scenes::{bumped, corner, gap, hanging, held, methods};
+use crate::scenes::{bumped, corner, gap, hanging, methods, pinned};
 use isosheet_dynamics::{
     Force, Method, Potential, SheetModel, Simulation, State, StepError, leave_flat,
     project_positions,
@@ -224,14 +224,14 @@ impl Force for BreaksLater {
 fn no_report_holds_a_nan() {
     let start = || State::at_rest(bumped(1, 0.05).positions().to_vec());
     for (name, method) in methods() {
-        let model = held(1, 0.05).with_potential(BadEnergy);
+        let model = pinned(1, 0.05).with_potential(BadEnergy);
         let mut run = Simulation::new(model, start(), method.clone()).expect("valid");
         assert!(
             run.step(1e-2).is_err(),
             "{name}: an energy that is not a number"
         );
 
-        let model = held(1, 0.05).with_force(BreaksLater);
+        let model = pinned(1, 0.05).with_force(BreaksLater);
         let mut run = Simulation::new(model, start(), method).expect("valid");
         // The damped methods ask for the force at the start of a step, the others within it.
         let damped = ["implicit Euler", "BDF2", "projection"].contains(&name);
@@ -256,13 +256,13 @@ fn no_report_holds_a_nan() {
     }
     let mut nowhen = start();
     nowhen.t = f64::NAN;
-    let error = Simulation::new(held(1, 0.05), nowhen, Method::default()).err();
+    let error = Simulation::new(pinned(1, 0.05), nowhen, Method::default()).err();
     assert!(error.expect("refused").to_string().contains("time"));
 }
 
 #[test]
 fn projection_refuses_nonsense_and_leaves_positions_alone() {
-    let model = held(1, 0.05);
+    let model = pinned(1, 0.05);
     let good = bumped(1, 0.05).positions().to_vec();
     for tolerance in [0.0, f64::NAN, -1.0, 2.0] {
         assert!(project_positions(&model, &mut good.clone(), tolerance).is_err());
@@ -275,7 +275,7 @@ fn projection_refuses_nonsense_and_leaves_positions_alone() {
     assert!(strain <= 1e-12 && model.rods().max_strain(&point) == strain);
     // A rod of rest length 1 m from a pin to one 3 m away: no positions have the lengths.
     let far = VertexId(24);
-    let torn = held(1, 0.05).with_pins(&[far]).expect("exists");
+    let torn = pinned(1, 0.05).with_pins(&[far]).expect("exists");
     let mut apart = good.clone();
     apart[3 * far.index()] += 2.0;
     let before = apart.clone();

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Side of the square sheets, metres.
 const SIDE: f64 = 0.2;
 
-/// A scene under way.
+/// A scene while it runs.
 struct Scene {
     simulation: Simulation,
     watch: Watch,
@@ -76,10 +76,10 @@ fn mover(shape: Shape, from: Isometry3<f64>, to: Isometry3<f64>, [t0, t1]: [f64;
     Obstacle::new(shape, keys).expect("valid")
 }
 
-/// A half-space that closes in along its normal by `way` metres within `t` seconds.
-fn closing(point: [f64; 3], normal: [f64; 3], way: f64, t: f64) -> Obstacle {
+/// A half-space that closes in along its normal by `distance` metres within `t` seconds.
+fn closing(point: [f64; 3], normal: [f64; 3], distance: f64, t: f64) -> Obstacle {
     let from = wall(point, normal);
-    let to = Translation3::from(Vector3::from(normal) * way) * from;
+    let to = Translation3::from(Vector3::from(normal) * distance) * from;
     mover(Shape::HalfSpace, from, to, [0.0, t])
 }
 
@@ -99,7 +99,7 @@ fn a_sheet_is_crumpled_between_closing_plates() {
     let sheet = square(2);
     let margin = 1e-3;
     let bodies = vec![
-        Obstacle::still(Shape::HalfSpace, wall([0.0, 0.0, -margin], [0.0, 0.0, 1.0]))
+        Obstacle::fixed(Shape::HalfSpace, wall([0.0, 0.0, -margin], [0.0, 0.0, 1.0]))
             .expect("valid"),
         closing([-margin, 0.0, 0.0], [1.0, 0.0, 0.0], 0.25 * SIDE, 0.3),
         closing(
@@ -138,14 +138,14 @@ fn a_sheet_is_crumpled_between_closing_plates() {
 fn a_sheet_is_crumpled_from_four_sides() {
     let sheet = square(2);
     let margin = 1e-3;
-    let way = 0.2 * SIDE;
+    let distance = 0.2 * SIDE;
     let bodies = vec![
-        Obstacle::still(Shape::HalfSpace, wall([0.0, 0.0, -margin], [0.0, 0.0, 1.0]))
+        Obstacle::fixed(Shape::HalfSpace, wall([0.0, 0.0, -margin], [0.0, 0.0, 1.0]))
             .expect("valid"),
-        closing([-margin, 0.0, 0.0], [1.0, 0.0, 0.0], way, 0.3),
-        closing([SIDE + margin, 0.0, 0.0], [-1.0, 0.0, 0.0], way, 0.3),
-        closing([0.0, -margin, 0.0], [0.0, 1.0, 0.0], way, 0.3),
-        closing([0.0, SIDE + margin, 0.0], [0.0, -1.0, 0.0], way, 0.3),
+        closing([-margin, 0.0, 0.0], [1.0, 0.0, 0.0], distance, 0.3),
+        closing([SIDE + margin, 0.0, 0.0], [-1.0, 0.0, 0.0], distance, 0.3),
+        closing([0.0, -margin, 0.0], [0.0, 1.0, 0.0], distance, 0.3),
+        closing([0.0, SIDE + margin, 0.0], [0.0, -1.0, 0.0], distance, 0.3),
     ];
     let model = model(&sheet).with_damping(2.0).expect("valid");
     let mut scene = Scene::new(
@@ -209,7 +209,7 @@ fn a_strip_is_folded_into_ten_layers() {
     let height = panels as f64 * length * sin + 2.0 * margin;
     let end = 0.012;
     let bodies = vec![
-        Obstacle::still(Shape::HalfSpace, Isometry3::identity()).expect("valid"),
+        Obstacle::fixed(Shape::HalfSpace, Isometry3::identity()).expect("valid"),
         closing([0.0, 0.0, height], [0.0, 0.0, -1.0], height - end, 0.4),
     ];
     let model = model(&flat).with_damping(2.0).expect("valid");
@@ -259,7 +259,7 @@ fn a_sheet_is_pulled_through_a_ring() {
         .iter()
         .flat_map(|p| [p[0] - 0.5 * SIDE, p[1] - 0.5 * SIDE, 0.0])
         .collect();
-    let ring = Obstacle::still(
+    let ring = Obstacle::fixed(
         torus(0.09, 0.02, [16, 6]),
         Isometry3::translation(0.0, 0.0, 0.025),
     )
@@ -288,7 +288,7 @@ fn a_strip_is_pulled_through_a_ring() {
         .flat_map(|p| [0.0, p[1] - 0.5 * width, -p[0]])
         .collect();
     let ring = torus(hole + thick, thick, [16, 6]);
-    let ring = Obstacle::still(ring, Isometry3::translation(0.0, 0.0, 0.02)).expect("valid");
+    let ring = Obstacle::fixed(ring, Isometry3::translation(0.0, 0.0, 0.02)).expect("valid");
     let path = move |t: f64| [0.0, 0.5 * width * ((t / 0.1).min(1.0) - 1.0), 0.25 * t];
     let model = model(&flat)
         .with_moving_pin(VertexId(0), path)
@@ -424,7 +424,7 @@ fn a_sheet_is_thrown_at_an_edge() {
         half: [half, 0.15, half],
     };
     let pose = Isometry3::from_parts([0.52 * SIDE, 0.5 * SIDE, -top - 0.03].into(), turn);
-    let bar = Obstacle::still(bar, pose).expect("valid");
+    let bar = Obstacle::fixed(bar, pose).expect("valid");
     let mut start = State::at_rest(sheet.positions().to_vec());
     start
         .v

@@ -178,9 +178,9 @@ fn distances_by_hand() {
 
 #[test]
 fn bad_lengths_are_named() {
-    let still = |shape| Obstacle::still(shape, Isometry3::identity()).map(|_| ());
+    let fixed = |shape| Obstacle::fixed(shape, Isometry3::identity()).map(|_| ());
     assert_eq!(
-        still(Shape::Cuboid {
+        fixed(Shape::Cuboid {
             half: [1.0, 0.0, 1.0]
         }),
         Err(ObstacleError::Length {
@@ -190,7 +190,7 @@ fn bad_lengths_are_named() {
         })
     );
     assert_eq!(
-        still(Shape::Sphere { radius: -1.0 }),
+        fixed(Shape::Sphere { radius: -1.0 }),
         Err(ObstacleError::Length {
             shape: "sphere",
             name: "radius",
@@ -198,20 +198,20 @@ fn bad_lengths_are_named() {
         })
     );
     assert!(
-        still(Shape::Capsule {
+        fixed(Shape::Capsule {
             radius: 1.0,
             half_length: f64::NAN
         })
         .is_err()
     );
     assert!(
-        still(Shape::Cylinder {
+        fixed(Shape::Cylinder {
             radius: 1.0,
             half_height: f64::INFINITY
         })
         .is_err()
     );
-    assert!(still(Shape::HalfSpace).is_ok());
+    assert!(fixed(Shape::HalfSpace).is_ok());
     let cylinder = Shape::Cylinder {
         radius: 1.0,
         half_height: 1.0,
@@ -223,7 +223,7 @@ fn bad_lengths_are_named() {
     let mut pose = Isometry3::identity();
     pose.translation.vector.x = f64::NAN;
     assert!(matches!(
-        Obstacle::still(Shape::HalfSpace, pose),
+        Obstacle::fixed(Shape::HalfSpace, pose),
         Err(ObstacleError::Motion(MotionError::NotFinite { .. }))
     ));
 }

@@ -23,7 +23,7 @@ pub enum Degenerate {
 /// Options of [`assign`](super::assign).
 #[derive(Clone, Debug)]
 pub struct AssignmentOptions {
-    /// Vertices held in place; default none.
+    /// Pinned vertices; default none.
     pub pins: Vec<VertexId>,
     /// Start vertices of components without a pin; a component that has neither starts from its
     /// lowest vertex. Default none.

@@ -215,8 +215,8 @@ proptest! {
         let starts = if pins.is_empty() { vec![VertexId(start % count)] } else { vec![] };
         let options = AssignmentOptions { pins: unique.clone(), starts, ..Default::default() };
         let a = assign(&sheet, sheet.positions(), &options).unwrap();
-        let held = |v: &VertexId| unique.contains(v);
-        let edges = t.edges().iter().filter(|[a, b]| !(held(a) && held(b))).count() as i64;
+        let pinned = |v: &VertexId| unique.contains(v);
+        let edges = t.edges().iter().filter(|[a, b]| !(pinned(a) && pinned(b))).count() as i64;
         let dof = 3 * (i64::from(count) - unique.len() as i64) - edges;
         prop_assert_eq!(a.coordinate_count() as i64 - a.closures().len() as i64, dof);
         // Every edge is used exactly once, by its later end or as a closure.
@@ -232,7 +232,7 @@ proptest! {
         }
         for c in a.closures() { used[c.edge.index()] += 1; }
         for (n, [a, b]) in used.iter().zip(t.edges()) {
-            prop_assert_eq!(*n, i32::from(!(held(a) && held(b))));
+            prop_assert_eq!(*n, i32::from(!(pinned(a) && pinned(b))));
         }
     }
 

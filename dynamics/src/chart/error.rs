@@ -67,17 +67,17 @@ pub enum ChartDynamicsError {
         /// Values needed.
         expected: usize,
     },
-    /// The chart holds a vertex that the model leaves free.
+    /// The chart pins a vertex that the model leaves free.
     #[error(
-        "the chart was built for other pins than the model's: {vertex} is held in the chart and free in the model; build the chart with some or all of the pins of the model"
+        "the chart was built for other pins than the model's: {vertex} is pinned in the chart and free in the model; build the chart with some or all of the pins of the model"
     )]
     OtherPins {
         /// The first such vertex.
         vertex: VertexId,
     },
-    /// The chart holds a vertex that the model moves.
+    /// The chart pins a vertex that the model moves.
     #[error(
-        "the chart holds {vertex} where it is, and the model moves it: build the chart with that vertex free"
+        "the chart pins {vertex} where it is, and the model moves it: build the chart with that vertex free"
     )]
     MovingPin {
         /// The vertex.
@@ -85,7 +85,7 @@ pub enum ChartDynamicsError {
     },
     /// A one-sided constraint makes no closure equation.
     #[error(
-        "vertex constraint {index} is one-sided; a chart holds vertices both ways only. Use contact with a body, or a damped method without a chart"
+        "vertex constraint {index} is one-sided; a chart takes two-sided constraints only. Use contact with a body, or a damped method without a chart"
     )]
     OneSided {
         /// Place in the order in which the constraints were added.
@@ -109,7 +109,7 @@ pub enum ChartDynamicsError {
     },
     /// The way on is closed by contact.
     #[error(
-        "at t = {t} s no step above {h:e} s keeps the sheet out of contact: it is held between bodies or pins that move into each other, or the explicit scheme has become unstable; take smaller steps"
+        "at t = {t} s no step above {h:e} s keeps the sheet out of contact: it is caught between bodies or pins that move into each other, or the explicit scheme has become unstable; take smaller steps"
     )]
     Contact {
         /// Time, seconds.

@@ -117,10 +117,10 @@ impl ActiveContact {
                 parallel: None,
             };
         };
-        let across = p.u.cross(&p.v);
-        let size = across.norm();
+        let cross = p.u.cross(&p.v);
+        let size = cross.norm();
         let axis = if size > 0.0 {
-            across / size
+            cross / size
         } else {
             self.normal
         };
@@ -186,7 +186,7 @@ struct Curvature {
     turning: f64,
     /// Of the same with the second and third axis.
     rest: f64,
-    /// The axes: that of `u x v` and two across.
+    /// The axes: that of `u x v` and two perpendicular to it.
     parallel: Option<(ParallelEdges, [Vector3<f64>; 3])>,
 }
 

@@ -38,7 +38,7 @@ impl SheetModel {
     }
 
     /// Pins vertices of the sheet where they are.
-    pub(crate) fn hold(&mut self, vertices: &[VertexId]) {
+    pub(crate) fn fix(&mut self, vertices: &[VertexId]) {
         for v in vertices {
             self.free_index[v.index()] = PINNED;
         }

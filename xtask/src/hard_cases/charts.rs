@@ -2,7 +2,7 @@
 //! degenerate placement of Fig. 7.
 
 use super::case::number;
-use super::scenes::{STRAIN, apart, bumped, corner, course, hanging, held, methods};
+use super::scenes::{STRAIN, apart, bumped, corner, course, hanging, methods, pinned};
 use super::{Case, Effort, Findings, plot};
 use crate::condition;
 use crate::interrupt;
@@ -135,13 +135,13 @@ fn velocity_error(
         .flat_map(|p| [0.3 * p[1], 0.5 * p[2], p[0] * p[1]])
         .collect();
     let mut settle = Simulation::new(
-        held(&bent, &[pin])?,
+        pinned(&bent, &[pin])?,
         State::moving(x.clone(), field),
         Method::Projection(Default::default()),
     )?;
     settle.step(1e-6)?;
     let State { x, v: want, .. } = settle.state().clone();
-    let model = held(&bent, &[pin])?;
+    let model = pinned(&bent, &[pin])?;
     let chart: Box<dyn Chart> = match coordinates {
         Coordinates::FrontCorner => {
             let options = AssignmentOptions {
@@ -225,8 +225,12 @@ fn literal(effort: Effort) -> Result<Findings> {
             ..ChartOptions::default()
         };
         let start = State::at_rest(sheet.positions().to_vec());
-        let mut run =
-            Simulation::in_chart(held(&sheet, &[corner(0)])?, start, Box::new(chart), options)?;
+        let mut run = Simulation::in_chart(
+            pinned(&sheet, &[corner(0)])?,
+            start,
+            Box::new(chart),
+            options,
+        )?;
         Ok(run
             .step(END)
             .map_or(f64::NAN, |_| apart(&run.state().x, &reference)))
@@ -394,7 +398,7 @@ fn collinear(effort: Effort) -> Result<Findings> {
             ..ChartOptions::default()
         };
         let start = State::at_rest(sheet.positions().to_vec());
-        let model = held(&sheet, &[corner(1)])?;
+        let model = pinned(&sheet, &[corner(1)])?;
         Ok(Simulation::in_chart(model, start, Box::new(chart), options)
             .map_err(|e| e.to_string())
             .and_then(|mut run| run.step(0.1).map(|r| r.strain).map_err(|e| e.to_string())))
@@ -423,7 +427,7 @@ fn collinear(effort: Effort) -> Result<Findings> {
                 rebase: Rebase::Never,
                 ..ChartOptions::default()
             };
-            let model = held(&square, &[corner(1)]).map_err(|e| e.to_string())?;
+            let model = pinned(&square, &[corner(1)]).map_err(|e| e.to_string())?;
             Simulation::in_chart(
                 model,
                 State::at_rest(square.positions().to_vec()),
@@ -456,7 +460,7 @@ fn collinear(effort: Effort) -> Result<Findings> {
     }
     for (name, method) in methods().take(effort.pick(2, 3, 3)) {
         let mut run =
-            super::scenes::at_rest(held(&square, &[corner(1)])?, square.positions(), method)?;
+            super::scenes::at_rest(pinned(&square, &[corner(1)])?, square.positions(), method)?;
         let c = course(&mut run, super::scenes::FRAME, 60, |_, _| {})?;
         f.at_most(
             format!("M^1 folded along its middle line, {name}: edge strain in 1 s"),

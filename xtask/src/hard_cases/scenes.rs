@@ -37,17 +37,17 @@ pub(super) fn corner(level: u32) -> VertexId {
     VertexId(n * (n - 1))
 }
 
-/// A sheet of 0.1 kg under gravity, held at the given vertices.
-pub(super) fn held(sheet: &Sheet, pins: &[VertexId]) -> Result<SheetModel> {
+/// A sheet of 0.1 kg under gravity, pinned at the given vertices.
+pub(super) fn pinned(sheet: &Sheet, pins: &[VertexId]) -> Result<SheetModel> {
     Ok(SheetModel::new(sheet, 0.1, MassKind::Lumped)?
         .with_gravity()
         .with_pins(pins)?)
 }
 
-/// `M^level` with a bump, held at a corner, at rest.
+/// `M^level` with a bump, pinned at a corner, at rest.
 pub(super) fn hanging(level: u32, bump: f64, method: Method) -> Result<Simulation> {
     let sheet = bumped(level, bump)?;
-    let model = held(&sheet, &[corner(level)])?;
+    let model = pinned(&sheet, &[corner(level)])?;
     at_rest(model, sheet.positions(), method)
 }
 
