@@ -31,8 +31,10 @@ impl Surface for Shape {
     }
 }
 
-/// The level is [`TriangleSurface::signed_distance`], but [`TriangleSurface::oriented_distance`] if the
-/// surface is open: the distance alone has a kink on the surface, where a constraint needs its gradient.
+/// The level is [`TriangleSurface::signed_distance`] if the surface is closed. Of an open surface the level
+/// is the distance with the sign of the side, negative on the side that the face normals point away from:
+/// the distance alone has a kink on the surface, where a constraint needs its gradient. Beyond the rim of an
+/// open surface the level is the distance from the rim, and its sign jumps where the surface would go on.
 impl Surface for TriangleSurface {
     fn at(&self, p: &Vector3<f64>) -> SurfacePoint {
         self.oriented_distance(p).into()

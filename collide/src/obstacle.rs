@@ -295,13 +295,6 @@ impl Obstacle {
         }
     }
 
-    /// Rate at which the distance of a resting point `p` changes because the body moves, metres per
-    /// second: minus the body's velocity along the normal.
-    pub fn distance_rate(&self, t: f64, p: &Vector3<f64>) -> f64 {
-        let d = self.signed_distance(t, p);
-        -d.normal.dot(&self.velocity(t, &d.closest(p)))
-    }
-
     /// Writes body positions (`3V`) as positions in space at time `t` to `out`.
     ///
     /// # Panics

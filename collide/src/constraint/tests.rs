@@ -186,10 +186,10 @@ fn a_triangle_slides_along_a_capsule_at_g_sin() {
     slide(x, &body, slope);
 }
 
-/// A sheet with one corner moving along a path, the opposite one on a ball, and a floor below: lengths, gap and
-/// supports hold, and the floor carries weight.
+/// A sheet with one corner moved along a path, the opposite corner on a ball, and a floor below: lengths, gap
+/// and supports are kept, and the floor carries weight.
 #[test]
-fn a_led_corner_a_ball_and_a_floor_hold_together() {
+fn a_moving_corner_a_ball_and_a_floor_hold_together() {
     let sheet = generate::isotropic_square(1, 1.0).unwrap();
     let n = sheet.positions().len() / 3;
     let height = 0.15;

@@ -30,7 +30,10 @@ impl ChartSimulation {
     ///
     /// # Errors
     /// As [`ChartSimulation::step`].
-    pub fn step_within(&mut self, limit: f64) -> Result<ChartStepReport, ChartDynamicsError> {
+    pub(crate) fn step_within(
+        &mut self,
+        limit: f64,
+    ) -> Result<ChartStepReport, ChartDynamicsError> {
         let mut rebased = false;
         if self.options.rebase == Rebase::WhenNeeded && !self.motion.is_fresh {
             let margin = self

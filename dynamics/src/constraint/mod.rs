@@ -206,7 +206,7 @@ impl VertexConstraint {
     }
 
     /// Whether the constraint is an inequality: it pushes, and does not pull.
-    pub fn is_one_sided(&self) -> bool {
+    pub(crate) fn is_one_sided(&self) -> bool {
         matches!(self.shape, Shape::Surface(_, Side::Outside | Side::Inside))
     }
 

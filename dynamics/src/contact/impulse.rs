@@ -22,7 +22,7 @@ pub struct ContactPoint {
 
 impl ActiveContacts {
     /// The contacts as impulses need them. Clears `out` first.
-    pub fn contact_points(&self, contact: &dyn Contact, out: &mut Vec<ContactPoint>) {
+    pub(crate) fn contact_points(&self, contact: &dyn Contact, out: &mut Vec<ContactPoint>) {
         out.clear();
         let (laws, t) = (contact.laws(), self.time());
         out.extend(self.list().iter().map(|c| ContactPoint {

@@ -193,7 +193,7 @@ impl LaggedFriction {
     }
 
     /// Energy lost to friction since the start of the step, joules; not negative.
-    pub fn loss(&self, x: &[f64], bodies: &[BodyPlace]) -> f64 {
+    pub(crate) fn loss(&self, x: &[f64], bodies: &[BodyPlace]) -> f64 {
         let all = self.contacts.iter();
         all.map(|c| c.loss(&self.x0, x, bodies)).sum()
     }

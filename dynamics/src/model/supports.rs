@@ -122,7 +122,8 @@ impl SheetModel {
         Ok(self)
     }
 
-    /// The vertices on curves and surfaces.
+    /// The vertices on curves and surfaces; [`Support::Constraint`](crate::Support::Constraint) names one of
+    /// them by its index.
     pub fn constraints(&self) -> &[VertexConstraint] {
         &self.constraints
     }

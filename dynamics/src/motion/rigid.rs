@@ -394,7 +394,7 @@ impl Kinematics {
 
     /// Acceleration of the body's point that is at `p` (metres, in space) now, `a + w' x r + w x (w x r)`
     /// with `r = p - origin`; metres per second squared.
-    pub fn acceleration_at(&self, p: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn acceleration_at(&self, p: &Vector3<f64>) -> Vector3<f64> {
         let (arm, w) = (self.arm(p), &self.angular_velocity);
         self.acceleration + self.angular_acceleration.cross(&arm) + w.cross(&w.cross(&arm))
     }
