@@ -16,6 +16,7 @@ use crate::report::{self, SolverEffort, StepError, StepOutcome};
 use crate::restoration::{Restoration, RestorationContact, RestorationGoal};
 use augmented_lagrangian::{AugmentedLagrangian, Rounds};
 use isosheet_coords::linalg::LinalgError;
+use isosheet_mesh::area_from_lengths;
 use lagrangian::{Lagrangian, Merit};
 use problem::StepProblem;
 use sqp::{Regularisation, Sqp};
@@ -82,14 +83,10 @@ impl Faces {
     fn of(model: &SheetModel) -> Self {
         let lengths = model.rods().lengths();
         let is_sliver = |f| {
-            let mut sides = model.topology().face_edges(f).map(|e| lengths[e.index()]);
-            sides.sort_by(f64::total_cmp);
-            let [c, b, a] = sides;
-            // Four times the area, without cancellation (Kahan, "Miscalculating area and angles of a
-            // needle-like triangle", 2014).
-            let area = ((a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))).sqrt();
-            // (Rounded lengths of a sliver may make no triangle.)
-            area.is_nan() || 0.5 * area < SLIMMEST * a * a
+            let sides = model.topology().face_edges(f).map(|e| lengths[e.index()]);
+            let longest = sides.iter().fold(0.0, |longest, side| side.max(longest));
+            // (Rounded lengths of a sliver may make no triangle; its area is zero.)
+            2.0 * area_from_lengths(sides) < SLIMMEST * longest * longest
         };
         if model.topology().face_ids().any(is_sliver) {
             Self::Slivers
