@@ -251,3 +251,27 @@ proptest! {
         prop_assert_eq!(a.rule_count('s'), 1);
     }
 }
+
+#[test]
+fn volumes_are_those_of_unit_vectors() {
+    let sheet = isotropic_square(0, 1.0);
+    let ask = |volume: f64| {
+        let options = AssignmentOptions {
+            volume,
+            ..Default::default()
+        };
+        let found = assign(&sheet, sheet.positions(), &options).map(|_| ());
+        assert_eq!(found.is_ok(), options.validate().is_ok());
+        found
+    };
+    assert_eq!(AssignmentOptions::default().validate(), Ok(()));
+    for volume in [0.0, 1.0] {
+        assert_eq!(ask(volume), Ok(()));
+    }
+    for volume in [-1e-300, 1.0 + f64::EPSILON, f64::INFINITY] {
+        assert_eq!(ask(volume), Err(AssignmentError::Volume { volume }));
+    }
+    let error = ask(f64::NAN).unwrap_err();
+    assert!(matches!(error, AssignmentError::Volume { volume } if volume.is_nan()));
+    assert!(error.to_string().contains("from 0 to 1"), "{error}");
+}
