@@ -38,13 +38,13 @@ pub use active::{ActiveContact, ActiveContacts};
 pub use barrier::{BarrierError, BarrierPotential, Stiffness};
 pub(crate) use body::advanced;
 pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
-pub use error::{ContactError, ContactPair};
+pub use error::{BodyMotionError, ContactError, ContactPair};
 pub use friction::{Coefficients, Friction, FrictionError};
 pub use impulse::ContactPoint;
 pub use lagged::{FrictionContact, LaggedFriction};
 pub use laws::ContactLaws;
 pub use parallel::ParallelEdges;
-pub(crate) use run::{RunContact, StepContact};
+pub(crate) use run::{RunContact, StepContact, check_start};
 
 pub use set::{ContactKey, ContactKind, ContactSet, JointMotion};
 pub use terms::{BodyLoad, ContactState, ContactTerms, ContactWork};

@@ -1,7 +1,7 @@
 //! The chart-free engine: proposals of an integrator, judged and committed.
 
 use crate::checkpoint::{CheckpointError, FreeMotion};
-use crate::contact::{Contact, ContactError, ContactState, RunContact};
+use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
 use crate::control::{Decision, Stepping, take_substep};
 use crate::energy_account::{EnergyAccount, Exchange};
 use crate::feasibility::{Excess, excess};
@@ -265,6 +265,12 @@ impl Stepping for Substeps<'_> {
         if let Some((support, value)) = model.find_bad_motion(t) {
             return Err(StepError::NonFiniteMotion { support, value, t });
         }
+        if let Some(contact) = contact {
+            contact.check_bodies(StepSpan {
+                t0: moment.state.t,
+                h,
+            })?;
+        }
         let scene = Scene {
             model,
             contact: contact.as_mut().map(RunContact::step),
@@ -304,7 +310,10 @@ impl Stepping for Substeps<'_> {
     }
 
     fn decide(&mut self, refusal: StepError, _h: f64) -> Decision<Stop> {
-        if matches!(refusal, StepError::NonFiniteMotion { .. }) {
+        if matches!(
+            refusal,
+            StepError::NonFiniteMotion { .. } | StepError::Body(_)
+        ) {
             return Decision::Stop(Stop::Error(refusal));
         }
         self.totals.rejected += 1;

@@ -1,5 +1,6 @@
 //! Why mechanics in a chart fails.
 
+use crate::contact::BodyMotionError;
 use crate::support::Support;
 use isosheet_coords::ChartError;
 use isosheet_mesh::VertexId;
@@ -164,6 +165,19 @@ pub enum ChartDynamicsError {
         strain: f64,
         /// The limit.
         limit: f64,
+    },
+    /// The prescribed motion of a body is not finite.
+    #[error(transparent)]
+    Body(#[from] BodyMotionError),
+    /// A prescribed motion of a support is not finite.
+    #[error("the prescribed motion of {support} gives {value} at t = {t} s; check the function")]
+    Motion {
+        /// What moves.
+        support: Support,
+        /// The component that is not finite.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
     },
     /// A state is not finite.
     #[error("the state is not finite at t = {t} s: the step is too large for this scheme")]

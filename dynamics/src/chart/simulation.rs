@@ -310,7 +310,7 @@ impl ChartSimulation {
         h: f64,
     ) -> Result<[f64; 2], ChartDynamicsError> {
         self.motion.impulses.clear();
-        contact.evaluate(&self.motion.state.x);
+        contact.evaluate(&self.motion.state.x)?;
         let least = LEAST_GAP * contact.activation();
         if contact.points().iter().any(|p| p.gap < least) {
             let points = contact.points();
@@ -323,10 +323,10 @@ impl ChartSimulation {
             };
             // Where this is not possible the collision detection still holds.
             if let Ok(separated) = separated
-                && contact.safe_fraction(span, &self.motion.state.x, &separated.x) >= 1.0
+                && contact.safe_fraction(span, &self.motion.state.x, &separated.x)? >= 1.0
             {
                 self.motion.state = separated;
-                contact.evaluate(&self.motion.state.x);
+                contact.evaluate(&self.motion.state.x)?;
             }
             self.stepper.mechanics.at(&self.motion.state.x)?;
         }
