@@ -22,8 +22,8 @@ pub struct RealiseOptions {
     /// default 1e-12. Lengths are exact up to half of it. From 2.2e-16, the round-off of a squared length, to
     /// 1e-3.
     pub flat_tolerance: f64,
-    /// Largest strain of a closure edge, default 1e-9. From 2.2e-16, the round-off of a length, to 0.1: with a
-    /// larger strain the edge is not the rod that it stands for.
+    /// Largest strain of a closure edge, default 1e-9. From 2.2e-16, the round-off of a length, to 0.1: with
+    /// a larger strain the edge is not the rod that it stands for.
     pub closure_tolerance: f64,
 }
 
