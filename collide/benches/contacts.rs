@@ -112,7 +112,7 @@ fn table(c: &mut Criterion, level: u32, size: &str) {
         half: [0.25, 0.25, 0.1],
     };
     let pose = Isometry3::translation(0.5, 0.5, -0.1 - 0.5 * options.activation);
-    let body = Obstacle::still(half, pose).expect("a box");
+    let body = Obstacle::fixed(half, pose).expect("a box");
     for (name, coefficients) in [
         ("table", Coefficients::FRICTIONLESS),
         ("rough table", Coefficients::equal(0.3)),
@@ -168,7 +168,7 @@ fn steps(c: &mut Criterion) {
                 half: [0.25, 0.25, 0.1],
             };
             let pose = Isometry3::translation(0.5, 0.5, -0.1 - 0.95 * options.activation);
-            let body = Obstacle::still(half, pose).expect("a box");
+            let body = Obstacle::fixed(half, pose).expect("a box");
             let contacts = Contacts::new(&model, options)
                 .and_then(|c| c.with_body(body, Coefficients::FRICTIONLESS))
                 .expect("valid options");

@@ -276,8 +276,9 @@ impl BroadPhase {
         }
     }
 
-    /// Pairs of this mesh with another since the last updates of both; `out` is overwritten.
-    pub(crate) fn candidates_with(&self, other: &Self, out: &mut CrossCandidates) {
+    /// Pairs of this mesh with another whose boxes overlap since the last updates of both; `out` is
+    /// overwritten. [`CrossCandidates`] answers queries over these pairs.
+    pub fn candidates_with(&self, other: &Self, out: &mut CrossCandidates) {
         out.vertex_face.clear();
         out.face_vertex.clear();
         out.edge_edge.clear();

@@ -31,8 +31,10 @@ impl Surface for Shape {
     }
 }
 
-/// The level is [`TriangleSurface::signed_distance`], but [`TriangleSurface::oriented_distance`] if the
-/// surface is open: the distance alone has a kink on the surface, where a constraint needs its gradient.
+/// The level is [`TriangleSurface::signed_distance`] if the surface is closed. Of an open surface the level
+/// is the distance with the sign of the side, negative on the side that the face normals point away from:
+/// the distance alone has a kink on the surface, where a constraint needs its gradient. Beyond the rim of an
+/// open surface the level is the distance from the rim, and its sign jumps where the surface would go on.
 impl Surface for TriangleSurface {
     fn at(&self, p: &Vector3<f64>) -> SurfacePoint {
         self.oriented_distance(p).into()
@@ -51,7 +53,7 @@ impl Obstacle {
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
     /// let sheet = generate::isotropic_square(1, 1.0)?;
-    /// let ball = Obstacle::still(
+    /// let ball = Obstacle::fixed(
     ///     Shape::Sphere { radius: 0.5 },
     ///     Isometry3::translation(0.0, 0.0, -0.5),
     /// )?;

@@ -133,12 +133,12 @@ impl ContactMesh {
     }
 
     /// A single point.
-    pub fn point() -> Self {
+    pub(crate) fn point() -> Self {
         Self::with_elements(1, Vec::new(), Vec::new(), &[])
     }
 
     /// A single segment between the vertices 0 and 1.
-    pub fn segment() -> Self {
+    pub(crate) fn segment() -> Self {
         Self::with_elements(2, vec![[0, 1]], Vec::new(), &[])
     }
 

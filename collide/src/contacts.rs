@@ -40,7 +40,7 @@ use sheet::SheetMotion;
 /// let table = Shape::Cuboid { half: [0.25, 0.25, 0.05] };
 /// let pose = Isometry3::translation(0.5, 0.5, -0.051);
 /// let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?
-///     .with_body(Obstacle::still(table, pose)?, Coefficients::equal(0.3))?
+///     .with_body(Obstacle::fixed(table, pose)?, Coefficients::equal(0.3))?
 ///     .with_self_contact(Coefficients::FRICTIONLESS)?;
 /// # let _ = contacts;
 /// # Ok(())
@@ -61,7 +61,7 @@ use sheet::SheetMotion;
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let sheet = generate::strip(2, 0.4, 0.2, generate::Diagonals::UnionJack)?;
 /// let model = SheetModel::new(&sheet, 0.01, MassKind::Lumped)?.with_gravity();
-/// let floor = Obstacle::still(Shape::HalfSpace, Isometry3::translation(0.0, 0.0, -0.01))?;
+/// let floor = Obstacle::fixed(Shape::HalfSpace, Isometry3::translation(0.0, 0.0, -0.01))?;
 /// let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?
 ///     .with_body(floor, Coefficients::equal(0.3))?;
 /// let chart = CartesianChart::new(RodSystem::new(&sheet, &[])?, Choice::Auto, sheet.positions())?;

@@ -24,7 +24,7 @@
 //! let table = Shape::Cuboid { half: [0.25, 0.25, 0.1] };
 //! let pose = Isometry3::translation(0.5, 0.5, -0.101);
 //! let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?
-//!     .with_body(Obstacle::still(table, pose)?, Coefficients::equal(0.3))?
+//!     .with_body(Obstacle::fixed(table, pose)?, Coefficients::equal(0.3))?
 //!     .with_self_contact(Coefficients::FRICTIONLESS)?;
 //! let start = State::at_rest(sheet.positions().to_vec());
 //! let mut simulation = Simulation::new(model, start, Method::default())?.with_contact(contacts)?;

@@ -261,8 +261,8 @@ impl Obstacle {
     /// # Errors
     /// [`ObstacleError`] naming the length that is not positive, or the number of the pose that is not
     /// finite.
-    pub fn still(shape: Shape, pose: Isometry3<f64>) -> Result<Self, ObstacleError> {
-        Self::new(shape, RigidProfile::still(pose))
+    pub fn fixed(shape: Shape, pose: Isometry3<f64>) -> Result<Self, ObstacleError> {
+        Self::new(shape, RigidProfile::fixed(pose))
     }
 
     /// Its form.
@@ -293,13 +293,6 @@ impl Obstacle {
             normal: turn * local.normal,
             hessian: turn * local.hessian * turn.transpose(),
         }
-    }
-
-    /// Rate at which the distance of a resting point `p` changes because the body moves, metres per
-    /// second: minus the body's velocity along the normal.
-    pub fn distance_rate(&self, t: f64, p: &Vector3<f64>) -> f64 {
-        let d = self.signed_distance(t, p);
-        -d.normal.dot(&self.velocity(t, &d.closest(p)))
     }
 
     /// Writes body positions (`3V`) as positions in space at time `t` to `out`.

@@ -226,7 +226,7 @@ impl TriangleSurface {
     /// Distance of `p` with derivatives, negative on the side that the face normals point away from, of an
     /// open surface too. Smooth across the faces; beyond the rim of an open surface it is the distance from
     /// the rim, and changes sign with a jump where the surface would go on. Not a number if `p` is not.
-    pub fn oriented_distance(&self, p: &Vector3<f64>) -> SignedDistance {
+    pub(crate) fn oriented_distance(&self, p: &Vector3<f64>) -> SignedDistance {
         let Some((face, closest)) = self.closest(p) else {
             return SignedDistance {
                 value: f64::NAN,

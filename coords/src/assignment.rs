@@ -31,14 +31,14 @@ use thiserror::Error;
 /// Where the propagation of `sys_coord_assnmt_single` starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// The external point constraint of the paper: the vertex is held, its three coordinates are removed.
+    /// The external point constraint of the paper: the vertex is pinned, its three coordinates are removed.
     Pinned(VertexId),
     /// A free vertex with its three Cartesian coordinates.
     Free(VertexId),
 }
 
 /// Why coordinates cannot be assigned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum AssignmentError {
     /// A pin or start names a vertex that the mesh does not have.
     #[error("{vertex} does not exist, the mesh has {count} vertices")]
@@ -67,6 +67,14 @@ pub enum AssignmentError {
         found: usize,
         /// Values needed.
         expected: usize,
+    },
+    /// An option is out of range.
+    #[error(
+        "option volume is {volume}; give a value from 0 to 1, the volumes that three unit vectors can span"
+    )]
+    Volume {
+        /// Its value.
+        volume: f64,
     },
 }
 
@@ -104,6 +112,7 @@ pub fn assign(
     state: &[f64],
     options: &AssignmentOptions,
 ) -> Result<Assignment, AssignmentError> {
+    options.validate()?;
     let count = sheet.topology().vertex_count();
     if state.len() != 3 * count {
         return Err(AssignmentError::StateLength {

@@ -195,7 +195,7 @@ impl SphericalFrame {
     ///
     /// # Errors
     /// As [`Self::gradient`].
-    pub fn gradient_rate(
+    pub(crate) fn gradient_rate(
         &self,
         positions: [&[f64; 3]; 2],
         velocities: [&[f64; 3]; 2],
@@ -381,7 +381,7 @@ impl EdgeFrame {
     ///
     /// # Errors
     /// As [`Self::coordinate`].
-    pub fn gradient_rate(
+    pub(crate) fn gradient_rate(
         &self,
         v: [&[f64; 3]; 3],
         velocities: [&[f64; 3]; 3],

@@ -53,7 +53,7 @@ impl Linearised {
     }
 
     /// The values of S, to be filled before [`Linearised::factorize`]; [`crate::Chart::linearise`] does both.
-    pub fn rows_mut(&mut self) -> &mut [f64] {
+    pub(crate) fn rows_mut(&mut self) -> &mut [f64] {
         &mut self.rows
     }
 
@@ -61,7 +61,7 @@ impl Linearised {
     ///
     /// # Errors
     /// [`LinalgError::Singular`] when the pattern of A is structurally singular.
-    pub fn factorize(&mut self, system: &RodSystem, x: &[f64]) -> Result<(), LinalgError> {
+    pub(crate) fn factorize(&mut self, system: &RodSystem, x: &[f64]) -> Result<(), LinalgError> {
         let values = self.lu.values_mut();
         values.fill(0.0);
         let entries = system.jacobian_values(x).chain(self.rows.iter().copied());

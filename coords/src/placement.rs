@@ -186,12 +186,12 @@ pub fn place_f(
     let along = dot(&r, &e1);
     let rest = axpy(&r, -along, &e1);
     let rest = axpy(&rest, -dot(&rest, &e1), &e1);
-    let across = norm(&rest);
-    let e2 = scale(&rest, 1.0 / across);
+    let height = norm(&rest);
+    let e2 = scale(&rest, 1.0 / height);
     let unit = cross(&e1, &e2);
     let [l0, l1, l2] = lengths;
     let y1 = 0.5 * ((l0 - l1) * (l0 + l1) / span + span);
-    let y2 = (0.5 * ((l0 - l2) * (l0 + l2) + dot(&r, &r)) - y1 * along) / across;
+    let y2 = (0.5 * ((l0 - l2) * (l0 + l2) + dot(&r, &r)) - y1 * along) / height;
     let foot = axpy(&scale(&e1, y1), y2, &e2);
     let distance = y1.hypot(y2);
     let height_squared = (l0 - distance) * (l0 + distance) / (l0 * l0);

@@ -19,9 +19,11 @@ use isosheet_mesh::{AngleTriple, EdgeId, Sheet, VertexId, angle_from_lengths};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RealiseOptions {
     /// Squared heights within this fraction of the squared edge length count as zero (flat),
-    /// default 1e-12. Lengths are exact up to half of it.
+    /// default 1e-12. Lengths are exact up to half of it. From 2.2e-16, the round-off of a squared length, to
+    /// 1e-3.
     pub flat_tolerance: f64,
-    /// Largest strain of a closure edge, default 1e-9.
+    /// Largest strain of a closure edge, default 1e-9. From 2.2e-16, the round-off of a length, to 0.1: with
+    /// a larger strain the edge is not the rod that it stands for.
     pub closure_tolerance: f64,
 }
 
@@ -31,6 +33,24 @@ impl Default for RealiseOptions {
             flat_tolerance: 1e-12,
             closure_tolerance: 1e-9,
         }
+    }
+}
+
+impl RealiseOptions {
+    /// Checks that the tolerances are in their ranges.
+    ///
+    /// # Errors
+    /// [`RealiseError::Tolerance`] naming the first that is not.
+    pub fn validate(&self) -> Result<(), RealiseError> {
+        for (name, value, max) in [
+            ("flat_tolerance", self.flat_tolerance, 1e-3),
+            ("closure_tolerance", self.closure_tolerance, 0.1),
+        ] {
+            if !(f64::EPSILON..=max).contains(&value) {
+                return Err(RealiseError::Tolerance { name, value, max });
+            }
+        }
+        Ok(())
     }
 }
 
@@ -85,14 +105,15 @@ impl FrontMap {
     /// The map of an assignment, with frames and pinned positions from the state `reference`.
     ///
     /// # Errors
-    /// [`RealiseError::WrongLength`], [`RealiseError::NotFinite`], or [`RealiseError::Placement`]
-    /// when two neighbours coincide.
+    /// [`RealiseError::Tolerance`] of the options, [`RealiseError::WrongLength`],
+    /// [`RealiseError::NotFinite`], or [`RealiseError::Placement`] when two neighbours coincide.
     pub fn new(
         sheet: &Sheet,
         assignment: Assignment,
         reference: &[f64],
         options: RealiseOptions,
     ) -> Result<Self, RealiseError> {
+        options.validate()?;
         let mut map = Self {
             assignment,
             rest: sheet.positions().to_vec(),

@@ -52,7 +52,7 @@ pub struct RodSystem {
 }
 
 impl RodSystem {
-    /// The system of a sheet with the given vertices held. A vertex may be listed twice.
+    /// The system of a sheet with the given vertices pinned. A vertex may be listed twice.
     ///
     /// # Errors
     /// See [`SystemError`].
@@ -60,7 +60,7 @@ impl RodSystem {
         Self::from_parts(sheet.topology(), sheet.lengths(), pins)
     }
 
-    /// The system of a topology with one length (metres) per edge and the given vertices held.
+    /// The system of a topology with one length (metres) per edge and the given vertices pinned.
     ///
     /// # Errors
     /// See [`SystemError`].

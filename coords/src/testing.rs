@@ -90,7 +90,7 @@ pub(crate) fn irregular_grid(m: u32, seed: u64) -> Sheet {
 }
 
 /// A bent state with exact lengths: noise out of plane of size `noise`, then Newton's method on the
-/// lengths with selected coordinates held. `None` where that does not lead to a regular state.
+/// lengths with selected coordinates fixed. `None` where that does not lead to a regular state.
 pub(crate) fn bent(sheet: &Sheet, pins: &[VertexId], noise: f64, seed: u64) -> Option<Vec<f64>> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut x = sheet.positions().to_vec();

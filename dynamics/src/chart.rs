@@ -31,9 +31,7 @@ pub(crate) use motion::ChartMotion;
 pub use motion::StepRange;
 pub use options::{ChartMethod, ChartOptions, ChartStepControl, PositionUpdate, Rebase};
 pub use simulation::{ChartSimulation, ChartStepReport};
-pub use solver::{
-    CholeskySolver, CramerSolver, DenseLuSolver, MassSolver, MassSolverKind, SaddleSolver,
-};
+pub use solver::{MassSolver, MassSolverKind};
 
 #[cfg(test)]
 mod tests;

@@ -87,7 +87,7 @@ pub(crate) struct FreeMotion {
     pub(crate) account: EnergyAccount,
     pub(crate) has_moved: bool,
     /// Vertices that were pinned at the start because they cannot move.
-    pub(crate) held: Vec<u32>,
+    pub(crate) fixed: Vec<u32>,
     /// The barrier of contact, in scenes that have any.
     pub(crate) barrier: Option<BarrierPotential>,
 }
@@ -129,14 +129,14 @@ impl SheetFingerprint {
         let faces = model.topology().faces().iter();
         let edge_mass = mass.edge.iter().flatten();
         let pins = model.pins().into_iter().map(|v| u64::from(v.0));
-        let held = model.constraints().iter().map(|c| u64::from(c.vertex().0));
+        let constrained = model.constraints().iter().map(|c| u64::from(c.vertex().0));
         Self {
             vertices: model.topology().vertex_count(),
             edges: rods.len(),
             connectivity: sum(&mut faces.flatten().map(|v| u64::from(v.0))),
             lengths: sum(&mut rods.lengths().iter().map(|l| l.to_bits())),
             masses: sum(&mut mass.vertex.iter().chain(edge_mass).map(|m| m.to_bits())),
-            supports: sum(&mut pins.chain([u64::MAX]).chain(held)),
+            supports: sum(&mut pins.chain([u64::MAX]).chain(constrained)),
         }
     }
 

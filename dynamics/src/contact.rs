@@ -1,7 +1,7 @@
 //! Contact of a sheet with bodies and with itself.
 //!
 //! Contact is a barrier potential `B(x, s)` of the positions and of the places of the bodies, infinite where
-//! anything touches, and a friction potential `D(x - x0)` with normals and normal forces held fixed
+//! anything touches, and a friction potential `D(x - x0)` with normals and normal forces kept constant
 //! ("lagged"; Li et al. 2020, Incremental potential contact). Bodies move by prescribed motions; within a
 //! step their progress `s` runs from 0 (the start) to 1 (the end), and neither they nor the sheet move
 //! without a check that nothing is passed through on the way.
@@ -38,13 +38,13 @@ pub use active::{ActiveContact, ActiveContacts};
 pub use barrier::{BarrierError, BarrierPotential, Stiffness};
 pub(crate) use body::advanced;
 pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
-pub use error::{ContactError, ContactPair};
+pub use error::{BodyMotionError, ContactError, ContactPair};
 pub use friction::{Coefficients, Friction, FrictionError};
 pub use impulse::ContactPoint;
 pub use lagged::{FrictionContact, LaggedFriction};
 pub use laws::ContactLaws;
 pub use parallel::ParallelEdges;
-pub(crate) use run::{RunContact, StepContact};
+pub(crate) use run::{RunContact, StepContact, check_start};
 
 pub use set::{ContactKey, ContactKind, ContactSet, JointMotion};
 pub use terms::{BodyLoad, ContactState, ContactTerms, ContactWork};

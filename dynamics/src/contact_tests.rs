@@ -130,8 +130,8 @@ fn a_flat_sheet_lands_and_lies_still() {
         assert!(report.gap.unwrap() > 0.0 && report.strain < 1e-12);
     }
     assert!(report.kinetic < 1e-9 * 0.1 * 9.8 * 5e-3, "{report:?}");
-    // The floor carries the weight. A flat sheet gives way to a force across it by the root of its length
-    // error only: forces at rest are known to a percent.
+    // The floor carries the weight. The displacement of a flat sheet by a perpendicular force is only the
+    // square root of its length error: forces at rest are known to a percent.
     let load = simulation.body_loads()[0].force.z;
     assert!((load / (-0.1 * 9.8) - 1.0).abs() < 0.01, "{load}");
 }

@@ -176,14 +176,14 @@ fn primal_matrix_is_the_hessian_of_the_augmented_lagrangian() {
             g
         };
         let want = difference(&stretched, &direction, gradient);
-        let across: Vec<f64> = rods
+        let transverse: Vec<f64> = rods
             .residual(&stretched)
             .iter()
             .zip(&multipliers)
             .map(|(c, m)| m + penalty * c)
             .collect();
         let mut matrix = PrimalMatrix::new(&model).expect("small");
-        matrix.assemble(&model, &stretched, &vec![penalty; rods.len()], &across);
+        matrix.assemble(&model, &stretched, &vec![penalty; rods.len()], &transverse);
         matrix.add_potentials(&model, 0.0, &stretched, 0.7);
         let got = matrix.product(&model, &direction);
         let error = got

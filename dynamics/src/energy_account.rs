@@ -55,7 +55,8 @@ impl EnergyAccount {
     /// The account after a step.
     ///
     /// # Errors
-    /// [`StepError::EnergyGain`] if the step gains too much, [`StepError::NonFiniteEnergy`] if that is not known.
+    /// [`StepError::EnergyGain`] if the step gains too much, [`StepError::NonFiniteEnergy`] if its energy
+    /// is not a finite number.
     pub(crate) fn after(
         &self,
         model: &SheetModel,

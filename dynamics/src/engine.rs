@@ -1,7 +1,7 @@
 //! The chart-free engine: proposals of an integrator, judged and committed.
 
 use crate::checkpoint::{CheckpointError, FreeMotion};
-use crate::contact::{Contact, ContactError, ContactState, RunContact};
+use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
 use crate::control::{Decision, Stepping, take_substep};
 use crate::energy_account::{EnergyAccount, Exchange};
 use crate::feasibility::{Excess, excess};
@@ -23,7 +23,7 @@ pub(crate) struct Engine {
     contact: Option<RunContact>,
     method: Method,
     /// Vertices that became pins at the start because they cannot move.
-    held: Vec<VertexId>,
+    fixed: Vec<VertexId>,
     integrator: Box<dyn Integrator>,
     control: StepControl,
     fallback: Option<ImplicitEuler>,
@@ -42,17 +42,17 @@ impl Engine {
         method: Method,
         mut state: State,
     ) -> Result<Self, SimulationError> {
-        let held = vertices_on_taut_lines(&model, &state.x);
-        model.hold(&held);
-        model.clear_velocities(&held, &mut state.v);
-        Self::with_held(model, method, state, held)
+        let fixed = vertices_on_taut_lines(&model, &state.x);
+        model.fix(&fixed);
+        model.clear_velocities(&fixed, &mut state.v);
+        Self::with_fixed(model, method, state, fixed)
     }
 
-    fn with_held(
+    fn with_fixed(
         model: SheetModel,
         method: Method,
         state: State,
-        held: Vec<VertexId>,
+        fixed: Vec<VertexId>,
     ) -> Result<Self, SimulationError> {
         let integrator = method.build(&model)?;
         let traits = integrator.traits();
@@ -71,7 +71,7 @@ impl Engine {
             account: EnergyAccount::default(),
             has_moved: false,
             method,
-            held,
+            fixed,
             model,
         })
     }
@@ -84,7 +84,7 @@ impl Engine {
             moment: self.moment.compact(),
             account: self.account,
             has_moved: self.has_moved,
-            held: self.held.iter().map(|v| v.0).collect(),
+            fixed: self.fixed.iter().map(|v| v.0).collect(),
             barrier: self.contact.as_ref().map(RunContact::barrier),
         }
     }
@@ -96,10 +96,10 @@ impl Engine {
         motion: FreeMotion,
     ) -> Result<Self, SimulationError> {
         check_lengths(&model, &motion)?;
-        let held: Vec<VertexId> = motion.held.iter().copied().map(VertexId).collect();
-        model.hold(&held);
+        let fixed: Vec<VertexId> = motion.fixed.iter().copied().map(VertexId).collect();
+        model.fix(&fixed);
         let state = motion.moment.state.clone();
-        let mut engine = Self::with_held(model, motion.method, state, held)?;
+        let mut engine = Self::with_fixed(model, motion.method, state, fixed)?;
         engine.set_control(motion.control)?;
         engine.moment.copy_from(&motion.moment);
         engine.account = motion.account;
@@ -265,6 +265,12 @@ impl Stepping for Substeps<'_> {
         if let Some((support, value)) = model.find_bad_motion(t) {
             return Err(StepError::NonFiniteMotion { support, value, t });
         }
+        if let Some(contact) = contact {
+            contact.check_bodies(StepSpan {
+                t0: moment.state.t,
+                h,
+            })?;
+        }
         let scene = Scene {
             model,
             contact: contact.as_mut().map(RunContact::step),
@@ -304,7 +310,10 @@ impl Stepping for Substeps<'_> {
     }
 
     fn decide(&mut self, refusal: StepError, _h: f64) -> Decision<Stop> {
-        if matches!(refusal, StepError::NonFiniteMotion { .. }) {
+        if matches!(
+            refusal,
+            StepError::NonFiniteMotion { .. } | StepError::Body(_)
+        ) {
             return Decision::Stop(Stop::Error(refusal));
         }
         self.totals.rejected += 1;
@@ -393,7 +402,12 @@ fn check_lengths(model: &SheetModel, motion: &FreeMotion) -> Result<(), Checkpoi
     let multipliers = &history.multipliers;
     let optional = |length: usize, expected: usize| if length == 0 { expected } else { length };
     let vertices = model.topology().vertex_count();
-    let largest = history.couplings.iter().flatten().chain(&motion.held).max();
+    let largest = history
+        .couplings
+        .iter()
+        .flatten()
+        .chain(&motion.fixed)
+        .max();
     for (what, found, expected) in [
         ("positions", state.x.len(), n),
         ("velocities", state.v.len(), n),

@@ -157,11 +157,11 @@ impl<'a> Fit<'a> {
             })
     }
 
-    /// One step of Newton's method with the stretched rods' stiffness across; the new energy.
+    /// One step of Newton's method with the transverse stiffness of the stretched rods; the new energy.
     fn descend(&mut self, energy: f64) -> Option<f64> {
-        let across: Vec<f64> = self.tension.iter().map(|w| w.max(0.0)).collect();
+        let transverse: Vec<f64> = self.tension.iter().map(|w| w.max(0.0)).collect();
         self.matrix
-            .assemble(self.model, &self.x, &self.penalty, &across);
+            .assemble(self.model, &self.x, &self.penalty, &transverse);
         self.rows.add_hessian(
             HessianPart::PositiveSemidefinite,
             &mut self.matrix.sink(self.model),

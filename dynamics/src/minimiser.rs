@@ -18,6 +18,7 @@ use crate::report::{self, SolverEffort, StepError, StepOutcome};
 use crate::restoration::{Restoration, RestorationContact, RestorationGoal};
 use augmented_lagrangian::{AugmentedLagrangian, Rounds};
 use isosheet_coords::linalg::LinalgError;
+use isosheet_mesh::area_from_lengths;
 use lagrangian::{Lagrangian, Merit};
 use problem::StepProblem;
 use sqp::{Regularisation, Sqp};
@@ -81,14 +82,10 @@ impl Faces {
     fn of(model: &SheetModel) -> Self {
         let lengths = model.rods().lengths();
         let is_sliver = |f| {
-            let mut sides = model.topology().face_edges(f).map(|e| lengths[e.index()]);
-            sides.sort_by(f64::total_cmp);
-            let [c, b, a] = sides;
-            // Four times the area, without cancellation (Kahan, "Miscalculating area and angles of a
-            // needle-like triangle", 2014).
-            let area = ((a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))).sqrt();
-            // (Rounded lengths of a sliver may make no triangle.)
-            area.is_nan() || 0.5 * area < SLIMMEST * a * a
+            let sides = model.topology().face_edges(f).map(|e| lengths[e.index()]);
+            let longest = sides.iter().fold(0.0, |longest, side| side.max(longest));
+            // (Rounded lengths of a sliver may make no triangle; its area is zero.)
+            2.0 * area_from_lengths(sides) < SLIMMEST * longest * longest
         };
         if model.topology().face_ids().any(is_sliver) {
             Self::Slivers
@@ -307,9 +304,9 @@ impl Minimiser {
         }
     }
 
-    /// Restores the lengths at the iterate to `tolerance` in at most `most` iterations, where multipliers and
-    /// contact hold their own; the strain reached. The forces of the supports are those before, with their
-    /// share in the restoration.
+    /// Restores the lengths at the iterate to `tolerance` in at most `most` iterations, against the given
+    /// loads of the supports and the contact forces. Returns the strain reached. The forces of the supports
+    /// are those before, with their share in the restoration.
     fn restore(
         &mut self,
         problem: &mut StepProblem<'_>,
@@ -324,20 +321,20 @@ impl Minimiser {
         }
         let (model, t) = (problem.model, problem.t());
         let lagrangian = &mut self.lagrangian;
-        let aim = RestorationGoal {
+        let goal = RestorationGoal {
             tolerance,
             max_iterations: most.min(self.options.max_projections),
             t,
             loads: &lagrangian.vertex_rows.multipliers,
         };
-        let held = problem.contact_mut().map(|contact| RestorationContact {
+        let contact = problem.contact_mut().map(|contact| RestorationContact {
             contact,
             scale: 1.0 / per,
         });
         let (matrix, iterate) = (&mut lagrangian.matrix, &mut lagrangian.iterate);
         let strain = self
             .restoration
-            .positions(model, matrix, held, iterate, aim, effort);
+            .positions(model, matrix, contact, iterate, goal, effort);
         if is_last {
             self.balance
                 .unassigned

@@ -196,12 +196,12 @@ impl SheetModel {
         &self.mass
     }
 
-    /// The potentials.
+    /// The potentials in the order in which they were added, for an energy balance of each of them.
     pub fn potentials(&self) -> &[Box<dyn Potential>] {
         &self.potentials
     }
 
-    /// The non-conservative forces.
+    /// The non-conservative forces in the order in which they were added.
     pub fn forces(&self) -> &[Box<dyn Force>] {
         &self.forces
     }
@@ -212,7 +212,7 @@ impl SheetModel {
     }
 
     /// Number of vertices that are not pinned.
-    pub fn free_count(&self) -> usize {
+    pub(crate) fn free_count(&self) -> usize {
         self.free_count
     }
 
@@ -283,7 +283,7 @@ impl SheetModel {
     }
 
     /// Sum of the non-conservative forces, overwriting `f`; zero at pinned vertices.
-    pub fn applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+    pub(crate) fn applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.whole_applied_force(t, x, v, f);
         self.clear_pinned(f);
     }

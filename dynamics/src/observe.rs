@@ -43,11 +43,6 @@ impl Frames {
     pub fn states(&self) -> &[State] {
         &self.states
     }
-
-    /// The frames.
-    pub fn into_states(self) -> Vec<State> {
-        self.states
-    }
 }
 
 impl Observer for Frames {

@@ -209,7 +209,7 @@ impl Profile {
     }
 
     /// Whether the value is the same at all times.
-    pub fn is_constant(&self) -> bool {
+    pub(crate) fn is_constant(&self) -> bool {
         match self {
             Self::Constant(_) => true,
             Self::Ramp { from, to, .. } | Self::SmoothStep { from, to, .. } => from == to,

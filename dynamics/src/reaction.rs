@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// The force of a support on the sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reaction {
-    /// What holds the sheet.
+    /// The support.
     pub support: Support,
     /// Its force on the sheet, newtons: at rest the sum over all supports is minus the weight.
     pub force: Vector3<f64>,

@@ -1,6 +1,7 @@
 //! What a step tells, and why a step fails.
 
 use crate::chart::ChartDynamicsError;
+use crate::contact::BodyMotionError;
 use crate::feasibility::Excess;
 use crate::support::Support;
 use isosheet_coords::linalg::LinalgError;
@@ -146,6 +147,9 @@ pub enum StepError {
         /// Time, seconds.
         t: f64,
     },
+    /// The prescribed motion of a body is not finite.
+    #[error(transparent)]
+    Body(#[from] BodyMotionError),
     /// The start state is not where a support has it.
     #[error(
         "{support} is {distance} m away from its vertex at t = {t} s; start with the vertex in place"

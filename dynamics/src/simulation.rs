@@ -56,8 +56,8 @@ impl Simulation {
     ///
     /// Velocities of pinned vertices are set to zero, or to those of their motion. Vertices on a straight
     /// line of rods between two pins at rest cannot move either, and become pins: the upper edge of a banner
-    /// that hangs by its corners. (The tension that would hold them against a force across the line is
-    /// infinite; as pins they have a share of the reactions.)
+    /// that hangs by its corners. (The tension that would keep them in place against a force
+    /// perpendicular to the line is infinite; as pins they have a share of the reactions.)
     ///
     /// # Errors
     /// [`SimulationError`] if the options or the state make no sense, or the state does not
@@ -81,7 +81,7 @@ impl Simulation {
     /// relatives (see [`chart`](crate::chart)).
     ///
     /// Of the velocities only the part that keeps the lengths is used. Supports that the chart does not
-    /// eliminate are held by closure equations, see [`ChartSimulation::from_state`].
+    /// eliminate are closure equations, see [`ChartSimulation::from_state`].
     ///
     /// # Errors
     /// [`SimulationError`] if the options or the state make no sense, or the chart is singular or

@@ -1,10 +1,10 @@
-//! What holds the sheet, by name.
+//! Supports of the sheet, by name.
 
 use isosheet_mesh::VertexId;
 use serde::Serialize;
 use std::fmt;
 
-/// Something that holds the sheet, by name.
+/// A support of the sheet, by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Support {
     /// A pinned vertex.

@@ -1,4 +1,4 @@
-//! Vertices that straight lines of rods hold between pins.
+//! Vertices that are fixed because straight lines of rods run through them from pin to pin.
 
 use crate::SheetModel;
 use crate::model::PINNED;
@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 /// slack is the square of the slope that is left.)
 const NO_SLACK: f64 = 1e-12;
 
-/// Free vertices that cannot move because rods in a straight line hold them between two pins at rest, or
+/// Free vertices that cannot move because they are on a straight line of rods between two pins at rest, or
 /// between such vertices: the edge of a banner that hangs by both ends. There the length constraints are
 /// independent of each other and yet leave no motion to second order, which stalls every method; as pins they
 /// cost nothing.
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
     use isosheet_mesh::{MassKind, generate};
 
-    fn held(pins: &[u32], change: impl Fn(&mut [f64])) -> Vec<u32> {
+    fn fixed(pins: &[u32], change: impl Fn(&mut [f64])) -> Vec<u32> {
         let sheet = generate::isotropic_square(1, 1.0).unwrap();
         let pins: Vec<VertexId> = pins.iter().map(|v| VertexId(*v)).collect();
         let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped)
@@ -85,23 +85,23 @@ mod tests {
     }
 
     #[test]
-    fn lines_between_pins_are_held() {
+    fn lines_between_pins_are_fixed() {
         // Five by five vertices in rows.
-        assert_eq!(held(&[0, 4], |_| ()), [1, 2, 3]);
-        assert_eq!(held(&[0, 24], |_| ()), [6, 12, 18]);
-        assert_eq!(held(&[0, 3], |_| ()), [1, 2]);
+        assert_eq!(fixed(&[0, 4], |_| ()), [1, 2, 3]);
+        assert_eq!(fixed(&[0, 24], |_| ()), [6, 12, 18]);
+        assert_eq!(fixed(&[0, 3], |_| ()), [1, 2]);
         // A knight's move is no line of rods.
-        assert_eq!(held(&[0, 11], |_| ()), [0_u32; 0]);
-        assert_eq!(held(&[0], |_| ()), [0_u32; 0]);
+        assert_eq!(fixed(&[0, 11], |_| ()), [0_u32; 0]);
+        assert_eq!(fixed(&[0], |_| ()), [0_u32; 0]);
         // The border first, and everything inside between its vertices.
-        assert_eq!(held(&[0, 4, 20, 24], |_| ()).len(), 21);
+        assert_eq!(fixed(&[0, 4, 20, 24], |_| ()).len(), 21);
     }
 
     #[test]
     fn lines_with_slack_are_not() {
         let lift = |z: f64| move |x: &mut [f64]| x[3 * 2 + 2] = z;
-        assert_eq!(held(&[0, 4], lift(1e-5)), [0_u32; 0]);
-        assert_eq!(held(&[0, 4], lift(1e-8)), [1, 2, 3]);
+        assert_eq!(fixed(&[0, 4], lift(1e-5)), [0_u32; 0]);
+        assert_eq!(fixed(&[0, 4], lift(1e-8)), [1, 2, 3]);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Momentum on its way that the supports have a share in.
+//! Momentum that projections have given to the sheet and that is not yet assigned to the supports.
 
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
@@ -7,8 +7,8 @@ use isosheet_coords::linalg::norm_inf;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Entries that a unassigned has room for; projections need three to six iterations. What comes later joins
-/// the last one.
+/// Largest number of entries, one for each iteration of a projection; projections need three to six. The
+/// momentum of later iterations is added to the last entry.
 const ROOM: usize = 16;
 /// Penalty relative to the masses: beyond, the masses drown in round-off.
 const PENALTY: f64 = 1e9;
@@ -134,7 +134,7 @@ impl UnassignedMomentum {
             return shares;
         };
         let mut rows = VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0);
-        let (along, across) = (penalties(model, PENALTY), vec![0.0; m]);
+        let (along, transverse) = (penalties(model, PENALTY), vec![0.0; m]);
         let (mut left, mut answer) = (vec![0.0; n], vec![0.0; n]);
         let (mut tension, mut change) = (vec![0.0; m], vec![0.0; m]);
         for Entry {
@@ -146,7 +146,7 @@ impl UnassignedMomentum {
             rows.evaluate(model.constraints(), t, x);
             rows.clear();
             rows.equality.copy_from_slice(active);
-            matrix.assemble(model, x, &along, &across);
+            matrix.assemble(model, x, &along, &transverse);
             rows.add_equalities(PENALTY, &mut matrix.sink(model));
             if matrix.factorize().is_err() {
                 continue;

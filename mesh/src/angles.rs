@@ -150,7 +150,7 @@ impl EdgeAngles {
     }
 
     /// The angles of an interior edge when the two vertices opposite to it are `distance` metres apart.
-    pub fn with_distance(sheet: &Sheet, e: EdgeId, distance: f64) -> Option<Self> {
+    pub(crate) fn with_distance(sheet: &Sheet, e: EdgeId, distance: f64) -> Option<Self> {
         let t = sheet.topology();
         let [Some(left), Some(right)] = t.edge_faces(e) else {
             return None;

@@ -226,7 +226,7 @@ fn build_fans(t: &mut Topology) -> Result<(), TopologyError> {
         }
         let first = *first.unwrap_or(&here[0]);
         let before = vertex_faces.len();
-        walk_fan(t, v, first, &mut vertex_faces, &mut vertex_edges);
+        collect_fan(t, v, first, &mut vertex_faces, &mut vertex_edges);
         let reached = vertex_faces.len() - before;
         if reached != here.len() {
             let vertex = VertexId::from_index(v);
@@ -245,11 +245,11 @@ fn build_fans(t: &mut Topology) -> Result<(), TopologyError> {
     Ok(())
 }
 
-/// Walks round the vertex `v` from face to face across their common edges, from the corner `first` to
+/// Goes round the vertex `v` from face to face across their common edges, from the corner `first` to
 /// the boundary or back to it, and appends the faces and edges met.
 ///
-/// Two faces share at most one edge here (duplicate faces are refused before), so the walk never branches.
-fn walk_fan(
+/// Two faces share at most one edge here (duplicate faces are refused before), so the fan never branches.
+fn collect_fan(
     t: &Topology,
     v: usize,
     first: Corner,

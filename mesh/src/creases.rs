@@ -88,10 +88,10 @@ impl CreasePattern {
                 continue;
             }
             let start = HalfEdgeId::new(e, 0);
-            let (back, closed) = walk(&next, start.twin());
+            let (back, closed) = follow(&next, start.twin());
             let mut chain: Vec<HalfEdgeId> = back.into_iter().rev().map(HalfEdgeId::twin).collect();
             if !closed {
-                chain.extend(walk(&next, start).0.into_iter().skip(1));
+                chain.extend(follow(&next, start).0.into_iter().skip(1));
             }
             for h in &chain {
                 seen[h.edge().index()] = true;
@@ -203,7 +203,7 @@ fn continuations(sheet: &Sheet, tolerance: f64) -> Vec<Option<HalfEdgeId>> {
 }
 
 /// Follows a line from a half-edge, which is included; true when it comes back to it.
-fn walk(next: &[Option<HalfEdgeId>], start: HalfEdgeId) -> (Vec<HalfEdgeId>, bool) {
+fn follow(next: &[Option<HalfEdgeId>], start: HalfEdgeId) -> (Vec<HalfEdgeId>, bool) {
     let mut chain = vec![start];
     let mut h = start;
     while let Some(n) = next[h.0 as usize] {

@@ -127,16 +127,6 @@ pub enum MeshError {
         /// The length needed.
         expected: usize,
     },
-    /// A list with one entry per edge has the wrong length.
-    #[error(
-        "the list of lengths has {got} entries, but the mesh has {expected} edges; give one length per edge, in edge order"
-    )]
-    WrongEdgeCount {
-        /// Its length.
-        got: usize,
-        /// The number of edges.
-        expected: usize,
-    },
     /// A coordinate is NaN or infinite.
     #[error("coordinate {} of {vertex} is {value}; every coordinate must be a finite number", ["x", "y", "z"][*axis])]
     NonFinite {

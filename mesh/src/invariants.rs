@@ -181,9 +181,9 @@ impl Topology {
             loops.is_empty(),
             "closed means without boundary"
         );
-        for walk in &loops {
-            for (i, &v) in walk.iter().enumerate() {
-                let w = walk[(i + 1) % walk.len()];
+        for boundary in &loops {
+            for (i, &v) in boundary.iter().enumerate() {
+                let w = boundary[(i + 1) % boundary.len()];
                 let e = self
                     .find_edge(v, w)
                     .expect("consecutive boundary vertices are joined");

@@ -7,6 +7,7 @@
 //! * [`Dof`]: degrees of freedom by counting, with the two lemmas.
 //! * [`EdgeAngles`], [`check_compatibility`], [`fold_angle`]: angles of any state; [`CreasePattern`]: where
 //!   the sheet folds straight.
+//! * [`angle_from_lengths`], [`area_from_lengths`]: triangles from the lengths of their sides.
 //! * [`orient_consistently`]: repair on request.
 //! * [`generate`]: squares, grids and other sheets made by formula.
 //!
@@ -17,6 +18,7 @@
 //! Hamilton principle", Computer-Aided Design 39 (2007) 719-731.
 
 mod angles;
+mod area;
 mod build;
 mod creases;
 mod dof;
@@ -38,6 +40,7 @@ pub use angles::{
     AngleError, AngleTriple, COMPATIBILITY_TOLERANCE, EdgeAngles, angle_from_lengths,
     check_compatibility, fold_angle,
 };
+pub use area::area_from_lengths;
 pub use creases::{CreaseLine, CreasePattern, FoldingDirection, LineEnds};
 pub use dof::Dof;
 pub use error::{MeshError, TopologyError};

@@ -30,15 +30,15 @@ pub fn orient_consistently(
     faces: &mut [[u32; 3]],
 ) -> Result<Vec<FaceId>, TopologyError> {
     check_faces(vertex_count, faces)?;
-    // Across side i of a face: the other face, and whether the two windings agree.
-    let mut across: Vec<[Option<(u32, bool)>; 3]> = vec![[None; 3]; faces.len()];
+    // The neighbour at side i of a face: the other face, and whether the two windings agree.
+    let mut neighbours: Vec<[Option<(u32, bool)>; 3]> = vec![[None; 3]; faces.len()];
     for group in sorted_sides(faces).chunk_by(|s, t| (s.low, s.high) == (t.low, t.high)) {
         match group {
             [_] => {}
             [s, t] => {
                 let agree = s.reversed != t.reversed;
-                across[s.face as usize][s.corner as usize] = Some((t.face, agree));
-                across[t.face as usize][t.corner as usize] = Some((s.face, agree));
+                neighbours[s.face as usize][s.corner as usize] = Some((t.face, agree));
+                neighbours[t.face as usize][t.corner as usize] = Some((s.face, agree));
             }
             _ => {
                 return Err(TopologyError::NonManifoldEdge {
@@ -65,7 +65,7 @@ pub fn orient_consistently(
         while let Some(f) = queue.pop_front() {
             let mine = flip[f] == Some(true);
             component.push((f, mine));
-            for &(g, agree) in across[f].iter().flatten() {
+            for &(g, agree) in neighbours[f].iter().flatten() {
                 // Agreeing neighbours share the flag, disagreeing ones have opposite flags.
                 let want = mine == agree;
                 match flip[g as usize] {

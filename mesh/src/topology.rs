@@ -252,7 +252,8 @@ impl Topology {
         self.boundary_edge_count == 0
     }
 
-    /// The boundary as closed walks with the surface on the left, each starting at its lowest vertex.
+    /// The boundary as closed loops of vertices with the surface on the left, each starting at its lowest
+    /// vertex.
     ///
     /// The outer boundary of a flat sheet is counter-clockwise, those of its holes clockwise.
     pub fn boundary_loops(&self) -> Vec<Vec<VertexId>> {
@@ -262,15 +263,15 @@ impl Topology {
             if seen[start.index()] || !self.is_boundary_vertex(start) {
                 continue;
             }
-            let mut walk = Vec::new();
+            let mut boundary = Vec::new();
             let mut v = start;
             while !seen[v.index()] {
                 seen[v.index()] = true;
-                walk.push(v);
+                boundary.push(v);
                 // The first edge of a boundary fan leaves the vertex with the surface on its left.
                 v = self.other_end(self.vertex_edges(v)[0], v);
             }
-            loops.push(walk);
+            loops.push(boundary);
         }
         loops
     }
@@ -327,8 +328,8 @@ mod tests {
             t.vertex_faces(VertexId(0)),
             [FaceId(2), FaceId(0), FaceId(1)]
         );
-        let walk: Vec<u32> = t.boundary_loops()[0].iter().map(|v| v.0).collect();
-        assert_eq!(walk, [0, 1, 2, 3, 4]);
+        let boundary: Vec<u32> = t.boundary_loops()[0].iter().map(|v| v.0).collect();
+        assert_eq!(boundary, [0, 1, 2, 3, 4]);
     }
 
     #[test]

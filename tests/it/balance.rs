@@ -12,9 +12,9 @@ const G: f64 = 9.8;
 /// Where the floor lies, metres.
 const FLOOR: f64 = -0.04;
 
-/// What holds a sheet that starts flat and at rest.
+/// The supports of a sheet that starts flat and at rest.
 #[derive(Debug, Clone, Copy, Default)]
-struct Held {
+struct Supports {
     /// A corner pinned.
     pin: bool,
     /// A corner on a slanting line.
@@ -27,7 +27,7 @@ struct Held {
     floor: Option<f64>,
 }
 
-impl Held {
+impl Supports {
     fn simulation(self, method: Method, mass: MassKind) -> Simulation {
         let sheet = generate::isotropic_square(1, SIDE).expect("valid");
         let n = 5_u32;
@@ -37,11 +37,11 @@ impl Held {
         if self.pin {
             model = model.with_pins(&[VertexId(0)]).expect("exists");
         }
-        let mut held = Vec::new();
+        let mut constraints = Vec::new();
         if self.curve {
             let v = VertexId(n - 1);
             let line = Line::new(sheet.position(v), [-1.0, 0.2, -0.5]).expect("valid");
-            held.push(VertexConstraint::on_curve(v, line));
+            constraints.push(VertexConstraint::on_curve(v, line));
         }
         if self.surface {
             let v = VertexId(n * (n - 1));
@@ -49,18 +49,18 @@ impl Held {
             let arm = Vector3::new(0.06, 0.05, -0.02);
             let centre = [x - arm.x, y - arm.y, z - arm.z];
             let sphere = Sphere::new(centre, arm.norm()).expect("valid");
-            held.push(VertexConstraint::on_surface(v, sphere, Side::On));
+            constraints.push(VertexConstraint::on_surface(v, sphere, Side::On));
         }
         if self.ledge {
             let v = VertexId(n * n / 2);
             let ledge = Plane::new([0.0, 0.0, -0.01], [0.2, 0.1, 1.0]).expect("valid");
-            held.push(VertexConstraint::on_surface(v, ledge, Side::Outside));
+            constraints.push(VertexConstraint::on_surface(v, ledge, Side::Outside));
         }
-        for c in held {
+        for c in constraints {
             model = model.with_constraint(c).expect("exists");
         }
         let contacts = self.floor.map(|mu| {
-            let floor = Obstacle::still(Shape::HalfSpace, Isometry3::translation(0.0, 0.0, FLOOR))
+            let floor = Obstacle::fixed(Shape::HalfSpace, Isometry3::translation(0.0, 0.0, FLOOR))
                 .expect("valid");
             Contacts::new(&model, ContactOptions::for_sheet(&model))
                 .and_then(|c| c.with_body(floor, Coefficients::equal(mu)))
@@ -83,8 +83,8 @@ fn momentum(simulation: &Simulation) -> Vector3<f64> {
     momenta.map(|p| Vector3::from(*p)).sum()
 }
 
-/// Discrete rate of change of momentum in the last step of `h` seconds, by the method's own formula, from the momenta at
-/// its end, at its start and one step before.
+/// Discrete rate of change of momentum in the last step of `h` seconds, by the method's own formula, from
+/// the momenta at the end of the step, at its start and one step before.
 fn rate(
     method: &Method,
     h: f64,
@@ -97,8 +97,9 @@ fn rate(
     }
 }
 
-/// Largest failure of `rate = sum of reactions - sum of loads on bodies + weight` in 60 steps: in the first one, which starts from
-/// exactly flat, and in the others, over the weight and over the sum of the sizes of all forces.
+/// Largest failure of `rate = sum of reactions - sum of loads on bodies + weight` in 60 steps. `first` is
+/// that of the first step, which starts from exactly flat, relative to the weight; `of_weight` is that of
+/// the other steps relative to the weight, `of_forces` relative to the sum of the magnitudes of all forces.
 #[derive(Debug, Default)]
 struct Imbalance {
     first: f64,
@@ -107,17 +108,18 @@ struct Imbalance {
     steps: usize,
 }
 
-fn imbalance(held: Held, method: &Method, mass: MassKind) -> Imbalance {
+fn imbalance(supports: Supports, method: &Method, mass: MassKind) -> Imbalance {
     let h = 1.0 / 120.0;
     let weight = Vector3::new(0.0, 0.0, -MASS * G);
-    let mut simulation = held.simulation(method.clone(), mass);
+    let mut simulation = supports.simulation(method.clone(), mass);
     let mut old = momentum(&simulation);
     let mut older = None;
     let mut worst = Imbalance::default();
     for step in 0..60 {
         let report = simulation.step(h).expect("accepted");
         let new = momentum(&simulation);
-        // Reactions are those of the last sub-step; and a damped step that is repeated has dropped its history.
+        // The reactions are those of the last sub-step, and a damped step that is repeated has dropped its
+        // history.
         if report.rejected > 0 {
             older = None;
         }
@@ -143,20 +145,20 @@ fn imbalance(held: Held, method: &Method, mass: MassKind) -> Imbalance {
 
 const MASSES: [MassKind; 2] = [MassKind::Lumped, MassKind::Consistent];
 
-fn two_sided() -> [Held; 4] {
-    let none = Held::default();
+fn two_sided() -> [Supports; 4] {
+    let none = Supports::default();
     let [pin, curve, surface] = [
-        Held { pin: true, ..none },
-        Held {
+        Supports { pin: true, ..none },
+        Supports {
             curve: true,
             ..none
         },
-        Held {
+        Supports {
             surface: true,
             ..none
         },
     ];
-    let together = Held {
+    let together = Supports {
         pin: true,
         curve: true,
         surface: true,
@@ -165,14 +167,14 @@ fn two_sided() -> [Held; 4] {
     [pin, curve, surface, together]
 }
 
-fn one_sided() -> [Held; 2] {
-    let ledge = Held {
+fn one_sided() -> [Supports; 2] {
+    let ledge = Supports {
         ledge: true,
-        ..Held::default()
+        ..Supports::default()
     };
     [
         ledge,
-        Held {
+        Supports {
             pin: true,
             curve: true,
             surface: true,
@@ -194,18 +196,19 @@ fn implicit(tolerance: f64) -> [Method; 2] {
 
 #[test]
 fn supports_of_the_implicit_methods_balance_the_change_of_momentum() {
-    // In an exactly flat sheet rods are dependent: what round-off asks of them converges slowly. Beyond, what is left is the
-    // momentum that Newton's method leaves at free vertices, by the root of its tolerance.
+    // In an exactly flat sheet rods are dependent, and what round-off asks of them converges slowly. In
+    // later steps the imbalance is the momentum that Newton's method leaves at free vertices, in proportion
+    // to the square root of its tolerance.
     for (tolerance, first, bound) in [
         (1e-12, 2e-4, 1e-5),
         (ImplicitOptions::default().tolerance, 2e-3, 1e-2),
     ] {
         for method in implicit(tolerance) {
-            for held in two_sided().into_iter().chain(one_sided()) {
+            for supports in two_sided().into_iter().chain(one_sided()) {
                 for mass in MASSES {
-                    let found = imbalance(held, &method, mass);
+                    let found = imbalance(supports, &method, mass);
                     if !(found.first < first && found.of_weight < bound) {
-                        println!("{held:?} {method:?} {found:?}");
+                        println!("{supports:?} {method:?} {found:?}");
                     }
                     assert!(found.steps > 50);
                 }
@@ -216,10 +219,11 @@ fn supports_of_the_implicit_methods_balance_the_change_of_momentum() {
 
 #[test]
 fn supports_of_the_projection_method_balance_the_change_of_momentum() {
-    // (Where a one-sided constraint stops the sheet it opens flat patches by a random displacement, momentum from nowhere.)
-    for held in two_sided() {
+    // One-sided constraints are left out: where one stops the sheet, flat patches are left by a random
+    // displacement, which adds momentum that no support accounts for.
+    for supports in two_sided() {
         for mass in MASSES {
-            let found = imbalance(held, &Method::Projection(Default::default()), mass);
+            let found = imbalance(supports, &Method::Projection(Default::default()), mass);
             assert!(found.first < 2e-4 && found.of_weight < 2e-4, "{found:?}");
             assert!(found.steps > 50);
         }
@@ -232,7 +236,7 @@ fn supports_of_the_conservative_methods_balance_the_change_of_momentum() {
     let energy_momentum = Method::EnergyMomentum(Default::default());
     let rattle = Method::Rattle(Default::default());
     let [pin, curve, surface, _] = two_sided();
-    for (method, held, mass) in [
+    for (method, supports, mass) in [
         (&energy_momentum, pin, MassKind::Consistent),
         (&energy_momentum, curve, MassKind::Consistent),
         (&rattle, pin, MassKind::Lumped),
@@ -240,7 +244,7 @@ fn supports_of_the_conservative_methods_balance_the_change_of_momentum() {
         (&rattle, curve, MassKind::Lumped),
         (&rattle, surface, MassKind::Lumped),
     ] {
-        let found = imbalance(held, method, mass);
+        let found = imbalance(supports, method, mass);
         assert!(found.of_weight < 1e-11, "{found:?}");
         assert!(found.steps > 10);
     }
@@ -248,26 +252,26 @@ fn supports_of_the_conservative_methods_balance_the_change_of_momentum() {
 
 #[test]
 fn contact_balances_the_change_of_momentum_but_for_its_curvature() {
-    // The projection that ends a step changes the forces of contact to first order by what it balances; the rest is
-    // of second order and not balanced.
-    let none = Held::default();
-    let all = Held {
+    // The projection that ends a step changes the contact forces. The change of first order is balanced by
+    // the projection itself; the rest is of second order and is not balanced.
+    let none = Supports::default();
+    let all = Supports {
         pin: true,
         curve: true,
         surface: true,
         ledge: true,
         floor: Some(0.4),
     };
-    for (held, bound) in [
+    for (supports, bound) in [
         (
-            Held {
+            Supports {
                 floor: Some(0.0),
                 ..none
             },
             0.01,
         ),
         (
-            Held {
+            Supports {
                 floor: Some(0.4),
                 ..none
             },
@@ -277,7 +281,7 @@ fn contact_balances_the_change_of_momentum_but_for_its_curvature() {
     ] {
         for method in implicit(1e-12) {
             for mass in MASSES {
-                let found = imbalance(held, &method, mass);
+                let found = imbalance(supports, &method, mass);
                 assert!(found.of_forces < bound, "{found:?}");
                 assert!(found.steps > 50);
             }

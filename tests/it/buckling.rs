@@ -22,8 +22,9 @@ fn rung(cells: usize, i: usize) -> [VertexId; 3] {
     [0, 1, 2].map(|j| VertexId::from_index(i + j * (cells + 1)))
 }
 
-/// The strip at rest as a tent: folded up at the second rung, down in the middle of what is left before the rung `end`, and up there
-/// again, so that nothing is left of the singularity of a flat strip that cannot give way.
+/// The strip at rest as a tent: folded up at the second rung, folded down half way between there and the
+/// rung `end`, and folded up again at `end`. A flat strip, which cannot give way, is singular; this one is
+/// not.
 fn tent(sheet: &Sheet, cells: usize, end: usize, slope: f64) -> Vec<f64> {
     let step = LENGTH / cells as f64;
     let mut line = vec![[0.0, 0.0], [step, 0.0]];
@@ -89,7 +90,7 @@ fn a_strip_jams_between_walls_without_touching() {
     let mut contacts = Contacts::new(&model, options).expect("valid");
     let wall = |half: [f64; 3], x: f64, z: f64| {
         let pose = Isometry3::translation(x, 0.5 * WIDTH, z);
-        Obstacle::still(Shape::Cuboid { half }, pose).expect("valid")
+        Obstacle::fixed(Shape::Cuboid { half }, pose).expect("valid")
     };
     // A channel of 10 mm, closed a millimetre before the leading edge.
     for body in [
@@ -116,8 +117,8 @@ fn a_strip_jams_between_walls_without_touching() {
         if step == 79 {
             // What the nip has paid for is stored in bending or lost.
             let stored = report.hamiltonian() - before;
-            // Measured, in shares of the work of 2.65 mJ: stored 0.82, lost to friction 0.28, damped 0.007; the error of the trapezoidal
-            // rule for the work of jamming pins is 0.105.
+            // Measured, in shares of the work of 2.65 mJ: stored 0.82, lost to friction 0.28, damped 0.007.
+            // The error of the trapezoidal rule for the work of the jamming pins is 0.105.
             let share = |energy: f64| energy / report.work;
             assert!((2.2e-3..3.1e-3).contains(&report.work), "{report:?}");
             assert!((0.7..0.95).contains(&share(stored)), "{report:?}");

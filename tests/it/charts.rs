@@ -1,6 +1,6 @@
 //! Motion in system coordinates against chart-free motion.
 
-use crate::scenes::{bumped, corner, gap, hanging, held};
+use crate::scenes::{bumped, corner, gap, hanging, pinned};
 use isosheet_coords::{
     AssignmentOptions, CartesianChart, Chart, Choice, FrontChart, RodSystem, assignment::Degenerate,
 };
@@ -29,7 +29,7 @@ fn front(level: u32) -> Box<dyn Chart> {
 
 fn in_chart(level: u32, chart: Box<dyn Chart>, options: ChartOptions) -> Simulation {
     let start = State::at_rest(bumped(level, BUMP).positions().to_vec());
-    Simulation::in_chart(held(level, BUMP), start, chart, options).expect("usable")
+    Simulation::in_chart(pinned(level, BUMP), start, chart, options).expect("usable")
 }
 
 /// Positions after a tenth of a second by the fourth-order composition of RATTLE.

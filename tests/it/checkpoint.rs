@@ -55,7 +55,8 @@ fn compare(name: &str, start: impl Fn() -> Simulation, model: impl Fn() -> Sheet
     });
 }
 
-/// Runs `2 N` steps, and `N` with a checkpoint and `N` more, and compares states, reports, support forces and what bodies bear.
+/// Runs `2 N` steps without interruption, and `N` steps, a checkpoint and `N` more steps; compares states,
+/// reports, support forces and loads on bodies.
 fn compare_with(
     name: &str,
     h: f64,
@@ -296,7 +297,7 @@ fn contacts(model: &SheetModel) -> Contacts {
     let table = Shape::Cuboid {
         half: [0.03, 0.03, 0.01],
     };
-    let table = Obstacle::still(table, Isometry3::translation(0.1, 0.1, -0.0305)).expect("valid");
+    let table = Obstacle::fixed(table, Isometry3::translation(0.1, 0.1, -0.0305)).expect("valid");
     let ball = Profile::Ramp {
         from: 0.0,
         to: 0.03,
@@ -433,7 +434,7 @@ fn charts_with_closures_drives_and_impacts_go_on_bit_for_bit() {
     };
     let floor = |model: &SheetModel| {
         let pose = Isometry3::translation(0.0, 0.0, low - 1e-3);
-        let floor = Obstacle::still(Shape::HalfSpace, pose).expect("valid");
+        let floor = Obstacle::fixed(Shape::HalfSpace, pose).expect("valid");
         Contacts::new(model, ContactOptions::for_sheet(model))
             .and_then(|c| c.with_body(floor, Coefficients::equal(0.3)))
             .expect("valid")

@@ -1,4 +1,4 @@
-//! Vertices held by closure equations in a chart.
+//! Vertices constrained by closure equations in a chart.
 
 use crate::scenes::{corner, gap};
 use isosheet_coords::{
@@ -50,8 +50,9 @@ fn off_pins(x: &[f64], start: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The paper's one external point in the chart, three more pins as closures, two of their nine equations dependent: orders of
-/// all methods on the exact motion of the parallel linkage.
+/// The chart has the paper's one external point, and three more pins are closures, two of whose nine
+/// equations are dependent. The orders of all methods are measured against the exact motion of the parallel
+/// linkage.
 #[test]
 fn a_parallel_linkage_swings_as_a_pendulum() {
     let linkage = Linkage::default();
@@ -159,8 +160,8 @@ fn reactions_of_a_hanging_trapezoid() {
     }
 }
 
-/// A bent sheet held at two corners, a vertex on a circle and one on a sphere: against RATTLE's composition of fourth order
-/// without a chart.
+/// A bent sheet with two pinned corners, one vertex on a circle and one on a sphere. The reference is
+/// RATTLE's composition of fourth order without a chart.
 fn crowded() -> (SheetModel, State, [VertexId; 2]) {
     let sheet = bent();
     let (second, third, fourth) = (VertexId(0), VertexId(4), VertexId(24));
@@ -334,7 +335,7 @@ fn closures_that_cannot_be_met_say_so() {
     let moving = begin(moving.expect("exists"), &[VertexId(0)]);
     let vertex = VertexId(0);
     assert_eq!(moving, Some(ChartDynamicsError::MovingPin { vertex }));
-    // Pins that leave no freedom make no chart; as closures they hold the sheet still.
+    // Pins that leave no freedom make no chart; as closures they fix the whole sheet.
     let full: Vec<VertexId> = (0..8).map(VertexId).collect();
     let model = model().with_pins(&full).expect("exist");
     let system = RodSystem::from_parts(model.topology(), model.rods().lengths(), &full);
@@ -342,9 +343,9 @@ fn closures_that_cannot_be_met_say_so() {
     assert!(matches!(none.err(), Some(ChartError::System(_))));
     let chart = cartesian(&model, &[VertexId(0)], &start.x);
     let options = fixed(ChartMethod::RungeKutta4, 1e-2);
-    let mut still = ChartSimulation::from_state(model, chart, options, &start).expect("valid");
+    let mut run = ChartSimulation::from_state(model, chart, options, &start).expect("valid");
     for _ in 0..10 {
-        still.step().expect("held");
+        run.step().expect("fixed");
     }
-    assert!(gap(still.positions(), &start.x) < 1e-12);
+    assert!(gap(run.positions(), &start.x) < 1e-12);
 }

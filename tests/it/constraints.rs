@@ -1,4 +1,4 @@
-//! Vertices on curves and surfaces, moving pins, and the forces that hold a sheet.
+//! Vertices on curves and surfaces, moving pins, and the forces of these supports.
 
 use isosheet_dynamics::constraint::{Circle, Line, Plane, Side, Sphere};
 use isosheet_dynamics::{
@@ -123,8 +123,8 @@ fn a_sheet_slides_down_a_line_at_g_sin() {
         let order_one = matches!(method, Method::ImplicitEuler(_) | Method::Projection(_));
         let projected = matches!(method, Method::Projection(_));
         let (sheet, mut model) = triangle(0.3);
-        // Two vertices on parallel lines and one on the plane through them: the triangle slides without turning, and no
-        // equation depends on the others.
+        // Two vertices are on parallel lines and one is on the plane through these lines. The triangle
+        // slides without turning, and no equation depends on the others.
         for v in 0..2 {
             let line = Line::new(sheet.position(VertexId(v)), along).expect("valid");
             model = model
@@ -158,16 +158,17 @@ fn a_sheet_slides_down_a_line_at_g_sin() {
             (moved / exact - 1.0).abs() < allowed,
             "{name}: {moved} {exact}"
         );
-        // Lines push across themselves only.
+        // The force of a line is perpendicular to it.
         let want = 0.3 * G * slope.cos();
         let push = sum(&simulation);
-        // Newton's method of the damped methods stops at the round-off of the energy, a force of about 1e-5 N here.
+        // Newton's method of the damped methods stops at the round-off of the energy, which is a force of
+        // about 1e-5 N here.
         assert!((push.norm() / want - 1.0).abs() < 3e-5, "{name}: {push}");
     }
 }
 
-/// Two vertices on circles about a common axis and one on a sphere about a point of it: the triangle turns about the axis,
-/// a compound pendulum.
+/// Two vertices are on circles about a common axis and one is on a sphere about a point of this axis. The
+/// triangle turns about the axis and is a compound pendulum.
 #[test]
 fn beads_on_circles_and_a_sphere_are_a_pendulum() {
     let beads = [(0.7, 0.0, -0.3), (0.5, 0.6, 0.4), (0.6, -0.5, 0.1_f64)];

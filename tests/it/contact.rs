@@ -48,7 +48,7 @@ fn plate(
         State::at_rest(x.flat_map::<[f64; 3], _>(place).collect())
     };
     let mut contacts = Contacts::new(&model, options)
-        .and_then(|c| c.with_body(Obstacle::still(Shape::HalfSpace, pose)?, coefficients))
+        .and_then(|c| c.with_body(Obstacle::fixed(Shape::HalfSpace, pose)?, coefficients))
         .expect("valid");
     // Start where the barrier carries the weight: a plate that bounces slips.
     let [mut low, mut high] = [0.1, 1.0].map(|part| part * options.activation);
@@ -158,10 +158,10 @@ fn above_the_friction_angle_a_plate_slides() {
                 "{found} m/s2, expected {expected}"
             );
         }
-        // The heat is the force of friction times the way, and the slope carries both forces.
-        let way = 0.5 * (after[0] + before[0]) * 120.0 * STEP;
+        // The heat is the force of friction times the distance, and the slope carries both forces.
+        let distance = 0.5 * (after[0] + before[0]) * 120.0 * STEP;
         let normal = MASS * G * theta.cos();
-        let heat = coefficients.sliding * normal * way;
+        let heat = coefficients.sliding * normal * distance;
         assert!(
             (loss[1] - loss[0] - heat).abs() < 1e-6,
             "heat {loss:?} J, expected {heat}"
@@ -184,11 +184,11 @@ fn a_plate_that_slides_in_stops_where_friction_says() {
         for _ in 0..120 {
             watch.step(&mut simulation, STEP);
         }
-        let way = simulation.state().x[0] - start;
+        let distance = simulation.state().x[0] - start;
         let expected = 0.9 * 0.9 / (2.0 * 0.3 * G);
         assert!(
-            (way / expected - 1.0).abs() < 1e-3,
-            "{way} m, expected {expected}"
+            (distance / expected - 1.0).abs() < 1e-3,
+            "{distance} m, expected {expected}"
         );
         assert!(speeds(&simulation, 0.0).iter().all(|v| v.abs() < 1e-5));
     }
@@ -221,7 +221,7 @@ fn drop(h: f64, coefficients: Coefficients, damping: f64) -> [f64; 2] {
     let contacts = Contacts::new(&model, options)
         .and_then(|c| {
             c.with_body(
-                Obstacle::still(Shape::HalfSpace, Isometry3::identity())?,
+                Obstacle::fixed(Shape::HalfSpace, Isometry3::identity())?,
                 coefficients,
             )
         })
@@ -260,8 +260,8 @@ fn a_dropped_sheet_loses_what_friction_and_damping_take() {
     }
 }
 
-/// A floor that slides away at a constant speed takes a plate along: of its work half is lost to friction and half is
-/// kinetic energy in the end, `W = m v^2`.
+/// A floor that moves sideways at a constant speed drags a plate along by friction. Half of the floor's
+/// work is lost to friction and half is kinetic energy in the end, `W = m v^2`.
 #[test]
 fn a_conveyor_does_work_by_friction() {
     const SPEED: f64 = 0.5;
@@ -306,7 +306,7 @@ fn barrier_and_lagged_friction_survive_a_file() {
     let mut contacts = Contacts::new(&model, options)
         .and_then(|c| {
             c.with_body(
-                Obstacle::still(Shape::HalfSpace, floor)?,
+                Obstacle::fixed(Shape::HalfSpace, floor)?,
                 Coefficients::equal(0.5),
             )
         })

@@ -1,6 +1,6 @@
 //! Exactly flat and otherwise rank-deficient states.
 
-use crate::scenes::{bumped, corner, gap, hanging, held, methods};
+use crate::scenes::{bumped, corner, gap, hanging, methods, pinned};
 use isosheet_dynamics::{
     Fallback, Method, SheetModel, Simulation, State, StepControl, StepError, StepOutcome,
     leave_flat,
@@ -43,7 +43,8 @@ fn energy_momentum_refuses_a_loaded_flat_sheet_and_says_why() {
     else {
         panic!("{error}");
     };
-    // Nine interior vertices, as many dependent rods; the short steps before the refusal may have folded some of them.
+    // The sheet has nine interior vertices and as many dependent rods; the short steps before the refusal
+    // may have folded some of the vertices.
     assert!((1..=9).contains(&rank_deficiency), "{rank_deficiency}");
     assert!(
         smallest_singular_value < 1e-5,
@@ -56,8 +57,8 @@ fn energy_momentum_refuses_a_loaded_flat_sheet_and_says_why() {
     assert!(strain < 1e-12, "{strain:e}");
 }
 
-/// Many short steps find the way out of the flat state; they keep the energy to a millionth (RATTLE) and the hundred thousandth part
-/// (its composition) of the 1.3 mJ that the fall releases.
+/// Many short steps lead out of the flat state. They keep the energy to one part in 1e6 (RATTLE) and one
+/// part in 1e5 (its composition) of the 1.3 mJ that the fall releases.
 #[test]
 fn rattle_leaves_a_loaded_flat_sheet_by_short_steps() {
     for (name, method) in methods().into_iter().skip(4) {
@@ -99,7 +100,7 @@ fn fallback_carries_a_conservative_run_off_flat() {
 
 #[test]
 fn leaving_flat_lets_conservative_methods_run() {
-    let model = held(1, 0.0);
+    let model = pinned(1, 0.0);
     let mut x = bumped(1, 0.0).positions().to_vec();
     leave_flat(&model, &mut x, 1e-2, 7).expect("projected");
     let method = Method::EnergyMomentum(Default::default());
@@ -172,7 +173,7 @@ fn bad_states_are_refused() {
     let sheet = bumped(1, 0.05);
     let mut x = sheet.positions().to_vec();
     x[3] += 0.01;
-    let error = Simulation::new(held(1, 0.05), State::at_rest(x), Method::default());
+    let error = Simulation::new(pinned(1, 0.05), State::at_rest(x), Method::default());
     let message = error.err().expect("refused").to_string();
     assert!(
         message.contains("edge") && message.contains("rest length"),
@@ -181,11 +182,11 @@ fn bad_states_are_refused() {
 
     let mut x = sheet.positions().to_vec();
     x[7] = f64::NAN;
-    let error = Simulation::new(held(1, 0.05), State::at_rest(x), Method::default());
+    let error = Simulation::new(pinned(1, 0.05), State::at_rest(x), Method::default());
     assert!(error.err().expect("refused").to_string().contains("NaN"));
 
     let short = State::at_rest(vec![0.0; 6]);
-    assert!(Simulation::new(held(1, 0.05), short, Method::default()).is_err());
+    assert!(Simulation::new(pinned(1, 0.05), short, Method::default()).is_err());
 
     let mut run = hanging(1, 0.05, Method::default());
     for h in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -194,6 +195,6 @@ fn bad_states_are_refused() {
             "{h}"
         );
     }
-    assert!(held(1, 0.0).with_pins(&[VertexId(1000)]).is_err());
+    assert!(pinned(1, 0.0).with_pins(&[VertexId(1000)]).is_err());
     assert_eq!(corner(1), VertexId(20));
 }

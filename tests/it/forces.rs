@@ -1,6 +1,6 @@
 //! Potentials and non-conservative forces of the user, and the mass matrices.
 
-use crate::scenes::{bumped, gap, held, methods};
+use crate::scenes::{bumped, gap, methods, pinned};
 use isosheet_dynamics::{
     Force, HessianSink, Method, Potential, SheetModel, Simulation, State, StepError,
 };
@@ -60,7 +60,7 @@ impl Potential for Shell {
 }
 
 fn shelled(with_hessian: Hessian) -> Simulation {
-    let model = held(1, 0.05).with_potential(Shell {
+    let model = pinned(1, 0.05).with_potential(Shell {
         stiffness: 0.5,
         with_hessian,
     });
@@ -239,7 +239,7 @@ impl Potential for Broken {
 fn a_broken_potential_is_named() {
     let start = State::at_rest(bumped(1, 0.05).positions().to_vec());
     for (name, method) in methods() {
-        let model = held(1, 0.05).with_potential(Broken);
+        let model = pinned(1, 0.05).with_potential(Broken);
         let mut run = Simulation::new(model, start.clone(), method).expect("valid");
         match run.step(1e-2) {
             Err(StepError::NonFiniteForce { vertex, .. }) => assert_eq!(vertex, VertexId(1)),

@@ -24,7 +24,7 @@ fn floor(model: &SheetModel, pose: Isometry3<f64>, friction: f64) -> Contacts {
         activation: 1e-4,
         ..ContactOptions::for_sheet(model)
     };
-    let body = Obstacle::still(Shape::HalfSpace, pose).expect("valid");
+    let body = Obstacle::fixed(Shape::HalfSpace, pose).expect("valid");
     Contacts::new(model, options)
         .expect("valid")
         .with_body(body, Coefficients::equal(friction))
@@ -40,8 +40,8 @@ fn options(method: ChartMethod, h: f64, restitution: f64) -> ChartOptions {
     }
 }
 
-/// A triangle hinged at an edge falls on a floor: one degree of freedom, as a point that bounces. Each impact leaves e^2 of the
-/// kinetic energy, and so the heights above the floor shrink by e^2.
+/// A triangle hinged at an edge falls on a floor. It has one degree of freedom, as a bouncing point has.
+/// Each impact leaves e^2 of the kinetic energy, and so the heights above the floor shrink by e^2.
 #[test]
 fn bounces_of_a_hinged_triangle_shrink_by_the_square_of_the_restitution() {
     let pendulum = Pendulum::default();
@@ -206,8 +206,8 @@ fn a_triangle_on_an_incline_sticks_or_slides() {
     }
 }
 
-/// A folded strip, the paper's chart and its literal scheme with adaptive step: falls on the floor, gaps stay open, impacts take
-/// energy only.
+/// A folded strip in the paper's chart, moved by the paper's literal scheme with adaptive step, falls on
+/// the floor. Gaps stay open, and impacts only take energy away.
 #[test]
 fn a_strip_falls_on_a_floor_in_the_papers_scheme() {
     let rows = [[0.0, 0.3], [0.2, 0.15], [0.38, 0.28], [0.6, 0.2]];
@@ -259,7 +259,8 @@ fn a_strip_falls_on_a_floor_in_the_papers_scheme() {
     }
 }
 
-/// A floor that rises pushes the sheet up and does the work; one that rises to a pinned edge ends with an error.
+/// A floor that rises pushes the sheet up and does work on it; a floor that rises to a pinned edge ends the
+/// run with an error.
 #[test]
 fn moving_bodies_do_work_and_do_not_pass() {
     let (model, start) = triangle();

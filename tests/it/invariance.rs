@@ -102,7 +102,8 @@ impl Scene {
         }
     }
 
-    /// The same with vertex `order[i]` in place of vertex `i`, and the faces in another order, each from another corner.
+    /// The same scene with vertex `order[i]` in place of vertex `i`, with the faces in another order, and
+    /// with each face beginning at another corner.
     fn renumbered(&self, order: &[usize], shift: usize) -> Self {
         let mut place = vec![0; order.len()];
         order
@@ -126,7 +127,8 @@ impl Scene {
         }
     }
 
-    /// The same with lengths, masses and times in Froude's ratio: times as the root of the lengths, forces as the masses.
+    /// The same scene with scaled lengths and masses; times are scaled by the square root of the lengths
+    /// (Froude's ratio) and forces as the masses.
     fn scaled(&self, length: f64, mass: f64) -> Self {
         Self {
             x: self.x.iter().map(|p| p * length).collect(),
@@ -191,9 +193,9 @@ fn scenes() -> impl Strategy<Value = Scene> {
 }
 
 fn frames() -> impl Strategy<Value = Isometry3<f64>> {
-    (vectors(1.0), vectors(3.0)).prop_map(|(way, turn)| {
+    (vectors(1.0), vectors(3.0)).prop_map(|(shift, turn)| {
         let turn = Rotation3::new(turn);
-        Isometry3::from_parts(way.into(), turn.into())
+        Isometry3::from_parts(shift.into(), turn.into())
     })
 }
 
@@ -220,8 +222,9 @@ const STEPS: usize = 15;
 /// Random scenes of a test.
 const CASES: u32 = 40;
 
-/// How far apart motions may be after [`STEPS`] that are the same but for round-off, of the size of the sheet. Measured: below 2e-9 for the
-/// projection, which solves with rods up to 1e13 times as stiff as the masses, below 2e-12 for the others.
+/// Largest distance, relative to the size of the sheet, after [`STEPS`] between motions that differ by
+/// round-off alone. Measured: below 2e-9 for the projection, which solves with rods up to 1e13 times as
+/// stiff as the masses, below 2e-12 for the other methods.
 fn round_off(name: &str) -> f64 {
     if name == "projection" { 2e-8 } else { 2e-11 }
 }
@@ -292,8 +295,9 @@ fn check_report(name: &str, report: &StepReport, start: f64, largest: f64) {
     let drift = report.hamiltonian() - start;
     let noise = 1e-9 * (largest + report.potential.abs() + start.abs());
     let [low, high] = match name {
-        // The first step from rest of a damped method loses as much as it makes; snaps may give a fiftieth. Measured of the others,
-        // either way: 1.1e-11 (round-off, below `noise`), 7.7e-4, 3.7e-5.
+        // The first step from rest of a damped method loses as much energy as it turns into motion; snaps
+        // may give a fiftieth. Measured for the other methods, as gain and as loss: 1.1e-11 (round-off,
+        // below `noise`), 7.7e-4, 3.7e-5.
         "implicit Euler" | "BDF2" | "projection" => [-1.01, 0.02],
         "energy-momentum" => [0.0, 0.0],
         "RATTLE" => [-2e-3, 2e-3],
@@ -305,9 +309,9 @@ fn check_report(name: &str, report: &StepReport, start: f64, largest: f64) {
     );
 }
 
-/// What a method has lost after 40 steps of 4 ms from rest, of the largest kinetic energy, at least and at most. Measured: 0.0236 to
-/// 0.0913 (implicit Euler, projection), 9e-4 to 5.4e-3 (BDF2), up to 1e-12 (energy-momentum), 4e-4 (RATTLE) and
-/// 1.5e-6 (its composition), either way.
+/// Least and largest share of the largest kinetic energy that a method may have lost after 40 steps of 4 ms
+/// from rest. Measured: 0.0236 to 0.0913 (implicit Euler, projection) and 9e-4 to 5.4e-3 (BDF2); of either
+/// sign and up to 1e-12 (energy-momentum), 4e-4 (RATTLE) and 1.5e-6 (its composition).
 fn loss(name: &str) -> [f64; 2] {
     match name {
         "implicit Euler" | "projection" => [0.02, 0.12],
@@ -339,7 +343,8 @@ fn strain_and_energy_of_random_sheets() {
     });
 }
 
-/// Not a number after a given time: its energy while the first switch is on, its gradient while the second is.
+/// A potential that is not a number: its energy while the first switch is on, its gradient while the second
+/// switch is on.
 #[derive(Debug, Clone)]
 struct Broken {
     switches: Arc<[AtomicBool; 2]>,

@@ -1,6 +1,7 @@
 //! Tests that span several crates.
 
 mod balance;
+mod broken_motions;
 mod buckling;
 mod charts;
 mod checkpoint;

@@ -1,4 +1,5 @@
-//! Sheets folded from exactly flat by driven angles at their creases, against the kinematics of rigid origami.
+//! Sheets that are folded from exactly flat by driven angles at their creases, compared with the kinematics
+//! of rigid origami.
 
 use isosheet_dynamics::{
     CreaseSpring, CreaseSprings, Interpolation, Method, Profile, SheetModel, Simulation, State,
@@ -33,8 +34,9 @@ fn fold(pattern: &FoldPattern, springs: Vec<CreaseSpring>, damping: f64) -> Simu
     Simulation::new(model, start, Method::default()).expect("valid")
 }
 
-/// One vertex, two assignments, two ways to fold: the crease that folds most is driven, the others are only told to which side they
-/// fold, by springs a hundred times as weak and by an angle that is wrong for all but its opposite.
+/// One vertex, two assignments, two branches of folding. The crease that folds most is driven. The springs
+/// of the other creases are a hundred times as weak and have a rest angle that is wrong for all of them
+/// except the crease opposite to the driven one: they only say to which side a crease folds.
 #[test]
 fn the_assignment_chooses_the_branch_of_a_vertex() {
     let exact = DegreeFour {
@@ -118,8 +120,9 @@ fn miura_springs(pattern: &FoldPattern, [zigzag, straight, panel]: [f64; 3]) -> 
         .collect()
 }
 
-/// Folds 4 x 4 panels and returns the largest error of the straight creases against the mean angle of the zigzags, and of all
-/// distances in the sheet from the exact ones, radians and metres, and the largest fold of a panel.
+/// Folds 4 x 4 panels. Returns the largest error of the straight creases against the mean angle of the
+/// zigzags (radians), the largest error of all distances in the sheet against the exact ones (metres), and
+/// the largest fold of a panel (radians).
 fn miura_errors(stiffness: [f64; 3]) -> [f64; 3] {
     let (columns, rows) = (4, 4);
     let pattern = miura(columns, rows, MIURA.straight, MIURA.zigzag, MIURA.angle).expect("valid");

@@ -1,6 +1,6 @@
 //! States and scenes that have broken integrators before.
 
-use crate::scenes::{bumped, corner, gap, hanging, held, methods};
+use crate::scenes::{bumped, corner, gap, hanging, methods, pinned};
 use isosheet_dynamics::{
     Force, Method, Potential, SheetModel, Simulation, State, StepError, leave_flat,
     project_positions,
@@ -58,9 +58,11 @@ fn rest_stays_rest_and_translation_goes_on() {
 
 #[test]
 fn damped_methods_do_not_create_energy() {
-    // Strips far from square, checkerboard masses: from exactly flat, step by step. With the shares of the largest kinetic
-    // energy that implicit Euler, BDF2 and the projection have lost after 30 steps; measured: 0.237, 0.031, 0.164;
-    // 0.254, 0.021, 0.205; 0.245, 0.029, and of the projection, whose random displacements off flat patches differ with every change, 0.07 to 0.16.
+    // Strips far from square and checkerboard masses, from exactly flat, step by step. The last column
+    // bounds the shares of the largest kinetic energy that implicit Euler, BDF2 and the projection have
+    // lost after 30 steps. Measured: 0.237, 0.031, 0.164 for the first scene; 0.254, 0.021, 0.205 for the
+    // second; 0.245, 0.029 and 0.07 to 0.16 for the third, where the result of the projection depends on
+    // random displacements off flat patches.
     for (width, ratio, shares) in [
         (0.02, 1.0, [0.2..0.27, 0.025..0.04, 0.14..0.19]),
         (0.005, 1.0, [0.21..0.3, 0.015..0.03, 0.17..0.24]),
@@ -119,9 +121,9 @@ fn damped_methods_do_not_create_energy() {
 #[test]
 fn changing_steps_do_not_feed_energy() {
     let problem = Pendulum::default();
-    // Energy errors of the steps, of the energy at the start, least and largest. The damped methods have lost between 5.88 % and 7.1 %
-    // at the end. Errors measured of the others: below 3e-12 (energy-momentum), -3.4e-4 to
-    // 2.5e-5 (RATTLE), -2.7e-8 to 0 (its composition).
+    // Least and largest energy error of the steps, relative to the energy at the start. The damped methods
+    // have lost between 5.88 % and 7.1 % at the end. Errors measured for the others: below 3e-12
+    // (energy-momentum), -3.4e-4 to 2.5e-5 (RATTLE), -2.7e-8 to 0 (its composition).
     let bounds = [
         ("implicit Euler", [-0.075, 1e-12]),
         ("BDF2", [-0.075, 1e-12]),
@@ -158,8 +160,9 @@ fn a_flat_sheet_in_flight_keeps_its_momentum_until_rods_answer_round_off() {
     let sheet = bumped(2, 0.0);
     for (name, method) in methods().into_iter().skip(3) {
         for speed in [1.0, 100.0] {
-            // RATTLE solves for the impulses of dependent rods also where round-off alone loads them, and stops there:
-            // at 1 m/s in the second step, its composition in the first. Energy-momentum does not ask for them.
+            // RATTLE solves for the impulses of dependent rods also where round-off alone loads them, and
+            // stops there: at 1 m/s RATTLE in the second step and its composition in the first.
+            // Energy-momentum does not solve for these impulses.
             let steps = match (name, speed) {
                 ("RATTLE", 1.0) => 1,
                 ("RATTLE composition", 1.0) => 0,
@@ -221,14 +224,14 @@ impl Force for BreaksLater {
 fn no_report_holds_a_nan() {
     let start = || State::at_rest(bumped(1, 0.05).positions().to_vec());
     for (name, method) in methods() {
-        let model = held(1, 0.05).with_potential(BadEnergy);
+        let model = pinned(1, 0.05).with_potential(BadEnergy);
         let mut run = Simulation::new(model, start(), method.clone()).expect("valid");
         assert!(
             run.step(1e-2).is_err(),
             "{name}: an energy that is not a number"
         );
 
-        let model = held(1, 0.05).with_force(BreaksLater);
+        let model = pinned(1, 0.05).with_force(BreaksLater);
         let mut run = Simulation::new(model, start(), method).expect("valid");
         // The damped methods ask for the force at the start of a step, the others within it.
         let damped = ["implicit Euler", "BDF2", "projection"].contains(&name);
@@ -253,13 +256,13 @@ fn no_report_holds_a_nan() {
     }
     let mut nowhen = start();
     nowhen.t = f64::NAN;
-    let error = Simulation::new(held(1, 0.05), nowhen, Method::default()).err();
+    let error = Simulation::new(pinned(1, 0.05), nowhen, Method::default()).err();
     assert!(error.expect("refused").to_string().contains("time"));
 }
 
 #[test]
 fn projection_refuses_nonsense_and_leaves_positions_alone() {
-    let model = held(1, 0.05);
+    let model = pinned(1, 0.05);
     let good = bumped(1, 0.05).positions().to_vec();
     for tolerance in [0.0, f64::NAN, -1.0, 2.0] {
         assert!(project_positions(&model, &mut good.clone(), tolerance).is_err());
@@ -272,7 +275,7 @@ fn projection_refuses_nonsense_and_leaves_positions_alone() {
     assert!(strain <= 1e-12 && model.rods().max_strain(&point) == strain);
     // A rod of rest length 1 m from a pin to one 3 m away: no positions have the lengths.
     let far = VertexId(24);
-    let torn = held(1, 0.05).with_pins(&[far]).expect("exists");
+    let torn = pinned(1, 0.05).with_pins(&[far]).expect("exists");
     let mut apart = good.clone();
     apart[3 * far.index()] += 2.0;
     let before = apart.clone();

@@ -20,8 +20,8 @@ pub(crate) fn corner(level: u32) -> VertexId {
     VertexId(n * (n - 1))
 }
 
-/// A sheet of 0.1 kg under gravity, held at the corner (0, 1).
-pub(crate) fn held(level: u32, bump: f64) -> SheetModel {
+/// A sheet of 0.1 kg under gravity, pinned at the corner (0, 1).
+pub(crate) fn pinned(level: u32, bump: f64) -> SheetModel {
     SheetModel::new(&bumped(level, bump), 0.1, MassKind::Lumped)
         .expect("valid")
         .with_gravity()
@@ -32,7 +32,7 @@ pub(crate) fn held(level: u32, bump: f64) -> SheetModel {
 /// That sheet at rest.
 pub(crate) fn hanging(level: u32, bump: f64, method: Method) -> Simulation {
     let start = State::at_rest(bumped(level, bump).positions().to_vec());
-    Simulation::new(held(level, bump), start, method).expect("valid")
+    Simulation::new(pinned(level, bump), start, method).expect("valid")
 }
 
 /// The chart-free integrators, the three damped ones first.

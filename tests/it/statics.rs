@@ -24,8 +24,8 @@ fn speed(state: &State) -> f64 {
 
 #[test]
 fn a_hanging_strip_is_a_discrete_catenary() {
-    // Implicit steps rest where the forces balance. Predict and project rests where the projection undoes the prediction, off by
-    // the square of the step.
+    // Implicit steps rest where the forces balance. The projection method rests where its projection undoes
+    // its prediction, which differs by the square of the step.
     for (method, bound, force_bound) in [
         (Method::Bdf2(tight()), 1e-12, 1e-10),
         (Method::ImplicitEuler(tight()), 1e-12, 1e-10),
@@ -72,9 +72,10 @@ fn a_hanging_strip_is_a_discrete_catenary() {
     }
 }
 
-/// A ball in a hammock. The ball is a body whose height is prescribed and which is held sideways; what is in equilibrium with it
-/// is the sheet, at rest. A ball of weight `W` that is free to move up and down rests at the height at which the sheet's
-/// load on it is `W`: found by a search, every trial being lowered or lifted to its height from the rest before.
+/// A ball in a hammock. The ball is a body whose position is prescribed; what is in equilibrium with it is
+/// the sheet, at rest. A ball of weight `W` that is free to move up and down rests at the height at which
+/// the load of the sheet on it is `W`. This height is found by a search, in which every trial lowers or
+/// lifts the ball from the previous state of rest.
 struct Hammock {
     state: State,
     ball: f64,
@@ -193,7 +194,8 @@ fn a_ball_rests_in_a_hammock_that_hangs_by_its_pins() {
     assert!(worst < 1e-6, "{worst:e}");
 }
 
-/// The upper edge of a banner is a straight line of rods between two pins: it cannot move, and is held as they are.
+/// The upper edge of a banner is a straight line of rods between two pins: it cannot move, and its vertices
+/// are fixed as the pins are.
 #[test]
 fn a_banner_hangs_by_two_corners() {
     for level in 0..=1 {
@@ -229,7 +231,8 @@ fn a_banner_hangs_by_two_corners() {
     }
 }
 
-/// Two opposite corners of a square sheet lie at the ends of a straight line of rods; one of them is pulled outwards from there.
+/// Two opposite corners of a square sheet are the ends of a straight line of rods; one of them is pulled
+/// outwards.
 #[test]
 fn a_straight_line_of_rods_does_not_give() {
     let pull = 0.5;

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Side of the square sheets, metres.
 const SIDE: f64 = 0.2;
 
-/// A scene under way.
+/// A scene while it runs.
 struct Scene {
     simulation: Simulation,
     watch: Watch,
@@ -76,10 +76,10 @@ fn mover(shape: Shape, from: Isometry3<f64>, to: Isometry3<f64>, [t0, t1]: [f64;
     Obstacle::new(shape, keys).expect("valid")
 }
 
-/// A half-space that closes in along its normal by `way` metres within `t` seconds.
-fn closing(point: [f64; 3], normal: [f64; 3], way: f64, t: f64) -> Obstacle {
+/// A half-space that closes in along its normal by `distance` metres within `t` seconds.
+fn closing(point: [f64; 3], normal: [f64; 3], distance: f64, t: f64) -> Obstacle {
     let from = wall(point, normal);
-    let to = Translation3::from(Vector3::from(normal) * way) * from;
+    let to = Translation3::from(Vector3::from(normal) * distance) * from;
     mover(Shape::HalfSpace, from, to, [0.0, t])
 }
 
@@ -99,7 +99,7 @@ fn a_sheet_is_crumpled_between_closing_plates() {
     let sheet = square(2);
     let margin = 1e-3;
     let bodies = vec![
-        Obstacle::still(Shape::HalfSpace, wall([0.0, 0.0, -margin], [0.0, 0.0, 1.0]))
+        Obstacle::fixed(Shape::HalfSpace, wall([0.0, 0.0, -margin], [0.0, 0.0, 1.0]))
             .expect("valid"),
         closing([-margin, 0.0, 0.0], [1.0, 0.0, 0.0], 0.25 * SIDE, 0.3),
         closing(
@@ -118,8 +118,8 @@ fn a_sheet_is_crumpled_between_closing_plates() {
     );
     scene.run(0.35, H, |_, _| ());
     let [low, high] = extent(scene.x(), 0);
-    // The plates end 0.5 SIDE + 2 margin apart; the folds stay between them but for the reach of the barrier, and the sides that the
-    // plates do not touch keep their length.
+    // The plates end 0.5 SIDE + 2 margin apart. The folds fill the space between them except for the reach
+    // of the barrier, and the sides that the plates do not touch keep their length.
     let room = 0.5 * SIDE + 2.0 * margin;
     assert!(
         (0.93 * room..room).contains(&(high - low)),
@@ -138,14 +138,14 @@ fn a_sheet_is_crumpled_between_closing_plates() {
 fn a_sheet_is_crumpled_from_four_sides() {
     let sheet = square(2);
     let margin = 1e-3;
-    let way = 0.2 * SIDE;
+    let distance = 0.2 * SIDE;
     let bodies = vec![
-        Obstacle::still(Shape::HalfSpace, wall([0.0, 0.0, -margin], [0.0, 0.0, 1.0]))
+        Obstacle::fixed(Shape::HalfSpace, wall([0.0, 0.0, -margin], [0.0, 0.0, 1.0]))
             .expect("valid"),
-        closing([-margin, 0.0, 0.0], [1.0, 0.0, 0.0], way, 0.3),
-        closing([SIDE + margin, 0.0, 0.0], [-1.0, 0.0, 0.0], way, 0.3),
-        closing([0.0, -margin, 0.0], [0.0, 1.0, 0.0], way, 0.3),
-        closing([0.0, SIDE + margin, 0.0], [0.0, -1.0, 0.0], way, 0.3),
+        closing([-margin, 0.0, 0.0], [1.0, 0.0, 0.0], distance, 0.3),
+        closing([SIDE + margin, 0.0, 0.0], [-1.0, 0.0, 0.0], distance, 0.3),
+        closing([0.0, -margin, 0.0], [0.0, 1.0, 0.0], distance, 0.3),
+        closing([0.0, SIDE + margin, 0.0], [0.0, -1.0, 0.0], distance, 0.3),
     ];
     let model = model(&sheet).with_damping(2.0).expect("valid");
     let mut scene = Scene::new(
@@ -155,7 +155,8 @@ fn a_sheet_is_crumpled_from_four_sides() {
         0.2,
     );
     scene.run(0.35, H, |_, _| ());
-    // The plates are 0.6 SIDE + 2 margin apart, and the sheet fills what is between them, but for the reach of the barrier.
+    // The plates are 0.6 SIDE + 2 margin apart, and the sheet fills the space between them except for the
+    // reach of the barrier.
     let room = 0.6 * SIDE + 2.0 * margin;
     for axis in [0, 1] {
         let [low, high] = extent(scene.x(), axis);
@@ -208,7 +209,7 @@ fn a_strip_is_folded_into_ten_layers() {
     let height = panels as f64 * length * sin + 2.0 * margin;
     let end = 0.012;
     let bodies = vec![
-        Obstacle::still(Shape::HalfSpace, Isometry3::identity()).expect("valid"),
+        Obstacle::fixed(Shape::HalfSpace, Isometry3::identity()).expect("valid"),
         closing([0.0, 0.0, height], [0.0, 0.0, -1.0], height - end, 0.4),
     ];
     let model = model(&flat).with_damping(2.0).expect("valid");
@@ -258,7 +259,7 @@ fn a_sheet_is_pulled_through_a_ring() {
         .iter()
         .flat_map(|p| [p[0] - 0.5 * SIDE, p[1] - 0.5 * SIDE, 0.0])
         .collect();
-    let ring = Obstacle::still(
+    let ring = Obstacle::fixed(
         torus(0.09, 0.02, [16, 6]),
         Isometry3::translation(0.0, 0.0, 0.025),
     )
@@ -287,7 +288,7 @@ fn a_strip_is_pulled_through_a_ring() {
         .flat_map(|p| [0.0, p[1] - 0.5 * width, -p[0]])
         .collect();
     let ring = torus(hole + thick, thick, [16, 6]);
-    let ring = Obstacle::still(ring, Isometry3::translation(0.0, 0.0, 0.02)).expect("valid");
+    let ring = Obstacle::fixed(ring, Isometry3::translation(0.0, 0.0, 0.02)).expect("valid");
     let path = move |t: f64| [0.0, 0.5 * width * ((t / 0.1).min(1.0) - 1.0), 0.25 * t];
     let model = model(&flat)
         .with_moving_pin(VertexId(0), path)
@@ -304,7 +305,8 @@ fn a_strip_is_pulled_through_a_ring() {
 
 #[test]
 fn a_sheet_is_crumpled_between_closing_spheres() {
-    // Weightless, from exactly flat: they pass each other with little between them, and the sheet goes round both.
+    // Without gravity, from exactly flat: the spheres pass each other with a small gap between them, and
+    // the sheet goes round both.
     let (radius, margin) = (0.06, 2e-3);
     for (between, mu) in [(0.01, 0.0), (0.004, 0.2), (0.003, 0.3)] {
         let sheet = square(2);
@@ -327,14 +329,15 @@ fn a_sheet_is_crumpled_between_closing_spheres() {
         let mut scene = Scene::new(model, start, vec![ball(1.0), ball(-1.0)], mu);
         scene.run(0.45, H, |_, _| ());
         let ([left, right], [low, high]) = (extent(scene.x(), 0), extent(scene.x(), 2));
-        // A sheet that is turned by its spheres but not wrapped round them keeps its width to a few percent; which way it folds, along
-        // its sides or a diagonal, is left to round-off.
-        // Measured: 0.67 to 0.81 of it.
+        // A sheet that is turned by the spheres but not wrapped round them keeps its width to a few
+        // percent. Round-off decides whether it folds along its sides or along a diagonal. Measured: 0.67
+        // to 0.81 of the width.
         assert!(
             (0.6 * SIDE..0.85 * SIDE).contains(&(right - left)),
             "from {left} to {right} m"
         );
-        // Its outer parts stand on end, one up, one down. Measured: 0.885 to 0.93; no two points are further apart than the diagonal.
+        // The outer parts stand on end, one upwards and one downwards. Measured: 0.885 to 0.93 of the side;
+        // no two points are further apart than the diagonal.
         assert!(
             (0.85 * SIDE..2.0_f64.sqrt() * SIDE).contains(&(high - low)),
             "from {low} to {high} m"
@@ -401,10 +404,12 @@ fn a_strip_is_wrapped_round_a_cylinder_and_unrolled() {
     let up = wound(scene.x());
     scene.run(2.0 * half + 0.2, H, |_, _| ());
     let down = wound(scene.x());
-    // One and a quarter turns of the cylinder take up 0.236 m and more over the layer below; of 0.3 m the rest, 0.064 m or less, hangs
-    // from a height of no more than the radius. Measured: -0.057 m.
+    // One and a quarter turns round the cylinder, each over the layer below, take up 0.236 m or more. What
+    // is left of 0.3 m, 0.064 m or less, hangs from a height of no more than the radius. Measured: -0.057
+    // m.
     assert!((-0.064..-0.03).contains(&up), "wound up to {up} m");
-    // Unrolled it hangs from the pins at the height of the axis, over all its length but for waves. Measured: -0.291 m.
+    // Once unrolled the sheet hangs from the pins at the height of the axis; its length is used up except
+    // for waves. Measured: -0.291 m.
     assert!((-0.3..-0.28).contains(&down), "unrolled to {down} m");
 }
 
@@ -419,7 +424,7 @@ fn a_sheet_is_thrown_at_an_edge() {
         half: [half, 0.15, half],
     };
     let pose = Isometry3::from_parts([0.52 * SIDE, 0.5 * SIDE, -top - 0.03].into(), turn);
-    let bar = Obstacle::still(bar, pose).expect("valid");
+    let bar = Obstacle::fixed(bar, pose).expect("valid");
     let mut start = State::at_rest(sheet.positions().to_vec());
     start
         .v

@@ -3,12 +3,13 @@
 use isosheet_dynamics::{SheetModel, State};
 use isosheet_mesh::{MassMatrix, Sheet, VertexId};
 
-/// A straight strip of equal cells, one across, hung by the four vertices of its end rungs at the same height; five rods
-/// and more leave it free to find its shape.
+/// A straight strip of equal cells, one cell wide, hung by the four vertices of its end rungs at the same
+/// height. With five or more rods in a chain it is free to find its shape.
 ///
-/// With equal masses `m` at all vertices both long sides are chains of equal rods `l`, and neither rungs nor diagonals are
-/// loaded: each inner vertex asks for `H (tan phi_{k+1} - tan phi_k) = m g` of the rods on its two sides, `H` being their common horizontal
-/// pull and `phi_k` the slopes of the rods in the order of the chain. By symmetry
+/// With equal masses `m` at all vertices both long sides are chains of equal rods `l`, and neither rungs
+/// nor diagonals are loaded. Each inner vertex asks for `H (tan phi_{k+1} - tan phi_k) = m g` of the rods
+/// on its two sides, where `H` is their common horizontal pull and `phi_k` are the slopes of the rods in
+/// the order of the chain. By symmetry
 ///
 /// ```text
 /// tan phi_k = (k - (n + 1) / 2) m g / H,    k = 1 .. n,    l sum_k cos phi_k = span,
@@ -72,8 +73,8 @@ impl Catenary {
         row(0.0).chain(row(WIDTH)).collect()
     }
 
-    /// Angles `k -> angle(k - (n + 1) / 2, parameter)` whose horizontal parts add up to the span, by bisection of the parameter, with
-    /// which the angles grow.
+    /// Angles `k -> angle(k - (n + 1) / 2, parameter)` whose horizontal parts add up to the span. The
+    /// parameter, with which the angles grow, is found by bisection.
     fn fit(&self, angle: impl Fn(f64, f64) -> f64, mut range: [f64; 2]) -> (Vec<f64>, f64) {
         let angles = |parameter: f64| -> Vec<f64> {
             let middle = 0.5 * (self.rods as f64 - 1.0);

@@ -4,10 +4,10 @@ use crate::Pendulum;
 use isosheet_dynamics::{SheetModel, State};
 use isosheet_mesh::{MassMatrix, Sheet, VertexId};
 
-/// Three panels with parallel hinges between two pinned ends at the same height, equal vertex masses.
+/// Three panels with parallel hinges between two pinned ends at the same height, with equal vertex masses.
 ///
-/// The panels are pairs of triangles, so that nothing but the pins keeps them plane: 12 unknowns and 11 rods leave one
-/// degree of freedom, the linkage's.
+/// The panels are pairs of triangles, and nothing but the pins keeps them plane: 12 unknowns and 11 rods
+/// leave one degree of freedom, that of the linkage.
 #[derive(Debug, Clone, Copy)]
 pub struct Linkage {
     /// Length of the outer panels, metres.
@@ -35,8 +35,9 @@ impl Linkage {
     /// The four pinned vertices, the first end first.
     pub const PINS: [VertexId; 4] = [VertexId(0), VertexId(1), VertexId(6), VertexId(7)];
 
-    /// Positions with the outer panels `left` and `right` of the vertical by these angles (radians, positive towards +x),
-    /// the middle panel horizontal; that has its length if the angles are equal or opposite.
+    /// Positions with the outer panels at the angles `left` and `right` to the vertical (radians, positive
+    /// towards +x) and the middle panel horizontal. The middle panel has its length if the angles are equal
+    /// or opposite.
     fn place(&self, left: f64, right: f64) -> Vec<f64> {
         let (x, z) = (self.length * left.sin(), -self.length * left.cos());
         let end = x + self.middle - self.length * right.sin();
@@ -62,13 +63,15 @@ impl Linkage {
             .expect("vertices exist")
     }
 
-    /// The parallel linkage, ends as far apart as the middle panel is long, displaced by an angle (radians), at rest.
+    /// The parallel linkage, whose ends are as far apart as the middle panel is long, displaced by an angle
+    /// (radians), at rest.
     pub fn parallel(&self, angle: f64) -> (SheetModel, State) {
         let x = self.place(angle, angle);
         (self.model_at(x.clone()), State::at_rest(x))
     }
 
-    /// Its exact positions at time `t`: the middle panel translates, as a pendulum of the outer panels' length.
+    /// The exact positions of the parallel linkage at time `t`: the middle panel translates, as a pendulum
+    /// of the length of the outer panels does.
     pub fn exact(&self, amplitude: f64, t: f64) -> Vec<f64> {
         let pendulum = Pendulum {
             length: self.length,
@@ -80,15 +83,15 @@ impl Linkage {
         self.place(angle, angle)
     }
 
-    /// The trapezoid with the ends apart and the outer panels at an angle to the vertical: in equilibrium, each end pulled inwards
-    /// with [`Linkage::pull`].
+    /// The trapezoid, whose outer panels are at opposite angles to the vertical. It is in equilibrium if
+    /// each end is pulled inwards with the force [`Linkage::pull`].
     pub fn trapezoid(&self, angle: f64) -> (SheetModel, State) {
         let x = self.place(angle, -angle);
         (self.model_at(x.clone()), State::at_rest(x))
     }
 
-    /// Horizontal force on each end of the trapezoid, newtons: each outer panel carries the weight of the hinge below it,
-    /// `tan(angle) 2 m g`.
+    /// Horizontal force on each end of the trapezoid, newtons. Each outer panel carries the weight of the
+    /// hinge below it, which gives `tan(angle) 2 m g`.
     pub fn pull(&self, angle: f64) -> f64 {
         2.0 * self.mass * self.gravity * angle.tan()
     }

@@ -1,4 +1,5 @@
-//! Rigid origami with one degree of freedom: the fold angles of a vertex of degree four and of Miura's pattern.
+//! Rigid origami with one degree of freedom: the fold angles of a vertex of degree four and those of
+//! Miura's pattern.
 
 use isosheet_mesh::generate::FoldAssignment;
 
@@ -13,7 +14,8 @@ pub enum FoldingMode {
 
 /// A vertex of degree four with sectors `a1, a2, pi - a1, pi - a2`, rigid between its creases.
 ///
-/// The half-angle tangents of neighbouring creases are proportional (Huffman 1976; Tachi 2009; Foschi, Hull and Ku 2022):
+/// The half-angle tangents of neighbouring creases are proportional (Huffman 1976; Tachi 2009; Foschi, Hull
+/// and Ku 2022):
 ///
 /// ```text
 /// even alike: r3 = -r1, r4 =  r2, tan(r2/2) =  sin((a1 + a2)/2) / sin((a1 - a2)/2) tan(r1/2)
@@ -57,8 +59,9 @@ impl DegreeFour {
     }
 }
 
-/// Miura's pattern of [`isosheet_mesh::generate::miura`] with rigid panels, by the angle `theta` of the panels against the
-/// plane of the folded sheet: from 0, flat, to pi/2, folded shut (Wei, Guo, Dudte, Liang and Mahadevan 2013).
+/// Miura's pattern of [`isosheet_mesh::generate::miura`] with rigid panels, by the angle `theta` of the
+/// panels to the plane of the folded sheet, from 0 (flat) to pi/2 (folded shut). After Wei, Guo, Dudte,
+/// Liang and Mahadevan 2013.
 #[derive(Debug, Clone, Copy)]
 pub struct Miura {
     /// Length of the straight creases, metres.
@@ -80,7 +83,8 @@ impl Miura {
         2.0 * (self.angle.cos() * theta.tan()).atan()
     }
 
-    /// Width and depth of a panel in the plane of the folded sheet, along the zigzags and along the straight creases.
+    /// Width and depth of a panel in the plane of the folded sheet: along the zigzags and along the
+    /// straight creases.
     pub fn panel(&self, theta: f64) -> [f64; 2] {
         let (c, tan) = (theta.cos(), self.angle.tan());
         let d = (1.0 + c * c * tan * tan).sqrt();

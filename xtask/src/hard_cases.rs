@@ -1,8 +1,8 @@
-//! `hard-cases`: the situations that break sheet solvers, each with a statement of what should happen, a naive method shown failing,
-//! and what isosheet does, measured.
+//! `hard-cases`: the situations that break sheet solvers. Each case states what should happen, shows a
+//! naive method that fails, and shows measurements of what isosheet does.
 //!
-//! The cases of one kind are in one file. Cases run side by side on the threads that rayon has; none of their numbers depends on
-//! that.
+//! The cases of one kind are in one file. Cases run side by side on the threads that rayon has; none of
+//! their numbers depends on the number of threads.
 
 mod case;
 mod charts;

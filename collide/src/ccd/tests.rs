@@ -106,11 +106,11 @@ proptest! {
     #[test]
     fn no_motion_is_unsafe((x, dx) in motions(), size in sizes(), pose in proptest::array::uniform6(-1.0..1.0_f64), thick in 0.0..0.9_f64) {
         let far = pose;
-        let still = [0.0; 6];
+        let zero = [0.0; 6];
         let (x, dx) = (place(&x, size, &far), {
             // The displacement turns with the stencil but is not shifted.
             let mut turn = far;
-            turn[3..].copy_from_slice(&still[3..]);
+            turn[3..].copy_from_slice(&zero[3..]);
             place(&dx, size, &turn)
         });
         for (query, distance) in QUERIES {

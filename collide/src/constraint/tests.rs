@@ -56,7 +56,7 @@ fn derivatives_of_levels_are_those_of_their_differences() {
         for i in 0..200 {
             let a = f64::from(i);
             let p = Vector3::new((1.3 * a).sin(), (2.1 * a).cos(), (0.7 * a).sin()) * 0.6;
-            // Half of the points on the surface itself, where a vertex is held.
+            // Half of the points on the surface itself, where a constrained vertex is.
             let at = shape.at(&p);
             let p = if i % 2 == 0 {
                 p
@@ -100,12 +100,12 @@ fn constraints_move_as_their_bodies_do() {
         .map(|(t, pose)| Keyframe { t, pose })
         .to_vec();
     let body = Obstacle::new(Shape::Sphere { radius: 0.2 }, keys).unwrap();
-    let still = Obstacle::still(Shape::Sphere { radius: 0.2 }, pose()).unwrap();
+    let fixed = Obstacle::fixed(Shape::Sphere { radius: 0.2 }, pose()).unwrap();
     let p = Vector3::new(0.3, 0.2, 0.5);
     assert!(body.constraint(VertexId(0), Side::On).moves());
-    assert!(!still.constraint(VertexId(0), Side::On).moves());
+    assert!(!fixed.constraint(VertexId(0), Side::On).moves());
     for t in [0.0, 0.4, 1.0] {
-        for b in [&body, &still] {
+        for b in [&body, &fixed] {
             let found = b.constraint(VertexId(0), Side::On).violation(t, &p);
             let want = b.signed_distance(t, &p).value.abs();
             assert!((found - want).abs() < 1e-15, "{found} {want}");
@@ -157,7 +157,7 @@ fn a_triangle_slides_down_faces_at_g_sin() {
     let ramp = Shape::Surface(Arc::new(ramp(slope)));
     slide(
         x,
-        &Obstacle::still(ramp, Isometry3::identity()).unwrap(),
+        &Obstacle::fixed(ramp, Isometry3::identity()).unwrap(),
         slope,
     );
 }
@@ -172,7 +172,7 @@ fn a_triangle_slides_along_a_capsule_at_g_sin() {
         radius,
         half_length,
     };
-    let body = Obstacle::still(capsule, Isometry3::new(Vector3::zeros(), turn)).unwrap();
+    let body = Obstacle::fixed(capsule, Isometry3::new(Vector3::zeros(), turn)).unwrap();
     let on = |u: f64, angle: f64| {
         let (s, c) = angle.sin_cos();
         let (y, n) = (radius * s, -radius * c);
@@ -186,10 +186,10 @@ fn a_triangle_slides_along_a_capsule_at_g_sin() {
     slide(x, &body, slope);
 }
 
-/// A sheet with one corner led along a path, the opposite one on a ball, and a floor below: lengths, gap and
-/// supports hold, and the floor carries weight.
+/// A sheet with one corner moved along a path, the opposite corner on a ball, and a floor below: lengths, gap
+/// and supports are kept, and the floor carries weight.
 #[test]
-fn a_led_corner_a_ball_and_a_floor_hold_together() {
+fn a_moving_corner_a_ball_and_a_floor_hold_together() {
     let sheet = generate::isotropic_square(1, 1.0).unwrap();
     let n = sheet.positions().len() / 3;
     let height = 0.15;
@@ -204,10 +204,10 @@ fn a_led_corner_a_ball_and_a_floor_hold_together() {
         let at = (0..n).find(|&v| (x[3 * v] - a).hypot(x[3 * v + 1] - b) < 1e-9);
         VertexId(at.unwrap() as u32)
     };
-    let (led, held) = (corner(0.0, 0.0), corner(1.0, 1.0));
+    let (moving, fixed) = (corner(0.0, 0.0), corner(1.0, 1.0));
     let radius = 0.3;
     let centre = Isometry3::translation(1.0, 1.0, height - radius);
-    let ball = Obstacle::still(Shape::Sphere { radius }, centre).unwrap();
+    let ball = Obstacle::fixed(Shape::Sphere { radius }, centre).unwrap();
     let path = move |t: f64| {
         let s = 0.15 * (1.0 - (3.0 * t).cos());
         [s, s, height + 0.5 * s]
@@ -215,11 +215,11 @@ fn a_led_corner_a_ball_and_a_floor_hold_together() {
     let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
         .unwrap()
         .with_gravity()
-        .with_moving_pin(led, path)
+        .with_moving_pin(moving, path)
         .unwrap()
-        .with_constraint(ball.constraint(held, Side::On))
+        .with_constraint(ball.constraint(fixed, Side::On))
         .unwrap();
-    let floor = Obstacle::still(Shape::HalfSpace, Isometry3::identity()).unwrap();
+    let floor = Obstacle::fixed(Shape::HalfSpace, Isometry3::identity()).unwrap();
     let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))
         .unwrap()
         .with_body(floor, Coefficients::equal(0.2))
@@ -240,11 +240,11 @@ fn a_led_corner_a_ball_and_a_floor_hold_together() {
         assert!(report.gap.unwrap() > 0.0);
         assert!(report.strain < 1e-10 && report.violation.unwrap() < 1e-10);
         let t = run.state().t;
-        let at = 3 * led.0 as usize;
+        let at = 3 * moving.0 as usize;
         assert_eq!(run.state().x[at..at + 3], path(t));
         let supports = run.reactions();
         assert_eq!(supports.len(), 2);
-        assert!(supports.iter().any(|r| r.support == Support::Pin(led)));
+        assert!(supports.iter().any(|r| r.support == Support::Pin(moving)));
         let pushed = -run.body_loads()[0].force;
         loads = loads.max(pushed.z);
     }

@@ -129,7 +129,7 @@ impl Body {
                 continue;
             }
             pairs.push(self.key(ContactKind::Vertex, [v, 0]));
-            if nearest > sheet.half_way() {
+            if nearest > sheet.trigger_distance() {
                 continue;
             }
             limit = part.advance(sheet.ccd, &[course], limit, |[p]| {
@@ -238,7 +238,7 @@ impl Check<'_> {
         if nearest > self.sheet.reach {
             return false;
         }
-        if nearest <= self.sheet.half_way() || nearest.is_nan() {
+        if nearest <= self.sheet.trigger_distance() || nearest.is_nan() {
             let ccd = self.sheet.ccd;
             *self.limit = self.part.advance(ccd, courses, *self.limit, support);
         }

@@ -5,6 +5,7 @@ use isosheet_dynamics::SheetModel;
 use isosheet_dynamics::contact::{
     BarrierError, BarrierPotential, ContactLaws, FrictionError, Stiffness,
 };
+use isosheet_mesh::area_from_lengths;
 use thiserror::Error;
 
 /// Options of [`super::Contacts`]. Start from [`ContactOptions::for_sheet`].
@@ -155,12 +156,9 @@ pub(super) fn smallest_height(model: &SheetModel) -> (u32, f64) {
     let topology = model.topology();
     let mut best = (0, f64::INFINITY);
     for (number, face) in (0..).zip(topology.face_ids()) {
-        let mut l = topology.face_edges(face).map(|e| lengths[e.index()]);
-        l.sort_by(f64::total_cmp);
-        let [a, b, c] = l;
-        // Heron's formula in the form of Kahan, which loses no digits for needles.
-        let product = (c + (b + a)) * (a - (c - b)) * (a + (c - b)) * (c + (b - a));
-        let height = 0.5 * product.max(0.0).sqrt() / c;
+        let sides = topology.face_edges(face).map(|e| lengths[e.index()]);
+        let longest = sides.iter().fold(0.0, |longest, side| side.max(longest));
+        let height = 2.0 * area_from_lengths(sides) / longest;
         if height < best.1 {
             best = (number, height);
         }

@@ -18,9 +18,9 @@ pub(super) struct SheetMotion<'a> {
 }
 
 impl SheetMotion<'_> {
-    /// Distance between touching and being out of reach, metres: pairs that stay further apart need no
-    /// continuous collision detection. It is further than round-off can be wrong.
-    pub(super) fn half_way(&self) -> f64 {
+    /// Distance from which continuous collision detection is needed, metres: half way between contact and the
+    /// reach of the barrier. Pairs that stay further apart need none; the margin is larger than round-off.
+    pub(super) fn trigger_distance(&self) -> f64 {
         self.ccd.separation + 0.5 * (self.reach - self.ccd.separation)
     }
 }
@@ -63,7 +63,7 @@ pub(super) fn query(
         reach,
         ccd,
     } = sheet;
-    let half_way = sheet.half_way();
+    let trigger_distance = sheet.trigger_distance();
     let mut limit = limit;
     for &pair in &candidates.vertex_face {
         let vertices = vertex_face(mesh, pair);
@@ -75,7 +75,7 @@ pub(super) fn query(
             continue;
         }
         let nearest = point_triangle(&places).distance() - closer;
-        if nearest <= half_way || nearest.is_nan() {
+        if nearest <= trigger_distance || nearest.is_nan() {
             limit = ccd.point_triangle(&places, &steps, limit);
         }
         if nearest <= reach || nearest.is_nan() {
@@ -92,7 +92,7 @@ pub(super) fn query(
             continue;
         }
         let nearest = edge_edge(&places).distance() - closer;
-        if nearest <= half_way || nearest.is_nan() {
+        if nearest <= trigger_distance || nearest.is_nan() {
             limit = ccd.edge_edge(&places, &steps, limit);
         }
         if nearest <= reach || nearest.is_nan() {

@@ -109,8 +109,8 @@ fn waves(sheet: &Sheet, height: f64, wave: f64) -> Vec<f64> {
     x
 }
 
-fn still(shape: Shape, pose: Isometry3<f64>) -> Obstacle {
-    Obstacle::still(shape, pose).unwrap()
+fn fixed(shape: Shape, pose: Isometry3<f64>) -> Obstacle {
+    Obstacle::fixed(shape, pose).unwrap()
 }
 
 fn moving(shape: Shape, from: Isometry3<f64>, to: Isometry3<f64>, h: f64) -> Obstacle {
@@ -173,8 +173,8 @@ impl Step {
         let barrier = BarrierPotential::at_start(contacts.laws(), model, &start).unwrap();
         let bodies = BodyMotions::over(&contacts, StepSpan { t0: 0.0, h });
         let s = bodies.first_progress();
-        let still = vec![0.0; x.len()];
-        let set = ContactSet::of(&mut contacts, motion(&bodies, [s; 2], x, &still));
+        let zero = vec![0.0; x.len()];
+        let set = ContactSet::of(&mut contacts, motion(&bodies, [s; 2], x, &zero));
         let mut step = Self {
             contacts,
             barrier,

@@ -57,7 +57,7 @@ proptest! {
         let y = [u, v, gap, u + 0.1, v, gap + 0.2, u, v + 0.1, gap + 0.2, u, v, gap + 0.3];
         let dy: Vec<f64> = (0..12).map(|k| if k % 3 == 2 { -speed } else { 0.0 }).collect();
         let x = sheet.positions();
-        let still = vec![0.0; x.len()];
+        let zero = vec![0.0; x.len()];
         let separation = thickness * gap;
         let mut sheet_boxes = BroadPhase::new(mesh.clone(), x);
         let mut body_boxes = BroadPhase::new(body.clone(), &y);
@@ -66,7 +66,7 @@ proptest! {
         let mut pairs = CrossCandidates::default();
         sheet_boxes.candidates_with(&body_boxes, &mut pairs);
         let options = CcdOptions { separation, ..CcdOptions::default() };
-        let sheet_moves = Moving { mesh: &mesh, x, dx: &still };
+        let sheet_moves = Moving { mesh: &mesh, x, dx: &zero };
         let body_moves = Moving { mesh: &body, x: &y, dx: &dy };
         let t = pairs.safe_fraction(sheet_moves, body_moves, &options, 1.0);
         let impact = (gap - separation) / speed;

@@ -1,5 +1,6 @@
 //! Options of an assignment.
 
+use super::AssignmentError;
 use isosheet_mesh::VertexId;
 
 /// What to do where three known neighbours do not determine a position.
@@ -23,7 +24,7 @@ pub enum Degenerate {
 /// Options of [`assign`](super::assign).
 #[derive(Clone, Debug)]
 pub struct AssignmentOptions {
-    /// Vertices held in place; default none.
+    /// Pinned vertices; default none.
     pub pins: Vec<VertexId>,
     /// Start vertices of components without a pin; a component that has neither starts from its
     /// lowest vertex. Default none.
@@ -33,7 +34,8 @@ pub struct AssignmentOptions {
     /// With [`Degenerate::Assign`], volume spanned by the unit vectors along the three edges below which
     /// rule f is given up. Default 0.2 (a fold of about 12 degrees): the rule with a closure is
     /// valid away from the degenerate state as well and better conditioned near it. With a smaller volume an
-    /// explicit step easily passes the turning point of a vertex.
+    /// explicit step easily passes the turning point of a vertex. From 0 to 1, the volumes that unit vectors
+    /// can span: 0 gives rule f up only where the edges are exactly coplanar, 1 gives it up everywhere.
     pub volume: f64,
 }
 
@@ -44,6 +46,23 @@ impl Default for AssignmentOptions {
             starts: Vec::new(),
             degenerate: Degenerate::default(),
             volume: 0.2,
+        }
+    }
+}
+
+impl AssignmentOptions {
+    /// Checks [`AssignmentOptions::volume`]. (Pins and starts are checked against a mesh by
+    /// [`assign`](super::assign).)
+    ///
+    /// # Errors
+    /// [`AssignmentError::Volume`] unless it is from 0 to 1.
+    pub fn validate(&self) -> Result<(), AssignmentError> {
+        if (0.0..=1.0).contains(&self.volume) {
+            Ok(())
+        } else {
+            Err(AssignmentError::Volume {
+                volume: self.volume,
+            })
         }
     }
 }

@@ -5,7 +5,7 @@ use isosheet_mesh::{EdgeId, VertexId};
 /// How a vertex gets its position. `q` is the index of its first system coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// Held from outside, no unknowns.
+    /// Pinned; the vertex has no unknowns.
     Pinned,
     /// Start of a free component: three Cartesian coordinates `q`, `q + 1`, `q + 2`.
     Start {

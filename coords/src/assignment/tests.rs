@@ -215,8 +215,8 @@ proptest! {
         let starts = if pins.is_empty() { vec![VertexId(start % count)] } else { vec![] };
         let options = AssignmentOptions { pins: unique.clone(), starts, ..Default::default() };
         let a = assign(&sheet, sheet.positions(), &options).unwrap();
-        let held = |v: &VertexId| unique.contains(v);
-        let edges = t.edges().iter().filter(|[a, b]| !(held(a) && held(b))).count() as i64;
+        let pinned = |v: &VertexId| unique.contains(v);
+        let edges = t.edges().iter().filter(|[a, b]| !(pinned(a) && pinned(b))).count() as i64;
         let dof = 3 * (i64::from(count) - unique.len() as i64) - edges;
         prop_assert_eq!(a.coordinate_count() as i64 - a.closures().len() as i64, dof);
         // Every edge is used exactly once, by its later end or as a closure.
@@ -232,7 +232,7 @@ proptest! {
         }
         for c in a.closures() { used[c.edge.index()] += 1; }
         for (n, [a, b]) in used.iter().zip(t.edges()) {
-            prop_assert_eq!(*n, i32::from(!(held(a) && held(b))));
+            prop_assert_eq!(*n, i32::from(!(pinned(a) && pinned(b))));
         }
     }
 
@@ -250,4 +250,28 @@ proptest! {
         prop_assert_eq!(a.dof(), 2 * single.dof() - 3);
         prop_assert_eq!(a.rule_count('s'), 1);
     }
+}
+
+#[test]
+fn volumes_are_those_of_unit_vectors() {
+    let sheet = isotropic_square(0, 1.0);
+    let ask = |volume: f64| {
+        let options = AssignmentOptions {
+            volume,
+            ..Default::default()
+        };
+        let found = assign(&sheet, sheet.positions(), &options).map(|_| ());
+        assert_eq!(found.is_ok(), options.validate().is_ok());
+        found
+    };
+    assert_eq!(AssignmentOptions::default().validate(), Ok(()));
+    for volume in [0.0, 1.0] {
+        assert_eq!(ask(volume), Ok(()));
+    }
+    for volume in [-1e-300, 1.0 + f64::EPSILON, f64::INFINITY] {
+        assert_eq!(ask(volume), Err(AssignmentError::Volume { volume }));
+    }
+    let error = ask(f64::NAN).unwrap_err();
+    assert!(matches!(error, AssignmentError::Volume { volume } if volume.is_nan()));
+    assert!(error.to_string().contains("from 0 to 1"), "{error}");
 }

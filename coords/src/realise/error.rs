@@ -66,4 +66,16 @@ pub enum RealiseError {
         /// The value.
         value: f64,
     },
+    /// A tolerance is out of range.
+    #[error(
+        "option {name} is {value:e}; give a value from 2.2e-16, the round-off of a length, to {max:e}"
+    )]
+    Tolerance {
+        /// Name of the option.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Largest value that makes sense.
+        max: f64,
+    },
 }

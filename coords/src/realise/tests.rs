@@ -206,3 +206,40 @@ fn malformed_input() {
     assert!((angle_from_lengths(3.0, 4.0, 5.0) - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
     assert!((angle_from_lengths(1.0, 1.0, 1e-9) - 1e-9).abs() < 1e-22);
 }
+
+#[test]
+fn tolerances_are_between_round_off_and_what_a_rod_bears() {
+    let sheet = isotropic_square(0, 1.0);
+    let assignment = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(0))).unwrap();
+    let ask = |options: RealiseOptions| {
+        let found = FrontMap::new(&sheet, assignment.clone(), sheet.positions(), options);
+        assert_eq!(found.is_ok(), options.validate().is_ok());
+        found.map(|_| ())
+    };
+    for (flat_tolerance, closure_tolerance) in [(f64::EPSILON, 0.1), (1e-3, f64::EPSILON)] {
+        let options = RealiseOptions {
+            flat_tolerance,
+            closure_tolerance,
+        };
+        assert_eq!(ask(options), Ok(()));
+    }
+    for value in [0.0, -1e-9, 0.2, f64::INFINITY, f64::NAN] {
+        for name in ["flat_tolerance", "closure_tolerance"] {
+            let mut options = RealiseOptions::default();
+            match name {
+                "flat_tolerance" => options.flat_tolerance = value,
+                _ => options.closure_tolerance = value,
+            }
+            let error = ask(options).unwrap_err();
+            let RealiseError::Tolerance {
+                name: of,
+                value: found,
+                ..
+            } = error
+            else {
+                panic!("{error}");
+            };
+            assert_eq!((of, found.to_bits()), (name, value.to_bits()));
+        }
+    }
+}

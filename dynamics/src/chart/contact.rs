@@ -1,8 +1,8 @@
 //! Contact of a simulation in a chart.
 
 use crate::contact::{
-    ActiveContacts, BodyMotions, Contact, ContactError, ContactPoint, ContactSet, JointMotion,
-    StepSpan,
+    ActiveContacts, BodyMotionError, BodyMotions, Contact, ContactError, ContactPoint, ContactSet,
+    JointMotion, StepSpan, check_start,
 };
 use crate::{SheetModel, State};
 
@@ -24,12 +24,7 @@ impl ChartContact {
         model: &SheetModel,
         state: &State,
     ) -> Result<Self, ContactError> {
-        geometry.check_start(model, state)?;
-        let span = StepSpan {
-            t0: state.t,
-            h: 0.0,
-        };
-        let bodies = BodyMotions::over(geometry.as_ref(), span);
+        let bodies = check_start(geometry.as_mut(), model, state)?;
         let displacement = vec![0.0; state.x.len()];
         let motion = JointMotion {
             bodies: &bodies,
@@ -46,17 +41,26 @@ impl ChartContact {
             set,
             displacement,
         };
-        contact.evaluate(&state.x);
+        contact.evaluate(&state.x)?;
         Ok(contact)
     }
 
     /// The part of a motion of the sheet, and of the bodies over a span of time, that is proven free of
     /// contact.
-    pub(super) fn safe_fraction(&mut self, span: StepSpan, from: &[f64], to: &[f64]) -> f64 {
+    ///
+    /// # Errors
+    /// [`BodyMotionError`] if the pose of a body is not finite at the start or end of the span.
+    pub(super) fn safe_fraction(
+        &mut self,
+        span: StepSpan,
+        from: &[f64],
+        to: &[f64],
+    ) -> Result<f64, BodyMotionError> {
         for ((d, a), b) in self.displacement.iter_mut().zip(to).zip(from) {
             *d = a - b;
         }
         self.bodies.update(self.geometry.as_ref(), span);
+        self.bodies.check()?;
         let motion = JointMotion {
             bodies: &self.bodies,
             progress: [self.bodies.first_progress(), 1.0],
@@ -64,14 +68,17 @@ impl ChartContact {
             dx: &self.displacement,
         };
         self.set.update(self.geometry.as_mut(), motion);
-        self.set.safe_fraction()
+        Ok(self.set.safe_fraction())
     }
 
     /// Evaluates the contacts at positions on the motion that was checked last, with the bodies at its end.
-    pub(super) fn evaluate(&mut self, x: &[f64]) {
+    ///
+    /// # Errors
+    /// [`BodyMotionError`] if the velocity of a body is not finite.
+    pub(super) fn evaluate(&mut self, x: &[f64]) -> Result<(), BodyMotionError> {
         let geometry = self.geometry.as_ref();
         self.active.update(geometry, &self.set, 1.0, x);
-        self.active.contact_points(geometry, &mut self.points);
+        self.active.contact_points(geometry, &mut self.points)
     }
 
     /// The contacts that were evaluated last.

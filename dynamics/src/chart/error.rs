@@ -1,5 +1,6 @@
 //! Why mechanics in a chart fails.
 
+use crate::contact::BodyMotionError;
 use crate::support::Support;
 use isosheet_coords::ChartError;
 use isosheet_mesh::VertexId;
@@ -67,17 +68,17 @@ pub enum ChartDynamicsError {
         /// Values needed.
         expected: usize,
     },
-    /// The chart holds a vertex that the model leaves free.
+    /// The chart pins a vertex that the model leaves free.
     #[error(
-        "the chart was built for other pins than the model's: {vertex} is held in the chart and free in the model; build the chart with some or all of the pins of the model"
+        "the chart was built for other pins than the model's: {vertex} is pinned in the chart and free in the model; build the chart with some or all of the pins of the model"
     )]
     OtherPins {
         /// The first such vertex.
         vertex: VertexId,
     },
-    /// The chart holds a vertex that the model moves.
+    /// The chart pins a vertex that the model moves.
     #[error(
-        "the chart holds {vertex} where it is, and the model moves it: build the chart with that vertex free"
+        "the chart pins {vertex} where it is, and the model moves it: build the chart with that vertex free"
     )]
     MovingPin {
         /// The vertex.
@@ -85,7 +86,7 @@ pub enum ChartDynamicsError {
     },
     /// A one-sided constraint makes no closure equation.
     #[error(
-        "vertex constraint {index} is one-sided; a chart holds vertices both ways only. Use contact with a body, or a damped method without a chart"
+        "vertex constraint {index} is one-sided; a chart takes two-sided constraints only. Use contact with a body, or a damped method without a chart"
     )]
     OneSided {
         /// Place in the order in which the constraints were added.
@@ -109,7 +110,7 @@ pub enum ChartDynamicsError {
     },
     /// The way on is closed by contact.
     #[error(
-        "at t = {t} s no step above {h:e} s keeps the sheet out of contact: it is held between bodies or pins that move into each other, or the explicit scheme has become unstable; take smaller steps"
+        "at t = {t} s no step above {h:e} s keeps the sheet out of contact: it is caught between bodies or pins that move into each other, or the explicit scheme has become unstable; take smaller steps"
     )]
     Contact {
         /// Time, seconds.
@@ -164,6 +165,19 @@ pub enum ChartDynamicsError {
         strain: f64,
         /// The limit.
         limit: f64,
+    },
+    /// The prescribed motion of a body is not finite.
+    #[error(transparent)]
+    Body(#[from] BodyMotionError),
+    /// A prescribed motion of a support is not finite.
+    #[error("the prescribed motion of {support} gives {value} at t = {t} s; check the function")]
+    Motion {
+        /// What moves.
+        support: Support,
+        /// The component that is not finite.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
     },
     /// A state is not finite.
     #[error("the state is not finite at t = {t} s: the step is too large for this scheme")]

@@ -9,7 +9,7 @@
 //! p += J^T R^T l,   u += D l,   D = R P R^T,   P = J C^-1 J^T
 //! ```
 //!
-//! (P with the closures held too). All contacts are solved together, in three stages:
+//! (P keeps the closures too). All contacts are solved together, in three stages:
 //!
 //! 1. compression: impulses with which nothing approaches any more, `0 <= l_n  _|_  u_n >= 0`, and friction
 //!    `|l_t| <= mu l_n` that opposes sliding or stops it (projected Gauss-Seidel over the contacts);
@@ -42,7 +42,7 @@ const AGAIN: usize = 4;
 
 /// A contact at which a unit impulse moves the sheet by less than this, times its mean vertex mass, is one of
 /// pins with a body: no impulse can help.
-const HELD: f64 = 1e-12;
+const IMMOVABLE: f64 = 1e-12;
 
 /// The impulse of a contact on the sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -67,7 +67,7 @@ pub(super) struct Impact {
 /// A contact in the small system.
 struct Block {
     point: ContactPoint,
-    /// Rows `first..first + count`: the normal and, with friction, two directions across it.
+    /// Rows `first..first + count`: the normal and, with friction, two directions perpendicular to it.
     first: usize,
     axes: [Vector3<f64>; 3],
     count: usize,
@@ -92,7 +92,7 @@ impl Impacts {
         let (mut blocks, mut response) = (Vec::new(), Vec::new());
         let mut force = vec![0.0; system.unknowns()];
         for point in points {
-            let [a, b] = crate::constraint::across(&point.normal);
+            let [a, b] = crate::constraint::orthonormal_complement(&point.normal);
             let axes = [point.normal, a, b];
             let count = if point.friction > 0.0 { 3 } else { 1 };
             let first = response.len();
@@ -103,7 +103,7 @@ impl Impacts {
                 mobility.respond(&force, &mut column)?;
                 response.push(column);
             }
-            if mean_mass * pull(system, point, &axes[0], &response[first]) <= HELD {
+            if mean_mass * pull(system, point, &axes[0], &response[first]) <= IMMOVABLE {
                 response.truncate(first);
                 continue;
             }

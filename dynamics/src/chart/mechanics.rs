@@ -45,7 +45,7 @@ impl ChartMechanics {
     /// The mechanics of a model in a chart.
     ///
     /// Pins that the chart eliminates have to be fixed pins of the model. The model's other pins are free in
-    /// the chart; [`ChartSimulation`](super::ChartSimulation) holds them by closure equations.
+    /// the chart; [`ChartSimulation`](super::ChartSimulation) imposes them by closure equations.
     ///
     /// # Errors
     /// [`ChartDynamicsError::Chart`], [`ChartDynamicsError::TooManyCoordinates`]; and
@@ -64,8 +64,8 @@ impl ChartMechanics {
                 expected: vertices,
             });
         }
-        let held = |v: &VertexId| chart.system().unknown(*v).is_none();
-        let pins: Vec<VertexId> = model.topology().vertex_ids().filter(held).collect();
+        let pinned = |v: &VertexId| chart.system().unknown(*v).is_none();
+        let pins: Vec<VertexId> = model.topology().vertex_ids().filter(pinned).collect();
         if let Some(&vertex) = pins.iter().find(|v| !model.is_pinned(**v)) {
             return Err(ChartDynamicsError::OtherPins { vertex });
         }

@@ -49,8 +49,8 @@ pub struct ChartSimulation {
     pub(super) contact: Option<ChartContact>,
 }
 
-/// Gaps below this part of the activation distance are opened to it: the curvature of the path brings a sheet
-/// that lies or slides closer by the squared step each step, which no impulse sees.
+/// Gaps below this part of the activation distance are widened to it. The curvature of the path brings a
+/// sheet that lies or slides closer in each step by the square of the step, which no impulse prevents.
 const LEAST_GAP: f64 = 0.1;
 
 impl ChartSimulation {
@@ -73,7 +73,7 @@ impl ChartSimulation {
     /// Start from a state. Only the part of the velocities that keeps edge lengths and closures is used.
     ///
     /// The chart eliminates all fixed pins of the model or some of them. The others, moving pins and vertices
-    /// on curves and surfaces are held by closure equations `Phi(x(q), t) = 0`: multipliers in the equations
+    /// on curves and surfaces are closure equations `Phi(x(q), t) = 0`: multipliers in the equations
     /// of motion from their second derivative in time, and after every step positions and momenta are brought
     /// back onto them, the nearest ones in the mass metric. Equations that depend on others, as for two pins
     /// at the ends of one rod, are met by least squares.
@@ -150,7 +150,7 @@ impl ChartSimulation {
     /// [`ChartOptions::restitution`] and Coulomb friction with the kinetic coefficient, of which the energy
     /// never grows. The barrier of the contact is not used; a sheet rebounds at gaps below its activation
     /// distance: choose that small. Gaps that the curvature of the path has closed to a tenth of it are
-    /// opened to that again.
+    /// widened to that again.
     ///
     /// A sheet that lies on a body stays at rest in forward Euler, the paper's method, which moves with the
     /// momenta that the impulses left. The other methods move with what forces make of them in the step, and
@@ -310,23 +310,23 @@ impl ChartSimulation {
         h: f64,
     ) -> Result<[f64; 2], ChartDynamicsError> {
         self.motion.impulses.clear();
-        contact.evaluate(&self.motion.state.x);
+        contact.evaluate(&self.motion.state.x)?;
         let least = LEAST_GAP * contact.activation();
         if contact.points().iter().any(|p| p.gap < least) {
             let points = contact.points();
-            let opened = self
-                .stepper
-                .separated(self.motion.t, &self.motion.state, points, least);
+            let separated =
+                self.stepper
+                    .separated(self.motion.t, &self.motion.state, points, least);
             let span = StepSpan {
                 t0: self.motion.t,
                 h: 0.0,
             };
             // Where this is not possible the collision detection still holds.
-            if let Ok(opened) = opened
-                && contact.safe_fraction(span, &self.motion.state.x, &opened.x) >= 1.0
+            if let Ok(separated) = separated
+                && contact.safe_fraction(span, &self.motion.state.x, &separated.x)? >= 1.0
             {
-                self.motion.state = opened;
-                contact.evaluate(&self.motion.state.x);
+                self.motion.state = separated;
+                contact.evaluate(&self.motion.state.x)?;
             }
             self.stepper.mechanics.at(&self.motion.state.x)?;
         }

@@ -50,14 +50,18 @@ pub trait MassSolver: Send {
 /// The solvers at hand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum MassSolverKind {
-    /// [`SaddleSolver`], for any size.
+    /// The sparse saddle-point matrix (see [`SaddlePoint`]), for any size: symbolic analysis once, numeric
+    /// factorisation at each state, iterative refinement. J and C are never formed, and the accuracy of the
+    /// velocities of the vertices does not depend on the chart.
     #[default]
     Saddle,
-    /// [`DenseLuSolver`].
+    /// Dense LU factorisation of C.
     DenseLu,
-    /// [`CholeskySolver`].
+    /// Dense Cholesky factorisation of C.
     Cholesky,
-    /// [`CramerSolver`], as published, for few coordinates.
+    /// Cramer's rule with determinants from LU factorisations, exactly as published in Sec. 4.1:
+    /// `qdot_i = D_*i / D`, and `d(qdot_i)/dp_j = (-1)^(i+j) M_ji / D` with the minors of D. For at most 40
+    /// coordinates.
     Cramer,
 }
 
@@ -90,10 +94,8 @@ impl MassSolverKind {
     }
 }
 
-/// The sparse saddle-point matrix (see [`SaddlePoint`]): symbolic analysis once, numeric factorisation
-/// per state, iterative refinement. J and C are never formed, and the accuracy of the velocities of
-/// the vertices does not depend on the chart.
-pub struct SaddleSolver {
+/// See [`MassSolverKind::Saddle`].
+struct SaddleSolver {
     saddle: SaddlePoint,
     pattern: isosheet_coords::RowPattern,
     rows: Vec<f64>,
@@ -108,7 +110,7 @@ impl SaddleSolver {
     ///
     /// # Errors
     /// [`ChartDynamicsError::Chart`] when memory runs out.
-    pub fn new(system: &RodSystem, mass: &MassMatrix) -> Result<Self, ChartDynamicsError> {
+    fn new(system: &RodSystem, mass: &MassMatrix) -> Result<Self, ChartDynamicsError> {
         Ok(Self {
             saddle: SaddlePoint::new(system, mass)?,
             pattern: isosheet_coords::RowPattern::new(),
@@ -161,9 +163,9 @@ fn dense(
     Ok(mass_matrix(system, mass, &jacobian))
 }
 
-/// Dense LU factorisation of C.
+/// See [`MassSolverKind::DenseLu`].
 #[derive(Default)]
-pub struct DenseLuSolver {
+struct DenseLuSolver {
     factor: Option<LU<f64, Dyn, Dyn>>,
 }
 
@@ -187,9 +189,9 @@ impl MassSolver for DenseLuSolver {
     }
 }
 
-/// Dense Cholesky factorisation of C.
+/// See [`MassSolverKind::Cholesky`].
 #[derive(Default)]
-pub struct CholeskySolver {
+struct CholeskySolver {
     factor: Option<Cholesky<f64, Dyn>>,
 }
 
@@ -220,10 +222,9 @@ impl MassSolver for CholeskySolver {
     }
 }
 
-/// Cramer's rule with determinants from LU factorisations, exactly as published in Sec. 4.1:
-/// `qdot_i = D_*i / D`, and `d(qdot_i)/dp_j = (-1)^(i+j) M_ji / D` with the minors of D.
+/// See [`MassSolverKind::Cramer`].
 #[derive(Default)]
-pub struct CramerSolver {
+struct CramerSolver {
     c: DMatrix<f64>,
     determinant: f64,
     scale: f64,

@@ -30,7 +30,10 @@ impl ChartSimulation {
     ///
     /// # Errors
     /// As [`ChartSimulation::step`].
-    pub fn step_within(&mut self, limit: f64) -> Result<ChartStepReport, ChartDynamicsError> {
+    pub(crate) fn step_within(
+        &mut self,
+        limit: f64,
+    ) -> Result<ChartStepReport, ChartDynamicsError> {
         let mut rebased = false;
         if self.options.rebase == Rebase::WhenNeeded && !self.motion.is_fresh {
             let margin = self
@@ -209,12 +212,18 @@ impl Stepping for ChartSubstep<'_> {
             contact,
             options,
         } = &mut *self.simulation;
+        let t = motion.t + h;
+        if let Some((support, value)) = stepper.mechanics.model().find_bad_motion(t) {
+            let error = ChartDynamicsError::Motion { support, value, t };
+            return Err(Refusal::Failed(error));
+        }
         let trial = stepper
             .attempt(motion.t, &motion.state, h)
             .map_err(Refusal::Failed)?;
         if let Some(contact) = contact {
             let span = StepSpan { t0: motion.t, h };
             let part = contact.safe_fraction(span, &motion.state.x, &trial.x);
+            let part = part.map_err(|error| Refusal::Failed(error.into()))?;
             if part < 1.0 {
                 return Err(Refusal::Blocked(part));
             }
@@ -241,8 +250,13 @@ impl Stepping for ChartSubstep<'_> {
         match refusal {
             Refusal::Blocked(part) => self.cut(part * h),
             Refusal::Failed(ChartDynamicsError::Chart(_)) if may_rebase => Decision::Restart,
-            // The edge lengths have drifted over many steps: a shorter one does not help.
-            Refusal::Failed(error @ ChartDynamicsError::Diverged { .. }) => Decision::Stop(error),
+            // The edge lengths have drifted over many steps, or a prescribed motion is not finite: a shorter
+            // step does not help.
+            Refusal::Failed(
+                error @ (ChartDynamicsError::Diverged { .. }
+                | ChartDynamicsError::Motion { .. }
+                | ChartDynamicsError::Body(_)),
+            ) => Decision::Stop(error),
             Refusal::Failed(error) => self.shorten(h, f64::NAN, Some(error)),
             Refusal::Energy(change) => self.shorten(h, change, None),
         }

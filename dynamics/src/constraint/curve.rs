@@ -1,6 +1,6 @@
 //! Curves that a vertex can be constrained to.
 
-use super::{ConstraintError, across};
+use super::{ConstraintError, orthonormal_complement};
 use nalgebra::{Matrix3, Vector3};
 use std::fmt::Debug;
 
@@ -97,7 +97,7 @@ pub struct Circle {
 }
 
 impl Circle {
-    /// About a centre (metres) in the plane across `normal`, of any length.
+    /// About a centre (metres) in the plane perpendicular to `normal`, which may have any length.
     ///
     /// # Errors
     /// [`ConstraintError`] if a number is not finite, the normal is zero or the radius (metres) not positive.
@@ -105,7 +105,7 @@ impl Circle {
         let normal = ConstraintError::check_direction("the normal of the circle", &normal)?;
         Ok(Self {
             centre: ConstraintError::check_vector("the centre of the circle", &centre)?,
-            axes: across(&normal),
+            axes: orthonormal_complement(&normal),
             radius: ConstraintError::check_positive("the radius of the circle", radius)?,
         })
     }

@@ -187,7 +187,7 @@ impl VertexConstraint {
     }
 
     fn moving_frame(&self) -> Option<&RigidMotion> {
-        self.motion.as_ref().filter(|motion| !motion.is_still())
+        self.motion.as_ref().filter(|motion| !motion.is_fixed())
     }
 
     pub(crate) fn validate_motion(&self) -> Result<(), MotionError> {
@@ -206,7 +206,7 @@ impl VertexConstraint {
     }
 
     /// Whether the constraint is an inequality: it pushes, and does not pull.
-    pub fn is_one_sided(&self) -> bool {
+    pub(crate) fn is_one_sided(&self) -> bool {
         matches!(self.shape, Shape::Surface(_, Side::Outside | Side::Inside))
     }
 
@@ -342,20 +342,20 @@ impl LocalEquations {
         }
     }
 
-    /// Rows that pick the independent equations: the level, or two directions across the curve.
+    /// Rows that pick the independent equations: the level, or two directions perpendicular to the curve.
     pub(crate) fn independent(&self) -> Matrix2x3<f64> {
         match &self.curvature {
             Curvature::Surface(_) => Matrix2x3::new(1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             Curvature::Curve(at, _) => {
-                let [a, b] = across(&at.first.normalize());
+                let [a, b] = orthonormal_complement(&at.first.normalize());
                 Matrix2x3::from_rows(&[a.transpose(), b.transpose()])
             }
         }
     }
 }
 
-/// Two unit vectors across a unit vector and each other.
-pub(crate) fn across(t: &Vector3<f64>) -> [Vector3<f64>; 2] {
+/// Two unit vectors that are perpendicular to the unit vector `t` and to each other.
+pub(crate) fn orthonormal_complement(t: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let mut axis = Vector3::zeros();
     axis[t.iamin()] = 1.0;
     let a = (axis - t * t.dot(&axis)).normalize();

@@ -29,7 +29,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Through a point (metres) across a normal of any length.
+    /// Through a point (metres), perpendicular to a normal of any length.
     ///
     /// # Errors
     /// [`ConstraintError`] if a number is not finite or the normal is zero.
@@ -102,22 +102,22 @@ impl Cylinder {
 
 impl Surface for Cylinder {
     fn at(&self, p: &Vector3<f64>) -> SurfacePoint {
-        let across = Matrix3::identity() - self.axis * self.axis.transpose();
-        around(&(across * (p - self.point)), &across, self.radius)
+        let projector = Matrix3::identity() - self.axis * self.axis.transpose();
+        around(&(projector * (p - self.point)), &projector, self.radius)
     }
 }
 
-/// At a distance about the centre or axis, from which `d` leads to the point; `across` projects on what
-/// counts.
-fn around(d: &Vector3<f64>, across: &Matrix3<f64>, radius: f64) -> SurfacePoint {
+/// The surface at a distance from a centre or an axis, from which `d` leads to the point. `projector` removes
+/// the part of a vector that does not change this distance.
+fn around(d: &Vector3<f64>, projector: &Matrix3<f64>, radius: f64) -> SurfacePoint {
     let size = d.norm();
     // From the centre every direction leads out.
     let (n, hessian) = if size > 0.0 {
         let n = d / size;
-        (n, (across - n * n.transpose()) / size)
+        (n, (projector - n * n.transpose()) / size)
     } else {
         (
-            across.column(across.diagonal().imax()).normalize(),
+            projector.column(projector.diagonal().imax()).normalize(),
             Matrix3::zeros(),
         )
     };

@@ -117,10 +117,10 @@ impl ActiveContact {
                 parallel: None,
             };
         };
-        let across = p.u.cross(&p.v);
-        let size = across.norm();
+        let cross = p.u.cross(&p.v);
+        let size = cross.norm();
         let axis = if size > 0.0 {
-            across / size
+            cross / size
         } else {
             self.normal
         };
@@ -186,7 +186,7 @@ struct Curvature {
     turning: f64,
     /// Of the same with the second and third axis.
     rest: f64,
-    /// The axes: that of `u x v` and two across.
+    /// The axes: that of `u x v` and two perpendicular to it.
     parallel: Option<(ParallelEdges, [Vector3<f64>; 3])>,
 }
 
@@ -225,7 +225,7 @@ fn nearest_semidefinite(a: f64, b: f64, c: f64) -> [f64; 3] {
 /// The contacts at given positions with the bodies in given places.
 ///
 /// Energy, gradient and Hessian of the barrier are functions of this value, and so are friction
-/// ([`super::LaggedFriction`]) and the contacts of impulses ([`ActiveContacts::contact_points`]).
+/// ([`super::LaggedFriction`]) and the contacts of impulses ([`super::ContactPoint`]).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ActiveContacts {
     list: Vec<ActiveContact>,
@@ -298,7 +298,7 @@ impl ActiveContacts {
     }
 
     /// The span of the step.
-    pub fn span(&self) -> StepSpan {
+    pub(crate) fn span(&self) -> StepSpan {
         self.span
     }
 
@@ -359,7 +359,7 @@ impl ActiveContacts {
     /// Adds `scale` times the change of the gradient of `B` that the rest of the bodies' motion
     /// causes, to first order: with `u` the displacement of the body at a contact, `-d2B/dx2 u`, with the
     /// same semidefinite part of the Hessian as in [`ActiveContacts::add_barrier_hessian`].
-    pub fn add_drive(&self, barrier: &BarrierPotential, scale: f64, out: &mut [f64]) {
+    pub(crate) fn add_drive(&self, barrier: &BarrierPotential, scale: f64, out: &mut [f64]) {
         if self.progress >= 1.0 {
             return;
         }
@@ -373,7 +373,7 @@ impl ActiveContacts {
 
     /// Power of the barrier forces on the sheet by the motion of the bodies times the duration of the step,
     /// joules.
-    pub fn barrier_work(&self, barrier: &BarrierPotential) -> f64 {
+    pub(crate) fn barrier_work(&self, barrier: &BarrierPotential) -> f64 {
         let with_bodies = self.list.iter().filter_map(|contact| {
             let body = &self.bodies[contact.key.body? as usize];
             let velocity = body.step_velocity(&contact.closest);

@@ -1,6 +1,6 @@
 //! Bodies in prescribed motion, as contact sees them over a step.
 
-use super::Contact;
+use super::{BodyMotionError, Contact};
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -111,6 +111,27 @@ impl BodyMotions {
         self.span = span;
         self.list.clear();
         contact.body_motions(span, &mut self.list);
+    }
+
+    /// Refuses poses that are not finite, which the function of a motion can return.
+    ///
+    /// # Errors
+    /// [`BodyMotionError`] with the first body, time and value that is not finite.
+    pub fn check(&self) -> Result<(), BodyMotionError> {
+        let StepSpan { t0, h } = self.span;
+        for (body, BodyMotion { material, surface }) in self.list.iter().enumerate() {
+            let ends = [
+                (t0, material.start, surface.start),
+                (t0 + h, material.end, surface.end),
+            ];
+            for (t, material, surface) in ends {
+                let found = non_finite(&material).or_else(|| non_finite(&surface));
+                if let Some(value) = found {
+                    return Err(BodyMotionError { body, value, t });
+                }
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn copy_from(&mut self, other: &Self) {
@@ -233,6 +254,12 @@ impl BodyPlace {
     pub(crate) fn material_end(&self, point: &Vector3<f64>) -> Vector3<f64> {
         moved(&self.motion.material.end, point)
     }
+}
+
+/// The first component of a pose that is not finite.
+fn non_finite(pose: &Isometry3<f64>) -> Option<f64> {
+    let (place, turn) = (&pose.translation.vector, pose.rotation.coords);
+    place.iter().chain(&turn).copied().find(|c| !c.is_finite())
 }
 
 fn moved(pose: &Isometry3<f64>, local: &Vector3<f64>) -> Vector3<f64> {

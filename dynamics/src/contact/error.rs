@@ -33,9 +33,27 @@ impl fmt::Display for ContactPair {
     }
 }
 
+/// The prescribed motion of a body is not finite.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "the prescribed motion of body {body} gives {value} at t = {t} s (a component of its pose, or of a velocity \
+     by differences about that time); check the function"
+)]
+pub struct BodyMotionError {
+    /// The body, in the order in which they were added.
+    pub body: usize,
+    /// The component that is not finite: metres, metres per second, or a number of a unit quaternion.
+    pub value: f64,
+    /// Time, seconds.
+    pub t: f64,
+}
+
 /// Why contact cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ContactError {
+    /// The prescribed motion of a body is not finite at the start.
+    #[error(transparent)]
+    Motion(#[from] BodyMotionError),
     /// Something touches or passes through.
     #[error(
         "{pair} touch at t = {t} s (gap {gap} m): move them apart; contact keeps a gap, it does not make one"

@@ -126,11 +126,6 @@ impl Friction {
         self.sliding
     }
 
-    /// Smoothing distance, metres.
-    pub fn smoothing(&self) -> f64 {
-        self.smoothing
-    }
-
     /// Friction force over normal force after sliding a distance `y >= 0` (metres) in the step.
     pub fn force(&self, y: f64) -> f64 {
         y * self.force_over_distance(y)

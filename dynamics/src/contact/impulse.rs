@@ -1,6 +1,6 @@
 //! Contacts for methods that use impulses in place of the barrier.
 
-use super::{ActiveContacts, Contact};
+use super::{ActiveContacts, BodyMotionError, Contact};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,14 @@ pub struct ContactPoint {
 
 impl ActiveContacts {
     /// The contacts as impulses need them. Clears `out` first.
-    pub fn contact_points(&self, contact: &dyn Contact, out: &mut Vec<ContactPoint>) {
+    ///
+    /// # Errors
+    /// [`BodyMotionError`] if the velocity of a body is not finite.
+    pub(crate) fn contact_points(
+        &self,
+        contact: &dyn Contact,
+        out: &mut Vec<ContactPoint>,
+    ) -> Result<(), BodyMotionError> {
         out.clear();
         let (laws, t) = (contact.laws(), self.time());
         out.extend(self.list().iter().map(|c| ContactPoint {
@@ -35,5 +42,13 @@ impl ActiveContacts {
             },
             friction: laws.coefficients(c.key.body).sliding,
         }));
+        for (contact, point) in self.list().iter().zip(&*out) {
+            let value = point.body_velocity.iter().find(|c| !c.is_finite());
+            if let (Some(body), Some(&value)) = (contact.key.body, value) {
+                let body = body as usize;
+                return Err(BodyMotionError { body, value, t });
+            }
+        }
+        Ok(())
     }
 }

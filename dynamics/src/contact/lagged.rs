@@ -1,4 +1,4 @@
-//! Friction of a step: contacts with normals and normal forces held fixed.
+//! Friction of a step: contacts with constant normals and normal forces.
 
 use super::{
     ActiveContact, ActiveContacts, BarrierPotential, BodyPlace, ContactKey, ContactLaws,
@@ -7,7 +7,7 @@ use super::{
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Friction at one contact with normal, closest points and normal force held at their values at the positions
+/// Friction at one contact with normal, closest points and normal force as they are at the positions
 /// at which it was lagged (Li et al. 2020, Incremental potential contact, Sec. 5).
 ///
 /// For displacements `dx_i` since the start of the step, and `d` of the body's material point, the contact
@@ -79,7 +79,7 @@ impl FrictionContact {
         self.force * self.law.potential(y)
     }
 
-    /// Energy lost if the present force acts all along the way, joules.
+    /// Energy lost if the present force acts over the whole displacement, joules.
     fn loss(&self, x0: &[f64], x: &[f64], bodies: &[BodyPlace]) -> f64 {
         let y = self.slip(x0, x, bodies).norm();
         self.force * self.law.force(y) * y
@@ -107,7 +107,7 @@ impl FrictionContact {
     }
 }
 
-/// Friction of a step with all normals and normal forces held fixed: the potential `D(x - x0)`.
+/// Friction of a step with constant normals and normal forces: the potential `D(x - x0)`.
 ///
 /// It belongs to a step, also after its end: the loads on the bodies ([`super::ContactTerms::loads`]) are
 /// those of the last step. The step after lags it anew.
@@ -192,8 +192,8 @@ impl LaggedFriction {
         all.map(|c| c.energy(&self.x0, x, bodies)).sum()
     }
 
-    /// Energy lost to friction on the way from the start of the step, joules; not negative.
-    pub fn loss(&self, x: &[f64], bodies: &[BodyPlace]) -> f64 {
+    /// Energy lost to friction since the start of the step, joules; not negative.
+    pub(crate) fn loss(&self, x: &[f64], bodies: &[BodyPlace]) -> f64 {
         let all = self.contacts.iter();
         all.map(|c| c.loss(&self.x0, x, bodies)).sum()
     }

@@ -30,7 +30,7 @@ impl ContactLaws {
     }
 
     /// The coefficients of friction with a body, or of the sheet with itself.
-    pub fn coefficients(&self, body: Option<u32>) -> Coefficients {
+    pub(crate) fn coefficients(&self, body: Option<u32>) -> Coefficients {
         match body {
             None => self.itself,
             Some(b) => {

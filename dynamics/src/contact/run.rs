@@ -1,8 +1,8 @@
 //! Contact of a simulation and of a step.
 
 use super::{
-    ActiveContacts, BarrierPotential, BodyLoad, Contact, ContactError, ContactState, ContactTerms,
-    LaggedFriction,
+    ActiveContacts, BarrierPotential, BodyLoad, BodyMotionError, BodyMotions, Contact,
+    ContactError, ContactState, ContactTerms, LaggedFriction, StepSpan,
 };
 use crate::{SheetModel, State};
 
@@ -18,6 +18,8 @@ pub(crate) struct StepContact<'a> {
 pub(crate) struct RunContact {
     geometry: Box<dyn Contact>,
     barrier: BarrierPotential,
+    /// The motions of the bodies that were checked last.
+    bodies: BodyMotions,
 }
 
 impl RunContact {
@@ -27,13 +29,18 @@ impl RunContact {
         model: &SheetModel,
         state: &State,
     ) -> Result<(Self, ContactState), ContactError> {
-        geometry.check_start(model, state)?;
+        let bodies = check_start(geometry.as_mut(), model, state)?;
         let barrier = BarrierPotential::at_start(geometry.laws(), model, state)?;
         let contacts = ContactState {
             active: ActiveContacts::at_rest(geometry.as_mut(), state.t, &state.x),
             friction: LaggedFriction::none(),
         };
-        Ok((Self { geometry, barrier }, contacts))
+        let run = Self {
+            geometry,
+            barrier,
+            bodies,
+        };
+        Ok((run, contacts))
     }
 
     /// Goes on with the barrier of an earlier run.
@@ -46,8 +53,18 @@ impl RunContact {
         model: &SheetModel,
         state: &State,
     ) -> Result<Self, ContactError> {
-        geometry.check_start(model, state)?;
-        Ok(Self { geometry, barrier })
+        let bodies = check_start(geometry.as_mut(), model, state)?;
+        Ok(Self {
+            geometry,
+            barrier,
+            bodies,
+        })
+    }
+
+    /// Refuses a span of time if the pose of a body is not finite at its start or end.
+    pub(crate) fn check_bodies(&mut self, span: StepSpan) -> Result<(), BodyMotionError> {
+        self.bodies.update(self.geometry.as_ref(), span);
+        self.bodies.check()
     }
 
     /// The barrier, whose stiffness was set at the start of the run.
@@ -78,4 +95,23 @@ impl RunContact {
         };
         terms.loads()
     }
+}
+
+/// Checks that contact can start at a state; with the bodies there.
+///
+/// # Errors
+/// [`ContactError::Motion`] if the pose of a body is not finite, and as [`Contact::check_start`].
+pub(crate) fn check_start(
+    geometry: &mut dyn Contact,
+    model: &SheetModel,
+    state: &State,
+) -> Result<BodyMotions, ContactError> {
+    let span = StepSpan {
+        t0: state.t,
+        h: 0.0,
+    };
+    let bodies = BodyMotions::over(geometry, span);
+    bodies.check()?;
+    geometry.check_start(model, state)?;
+    Ok(bodies)
 }

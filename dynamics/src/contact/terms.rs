@@ -74,8 +74,9 @@ impl ContactTerms<'_> {
             .add_gradient(self.x, self.active.bodies(), scale, out);
     }
 
-    /// Adds `scale` times the change of the gradient of `B` that the rest of the bodies' motion causes, see
-    /// [`ActiveContacts::add_drive`].
+    /// Adds `scale` times the change of the gradient of `B` that the rest of the bodies' motion causes, to
+    /// first order: with `u` the displacement of the body at a contact, `-d2B/dx2 u`, with the same
+    /// semidefinite part of the Hessian as in [`ContactTerms::add_hessian`].
     pub fn add_drive(&self, scale: f64, out: &mut [f64]) {
         self.active.add_drive(self.barrier, scale, out);
     }
@@ -126,7 +127,7 @@ impl ContactTerms<'_> {
 
     /// What contact did over the step that ends here, from the barrier's work at the start of the step
     /// ([`ActiveContacts::barrier_work`]) and its energy there.
-    pub fn work(&self, start_work: f64, start_energy: f64) -> ContactWork {
+    pub(crate) fn work(&self, start_work: f64, start_energy: f64) -> ContactWork {
         let bodies = self.active.bodies();
         let mut work = ContactWork {
             bodies: 0.0,

@@ -1,5 +1,5 @@
-//! Refused sub-steps leave no trace: in the step control, by an integrator that refuses as a script says, and in every
-//! integrator, by proposals that are not committed.
+//! Refused sub-steps change nothing. This is tested for the step control, with an integrator that follows a
+//! script of refusals, and for every integrator, with proposals that are not committed.
 
 use super::*;
 use crate::contact_tests::{Floor, model, sheet};
@@ -88,7 +88,8 @@ impl Integrator for Scripted {
     }
 }
 
-/// A sheet in free flight, moved by a scripted integrator that remembers a step, and what the integrator sees.
+/// A sheet in free flight, moved by a scripted integrator that stores one step of history, and a list of
+/// what the integrator was given in each call.
 fn scripted(script: &[Answer], control: StepControl) -> (Engine, Arc<Mutex<Vec<Seen>>>) {
     let sheet = generate::isotropic_square(1, 1.0).unwrap();
     let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped).unwrap();
@@ -162,7 +163,8 @@ fn other_refusals_halve_at_once_and_drop_the_multipliers() {
     assert_eq!(first, expected);
 }
 
-/// All scripts of six answers: each attempt is new, and each refusal is followed by what the table of the step control says.
+/// Runs all scripts of six answers. No attempt repeats an earlier one, and what follows a refusal is what
+/// the table of the step control says.
 #[test]
 fn no_problem_is_proposed_twice() {
     let answers = [Answer::Accept, Answer::Gain, Answer::Diverge];
@@ -241,7 +243,8 @@ fn a_step_that_fails_half_way_keeps_what_was_committed() {
     assert!(bits(&engine.motion()) == bits(&half.motion()));
 }
 
-/// The fallback is asked after the smallest sub-step, for the longest one that fits, and knows nothing of the history.
+/// The fallback is used after the smallest sub-step was refused. It takes the longest sub-step that fits
+/// and is given no history.
 #[test]
 fn the_fallback_starts_without_a_history() {
     for refusals in [[Answer::Gain; 6], [Answer::Diverge; 6]] {

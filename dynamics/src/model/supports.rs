@@ -38,7 +38,7 @@ impl SheetModel {
     }
 
     /// Pins vertices of the sheet where they are.
-    pub(crate) fn hold(&mut self, vertices: &[VertexId]) {
+    pub(crate) fn fix(&mut self, vertices: &[VertexId]) {
         for v in vertices {
             self.free_index[v.index()] = PINNED;
         }
@@ -122,7 +122,8 @@ impl SheetModel {
         Ok(self)
     }
 
-    /// The vertices on curves and surfaces.
+    /// The vertices on curves and surfaces; [`Support::Constraint`](crate::Support::Constraint) names one of
+    /// them by its index.
     pub fn constraints(&self) -> &[VertexConstraint] {
         &self.constraints
     }

@@ -103,7 +103,7 @@ impl RigidDisplacement {
             .map_or(Ok(()), AxisRotation::validate)
     }
 
-    fn is_still(&self) -> bool {
+    fn is_fixed(&self) -> bool {
         [&self.x, &self.y, &self.z].iter().all(|p| p.is_constant())
             && self.rotation.as_ref().is_none_or(|r| r.angle.is_constant())
     }
@@ -169,7 +169,7 @@ const HALF_TURN_MARGIN: f64 = 1e-6;
 
 impl RigidProfile {
     /// Rest in a pose.
-    pub fn still(pose: Isometry3<f64>) -> Self {
+    pub fn fixed(pose: Isometry3<f64>) -> Self {
         RigidDisplacement {
             pose,
             ..RigidDisplacement::default()
@@ -189,9 +189,9 @@ impl RigidProfile {
     }
 
     /// Whether the body never moves.
-    pub(crate) fn is_still(&self) -> bool {
+    pub(crate) fn is_fixed(&self) -> bool {
         match self {
-            Self::Displacement(displacement) => displacement.is_still(),
+            Self::Displacement(displacement) => displacement.is_fixed(),
             Self::Keyframes { keys } => keys.iter().all(|k| k.pose == keys[0].pose),
         }
     }
@@ -321,9 +321,9 @@ impl RigidMotion {
     }
 
     /// Whether the body is known never to move; of a function nothing is known.
-    pub(crate) fn is_still(&self) -> bool {
+    pub(crate) fn is_fixed(&self) -> bool {
         match self {
-            Self::Profile(profile) => profile.is_still(),
+            Self::Profile(profile) => profile.is_fixed(),
             Self::Custom(_) => false,
         }
     }
@@ -394,7 +394,7 @@ impl Kinematics {
 
     /// Acceleration of the body's point that is at `p` (metres, in space) now, `a + w' x r + w x (w x r)`
     /// with `r = p - origin`; metres per second squared.
-    pub fn acceleration_at(&self, p: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn acceleration_at(&self, p: &Vector3<f64>) -> Vector3<f64> {
         let (arm, w) = (self.arm(p), &self.angular_velocity);
         self.acceleration + self.angular_acceleration.cross(&arm) + w.cross(&w.cross(&arm))
     }

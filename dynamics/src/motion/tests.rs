@@ -148,8 +148,8 @@ fn a_quarter_turn_is_halved() {
     let p = (motion.pose(1.0) * Point3::new(1.0, 0.0, 0.0)).coords;
     let r = 0.5_f64.sqrt();
     assert!((p - Vector3::new(2.0 + r, r, 0.0)).norm() < 1e-15);
-    assert!(!motion.is_still());
-    assert!(RigidProfile::still(motion.pose(1.0)).is_still());
+    assert!(!motion.is_fixed());
+    assert!(RigidProfile::fixed(motion.pose(1.0)).is_fixed());
 }
 
 /// A wheel of radius `r` that turns by `w t` and moves on by `r w t` does not slip where it touches the
@@ -249,9 +249,9 @@ fn unusable_motions_are_named() {
     ] {
         assert!(wrong.is_err());
     }
-    let still = RigidProfile::still(Isometry3::translation(0.0, f64::NAN, 0.0));
+    let fixed = RigidProfile::fixed(Isometry3::translation(0.0, f64::NAN, 0.0));
     assert!(matches!(
-        still.validate(),
+        fixed.validate(),
         Err(MotionError::NotFinite { .. })
     ));
     let sheet = generate::isotropic_square(0, 1.0).unwrap();

@@ -54,10 +54,10 @@ impl Crescent {
         Self::fit(&points)
     }
 
-    /// Of points with weights, `[x, y, w]`, by Taubin's fit (1991): the smallest mean of F² over that of
-    /// |∇F|² among all F = A (x² + y²) + B x + C y + D. To first order it is the mean square distance from
-    /// the curve F = 0; lines, A = 0, are among them and have exactly that, so that no circle is worse than
-    /// the best line.
+    /// The circle of points with weights, `[x, y, w]`, by Taubin's fit (1991): the smallest mean of F² over
+    /// that of |∇F|² among all F = A (x² + y²) + B x + C y + D. To first order this quotient is the mean
+    /// square distance from the curve F = 0. Lines, A = 0, are among these curves and have exactly that
+    /// quotient, so that no circle is worse than the best line.
     fn fit(points: &[[f64; 3]]) -> Option<Self> {
         if points.len() < FEWEST {
             return None;

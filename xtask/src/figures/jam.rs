@@ -70,8 +70,8 @@ fn scene((radius, outlet): (f64, Outlet), effort: RenderEffort) -> Feed {
 struct Fed {
     scene: Feed,
     run: RunSummary,
-    /// Way of the nip (metres) and force of the nip on the strip along its way (newtons), mean over
-    /// [`WINDOW`] frames.
+    /// Displacement of the nip (metres) and force of the nip on the strip in the direction of this
+    /// displacement (newtons), mean over [`WINDOW`] frames.
     force: Vec<[f64; 2]>,
     /// Whether the nip slipped.
     jammed: bool,
@@ -92,7 +92,7 @@ impl Fed {
             .windows(WINDOW)
             .map(|w| {
                 let mean = w.iter().map(|f| f[1]).sum::<f64>() / WINDOW as f64;
-                [scene.way(w[WINDOW / 2][0]), mean]
+                [scene.feed_length(w[WINDOW / 2][0]), mean]
             })
             .collect();
         let [along, across] = scene.cells;
@@ -125,8 +125,8 @@ impl Fed {
         largest.copied().unwrap_or_default()
     }
 
-    fn way_at(&self, frame: usize) -> f64 {
-        self.scene.way(frame as f64 * self.scene.frame)
+    fn feed_length_at(&self, frame: usize) -> f64 {
+        self.scene.feed_length(frame as f64 * self.scene.frame)
     }
 
     /// The frame in which the leading edge first feels the plate.
@@ -215,9 +215,9 @@ impl Fed {
 
     fn facts(&self, passing: f64) -> Value {
         json!({
-            "run": self.run, "jammed": self.jammed, "way_m_and_force_n": self.force,
-            "arrival": self.arrival().map(|k| self.way_at(k)),
-            "buckle": self.buckle(passing).map(|(k, force)| json!({ "way": self.way_at(k), "force": force, "column": self.column(k), "euler": self.euler(self.column(k)) })),
+            "run": self.run, "jammed": self.jammed, "displacement_m_and_force_n": self.force,
+            "arrival": self.arrival().map(|k| self.feed_length_at(k)),
+            "buckle": self.buckle(passing).map(|(k, force)| json!({ "displacement": self.feed_length_at(k), "force": force, "column": self.column(k), "euler": self.euler(self.column(k)) })),
         })
     }
 }
@@ -235,7 +235,7 @@ fn describe(jam: &Fed, passing: f64) -> String {
     let (Some(arrival), Some((k, force))) = (jam.arrival(), jam.buckle(passing)) else {
         return "The run is too short for the strip to reach the plate.".into();
     };
-    let mm = |frame: usize| 1e3 * jam.way_at(frame);
+    let mm = |frame: usize| 1e3 * jam.feed_length_at(frame);
     let column = jam.column(k);
     let [clamped, hinged] = jam.euler(column);
     let again = match jam.buckles(passing).len() - 1 {
@@ -279,11 +279,11 @@ fn table(all: &[Fed]) -> Table {
     let joules = |e: f64| format!("{:.2}", 1e3 * e);
     let rows = all.iter().map(|f| {
         let e = &f.run.energy;
-        let [way, peak] = f.peak();
+        let [fed, peak] = f.peak();
         vec![
             f.label(),
-            format!("{:.0} mm", 1e3 * f.way_at(f.run.frames)),
-            format!("{} at {:.0} mm", newtons(peak), 1e3 * way),
+            format!("{:.0} mm", 1e3 * f.feed_length_at(f.run.frames)),
+            format!("{} at {:.0} mm", newtons(peak), 1e3 * fed),
             joules(e.work),
             joules(-e.released),
             joules(e.friction),
@@ -301,7 +301,7 @@ fn table(all: &[Fed]) -> Table {
                   between forces that jump."
             .into(),
         head: [
-            "bend", "way", "largest force", "work of the nip", "stored", "friction", "damping", "missing", "strain", "gap",
+            "bend", "displacement", "largest force", "work of the nip", "stored", "friction", "damping", "missing", "strain", "gap",
             "rejected", "wall time",
         ]
         .map(str::to_owned)
@@ -332,16 +332,16 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
         bodies: &[0, 2],
         depth: 0.08,
     };
-    let alt_force = "Force of the nip over its way in four guides";
+    let alt_force = "Force of the nip over its displacement in four guides";
     let alt_side = "The strip from the side at five times in each of the four guides";
     let s = &jam.scene;
     let through = all.iter().take(JAM).map(|f| {
-        let [way, peak] = f.peak();
+        let [fed, peak] = f.peak();
         format!(
             "{:.0} mm: {} at {:.0} mm",
             1e3 * f.scene.guide.radius,
             newtons(peak),
-            1e3 * way
+            1e3 * fed
         )
     });
     let through: Vec<String> = through.collect();
@@ -399,10 +399,14 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
 }
 
 fn force_plot(all: &[Fed]) -> Plot {
-    let ways = all.iter().flat_map(|f| &f.force).map(|p| 1e3 * p[0]);
+    let displacements = all.iter().flat_map(|f| &f.force).map(|p| 1e3 * p[0]);
     let top = all.iter().map(|f| f.peak()[1]).fold(1e-6, f64::max);
     Plot {
-        x: Axis::round("way of the nip (mm)", [0.0, ways.fold(1e-3, f64::max)], 6),
+        x: Axis::round(
+            "displacement of the nip (mm)",
+            [0.0, displacements.fold(1e-3, f64::max)],
+            6,
+        ),
         y: Axis::round("force of the nip (N)", [0.0, 1.05 * top], 5),
         size: [250.0, 140.0],
         series: all

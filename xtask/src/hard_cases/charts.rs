@@ -1,7 +1,8 @@
-//! The paper's coordinates and its scheme: condition, error that does not go away, the degenerate placement of Fig. 7.
+//! The paper's coordinates and its scheme: condition, an error that does not vanish with the step, the
+//! degenerate placement of Fig. 7.
 
 use super::case::number;
-use super::scenes::{STRAIN, apart, bumped, corner, course, hanging, held, methods};
+use super::scenes::{STRAIN, apart, bumped, corner, course, hanging, methods, pinned};
 use super::{Case, Effort, Findings, plot};
 use crate::condition;
 use crate::interrupt;
@@ -116,7 +117,8 @@ enum Coordinates {
     Cartesian,
 }
 
-/// Relative error, in the largest norm, of the velocities found from the momenta of known ones; the reason if there are none.
+/// Known velocities are turned into momenta and found from these again. Returns the relative error of the
+/// result in the largest norm, or the reason why there is none.
 fn velocity_error(
     level: u32,
     coordinates: Coordinates,
@@ -126,19 +128,20 @@ fn velocity_error(
     let pin = VertexId(0);
     let x = bent_square(&sheet, level, BentState::Noise);
     let bent = Sheet::new(x.clone(), &sheet.face_indices())?;
-    // Velocities with the right lengths: a smooth field, projected by a short step, at the positions that it leads to.
+    // Velocities that keep the lengths: a smooth field, projected by a short step, at the positions at the
+    // end of this step.
     let field = x
         .chunks(3)
         .flat_map(|p| [0.3 * p[1], 0.5 * p[2], p[0] * p[1]])
         .collect();
     let mut settle = Simulation::new(
-        held(&bent, &[pin])?,
+        pinned(&bent, &[pin])?,
         State::moving(x.clone(), field),
         Method::Projection(Default::default()),
     )?;
     settle.step(1e-6)?;
     let State { x, v: want, .. } = settle.state().clone();
-    let model = held(&bent, &[pin])?;
+    let model = pinned(&bent, &[pin])?;
     let chart: Box<dyn Chart> = match coordinates {
         Coordinates::FrontCorner => {
             let options = AssignmentOptions {
@@ -222,8 +225,12 @@ fn literal(effort: Effort) -> Result<Findings> {
             ..ChartOptions::default()
         };
         let start = State::at_rest(sheet.positions().to_vec());
-        let mut run =
-            Simulation::in_chart(held(&sheet, &[corner(0)])?, start, Box::new(chart), options)?;
+        let mut run = Simulation::in_chart(
+            pinned(&sheet, &[corner(0)])?,
+            start,
+            Box::new(chart),
+            options,
+        )?;
         Ok(run
             .step(END)
             .map_or(f64::NAN, |_| apart(&run.state().x, &reference)))
@@ -372,7 +379,8 @@ fn collinear(effort: Effort) -> Result<Findings> {
         error,
         1e-14,
     );
-    // Every interior vertex of degree 4 keeps one straight crease: the bumped M^0 has four of them on its boundary side.
+    // Every interior vertex of degree 4 keeps one straight crease; the bumped M^1 has four of them next to
+    // its boundary.
     let sheet = bumped(1, 0.1)?;
     let chart = |degenerate| {
         let options = AssignmentOptions {
@@ -390,7 +398,7 @@ fn collinear(effort: Effort) -> Result<Findings> {
             ..ChartOptions::default()
         };
         let start = State::at_rest(sheet.positions().to_vec());
-        let model = held(&sheet, &[corner(1)])?;
+        let model = pinned(&sheet, &[corner(1)])?;
         Ok(Simulation::in_chart(model, start, Box::new(chart), options)
             .map_err(|e| e.to_string())
             .and_then(|mut run| run.step(0.1).map(|r| r.strain).map_err(|e| e.to_string())))
@@ -419,7 +427,7 @@ fn collinear(effort: Effort) -> Result<Findings> {
                 rebase: Rebase::Never,
                 ..ChartOptions::default()
             };
-            let model = held(&square, &[corner(1)]).map_err(|e| e.to_string())?;
+            let model = pinned(&square, &[corner(1)]).map_err(|e| e.to_string())?;
             Simulation::in_chart(
                 model,
                 State::at_rest(square.positions().to_vec()),
@@ -452,7 +460,7 @@ fn collinear(effort: Effort) -> Result<Findings> {
     }
     for (name, method) in methods().take(effort.pick(2, 3, 3)) {
         let mut run =
-            super::scenes::at_rest(held(&square, &[corner(1)])?, square.positions(), method)?;
+            super::scenes::at_rest(pinned(&square, &[corner(1)])?, square.positions(), method)?;
         let c = course(&mut run, super::scenes::FRAME, 60, |_, _| {})?;
         f.at_most(
             format!("M^1 folded along its middle line, {name}: edge strain in 1 s"),

@@ -1,7 +1,7 @@
 //! Exactly flat starts, and passing through states where the rods are dependent.
 
 use super::naive::{TEXTBOOK, textbook, textbook_step};
-use super::scenes::{STRAIN, apart, bumped, conservative, corner, course, damped, held, methods};
+use super::scenes::{STRAIN, apart, bumped, conservative, corner, course, damped, methods, pinned};
 use super::{Case, Effort, Findings, plot};
 use crate::figures::Picture;
 use crate::interrupt;
@@ -25,7 +25,7 @@ pub(crate) const START: Case = Case {
 fn start(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
     let sheet = bumped(1, 0.0)?;
-    let model = held(&sheet, &[corner(1)])?;
+    let model = pinned(&sheet, &[corner(1)])?;
     let options = AssignmentOptions {
         pins: vec![corner(1)],
         ..Default::default()
@@ -59,7 +59,7 @@ fn start(effort: Effort) -> Result<Findings> {
     for level in levels {
         let sheet = bumped(level, 0.0)?;
         for (name, method) in damped() {
-            let model = held(&sheet, &[corner(level)])?;
+            let model = pinned(&sheet, &[corner(level)])?;
             let mut run = super::scenes::at_rest(model, sheet.positions(), method)?;
             let mut potential = 0.0_f64;
             let c = course(&mut run, super::scenes::FRAME, 60, |r, _| {
@@ -103,7 +103,7 @@ fn start(effort: Effort) -> Result<Findings> {
 /// The fall of M^2, rendered.
 fn fall() -> Result<Picture> {
     let sheet = bumped(2, 0.0)?;
-    let model = held(&sheet, &[corner(2)])?;
+    let model = pinned(&sheet, &[corner(2)])?;
     let mut run = super::scenes::at_rest(model, sheet.positions(), Method::default())?;
     let mut states = vec![(0.0, sheet.positions().to_vec())];
     for k in 1..=60 {

@@ -3,7 +3,7 @@
 use super::case::number;
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel_step, textbook_step};
 use super::scenes::{
-    apart, at_rest, bumped, conservative, corner, course, damped, energy_momentum, hanging, held,
+    apart, at_rest, bumped, conservative, corner, course, damped, energy_momentum, hanging, pinned,
 };
 use super::{Case, Effort, Findings, plot};
 use crate::interrupt;
@@ -149,7 +149,8 @@ const TWIN: f64 = 1e-10;
 /// A map of positions onto those of the reference.
 type Back = Box<dyn Fn(&[f64]) -> Vec<f64>>;
 
-/// A scene that moves like the reference: its sheet, pin, gravity, and the map of its positions onto those of the reference.
+/// A scene that moves like the reference: its sheet, pin and gravity, and the map of its positions onto
+/// those of the reference.
 struct Image {
     sheet: Sheet,
     pin: VertexId,
@@ -402,7 +403,7 @@ fn threads(effort: Effort) -> Result<Findings> {
     let cloth_steps = effort.pick(1, 4, 12);
     let cloth = || -> Result<Vec<f64>> {
         let sheet = bumped(4, 0.1)?;
-        let model = held(&sheet, &[])?;
+        let model = pinned(&sheet, &[])?;
         let options = ContactOptions::for_sheet(&model);
         let table = Shape::Cuboid {
             half: [0.25, 0.25, 0.1],
@@ -410,7 +411,7 @@ fn threads(effort: Effort) -> Result<Findings> {
         // Just below the lowest part of the bump above it.
         let pose = Isometry3::translation(0.5, 0.5, 0.05 - 0.1 - 0.95 * options.activation);
         let contacts = Contacts::new(&model, options)?
-            .with_body(Obstacle::still(table, pose)?, Coefficients::FRICTIONLESS)?
+            .with_body(Obstacle::fixed(table, pose)?, Coefficients::FRICTIONLESS)?
             .with_self_contact(Coefficients::FRICTIONLESS)?;
         let run = at_rest(model, sheet.positions(), Method::default())?;
         let mut run = run.with_contact(contacts)?;

@@ -24,7 +24,7 @@ pub(crate) const DRAPE: Case = Case {
 /// Largest kinetic energy of a sheet that hangs at rest, of its weight times 1 m.
 const REST: f64 = 1e-4;
 
-/// What holds a sheet.
+/// The support of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Support {
     /// The vertex next to a point of the sheet is pinned.
@@ -53,7 +53,7 @@ fn table(activation: f64) -> Result<Obstacle> {
         half_height: 0.5 * TABLE[1],
     };
     let pose = Isometry3::translation(0.5, 0.5, -0.5 * (TABLE[1] + activation));
-    Ok(Obstacle::still(shape, pose)?)
+    Ok(Obstacle::fixed(shape, pose)?)
 }
 
 /// A sheet at rest.
@@ -209,7 +209,8 @@ fn nearest(sheet: &Sheet, target: [f64; 2]) -> VertexId {
         .unwrap_or(VertexId(0))
 }
 
-/// Depth of the centre of area below a height, and the area of the shadow straight below (overlaps counted once for each layer).
+/// Depth of the centre of area below a height, and the area of the vertical projection, in which overlaps
+/// count once for each layer.
 fn shape(sheet: &Sheet, x: &[f64], top: f64) -> (f64, f64) {
     let (mut depth, mut shadow) = (0.0, 0.0);
     for (face, area) in sheet.topology().faces().iter().zip(sheet.face_areas()) {

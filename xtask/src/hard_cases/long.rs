@@ -3,7 +3,8 @@
 use super::case::number;
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook, textbook_step};
 use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, bumped, course, energy_momentum, hanging, held, methods, upright,
+    FRAME, STRAIN, apart, at_rest, bumped, course, energy_momentum, hanging, methods, pinned,
+    upright,
 };
 use super::{Case, Effort, Findings, Shortfall, plot};
 use crate::interrupt;
@@ -23,7 +24,7 @@ fn rest(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
     let sheet = upright(&generate::isotropic_square(1, 1.0)?)?;
     let top: Vec<VertexId> = (20..25).map(VertexId).collect();
-    let model = || held(&sheet, &top);
+    let model = || pinned(&sheet, &top);
     let start = sheet.positions();
     match textbook(&model()?, start, FRAME, 1000) {
         Ok((_, x)) => {
@@ -143,7 +144,7 @@ fn swinging() -> Result<Simulation> {
     let flat = bumped(1, 0.2)?;
     let sheet = flat.map_positions(|[x, y, z]| [x, y, z + 0.2 * (3.0 * x).cos() * y])?;
     let top: Vec<VertexId> = (20..25).map(VertexId).collect();
-    at_rest(held(&sheet, &top)?, sheet.positions(), energy_momentum())
+    at_rest(pinned(&sheet, &top)?, sheet.positions(), energy_momentum())
 }
 
 fn million(effort: Effort) -> Result<Findings> {

@@ -2,7 +2,7 @@
 
 use super::case::number;
 use super::naive::{GAUSS_SEIDEL, gauss_seidel};
-use super::scenes::{FRAME, STRAIN, at_rest, conservative, course, damped, held};
+use super::scenes::{FRAME, STRAIN, at_rest, conservative, course, damped, pinned};
 use super::{Case, Effort, Findings};
 use anyhow::Result;
 use isosheet_coords::{Start, sys_coord_assnmt_single};
@@ -33,7 +33,7 @@ fn long(effort: Effort) -> Result<Findings> {
         ),
     ];
     for (what, sheet, pins) in &scenes {
-        let model = held(sheet, pins)?;
+        let model = pinned(sheet, pins)?;
         let (strain, _) = gauss_seidel(&model, sheet.positions(), FRAME, 30);
         f.naive(
             GAUSS_SEIDEL,
@@ -44,7 +44,7 @@ fn long(effort: Effort) -> Result<Findings> {
             strain > 1e-2,
         );
         for (name, method) in damped() {
-            let mut run = at_rest(held(sheet, pins)?, sheet.positions(), method)?;
+            let mut run = at_rest(pinned(sheet, pins)?, sheet.positions(), method)?;
             let c = course(&mut run, FRAME, effort.pick(10, 10, 60), |_, _| {})?;
             f.at_most(
                 format!(
@@ -57,7 +57,7 @@ fn long(effort: Effort) -> Result<Findings> {
             .remark(c.said());
         }
         for (name, method) in conservative().into_iter().take(1) {
-            let mut run = at_rest(held(sheet, pins)?, sheet.positions(), method)?;
+            let mut run = at_rest(pinned(sheet, pins)?, sheet.positions(), method)?;
             let c = course(
                 &mut run,
                 effort.pick(1e-3, 1e-3, 1e-3),
@@ -191,7 +191,7 @@ fn irregular(effort: Effort) -> Result<Findings> {
             }
         }
         for (name, method) in damped() {
-            let mut run = at_rest(held(sheet, &pins)?, sheet.positions(), method)?;
+            let mut run = at_rest(pinned(sheet, &pins)?, sheet.positions(), method)?;
             let c = course(&mut run, FRAME, effort.pick(10, 60, 120), |_, _| {})?;
             f.at_most(
                 format!("{what}, {name}, from flat: edge strain"),
@@ -200,7 +200,7 @@ fn irregular(effort: Effort) -> Result<Findings> {
             )
             .remark(c.said());
         }
-        let model = held(sheet, &pins)?;
+        let model = pinned(sheet, &pins)?;
         let mut x = sheet.positions().to_vec();
         leave_flat(&model, &mut x, 0.1, 5)?;
         let mut run = at_rest(model, &x, conservative()[0].1.clone())?;

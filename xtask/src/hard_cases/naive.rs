@@ -3,13 +3,14 @@
 use isosheet_dynamics::SheetModel;
 use nalgebra::{DMatrix, DVector};
 
-/// Lagrange multipliers from the second derivative of the constraints: `G M^-1 G^T lambda = -(G M^-1 f + gamma)` with
-/// `gamma_e = |v_a - v_b|^2`, solved by dense Cholesky, and symplectic Euler steps (e.g. Witkin and Baraff's course notes, without their
-/// feedback terms). Lumped masses only.
+/// Lagrange multipliers from the second derivative of the constraints: `G M^-1 G^T lambda = -(G M^-1 f +
+/// gamma)` with `gamma_e = |v_a - v_b|^2`, solved by dense Cholesky, and symplectic Euler steps (as in
+/// Witkin and Baraff's course notes, without their feedback terms). Lumped masses only.
 pub(super) const TEXTBOOK: &str =
     "Lagrange multipliers at acceleration level, dense Cholesky, symplectic Euler";
 
-/// Gauss-Seidel projection of one rod after the other, velocities from the change of position (position-based dynamics).
+/// Gauss-Seidel projection of one rod after the other, with velocities from the change of position
+/// (position-based dynamics).
 pub(super) const GAUSS_SEIDEL: &str =
     "Gauss-Seidel projection of the rods (position-based dynamics), 50 sweeps a step";
 
@@ -115,7 +116,8 @@ pub(super) fn gauss_seidel_step(model: &SheetModel, x: &mut [f64], v: &mut [f64]
     }
 }
 
-/// Runs the textbook method from rest; returns the largest strain and the positions, or when it broke and why.
+/// Runs the textbook method from rest. Returns the largest strain and the positions, or when and why the
+/// run broke down.
 pub(super) fn textbook(
     model: &SheetModel,
     x: &[f64],

@@ -3,7 +3,7 @@
 use super::case::number;
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook};
 use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, bumped, course, damped, held, methods, upright,
+    FRAME, STRAIN, apart, at_rest, bumped, course, damped, methods, pinned, upright,
 };
 use super::{Case, Effort, Findings, Shortfall};
 use anyhow::Result;
@@ -47,7 +47,7 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
     let corners = [0, n - 1, n * (n - 1), n * n - 1].map(VertexId);
     let steps = effort.pick(10, 60, 240);
     let flat = bumped(level, 0.0)?;
-    let outcome = textbook(&held(&flat, &boundary)?, flat.positions(), 1e-3, 1000);
+    let outcome = textbook(&pinned(&flat, &boundary)?, flat.positions(), 1e-3, 1000);
     let (text, failed) = match outcome {
         Ok((strain, x)) => {
             let moved = apart(&x, flat.positions());
@@ -63,7 +63,7 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
         Err(e) => (format!("Flat M^1 held all around, {e}."), true),
     };
     f.naive(TEXTBOOK, text, failed);
-    let (strain, x) = gauss_seidel(&held(&flat, &boundary)?, flat.positions(), FRAME, steps);
+    let (strain, x) = gauss_seidel(&pinned(&flat, &boundary)?, flat.positions(), FRAME, steps);
     f.naive(
         GAUSS_SEIDEL,
         format!(
@@ -137,7 +137,7 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
     ];
     for (what, sheet, pins, room, limitation) in scenes {
         for (name, method) in damped() {
-            let mut run = at_rest(held(sheet, pins)?, sheet.positions(), method)?;
+            let mut run = at_rest(pinned(sheet, pins)?, sheet.positions(), method)?;
             let c = course(&mut run, FRAME, steps, |_, _| {})?;
             let check = f.at_most(
                 format!("{what}, {name}: edge strain in {steps} steps"),
@@ -213,7 +213,7 @@ fn taut(effort: Effort) -> Result<Findings> {
     let top: Vec<VertexId> = (20..25).map(VertexId).collect();
     let bottom: Vec<VertexId> = (0..5).map(VertexId).collect();
     let pulled = |factor: f64| -> Result<SheetModel> {
-        Ok(held(&sheet, &top)?.with_potential(Pull {
+        Ok(pinned(&sheet, &top)?.with_potential(Pull {
             vertices: bottom.clone(),
             force: [0.0, 0.0, -factor * weight / 5.0],
         }))
@@ -309,9 +309,10 @@ fn taut(effort: Effort) -> Result<Findings> {
 /// Mass of each vertex of the strip, kilograms.
 const BEAD: f64 = 0.01;
 
-/// Slowest transverse mode and its frequency of beads on a string of tension `force` / 2 in each column, held at one end, free at
-/// the other: `m w^2 = (F / L) x` with x the smallest eigenvalue of the second-difference matrix with one free end,
-/// `x = 4 sin^2(pi / (4 n + 2))`, displacement of bead k proportional to `sin(k pi / (2 n + 1))`.
+/// Slowest transverse mode and its frequency of a string with beads, of tension `force` / 2 in each column,
+/// fixed at one end and free at the other: `m w^2 = (F / L) x` with x the smallest eigenvalue of the
+/// second-difference matrix with one free end, `x = 4 sin^2(pi / (4 n + 2))`, displacement of bead k
+/// proportional to `sin(k pi / (2 n + 1))`.
 fn string_mode(n: usize, force: f64, spacing: f64) -> (Vec<f64>, f64) {
     let angle = std::f64::consts::PI / (2 * n + 1) as f64;
     let x = 4.0 * (0.5 * angle).sin().powi(2);

@@ -116,8 +116,9 @@ fn inertia(points: &[(f64, Vector3<f64>)]) -> (Matrix3<f64>, Vector3<f64>, f64) 
     (tensor, centre, mass)
 }
 
-/// A rigid body turning freely: Euler's equations and the quaternion of its attitude, by the classical Runge-Kutta method at
-/// a step whose halving changes nothing (checked by the caller).
+/// A rigid body that turns freely, by Euler's equations and the quaternion of its attitude. They are
+/// integrated by the classical Runge-Kutta method with a step whose halving changes nothing (checked by the
+/// caller).
 fn turned(tensor: Matrix3<f64>, spin: Vector3<f64>, t: f64, steps: usize) -> UnitQuaternion<f64> {
     // In the frame of the start, which is the body frame.
     let inverse = tensor.try_inverse().unwrap_or_else(Matrix3::zeros);
@@ -174,8 +175,8 @@ fn points(sheet: &Sheet, masses: &[f64]) -> Vec<(f64, Vector3<f64>)> {
         .collect()
 }
 
-/// The uniform shell as point masses that have its inertia: a third of every face in the middle of each of its sides, exact
-/// for quadratic functions.
+/// The uniform shell as point masses of the same inertia: a third of the mass of every face in the middle
+/// of each of its sides, which is exact for quadratic functions.
 fn shell(sheet: &Sheet, mass: f64) -> Vec<(f64, Vector3<f64>)> {
     let density = mass / sheet.area();
     let mut all = Vec::new();
@@ -210,7 +211,8 @@ fn closed(effort: Effort) -> Result<Findings> {
     let solids = [
         ("tetrahedron", tetrahedron()?, 1e-9),
         ("icosahedron", icosahedron()?, 1e-9),
-        // Moving the middle of a side by d strains its rods by d^2: the root of the strain is what lengths can tell.
+        // Moving the middle of a side by d strains its rods by d^2. Lengths therefore determine positions
+        // to the square root of the strain.
         ("box with a vertex inside every side", boxed()?, 1e-5),
     ];
     let mut rows = Vec::new();

@@ -4,7 +4,7 @@ use super::case::number;
 use super::naive::{GAUSS_SEIDEL, gauss_seidel};
 use super::scenes::{
     FRAME, STRAIN, apart, at_rest, bumped, conservative, corner, course, damped, energy_momentum,
-    held, methods, strain_bound,
+    methods, pinned, strain_bound,
 };
 use super::{Case, Effort, Findings, Shortfall};
 use anyhow::Result;
@@ -20,11 +20,12 @@ pub(crate) const SLIVERS: Case = Case {
     run: slivers,
 };
 
-/// Why needles held at their long side are hard.
+/// Why needles pinned at their long side are hard.
 const ALTITUDE: &str = "The lengths determine the altitude only to their own error times the square of the aspect: a strain of 1e-12 is all of an altitude of 1e-6. \
                         A method that lets its lengths err by 1e-12 loses its way; the conservative one, exact to rounding, does not.";
 
-/// A triangle with a pinned edge of length `base` and altitude `altitude`, and its motion from rest at angle 1 rad from hanging.
+/// A triangle with a pinned edge of length `base` and altitude `altitude`, and its motion from rest at 1
+/// rad to the vertical.
 fn needle(base: f64, altitude: f64) -> Result<(SheetModel, Vec<f64>)> {
     let (s, c) = 1.0_f64.sin_cos();
     let x = vec![
@@ -39,7 +40,7 @@ fn needle(base: f64, altitude: f64) -> Result<(SheetModel, Vec<f64>)> {
         -altitude * c,
     ];
     let sheet = Sheet::new(x.clone(), &[[0, 1, 2]])?;
-    Ok((held(&sheet, &[VertexId(0), VertexId(1)])?, x))
+    Ok((pinned(&sheet, &[VertexId(0), VertexId(1)])?, x))
 }
 
 /// The free corner of that triangle after time `t`.
@@ -57,7 +58,7 @@ fn squashed(level: u32, width: f64) -> Result<Sheet> {
 
 fn slivers(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
-    for (held_at, base, altitude) in [
+    for (pinned_at, base, altitude) in [
         ("short side", 1e-6, 1.0),
         ("long side", 1.0, 1e-3),
         ("long side", 1.0, 1e-6),
@@ -74,14 +75,14 @@ fn slivers(effort: Effort) -> Result<Findings> {
             let c = course(&mut run, quarter / n as f64, n, |_, _| {})?;
             let exact = swung(altitude, quarter);
             let error = apart(&run.state().x[6..], &exact) / altitude;
-            let what = format!("one triangle of aspect {aspect} held at its {held_at}, {name}");
+            let what = format!("one triangle of aspect {aspect} held at its {pinned_at}, {name}");
             let check = f.at_most(
                 format!("{what}: error after a quarter period, of its altitude"),
                 c.if_finished(error),
                 1e-5,
             );
             check.ended(&c);
-            let known = held_at == "long side" && altitude < 1e-4 && name == "BDF2";
+            let known = pinned_at == "long side" && altitude < 1e-4 && name == "BDF2";
             if known {
                 // Measured: 0.087.
                 check.limited(ALTITUDE, Shortfall::Value([0.03, 0.3]));
@@ -95,7 +96,7 @@ fn slivers(effort: Effort) -> Result<Findings> {
         }
     }
     let sheet = squashed(1, 1e-6)?;
-    let (strain, _) = gauss_seidel(&held(&sheet, &[corner(1)])?, sheet.positions(), FRAME, 60);
+    let (strain, _) = gauss_seidel(&pinned(&sheet, &[corner(1)])?, sheet.positions(), FRAME, 60);
     f.naive(
         GAUSS_SEIDEL,
         format!(
@@ -107,7 +108,7 @@ fn slivers(effort: Effort) -> Result<Findings> {
     let strip = generate::strip(20, 1.0, 1e-6 / 20.0, generate::Diagonals::UnionJack)?;
     let mut rows = Vec::new();
     for (name, method) in damped() {
-        let model = held(&strip, &[VertexId(0)])?;
+        let model = pinned(&strip, &[VertexId(0)])?;
         let mut run = at_rest(model, strip.positions(), method)?;
         let c = course(&mut run, FRAME, 60, |_, _| {})?;
         f.at_most(
@@ -127,7 +128,7 @@ fn slivers(effort: Effort) -> Result<Findings> {
     for &width in widths {
         for (name, method) in damped() {
             let sheet = squashed(1, width)?;
-            let mut run = at_rest(held(&sheet, &[corner(1)])?, sheet.positions(), method)?;
+            let mut run = at_rest(pinned(&sheet, &[corner(1)])?, sheet.positions(), method)?;
             let c = course(&mut run, FRAME, 60, |_, _| {})?;
             let strain = c.if_finished(c.strain);
             let what = format!(
@@ -179,8 +180,8 @@ const SNAP: &str = "At 0.442 s the heavy apexes have pulled the light hinge flat
 const FLUTTER: &str = "The energy of a heavy vertex gives a light one the root of the mass ratio times its speed: the light vertices flutter at time scales of \
                        1e-4 of a step, and no sub-step allowed (6e-5 of a step) resolves that.";
 
-/// Between which times (seconds) a method stops at a checkerboard of masses. Measured: implicit Euler 0.697 s, the projection 0.1875 s from
-/// flat and 0.0473 s from a bump, energy-momentum 0.0537 s.
+/// Between which times (seconds) a method stops at a checkerboard of masses. Measured: implicit Euler 0.697
+/// s, the projection 0.1875 s from flat and 0.0473 s from a bump, energy-momentum 0.0537 s.
 fn flutters(method: &str, ratio: f64, bump: f64) -> Option<[f64; 2]> {
     match (method, ratio, bump == 0.0) {
         ("projection", 1e8, true) => Some([0.05, 0.5]),
@@ -365,7 +366,7 @@ fn sizes(effort: Effort) -> Result<Findings> {
     let mut parts = Vec::new();
     for size in [1e3, 1.0, 1e-6] {
         let sheet = bumped(1, 0.05)?.map_positions(|p| p.map(|c| c * size))?;
-        let model = held(&sheet, &[corner(1)])?;
+        let model = pinned(&sheet, &[corner(1)])?;
         let strain = absolute(&model, sheet.positions(), FRAME * size.sqrt());
         parts.push((size, strain));
     }

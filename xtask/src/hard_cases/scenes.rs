@@ -9,11 +9,12 @@ use std::f64::consts::PI;
 /// The length of a step wherever a case does not say otherwise, seconds.
 pub(super) const FRAME: f64 = 1.0 / 60.0;
 
-/// What is promised of the relative edge length error of accepted steps, unless rounding of the coordinates is larger.
+/// Bound for the relative edge length error of accepted steps, unless the rounding of the coordinates is
+/// larger.
 pub(super) const STRAIN: f64 = 1e-12;
 
-/// What is promised at positions of the given sheet: [`STRAIN`], or four units in the last place of the largest coordinate over the
-/// shortest rod where that is larger.
+/// Bound for the relative edge length error at positions of the given sheet: [`STRAIN`], or four units in
+/// the last place of the largest coordinate over the shortest rod where that is larger.
 pub(super) fn strain_bound(sheet: &Sheet) -> f64 {
     let size = sheet
         .positions()
@@ -36,17 +37,17 @@ pub(super) fn corner(level: u32) -> VertexId {
     VertexId(n * (n - 1))
 }
 
-/// A sheet of 0.1 kg under gravity, held at the given vertices.
-pub(super) fn held(sheet: &Sheet, pins: &[VertexId]) -> Result<SheetModel> {
+/// A sheet of 0.1 kg under gravity, pinned at the given vertices.
+pub(super) fn pinned(sheet: &Sheet, pins: &[VertexId]) -> Result<SheetModel> {
     Ok(SheetModel::new(sheet, 0.1, MassKind::Lumped)?
         .with_gravity()
         .with_pins(pins)?)
 }
 
-/// `M^level` with a bump, held at a corner, at rest.
+/// `M^level` with a bump, pinned at a corner, at rest.
 pub(super) fn hanging(level: u32, bump: f64, method: Method) -> Result<Simulation> {
     let sheet = bumped(level, bump)?;
-    let model = held(&sheet, &[corner(level)])?;
+    let model = pinned(&sheet, &[corner(level)])?;
     at_rest(model, sheet.positions(), method)
 }
 

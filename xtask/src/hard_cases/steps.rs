@@ -241,7 +241,8 @@ fn free_fall(effort: Effort) -> Result<Findings> {
             f.at_most(
                 format!("{what}: largest net rod force on a vertex, of its weight"),
                 c.if_finished(force),
-                // Lengths good to 1e-12 leave accelerations of 1e-12 m / h^2 open, more along weak directions.
+                // Lengths exact to 1e-12 leave accelerations of 1e-12 m / h^2 undetermined, and larger ones
+                // along weak directions.
                 1e-6,
             )
             .ended(&c);
@@ -252,13 +253,15 @@ fn free_fall(effort: Effort) -> Result<Findings> {
             );
             let t = h * steps as f64;
             let first = ["implicit Euler", "projection"].contains(&name);
-            // Backward Euler falls by g h^2 n (n + 1) / 2 in its own discrete time; BDF2 starts with one such step.
+            // Backward Euler falls by g h^2 n (n + 1) / 2 in its own discrete time; BDF2 starts with one
+            // such step.
             let fall = match name {
                 _ if first => 4.9 * t * (t + h),
                 "BDF2" => 4.9 * (t * t + 1.5 * h * h),
                 _ => 4.9 * t * t,
             };
-            // M^1 flies on; M^2 stops, as measured, after 0.02125 s and at the start, M^3 flies on and stops after 0.428 s.
+            // M^1 does not stop. M^2 stops, as measured, after 0.02125 s (RATTLE) and at the start (its
+            // composition). M^3 does not stop with RATTLE, and stops after 0.428 s with its composition.
             let stops = match (name, effort) {
                 ("RATTLE", Effort::Standard) => Some([5e-3, 0.1]),
                 ("RATTLE composition", Effort::Standard) => Some([0.0, 0.02]),

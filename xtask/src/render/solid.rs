@@ -76,7 +76,7 @@ mod tests {
         let shape = Shape::Cuboid {
             half: [1.0, 2.0, 3.0],
         };
-        let body = Obstacle::still(shape, Isometry3::translation(0.0, 0.0, 5.0)).unwrap();
+        let body = Obstacle::fixed(shape, Isometry3::translation(0.0, 0.0, 5.0)).unwrap();
         let solid = Solid::of(&body, 0.0).unwrap();
         assert_eq!(
             (solid.points.len(), solid.faces.len(), solid.edges.len()),

@@ -169,7 +169,7 @@ impl Staged for Drape {
 
     fn bodies(&self) -> Result<Vec<Obstacle>> {
         let pose = Isometry3::translation(0.0, 0.0, -0.5 * TABLE - self.drop);
-        Ok(vec![Obstacle::still(self.table_shape()?, pose)?])
+        Ok(vec![Obstacle::fixed(self.table_shape()?, pose)?])
     }
 
     fn simulation(&self, sheet: &Sheet) -> Result<Simulation> {

@@ -20,7 +20,7 @@ pub(crate) struct Feed {
     pub(crate) guide: Guide,
     /// Length and width of the strip, metres.
     pub(crate) size: [f64; 2],
-    /// Cells along and across.
+    /// Cells along the strip and over its width.
     pub(crate) cells: [usize; 2],
     /// Mass of a square metre, kilograms.
     pub(crate) weight: f64,
@@ -48,7 +48,7 @@ pub(crate) struct Feed {
 
 impl Feed {
     /// How far the nip has moved at time `t`, metres: its speed grows linearly to the full one.
-    pub(crate) fn way(&self, t: f64) -> f64 {
+    pub(crate) fn feed_length(&self, t: f64) -> f64 {
         let t = t.max(0.0);
         if t < self.ramp {
             0.5 * self.speed * t * t / self.ramp
@@ -58,7 +58,7 @@ impl Feed {
     }
 
     /// The vertices in the nip.
-    pub(crate) fn held(&self) -> Vec<VertexId> {
+    pub(crate) fn pinned(&self) -> Vec<VertexId> {
         let [along, across] = self.cells;
         let rung = |i: usize| (0..=across).map(move |j| VertexId::from_index(i + j * (along + 1)));
         rung(0).chain(rung(1)).collect()
@@ -106,9 +106,9 @@ impl Staged for Feed {
             .with_gravity()
             .with_damping(self.damping)?
             .with_potential(CreaseSprings::bending(sheet, self.rigidity)?);
-        for v in self.held() {
+        for v in self.pinned() {
             let (scene, [x, y, z]) = (self.clone(), sheet.position(v));
-            model = model.with_moving_pin(v, move |t| [x + scene.way(t), y, z])?;
+            model = model.with_moving_pin(v, move |t| [x + scene.feed_length(t), y, z])?;
         }
         let options = ContactOptions {
             activation: self.activation,

@@ -1,4 +1,4 @@
-//! The way of paper through a bent guide.
+//! The path of paper through a bent guide.
 
 use anyhow::Result;
 use isosheet_collide::{Obstacle, Shape, TriangleSurface};
@@ -72,7 +72,7 @@ impl Guide {
                     .collect();
                 let surface = TriangleSurface::new(&positions, &faces)?;
                 let shape = Shape::Surface(Arc::new(surface));
-                Ok(Obstacle::still(shape, Isometry3::identity())?)
+                Ok(Obstacle::fixed(shape, Isometry3::identity())?)
             })
             .collect()
     }

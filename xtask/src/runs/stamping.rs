@@ -35,7 +35,7 @@ pub(crate) struct Stamping {
     pub(crate) clearance: f64,
     /// Speed of the die, metres per second.
     pub(crate) speed: f64,
-    /// Way of the die, metres.
+    /// Displacement of the die, metres.
     pub(crate) stroke: f64,
     /// Gap below which contact acts, metres.
     pub(crate) activation: f64,
@@ -83,7 +83,7 @@ impl Stamping {
         let middle = self.opening + width;
         let bar = |x: f64, y: f64, hx: f64, hy: f64| {
             let half = [hx, hy, 0.5 * PLATE];
-            Obstacle::still(Shape::Cuboid { half }, Isometry3::translation(x, y, z))
+            Obstacle::fixed(Shape::Cuboid { half }, Isometry3::translation(x, y, z))
         };
         Ok(vec![
             bar(middle, 0.0, width, self.holder)?,
@@ -176,7 +176,7 @@ impl Staged for Stamping {
         let mut bodies = vec![Obstacle::new(Shape::Cuboid { half }, keys)?];
         let surface = frame([self.outer(), self.opening], [low - PLATE, low])?;
         let shape = Shape::Surface(Arc::new(surface));
-        bodies.push(Obstacle::still(shape, Isometry3::identity())?);
+        bodies.push(Obstacle::fixed(shape, Isometry3::identity())?);
         bodies.extend(self.holders(low + self.clearance + 0.5 * PLATE)?);
         Ok(bodies)
     }

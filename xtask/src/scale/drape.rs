@@ -60,7 +60,7 @@ pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRo
     // The bump is at half its height above the corners of the table, where the cloth is lowest.
     let top = 0.5 * BUMP - START * options.activation;
     let pose = Isometry3::translation(0.5, 0.5, top - TABLE[2]);
-    let table = Obstacle::still(Shape::Cuboid { half: TABLE }, pose)?;
+    let table = Obstacle::fixed(Shape::Cuboid { half: TABLE }, pose)?;
     let contacts = Contacts::new(&model, options)?
         .with_body(table, Coefficients::FRICTIONLESS)?
         .with_self_contact(Coefficients::FRICTIONLESS)?;

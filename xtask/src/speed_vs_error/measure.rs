@@ -198,7 +198,7 @@ fn run(
     let h = reference.interval() / pieces as f64;
     let clock = Instant::now();
     let mut comparing = 0.0;
-    let mut arrived = None;
+    let mut at_last_checkpoint = None;
     'run: for want in reference.positions() {
         for _ in 0..pieces {
             interrupt::check()?;
@@ -226,13 +226,13 @@ fn run(
         pass.errors.position = pass.errors.position.max(error);
         pass.checkpoints += 1;
         let wall = clock.elapsed().as_secs_f64() - comparing;
-        arrived = Some((wall, simulation.state().t, pass.steps));
+        at_last_checkpoint = Some((wall, simulation.state().t, pass.steps));
         comparing += before.elapsed().as_secs_f64();
     }
     pass.wall = clock.elapsed().as_secs_f64() - comparing;
     pass.reached = simulation.state().t;
-    // What a run spent on its way from the last checkpoint to its failure is not held against it.
-    if let (Some(_), Some(before)) = (&pass.failure, arrived) {
+    // What a run spent on its way from the last checkpoint to its failure is not counted.
+    if let (Some(_), Some(before)) = (&pass.failure, at_last_checkpoint) {
         (pass.wall, pass.reached, pass.steps) = before;
     }
     Ok(pass)

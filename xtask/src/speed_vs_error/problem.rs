@@ -147,7 +147,7 @@ impl Problem {
         }
         let model = self.without_contact()?;
         let pose = Isometry3::translation(0.5, 0.5, TABLE_TOP - TABLE[2]);
-        let table = Obstacle::still(Shape::Cuboid { half: TABLE }, pose)?;
+        let table = Obstacle::fixed(Shape::Cuboid { half: TABLE }, pose)?;
         let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?;
         Ok(Some(contacts.with_body(table, Coefficients::FRICTIONLESS)?))
     }

@@ -138,7 +138,7 @@ fn measure(level: u32, pairs: Pairs, patience: f64) -> Result<Tablecloth> {
 pub(crate) fn scene(sheet: &Sheet, pairs: Pairs, method: Method) -> Result<Simulation> {
     let model = SheetModel::new(sheet, 0.1, MassKind::Lumped)?.with_gravity();
     let pose = Isometry3::translation(0.5, 0.5, -TABLE[2] - CLEARANCE);
-    let table = Obstacle::still(Shape::Cuboid { half: TABLE }, pose)?;
+    let table = Obstacle::fixed(Shape::Cuboid { half: TABLE }, pose)?;
     let mut contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?
         .with_body(table, Coefficients::FRICTIONLESS)?;
     if pairs == Pairs::TableAndItself {

@@ -155,7 +155,7 @@ fn over(shape: Shape, friction: Coefficients, gap: f64) -> (Step, Vec<f64>) {
     let options = options(&model, 0.1);
     let mut contacts = Contacts::new(&model, options)
         .unwrap()
-        .with_body(still(shape, pose), friction)
+        .with_body(fixed(shape, pose), friction)
         .unwrap();
     // Down until the smallest gap is the one asked for; a gap shrinks by no more than the shift.
     for _ in 0..60 {
@@ -193,7 +193,7 @@ fn aligned(twist: f64, friction: Coefficients) -> (Step, Vec<f64>) {
     }
     let contacts = Contacts::new(&model, options(&model, 0.1))
         .unwrap()
-        .with_body(still(Shape::Cuboid { half }, pose), friction)
+        .with_body(fixed(Shape::Cuboid { half }, pose), friction)
         .unwrap();
     let step = Step::begin(contacts, &model, H, &x);
     let active = step.active(&x);

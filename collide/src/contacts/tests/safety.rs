@@ -148,8 +148,8 @@ fn a_fast_punch_does_not_tunnel() {
             .with_body(moving(shape, from, to, h), Coefficients::FRICTIONLESS)
             .unwrap();
         let mut step = Step::begin(contacts, &model, h, &x);
-        let still = vec![0.0; x.len()];
-        let a = step.query(&x, &still);
+        let zero = vec![0.0; x.len()];
+        let a = step.query(&x, &zero);
         let impact = gap / (10.0 * h);
         assert!(
             a < 1.05 * impact && a > 0.8 * impact,
@@ -159,7 +159,7 @@ fn a_fast_punch_does_not_tunnel() {
         assert!(step.gap(&x) > 0.0 && step.gap(&x) < 3e-4, "{name}");
         // Nothing more is possible, and it does not end with a touch.
         for _ in 0..5 {
-            let a = step.query(&x, &still);
+            let a = step.query(&x, &zero);
             step.advance(a);
             assert!(step.gap(&x) > 0.0, "{name}");
         }
@@ -201,8 +201,8 @@ fn spinning_in_place_is_safe() {
             .with_body(moving(shape, pose, to, 0.01), Coefficients::FRICTIONLESS)
             .unwrap();
         let mut step = Step::begin(contacts, &model, 0.01, &x);
-        let still = vec![0.0; x.len()];
-        assert_eq!(step.query(&x, &still), 1.0, "{name}");
+        let zero = vec![0.0; x.len()];
+        assert_eq!(step.query(&x, &zero), 1.0, "{name}");
     }
 }
 
@@ -278,7 +278,7 @@ fn sets_do_not_depend_on_earlier_searches() {
             )
             .unwrap()
             .with_body(
-                still(roof(), Isometry3::translation(0.0, 0.0, -0.3)),
+                fixed(roof(), Isometry3::translation(0.0, 0.0, -0.3)),
                 Coefficients::FRICTIONLESS,
             )
             .unwrap()

@@ -10,7 +10,7 @@ fn table(model: &SheetModel, gap: f64) -> Contacts {
     let pose = Isometry3::translation(0.5, 0.5, -0.1 - gap);
     Contacts::new(model, ContactOptions::for_sheet(model))
         .unwrap()
-        .with_body(still(shape, pose), Coefficients::equal(0.3))
+        .with_body(fixed(shape, pose), Coefficients::equal(0.3))
         .unwrap()
 }
 
@@ -65,7 +65,7 @@ fn starts_that_pass_through_are_refused() {
         let pose = Isometry3::translation(0.08, 0.13, 0.011);
         let mut contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))
             .unwrap()
-            .with_body(still(shape, pose), Coefficients::FRICTIONLESS)
+            .with_body(fixed(shape, pose), Coefficients::FRICTIONLESS)
             .unwrap();
         let error = contacts
             .check_start(&model, &State::at_rest(x.clone()))
@@ -132,7 +132,7 @@ fn starts_without_any_distance_are_refused() {
         };
         let mut contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))
             .unwrap()
-            .with_body(still(shape, place), Coefficients::FRICTIONLESS)
+            .with_body(fixed(shape, place), Coefficients::FRICTIONLESS)
             .unwrap();
         let error = contacts.check_start(&model, &flat).unwrap_err();
         assert!(
@@ -194,7 +194,7 @@ fn options_that_make_no_sense_are_named() {
         contacts().with_self_contact(bad),
         Err(ContactsError::Friction(_))
     ));
-    let floor = || still(Shape::HalfSpace, Isometry3::identity());
+    let floor = || fixed(Shape::HalfSpace, Isometry3::identity());
     assert!(matches!(
         contacts().with_body(floor(), bad),
         Err(ContactsError::Friction(_))
@@ -219,7 +219,7 @@ fn options_that_make_no_sense_are_named() {
     let contacts = Contacts::new(&model, flat).unwrap();
     assert!(matches!(
         contacts.with_body(
-            still(round, Isometry3::identity()),
+            fixed(round, Isometry3::identity()),
             Coefficients::FRICTIONLESS
         ),
         Err(ContactsError::Obstacle(_))
@@ -241,7 +241,7 @@ fn automatic_stiffness_carries_a_hundred_vertices() {
         let contacts = Contacts::new(&model, options)
             .unwrap()
             .with_body(
-                still(Shape::HalfSpace, Isometry3::identity()),
+                fixed(Shape::HalfSpace, Isometry3::identity()),
                 Coefficients::FRICTIONLESS,
             )
             .unwrap();

@@ -110,11 +110,11 @@ fn impacts_never_add_energy() {
         let speed = scene.v.iter().fold(0.3, |m: f64, v| m.max(v.abs()));
         for ContactImpulse { point, impulse } in &impact.impulses {
             let normal = impulse.dot(&point.normal);
-            let across = (impulse - normal * point.normal).norm();
+            let tangential = (impulse - normal * point.normal).norm();
             let round_off = 1e-12 * impulse.norm();
             assert!(normal >= -round_off, "seed {seed}: {impulse}");
             let most = point.friction * normal + round_off;
-            assert!(across <= most, "seed {seed}: {across} above {most}");
+            assert!(tangential <= most, "seed {seed}: {tangential} above {most}");
             let leaves = point.normal.dot(&scene.relative(point, &after));
             assert!(leaves > -1e-6 * speed, "seed {seed}: {leaves}");
         }
