@@ -1,7 +1,9 @@
 //! Exactly flat starts, and passing through states where the rods are dependent.
 
 use super::naive::{TEXTBOOK, textbook, textbook_step};
-use super::scenes::{STRAIN, apart, bumped, conservative, corner, course, damped, methods, pinned};
+use super::scenes::{
+    FRAME, STRAIN, apart, at_rest, bumped, conservative, corner, course, damped, methods, pinned,
+};
 use super::{Case, Effort, Findings, plot};
 use crate::figures::Picture;
 use crate::interrupt;
@@ -9,7 +11,7 @@ use crate::render::{Camera, Labelled, Look, SheetPicture, montage, render};
 use anyhow::Result;
 use isosheet_coords::{AssignmentOptions, CartesianChart, Choice, FrontChart, RodSystem};
 use isosheet_dynamics::chart::{ChartOptions, Rebase};
-use isosheet_dynamics::{Method, SheetModel, Simulation, State, rod_rank};
+use isosheet_dynamics::{Frames, Method, SheetModel, Simulation, State, rod_rank};
 use isosheet_mesh::{MassMatrix, Sheet};
 use isosheet_tests::{Flap, orders};
 use std::f64::consts::FRAC_PI_2;
@@ -60,9 +62,9 @@ fn start(effort: Effort) -> Result<Findings> {
         let sheet = bumped(level, 0.0)?;
         for (name, method) in damped() {
             let model = pinned(&sheet, &[corner(level)])?;
-            let mut run = super::scenes::at_rest(model, sheet.positions(), method)?;
+            let mut run = at_rest(model, sheet.positions(), method)?;
             let mut potential = 0.0_f64;
-            let c = course(&mut run, super::scenes::FRAME, 60, |r, _| {
+            let c = course(&mut run, FRAME, 60, |r, _| {
                 potential = potential.min(r.potential);
             })?;
             let what = format!("M^{level}, {name}");
@@ -104,18 +106,14 @@ fn start(effort: Effort) -> Result<Findings> {
 fn fall() -> Result<Picture> {
     let sheet = bumped(2, 0.0)?;
     let model = pinned(&sheet, &[corner(2)])?;
-    let mut run = super::scenes::at_rest(model, sheet.positions(), Method::default())?;
-    let mut states = vec![(0.0, sheet.positions().to_vec())];
-    for k in 1..=60 {
-        interrupt::check()?;
-        run.step(super::scenes::FRAME)?;
-        if [6, 15, 24, 36, 60].contains(&k) {
-            states.push((run.state().t, run.state().x.clone()));
-        }
-    }
+    let mut run = at_rest(model, sheet.positions(), Method::default())?;
+    let mut kept = Frames::every(1);
+    run.run(1.0, FRAME, &mut [&mut kept, &mut interrupt::observe])?;
+    interrupt::check()?;
+    let states = [0, 6, 15, 24, 36, 60].map(|k| &kept.states()[k]);
     let points = states
         .iter()
-        .flat_map(|(_, x)| x.as_chunks::<3>().0.iter().copied());
+        .flat_map(|s| s.x.as_chunks::<3>().0.iter().copied());
     let view = Camera::new([0.0; 3], -62.0, 17.0, 1.0, 6.0);
     let aspect = view.aspect(points.clone());
     let camera = view.framing(points, aspect, 0.04);
@@ -125,7 +123,7 @@ fn fall() -> Result<Picture> {
     };
     let frames: Vec<Labelled> = states
         .iter()
-        .map(|(t, x)| Labelled {
+        .map(|State { t, x, .. }| Labelled {
             image: render(
                 &SheetPicture {
                     topology: sheet.topology(),
@@ -214,9 +212,8 @@ fn branch(effort: Effort) -> Result<Findings> {
     let outcome = Simulation::in_chart(model, start.clone(), Box::new(chart), options)
         .map_err(|e| e.to_string())
         .and_then(|mut run| {
-            for _ in 0..100 {
-                run.step(0.01 * DURATION).map_err(|e| e.to_string())?;
-            }
+            run.run(DURATION, 0.01 * DURATION, &mut [])
+                .map_err(|e| e.to_string())?;
             Ok(run.state().x.clone())
         });
     let crossing_at =

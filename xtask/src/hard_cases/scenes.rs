@@ -5,6 +5,7 @@ use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepError, StepReport};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 
 /// The length of a step wherever a case does not say otherwise, seconds.
 pub(super) const FRAME: f64 = 1.0 / 60.0;
@@ -134,24 +135,20 @@ pub(super) fn course(
     mut watch: impl FnMut(&StepReport, &State),
 ) -> Result<Course, Interrupted> {
     let mut course = Course::default();
-    for _ in 0..steps {
-        interrupt::check()?;
-        match run.step(h) {
-            Ok(report) => {
-                course.steps += 1;
-                course.rejected += report.rejected;
-                course.strain = course.strain.max(report.strain);
-                course.drift = course.drift.max(report.energy_drift.abs());
-                course.gain = course.gain.max(report.energy_drift);
-                course.kinetic = course.kinetic.max(report.kinetic);
-                watch(&report, run.state());
-            }
-            Err(error) => {
-                course.refusal = Some(error);
-                break;
-            }
-        }
-    }
+    let mut observe = |run: &Simulation, report: &StepReport| {
+        course.steps += 1;
+        course.rejected += report.rejected;
+        course.strain = course.strain.max(report.strain);
+        course.drift = course.drift.max(report.energy_drift.abs());
+        course.gain = course.gain.max(report.energy_drift);
+        course.kinetic = course.kinetic.max(report.kinetic);
+        watch(report, run.state());
+        ControlFlow::Continue(())
+    };
+    let duration = steps as f64 * h;
+    let end = run.run(duration, h, &mut [&mut observe, &mut interrupt::observe]);
+    interrupt::check()?;
+    course.refusal = end.err();
     course.end = run.state().t;
     Ok(course)
 }

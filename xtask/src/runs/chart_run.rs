@@ -113,6 +113,7 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
     };
     let clock = Instant::now();
     let mut frame = 0;
+    // The scheme chooses the lengths of its steps, so that their number is not known beforehand.
     while simulation.time() < duration {
         interrupt::check()?;
         match simulation.step() {

@@ -4,7 +4,7 @@ use super::{Scene, Shape, Staged};
 use crate::interrupt;
 use crate::progress::Progress;
 use anyhow::Result;
-use isosheet_dynamics::{Method, Simulation, State, leave_flat};
+use isosheet_dynamics::{Frames, Method, Simulation, State, leave_flat};
 use serde::{Deserialize, Serialize};
 
 /// What became of one member of an ensemble.
@@ -33,18 +33,25 @@ pub(crate) fn ensemble(scene: &Scene, bump: f64, members: u64) -> Result<Vec<Mem
         leave_flat(&model, &mut x, bump, seed)?;
         let start = model.potential_energy(0.0, &x);
         let mut simulation = Simulation::new(model, State::at_rest(x), Method::default())?;
-        let (mut sum, mut motion_left) = (0.0, 0.0);
-        for _ in 0..scene.frames {
-            interrupt::check()?;
-            let report = simulation.step(scene.frame)?;
-            sum += Shape::of(scene, &sheet, &simulation.state().x)?.bending;
-            motion_left = report.kinetic / (start - report.potential).max(1e-12);
+        let mut frames = Frames::every(1);
+        simulation.run(
+            scene.frames as f64 * scene.frame,
+            scene.frame,
+            &mut [&mut frames, &mut interrupt::observe],
+        )?;
+        interrupt::check()?;
+        let mut sum = 0.0;
+        for state in &frames.states()[1..] {
+            sum += Shape::of(scene, &sheet, &state.x)?.bending;
         }
+        let State { t, x, v } = simulation.state();
+        let model = simulation.model();
+        let released = start - model.potential_energy(*t, x);
         all.push(Member {
             seed,
-            shape: Shape::of(scene, &sheet, &simulation.state().x)?,
+            shape: Shape::of(scene, &sheet, x)?,
             mean_bending: sum / scene.frames as f64,
-            motion_left,
+            motion_left: model.kinetic_energy(v) / released.max(1e-12),
         });
         bar.step();
     }

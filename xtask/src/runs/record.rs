@@ -5,7 +5,7 @@ use crate::interrupt::{self, Interrupted};
 use crate::progress::{self, Progress};
 use crate::store::{Draft, Extent, Store};
 use anyhow::{Context, Result, ensure};
-use isosheet_dynamics::{Simulation, StepOutcome, StepReport};
+use isosheet_dynamics::{RunEnd, Simulation, StepOutcome, StepReport};
 use isosheet_io::{
     HistoryRow, HistoryWriter, Trajectory, frame_path, write_atomically, write_json, write_obj,
 };
@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::io::Write as _;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
@@ -254,61 +255,38 @@ fn run(scene: &impl Staged, draft: &mut Draft, stop: impl Fn() -> bool) -> Resul
         supports: String::new(),
     };
     recorder.frame(&simulation, None)?;
-    let mut s = RunSummary {
-        scene: serde_json::to_value(scene)?,
-        extent: Extent::Complete,
-        vertices: sheet.topology().vertex_count(),
-        faces: sheet.topology().face_count(),
-        frames: 0,
-        time: 0.0,
-        wall: 0.0,
-        frames_per_second: 0.0,
-        substeps: 0,
-        rejected: 0,
-        iterations: 0,
-        factorisations: 0,
-        step_range: None,
-        max_strain: 0.0,
-        paths: [0; 4],
-        motion_left: 0.0,
-        smallest_gap: None,
-        energy: Energy::default(),
-        at_rest_from: None,
-    };
+    let mut s = RunSummary::start(scene, &sheet)?;
     // The sheet starts at rest.
     let before = simulation.energy();
     let (frame, frames) = (scene.frame(), scene.frames());
     let bar = Progress::start(format!("run {}", scene.name()), frames);
-    for _ in 0..frames {
-        if stop() {
-            s.extent = Extent::Partial;
-            break;
-        }
-        let clock = Instant::now();
-        let report = simulation.step(frame)?;
+    let stopped_at_once = stop();
+    let mut stopped = stopped_at_once;
+    let mut outcome = Ok(());
+    let mut clock = Instant::now();
+    let mut record = |simulation: &Simulation, report: &StepReport| {
         s.wall += clock.elapsed().as_secs_f64();
-        check(&report)?;
-        s.count(&report);
-        recorder.frame(&simulation, Some(&report))?;
+        s.count(report);
+        s.balance(report, before);
+        outcome = check(report).and_then(|()| recorder.frame(simulation, Some(report)));
         bar.step();
-        let released = before - report.potential;
-        s.motion_left = if released > 0.0 {
-            report.kinetic / released
+        let over = outcome.is_err() || scene.ends(simulation);
+        stopped = !over && stop();
+        clock = Instant::now();
+        if over || stopped {
+            ControlFlow::Break(())
         } else {
-            0.0
-        };
-        s.at_rest_from =
-            (s.motion_left < REST && released > 0.0).then(|| s.at_rest_from.unwrap_or(report.t));
-        s.energy = Energy {
-            released,
-            work: report.work,
-            damped: report.dissipated,
-            friction: report.friction,
-            drift: report.energy_drift,
-        };
-        if scene.ends(&simulation) {
-            break;
+            ControlFlow::Continue(())
         }
+    };
+    let end = if stopped_at_once {
+        RunEnd::Stopped
+    } else {
+        simulation.run(frames as f64 * frame, frame, &mut [&mut record])?
+    };
+    outcome?;
+    if stopped && end == RunEnd::Stopped {
+        s.extent = Extent::Partial;
     }
     recorder.trajectory.write(&folder.join("trajectory.npz"))?;
     for (file, head, rows) in [
@@ -331,6 +309,50 @@ fn run(scene: &impl Staged, draft: &mut Draft, stop: impl Fn() -> bool) -> Resul
 }
 
 impl RunSummary {
+    /// Of a run without a frame yet.
+    fn start(scene: &impl Staged, sheet: &Sheet) -> Result<Self> {
+        Ok(Self {
+            scene: serde_json::to_value(scene)?,
+            extent: Extent::Complete,
+            vertices: sheet.topology().vertex_count(),
+            faces: sheet.topology().face_count(),
+            frames: 0,
+            time: 0.0,
+            wall: 0.0,
+            frames_per_second: 0.0,
+            substeps: 0,
+            rejected: 0,
+            iterations: 0,
+            factorisations: 0,
+            step_range: None,
+            max_strain: 0.0,
+            paths: [0; 4],
+            motion_left: 0.0,
+            smallest_gap: None,
+            energy: Energy::default(),
+            at_rest_from: None,
+        })
+    }
+
+    /// The energies after a step of a run that started with the energy `before`, joules.
+    fn balance(&mut self, r: &StepReport, before: f64) {
+        let released = before - r.potential;
+        self.motion_left = if released > 0.0 {
+            r.kinetic / released
+        } else {
+            0.0
+        };
+        self.at_rest_from =
+            (self.motion_left < REST && released > 0.0).then(|| self.at_rest_from.unwrap_or(r.t));
+        self.energy = Energy {
+            released,
+            work: r.work,
+            damped: r.dissipated,
+            friction: r.friction,
+            drift: r.energy_drift,
+        };
+    }
+
     fn count(&mut self, r: &StepReport) {
         self.frames += 1;
         self.time = r.t;

@@ -1,13 +1,14 @@
 //! What a step with contact costs at one mesh size.
 
 use super::measure::{STEP, bumped, peak_memory};
-use super::timed::{Spent, Timed};
+use super::timed::Timed;
 use crate::interrupt;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
-use isosheet_dynamics::{Method, SheetModel, Simulation, State};
+use isosheet_dynamics::{Method, RunEnd, SheetModel, Simulation, State, StepReport};
 use isosheet_mesh::{MassKind, VertexId};
 use nalgebra::Isometry3;
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// Height of the bump of the cloth, metres. Ten centimetres keep the length equations independent; of a
@@ -85,29 +86,30 @@ pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRo
         stopped: None,
     };
     let (mut iterations, mut factorisations) = (0, 0);
-    let (mut clock, mut before) = (Instant::now(), Spent::default());
-    for k in 0..=steps {
-        interrupt::check()?;
+    let first = run.step(STEP);
+    let (clock, before) = (Instant::now(), watch.read());
+    let mut observe = |_: &Simulation, report: &StepReport| {
+        row.steps += 1;
+        iterations += report.iterations;
+        factorisations += report.factorisations;
+        row.rejected += report.rejected;
+        row.strain = row.strain.max(report.strain);
+        row.gap = row.gap.min(report.gap.unwrap_or(f64::INFINITY));
         if clock.elapsed().as_secs_f64() > patience {
-            row.stopped = Some(format!("{patience} s of wall time were over"));
-            break;
+            return ControlFlow::Break(());
         }
-        match run.step(STEP) {
-            Ok(_) if k == 0 => (clock, before) = (Instant::now(), watch.read()),
-            Ok(report) => {
-                row.steps += 1;
-                iterations += report.iterations;
-                factorisations += report.factorisations;
-                row.rejected += report.rejected;
-                row.strain = row.strain.max(report.strain);
-                row.gap = row.gap.min(report.gap.unwrap_or(f64::INFINITY));
-            }
-            Err(error) => {
-                row.stopped = Some(error.to_string());
-                break;
-            }
-        }
-    }
+        ControlFlow::Continue(())
+    };
+    let duration = steps as f64 * STEP;
+    let end =
+        first.and_then(|_| run.run(duration, STEP, &mut [&mut observe, &mut interrupt::observe]));
+    interrupt::check()?;
+    row.stopped = match end {
+        Ok(RunEnd::Stopped) => Some(format!("{patience} s of wall time were over")),
+        // No support of this scene moves, so that no run ends taut.
+        Ok(RunEnd::Complete | RunEnd::Taut) => None,
+        Err(error) => Some(error.to_string()),
+    };
     let n = row.steps.max(1) as f64;
     let spent = watch.read().since(before);
     row.per_step = clock.elapsed().as_secs_f64() / n;

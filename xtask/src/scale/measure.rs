@@ -3,7 +3,7 @@
 use crate::interrupt;
 use anyhow::{Context, Result};
 use isosheet_coords::linalg::{Fill, Ordering, Pattern, SparseLlt, elimination_order};
-use isosheet_dynamics::{Method, SheetModel, Simulation, State};
+use isosheet_dynamics::{History, Method, SheetModel, Simulation, State, StepReport};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
@@ -114,17 +114,19 @@ pub(crate) fn measure(level: u32, steps: usize) -> Result<Row> {
     let context = |k| format!("step {k} of the sheet of level {level}");
     run.step(STEP).with_context(|| context(0))?;
     let clock = Instant::now();
-    let (mut iterations, mut factorisations, mut strain) = (0, 0, 0.0_f64);
-    let mut drift = 0.0;
-    for k in 1..=steps {
-        interrupt::check()?;
-        let report = run.step(STEP).with_context(|| context(k))?;
-        iterations += report.iterations;
-        factorisations += report.factorisations;
-        strain = strain.max(report.strain);
-        drift = report.energy_drift;
-    }
+    let mut history = History::default();
+    let end = run.run(
+        steps as f64 * STEP,
+        STEP,
+        &mut [&mut history, &mut interrupt::observe],
+    );
     let per_step = clock.elapsed().as_secs_f64() / steps as f64;
+    interrupt::check()?;
+    let reports = history.reports();
+    end.with_context(|| context(reports.len() + 1))?;
+    let mean = |count: fn(&StepReport) -> usize| {
+        reports.iter().map(count).sum::<usize>() as f64 / steps as f64
+    };
     let released = before - run.model().potential_energy(0.0, &run.state().x);
     let peak = peak_memory();
     drop(run);
@@ -135,10 +137,10 @@ pub(crate) fn measure(level: u32, steps: usize) -> Result<Row> {
         setup,
         steps,
         per_step,
-        iterations: iterations as f64 / steps as f64,
-        factorisations: factorisations as f64 / steps as f64,
-        strain,
-        balance: drift / released,
+        iterations: mean(|r| r.iterations),
+        factorisations: mean(|r| r.factorisations),
+        strain: reports.iter().map(|r| r.strain).fold(0.0, f64::max),
+        balance: reports.last().map_or(0.0, |r| r.energy_drift) / released,
         peak,
         orders: [
             order(&sheet, Ordering::MinimumDegree)?,

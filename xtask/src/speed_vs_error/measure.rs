@@ -5,9 +5,10 @@ use super::reference::Reference;
 use super::scheme::{Fineness, Scheme};
 use crate::interrupt;
 use anyhow::Result;
-use isosheet_dynamics::Simulation;
+use isosheet_dynamics::{Observer, Simulation, StepReport};
 use isosheet_tests::max_difference;
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// What one run of a method gave.
@@ -199,27 +200,27 @@ fn run(
     let clock = Instant::now();
     let mut comparing = 0.0;
     let mut at_last_checkpoint = None;
-    'run: for want in reference.positions() {
-        for _ in 0..pieces {
-            interrupt::check()?;
-            match simulation.step(h) {
-                Ok(report) => {
-                    pass.steps += report.substeps;
-                    pass.rejected += report.rejected;
-                    pass.factorisations += report.factorisations;
-                    let e = &mut pass.errors;
-                    e.energy = e.energy.max(report.energy_drift.abs() / reference.energy);
-                    e.strain = e.strain.max(report.strain);
-                }
-                Err(error) => {
-                    pass.failure = Some(error.to_string());
-                    break 'run;
-                }
-            }
+    for want in reference.positions() {
+        let mut watch = |_: &Simulation, report: &StepReport| {
+            pass.steps += report.substeps;
+            pass.rejected += report.rejected;
+            pass.factorisations += report.factorisations;
+            let e = &mut pass.errors;
+            e.energy = e.energy.max(report.energy_drift.abs() / reference.energy);
+            e.strain = e.strain.max(report.strain);
             if clock.elapsed().as_secs_f64() - comparing > patience {
                 pass.failure = Some(format!("given up after {patience} s of wall time"));
-                break 'run;
+                return ControlFlow::Break(());
             }
+            ControlFlow::Continue(())
+        };
+        let observers: &mut [&mut dyn Observer] = &mut [&mut watch, &mut interrupt::observe];
+        if let Err(error) = simulation.run(reference.interval(), h, observers) {
+            pass.failure = Some(error.to_string());
+        }
+        interrupt::check()?;
+        if pass.failure.is_some() {
+            break;
         }
         let before = Instant::now();
         let error = max_difference(&simulation.state().x, want);

@@ -4,9 +4,10 @@ use super::problem::{CHECKPOINTS, Problem};
 use super::scheme::{Fineness, Scheme};
 use crate::interrupt;
 use anyhow::{Context, Result};
-use isosheet_dynamics::{Method, Simulation, State, leave_flat};
+use isosheet_dynamics::{Method, RunEnd, Simulation, State, StepReport, leave_flat};
 use isosheet_tests::max_difference;
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// Positions that errors are measured against.
@@ -246,14 +247,18 @@ fn follow(
         steps,
         change: f64::INFINITY,
     };
+    let h = interval / steps as f64;
+    let mut watch = |_: &Simulation, _: &StepReport| {
+        if clock.elapsed().as_secs_f64() > patience {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    };
     for _ in 0..checkpoints {
-        for _ in 0..steps {
-            interrupt::check()?;
-            if run.step(interval / steps as f64).is_err()
-                || clock.elapsed().as_secs_f64() > patience
-            {
-                return Ok(None);
-            }
+        let end = run.run(interval, h, &mut [&mut watch, &mut interrupt::observe]);
+        interrupt::check()?;
+        if end != Ok(RunEnd::Complete) {
+            return Ok(None);
         }
         track.energy = track.energy.max(run.model().kinetic_energy(&run.state().v));
         track.states.push(run.state().x.clone());
