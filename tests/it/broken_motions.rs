@@ -197,6 +197,46 @@ fn a_velocity_that_is_not_finite_ends_the_step_in_a_chart() {
     assert!(run.positions().iter().all(|c| c.is_finite()));
 }
 
+/// A floor that rises against a falling triangle: the refused step has moved positions, momenta and contacts
+/// before the velocity of the floor is asked for.
+#[test]
+fn a_step_refused_in_its_impacts_leaves_a_chart_as_it_was() {
+    let (model, start, chart, options) = triangle();
+    let last = 0.003;
+    let motion = move |t: f64| {
+        let z = if t > last + 1e-12 {
+            f64::NAN
+        } else {
+            -5e-4 + 0.05 * t
+        };
+        Isometry3::translation(0.0, 0.0, z)
+    };
+    let contacts = contacts(&model, Shape::HalfSpace, motion.into());
+    let mut run = ChartSimulation::from_state(model, chart, options, &start)
+        .expect("valid")
+        .with_contact(contacts)
+        .expect("free");
+    for _ in 0..2 {
+        run.step().expect("accepted");
+    }
+    let state = |run: &ChartSimulation| {
+        (
+            run.contacts().cloned(),
+            [run.positions(), run.coordinates(), run.momenta()].map(<[f64]>::to_vec),
+            run.impulses().to_vec(),
+            [run.time(), run.hamiltonian()],
+            run.step_range(),
+        )
+    };
+    let before = state(&run);
+    assert!(!before.0.as_ref().expect("contact").list().is_empty());
+    assert!(!before.2.is_empty());
+    for _ in 0..2 {
+        assert!(matches!(run.step(), Err(ChartDynamicsError::Body(_))));
+        assert_eq!(state(&run), before);
+    }
+}
+
 #[test]
 fn a_pin_that_is_not_finite_ends_the_step_in_a_chart() {
     let (model, start, chart, options) = triangle();

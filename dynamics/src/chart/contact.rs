@@ -13,6 +13,8 @@ pub(super) struct ChartContact {
     /// The pairs of the motion that was checked last.
     set: ContactSet,
     active: ActiveContacts,
+    /// The active contacts before the step that is being taken; also memory for the next ones.
+    kept: ActiveContacts,
     points: Vec<ContactPoint>,
     displacement: Vec<f64>,
 }
@@ -33,8 +35,10 @@ impl ChartContact {
             dx: &displacement,
         };
         let set = ContactSet::of(geometry.as_mut(), motion);
+        let active = ActiveContacts::at(geometry.as_ref(), &set, 1.0, &state.x);
         let mut contact = Self {
-            active: ActiveContacts::at(geometry.as_ref(), &set, 1.0, &state.x),
+            kept: active.clone(),
+            active,
             points: Vec::new(),
             geometry,
             bodies,
@@ -79,6 +83,17 @@ impl ChartContact {
         let geometry = self.geometry.as_ref();
         self.active.update(geometry, &self.set, 1.0, x);
         self.active.contact_points(geometry, &mut self.points)
+    }
+
+    /// Keeps the active contacts for [`ChartContact::restore`]. They have to be evaluated before they are
+    /// asked for again.
+    pub(super) fn keep(&mut self) {
+        std::mem::swap(&mut self.active, &mut self.kept);
+    }
+
+    /// Back to the active contacts that were kept last.
+    pub(super) fn restore(&mut self) {
+        std::mem::swap(&mut self.active, &mut self.kept);
     }
 
     /// The contacts that were evaluated last.

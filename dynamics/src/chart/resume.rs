@@ -20,8 +20,11 @@ impl ChartSimulation {
         }
     }
 
-    /// Back to a motion of the same chart.
+    /// Back to the motion before a step, in the same chart, and to the contacts kept there.
     pub(super) fn restore(&mut self, motion: ChartMotion) {
+        if let Some(contact) = &mut self.contact {
+            contact.restore();
+        }
         self.stepper
             .set_power(motion.eigenvalue, &motion.eigenvector);
         self.motion = motion;

@@ -272,6 +272,9 @@ impl Stepping for ChartSubstep<'_> {
     fn commit(&mut self, h: f64) -> Result<ChartStepReport, ChartDynamicsError> {
         let trial = self.trial.take().expect("proposed before it is committed");
         let before = self.simulation.motion();
+        if let Some(contact) = &mut self.simulation.contact {
+            contact.keep();
+        }
         self.apply(trial, h).inspect_err(|_| {
             self.simulation.restore(before);
         })
