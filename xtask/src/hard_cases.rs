@@ -14,10 +14,12 @@ mod meshes;
 mod naive;
 mod page;
 mod pins;
+mod plate;
 mod plot;
 mod rigid;
 mod scales;
 mod scenes;
+mod spin;
 mod steps;
 
 pub(crate) use case::{Bound, Case, Check, Effort, Findings, Record, Shortfall, Verdict};
@@ -46,7 +48,7 @@ pub(crate) static CASES: [&Case; 22] = [
     &meshes::LONG,
     &meshes::IRREGULAR,
     &rigid::CLOSED,
-    &rigid::PLATE,
+    &plate::PLATE,
     &pins::OVER_PINNED,
     &pins::TAUT,
     &steps::SIZES,
