@@ -206,9 +206,10 @@ impl VertexRows {
             .fold(0.0, |m: f64, v| if v.is_nan() { v } else { m.max(v) })
     }
 
-    /// Sum of the squares of the relative violations.
+    /// Sum of the squares of the violations, weighted with the penalties: what a projection decreases.
     pub(crate) fn squared_error(&self) -> f64 {
-        self.relative_violations().map(|v| v.powi(2)).sum()
+        let weighted = |(i, p): (usize, &f64)| p * self.violation(i).norm_squared();
+        self.penalties.iter().enumerate().map(weighted).sum()
     }
 
     /// What is violated of an equation: all of an equality, the negative part of an inequality.

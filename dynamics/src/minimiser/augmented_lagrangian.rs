@@ -165,13 +165,11 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
                 continue;
             }
             let lagrangian = &mut self.minimiser.lagrangian;
-            let least = tolerance * merit.inertia;
-            let is_saddle =
-                hessian == Definiteness::Modified && self.outcome != StepOutcome::BranchSeeded;
-            // No slope left, but the curvature is negative somewhere: a saddle, where the sheet could
-            // fold either way.
-            if is_saddle && lagrangian.leave_saddle(self.problem, options.seed, least) {
+            if hessian == Definiteness::Modified && self.outcome != StepOutcome::BranchSeeded {
+                // No slope left, but the curvature is negative somewhere: a saddle, where the sheet could fold
+                // either way.
                 self.outcome = StepOutcome::BranchSeeded;
+                lagrangian.perturb(self.problem, options.seed);
             } else if friction_updates < options.max_friction_updates
                 && lagrangian.renew_friction(self.problem) > FRICTION_SETTLED
             {

@@ -414,6 +414,22 @@ impl Lagrangian {
         self.iterate.renew_friction(problem.contact(), x0)
     }
 
+    /// Displaces the iterate off a saddle, in the direction that belongs to `seed`: for sheets that may be
+    /// exactly flat, where one direction of negative curvature is not enough.
+    pub(super) fn perturb(&mut self, problem: &mut StepProblem<'_>, seed: u64) {
+        let model = problem.model;
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        for (i, d) in self.dx.iter_mut().enumerate() {
+            let size = PERTURBATIONS[0] * model.shortest_rod(i / 3);
+            *d = rng.random_range(-size..=size);
+        }
+        model.clear_pinned(&mut self.dx);
+        let part = self.iterate.safe_fraction(problem.contact_mut(), &self.dx);
+        for (x, d) in self.iterate.x_mut().iter_mut().zip(&self.dx) {
+            *x += part * d;
+        }
+    }
+
     /// Leaves a saddle: moves the iterate along a direction of negative curvature, if that lowers the value
     /// by more than `least`; whether the iterate has moved. The matrix that is factorised has to be the
     /// modified one.
