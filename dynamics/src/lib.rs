@@ -83,6 +83,7 @@ mod model;
 mod motion;
 mod observe;
 mod options;
+mod plate_bending;
 pub mod potential;
 mod primal;
 mod profile;
@@ -117,6 +118,7 @@ pub use motion::{
 };
 pub use observe::{Frames, History, Observer, RunEnd};
 pub use options::OptionsError;
+pub use plate_bending::{PlateBending, PlateBendingError};
 pub use potential::{Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape};
 pub use profile::{Interpolation, Profile, ProfileError};
 pub use projection_step::ProjectionStepOptions;

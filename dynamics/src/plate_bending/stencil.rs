@@ -1,0 +1,313 @@
+//! Second derivatives of positions on a triangle mesh, from the positions of vertices nearby.
+
+use super::at;
+use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
+use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
+use std::f64::consts::SQRT_2;
+
+/// Smallest singular value of a least-squares fit, in units of the mean length of the edges around, below
+/// which further vertices join the fit: those that lie nearly on a conic determine no quadratic polynomial.
+const LEAST_SINGULAR: f64 = 0.04;
+/// Largest number of rings of faces around an edge that take part in a fit.
+const MAX_RINGS: usize = 4;
+/// Coefficients of a quadratic polynomial in two variables.
+const COEFFICIENTS: usize = 6;
+
+/// For each face the weights `w_v` with `sqrt(D A) H x = sum_v w_v x_v`, the three components of a weight
+/// being those of the symmetric 2 x 2 matrix: `(11, sqrt(2) 12, 22)`.
+#[derive(Debug)]
+pub(super) struct Stencils {
+    /// Where the entries of each face begin, and their number.
+    starts: Vec<usize>,
+    vertices: Vec<u32>,
+    weights: Vec<Vector3<f64>>,
+}
+
+/// The vertices and weights of a face.
+#[derive(Clone)]
+pub(super) struct Stencil<'a> {
+    vertices: &'a [u32],
+    weights: &'a [Vector3<f64>],
+}
+
+impl Stencil<'_> {
+    /// `sum_v x_v w_v^T`. (The weights sum to zero; differences keep the round-off that of the shape.)
+    pub(super) fn apply(&self, x: &[f64]) -> Matrix3<f64> {
+        let Some(&first) = self.vertices.first() else {
+            return Matrix3::zeros();
+        };
+        let origin = at(x, first as usize);
+        self.clone()
+            .map(|(v, w)| (at(x, v) - origin) * w.transpose())
+            .sum()
+    }
+}
+
+impl Iterator for Stencil<'_> {
+    type Item = (usize, Vector3<f64>);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let (v, vertices) = self.vertices.split_first()?;
+        let (w, weights) = self.weights.split_first()?;
+        (self.vertices, self.weights) = (vertices, weights);
+        Some((*v as usize, *w))
+    }
+}
+
+/// A linear combination of the positions of vertices.
+type Combination = Vec<(VertexId, f64)>;
+
+impl Stencils {
+    pub(super) fn new(sheet: &Sheet, rigidity: f64, clamped: &[VertexId]) -> Self {
+        let topology = sheet.topology();
+        let clamps = Clamps::new(sheet, clamped);
+        let slopes: Vec<_> = topology
+            .edge_ids()
+            .map(|e| slope(sheet, &clamps, e))
+            .collect();
+        let mut stencils = Self {
+            starts: vec![0],
+            vertices: Vec::new(),
+            weights: Vec::new(),
+        };
+        for face in topology.face_ids() {
+            let scale = (rigidity * sheet.face_areas()[face.index()]).sqrt();
+            for (v, w) in face_weights(sheet, &slopes, face) {
+                stencils.vertices.push(v.0);
+                stencils.weights.push(scale * w);
+            }
+            stencils.starts.push(stencils.vertices.len());
+        }
+        stencils
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = Stencil<'_>> {
+        self.starts.windows(2).map(|range| Stencil {
+            vertices: &self.vertices[range[0]..range[1]],
+            weights: &self.weights[range[0]..range[1]],
+        })
+    }
+}
+
+/// Which faces and vertices clamps hold.
+struct Clamps {
+    /// Faces with three clamped corners.
+    faces: Vec<bool>,
+    /// Vertices without any other face: the plate bends outside of them.
+    interior: Vec<bool>,
+}
+
+impl Clamps {
+    fn new(sheet: &Sheet, clamped: &[VertexId]) -> Self {
+        let topology = sheet.topology();
+        let mut is_clamped = vec![false; topology.vertex_count()];
+        for v in clamped {
+            is_clamped[v.index()] = true;
+        }
+        let all = |f: &[VertexId; 3]| f.iter().all(|v| is_clamped[v.index()]);
+        let faces: Vec<_> = topology.faces().iter().map(all).collect();
+        let inside = |v| topology.vertex_faces(v).iter().all(|f| faces[f.index()]);
+        let interior = topology.vertex_ids().map(inside).collect();
+        Self { faces, interior }
+    }
+}
+
+/// A face unfolded into the plane: corners counter-clockwise.
+type Unfolded = [(VertexId, Vector2<f64>); 3];
+
+/// The point left of `p -> q` at the given distances from `p` and from `q`.
+fn apex(p: Vector2<f64>, q: Vector2<f64>, from_p: f64, from_q: f64) -> Vector2<f64> {
+    let base = q - p;
+    let squared = base.norm_squared();
+    let along = 0.5 * (1.0 + (from_p * from_p - from_q * from_q) / squared);
+    let height = (from_p * from_p / squared - along * along).max(0.0).sqrt();
+    p + along * base + height * Vector2::new(-base.y, base.x)
+}
+
+/// Places the face `f` with two of its corners known, the third one left of `p -> q`.
+fn place(
+    sheet: &Sheet,
+    f: FaceId,
+    p: (VertexId, Vector2<f64>),
+    q: (VertexId, Vector2<f64>),
+) -> Unfolded {
+    let topology = sheet.topology();
+    let length = |a, b| {
+        let edge = topology.find_edge(a, b).expect("two corners of a face");
+        sheet.lengths()[edge.index()]
+    };
+    let corners = topology.faces()[f.index()];
+    let third = corners.into_iter().find(|v| *v != p.0 && *v != q.0);
+    let third = third.expect("a face has three corners");
+    let position = apex(p.1, q.1, length(p.0, third), length(q.0, third));
+    [p, q, (third, position)]
+}
+
+/// The derivative of the positions at the midpoint of an edge along the normal that points out of its left
+/// face; nothing at free edges.
+fn slope(sheet: &Sheet, clamps: &Clamps, edge: EdgeId) -> Option<Combination> {
+    let topology = sheet.topology();
+    let [a, b] = topology.edges()[edge.index()];
+    let half = Vector2::new(0.5 * sheet.lengths()[edge.index()], 0.0);
+    let [left, right] = topology.edge_faces(edge);
+    let mut patch: Vec<(FaceId, Unfolded)> = Vec::new();
+    if let Some(f) = left {
+        patch.push((f, place(sheet, f, (a, -half), (b, half))));
+    }
+    if let Some(f) = right {
+        patch.push((f, place(sheet, f, (b, half), (a, -half))));
+    }
+    if let Some((_, face)) = patch.iter().find(|(f, _)| clamps.faces[f.index()]) {
+        return Some(slope_of_face(face));
+    }
+    if patch.len() < 2 {
+        return None;
+    }
+    let mean = patch_size(sheet, [left, right]);
+    for _ in 0..MAX_RINGS {
+        grow(sheet, &mut patch);
+        if let Some(slope) = fit(&points(&patch, clamps), mean) {
+            return Some(slope);
+        }
+    }
+    // Too small a mesh for a fit: the mean slope of the two faces.
+    let mut slope = Combination::new();
+    for (_, face) in &patch[..2] {
+        slope.extend(slope_of_face(face).into_iter().map(|(v, w)| (v, 0.5 * w)));
+    }
+    Some(slope)
+}
+
+/// Mean length of the edges of the faces at an edge.
+fn patch_size(sheet: &Sheet, faces: [Option<FaceId>; 2]) -> f64 {
+    let topology = sheet.topology();
+    let lengths = faces.into_iter().flatten().flat_map(|f| {
+        let edges = topology.face_edges(f);
+        edges.map(|e| sheet.lengths()[e.index()])
+    });
+    let (sum, count) = lengths.fold((0.0, 0.0), |(s, n), l| (s + l, n + 1.0));
+    sum / count
+}
+
+/// Derivative along `-y` of the linear function on an unfolded face whose first edge lies on the x-axis.
+fn slope_of_face(face: &Unfolded) -> Combination {
+    let [(a, pa), (b, pb), (c, pc)] = *face;
+    let along = (pc.x - pa.x) / (pb.x - pa.x);
+    vec![
+        (a, (1.0 - along) / pc.y),
+        (b, along / pc.y),
+        (c, -1.0 / pc.y),
+    ]
+}
+
+/// Adds the faces that share an edge with the patch.
+fn grow(sheet: &Sheet, patch: &mut Vec<(FaceId, Unfolded)>) {
+    let topology = sheet.topology();
+    for i in 0..patch.len() {
+        let (f, corners) = patch[i];
+        for k in 0..3 {
+            let (p, q) = (corners[k], corners[(k + 1) % 3]);
+            let edge = topology.find_edge(p.0, q.0).expect("an edge of a face");
+            let across = topology.edge_faces(edge).into_iter().flatten();
+            for g in across.filter(|g| *g != f) {
+                if patch.iter().all(|(other, _)| *other != g) {
+                    patch.push((g, place(sheet, g, q, p)));
+                }
+            }
+        }
+    }
+}
+
+/// The vertices of a patch with their places in the plane, without those inside clamps.
+fn points(patch: &[(FaceId, Unfolded)], clamps: &Clamps) -> Vec<(VertexId, Vector2<f64>)> {
+    let mut points: Vec<(VertexId, Vector2<f64>)> = Vec::new();
+    for (v, p) in patch.iter().flat_map(|(_, corners)| *corners) {
+        if !clamps.interior[v.index()] && points.iter().all(|(other, _)| *other != v) {
+            points.push((v, p));
+        }
+    }
+    points
+}
+
+/// Derivative along `-y` at the origin of the quadratic polynomial that fits the points by least squares,
+/// with weights that fall off over the length `size`; nothing if the points do not determine a polynomial.
+fn fit(points: &[(VertexId, Vector2<f64>)], size: f64) -> Option<Combination> {
+    if points.len() < COEFFICIENTS {
+        return None;
+    }
+    let weight = |p: Vector2<f64>| (-0.5 * p.norm_squared() / (size * size)).exp();
+    let rows = DMatrix::from_fn(points.len(), COEFFICIENTS, |i, k| {
+        let p = points[i].1 / size;
+        weight(points[i].1) * [1.0, p.x, p.y, p.x * p.x, p.x * p.y, p.y * p.y][k]
+    });
+    let svd = rows.svd(true, true);
+    if svd.singular_values.min() <= LEAST_SINGULAR {
+        return None;
+    }
+    let inverse = svd.pseudo_inverse(0.0).ok()?;
+    let entry = |(i, (v, p)): (usize, &(VertexId, Vector2<f64>))| {
+        (*v, -inverse[(2, i)] * weight(*p) / size)
+    };
+    Some(points.iter().enumerate().map(entry).collect())
+}
+
+/// The second derivatives of a face from the slopes at its edges.
+fn face_weights(
+    sheet: &Sheet,
+    slopes: &[Option<Combination>],
+    face: FaceId,
+) -> Vec<(VertexId, Vector3<f64>)> {
+    let topology = sheet.topology();
+    let [a, b, _] = topology.faces()[face.index()];
+    let base = topology.find_edge(a, b).expect("an edge of a face");
+    let base = Vector2::new(sheet.lengths()[base.index()], 0.0);
+    let corners = place(sheet, face, (a, Vector2::zeros()), (b, base));
+    let area = sheet.face_areas()[face.index()];
+    let mut weights: Vec<(VertexId, Vector3<f64>)> = Vec::new();
+    let mut add =
+        |v: VertexId, w: Vector3<f64>| match weights.iter_mut().find(|(other, _)| *other == v) {
+            Some((_, sum)) => *sum += w,
+            None => weights.push((v, w)),
+        };
+    let mut free = Vec::new();
+    for k in 0..3 {
+        let ((p, xp), (q, xq)) = (corners[k], corners[(k + 1) % 3]);
+        let edge = topology.find_edge(p, q).expect("an edge of a face");
+        let length = (xq - xp).norm();
+        let t = (xq - xp) / length;
+        let n = Vector2::new(t.y, -t.x);
+        let twist = symmetric(t, n) / area;
+        add(q, twist);
+        add(p, -twist);
+        let bend = symmetric(n, n) * (length / area);
+        let is_left = topology.left_face(edge) == face;
+        let sign = if is_left { 1.0 } else { -1.0 };
+        match &slopes[edge.index()] {
+            Some(slope) => slope.iter().for_each(|(v, s)| add(*v, sign * s * bend)),
+            None => free.push(symmetric(n, n)),
+        }
+    }
+    without(&mut weights, free);
+    weights
+}
+
+/// The symmetric part of `u v^T` as the vector `(11, sqrt(2) 12, 22)`, which has the norm of the matrix.
+fn symmetric(u: Vector2<f64>, v: Vector2<f64>) -> Vector3<f64> {
+    Vector3::new(u.x * v.x, (u.x * v.y + u.y * v.x) / SQRT_2, u.y * v.y)
+}
+
+/// Takes the components along `directions` out of all weights: slopes at free edges that minimise the energy.
+fn without(weights: &mut [(VertexId, Vector3<f64>)], directions: Vec<Vector3<f64>>) {
+    let mut basis: Vec<Vector3<f64>> = Vec::new();
+    for mut d in directions {
+        for b in &basis {
+            d -= b * b.dot(&d);
+        }
+        basis.push(d.normalize());
+    }
+    for (_, w) in weights {
+        for b in &basis {
+            *w -= b * b.dot(w);
+        }
+    }
+}
