@@ -1,5 +1,6 @@
 //! The command line.
 
+use crate::locking;
 use crate::selection::Selection;
 use crate::speed_vs_error::Part;
 use clap::{Args, Parser, Subcommand};
@@ -40,6 +41,13 @@ pub(crate) enum Command {
     /// Writes DIR/scale.html (self-contained), DIR/scale.csv, DIR/draping.csv, DIR/scale.svg and
     /// DIR/scale.png and prints the tables.
     Scale(ScaleArgs),
+    /// Measure how much a triangulated sheet locks: how much stiffer it is than a smooth one, by yardsticks with
+    /// references
+    ///
+    /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG) and prints the
+    /// tables. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not end is an entry of
+    /// a table: the exit code says whether the report was made.
+    Locking(LockingArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///
     /// Writes DIR/index.html (self-contained), DIR/verdicts.csv, DIR/verdicts.json and DIR/figures, and
@@ -123,6 +131,22 @@ pub(crate) struct ScaleArgs {
     /// Small meshes only: checks that everything works in seconds, and shows no result
     #[arg(long)]
     pub(crate) quick: bool,
+}
+
+/// Arguments of `locking`.
+#[derive(Debug, Args)]
+pub(crate) struct LockingArgs {
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
+    #[arg(long, value_name = "DIR", default_value = "out/locking")]
+    pub(crate) out: PathBuf,
+
+    /// Seconds instead of a quarter of an hour: checks that everything works, and shows no result
+    #[arg(long)]
+    pub(crate) quick: bool,
+
+    /// Yardsticks to apply, separated by commas, such as clamped; all when left out
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub(crate) yardsticks: Vec<locking::Part>,
 }
 
 /// Arguments of `reproduce-figures`.

@@ -4,6 +4,7 @@
 //! * `condition-table`: the condition numbers of the system coordinates.
 //! * `speed-vs-error`: time against errors of all methods and solvers.
 //! * `scale`: time, memory and fill of a step against the size of the mesh.
+//! * `locking`: how much stiffer than a smooth sheet a triangulated one is.
 //! * `hard-cases`: what the solvers do where others break.
 //!
 //! The exit code is 0 when everything was made, 1 on failure, 2 for a command line that makes no sense and
@@ -15,6 +16,7 @@ mod draw;
 mod figures;
 mod hard_cases;
 mod interrupt;
+mod locking;
 mod progress;
 mod render;
 mod report;
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
         cli::Command::ConditionTable(args) => condition::run(&args),
         cli::Command::SpeedVsError(args) => speed_vs_error::run(&args),
         cli::Command::Scale(args) => scale::run(&args),
+        cli::Command::Locking(args) => locking::run(&args),
         cli::Command::HardCases(args) => hard_cases::run(&args),
     });
     match result {

@@ -14,7 +14,7 @@ use anyhow::Result;
 use measure::measure;
 
 pub(crate) use drape::DrapeRow;
-pub(crate) use measure::{Row, factorisation_time};
+pub(crate) use measure::{Row, exponent, factorisation_time};
 
 /// Levels of a run that only shows that everything works.
 const QUICK: std::ops::RangeInclusive<u32> = 1..=3;

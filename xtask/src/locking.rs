@@ -1,0 +1,228 @@
+//! `locking`: how much stiffer than a smooth inextensible sheet a triangulated one is, by yardsticks with exact
+//! or published references.
+//!
+//! Every yardstick is kept in the output folder with what it found, so that an interrupted run continues where
+//! it stopped, and the page is written from what is there.
+
+mod cantilever;
+mod clamped;
+mod course;
+mod cylinder;
+mod cylinder_fit;
+mod effort;
+mod elastica;
+mod everyday;
+mod findings;
+mod isometry;
+mod iterations;
+mod limit;
+mod meshes;
+mod page;
+mod plot;
+mod table;
+
+use crate::cli::LockingArgs;
+use crate::draw::Drawing;
+use crate::interrupt::Interrupted;
+use crate::store::{Extent, Store};
+use crate::{Outcome, interrupt, progress};
+use anyhow::Result;
+use effort::LockingEffort;
+use findings::Findings;
+use serde_json::json;
+use std::fmt;
+use std::str::FromStr;
+
+/// A yardstick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// Flat sheets that are clamped along lines of any direction.
+    Clamped,
+    /// Single everyday scenes with paper.
+    Everyday,
+    /// A square with a natural curvature.
+    Cylinder,
+    /// The drop of a heavy strip.
+    Cantilever,
+    /// Iterations of the hanging sheet.
+    Iterations,
+}
+
+impl Part {
+    /// All of them, in the order of the page.
+    const ALL: [Self; 5] = [
+        Self::Clamped,
+        Self::Everyday,
+        Self::Cylinder,
+        Self::Cantilever,
+        Self::Iterations,
+    ];
+
+    fn title(self) -> &'static str {
+        match self {
+            Self::Clamped => "Clamped sheets",
+            Self::Everyday => "Everyday scenes",
+            Self::Cylinder => "Bent to a cylinder",
+            Self::Cantilever => "The heavy elastica",
+            Self::Iterations => "Iterations of the hanging sheet",
+        }
+    }
+
+    /// The set-up in words.
+    fn about(self) -> &'static str {
+        match self {
+            Self::Clamped => clamped::ABOUT,
+            Self::Everyday => everyday::ABOUT,
+            Self::Cylinder => cylinder::ABOUT,
+            Self::Cantilever => cantilever::ABOUT,
+            Self::Iterations => iterations::ABOUT,
+        }
+    }
+
+    fn make(self, effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+        match self {
+            Self::Clamped => clamped::make(effort),
+            Self::Everyday => everyday::make(effort),
+            Self::Cylinder => cylinder::make(effort),
+            Self::Cantilever => cantilever::make(effort),
+            Self::Iterations => iterations::make(effort),
+        }
+    }
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Clamped => "clamped",
+            Self::Everyday => "everyday",
+            Self::Cylinder => "cylinder",
+            Self::Cantilever => "cantilever",
+            Self::Iterations => "iterations",
+        })
+    }
+}
+
+impl FromStr for Part {
+    type Err = anyhow::Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        match Self::ALL.iter().find(|p| p.to_string() == text) {
+            Some(part) => Ok(*part),
+            None => {
+                let names = Self::ALL.map(|p| p.to_string()).join(", ");
+                anyhow::bail!("there is no yardstick {text:?}; choose from {names}")
+            }
+        }
+    }
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &LockingArgs) -> Result<Outcome> {
+    let effort = if args.quick {
+        LockingEffort::Quick
+    } else {
+        LockingEffort::Full
+    };
+    let store = Store::open(&args.out)?;
+    let parts = if args.yardsticks.is_empty() {
+        Part::ALL.to_vec()
+    } else {
+        args.yardsticks.clone()
+    };
+    let mut outcome = Outcome::Complete;
+    for part in parts {
+        if interrupt::requested() {
+            outcome = Outcome::Interrupted;
+            break;
+        }
+        if let Some(stamp) = store.current(&unit(part), &options(effort)) {
+            progress::note(&part.to_string(), "up to date");
+            print(&serde_json::from_value(stamp.facts)?);
+            continue;
+        }
+        match part.make(effort) {
+            Ok((found, drawing)) => {
+                keep(&store, part, effort, &found, drawing)?;
+                print(&found);
+            }
+            Err(error) if error.is::<Interrupted>() => {
+                outcome = Outcome::Interrupted;
+                break;
+            }
+            Err(error) => return Err(error.context(part.to_string())),
+        }
+    }
+    page::write(&store, effort)?;
+    println!("{}", store.root().join("index.html").display());
+    Ok(outcome)
+}
+
+fn unit(part: Part) -> String {
+    format!("locking-{part}")
+}
+
+fn options(effort: LockingEffort) -> serde_json::Value {
+    json!({ "effort": effort })
+}
+
+/// What a part found with this effort; `None` if it was not made yet.
+fn findings(store: &Store, part: Part, effort: LockingEffort) -> Option<Findings> {
+    let stamp = store.stamp(&unit(part))?;
+    if stamp.extent != Extent::Complete || stamp.options != options(effort) {
+        return None;
+    }
+    serde_json::from_value(stamp.facts).ok()
+}
+
+fn print(found: &Findings) {
+    for table in &found.tables {
+        println!("{}", table.text());
+    }
+    for remark in &found.remarks {
+        println!("{remark}");
+    }
+}
+
+fn keep(
+    store: &Store,
+    part: Part,
+    effort: LockingEffort,
+    found: &Findings,
+    drawing: Option<Drawing>,
+) -> Result<()> {
+    let mut draft = store.draft()?;
+    for table in found.tables.iter().chain(&found.files) {
+        draft.write(
+            &format!("tables/{}.csv", table.name),
+            table.csv().as_bytes(),
+        )?;
+    }
+    if let Some(drawing) = drawing {
+        let title = part.title();
+        let svg = drawing.to_svg(title)?;
+        draft.write(&format!("plots/{part}.svg"), svg.as_bytes())?;
+        draft.write(&format!("plots/{part}.png"), &drawing.to_png(title)?)?;
+    }
+    store.commit(
+        draft,
+        &unit(part),
+        &options(effort),
+        Extent::Complete,
+        serde_json::to_value(found)?,
+    )?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_read_back() {
+        for part in Part::ALL {
+            assert_eq!(part.to_string().parse::<Part>().unwrap(), part);
+        }
+        let error = "moon".parse::<Part>().unwrap_err().to_string();
+        assert!(error.contains("choose from clamped, everyday"), "{error}");
+    }
+}

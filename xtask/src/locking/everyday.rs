@@ -1,0 +1,275 @@
+//! Yardstick 2: single everyday scenes with paper.
+
+use super::course::{Plan, Scene};
+use super::effort::LockingEffort;
+use super::findings::Findings;
+use super::isometry::{Isometry, bending_energy};
+use super::table::Results;
+use crate::draw::Drawing;
+use crate::progress::Progress;
+use anyhow::Result;
+use isosheet_dynamics::{Method, PointProfile, Profile, SheetModel};
+use isosheet_mesh::generate::{self, Diagonals};
+use isosheet_mesh::{Sheet, VertexId};
+use std::fmt;
+
+pub(super) const ABOUT: &str = "Paper of 80 g/m² with a flexural rigidity of 5e-4 N m, damping 2/s, in steps of 1/60 s by the default method. \
+    Pushed together: a flat strip of 0.30 m x 0.10 m, the first and the last row of squares clamped, one of them moved by 10 % of the free length within 1 s; it has to buckle. \
+    Roll: a sheet of 0.30 m x 0.20 m that starts as a roll of radius 0.05 m about mesh lines, one edge clamped, is let go. Banner: a square of 1 m, flat and \
+    horizontal, is held at the two corners of one side and swings down. Opposite corners: the same square is held at two opposite corners at their distance in the flat state.";
+
+/// Flexural rigidity (N m) and mass per area (kg/m2) of office paper.
+const RIGIDITY: f64 = 5e-4;
+const DENSITY: f64 = 0.08;
+
+/// Rate of damping, 1/s.
+const DAMPING: f64 = 2.0;
+
+/// Radius of the roll, metres.
+const ROLL: f64 = 0.05;
+
+/// Part of its free length by which the strip is pushed together.
+const PUSH: f64 = 0.1;
+
+/// A scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Everyday {
+    Pushed(usize),
+    Roll(usize),
+    Banner(u32),
+    Corners(u32),
+}
+
+impl fmt::Display for Everyday {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pushed(n) => write!(f, "pushed together, {n} squares across"),
+            Self::Roll(n) => write!(f, "roll, {n} squares across"),
+            Self::Banner(level) => write!(f, "banner M^{level}"),
+            Self::Corners(level) => write!(f, "opposite corners, M^{level}"),
+        }
+    }
+}
+
+impl Everyday {
+    fn all(effort: LockingEffort) -> Vec<Self> {
+        let mut all = vec![
+            Self::Pushed(2),
+            Self::Roll(2),
+            Self::Banner(1),
+            Self::Corners(1),
+        ];
+        if effort == LockingEffort::Full {
+            all.extend([
+                Self::Pushed(4),
+                Self::Roll(4),
+                Self::Banner(2),
+                Self::Banner(3),
+                Self::Corners(2),
+                Self::Corners(3),
+            ]);
+        }
+        all.sort_by_key(|scene| match scene {
+            Self::Pushed(n) => (0, *n as u32),
+            Self::Roll(n) => (1, *n as u32),
+            Self::Banner(level) => (2, *level),
+            Self::Corners(level) => (3, *level),
+        });
+        all
+    }
+
+    /// The flat sheet in its plane of reference, z = 0.
+    fn sheet(self) -> Result<Sheet> {
+        Ok(match self {
+            Self::Pushed(n) => generate::grid(3 * n, n, 0.3, 0.1, Diagonals::UnionJack)?,
+            Self::Roll(n) => generate::grid(6 * n, 2 * n, 0.3, 0.2, Diagonals::UnionJack)?,
+            Self::Banner(level) | Self::Corners(level) => generate::isotropic_square(level, 1.0)?,
+        })
+    }
+
+    /// Positions at the start.
+    fn start(self, sheet: &Sheet) -> Vec<f64> {
+        match self {
+            Self::Roll(_) => rolled(sheet),
+            _ => sheet.positions().to_vec(),
+        }
+    }
+
+    fn model(self, isometry: Isometry, sheet: &Sheet) -> Result<SheetModel> {
+        let model = isometry
+            .bending(sheet, DENSITY * sheet.area(), RIGIDITY)?
+            .with_gravity()
+            .with_damping(DAMPING)?;
+        let at = |test: &dyn Fn([f64; 3]) -> bool| -> Vec<VertexId> {
+            let all = sheet.topology().vertex_ids();
+            all.filter(|v| test(sheet.position(*v))).collect()
+        };
+        Ok(match self {
+            Self::Pushed(_) => self.clamps(model, sheet, &at)?,
+            Self::Roll(_) => {
+                let panel = sheet.position(VertexId(1))[0];
+                model.with_pins(&at(&|[x, _, _]| x < panel + 1e-9))?
+            }
+            Self::Banner(_) => model.with_pins(&at(&|[x, y, _]| {
+                y > 1.0 - 1e-9 && (x - 0.5).abs() > 0.5 - 1e-9
+            }))?,
+            Self::Corners(_) => {
+                model.with_pins(&at(&|[x, y, _]| (x + y - 1.0).abs() > 1.0 - 1e-9))?
+            }
+        })
+    }
+
+    /// Both ends of the strip clamped, the right one moving.
+    fn clamps(
+        self,
+        model: SheetModel,
+        sheet: &Sheet,
+        at: &dyn Fn(&dyn Fn([f64; 3]) -> bool) -> Vec<VertexId>,
+    ) -> Result<SheetModel> {
+        let second = sheet.position(VertexId(1))[0];
+        let left = at(&|[x, _, _]| x < second + 1e-9);
+        let right = at(&|[x, _, _]| x > 0.3 - second - 1e-9);
+        let mut model = model.with_pins(&left)?;
+        for v in right {
+            let push = PointProfile {
+                offset: sheet.position(v),
+                x: Profile::SmoothStep {
+                    from: 0.0,
+                    to: -PUSH * (0.3 - 2.0 * second),
+                    begin: 0.0,
+                    end: 1.0,
+                },
+                ..PointProfile::default()
+            };
+            model = model.with_moving_pin(v, push)?;
+        }
+        Ok(model)
+    }
+}
+
+/// The sheet of a grid rolled up about lines x = constant of the mesh: a prism with a panel for each column,
+/// which has all lengths exactly. The first panel stays where it is.
+fn rolled(sheet: &Sheet) -> Vec<f64> {
+    let panel = sheet.position(VertexId(1))[0];
+    let turn = 2.0 * (0.5 * panel / ROLL).asin();
+    let place = |column: usize| -> [f64; 2] {
+        let mut p = [0.0, 0.0];
+        for k in 0..column {
+            let (s, c) = (turn * k as f64).sin_cos();
+            p = [p[0] + panel * c, p[1] + panel * s];
+        }
+        p
+    };
+    let points = sheet.positions().as_chunks::<3>().0;
+    points
+        .iter()
+        .flat_map(|[x, y, _]| {
+            let [a, b] = place((x / panel).round() as usize);
+            [a, *y, b]
+        })
+        .collect()
+}
+
+/// Runs the yardstick.
+pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+    let plan = Plan {
+        step: 1.0 / 60.0,
+        duration: effort.pick(0.5, 3.0),
+        rest_speed: None,
+        patience: effort.patience(0.5, 8.0),
+    };
+    let mut table = Results::new(
+        "everyday",
+        format!(
+            "Everyday scenes: {} s simulated, at most {} s of wall time. The energy of bending is that at the end",
+            plan.duration,
+            plan.patience.as_secs_f64()
+        ),
+        &[
+            "scene",
+            "V",
+            "model",
+            "ending",
+            "t at the end, s",
+            "factorisations per step",
+            "most in a step",
+            "lowest vertex, m",
+            "highest vertex, m",
+            "energy of bending, J",
+            "wall time, s",
+            "message",
+        ],
+    );
+    let scenes = Everyday::all(effort);
+    let bar = Progress::start("everyday scenes", scenes.len());
+    for isometry in Isometry::ALL {
+        for everyday in &scenes {
+            let sheet = everyday.sheet()?;
+            let scene = Scene {
+                model: everyday.model(isometry, &sheet)?,
+                start: everyday.start(&sheet),
+                method: Method::default(),
+                contacts: None,
+            };
+            let course = scene.run(&plan)?;
+            table.push(vec![
+                everyday.to_string().into(),
+                sheet.topology().vertex_count().into(),
+                isometry.to_string().into(),
+                course.ending.name().into(),
+                course.t.into(),
+                course.factorisations_per_step().into(),
+                course.worst.into(),
+                course.lowest().into(),
+                course.highest().into(),
+                bending_energy(&sheet, RIGIDITY, &course.x)?.into(),
+                course.wall.into(),
+                course.ending.message().into(),
+            ]);
+            bar.step();
+        }
+    }
+    bar.finish("measured");
+    Ok((
+        Findings {
+            tables: vec![table],
+            ..Findings::default()
+        },
+        None,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_starts_with_its_lengths_and_pins() {
+        for everyday in Everyday::all(LockingEffort::Full) {
+            let sheet = everyday.sheet().unwrap();
+            let model = everyday.model(Isometry::Rods, &sheet).unwrap();
+            let start = everyday.start(&sheet);
+            let strain = model.rods().max_strain(&start);
+            assert!(strain < 1e-13, "{everyday}: {strain}");
+            let pins = match everyday {
+                Everyday::Pushed(n) => 2 * 2 * (n + 1),
+                Everyday::Roll(n) => 2 * (2 * n + 1),
+                Everyday::Banner(_) | Everyday::Corners(_) => 2,
+            };
+            assert_eq!(model.pins().len(), pins, "{everyday}");
+        }
+    }
+
+    /// A regular polygon about a circle of the radius: all corners are at the same distance of its centre.
+    #[test]
+    fn the_roll_is_a_prism() {
+        let sheet = Everyday::Roll(4).sheet().unwrap();
+        let x = rolled(&sheet);
+        let panel = 0.3 / 24.0;
+        let centre = [0.5 * panel, (ROLL * ROLL - 0.25 * panel * panel).sqrt()];
+        for p in x.as_chunks::<3>().0 {
+            let r = (p[0] - centre[0]).hypot(p[2] - centre[1]);
+            assert!((r - ROLL).abs() < 1e-12, "{r}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Plots of measured numbers, and the orders fitted to them.
+
+use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, palette};
+use crate::scale::exponent;
+
+/// Colours and symbols of the series of a plot, in order.
+const STYLES: [(Colour, Marker); 6] = [
+    (palette::BLUE, Marker::Disc),
+    (palette::VERMILION, Marker::Square),
+    (palette::GREEN, Marker::Triangle),
+    (palette::ORANGE, Marker::Diamond),
+    (palette::PURPLE, Marker::Disc),
+    (palette::SKY, Marker::Square),
+];
+
+/// A named sequence of points with a line, the style by its place.
+pub(super) fn series(k: usize, name: &str, points: Vec<[f64; 2]>) -> Series {
+    let (colour, marker) = STYLES[k % STYLES.len()];
+    Series {
+        name: name.to_owned(),
+        points: points.into_iter().filter(is_positive).collect(),
+        colour,
+        marker: Some(marker),
+        line: Line::Solid,
+    }
+}
+
+/// A grey dashed line for comparison.
+pub(super) fn guide(name: &str, points: Vec<[f64; 2]>) -> Series {
+    Series {
+        name: name.to_owned(),
+        points,
+        colour: palette::GREY,
+        marker: None,
+        line: Line::Dashed,
+    }
+}
+
+fn is_positive(point: &[f64; 2]) -> bool {
+    point.iter().all(|v| v.is_finite() && *v > 0.0)
+}
+
+/// Fitted power of positive values; nothing from fewer than two.
+pub(super) fn order(points: &[[f64; 2]]) -> Option<f64> {
+    let positive: Vec<[f64; 2]> = points.iter().copied().filter(is_positive).collect();
+    if positive.len() < 2 {
+        return None;
+    }
+    exponent(&positive)
+}
+
+/// Whole decades that hold all values.
+fn decades(label: &str, values: impl Iterator<Item = f64>) -> Axis {
+    let (mut low, mut high) = (i32::MAX, i32::MIN);
+    for v in values {
+        low = low.min((v.log10() + 1e-9).floor() as i32);
+        high = high.max((v.log10() - 1e-9).ceil() as i32);
+    }
+    if low > high {
+        return Axis::decades(label, 0, 1, 1);
+    }
+    Axis::decades(label, low, high.max(low + 1), 1)
+}
+
+/// A plot with both axes logarithmic.
+pub(super) fn log_log(x: &str, y: &str, series: Vec<Series>) -> Drawing {
+    let all = || series.iter().flat_map(|s| &s.points);
+    Plot {
+        x: decades(x, all().map(|p| p[0])),
+        y: decades(y, all().map(|p| p[1])),
+        size: [170.0, 150.0],
+        legend: Legend::Right,
+        series: series.clone(),
+    }
+    .draw()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orders_need_two_positive_values() {
+        let points = [[0.1, 0.02], [0.2, 0.08], [0.4, 0.0], [0.8, f64::NAN]];
+        assert!((order(&points).unwrap() - 2.0).abs() < 1e-12);
+        assert_eq!(order(&points[1..]), None);
+    }
+}
