@@ -124,7 +124,7 @@ impl Everyday {
         self,
         model: SheetModel,
         sheet: &Sheet,
-        at: &dyn Fn(&dyn Fn([f64; 3]) -> bool) -> Vec<VertexId>,
+        at: &Selection<'_>,
     ) -> Result<SheetModel> {
         let second = sheet.position(VertexId(1))[0];
         let left = at(&|[x, _, _]| x < second + 1e-9);
@@ -146,6 +146,9 @@ impl Everyday {
         Ok(model)
     }
 }
+
+/// The vertices whose places meet a condition.
+type Selection<'a> = dyn Fn(&dyn Fn([f64; 3]) -> bool) -> Vec<VertexId> + 'a;
 
 /// The sheet of a grid rolled up about lines x = constant of the mesh: a prism with a panel for each column,
 /// which has all lengths exactly. The first panel stays where it is.
