@@ -120,12 +120,7 @@ impl Everyday {
     }
 
     /// Both ends of the strip clamped, the right one moving.
-    fn clamps(
-        self,
-        model: SheetModel,
-        sheet: &Sheet,
-        at: &Selection<'_>,
-    ) -> Result<SheetModel> {
+    fn clamps(self, model: SheetModel, sheet: &Sheet, at: &Selection<'_>) -> Result<SheetModel> {
         let second = sheet.position(VertexId(1))[0];
         let left = at(&|[x, _, _]| x < second + 1e-9);
         let right = at(&|[x, _, _]| x > 0.3 - second - 1e-9);
