@@ -4,7 +4,7 @@ use crate::chart::{ChartMotion, ChartOptions};
 use crate::contact::BarrierPotential;
 use crate::energy_account::EnergyAccount;
 use crate::integrator::Moment;
-use crate::{Method, SheetModel, StepControl};
+use crate::{Isometry, Method, SheetModel, StepControl};
 use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -111,6 +111,7 @@ pub(crate) struct SheetFingerprint {
     vertices: usize,
     edges: usize,
     connectivity: u64,
+    /// Rest lengths, and whether rods keep them.
     lengths: u64,
     masses: u64,
     supports: u64,
@@ -130,11 +131,12 @@ impl SheetFingerprint {
         let edge_mass = mass.edge.iter().flatten();
         let pins = model.pins().into_iter().map(|v| u64::from(v.0));
         let constrained = model.constraints().iter().map(|c| u64::from(c.vertex().0));
+        let elastic = (model.isometry() == Isometry::Elastic).then_some(u64::MAX);
         Self {
             vertices: model.topology().vertex_count(),
             edges: rods.len(),
             connectivity: sum(&mut faces.flatten().map(|v| u64::from(v.0))),
-            lengths: sum(&mut rods.lengths().iter().map(|l| l.to_bits())),
+            lengths: sum(&mut rods.lengths().iter().map(|l| l.to_bits()).chain(elastic)),
             masses: sum(&mut mass.vertex.iter().chain(edge_mass).map(|m| m.to_bits())),
             supports: sum(&mut pins.chain([u64::MAX]).chain(constrained)),
         }

@@ -14,7 +14,9 @@ use crate::reaction::Balance;
 use crate::report::{StepError, StepOutcome, StepTotals};
 use crate::subdivision::Subdivision;
 use crate::taut::vertices_on_taut_lines;
-use crate::{Fallback, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable};
+use crate::{
+    Fallback, Isometry, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
+};
 use isosheet_mesh::VertexId;
 
 /// A sheet that a chart-free method moves.
@@ -42,7 +44,10 @@ impl Engine {
         method: Method,
         mut state: State,
     ) -> Result<Self, SimulationError> {
-        let fixed = vertices_on_taut_lines(&model, &state.x);
+        let fixed = match model.isometry() {
+            Isometry::Rods => vertices_on_taut_lines(&model, &state.x),
+            Isometry::Elastic => Vec::new(),
+        };
         model.fix(&fixed);
         model.clear_velocities(&fixed, &mut state.v);
         Self::with_fixed(model, method, state, fixed)
@@ -54,6 +59,9 @@ impl Engine {
         state: State,
         fixed: Vec<VertexId>,
     ) -> Result<Self, SimulationError> {
+        if model.isometry() == Isometry::Elastic && !method.is_minimising() {
+            return Err(SimulationError::Elastic);
+        }
         let integrator = method.build(&model)?;
         let traits = integrator.traits();
         if traits.demand == RodDemand::Independent
@@ -183,6 +191,7 @@ impl Engine {
     fn stop(&self, lengths: &Subdivision, cause: StepError) -> Stop {
         let state = self.state();
         if self.model.has_drives()
+            && self.model.isometry() == Isometry::Rods
             && let Some(excess) = excess(&self.model, state, lengths.end())
         {
             return match self.control.unsatisfiable {

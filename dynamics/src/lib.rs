@@ -77,6 +77,7 @@ mod integrator;
 mod iterate;
 mod layout;
 mod load;
+mod membrane;
 mod method;
 mod minimiser;
 mod model;
@@ -110,8 +111,9 @@ pub use energy_momentum::EnergyMomentumOptions;
 pub use feasibility::Excess;
 pub use implicit::ImplicitOptions;
 pub use load::{AccelerationField, LoadError, VertexLoad};
+pub use membrane::{Membrane, MembraneError};
 pub use method::{Fallback, Method, StepControl, Unsatisfiable};
-pub use model::{ModelError, SheetModel};
+pub use model::{Isometry, ModelError, SheetModel};
 pub use motion::{
     AxisRotation, Keyframe, Kinematics, MotionError, PointMotion, PointProfile, RigidDisplacement,
     RigidMotion, RigidProfile,

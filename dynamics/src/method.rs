@@ -90,6 +90,11 @@ pub enum Method {
 }
 
 impl Method {
+    /// Whether a step is a minimum of an incremental potential, which needs no rods.
+    pub(crate) fn is_minimising(&self) -> bool {
+        matches!(self, Self::ImplicitEuler(_) | Self::Bdf2(_))
+    }
+
     /// Validates the options and analyses the model.
     pub(crate) fn build(&self, model: &SheetModel) -> Result<Box<dyn Integrator>, SimulationError> {
         Ok(match self.clone() {

@@ -8,7 +8,6 @@ mod sqp;
 mod tests;
 
 use crate::ImplicitOptions;
-use crate::SheetModel;
 use crate::contact::{ContactState, ContactWork};
 use crate::history::History;
 use crate::integrator::Attempt;
@@ -16,6 +15,7 @@ use crate::primal::strain_floor;
 use crate::reaction::{Balance, ForceTime};
 use crate::report::{self, SolverEffort, StepError, StepOutcome};
 use crate::restoration::{Restoration, RestorationContact, RestorationGoal};
+use crate::{Isometry, SheetModel};
 use augmented_lagrangian::{AugmentedLagrangian, Rounds};
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::area_from_lengths;
@@ -42,6 +42,8 @@ const COMPARISON_SLACK: f64 = 10.0;
 /// | [`Sqp`], weakly regularised | the start | second | first, unless supports move |
 /// | [`AugmentedLagrangian`] | the prediction, without multipliers | third | second |
 /// | [`AugmentedLagrangian`], exact rounds | the start, without multipliers | last | last |
+///
+/// Elastic sheets have no rods that programming would solve for, and are minimised by the last two strategies.
 ///
 /// Sheets with slivers, without contact, begin with the augmented Lagrangian from the prediction and its own
 /// multipliers, and are left to weakly regularised programming after that.
@@ -126,6 +128,9 @@ impl Strategy {
             Strategy::Sqp(Regularisation::Weak),
             Strategy::FromStart,
         ];
+        if problem.model.isometry() == Isometry::Elastic {
+            return &ALL[2..];
+        }
         match (problem.has_contact(), problem.model.has_drives()) {
             (false, _) if faces == Faces::Slivers => &SLIVERS,
             (false, _) => &ALL,

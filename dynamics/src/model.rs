@@ -3,6 +3,7 @@
 mod supports;
 
 use crate::constraint::VertexConstraint;
+use crate::membrane::Membrane;
 use crate::motion::MotionError;
 use crate::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
 use isosheet_mesh::{
@@ -59,6 +60,16 @@ pub enum ModelError {
     },
 }
 
+/// What keeps the lengths of a sheet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Isometry {
+    /// Rigid rods along all edges: lengths are exact, and the sheet folds along the lines of its mesh alone.
+    #[default]
+    Rods,
+    /// The elasticity of the material, a [`Membrane`](crate::Membrane): edges stretch.
+    Elastic,
+}
+
 /// Marks a vertex without unknowns in [`SheetModel::free_index`].
 pub(crate) const PINNED: u32 = u32::MAX;
 
@@ -69,6 +80,7 @@ pub(crate) const PINNED: u32 = u32::MAX;
 #[derive(Debug)]
 pub struct SheetModel {
     topology: Topology,
+    isometry: Isometry,
     rods: LengthConstraints,
     mass: MassMatrix,
     potentials: Vec<Box<dyn Potential>>,
@@ -125,6 +137,7 @@ impl SheetModel {
             }
         }
         Ok(Self {
+            isometry: Isometry::Rods,
             rods,
             shortest_rods,
             mean_length: sheet.mean_length(),
@@ -161,6 +174,18 @@ impl SheetModel {
         self
     }
 
+    /// Replaces the rigid rods by an elastic membrane. Edges stretch as the material does; the reports tell
+    /// by how much. Sheets that rods would lock move, for the price of membrane locking on coarse meshes:
+    /// bends in a direction in which the mesh cannot fold stretch the sheet, which a stiff membrane resists
+    /// (see [`Membrane`]).
+    ///
+    /// For BDF2 and implicit Euler; other methods and charts are refused.
+    #[must_use]
+    pub fn with_membrane(mut self, membrane: Membrane) -> Self {
+        self.isometry = Isometry::Elastic;
+        self.with_potential(membrane)
+    }
+
     /// Adds a non-conservative force.
     #[must_use]
     pub fn with_force(mut self, force: impl Force + 'static) -> Self {
@@ -186,9 +211,22 @@ impl SheetModel {
         &self.topology
     }
 
-    /// The rods.
+    /// What keeps the lengths.
+    pub fn isometry(&self) -> Isometry {
+        self.isometry
+    }
+
+    /// The rods; where the sheet is elastic, its edges, which keep no lengths.
     pub fn rods(&self) -> &LengthConstraints {
         &self.rods
+    }
+
+    /// Largest edge strain at positions `x` where rods have to keep the lengths; zero for elastic sheets.
+    pub(crate) fn constrained_strain(&self, x: &[f64]) -> f64 {
+        match self.isometry {
+            Isometry::Rods => self.rods.max_strain(x),
+            Isometry::Elastic => 0.0,
+        }
     }
 
     /// The mass matrix.

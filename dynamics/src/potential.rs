@@ -20,6 +20,13 @@ pub trait Potential: Debug + Send + Sync {
     /// Adds second derivatives to `hessian`. The default adds none.
     fn add_hessian(&self, _t: f64, _x: &[f64], _hessian: &mut dyn HessianSink) {}
 
+    /// Adds a positive semidefinite part of the second derivatives, for minimisations where the whole Hessian
+    /// is indefinite. The default adds what [`Potential::add_hessian`] adds; where that is indefinite too,
+    /// the curvature of all potentials is left out.
+    fn add_semidefinite_hessian(&self, t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+        self.add_hessian(t, x, hessian);
+    }
+
     /// The pairs of vertices without a common edge that [`Potential::add_hessian`] couples by
     /// [`HessianSink::add_pair`]; they have to be the same at all times and positions. The default names
     /// none.

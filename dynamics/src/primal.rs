@@ -3,7 +3,7 @@
 use crate::contact::{ContactTerms, CouplingSink};
 use crate::layout::{FULL, LOWER, Layout};
 use crate::model::PINNED;
-use crate::{HessianSink, SheetModel, State};
+use crate::{HessianSink, Isometry, SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt, norm_inf};
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::Matrix3;
@@ -202,11 +202,34 @@ impl PrimalMatrix {
     /// Adds `scale` times the Hessians of the potentials.
     pub(crate) fn add_potentials(&mut self, model: &SheetModel, t: f64, x: &[f64], scale: f64) {
         for p in model.potentials() {
+            let matrix = &mut *self;
             p.add_hessian(
                 t,
                 x,
                 &mut Sink {
-                    matrix: self,
+                    matrix,
+                    model,
+                    scale,
+                },
+            );
+        }
+    }
+
+    /// Adds `scale` times positive semidefinite parts of the Hessians of the potentials.
+    pub(crate) fn add_semidefinite_potentials(
+        &mut self,
+        model: &SheetModel,
+        t: f64,
+        x: &[f64],
+        scale: f64,
+    ) {
+        for p in model.potentials() {
+            let matrix = &mut *self;
+            p.add_semidefinite_hessian(
+                t,
+                x,
+                &mut Sink {
+                    matrix,
                     model,
                     scale,
                 },
@@ -367,6 +390,9 @@ pub(crate) fn scatter(model: &SheetModel, packed: &[f64], full: &mut [f64]) {
 /// free, so that slivers and heavy vertices are treated alike. Kilograms per square metre.
 pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
     let rods = model.rods();
+    if model.isometry() == Isometry::Elastic {
+        return vec![0.0; rods.len()];
+    }
     rods.edges()
         .iter()
         .zip(rods.lengths())

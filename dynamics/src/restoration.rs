@@ -284,7 +284,7 @@ impl Restoration {
 
     /// Largest strain or relative violation of a vertex constraint, those being evaluated.
     fn worst(&self, model: &SheetModel, x: &[f64]) -> f64 {
-        let strain = model.rods().max_strain(x);
+        let strain = model.constrained_strain(x);
         if model.constraints().is_empty() {
             return strain;
         }

@@ -47,6 +47,9 @@ pub enum SimulationError {
         /// Place in the order in which the constraints were added.
         index: usize,
     },
+    /// An elastic sheet is in a scene of a method that needs rods.
+    #[error("the sheet is elastic, and the method needs rigid rods; use BDF2 or implicit Euler")]
+    Elastic,
     /// The checkpoint does not belong to the model or cannot be resumed this way.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),

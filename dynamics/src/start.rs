@@ -154,7 +154,7 @@ pub(crate) fn check_motions(model: &SheetModel, state: &State) -> Result<(), Ste
 pub(crate) fn check_state(model: &SheetModel, state: &State) -> Result<(), StepError> {
     check_finite(state)?;
     let rods = model.rods();
-    if rods.max_strain(&state.x) <= START_STRAIN {
+    if model.constrained_strain(&state.x) <= START_STRAIN {
         return Ok(());
     }
     let length = |e: usize| {

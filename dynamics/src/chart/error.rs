@@ -84,6 +84,11 @@ pub enum ChartDynamicsError {
         /// The vertex.
         vertex: VertexId,
     },
+    /// The sheet is elastic.
+    #[error(
+        "the sheet is elastic, and charts need rigid rods; use BDF2 or implicit Euler without a chart"
+    )]
+    Elastic,
     /// A one-sided constraint makes no closure equation.
     #[error(
         "vertex constraint {index} is one-sided; a chart takes two-sided constraints only. Use contact with a body, or a damped method without a chart"

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
 use crate::reaction::{Balance, ForceTime, Reaction};
-use crate::{SheetModel, State};
+use crate::{Isometry, SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
 
 /// What one step did.
@@ -81,7 +81,7 @@ impl ChartSimulation {
     /// # Errors
     /// Invalid options; a state with the wrong edge lengths or off its supports;
     /// [`ChartDynamicsError::Chart`] for states where the chart is singular (flat sheets) or too
-    /// ill-conditioned; [`ChartDynamicsError::OneSided`].
+    /// ill-conditioned; [`ChartDynamicsError::OneSided`], [`ChartDynamicsError::Elastic`].
     pub fn from_state(
         model: SheetModel,
         chart: Box<dyn Chart>,
@@ -385,6 +385,9 @@ impl ChartSimulation {
 /// Refuses a state of the wrong length or with values that are not finite, and supports that a chart cannot
 /// have.
 fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsError> {
+    if model.isometry() == Isometry::Elastic {
+        return Err(ChartDynamicsError::Elastic);
+    }
     let State { t, x, v } = start;
     for (what, slice) in [("x", x), ("v", v)] {
         if slice.len() != model.coordinate_count() {

@@ -96,7 +96,7 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
                 lagrangian.multipliers[e] += lagrangian.penalty(e) * lagrangian.c[e];
             }
             lagrangian.vertex_rows.update();
-            strain = model.rods().max_strain(lagrangian.iterate.x());
+            strain = model.constrained_strain(lagrangian.iterate.x());
             if !converged {
                 break;
             }

@@ -280,7 +280,10 @@ impl Lagrangian {
         self.project_rods(problem.model, load);
         effort.factorisations += 1;
         self.assemble(problem, HessianPart::PositiveSemidefinite);
-        self.add_potentials(problem);
+        let (t, x) = (problem.t(), self.iterate.x());
+        let scale = problem.h * problem.h;
+        self.matrix
+            .add_semidefinite_potentials(problem.model, t, x, scale);
         if self.matrix.factorize().is_err() {
             effort.factorisations += 1;
             self.assemble(problem, HessianPart::PositiveSemidefinite);
