@@ -9,6 +9,7 @@ mod closures;
 mod conservation;
 mod constraints;
 mod contact;
+mod elastic;
 mod flat;
 mod forces;
 mod impacts;
