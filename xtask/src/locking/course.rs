@@ -213,10 +213,7 @@ fn cause(error: &StepError) -> &StepError {
 }
 
 /// The ending by an error, with the names of the error and of its cause as they are in the code.
-fn refused(
-    error: &(impl std::error::Error + std::fmt::Debug),
-    cause: &impl std::fmt::Debug,
-) -> Ending {
+fn refused(error: &impl std::error::Error, cause: &impl std::fmt::Debug) -> Ending {
     let variant = |debug: String| {
         let end = debug.find(|c: char| !c.is_alphanumeric());
         debug[..end.unwrap_or(debug.len())].to_owned()

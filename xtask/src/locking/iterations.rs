@@ -36,7 +36,7 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
         step: 1.0 / 60.0,
         duration: effort.pick(0.25, 1.0),
         rest_speed: None,
-        patience: effort.patience(1.0, 25.0),
+        patience: effort.patience(1.0, 15.0),
     };
     let mut table = Results::new(
         "iterations",

@@ -40,13 +40,15 @@ fn is_positive(point: &[f64; 2]) -> bool {
     point.iter().all(|v| v.is_finite() && *v > 0.0)
 }
 
-/// Fitted power of positive values; nothing from fewer than two.
-pub(super) fn order(points: &[[f64; 2]]) -> Option<f64> {
-    let positive: Vec<[f64; 2]> = points.iter().copied().filter(is_positive).collect();
-    if positive.len() < 2 {
+/// Fitted power of the errors above `floor`, the level of round-off and of the solver's tolerances, below
+/// which an error says nothing; nothing from fewer than two.
+pub(super) fn order(points: &[[f64; 2]], floor: f64) -> Option<f64> {
+    let all = points.iter().copied();
+    let above: Vec<[f64; 2]> = all.filter(|p| is_positive(p) && p[1] > floor).collect();
+    if above.len() < 2 {
         return None;
     }
-    exponent(&positive)
+    exponent(&above)
 }
 
 /// Whole decades that hold all values.
@@ -80,9 +82,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn orders_need_two_positive_values() {
+    fn orders_need_two_values_above_the_floor() {
         let points = [[0.1, 0.02], [0.2, 0.08], [0.4, 0.0], [0.8, f64::NAN]];
-        assert!((order(&points).unwrap() - 2.0).abs() < 1e-12);
-        assert_eq!(order(&points[1..]), None);
+        assert!((order(&points, 0.0).unwrap() - 2.0).abs() < 1e-12);
+        assert_eq!(order(&points, 0.05), None);
+        assert_eq!(order(&points[1..], 0.0), None);
     }
 }
