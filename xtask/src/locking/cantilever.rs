@@ -7,9 +7,9 @@ use super::elastica::Elastica;
 use super::findings::Findings;
 use super::isometry::Isometry;
 use super::meshes::{Pattern, Strip};
-use super::plot::{guide, log_log, order, series};
+use super::plot::{guide, order, panels, series};
 use super::table::{Results, number};
-use crate::draw::{Drawing, row};
+use crate::draw::{Drawing, Series};
 use crate::progress::Progress;
 use anyhow::Result;
 use isosheet_dynamics::Method;
@@ -263,21 +263,20 @@ fn remark(all: &[Hung]) -> String {
 
 /// The error against the spacing for every direction, at the stiffness of paper.
 fn plot(all: &[Hung], directions: &[f64]) -> Drawing {
+    let [_, paper] = RIGIDITIES;
+    let first = points(all, Pattern::UnionJack, Isometry::Rods, paper, 0.0);
     let panel = |pattern: Pattern| {
-        let mut lines: Vec<_> = directions
-            .iter()
-            .enumerate()
-            .map(|(k, &degrees)| {
-                let points = points(all, pattern, Isometry::Rods, RIGIDITIES[1], degrees);
-                series(k, &format!("{degrees}°"), points)
-            })
-            .collect();
-        if let Some([h, e]) = lines.iter().flat_map(|s| s.points.clone()).next() {
+        let line = |(k, &degrees): (usize, &f64)| {
+            let points = points(all, pattern, Isometry::Rods, paper, degrees);
+            series(k, &format!("{degrees}°"), points)
+        };
+        let mut lines: Vec<Series> = directions.iter().enumerate().map(line).collect();
+        if let Some(&[h, e]) = first.first() {
             lines.push(guide("~h~", vec![[h, e], [h / 4.0, e / 4.0]]));
         }
-        log_log("~h~, m", &format!("{pattern}: error of the drop"), lines)
+        (format!("{pattern}: error of the drop"), lines)
     };
-    row(&Pattern::ALL.map(panel), 24.0)
+    panels("~h~, m", Pattern::ALL.map(panel).to_vec())
 }
 
 #[cfg(test)]

@@ -124,7 +124,7 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
         step: 1.0 / 60.0,
         duration: effort.pick(0.5, 2.0),
         rest_speed: None,
-        patience: effort.patience(0.3, 1.25),
+        patience: effort.patience(0.3, 3.0),
     };
     let mut runs = Results::new(
         "clamped-runs",

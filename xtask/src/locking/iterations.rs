@@ -41,7 +41,8 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
     let mut table = Results::new(
         "iterations",
         format!(
-            "The hanging sheet: {} s simulated, at most {} s of wall time. Counts belong to the steps that were completed",
+            "The hanging sheet: {} s simulated, at most {} s of wall time. Counts belong to the steps that were completed, \
+             the wall time per step includes the time of one that was not",
             plan.duration,
             plan.patience.as_secs_f64()
         ),

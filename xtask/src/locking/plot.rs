@@ -1,6 +1,6 @@
 //! Plots of measured numbers, and the orders fitted to them.
 
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, palette};
+use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, palette, row};
 use crate::scale::exponent;
 
 /// Colours and symbols of the series of a plot, in order.
@@ -64,17 +64,33 @@ fn decades(label: &str, values: impl Iterator<Item = f64>) -> Axis {
     Axis::decades(label, low, high.max(low + 1), 1)
 }
 
-/// A plot with both axes logarithmic.
-pub(super) fn log_log(x: &str, y: &str, series: Vec<Series>) -> Drawing {
-    let all = || series.iter().flat_map(|s| &s.points);
-    Plot {
-        x: decades(x, all().map(|p| p[0])),
-        y: decades(y, all().map(|p| p[1])),
-        size: [170.0, 150.0],
-        legend: Legend::Right,
-        series: series.clone(),
-    }
-    .draw()
+/// Plots side by side with the same logarithmic axes, each with its label of the vertical axis; the series are
+/// named beside the last one.
+pub(super) fn panels(x: &str, panels: Vec<(String, Vec<Series>)>) -> Drawing {
+    let all: Vec<[f64; 2]> = panels
+        .iter()
+        .flat_map(|(_, series)| series.iter().flat_map(|s| s.points.iter().copied()))
+        .collect();
+    let last = panels.len().saturating_sub(1);
+    let drawings: Vec<Drawing> = panels
+        .into_iter()
+        .enumerate()
+        .map(|(k, (label, series))| {
+            Plot {
+                x: decades(x, all.iter().map(|p| p[0])),
+                y: decades(&label, all.iter().map(|p| p[1])),
+                size: [150.0, 150.0],
+                legend: if k == last {
+                    Legend::Right
+                } else {
+                    Legend::None
+                },
+                series,
+            }
+            .draw()
+        })
+        .collect();
+    row(&drawings, 24.0)
 }
 
 #[cfg(test)]
