@@ -41,12 +41,12 @@ pub(crate) enum Command {
     /// Writes DIR/scale.html (self-contained), DIR/scale.csv, DIR/draping.csv, DIR/scale.svg and
     /// DIR/scale.png and prints the tables.
     Scale(ScaleArgs),
-    /// Measure how much a triangulated sheet locks: how much stiffer it is than a smooth one, by yardsticks with
-    /// references
+    /// Measure how much a triangulated sheet locks: how much stiffer it is than a smooth one, by yardsticks
+    /// with references
     ///
     /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG) and prints the
-    /// tables. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not end is an entry of
-    /// a table: the exit code says whether the report was made.
+    /// tables. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not end is an entry
+    /// of a table: the exit code says whether the report was made.
     Locking(LockingArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///

@@ -1,14 +1,17 @@
-//! `locking`: how much stiffer than a smooth inextensible sheet a triangulated one is, by yardsticks with exact
-//! or published references.
+//! `locking`: how much stiffer than a smooth inextensible sheet a triangulated one is, by yardsticks with
+//! exact or published references.
 //!
-//! Every yardstick is kept in the output folder with what it found, so that an interrupted run continues where
-//! it stopped, and the page is written from what is there.
+//! Every yardstick is kept in the output folder with what it found, so that an interrupted run continues
+//! where it stopped, and the page is written from what is there.
 
+mod bisection;
+mod buckling;
 mod cantilever;
 mod clamped;
 mod course;
 mod cylinder;
 mod cylinder_fit;
+mod drape;
 mod effort;
 mod elastica;
 mod everyday;
@@ -19,6 +22,8 @@ mod limit;
 mod meshes;
 mod page;
 mod plot;
+mod rim;
+mod sliding;
 mod table;
 
 use crate::cli::LockingArgs;
@@ -46,16 +51,25 @@ pub(crate) enum Part {
     Cantilever,
     /// Iterations of the hanging sheet.
     Iterations,
+    /// A disk on a round table.
+    Drape,
+    /// Lateral buckling of a strip on edge.
+    Buckling,
+    /// The angle at which a sheet slides.
+    Sliding,
 }
 
 impl Part {
     /// All of them, in the order of the page.
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 8] = [
         Self::Clamped,
         Self::Everyday,
         Self::Cylinder,
         Self::Cantilever,
         Self::Iterations,
+        Self::Drape,
+        Self::Buckling,
+        Self::Sliding,
     ];
 
     fn title(self) -> &'static str {
@@ -65,6 +79,9 @@ impl Part {
             Self::Cylinder => "Bent to a cylinder",
             Self::Cantilever => "The heavy elastica",
             Self::Iterations => "Iterations of the hanging sheet",
+            Self::Drape => "A disk on a round table",
+            Self::Buckling => "Lateral buckling",
+            Self::Sliding => "Sliding down a plane",
         }
     }
 
@@ -76,6 +93,9 @@ impl Part {
             Self::Cylinder => cylinder::ABOUT,
             Self::Cantilever => cantilever::ABOUT,
             Self::Iterations => iterations::ABOUT,
+            Self::Drape => drape::ABOUT,
+            Self::Buckling => buckling::ABOUT,
+            Self::Sliding => sliding::ABOUT,
         }
     }
 
@@ -86,6 +106,9 @@ impl Part {
             Self::Cylinder => cylinder::make(effort),
             Self::Cantilever => cantilever::make(effort),
             Self::Iterations => iterations::make(effort),
+            Self::Drape => drape::make(effort),
+            Self::Buckling => buckling::make(effort),
+            Self::Sliding => sliding::make(effort),
         }
     }
 }
@@ -98,6 +121,9 @@ impl fmt::Display for Part {
             Self::Cylinder => "cylinder",
             Self::Cantilever => "cantilever",
             Self::Iterations => "iterations",
+            Self::Drape => "drape",
+            Self::Buckling => "buckling",
+            Self::Sliding => "sliding",
         })
     }
 }

@@ -306,3 +306,49 @@ fn matrices_are_written_for_other_programs() {
     let text = fs::read_to_string(out.join("M0-schur.mtx")).unwrap();
     assert!(text.starts_with("%%MatrixMarket matrix coordinate real symmetric"));
 }
+
+#[test]
+fn yardsticks_of_locking_are_kept() {
+    let (_keep, out) = folder();
+    let run = |list: &str| {
+        let result = xtask()
+            .args(["locking", "--quick", "--yardsticks", list, "--out"])
+            .arg(&out)
+            .output()
+            .unwrap();
+        let text = [result.stdout, result.stderr].concat();
+        (
+            result.status.code(),
+            String::from_utf8_lossy(&text).into_owned(),
+        )
+    };
+    let (code, text) = run("cylinder");
+    assert_eq!(code, Some(0), "{text}");
+    for file in [
+        "tables/cylinder.csv",
+        "tables/cylinder-orders.csv",
+        "plots/cylinder.svg",
+        "plots/cylinder.png",
+        "index.html",
+    ] {
+        let length = fs::metadata(out.join(file)).unwrap().len();
+        assert!(length > 200, "{file} is empty");
+    }
+    let (code, text) = run("sliding,cylinder");
+    assert_eq!(code, Some(0), "{text}");
+    assert_eq!(text.matches("up to date").count(), 1, "{text}");
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    assert!(page.contains("id=\"cylinder\"") && page.contains("id=\"sliding\""));
+    assert!(!page.contains("<script") && !page.contains("<link") && !page.contains("NaN"));
+    // Coulomb's law, to within the four halvings of the quick form.
+    let table = fs::read_to_string(out.join("tables/sliding.csv")).unwrap();
+    for row in table.lines().skip(1) {
+        let cells: Vec<&str> = row.split(',').collect();
+        let bounds = [4, 5].map(|k| cells[k].parse::<f64>().unwrap());
+        assert!(bounds[0] < 1.01 && bounds[1] > 0.99, "{row}");
+        assert!(bounds[1] / bounds[0] < 1.03, "{row}");
+    }
+    let (code, text) = run("moon");
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("clamped, everyday, cylinder"), "{text}");
+}

@@ -111,9 +111,9 @@ fn methods(effort: LockingEffort) -> Vec<(&'static str, Method, usize)> {
         methods.push((
             "implicit Euler",
             Method::ImplicitEuler(Default::default()),
-            40,
+            25,
         ));
-        methods.push(("projection", Method::Projection(Default::default()), 40));
+        methods.push(("projection", Method::Projection(Default::default()), 25));
     }
     methods
 }
@@ -124,7 +124,7 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
         step: 1.0 / 60.0,
         duration: effort.pick(0.5, 2.0),
         rest_speed: None,
-        patience: effort.patience(0.3, 1.5),
+        patience: effort.patience(0.3, 3.0),
     };
     let mut runs = Results::new(
         "clamped-runs",

@@ -17,10 +17,11 @@ pub(super) struct CylinderFit {
 /// that normal, the direction of the axis about it, the curvature.
 type Parameters = SVector<f64, 5>;
 
-/// Fits a cylinder to points (3V, metres) near the cylinder about the y axis of the given curvature through the
-/// origin.
+/// Fits a cylinder to points (3V, metres) near the cylinder about the y axis of the given curvature through
+/// the origin.
 ///
-/// The squared distances are minimised by Gauss-Newton steps, with the distance of Lukacs, Martin and Marshall,
+/// The squared distances are minimised by Gauss-Newton steps, with the distance of Lukacs, Martin and
+/// Marshall,
 /// *Faithful least-squares fitting of spheres, cylinders, cones and tori* (1998), Sec. 4: with `n` the normal at
 /// the point `rho n` of the surface nearest to the origin, `a` the axis and `k` the curvature,
 ///

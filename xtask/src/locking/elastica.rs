@@ -1,5 +1,5 @@
-//! The heavy elastica: the shape of an inextensible strip that is clamped horizontally and hangs under its own
-//! weight.
+//! The heavy elastica: the shape of an inextensible strip that is clamped horizontally and hangs under its
+//! own weight.
 
 /// A heavy strip, for each metre of its width.
 #[derive(Clone, Copy, Debug)]
@@ -18,18 +18,18 @@ type Point = [f64; 4];
 impl Elastica {
     /// How far the free end hangs below the clamp, metres.
     ///
-    /// With the slope `theta` below the horizontal at the arc length `s` from the clamp the moment of the part
-    /// beyond gives
+    /// With the slope `theta` below the horizontal at the arc length `s` from the clamp the moment of the
+    /// part beyond gives
     ///
     /// ```text
     /// D theta'' = -q (L - s) cos theta,   theta(0) = 0,   theta'(L) = 0,
     /// ```
     ///
     /// (Love, *A treatise on the mathematical theory of elasticity*, Sec. 262 with the weight of the rod;
-    /// Rohde, *Large deflections of a cantilever beam with uniformly distributed load*, 1953). The curvature at
-    /// the clamp is found by bisection: the end slope of the elastica that hangs by its weight alone grows with
-    /// it, and the moment at the clamp is at most `q L^2 / 2`. The equations are integrated by the classical
-    /// Runge-Kutta method with step control by doubling.
+    /// Rohde, *Large deflections of a cantilever beam with uniformly distributed load*, 1953). The curvature
+    /// at the clamp is found by bisection: the end slope of the elastica that hangs by its weight alone grows
+    /// with it, and the moment at the clamp is at most `q L^2 / 2`. The equations are integrated by the
+    /// classical Runge-Kutta method with step control by doubling.
     pub(super) fn drop(&self) -> f64 {
         let (mut low, mut high) = (
             0.0,

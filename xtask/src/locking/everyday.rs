@@ -4,6 +4,7 @@ use super::course::{Plan, Scene};
 use super::effort::LockingEffort;
 use super::findings::Findings;
 use super::isometry::{Isometry, bending_energy};
+use super::meshes::vertices;
 use super::table::Results;
 use crate::draw::Drawing;
 use crate::progress::Progress;
@@ -100,50 +101,41 @@ impl Everyday {
             .bending(sheet, DENSITY * sheet.area(), RIGIDITY)?
             .with_gravity()
             .with_damping(DAMPING)?;
-        let at = |test: &dyn Fn([f64; 3]) -> bool| -> Vec<VertexId> {
-            let all = sheet.topology().vertex_ids();
-            all.filter(|v| test(sheet.position(*v))).collect()
-        };
         Ok(match self {
-            Self::Pushed(_) => self.clamps(model, sheet, &at)?,
+            Self::Pushed(_) => pushed(model, sheet)?,
             Self::Roll(_) => {
                 let panel = sheet.position(VertexId(1))[0];
-                model.with_pins(&at(&|[x, _, _]| x < panel + 1e-9))?
+                model.with_pins(&vertices(sheet, |[x, _, _]| x < panel + 1e-9))?
             }
-            Self::Banner(_) => model.with_pins(&at(&|[x, y, _]| {
+            Self::Banner(_) => model.with_pins(&vertices(sheet, |[x, y, _]| {
                 y > 1.0 - 1e-9 && (x - 0.5).abs() > 0.5 - 1e-9
             }))?,
-            Self::Corners(_) => {
-                model.with_pins(&at(&|[x, y, _]| (x + y - 1.0).abs() > 1.0 - 1e-9))?
-            }
+            Self::Corners(_) => model.with_pins(&vertices(sheet, |[x, y, _]| {
+                (x + y - 1.0).abs() > 1.0 - 1e-9
+            }))?,
         })
-    }
-
-    /// Both ends of the strip clamped, the right one moving.
-    fn clamps(self, model: SheetModel, sheet: &Sheet, at: &Selection<'_>) -> Result<SheetModel> {
-        let second = sheet.position(VertexId(1))[0];
-        let left = at(&|[x, _, _]| x < second + 1e-9);
-        let right = at(&|[x, _, _]| x > 0.3 - second - 1e-9);
-        let mut model = model.with_pins(&left)?;
-        for v in right {
-            let push = PointProfile {
-                offset: sheet.position(v),
-                x: Profile::SmoothStep {
-                    from: 0.0,
-                    to: -PUSH * (0.3 - 2.0 * second),
-                    begin: 0.0,
-                    end: 1.0,
-                },
-                ..PointProfile::default()
-            };
-            model = model.with_moving_pin(v, push)?;
-        }
-        Ok(model)
     }
 }
 
-/// The vertices whose places meet a condition.
-type Selection<'a> = dyn Fn(&dyn Fn([f64; 3]) -> bool) -> Vec<VertexId> + 'a;
+/// Both ends of the strip clamped, the right one moving.
+fn pushed(model: SheetModel, sheet: &Sheet) -> Result<SheetModel> {
+    let second = sheet.position(VertexId(1))[0];
+    let mut model = model.with_pins(&vertices(sheet, |[x, ..]| x < second + 1e-9))?;
+    for v in vertices(sheet, |[x, ..]| x > 0.3 - second - 1e-9) {
+        let push = PointProfile {
+            offset: sheet.position(v),
+            x: Profile::SmoothStep {
+                from: 0.0,
+                to: -PUSH * (0.3 - 2.0 * second),
+                begin: 0.0,
+                end: 1.0,
+            },
+            ..PointProfile::default()
+        };
+        model = model.with_moving_pin(v, push)?;
+    }
+    Ok(model)
+}
 
 /// The sheet of a grid rolled up about lines x = constant of the mesh: a prism with a panel for each column,
 /// which has all lengths exactly. The first panel stays where it is.

@@ -23,7 +23,8 @@ impl Isometry {
         })
     }
 
-    /// The same with springs that resist bending, see [`CreaseSprings::bending`]; `rigidity` in newton metres.
+    /// The same with springs that resist bending, see [`CreaseSprings::bending`]; `rigidity` in newton
+    /// metres.
     pub(super) fn bending(self, sheet: &Sheet, mass: f64, rigidity: f64) -> Result<SheetModel> {
         let springs = CreaseSprings::bending(sheet, rigidity)?;
         Ok(self.model(sheet, mass)?.with_potential(springs))

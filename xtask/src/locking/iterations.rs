@@ -36,12 +36,13 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
         step: 1.0 / 60.0,
         duration: effort.pick(0.25, 1.0),
         rest_speed: None,
-        patience: effort.patience(1.0, 25.0),
+        patience: effort.patience(1.0, 15.0),
     };
     let mut table = Results::new(
         "iterations",
         format!(
-            "The hanging sheet: {} s simulated, at most {} s of wall time. Counts belong to the steps that were completed",
+            "The hanging sheet: {} s simulated, at most {} s of wall time. Counts belong to the steps that were completed, \
+             the wall time per step includes the time of one that was not",
             plan.duration,
             plan.patience.as_secs_f64()
         ),

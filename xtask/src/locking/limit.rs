@@ -19,8 +19,8 @@ pub(super) enum GivenUp {
 ///
 /// A single step of a sheet that locks can take minutes, and there is no way to ask the solver to stop
 /// meanwhile. When the time is over the potential unwinds the stack up to [`unless_given_up`], which calls no
-/// panic handler and prints nothing. The simulation must not be moved any further after that; its state is that
-/// of the last accepted sub-step.
+/// panic handler and prints nothing. The simulation must not be moved any further after that; its state is
+/// that of the last accepted sub-step.
 #[derive(Debug)]
 pub(super) struct Guard {
     end: Instant,

@@ -1,4 +1,5 @@
-//! Flat triangulations: grids turned against the outline of the sheet, irregular meshes, and cuts along lines.
+//! Flat triangulations: grids turned against the outline of the sheet, irregular meshes, and cuts along
+//! lines.
 
 use anyhow::Result;
 use isosheet_mesh::generate::{self, Diagonals};
@@ -23,8 +24,8 @@ impl Pattern {
     /// A flat rectangle (corners `low` and `high`, metres) with squares of the side `cell`, whose sides are
     /// turned by `angle` (radians) against the x axis; an irregular mesh has edges of the same mean length.
     ///
-    /// A turned grid is cut along the outline, see [`Flat::split`]. Of an irregular mesh `angle` is no more than
-    /// another seed.
+    /// A turned grid is cut along the outline, see [`Flat::split`]. Of an irregular mesh `angle` is no more
+    /// than another seed.
     pub(super) fn rectangle(
         self,
         low: [f64; 2],
@@ -47,8 +48,8 @@ impl Pattern {
             let grid = generate::grid(counts[0], counts[1], width, height, diagonals)?;
             return Ok(grid.map_positions(|[x, y, z]| [x + low[0], y + low[1], z])?);
         }
-        // A grid about the middle that covers the rectangle at any angle, with an even number of cells so that
-        // the middle is a vertex.
+        // A grid about the middle that covers the rectangle at any angle, with an even number of cells so
+        // that the middle is a vertex.
         let half = (0.5 * width.hypot(height) / cell).ceil() as usize + 1;
         let side = 2.0 * half as f64 * cell;
         let grid = generate::grid(2 * half, 2 * half, side, side, diagonals)?;
@@ -90,12 +91,49 @@ const MEAN_ROD: f64 = (2.0 + std::f64::consts::SQRT_2) / 3.0;
 /// grid are 0.71 cells wide, so that none collapses, and no piece is thinner than this.
 const SNAP: f64 = 0.25;
 
-/// The mesh cut along the line of the given `x` (metres), parallel to y: it gets vertices on the line and edges along it; vertices
-/// within a quarter of the cell are moved onto the line first.
-pub(super) fn with_line(sheet: &Sheet, x: f64, cell: f64) -> Result<Sheet> {
+/// The mesh cut along the line of the given `x` (metres), parallel to y: it gets vertices on the line and
+/// edges along it; vertices within a quarter of the cell are moved onto the line first.
+fn with_line(sheet: &Sheet, x: f64, cell: f64) -> Result<Sheet> {
     let mut flat = Flat::of(sheet);
     flat.split([x, 0.0], [1.0, 0.0], SNAP * cell);
     flat.sheet()
+}
+
+/// A strip along x, clamped over its part up to x = 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strip {
+    /// Length of the free part, from x = 0, metres.
+    pub(super) free: f64,
+    /// Length of the clamped part, metres.
+    pub(super) clamped: f64,
+    /// Width, metres.
+    pub(super) width: f64,
+}
+
+impl Strip {
+    /// The strip with so many squares across, turned by an angle, and with mesh lines along the clamp.
+    pub(super) fn mesh(&self, pattern: Pattern, across: usize, degrees: f64) -> Result<Sheet> {
+        let cell = self.width / across as f64;
+        let (low, high) = ([-self.clamped, 0.0], [self.free, self.width]);
+        let sheet = pattern.rectangle(low, high, cell, degrees.to_radians())?;
+        with_line(&sheet, 0.0, cell)
+    }
+
+    /// The clamped vertices.
+    pub(super) fn clamp(&self, sheet: &Sheet) -> Vec<VertexId> {
+        vertices(sheet, |[x, ..]| x < 1e-9)
+    }
+
+    /// The vertices of the free edge.
+    pub(super) fn tip(&self, sheet: &Sheet) -> Vec<VertexId> {
+        vertices(sheet, |[x, ..]| x > self.free - 1e-9)
+    }
+}
+
+/// The vertices whose positions in the flat sheet pass a test.
+pub(super) fn vertices(sheet: &Sheet, test: impl Fn([f64; 3]) -> bool) -> Vec<VertexId> {
+    let all = sheet.topology().vertex_ids();
+    all.filter(|v| test(sheet.position(*v))).collect()
 }
 
 /// The vertex nearest to a point of a flat sheet.
@@ -126,8 +164,8 @@ impl Flat {
         }
     }
 
-    /// Cuts the triangles that the line through `point` with the unit `normal` crosses. Vertices nearer to the
-    /// line than `snap` (metres) are moved onto it first.
+    /// Cuts the triangles that the line through `point` with the unit `normal` crosses. Vertices nearer to
+    /// the line than `snap` (metres) are moved onto it first.
     fn split(&mut self, point: [f64; 2], normal: [f64; 2], snap: f64) {
         let side = |p: &[f64; 2]| {
             let d = (p[0] - point[0]) * normal[0] + (p[1] - point[1]) * normal[1];

@@ -1,6 +1,6 @@
 //! Plots of measured numbers, and the orders fitted to them.
 
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, palette};
+use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, palette, row};
 use crate::scale::exponent;
 
 /// Colours and symbols of the series of a plot, in order.
@@ -40,13 +40,15 @@ fn is_positive(point: &[f64; 2]) -> bool {
     point.iter().all(|v| v.is_finite() && *v > 0.0)
 }
 
-/// Fitted power of positive values; nothing from fewer than two.
-pub(super) fn order(points: &[[f64; 2]]) -> Option<f64> {
-    let positive: Vec<[f64; 2]> = points.iter().copied().filter(is_positive).collect();
-    if positive.len() < 2 {
+/// Fitted power of the errors above `floor`, the level of round-off and of the solver's tolerances, below
+/// which an error says nothing; nothing from fewer than two.
+pub(super) fn order(points: &[[f64; 2]], floor: f64) -> Option<f64> {
+    let all = points.iter().copied();
+    let above: Vec<[f64; 2]> = all.filter(|p| is_positive(p) && p[1] > floor).collect();
+    if above.len() < 2 {
         return None;
     }
-    exponent(&positive)
+    exponent(&above)
 }
 
 /// Whole decades that hold all values.
@@ -62,17 +64,33 @@ fn decades(label: &str, values: impl Iterator<Item = f64>) -> Axis {
     Axis::decades(label, low, high.max(low + 1), 1)
 }
 
-/// A plot with both axes logarithmic.
-pub(super) fn log_log(x: &str, y: &str, series: Vec<Series>) -> Drawing {
-    let all = || series.iter().flat_map(|s| &s.points);
-    Plot {
-        x: decades(x, all().map(|p| p[0])),
-        y: decades(y, all().map(|p| p[1])),
-        size: [170.0, 150.0],
-        legend: Legend::Right,
-        series: series.clone(),
-    }
-    .draw()
+/// Plots side by side with the same logarithmic axes, each with its label of the vertical axis; the series are
+/// named beside the last one.
+pub(super) fn panels(x: &str, panels: Vec<(String, Vec<Series>)>) -> Drawing {
+    let all: Vec<[f64; 2]> = panels
+        .iter()
+        .flat_map(|(_, series)| series.iter().flat_map(|s| s.points.iter().copied()))
+        .collect();
+    let last = panels.len().saturating_sub(1);
+    let drawings: Vec<Drawing> = panels
+        .into_iter()
+        .enumerate()
+        .map(|(k, (label, series))| {
+            Plot {
+                x: decades(x, all.iter().map(|p| p[0])),
+                y: decades(&label, all.iter().map(|p| p[1])),
+                size: [150.0, 150.0],
+                legend: if k == last {
+                    Legend::Right
+                } else {
+                    Legend::None
+                },
+                series,
+            }
+            .draw()
+        })
+        .collect();
+    row(&drawings, 24.0)
 }
 
 #[cfg(test)]
@@ -80,9 +98,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn orders_need_two_positive_values() {
+    fn orders_need_two_values_above_the_floor() {
         let points = [[0.1, 0.02], [0.2, 0.08], [0.4, 0.0], [0.8, f64::NAN]];
-        assert!((order(&points).unwrap() - 2.0).abs() < 1e-12);
-        assert_eq!(order(&points[1..]), None);
+        assert!((order(&points, 0.0).unwrap() - 2.0).abs() < 1e-12);
+        assert_eq!(order(&points, 0.05), None);
+        assert_eq!(order(&points[1..], 0.0), None);
     }
 }

@@ -106,8 +106,11 @@ impl Results {
     }
 
     /// Adds a row with an entry for every column.
+    ///
+    /// # Panics
+    /// If the row has more or fewer entries.
     pub(super) fn push(&mut self, row: Vec<Cell>) {
-        debug_assert_eq!(row.len(), self.head.len(), "{}", self.name);
+        assert_eq!(row.len(), self.head.len(), "columns of {}", self.name);
         self.rows.push(row);
     }
 

@@ -1,0 +1,78 @@
+//! Bisection for the value from which on a scene behaves otherwise.
+
+use anyhow::Result;
+
+/// What a scene does at a value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Verdict {
+    /// The value is below the critical one.
+    Below,
+    /// The value is above the critical one.
+    Above,
+    /// The run did not say: how it ended.
+    Undecided(String),
+}
+
+/// Where the critical value lies.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Bracket {
+    /// The largest value known to be below.
+    pub(super) below: Option<f64>,
+    /// The smallest value known to be above.
+    pub(super) above: Option<f64>,
+    /// Why the bisection ended early; empty if it did not.
+    pub(super) undecided: String,
+}
+
+/// Halves the interval of logarithms so many times, or until a scene is undecided. The ends of the interval
+/// themselves are not tried.
+pub(super) fn bisect(
+    [mut low, mut high]: [f64; 2],
+    halvings: usize,
+    mut probe: impl FnMut(f64) -> Result<Verdict>,
+) -> Result<Bracket> {
+    let mut bracket = Bracket::default();
+    for _ in 0..halvings {
+        let middle = (low * high).sqrt();
+        match probe(middle)? {
+            Verdict::Below => {
+                low = middle;
+                bracket.below = Some(middle);
+            }
+            Verdict::Above => {
+                high = middle;
+                bracket.above = Some(middle);
+            }
+            Verdict::Undecided(why) => {
+                bracket.undecided = format!("at {middle:.3}: {why}");
+                break;
+            }
+        }
+    }
+    Ok(bracket)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_critical_value_is_bracketed() {
+        let step = |x: f64| {
+            Ok(if x < 3.0 {
+                Verdict::Below
+            } else {
+                Verdict::Above
+            })
+        };
+        let found = bisect([1.0, 16.0], 10, step).unwrap();
+        let (below, above) = (found.below.unwrap(), found.above.unwrap());
+        assert!(below < 3.0 && above >= 3.0 && found.undecided.is_empty());
+        // Ten halvings of a ratio of 16.
+        assert!((above / below - 16.0_f64.powf(1.0 / 1024.0)).abs() < 1e-12);
+        let never = bisect([1.0, 16.0], 4, |_| Ok(Verdict::Below)).unwrap();
+        assert_eq!(never.above, None);
+        let lost = bisect([1.0, 16.0], 4, |_| Ok(Verdict::Undecided("lost".into())));
+        assert_eq!(lost.unwrap().undecided, "at 4.000: lost");
+    }
+}

@@ -1,0 +1,208 @@
+//! Yardstick 7: lateral buckling of a strip that is clamped at one end and stands on edge.
+
+use super::bisection::{Verdict, bisect};
+use super::course::{Plan, Scene};
+use super::effort::LockingEffort;
+use super::findings::Findings;
+use super::isometry::Isometry;
+use super::meshes::{Pattern, Strip};
+use super::table::Results;
+use crate::draw::Drawing;
+use crate::progress::Progress;
+use anyhow::Result;
+use isosheet_dynamics::Method;
+use isosheet_mesh::Sheet;
+
+pub(super) const ABOUT: &str = "A strip of 0.30 m x 0.02 m and 80 g/m² is clamped at one end with its width upright; gravity acts in its plane, and one \
+    thousandth of it across. Below a critical weight the strip stays upright, above it bends and twists sideways (a test of Romero et al., \
+    Physical validation of simulators in computer graphics, ACM Transactions on Graphics 40, 2021). The load is q L³ / (D w), with q the weight per \
+    length and w the width; it is changed by way of the rigidity D. For a beam with the stiffnesses B of bending and C of torsion Prandtl and Michell found q L³ = 12.85 √(B C). \
+    A strip that cannot stretch is no such beam: it twists only where it bends, since its Gaussian curvature is zero, and stores D w (κ² + τ²)² / (2 κ²) per length (Sadowsky 1930), \
+    for |κ| < |τ| four times D w τ² / 2 by fine folds (Freddi, Hornung, Mora and Paroni 2016). This lies between the energies of the \
+    beams with B = D w and C = 2 D w and C = 4 D w, so that the critical load lies between 18.2 and 25.7. (C = 2 D w is also \
+    that of a thin elastic plate whose Poisson ratio is zero.)";
+
+const STRIP: Strip = Strip {
+    free: 0.3,
+    clamped: 0.02,
+    width: 0.02,
+};
+
+/// Mass per area, kg/m2, acceleration of gravity, m/s2, its part across the strip, rate of damping, 1/s.
+const DENSITY: f64 = 0.08;
+const GRAVITY: f64 = 9.8;
+const IMPERFECTION: f64 = 1e-3;
+const DAMPING: f64 = 4.0;
+
+/// Steps of implicit Euler, seconds: long ones, which damp all motion.
+const STEP: f64 = 0.05;
+
+/// The strip is at rest when no vertex is faster, metres per second: near the critical load it moves aside
+/// slowly at first.
+const REST: f64 = 2e-5;
+
+/// The strip has buckled when its tip is aside by more than this part of its length. Far below the critical
+/// load the imperfection moves the tip by `IMPERFECTION` / 8 of the load, 0.3 % of the length; deflections
+/// beyond the critical load grow with its root.
+const BUCKLED: f64 = 0.1;
+
+/// Loads between which the critical one is sought, and halvings of their ratio.
+const LOADS: [f64; 2] = [6.0, 96.0];
+
+/// Critical load `q L^3` of a beam that is clamped and stands on edge under its own weight, over `sqrt(B C)`.
+///
+/// The twist satisfies `phi'' + beta^2 x^4 phi = 0` with `x` the distance from the free end over the length,
+/// `phi' = 0` there, `phi = 0` at the clamp and `beta = q L^3 / (2 sqrt(B C))` (Timoshenko and Gere, *Theory
+/// of Elastic Stability*, Sec. 6.3). The power series of the solution is summed, and its first zero is found
+/// by bisection.
+fn prandtl_michell() -> f64 {
+    let twist = |beta: f64| {
+        let (mut sum, mut term) = (0.0, 1.0);
+        for k in 0..60_i32 {
+            sum += term;
+            let n = f64::from(6 * (k + 1));
+            term *= -beta * beta / (n * (n - 1.0));
+        }
+        sum
+    };
+    let (mut low, mut high) = (1.0, 8.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if twist(middle) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low + high
+}
+
+/// What the strip does under a load.
+fn verdict(isometry: Isometry, flat: &Sheet, load: f64, plan: &Plan) -> Result<Verdict> {
+    let rigidity = DENSITY * GRAVITY * STRIP.free.powi(3) / load;
+    let model = isometry
+        .bending(flat, DENSITY * flat.area(), rigidity)?
+        .with_acceleration([0.0, -GRAVITY, -IMPERFECTION * GRAVITY])
+        .with_damping(DAMPING)?
+        .with_pins(&STRIP.clamp(flat))?;
+    let scene = Scene {
+        model,
+        start: flat.positions().to_vec(),
+        method: Method::ImplicitEuler(Default::default()),
+        contacts: None,
+    };
+    let course = scene.run(plan)?;
+    let tip = STRIP.tip(flat);
+    let aside = tip.iter().map(|v| course.x[3 * v.index() + 2].abs());
+    let aside = aside.sum::<f64>() / tip.len() as f64;
+    Ok(if aside > BUCKLED * STRIP.free {
+        Verdict::Above
+    } else if course.ending.is_good() {
+        Verdict::Below
+    } else {
+        Verdict::Undecided(course.ending.name().to_owned())
+    })
+}
+
+/// Runs the yardstick.
+pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+    let plan = Plan {
+        step: STEP,
+        duration: effort.pick(5.0, 20.0),
+        rest_speed: Some(REST),
+        patience: effort.patience(0.3, 4.0),
+    };
+    let halvings = effort.pick(4, 8);
+    let sizes: &[usize] = effort.pick(&[2], &[2, 4]);
+    let mut meshes: Vec<(Pattern, f64)> = Pattern::ALL.map(|p| (p, 0.0)).to_vec();
+    if effort == LockingEffort::Full {
+        meshes.extend([(Pattern::UnionJack, 45.0), (Pattern::OneWay, 22.5)]);
+    }
+    let unit = prandtl_michell();
+    let bounds = [2.0_f64, 4.0].map(|torsion| unit * torsion.sqrt());
+    let mut table = Results::new(
+        "buckling",
+        format!(
+            "Critical load q L³ / (D w), between the largest load that leaves the strip upright and the smallest that moves its tip aside by more than \
+             {BUCKLED} of its length: at most {halvings} halvings of the ratio of the loads. Every run ends at rest, after {} s, or after {} s of wall time; the \
+             search ends where a run neither moves aside nor reaches its end",
+            plan.duration,
+            plan.patience.as_secs_f64()
+        ),
+        &[
+            "mesh",
+            "turned by, degrees",
+            "squares across",
+            "V",
+            "model",
+            "upright at",
+            "buckled at",
+            "lower bound",
+            "upper bound",
+            "not decided",
+        ],
+    );
+    let bar = Progress::start("lateral buckling", meshes.len() * sizes.len());
+    for isometry in Isometry::ALL {
+        for &(pattern, degrees) in &meshes {
+            for &across in sizes {
+                let sheet = STRIP.mesh(pattern, across, degrees)?;
+                let found = bisect(LOADS, halvings, |load| {
+                    verdict(isometry, &sheet, load, &plan)
+                })?;
+                table.push(vec![
+                    pattern.to_string().into(),
+                    degrees.into(),
+                    across.into(),
+                    sheet.topology().vertex_count().into(),
+                    isometry.to_string().into(),
+                    found.below.into(),
+                    found.above.into(),
+                    bounds[0].into(),
+                    bounds[1].into(),
+                    found.undecided.into(),
+                ]);
+                bar.step();
+            }
+        }
+    }
+    bar.finish("measured");
+    Ok((
+        Findings {
+            tables: vec![table],
+            ..Findings::default()
+        },
+        None,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The constant of the literature, and the bounds of the text.
+    #[test]
+    fn the_critical_load_of_the_beam_is_that_of_the_literature() {
+        let unit = prandtl_michell();
+        assert!((unit - 12.85).abs() < 0.005, "{unit}");
+        assert!((unit * 2.0_f64.sqrt() - 18.2).abs() < 0.05 && (unit * 2.0 - 25.7).abs() < 0.05);
+    }
+
+    /// The energy of the strip lies between those of the two beams.
+    #[test]
+    fn the_energy_of_the_strip_lies_between_two_beams() {
+        let strip = |k: f64, t: f64| {
+            if k.abs() > t.abs() {
+                (k * k + t * t).powi(2) / (k * k)
+            } else {
+                4.0 * t * t
+            }
+        };
+        for i in 0..=100 {
+            let (t, k) = (f64::from(i) * 0.01 * std::f64::consts::FRAC_PI_2).sin_cos();
+            let (low, high) = (k * k + 2.0 * t * t, k * k + 4.0 * t * t);
+            let energy = strip(k, t);
+            assert!((low - 1e-12..=high + 1e-12).contains(&energy), "{k} {t}");
+        }
+    }
+}

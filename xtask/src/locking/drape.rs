@@ -1,0 +1,372 @@
+//! Yardstick 6: a disk on a smaller round table, on several triangulations.
+
+use super::clamped::median;
+use super::course::{Course, Plan, Scene};
+use super::effort::LockingEffort;
+use super::findings::Findings;
+use super::isometry::{Isometry, bending_energy};
+use super::rim::{Rim, analyse};
+use super::table::Results;
+use crate::draw::Drawing;
+use crate::progress::Progress;
+use anyhow::Result;
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_dynamics::{ImplicitOptions, Method};
+use isosheet_mesh::generate::{self, Diagonals};
+use isosheet_mesh::{Sheet, VertexId};
+use nalgebra::Isometry3;
+use std::f64::consts::TAU;
+
+pub(super) const ABOUT: &str = "A flat disk of paper (radius 0.5 m, 80 g/m², 5e-4 N m, damping 2/s) is let go on a round table of half its radius, \
+    with contact between disk and table, without and with friction. Nothing but the triangulation prefers a direction, so that for a smooth sheet \
+    all seeds and all meshes would give the same folds, turned. The seed turns the disk and perturbs the solver's first choice; of the irregular mesh it \
+    is the mesh as well. Folds are counted on the rim: rises of the height through the middle of its range.";
+
+/// Radius of the disk and of the table, height of the table, metres.
+const DISK: f64 = 0.5;
+const TABLE: [f64; 2] = [0.25, 0.1];
+
+/// Flexural rigidity, N m, mass per area, kg/m2, and rate of damping, 1/s.
+const RIGIDITY: f64 = 5e-4;
+const DENSITY: f64 = 0.08;
+const DAMPING: f64 = 2.0;
+
+const GRAVITY: f64 = 9.8;
+
+/// Part of the activation distance that the disk starts above the table: the gap at which a contact carries
+/// its own vertex.
+const START: f64 = 0.95;
+
+/// A triangulation of the disk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mesh {
+    Concentric,
+    Delaunay,
+    UnionJack,
+}
+
+impl Mesh {
+    const ALL: [Self; 3] = [Self::Concentric, Self::Delaunay, Self::UnionJack];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Concentric => "concentric",
+            Self::Delaunay => "Delaunay",
+            Self::UnionJack => "union jack",
+        }
+    }
+
+    /// The disk with rods about 1 / `rings` of its radius long, turned by an angle that the seed chooses.
+    fn disk(self, rings: usize, seed: u64) -> Result<Sheet> {
+        let sheet = match self {
+            Self::Concentric => generate::disk(rings, DISK)?,
+            Self::Delaunay => {
+                let sides = 6 * rings;
+                let corner = |k: usize| {
+                    let (s, c) = (TAU * k as f64 / sides as f64).sin_cos();
+                    [DISK * c, DISK * s]
+                };
+                let outline: Vec<[f64; 2]> = (0..sides).map(corner).collect();
+                generate::delaunay(&outline, TAU * DISK / sides as f64, seed)?
+            }
+            Self::UnionJack => {
+                let n = 2 * rings;
+                let grid = generate::grid(n, n, 2.0 * DISK, 2.0 * DISK, Diagonals::UnionJack)?;
+                let grid = grid.map_positions(|[x, y, z]| [x - DISK, y - DISK, z])?;
+                let t = grid.topology();
+                let is_inside = |v: &VertexId| {
+                    let [x, y, _] = grid.position(*v);
+                    x.hypot(y) < DISK + 1e-9
+                };
+                grid.keep_faces(|f| t.faces()[f.index()].iter().all(is_inside))?
+            }
+        };
+        // The golden angle: no two seeds are near one another.
+        let (s, c) = (2.399_963 * seed as f64).sin_cos();
+        Ok(sheet.map_positions(|[x, y, z]| [c * x - s * y, s * x + c * y, z])?)
+    }
+}
+
+/// A drape.
+struct Drape {
+    mesh: Mesh,
+    friction: f64,
+    seed: u64,
+    isometry: Isometry,
+    vertices: usize,
+    course: Course,
+    rim: Option<Rim>,
+    /// Weight and bending at the end, joules; the flat disk at the height of the table has none.
+    energy: f64,
+    /// Horizontal distance of the centre from the axis of the table, metres.
+    aside: f64,
+}
+
+impl Drape {
+    fn measure(
+        isometry: Isometry,
+        (mesh, rings): (Mesh, usize),
+        friction: f64,
+        seed: u64,
+        plan: &Plan,
+    ) -> Result<Self> {
+        let sheet = mesh.disk(rings, seed)?;
+        let model = isometry
+            .bending(&sheet, DENSITY * sheet.area(), RIGIDITY)?
+            .with_acceleration([0.0, 0.0, -GRAVITY])
+            .with_damping(DAMPING)?;
+        let weights = model.mass().row_sums(sheet.topology());
+        let options = ContactOptions::for_sheet(&model);
+        let top = -START * options.activation;
+        let shape = Shape::Cylinder {
+            radius: TABLE[0],
+            half_height: 0.5 * TABLE[1],
+        };
+        let pose = Isometry3::translation(0.0, 0.0, top - 0.5 * TABLE[1]);
+        let table = Obstacle::fixed(shape, pose)?;
+        let coefficients = if friction > 0.0 {
+            Coefficients::equal(friction)
+        } else {
+            Coefficients::FRICTIONLESS
+        };
+        let contacts = Contacts::new(&model, options)?.with_body(table, coefficients)?;
+        let scene = Scene {
+            model,
+            start: sheet.positions().to_vec(),
+            method: Method::Bdf2(ImplicitOptions {
+                seed,
+                ..ImplicitOptions::default()
+            }),
+            contacts: Some(contacts),
+        };
+        let course = scene.run(plan)?;
+        let total: f64 = weights.iter().sum();
+        let places = || course.x.as_chunks::<3>().0.iter().zip(&weights);
+        let centre = |k: usize| places().map(|(p, w)| w * p[k]).sum::<f64>() / total;
+        let energy = total * GRAVITY * centre(2) + bending_energy(&sheet, RIGIDITY, &course.x)?;
+        Ok(Self {
+            mesh,
+            friction,
+            seed,
+            isometry,
+            vertices: sheet.topology().vertex_count(),
+            rim: rim(&sheet, &course.x),
+            energy,
+            aside: centre(0).hypot(centre(1)),
+            course,
+        })
+    }
+}
+
+/// The rim at positions `x`, over the angle in the flat disk.
+fn rim(sheet: &Sheet, x: &[f64]) -> Option<Rim> {
+    let loops = sheet.topology().boundary_loops();
+    let mut rim: Vec<[f64; 2]> = loops
+        .first()?
+        .iter()
+        .map(|v| {
+            let [a, b, _] = sheet.position(*v);
+            [b.atan2(a), x[3 * v.index() + 2]]
+        })
+        .collect();
+    rim.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let (angles, heights): (Vec<f64>, Vec<f64>) = rim.iter().map(|[a, z]| (*a, *z)).unzip();
+    analyse(&angles, &heights)
+}
+
+/// Runs the yardstick.
+pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+    let plan = Plan {
+        step: 1.0 / 60.0,
+        duration: effort.pick(0.3, 2.0),
+        rest_speed: Some(2e-3),
+        patience: effort.patience(0.8, 2.0),
+    };
+    let rings = effort.pick(3, 4);
+    let meshes: &[Mesh] = effort.pick(&Mesh::ALL[..1], &Mesh::ALL);
+    let frictions: &[f64] = effort.pick(&[0.3], &[0.0, 0.3]);
+    let seeds = effort.pick(1, 10);
+    let count = Isometry::ALL.len() * meshes.len() * frictions.len() * seeds as usize;
+    let bar = Progress::start("drape", count);
+    let mut all = Vec::new();
+    for isometry in Isometry::ALL {
+        for &mesh in meshes {
+            for &friction in frictions {
+                for seed in 0..seeds {
+                    all.push(Drape::measure(
+                        isometry,
+                        (mesh, rings),
+                        friction,
+                        seed,
+                        &plan,
+                    )?);
+                    bar.step();
+                }
+            }
+        }
+    }
+    bar.finish("measured");
+    Ok((
+        Findings {
+            tables: vec![summary(&all, meshes, frictions, &plan)],
+            files: vec![runs(&all)],
+            remarks: Vec::new(),
+        },
+        None,
+    ))
+}
+
+fn runs(all: &[Drape]) -> Results {
+    let mut table = Results::new(
+        "drape-runs",
+        "Every drape",
+        &[
+            "mesh",
+            "friction",
+            "seed",
+            "V",
+            "model",
+            "ending",
+            "t at the end, s",
+            "factorisations per step",
+            "folds",
+            "largest wave",
+            "its share",
+            "rim, m",
+            "energy, J",
+            "centre off by, m",
+            "speed left, m/s",
+            "message",
+        ],
+    );
+    for d in all {
+        table.push(vec![
+            d.mesh.name().into(),
+            d.friction.into(),
+            (d.seed as usize).into(),
+            d.vertices.into(),
+            d.isometry.to_string().into(),
+            d.course.ending.name().into(),
+            d.course.t.into(),
+            d.course.factorisations_per_step().into(),
+            d.rim.map(|r| r.folds as f64).into(),
+            d.rim.map(|r| r.wave as f64).into(),
+            d.rim.map(|r| r.share).into(),
+            d.rim.map(|r| r.mean).into(),
+            d.energy.into(),
+            d.aside.into(),
+            d.course.speed.into(),
+            d.course.ending.message().into(),
+        ]);
+    }
+    table
+}
+
+fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Results {
+    let mut table = Results::new(
+        "drape",
+        format!(
+            "Disks on a round table: default method, steps of 1/60 s, {} s simulated, at most {} s of wall time. Numbers of folds with how often \
+             they occur, medians and ranges (largest minus smallest) are of the runs that reached their end",
+            plan.duration,
+            plan.patience.as_secs_f64()
+        ),
+        &[
+            "mesh",
+            "friction",
+            "model",
+            "runs",
+            "reached their end",
+            "wall time over",
+            "folds",
+            "rim, m",
+            "range, m",
+            "energy, J",
+            "range, J",
+            "speed left, m/s",
+            "centre off by, m",
+        ],
+    );
+    for isometry in Isometry::ALL {
+        for &mesh in meshes {
+            for &friction in frictions {
+                let of: Vec<&Drape> = all
+                    .iter()
+                    .filter(|d| d.mesh == mesh && d.friction == friction && d.isometry == isometry)
+                    .collect();
+                let good: Vec<&Drape> = of
+                    .iter()
+                    .filter(|d| d.course.ending.is_good())
+                    .copied()
+                    .collect();
+                let over = of
+                    .iter()
+                    .filter(|d| d.course.ending.name() == "wall time over");
+                let rims: Vec<f64> = good.iter().filter_map(|d| Some(d.rim?.mean)).collect();
+                let energies: Vec<f64> = good.iter().map(|d| d.energy).collect();
+                table.push(vec![
+                    mesh.name().into(),
+                    friction.into(),
+                    isometry.to_string().into(),
+                    of.len().into(),
+                    good.len().into(),
+                    over.count().into(),
+                    folds(&good).into(),
+                    median(rims.clone()).into(),
+                    range(&rims).into(),
+                    median(energies.clone()).into(),
+                    range(&energies).into(),
+                    median(good.iter().map(|d| d.course.speed).collect()).into(),
+                    median(good.iter().map(|d| d.aside).collect()).into(),
+                ]);
+            }
+        }
+    }
+    table
+}
+
+/// Numbers of folds with how often they occur, such as "4 x 7, 5 x 3".
+fn folds(drapes: &[&Drape]) -> String {
+    let mut counts = std::collections::BTreeMap::<usize, usize>::new();
+    for rim in drapes.iter().filter_map(|d| d.rim) {
+        *counts.entry(rim.folds).or_default() += 1;
+    }
+    let texts: Vec<String> = counts.iter().map(|(k, n)| format!("{k} × {n}")).collect();
+    texts.join(", ")
+}
+
+/// The largest value less the smallest; NaN of nothing.
+fn range(values: &[f64]) -> f64 {
+    let low = values.iter().copied().fold(f64::NAN, f64::min);
+    values.iter().copied().fold(f64::NAN, f64::max) - low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn disks_have_one_rim_about_the_centre() {
+        for mesh in Mesh::ALL {
+            for seed in 0..10 {
+                let sheet = mesh.disk(4, seed).unwrap();
+                let loops = sheet.topology().boundary_loops();
+                assert_eq!(loops.len(), 1);
+                for v in &loops[0] {
+                    let [x, y, _] = sheet.position(*v);
+                    assert!((0.3..0.501).contains(&x.hypot(y)));
+                }
+                let bumped: Vec<f64> = sheet
+                    .positions()
+                    .as_chunks::<3>()
+                    .0
+                    .iter()
+                    .flat_map(|[x, y, _]| [*x, *y, (3.0 * y.atan2(*x)).cos()])
+                    .collect();
+                assert_eq!(rim(&sheet, &bumped).unwrap().folds, 3);
+            }
+        }
+        assert_eq!(range(&[2.0, 5.0, 3.0]), 3.0);
+        assert!(range(&[]).is_nan());
+    }
+}
