@@ -81,7 +81,7 @@ fn prandtl_michell() -> f64 {
 fn verdict(isometry: Isometry, flat: &Sheet, load: f64, plan: &Plan) -> Result<Verdict> {
     let rigidity = DENSITY * GRAVITY * STRIP.free.powi(3) / load;
     let model = isometry
-        .bending(flat, DENSITY * flat.area(), rigidity)?
+        .bending(flat, DENSITY * flat.area(), rigidity, &STRIP.clamp(flat))?
         .with_acceleration([0.0, -GRAVITY, -IMPERFECTION * GRAVITY])
         .with_damping(DAMPING)?
         .with_pins(&STRIP.clamp(flat))?;

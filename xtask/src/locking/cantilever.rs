@@ -62,7 +62,12 @@ impl Hung {
     ) -> Result<Self> {
         let sheet = STRIP.mesh(pattern, across, degrees)?;
         let model = isometry
-            .bending(&sheet, DENSITY * sheet.area(), rigidity)?
+            .bending(
+                &sheet,
+                DENSITY * sheet.area(),
+                rigidity,
+                &STRIP.clamp(&sheet),
+            )?
             .with_acceleration([0.0, 0.0, -GRAVITY])
             .with_damping(DAMPING)?
             .with_pins(&STRIP.clamp(&sheet))?;

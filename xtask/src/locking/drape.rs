@@ -4,7 +4,7 @@ use super::clamped::median;
 use super::course::{Course, Plan, Scene};
 use super::effort::LockingEffort;
 use super::findings::Findings;
-use super::isometry::{Isometry, bending_energy};
+use super::isometry::Isometry;
 use super::rim::{Rim, analyse};
 use super::table::Results;
 use crate::draw::Drawing;
@@ -112,7 +112,7 @@ impl Drape {
     ) -> Result<Self> {
         let sheet = mesh.disk(rings, seed)?;
         let model = isometry
-            .bending(&sheet, DENSITY * sheet.area(), RIGIDITY)?
+            .bending(&sheet, DENSITY * sheet.area(), RIGIDITY, &[])?
             .with_acceleration([0.0, 0.0, -GRAVITY])
             .with_damping(DAMPING)?;
         let weights = model.mass().row_sums(sheet.topology());
@@ -143,7 +143,8 @@ impl Drape {
         let total: f64 = weights.iter().sum();
         let places = || course.x.as_chunks::<3>().0.iter().zip(&weights);
         let centre = |k: usize| places().map(|(p, w)| w * p[k]).sum::<f64>() / total;
-        let energy = total * GRAVITY * centre(2) + bending_energy(&sheet, RIGIDITY, &course.x)?;
+        let energy =
+            total * GRAVITY * centre(2) + isometry.bending_energy(&sheet, RIGIDITY, &course.x)?;
         Ok(Self {
             mesh,
             friction,

@@ -3,7 +3,7 @@
 use super::course::{Plan, Scene};
 use super::effort::LockingEffort;
 use super::findings::Findings;
-use super::isometry::{Isometry, bending_energy};
+use super::isometry::Isometry;
 use super::meshes::vertices;
 use super::table::Results;
 use crate::draw::Drawing;
@@ -96,9 +96,21 @@ impl Everyday {
         }
     }
 
+    /// The vertices of faces that are clamped.
+    fn clamp(self, sheet: &Sheet) -> Vec<VertexId> {
+        let second = sheet.position(VertexId(1))[0];
+        match self {
+            Self::Pushed(_) => vertices(sheet, |[x, ..]| {
+                x < second + 1e-9 || x > 0.3 - second - 1e-9
+            }),
+            Self::Roll(_) => vertices(sheet, |[x, ..]| x < second + 1e-9),
+            Self::Banner(_) | Self::Corners(_) => Vec::new(),
+        }
+    }
+
     fn model(self, isometry: Isometry, sheet: &Sheet) -> Result<SheetModel> {
         let model = isometry
-            .bending(sheet, DENSITY * sheet.area(), RIGIDITY)?
+            .bending(sheet, DENSITY * sheet.area(), RIGIDITY, &self.clamp(sheet))?
             .with_gravity()
             .with_damping(DAMPING)?;
         Ok(match self {
@@ -212,7 +224,7 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
                 course.worst.into(),
                 course.lowest().into(),
                 course.highest().into(),
-                bending_energy(&sheet, RIGIDITY, &course.x)?.into(),
+                isometry.bending_energy(&sheet, RIGIDITY, &course.x)?.into(),
                 course.wall.into(),
                 course.ending.message().into(),
             ]);

@@ -101,7 +101,7 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
 
 fn scene(isometry: Isometry, sheet: &Sheet, corner: VertexId, rigidity: f64) -> Result<Scene> {
     let model = if rigidity > 0.0 {
-        isometry.bending(sheet, MASS, rigidity)?
+        isometry.bending(sheet, MASS, rigidity, &[])?
     } else {
         isometry.model(sheet, MASS)?
     };
