@@ -17,7 +17,7 @@ use isosheet_mesh::{Sheet, VertexId};
 use nalgebra::Isometry3;
 use std::f64::consts::TAU;
 
-pub(super) const ABOUT: &str = "A flat disk of paper (radius 0.5 m, 80 g/m², 5e-4 N m, damping 2/s) is let go on a round table of half its radius, \
+pub(super) const ABOUT: &str = "A flat disk of paper (radius 0.5 m, 80 g/m², 5e-4 N m, damping 4/s) is let go on a round table of half its radius, \
     with contact between disk and table, without and with friction. Nothing but the triangulation prefers a direction, so that for a smooth sheet \
     all seeds and all meshes would give the same folds, turned. The seed turns the disk and perturbs the solver's first choice; of the irregular mesh it \
     is the mesh as well. Folds are counted on the rim: rises of the height through the middle of its range.";
@@ -29,7 +29,7 @@ const TABLE: [f64; 2] = [0.25, 0.1];
 /// Flexural rigidity, N m, mass per area, kg/m2, and rate of damping, 1/s.
 const RIGIDITY: f64 = 5e-4;
 const DENSITY: f64 = 0.08;
-const DAMPING: f64 = 2.0;
+const DAMPING: f64 = 4.0;
 
 const GRAVITY: f64 = 9.8;
 
@@ -179,9 +179,9 @@ fn rim(sheet: &Sheet, x: &[f64]) -> Option<Rim> {
 pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
     let plan = Plan {
         step: 1.0 / 60.0,
-        duration: effort.pick(0.3, 2.0),
+        duration: effort.pick(0.3, 10.0),
         rest_speed: Some(2e-3),
-        patience: effort.patience(0.8, 2.0),
+        patience: effort.patience(0.8, 4.0),
     };
     let rings = effort.pick(3, 4);
     let meshes: &[Mesh] = effort.pick(&Mesh::ALL[..1], &Mesh::ALL);
