@@ -1,5 +1,6 @@
 //! Membrane stiffness of an elastic sheet.
 
+use crate::constraint::rows::point;
 use crate::{HessianSink, Potential};
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
 use nalgebra::{Matrix3, Vector2, Vector3};
@@ -111,8 +112,7 @@ struct Strained {
 
 impl Face {
     fn at(&self, x: &[f64]) -> Strained {
-        let point = |v: VertexId| Vector3::from_column_slice(&x[3 * v.index()..][..3]);
-        let vectors = self.ends.map(|[a, b]| point(a) - point(b));
+        let vectors = self.ends.map(|[a, b]| point(x, a) - point(x, b));
         let error = |k: usize| 0.5 * (vectors[k].norm_squared() - self.squared_lengths[k]);
         let errors = Vector3::new(error(0), error(1), error(2));
         Strained {

@@ -6,7 +6,7 @@ mod tests;
 
 use crate::{HessianSink, Potential};
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use std::collections::BTreeMap;
 use stencil::Stencils;
 
@@ -127,11 +127,6 @@ impl PlateBending {
             at_pairs,
         })
     }
-}
-
-/// Coordinates of a vertex.
-fn at(x: &[f64], v: usize) -> Vector3<f64> {
-    Vector3::new(x[3 * v], x[3 * v + 1], x[3 * v + 2])
 }
 
 impl Potential for PlateBending {

@@ -1,6 +1,6 @@
 //! Second derivatives of positions on a triangle mesh, from the positions of vertices nearby.
 
-use super::at;
+use crate::constraint::rows::point;
 use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 use std::f64::consts::SQRT_2;
@@ -36,9 +36,9 @@ impl Stencil<'_> {
         let Some(&first) = self.vertices.first() else {
             return Matrix3::zeros();
         };
-        let origin = at(x, first as usize);
+        let origin = point(x, VertexId(first));
         self.clone()
-            .map(|(v, w)| (at(x, v) - origin) * w.transpose())
+            .map(|(v, w)| (point(x, VertexId(v as u32)) - origin) * w.transpose())
             .sum()
     }
 }

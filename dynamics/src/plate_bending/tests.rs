@@ -3,7 +3,7 @@ use crate::SheetModel;
 use crate::primal::PrimalMatrix;
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{MassKind, Sheet};
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

@@ -122,6 +122,41 @@ pub(crate) struct Series {
     pub(crate) line: Line,
 }
 
+/// Colours and symbols of the series of a plot, in order.
+const STYLES: [(Colour, Marker); 6] = [
+    (palette::BLUE, Marker::Disc),
+    (palette::VERMILION, Marker::Square),
+    (palette::GREEN, Marker::Triangle),
+    (palette::ORANGE, Marker::Diamond),
+    (palette::PURPLE, Marker::Disc),
+    (palette::SKY, Marker::Square),
+];
+
+impl Series {
+    /// A named sequence of points with a line, the style by its place `k` among the series of a plot.
+    pub(crate) fn styled(k: usize, name: &str, points: Vec<[f64; 2]>) -> Self {
+        let (colour, marker) = STYLES[k % STYLES.len()];
+        Self {
+            name: name.to_owned(),
+            points,
+            colour,
+            marker: Some(marker),
+            line: Line::Solid,
+        }
+    }
+
+    /// A grey dashed line for comparison.
+    pub(crate) fn guide(name: &str, points: Vec<[f64; 2]>) -> Self {
+        Self {
+            name: name.to_owned(),
+            points,
+            colour: palette::GREY,
+            marker: None,
+            line: Line::Dashed,
+        }
+    }
+}
+
 /// The line through the points of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Line {

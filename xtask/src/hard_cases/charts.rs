@@ -5,6 +5,7 @@ use super::case::number;
 use super::scenes::{STRAIN, apart, bumped, corner, course, hanging, methods, pinned};
 use super::{Case, Effort, Findings, plot};
 use crate::condition;
+use crate::draw::Series;
 use crate::interrupt;
 use anyhow::Result;
 use isosheet_coords::assignment::Degenerate;
@@ -247,7 +248,7 @@ fn literal(effort: Effort) -> Result<Findings> {
                 .zip(&errors)
                 .map(|(n, e)| [1e3 * END / *n as f64, *e])
                 .collect();
-            lines.push(plot::series(k, name, points));
+            lines.push(Series::styled(k, name, points));
             Ok(errors)
         };
     let euler = ChartMethod::ForwardEuler;

@@ -5,6 +5,7 @@ use super::scenes::{
     FRAME, STRAIN, apart, at_rest, bumped, conservative, corner, course, damped, methods, pinned,
 };
 use super::{Case, Effort, Findings, plot};
+use crate::draw::Series;
 use crate::figures::Picture;
 use crate::interrupt;
 use crate::render::{Camera, Labelled, Look, SheetPicture, montage, render};
@@ -291,7 +292,7 @@ fn branch(effort: Effort) -> Result<Findings> {
             .zip(&errors)
             .map(|(n, e)| [1e3 * DURATION / *n as f64, *e])
             .collect();
-        lines.push(plot::series(k, name, points));
+        lines.push(Series::styled(k, name, points));
     }
     // Started exactly there, with the velocities of one of the two ways.
     let Crossing {

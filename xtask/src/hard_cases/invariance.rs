@@ -6,6 +6,7 @@ use super::scenes::{
     apart, at_rest, bumped, conservative, corner, course, damped, energy_momentum, hanging, pinned,
 };
 use super::{Case, Effort, Findings, plot};
+use crate::draw::Series;
 use crate::interrupt;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
@@ -118,7 +119,7 @@ fn reversal(effort: Effort) -> Result<Findings> {
             )
             .remark(early.1);
         }
-        lines.push(plot::series(k, name, points));
+        lines.push(Series::styled(k, name, points));
     }
     f.here = "M^1 folded, tumbling freely at about 2 rad/s, steps of 4 ms. Rounding grows with the motion's own instability and, for longer runs, decides; \
               a damped method is not meant to come back."
@@ -289,7 +290,7 @@ fn symmetry(effort: Effort) -> Result<Findings> {
                 *g = g.max(largest);
             }
         }
-        let mut lines = vec![plot::guide(
+        let mut lines = vec![Series::guide(
             "error of a step × growth",
             growth
                 .iter()

@@ -7,6 +7,7 @@ use super::scenes::{
     upright,
 };
 use super::{Case, Effort, Findings, Shortfall, plot};
+use crate::draw::Series;
 use crate::interrupt;
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
@@ -239,7 +240,7 @@ fn million(effort: Effort) -> Result<Findings> {
         ));
         lines.push(plot::curve(k, what, points));
     }
-    lines.push(plot::guide("textbook, tumbling", naive));
+    lines.push(Series::guide("textbook, tumbling", naive));
     let drawing = plot::log_log("steps", "largest relative energy error so far", lines);
     f.drawing("million-steps", &drawing, "Energy error of M^1 by the energy-momentum method, steps of 5 ms, relative to the largest kinetic energy")?;
     Ok(f)

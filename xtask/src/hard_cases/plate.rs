@@ -5,6 +5,7 @@ use super::rigid::tetrahedron;
 use super::scenes::{STRAIN, apart, conservative, course};
 use super::spin::{SPIN, carried, inertia, spinning, turned};
 use super::{Case, Effort, Findings, plot};
+use crate::draw::Series;
 use crate::draw::{Axis, Legend, Plot};
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
@@ -95,7 +96,7 @@ fn held(f: &mut Findings) -> Result<()> {
         series: vec![
             plot::curve(1, "lumped", lumped_curve),
             plot::curve(0, "consistent", consistent_curve),
-            plot::guide("uniform plate", (0..=200).map(curve).collect()),
+            Series::guide("uniform plate", (0..=200).map(curve).collect()),
         ],
         legend: Legend::Right,
     };
@@ -144,7 +145,7 @@ fn free(f: &mut Findings, effort: Effort) -> Result<()> {
             .iter()
             .map(|n| run(MassKind::Consistent, method.clone(), *n))
             .collect::<Result<Vec<f64>>>()?;
-        lines.push(plot::series(
+        lines.push(Series::styled(
             k,
             &format!("consistent, {name}"),
             points(&list),
@@ -155,7 +156,7 @@ fn free(f: &mut Findings, effort: Effort) -> Result<()> {
         .iter()
         .map(|n| run(MassKind::Lumped, conservative()[2].1.clone(), *n))
         .collect::<Result<_>>()?;
-    lines.push(plot::series(
+    lines.push(Series::styled(
         3,
         "lumped, RATTLE composition",
         points(&lumped),

@@ -1,45 +1,12 @@
 //! Plots of measured numbers.
 
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, palette};
+use crate::draw::{Axis, Drawing, Legend, Plot, Series};
 
-/// Colours and symbols of the series of a plot, in order.
-const STYLES: [(Colour, Marker); 6] = [
-    (palette::BLUE, Marker::Disc),
-    (palette::VERMILION, Marker::Square),
-    (palette::GREEN, Marker::Triangle),
-    (palette::ORANGE, Marker::Diamond),
-    (palette::PURPLE, Marker::Disc),
-    (palette::SKY, Marker::Square),
-];
-
-/// A named sequence of points with a line, the style by its place.
-pub(super) fn series(k: usize, name: &str, points: Vec<[f64; 2]>) -> Series {
-    let (colour, marker) = STYLES[k % STYLES.len()];
-    Series {
-        name: name.to_owned(),
-        points,
-        colour,
-        marker: Some(marker),
-        line: Line::Solid,
-    }
-}
-
-/// The same without symbols.
+/// As [`Series::styled`], without symbols.
 pub(super) fn curve(k: usize, name: &str, points: Vec<[f64; 2]>) -> Series {
     Series {
         marker: None,
-        ..series(k, name, points)
-    }
-}
-
-/// A grey dashed line for comparison.
-pub(super) fn guide(name: &str, points: Vec<[f64; 2]>) -> Series {
-    Series {
-        name: name.to_owned(),
-        points,
-        colour: palette::GREY,
-        marker: None,
-        line: Line::Dashed,
+        ..Series::styled(k, name, points)
     }
 }
 

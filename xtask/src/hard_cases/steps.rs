@@ -4,6 +4,7 @@ use super::case::number;
 use super::naive::{TEXTBOOK, textbook, textbook_step};
 use super::scenes::{STRAIN, apart, bumped, course, damped, hanging, methods};
 use super::{Case, Effort, Findings, Shortfall, plot};
+use crate::draw::Series;
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State, StepOutcome, leave_flat};
 use isosheet_mesh::MassKind;
@@ -70,7 +71,7 @@ fn sizes(effort: Effort) -> Result<Findings> {
             shortest,
             bound,
         );
-        lines.push(plot::series(k, name, points));
+        lines.push(Series::styled(k, name, points));
     }
     // The sheet at its extremes.
     for (h, steps) in [

@@ -7,7 +7,7 @@ use super::elastica::Elastica;
 use super::findings::Findings;
 use super::isometry::Isometry;
 use super::meshes::{Pattern, Strip};
-use super::plot::{guide, order, panels, series};
+use super::plot::{order, panels, series};
 use super::table::{Results, number};
 use crate::draw::{Drawing, Series};
 use crate::progress::Progress;
@@ -277,7 +277,7 @@ fn plot(all: &[Hung], directions: &[f64]) -> Drawing {
         };
         let mut lines: Vec<Series> = directions.iter().enumerate().map(line).collect();
         if let Some(&[h, e]) = first.first() {
-            lines.push(guide("~h~", vec![[h, e], [h / 4.0, e / 4.0]]));
+            lines.push(Series::guide("~h~", vec![[h, e], [h / 4.0, e / 4.0]]));
         }
         (format!("{pattern}: error of the drop"), lines)
     };

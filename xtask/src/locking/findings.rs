@@ -13,3 +13,13 @@ pub(super) struct Findings {
     /// What the numbers say, one sentence or two each.
     pub(super) remarks: Vec<String>,
 }
+
+impl Findings {
+    /// One table of the page.
+    pub(super) fn table(table: Results) -> Self {
+        Self {
+            tables: vec![table],
+            ..Self::default()
+        }
+    }
+}

@@ -90,13 +90,7 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
         }
     }
     bar.finish("measured");
-    Ok((
-        Findings {
-            tables: vec![table],
-            ..Findings::default()
-        },
-        None,
-    ))
+    Ok((Findings::table(table), None))
 }
 
 fn scene(isometry: Isometry, sheet: &Sheet, corner: VertexId, rigidity: f64) -> Result<Scene> {

@@ -1,39 +1,11 @@
 //! Plots of measured numbers, and the orders fitted to them.
 
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, palette, row};
+use crate::draw::{Axis, Drawing, Legend, Plot, Series, row};
 use crate::scale::exponent;
 
-/// Colours and symbols of the series of a plot, in order.
-const STYLES: [(Colour, Marker); 6] = [
-    (palette::BLUE, Marker::Disc),
-    (palette::VERMILION, Marker::Square),
-    (palette::GREEN, Marker::Triangle),
-    (palette::ORANGE, Marker::Diamond),
-    (palette::PURPLE, Marker::Disc),
-    (palette::SKY, Marker::Square),
-];
-
-/// A named sequence of points with a line, the style by its place.
+/// A named sequence of points with a line, the style by its place; without points that have no logarithm.
 pub(super) fn series(k: usize, name: &str, points: Vec<[f64; 2]>) -> Series {
-    let (colour, marker) = STYLES[k % STYLES.len()];
-    Series {
-        name: name.to_owned(),
-        points: points.into_iter().filter(is_positive).collect(),
-        colour,
-        marker: Some(marker),
-        line: Line::Solid,
-    }
-}
-
-/// A grey dashed line for comparison.
-pub(super) fn guide(name: &str, points: Vec<[f64; 2]>) -> Series {
-    Series {
-        name: name.to_owned(),
-        points,
-        colour: palette::GREY,
-        marker: None,
-        line: Line::Dashed,
-    }
+    Series::styled(k, name, points.into_iter().filter(is_positive).collect())
 }
 
 fn is_positive(point: &[f64; 2]) -> bool {

@@ -110,13 +110,7 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
         }
     }
     bar.finish("measured");
-    Ok((
-        Findings {
-            tables: vec![table],
-            ..Findings::default()
-        },
-        None,
-    ))
+    Ok((Findings::table(table), None))
 }
 
 #[cfg(test)]
