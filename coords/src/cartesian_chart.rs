@@ -57,7 +57,8 @@ const EXCHANGE_BOUND: f64 = 1.2;
 ///
 /// The coordinates are values in metres; rows of S are unit rows and do not change. Positions are found
 /// by Newton's method on `[c(x); S x - q]`. The selection serves a neighbourhood of its reference state;
-/// as the sheet moves on the condition number grows and [`Chart::rebase`] selects anew.
+/// as the sheet moves on the condition number grows and [`Chart::rebased`] selects anew.
+#[derive(Clone, Debug)]
 pub struct CartesianChart {
     system: RodSystem,
     choice: Choice,
@@ -80,7 +81,7 @@ impl CartesianChart {
             selection: Vec::new(),
             pattern: RowPattern::new(),
         };
-        chart.rebase(reference)?;
+        chart.select(reference)?;
         Ok(chart)
     }
 
@@ -184,7 +185,16 @@ impl Chart for CartesianChart {
         Ok(1.0)
     }
 
-    fn rebase(&mut self, x: &[f64]) -> Result<(), ChartError> {
+    fn rebased(&self, x: &[f64]) -> Result<Box<dyn Chart>, ChartError> {
+        let mut chart = self.clone();
+        chart.select(x)?;
+        Ok(Box::new(chart))
+    }
+}
+
+impl CartesianChart {
+    /// Selects the coordinates at the state x.
+    fn select(&mut self, x: &[f64]) -> Result<(), ChartError> {
         check("x", x, 3 * self.system.vertex_count())?;
         let choice = match self.choice {
             Choice::Auto if self.system.unknowns() <= DENSE_LIMIT => Choice::PivotedQr,

@@ -162,16 +162,17 @@ pub trait Chart: Send {
     ) -> Result<DMatrix<f64>, ChartError>;
 
     /// Distance of the state from a singularity of the coordinates themselves, 1 or more far away
-    /// and 0 at it. Below about 0.1 a [`Chart::rebase`] is due.
+    /// and 0 at it. Below about 0.1 a [`Chart::rebased`] chart is due.
     ///
     /// # Errors
     /// [`ChartError::Realise`] for a malformed state.
     fn margin(&self, x: &[f64]) -> Result<f64, ChartError>;
 
-    /// Take a new reference state. Coordinate values and rows may change, and for a chart that
-    /// selects its coordinates the pattern too: build [`Linearised`] and what depends on it anew.
+    /// The same kind of chart with the reference state x. Coordinate values and rows may differ from those of
+    /// this chart, and for a chart that selects its coordinates the pattern too: build [`Linearised`] and
+    /// what depends on it anew.
     ///
     /// # Errors
     /// As for building the chart at that state.
-    fn rebase(&mut self, x: &[f64]) -> Result<(), ChartError>;
+    fn rebased(&self, x: &[f64]) -> Result<Box<dyn Chart>, ChartError>;
 }

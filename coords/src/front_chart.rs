@@ -23,6 +23,7 @@ use nalgebra::DMatrix;
 ///
 /// Exact for placement, but its condition number grows exponentially with the number of fronts, see
 /// [`crate::condition_table`].
+#[derive(Clone, Debug)]
 pub struct FrontChart {
     sheet: Sheet,
     options: AssignmentOptions,
@@ -466,10 +467,12 @@ impl Chart for FrontChart {
         Ok(self.map.frame_margin(x)?)
     }
 
-    fn rebase(&mut self, x: &[f64]) -> Result<(), ChartError> {
+    fn rebased(&self, x: &[f64]) -> Result<Box<dyn Chart>, ChartError> {
         // Which neighbours are on a line depends on the state, so the assignment is made anew as well.
         let assignment = assign(&self.sheet, x, &self.options)?;
-        self.map = FrontMap::new(&self.sheet, assignment, x, RealiseOptions::default())?;
-        self.select(x)
+        let mut chart = self.clone();
+        chart.map = FrontMap::new(&self.sheet, assignment, x, RealiseOptions::default())?;
+        chart.select(x)?;
+        Ok(Box::new(chart))
     }
 }

@@ -7,7 +7,9 @@ use isosheet_coords::{
 use isosheet_dynamics::chart::{
     ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind,
 };
-use isosheet_dynamics::{Method, Simulation, State, StepControl, StepOutcome};
+use isosheet_dynamics::{Method, Potential, Simulation, State, StepControl, StepOutcome};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 const BUMP: f64 = 0.1;
 
@@ -109,4 +111,55 @@ fn a_flat_sheet_has_no_chart() {
     let error = CartesianChart::new(system, Choice::Auto, sheet.positions()).err();
     let message = error.expect("singular").to_string();
     assert!(!message.is_empty() && !message.contains("NaN"), "{message}");
+}
+
+/// Forces that are not numbers while the switch is on.
+#[derive(Debug)]
+struct Broken(Arc<AtomicBool>);
+
+impl Potential for Broken {
+    fn energy(&self, _t: f64, _x: &[f64]) -> f64 {
+        0.0
+    }
+
+    fn add_gradient(&self, _t: f64, _x: &[f64], gradient: &mut [f64]) {
+        if self.0.load(Ordering::Relaxed) {
+            gradient.fill(f64::NAN);
+        }
+    }
+}
+
+/// The step has taken a new reference state for the chart before its forces turn out not to be numbers.
+#[test]
+fn a_refused_step_that_has_rebased_leaves_everything_as_it_was() {
+    const H: f64 = 1e-3;
+    for build in [cartesian, front] {
+        let options = ChartOptions {
+            control: ChartStepControl::Fixed(H),
+            growth_limit: 1.0 + 1e-9,
+            ..Default::default()
+        };
+        let run = |is_broken: &Arc<AtomicBool>| {
+            let model = pinned(1, BUMP).with_potential(Broken(Arc::clone(is_broken)));
+            let start = State::at_rest(bumped(1, BUMP).positions().to_vec());
+            Simulation::in_chart(model, start, build(1), options).expect("usable")
+        };
+        let never = Arc::new(AtomicBool::new(false));
+        let switch = Arc::new(AtomicBool::new(false));
+        let (mut calm, mut disturbed) = (run(&never), run(&switch));
+        let bytes = |run: &Simulation| run.checkpoint().to_bytes().expect("serialisable");
+        let mut rebased = 0;
+        for _ in 0..100 {
+            let before = bytes(&disturbed);
+            switch.store(true, Ordering::Relaxed);
+            disturbed.step(H).expect_err("the forces are not numbers");
+            switch.store(false, Ordering::Relaxed);
+            assert_eq!(bytes(&disturbed), before);
+            let report = disturbed.step(H).expect("accepted");
+            calm.step(H).expect("accepted");
+            rebased += u32::from(report.outcome == StepOutcome::Rebased);
+            assert_eq!(bytes(&disturbed), bytes(&calm));
+        }
+        assert!(rebased >= 5, "{rebased} steps rebased the chart");
+    }
 }

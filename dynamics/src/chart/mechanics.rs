@@ -33,6 +33,13 @@ pub struct ChartMechanics {
     work: Work,
 }
 
+/// A chart that a mechanics no longer uses, with the memory of its pattern.
+pub(super) struct ReplacedChart {
+    chart: Box<dyn Chart>,
+    linear: Linearised,
+    solver: Box<dyn MassSolver>,
+}
+
 struct Work {
     full: Vec<f64>,
     reduced: Vec<f64>,
@@ -125,15 +132,34 @@ impl ChartMechanics {
         self.chart.dimension()
     }
 
-    /// Take the state x as the reference state of the chart; coordinates and momenta change.
+    /// Takes the state x as the reference state of the chart; coordinates and momenta change. Returns the
+    /// chart before.
     ///
     /// # Errors
-    /// [`ChartDynamicsError::Chart`].
-    pub fn rebase(&mut self, x: &[f64]) -> Result<(), ChartDynamicsError> {
-        self.chart.rebase(x)?;
-        self.linear = Linearised::new(&self.system, self.chart.pattern())?;
-        self.solver = self.kind.build(&self.system, self.model.mass())?;
-        Ok(())
+    /// [`ChartDynamicsError::Chart`]; the chart stays as it was.
+    pub(super) fn rebase(&mut self, x: &[f64]) -> Result<ReplacedChart, ChartDynamicsError> {
+        let chart = self.chart.rebased(x)?;
+        let linear = Linearised::new(&self.system, chart.pattern())?;
+        let solver = self.kind.build(&self.system, self.model.mass())?;
+        Ok(self.exchange(ReplacedChart {
+            chart,
+            linear,
+            solver,
+        }))
+    }
+
+    /// Takes another chart of the same system; returns the chart before.
+    pub(super) fn exchange(&mut self, other: ReplacedChart) -> ReplacedChart {
+        let ReplacedChart {
+            chart,
+            linear,
+            solver,
+        } = other;
+        ReplacedChart {
+            chart: std::mem::replace(&mut self.chart, chart),
+            linear: std::mem::replace(&mut self.linear, linear),
+            solver: std::mem::replace(&mut self.solver, solver),
+        }
     }
 
     /// Factorise everything at the state x.

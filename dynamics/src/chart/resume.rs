@@ -20,10 +20,10 @@ impl ChartSimulation {
         }
     }
 
-    /// Back to the motion before a step, in the same chart, and to the contacts kept there.
+    /// Back to the motion before a step, and to its chart if the step has replaced that.
     pub(super) fn restore(&mut self, motion: ChartMotion) {
-        if let Some(contact) = &mut self.contact {
-            contact.restore();
+        if let Some(chart) = self.replaced.take() {
+            self.stepper.mechanics.exchange(chart);
         }
         self.stepper
             .set_power(motion.eigenvalue, &motion.eigenvector);
@@ -52,7 +52,7 @@ impl ChartSimulation {
             }
         }
         if let Some(reference) = &motion.reference {
-            chart.rebase(reference)?;
+            chart = chart.rebased(reference)?;
         }
         let mechanics = ChartMechanics::new(model, chart, options.solver)?;
         let n = mechanics.dimension();
@@ -82,6 +82,7 @@ impl ChartSimulation {
             options,
             motion: ChartMotion { balance, ..motion },
             contact: None,
+            replaced: None,
         })
     }
 }

@@ -1,6 +1,7 @@
 //! Explicit integration in a chart, with the published step control.
 
 use super::contact::ChartContact;
+use super::mechanics::ReplacedChart;
 use super::motion::{ChartMotion, StepRange};
 use super::stepping::{PhaseState, Stepper};
 use super::{
@@ -47,6 +48,8 @@ pub struct ChartSimulation {
     pub(super) options: ChartOptions,
     pub(super) motion: ChartMotion,
     pub(super) contact: Option<ChartContact>,
+    /// The chart at the start of the present step, if the step has replaced it.
+    pub(super) replaced: Option<ReplacedChart>,
 }
 
 /// Gaps below this part of the activation distance are widened to it. The curvature of the path brings a
@@ -132,6 +135,7 @@ impl ChartSimulation {
             stepper,
             options,
             contact: None,
+            replaced: None,
         };
         simulation.check_condition()?;
         simulation.stepper.set_reference()?;
@@ -296,7 +300,10 @@ impl ChartSimulation {
     }
 
     pub(super) fn rebase(&mut self) -> Result<(), ChartDynamicsError> {
-        self.stepper.rebase(&mut self.motion.state)?;
+        let v = self.stepper.velocities(&self.motion.state)?;
+        let before = self.stepper.mechanics.rebase(&self.motion.state.x)?;
+        self.replaced.get_or_insert(before);
+        self.stepper.enter(&mut self.motion.state, &v)?;
         self.motion.reference = Some(self.motion.state.x.clone());
         self.motion.growth = 1.0;
         self.motion.is_fresh = true;

@@ -65,13 +65,15 @@ impl Stepper {
         Ok(v)
     }
 
-    /// New reference state for the chart; coordinates and momenta of `s` are replaced.
-    pub(super) fn rebase(&mut self, s: &mut PhaseState) -> Result<(), ChartDynamicsError> {
-        let v = self.velocities(s)?;
-        self.mechanics.rebase(&s.x)?;
+    /// Sets coordinates and momenta of `s`, the reference state, to those in a new chart, given the velocities.
+    pub(super) fn enter(
+        &mut self,
+        s: &mut PhaseState,
+        v: &[f64],
+    ) -> Result<(), ChartDynamicsError> {
         self.mechanics.at(&s.x)?;
         self.mechanics.coordinates(&s.x, &mut s.q)?;
-        self.mechanics.momenta(&v, &mut s.p)?;
+        self.mechanics.momenta(v, &mut s.p)?;
         self.set_reference()
     }
 

@@ -34,6 +34,17 @@ impl ChartSimulation {
         &mut self,
         limit: f64,
     ) -> Result<ChartStepReport, ChartDynamicsError> {
+        let before = self.motion();
+        self.replaced = None;
+        let taken = self.attempt_within(limit);
+        if taken.is_err() {
+            self.restore(before);
+        }
+        taken
+    }
+
+    /// As [`ChartSimulation::step_within`], without a way back.
+    fn attempt_within(&mut self, limit: f64) -> Result<ChartStepReport, ChartDynamicsError> {
         let mut rebased = false;
         if self.options.rebase == Rebase::WhenNeeded && !self.motion.is_fresh {
             let margin = self
@@ -142,7 +153,7 @@ impl<'a> ChartSubstep<'a> {
         })
     }
 
-    /// Makes the proposal the state; what can fail comes with a way back.
+    /// Makes the proposal the state; after an error [`ChartSimulation::restore`] has to follow.
     fn apply(&mut self, trial: PhaseState, h: f64) -> Result<ChartStepReport, ChartDynamicsError> {
         let simulation = &mut *self.simulation;
         simulation.motion.growth = simulation.stepper.growth()?;
@@ -211,6 +222,7 @@ impl Stepping for ChartSubstep<'_> {
             motion,
             contact,
             options,
+            ..
         } = &mut *self.simulation;
         let t = motion.t + h;
         if let Some((support, value)) = stepper.mechanics.model().find_bad_motion(t) {
@@ -271,12 +283,15 @@ impl Stepping for ChartSubstep<'_> {
 
     fn commit(&mut self, h: f64) -> Result<ChartStepReport, ChartDynamicsError> {
         let trial = self.trial.take().expect("proposed before it is committed");
-        let before = self.simulation.motion();
         if let Some(contact) = &mut self.simulation.contact {
             contact.keep();
         }
-        self.apply(trial, h).inspect_err(|_| {
-            self.simulation.restore(before);
-        })
+        let applied = self.apply(trial, h);
+        if applied.is_err()
+            && let Some(contact) = &mut self.simulation.contact
+        {
+            contact.restore();
+        }
+        applied
     }
 }
