@@ -4,6 +4,7 @@
 use super::lagrangian::{Definiteness, Merit, RodLoad};
 use super::problem::StepProblem;
 use super::{FRICTION_SETTLED, Minimiser, Minimum, not_converged};
+use crate::constraint::rows::HessianPart;
 use crate::report::{SolverEffort, StepError, StepOutcome};
 
 /// Part of the promised decrease that has to come true (Armijo's condition).
@@ -188,7 +189,12 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
         lagrangian.set_gradient(self.problem);
         self.effort.iterations += 1;
         let hessian = lagrangian
-            .factorize(self.problem, RodLoad::Estimates, self.effort)
+            .factorize(
+                self.problem,
+                RodLoad::Estimates,
+                HessianPart::Full,
+                self.effort,
+            )
             .map_err(|source| StepError::Linalg {
                 t: self.problem.state.t,
                 source,

@@ -249,9 +249,9 @@ impl Lagrangian {
         }
     }
 
-    /// Factorises the Hessian at the iterate; where it is indefinite, a positive definite part: the rods'
-    /// geometric stiffness and the curvature of vertex constraints projected onto the semidefinite matrices,
-    /// and if that does not help, without the curvature of the potentials.
+    /// Factorises the Hessian at the iterate; where it is indefinite, or `part` asks for no more, a positive
+    /// definite part: the rods' geometric stiffness and the curvature of vertex constraints projected onto the
+    /// semidefinite matrices, and if that does not help, without the curvature of the potentials.
     ///
     /// # Errors
     /// [`LinalgError`] if even that cannot be factorised, which takes a coefficient that is not a number.
@@ -259,6 +259,7 @@ impl Lagrangian {
         &mut self,
         problem: &StepProblem<'_>,
         load: RodLoad,
+        part: HessianPart,
         effort: &mut SolverEffort,
     ) -> Result<Definiteness, LinalgError> {
         if let Some(terms) = self.iterate.terms(problem.contact()) {
@@ -271,11 +272,13 @@ impl Lagrangian {
             RodLoad::Multipliers => &self.multipliers,
             RodLoad::Estimates => &self.density,
         });
-        effort.factorisations += 1;
-        self.assemble(problem, HessianPart::Full);
-        self.add_potentials(problem);
-        if self.matrix.factorize().is_ok() {
-            return Ok(Definiteness::Definite);
+        if part == HessianPart::Full {
+            effort.factorisations += 1;
+            self.assemble(problem, HessianPart::Full);
+            self.add_potentials(problem);
+            if self.matrix.factorize().is_ok() {
+                return Ok(Definiteness::Definite);
+            }
         }
         self.project_rods(problem.model, load);
         effort.factorisations += 1;

@@ -2,6 +2,7 @@
 
 use super::lagrangian::{Definiteness, Lagrangian, RodLoad};
 use super::problem::StepProblem;
+use crate::constraint::rows::HessianPart;
 use crate::iterate::Iterate;
 use crate::primal::PrimalMatrix;
 use crate::report::SolverEffort;
@@ -119,7 +120,7 @@ fn the_hessian_is_the_derivative_of_the_gradient() {
     lagrangian.set_gradient(&problem);
     let mut effort = SolverEffort::default();
     let definite = lagrangian
-        .factorize(&problem, RodLoad::Estimates, &mut effort)
+        .factorize(&problem, RodLoad::Estimates, HessianPart::Full, &mut effort)
         .unwrap();
     assert_eq!(
         (definite, effort.factorisations),
@@ -164,7 +165,12 @@ fn a_saddle_is_left_downwards_and_a_minimum_is_not() {
         lagrangian.set_gradient(&problem);
         let mut effort = SolverEffort::default();
         let hessian = lagrangian
-            .factorize(&problem, RodLoad::Multipliers, &mut effort)
+            .factorize(
+                &problem,
+                RodLoad::Multipliers,
+                HessianPart::Full,
+                &mut effort,
+            )
             .unwrap();
         assert_eq!(
             hessian == Definiteness::Modified,
