@@ -118,7 +118,7 @@ impl BroadPhase {
             workspace: BvhWorkspace::default(),
             mesh,
         };
-        phase.set_bounds(x, x, 0.0);
+        phase.update_boxes(x, x, 0.0);
         let leaves: Vec<Aabb> = (0..phase.mesh.elements().len())
             .map(|i| phase.element_box(i))
             .collect();
@@ -138,7 +138,7 @@ impl BroadPhase {
     /// # Panics
     /// If the lengths of `x0` and `x1` are not three times the number of vertices.
     pub fn update(&mut self, x0: &[f64], x1: &[f64], inflation: f64) {
-        self.set_bounds(x0, x1, inflation);
+        self.update_boxes(x0, x1, inflation);
         for i in 0..self.mesh.elements().len() {
             let leaf = self.element_box(i);
             // A zero margin overwrites the box.
@@ -148,7 +148,9 @@ impl BroadPhase {
         self.tree.refit_without_opt();
     }
 
-    fn set_bounds(&mut self, x0: &[f64], x1: &[f64], inflation: f64) {
+    /// Sets the boxes alone, as [`BroadPhase::update`] does, for questions about single pairs. Searches for
+    /// pairs need the tree too.
+    pub(crate) fn update_boxes(&mut self, x0: &[f64], x1: &[f64], inflation: f64) {
         let n = 3 * self.mesh.vertex_count();
         assert!(
             x0.len() == n && x1.len() == n,
@@ -171,6 +173,16 @@ impl BroadPhase {
         for (bounds, &[a, b, c]) in self.faces.iter_mut().zip(self.mesh.faces()) {
             *bounds = vertex(a).merged(vertex(b)).merged(vertex(c));
         }
+    }
+
+    /// Whether the boxes of a vertex and of a face of another mesh overlap.
+    pub(crate) fn vertex_meets_face(&self, other: &Self, [v, f]: [u32; 2]) -> bool {
+        self.vertices[v as usize].overlaps(&other.faces[f as usize])
+    }
+
+    /// Whether the boxes of an edge and of an edge of another mesh overlap.
+    pub(crate) fn edge_meets_edge(&self, other: &Self, [e, g]: [u32; 2]) -> bool {
+        self.edges[e as usize].overlaps(&other.edges[g as usize])
     }
 
     fn element_box(&self, i: usize) -> Aabb {

@@ -1,8 +1,10 @@
 //! Contact of a sheet with bodies and with itself.
 
 mod body;
+mod displacements;
 mod evaluate;
 mod features;
+mod neighbours;
 mod options;
 mod path;
 mod sheet;
@@ -12,7 +14,7 @@ mod tests;
 
 pub use options::{ContactOptions, ContactsError};
 
-use crate::{BroadPhase, Candidates, CcdOptions, ContactMesh, CrossCandidates, Obstacle};
+use crate::{CcdOptions, ContactMesh, Obstacle};
 use body::Body;
 use evaluate::{Placed, Sheet};
 use isosheet_dynamics::contact::{
@@ -21,6 +23,7 @@ use isosheet_dynamics::contact::{
 };
 use isosheet_dynamics::{SheetModel, State};
 use nalgebra::Vector3;
+use neighbours::{Neighbours, SelfPairs};
 use options::smallest_height;
 use path::PartOfStep;
 use sheet::SheetMotion;
@@ -102,11 +105,12 @@ use sheet::SheetMotion;
 /// that way, so choose steps that end at keyframes where it matters, and shorter than half a turn.
 ///
 /// # Cost
-/// What a scene does not name costs nothing: half-spaces need the vertices only, other bodies one refit
-/// of the sheet's boxes per checked motion, which they share with self-contact; friction without
-/// coefficients is not evaluated.
+/// What a scene does not name costs nothing: half-spaces need the vertices only; friction without
+/// coefficients is not evaluated. Pairs that may meet are searched for in a tree of boxes, which bodies and
+/// self-contact share, when the sheet has moved by a quarter of an edge since the last search; in between a
+/// motion is checked against the list of these.
 ///
-/// Between calls only boxes are kept, and memory. The tree of boxes has the shape of the sheet at the first
+/// Between calls only boxes and lists are kept, and memory. The tree of boxes has the shape of the sheet at the first
 /// positions it was asked about, which decides about speed and about the order in which pairs are found, not
 /// about which.
 #[derive(Debug)]
@@ -117,22 +121,15 @@ pub struct Contacts {
     mesh: ContactMesh,
     /// Squared rest lengths of the edges.
     lengths2: Vec<f64>,
+    mean_length: f64,
     /// The face with the smallest height, and that height.
     smallest_height: (u32, f64),
     bodies: Vec<Body>,
     has_self_contact: bool,
-    search: Search,
-}
-
-/// Working memory of the search for pairs.
-#[derive(Debug, Default)]
-struct Search {
-    /// Boxes of the sheet; made at the first positions.
-    boxes: Option<BroadPhase>,
-    /// Positions at the end of the motion.
-    end: Vec<f64>,
-    own: Candidates,
-    cross: CrossCandidates,
+    /// Made at the first positions, in scenes that need them.
+    neighbours: Option<Neighbours>,
+    /// Working memory: the motions of the bodies.
+    parts: Vec<PartOfStep>,
 }
 
 impl Contacts {
@@ -151,10 +148,9 @@ impl Contacts {
             smallest_height: smallest_height(model),
             bodies: Vec::new(),
             has_self_contact: false,
-            search: Search {
-                end: vec![0.0; model.coordinate_count()],
-                ..Search::default()
-            },
+            mean_length: model.mean_length(),
+            neighbours: None,
+            parts: Vec::new(),
         })
     }
 
@@ -226,35 +222,39 @@ impl Contact for Contacts {
         let JointMotion {
             progress, x, dx, ..
         } = motion;
-        let reach = self.options.reach();
-        let search = &mut self.search;
-        if self.has_self_contact || self.bodies.iter().any(|b| b.features().is_some()) {
-            for (end, (x, dx)) in search.end.iter_mut().zip(x.iter().zip(dx)) {
-                *end = x + dx;
-            }
-            let boxes = &mut search.boxes;
-            let boxes = boxes.get_or_insert_with(|| BroadPhase::new(self.mesh.clone(), x));
-            boxes.update(x, &search.end, 0.5 * reach);
-        }
         let sheet = SheetMotion {
             mesh: &self.mesh,
             x,
             dx,
-            reach,
+            reach: self.options.reach(),
             ccd: &self.ccd,
         };
+        self.parts.clear();
+        let motions = motion.bodies.list().iter();
+        self.parts
+            .extend(motions.map(|m| PartOfStep::new(&m.surface, progress)));
+        if self.has_self_contact || self.bodies.iter().any(|b| b.features().is_some()) {
+            let own = if self.has_self_contact {
+                SelfPairs::Listed
+            } else {
+                SelfPairs::Ignored
+            };
+            let (length, bodies) = (self.mean_length, self.bodies.len());
+            self.neighbours
+                .get_or_insert_with(|| Neighbours::new(sheet, length, bodies, own))
+                .update(sheet, &mut self.bodies, &self.parts);
+        }
+        let neighbours = self.neighbours.as_ref();
         let mut limit = 1.0;
-        for (body, motion) in self.bodies.iter_mut().zip(motion.bodies.list()) {
-            let part = PartOfStep::new(&motion.surface, progress);
-            let boxes = search.boxes.as_ref();
-            limit = body.query(sheet, boxes, &part, &mut search.cross, limit, pairs);
+        for (body, part) in self.bodies.iter().zip(&self.parts) {
+            limit = body.query(sheet, neighbours, part, limit, pairs);
         }
-        if self.has_self_contact
-            && let Some(boxes) = &mut search.boxes
-        {
-            limit = sheet::query(sheet, boxes, &mut search.own, limit, pairs);
+        match neighbours {
+            Some(neighbours) if self.has_self_contact => {
+                sheet::query(sheet, neighbours, limit, pairs)
+            }
+            _ => limit,
         }
-        limit
     }
 
     fn evaluate(
@@ -289,10 +289,10 @@ impl Contact for Contacts {
         let (t, x) = (state.t, &state.x);
         let active = ActiveContacts::at_rest(self, t, x);
         start::check_gaps(active.list(), t)?;
-        // The boxes are those of this place.
-        let Some(boxes) = &mut self.search.boxes else {
+        let Some(neighbours) = &mut self.neighbours else {
             return Ok(());
         };
+        let boxes = neighbours.at_rest(x, self.options.reach());
         let places = active.bodies().iter();
         for (number, (body, place)) in self.bodies.iter().zip(places).enumerate() {
             start::check_body(

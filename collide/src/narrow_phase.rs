@@ -151,6 +151,11 @@ pub(crate) fn smaller(a: f64, b: f64) -> f64 {
     }
 }
 
+/// The maximum, or not a number if one of the two is not.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    -smaller(-a, -b)
+}
+
 /// Edges of a mesh that pass through its faces, as pairs of edge and face, at positions `x` (`3V`).
 ///
 /// Tests every pair without any tree or distance: the check of last resort for what the rest of this

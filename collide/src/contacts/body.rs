@@ -1,11 +1,12 @@
 //! The pairs of the sheet and one body.
 
 use super::features::Features;
+use super::neighbours::Neighbours;
 use super::path::{Course, PartOfStep};
 use super::sheet::SheetMotion;
 use crate::distance::{Closest, edge_edge, point_triangle};
 use crate::narrow_phase::{gather, smaller};
-use crate::{BroadPhase, CrossCandidates, Obstacle, ObstacleError, Shape};
+use crate::{Obstacle, ObstacleError, Shape};
 use isosheet_dynamics::contact::{BodyMotion, ContactKey, ContactKind, StepMotion, StepSpan};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
@@ -40,6 +41,11 @@ impl Body {
     /// Corners, edges and faces, if it has any.
     pub(super) fn features(&self) -> Option<&Features> {
         self.features.as_ref()
+    }
+
+    /// The same, to be moved.
+    pub(super) fn features_mut(&mut self) -> Option<&mut Features> {
+        self.features.as_mut()
     }
 
     /// The motion over a span of time.
@@ -85,24 +91,19 @@ impl Body {
     }
 
     /// Appends the pairs within reach on the motion of the sheet and the given part of the body's,
-    /// and returns the part of it, up to `limit`, that brings nothing into contact. `sheet_boxes` are
-    /// those of the whole motion, enlarged by half the reach; `candidates` is working memory.
+    /// and returns the part of it, up to `limit`, that brings nothing into contact. `neighbours` are those of
+    /// the motion.
     pub(super) fn query(
-        &mut self,
+        &self,
         sheet: SheetMotion<'_>,
-        sheet_boxes: Option<&BroadPhase>,
+        neighbours: Option<&Neighbours>,
         part: &PartOfStep,
-        candidates: &mut CrossCandidates,
         limit: f64,
         pairs: &mut Vec<ContactKey>,
     ) -> f64 {
         let mut limit = self.query_vertices(sheet, part, limit, pairs);
-        if let (Some(boxes), Some(features)) = (sheet_boxes, &mut self.features) {
-            // Half of the reach, the radius, and the bulge of the paths of a turning body.
-            let inflation = 0.5 * sheet.reach + features.radius + part.sagitta(features.extent);
-            features.refit(part, inflation);
-            boxes.candidates_with(features.phase(), candidates);
-            self.query_features(sheet, part, candidates, &mut limit, pairs);
+        if let (Some(neighbours), Some(features)) = (neighbours, &self.features) {
+            self.query_features(sheet, part, (neighbours, features), &mut limit, pairs);
         }
         limit
     }
@@ -144,13 +145,12 @@ impl Body {
         &self,
         sheet: SheetMotion<'_>,
         part: &PartOfStep,
-        candidates: &CrossCandidates,
+        (neighbours, features): (&Neighbours, &Features),
         limit: &mut f64,
         pairs: &mut Vec<ContactKey>,
     ) {
-        let Some(features) = &self.features else {
-            return;
-        };
+        let candidates = neighbours.with_body(self.number as usize);
+        let (own, others) = (neighbours.boxes(), features.phase());
         let radius = features.radius;
         let course = |v: u32| {
             let ([x], [dx]) = (gather(sheet.x, [v]), gather(sheet.dx, [v]));
@@ -158,6 +158,9 @@ impl Body {
         };
         let mut check = Check { sheet, part, limit };
         for &[v, f] in &candidates.vertex_face {
+            if !own.vertex_meets_face(others, [v, f]) {
+                continue;
+            }
             let corners = features.face(f);
             let is_near = check.is_near(&[course(v)], |[p]| {
                 let [a, b, c] = corners;
@@ -169,7 +172,7 @@ impl Body {
             }
         }
         for &[f, v] in &candidates.face_vertex {
-            if features.is_flat_vertex(v) {
+            if features.is_flat_vertex(v) || !others.vertex_meets_face(own, [v, f]) {
                 continue;
             }
             let corner = features.vertex(v);
@@ -183,7 +186,7 @@ impl Body {
             }
         }
         for &[e, g] in &candidates.edge_edge {
-            if features.is_flat_edge(g) {
+            if features.is_flat_edge(g) || !own.edge_meets_edge(others, [e, g]) {
                 continue;
             }
             let ends = features.edge(g);

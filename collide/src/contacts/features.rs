@@ -1,5 +1,7 @@
 //! The corners, edges and faces of a body, as edges and faces of a sheet meet them.
 
+use super::displacements::Displacements;
+use super::neighbours::Scope;
 use super::path::PartOfStep;
 use crate::{BroadPhase, ContactGeometry, ContactMesh, ObstacleError, Shape};
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -24,8 +26,17 @@ pub(super) struct Features {
     /// Places of the points in space at the start and at the end of a motion.
     start: Vec<f64>,
     end: Vec<f64>,
-    /// Where and with what inflation the boxes are those of a body that does not move.
-    boxed: Option<(Isometry3<f64>, f64)>,
+    /// What the boxes are enlarged by, metres.
+    inflation: f64,
+    /// Where, and with what inflation, the boxes are those of a body that does not move.
+    resting: Option<(Isometry3<f64>, f64)>,
+    /// The same of the tree.
+    resting_tree: Option<(Isometry3<f64>, f64)>,
+    /// Places of the points for which lists of neighbours were made, and what the boxes were enlarged by.
+    reference: Vec<f64>,
+    reference_inflation: f64,
+    /// Since then.
+    displacements: Displacements,
 }
 
 impl Features {
@@ -67,22 +78,71 @@ impl Features {
             flat_vertices,
             flat_edges,
             end: positions.clone(),
+            reference: positions.clone(),
+            displacements: Displacements::since(&positions, &positions, &positions),
             start: positions,
-            boxed: None,
+            inflation: 0.0,
+            reference_inflation: 0.0,
+            resting: None,
+            resting_tree: None,
         }))
     }
 
-    /// Refits the boxes to a motion; those of a resting body stay.
-    pub(super) fn refit(&mut self, part: &PartOfStep, inflation: f64) {
+    /// Sets the boxes to those of a motion, for pairs with a sheet within `reach`, metres; those of a resting
+    /// body stay.
+    pub(super) fn place(&mut self, part: &PartOfStep, reach: f64) {
+        // Half of the reach, the radius, and the bulge of the paths of a turning body.
+        let inflation = 0.5 * reach + self.radius + part.sagitta(self.extent);
         let pose = part.pose_at(0.0);
-        let boxed = (!part.moves()).then_some((pose, inflation));
-        if boxed.is_some() && boxed == self.boxed {
+        let resting = (!part.moves()).then_some((pose, inflation));
+        if resting.is_some() && resting == self.resting {
             return;
         }
         place_all(&self.points, &pose, &mut self.start);
         place_all(&self.points, &part.pose_at(1.0), &mut self.end);
-        self.phase.update(&self.start, &self.end, inflation);
-        self.boxed = boxed;
+        (self.inflation, self.resting) = (inflation, resting);
+        self.displacements = Displacements::since(&self.reference, &self.start, &self.end);
+        self.return_to_motion();
+    }
+
+    /// Takes the middle of the motion as the reference of displacements.
+    pub(super) fn take_reference(&mut self) {
+        let ends = self.start.iter().zip(&self.end);
+        for (r, (start, end)) in self.reference.iter_mut().zip(ends) {
+            *r = 0.5 * (start + end);
+        }
+        self.reference_inflation = self.inflation;
+        self.displacements = Displacements::since(&self.reference, &self.start, &self.end);
+    }
+
+    /// Displacements since the reference.
+    pub(super) fn displacements(&self) -> &Displacements {
+        &self.displacements
+    }
+
+    /// How much more the boxes are enlarged than at the reference, metres.
+    pub(super) fn growth(&self) -> f64 {
+        (self.inflation - self.reference_inflation).max(0.0)
+    }
+
+    /// Refits boxes and tree to the motion or, for lists that serve others as well, to the reference.
+    /// [`Features::return_to_motion`] has to follow.
+    pub(super) fn refit(&mut self, scope: Scope) -> &BroadPhase {
+        if self.resting.is_none() || self.resting != self.resting_tree {
+            let (from, to) = match scope {
+                Scope::OneMotion => (&self.start, &self.end),
+                Scope::Skin => (&self.reference, &self.reference),
+            };
+            self.phase.update(from, to, self.inflation);
+            self.resting_tree = self.resting;
+        }
+        &self.phase
+    }
+
+    /// Sets the boxes to those of the motion.
+    pub(super) fn return_to_motion(&mut self) {
+        self.phase
+            .update_boxes(&self.start, &self.end, self.inflation);
     }
 
     /// The boxes.

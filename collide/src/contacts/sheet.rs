@@ -1,8 +1,9 @@
 //! The pairs of the sheet with itself.
 
+use super::neighbours::Neighbours;
 use crate::distance::{edge_edge, point_triangle};
 use crate::narrow_phase::gather;
-use crate::{BroadPhase, Candidates, CcdOptions, ContactMesh};
+use crate::{CcdOptions, ContactMesh};
 use isosheet_dynamics::contact::{ContactKey, ContactKind};
 use nalgebra::Vector3;
 
@@ -46,16 +47,14 @@ fn key(kind: ContactKind, pair: [u32; 2]) -> ContactKey {
 }
 
 /// Appends the pairs of the sheet with itself within reach on a motion and returns the part of it, up to
-/// `limit`, that brings nothing into contact. The boxes are those of the whole motion, enlarged by half the
-/// reach; `candidates` is working memory.
+/// `limit`, that brings nothing into contact. `neighbours` are those of the motion.
 pub(super) fn query(
     sheet: SheetMotion<'_>,
-    sheet_boxes: &mut BroadPhase,
-    candidates: &mut Candidates,
+    neighbours: &Neighbours,
     limit: f64,
     pairs: &mut Vec<ContactKey>,
 ) -> f64 {
-    sheet_boxes.self_candidates(candidates);
+    let (candidates, boxes) = (neighbours.own(), neighbours.boxes());
     let SheetMotion {
         mesh,
         x,
@@ -66,6 +65,9 @@ pub(super) fn query(
     let trigger_distance = sheet.trigger_distance();
     let mut limit = limit;
     for &pair in &candidates.vertex_face {
+        if !boxes.vertex_meets_face(boxes, pair) {
+            continue;
+        }
         let vertices = vertex_face(mesh, pair);
         let (places, steps) = (gather(x, vertices), gather(dx, vertices));
         let closer = approach(&steps, 1);
@@ -83,6 +85,9 @@ pub(super) fn query(
         }
     }
     for &pair in &candidates.edge_edge {
+        if !boxes.edge_meets_edge(boxes, pair) {
+            continue;
+        }
         let vertices = two_edges(mesh, pair);
         let (places, steps) = (gather(x, vertices), gather(dx, vertices));
         let closer = approach(&steps, 2);

@@ -1,6 +1,7 @@
 //! No accepted motion passes anything.
 
 use super::*;
+use crate::Candidates;
 use crate::{CcdOptions, crossings, crossings_between};
 use isosheet_dynamics::contact::StepMotion;
 use proptest::prelude::*;

@@ -1,0 +1,163 @@
+//! Lists of neighbours that serve many motions.
+
+use super::body::Body;
+use super::displacements::Displacements;
+use super::path::PartOfStep;
+use super::sheet::SheetMotion;
+use crate::narrow_phase::larger;
+use crate::{BroadPhase, Candidates, CrossCandidates};
+
+/// Skin of the lists, in mean edge lengths.
+const SKIN: f64 = 0.25;
+/// Part of the skin that motions may use. The rest covers the round-off of the boxes, as long as coordinates are
+/// below a million edge lengths.
+const USED: f64 = 1.0 - 1e-6;
+
+/// Whether pairs of the sheet with itself are listed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum SelfPairs {
+    /// They are not.
+    Ignored,
+    /// They are.
+    Listed,
+}
+
+/// What motions lists serve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scope {
+    /// The one that they were made for, which is longer than the skin.
+    OneMotion,
+    /// All that displace primitives by no more than the skin relative to each other.
+    Skin,
+}
+
+/// Pairs of primitives that may come within reach of each other, found by the broad phase.
+///
+/// The lists are made of the boxes at one set of positions, enlarged by a skin, and hold all pairs that come
+/// within reach on motions that displace primitives by no more than the skin relative to each other (Verlet,
+/// Phys. Rev. 159, 1967). Whoever asks for pairs looks at the boxes of the motion at hand too, and so finds the
+/// same pairs whatever was asked for before. A motion longer than the skin is searched for pairs on its own.
+#[derive(Debug)]
+pub(super) struct Neighbours {
+    /// Boxes of the sheet during the motion that was asked for last. The tree is that of the lists.
+    boxes: BroadPhase,
+    /// Metres.
+    skin: f64,
+    own_pairs: SelfPairs,
+    /// Positions of the lists, `3V`, metres.
+    reference: Vec<f64>,
+    /// Positions at the end of the motion.
+    end: Vec<f64>,
+    scope: Scope,
+    own: Candidates,
+    /// Of each body.
+    cross: Vec<CrossCandidates>,
+}
+
+impl Neighbours {
+    /// No lists yet, with the shape of the tree from the positions of a sheet whose edges have the mean length
+    /// `length`, metres.
+    pub(super) fn new(
+        sheet: SheetMotion<'_>,
+        length: f64,
+        bodies: usize,
+        own_pairs: SelfPairs,
+    ) -> Self {
+        Self {
+            boxes: BroadPhase::new(sheet.mesh.clone(), sheet.x),
+            skin: SKIN * length,
+            own_pairs,
+            reference: sheet.x.to_vec(),
+            end: sheet.x.to_vec(),
+            scope: Scope::OneMotion,
+            own: Candidates::default(),
+            cross: vec![CrossCandidates::default(); bodies],
+        }
+    }
+
+    /// Boxes of the sheet during the motion of the last update.
+    pub(super) fn boxes(&self) -> &BroadPhase {
+        &self.boxes
+    }
+
+    /// Pairs of the sheet with itself; more than those whose boxes overlap.
+    pub(super) fn own(&self) -> &Candidates {
+        &self.own
+    }
+
+    /// Pairs of the sheet with a body; more than those whose boxes overlap.
+    pub(super) fn with_body(&self, body: usize) -> &CrossCandidates {
+        &self.cross[body]
+    }
+
+    /// The boxes of the sheet at rest, with their tree.
+    pub(super) fn at_rest(&mut self, x: &[f64], reach: f64) -> &mut BroadPhase {
+        self.scope = Scope::OneMotion;
+        self.boxes.update(x, x, 0.5 * reach);
+        &mut self.boxes
+    }
+
+    /// Sets the boxes of sheet and bodies to those of a motion, and makes the lists anew if the motion needs
+    /// that. `parts` are the motions of the bodies.
+    pub(super) fn update(
+        &mut self,
+        sheet: SheetMotion<'_>,
+        bodies: &mut [Body],
+        parts: &[PartOfStep],
+    ) {
+        let SheetMotion { x, dx, reach, .. } = sheet;
+        for (end, (x, dx)) in self.end.iter_mut().zip(x.iter().zip(dx)) {
+            *end = x + dx;
+        }
+        for (body, part) in bodies.iter_mut().zip(parts) {
+            if let Some(features) = body.features_mut() {
+                features.place(part, reach);
+            }
+        }
+        if self.scope == Scope::OneMotion || !self.is_within_skin(x, bodies) {
+            self.list(x, reach, bodies);
+        }
+        self.boxes.update_boxes(x, &self.end, 0.5 * reach);
+    }
+
+    /// Whether the motion from `x` to the end keeps to the skin of the lists.
+    fn is_within_skin(&self, x: &[f64], bodies: &[Body]) -> bool {
+        let sheet = Displacements::since(&self.reference, x, &self.end);
+        let itself = match self.own_pairs {
+            SelfPairs::Listed => sheet.relative_to(&sheet),
+            SelfPairs::Ignored => 0.0,
+        };
+        let of_bodies = bodies.iter().filter_map(Body::features);
+        let displacements = of_bodies.map(|f| sheet.relative_to(f.displacements()) + f.growth());
+        // Not a number, and so not within the skin, where a coordinate is not.
+        displacements.fold(itself, larger) <= USED * self.skin
+    }
+
+    /// Makes the lists for motions like that from `x` to the end.
+    fn list(&mut self, x: &[f64], reach: f64, bodies: &mut [Body]) {
+        for (r, (x, end)) in self.reference.iter_mut().zip(x.iter().zip(&self.end)) {
+            *r = 0.5 * (x + end);
+        }
+        for features in bodies.iter_mut().filter_map(Body::features_mut) {
+            features.take_reference();
+        }
+        if self.is_within_skin(x, bodies) {
+            self.scope = Scope::Skin;
+            let at = &self.reference;
+            self.boxes.update(at, at, 0.5 * reach + self.skin);
+        } else {
+            self.scope = Scope::OneMotion;
+            self.boxes.update(x, &self.end, 0.5 * reach);
+        }
+        if self.own_pairs == SelfPairs::Listed {
+            self.boxes.self_candidates(&mut self.own);
+        }
+        for (body, pairs) in bodies.iter_mut().zip(&mut self.cross) {
+            if let Some(features) = body.features_mut() {
+                self.boxes
+                    .candidates_with(features.refit(self.scope), pairs);
+                features.return_to_motion();
+            }
+        }
+    }
+}
