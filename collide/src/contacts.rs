@@ -7,6 +7,7 @@ mod features;
 mod neighbours;
 mod options;
 mod path;
+mod rolling;
 mod sheet;
 mod start;
 #[cfg(test)]

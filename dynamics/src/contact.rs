@@ -34,7 +34,7 @@ mod run;
 mod set;
 mod terms;
 
-pub use active::{ActiveContact, ActiveContacts};
+pub use active::{ActiveContact, ActiveContacts, Rolling};
 pub use barrier::{BarrierError, BarrierPotential, Stiffness};
 pub(crate) use body::advanced;
 pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};

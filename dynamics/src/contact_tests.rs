@@ -91,6 +91,7 @@ impl Contact for Floor {
                     gap,
                     closest: Vector3::new(x[i], x[i + 1], bodies[0].origin().z),
                     parallel: None,
+                    rolling: None,
                 });
             }
         }

@@ -2,12 +2,13 @@
 
 use super::body::Body;
 use super::features::Features;
+use super::rolling::{edge_gradient, face_gradients};
 use super::sheet::{two_edges, vertex_face};
 use crate::ContactMesh;
 use crate::distance::{Closest, edge_edge, point_triangle};
 use crate::narrow_phase::gather;
 use isosheet_dynamics::contact::{
-    ActiveContact, BodyPlace, ContactKey, ContactKind, ParallelEdges,
+    ActiveContact, BodyPlace, ContactKey, ContactKind, ParallelEdges, Rolling,
 };
 use nalgebra::Vector3;
 
@@ -69,6 +70,7 @@ impl Sheet<'_> {
             gap: distance - self.thickness,
             closest: Vector3::zeros(),
             parallel: None,
+            rolling: None,
         })
     }
 
@@ -111,6 +113,7 @@ impl Sheet<'_> {
             gap,
             closest: place.to_space(&d.closest(&p)),
             parallel: None,
+            rolling: None,
         })
     }
 
@@ -136,6 +139,7 @@ impl Sheet<'_> {
             gap,
             closest: place.to_space(&(point + features.radius * n)),
             parallel: None,
+            rolling: None,
         })
     }
 
@@ -161,6 +165,14 @@ impl Sheet<'_> {
             gap,
             closest: place.to_space(&(b + features.radius * n)),
             parallel: None,
+            rolling: (features.radius > 0.0).then(|| {
+                let gradients = face_gradients([p, q, r], [-wp, -wq, -wr]);
+                let [gp, gq, gr] = gradients.map(|g| place.frame() * g);
+                Rolling {
+                    gradients: [gp, gq, gr, Vector3::zeros()],
+                    distance,
+                }
+            }),
         })
     }
 
@@ -180,6 +192,15 @@ impl Sheet<'_> {
         let [wp, wq, wc, wd] = closest.weights;
         let point = -wc * c - wd * d;
         let (u, v) = (place.frame() * (q - p), place.frame() * (d - c));
+        let parallel = ParallelEdges::new(u, v, [self.lengths2[e as usize], v.norm_squared()]);
+        let rolling = (features.radius > 0.0 && parallel.is_none()).then(|| {
+            let gradient = edge_gradient([p, q], [c, d], closest.weights);
+            let gradient = place.frame() * gradient;
+            Rolling {
+                gradients: [-gradient, gradient, Vector3::zeros(), Vector3::zeros()],
+                distance,
+            }
+        });
         Some(ActiveContact {
             key,
             vertices: [edge[0], edge[1], edge[0], edge[0]],
@@ -187,7 +208,8 @@ impl Sheet<'_> {
             normal: place.frame() * n,
             gap,
             closest: place.to_space(&(point + features.radius * n)),
-            parallel: ParallelEdges::new(u, v, [self.lengths2[e as usize], v.norm_squared()]),
+            parallel,
+            rolling,
         })
     }
 }

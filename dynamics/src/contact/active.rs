@@ -24,6 +24,26 @@ pub struct ActiveContact {
     pub closest: Vector3<f64>,
     /// For two edges that are nearly parallel: the edge of the sheet, then the other one.
     pub parallel: Option<ParallelEdges>,
+    /// For a face or an edge of the sheet that touches a rounded body between its corners.
+    pub rolling: Option<Rolling>,
+}
+
+/// How the distance of a face or an edge of the sheet from the centre or axis of a rounded body changes to
+/// second order when it tilts. The closest point rolls along the body then, and the distance `d` shrinks:
+/// with the displacements `u_i` and the unit vector `n` along `d`
+///
+/// ```text
+/// d'' = -d |t|^2 + ...,     t = sum_i g_i (n . u_i),
+/// ```
+///
+/// where `g_i` are the gradients, along the face or edge, of the weights of the closest point. (What is left
+/// out couples the tilt with sliding, is indefinite, and smaller by the length of an edge over `d`.)
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Rolling {
+    /// `g_i`, in space, per metre; zero in unused places.
+    pub gradients: [Vector3<f64>; 4],
+    /// `d`: the gap with the radius of the body and the thickness of the sheet, metres.
+    pub distance: f64,
 }
 
 impl ActiveContact {
@@ -144,8 +164,20 @@ impl ActiveContact {
     /// nearest positive semidefinite matrix leaves it out too; for the insides of faces and edges
     /// it is indefinite and smaller by the gap over the length of an edge. Nearly parallel edges
     /// add the derivatives of their factor, `m = (2 - y) y` with `y = |u x v|^2 / e`, in the four
-    /// directions `p` and `J^T z`, `J = d(u x v)/dx`, with the same omission.
+    /// directions `p` and `J^T z`, `J = d(u x v)/dx`, with the same omission. Of faces and edges on rounded
+    /// bodies the curvature is as large as the radius, and not left out: see [`Rolling`].
     fn hessian(&self, barrier: &BarrierPotential, sink: &mut dyn CouplingSink) {
+        if let Some(rolling) = &self.rolling {
+            let block =
+                self.force(barrier) * rolling.distance * self.normal * self.normal.transpose();
+            let (g, count) = (&rolling.gradients, self.vertex_count());
+            for i in 0..count {
+                for j in i..count {
+                    let along = g[i].dot(&g[j]);
+                    add_block(self.vertices[i], self.vertices[j], along * block, sink);
+                }
+            }
+        }
         let curvature = self.curvature(barrier);
         let Some((p, [axis, second, third])) = &curvature.parallel else {
             let block = curvature.normal * self.normal * self.normal.transpose();
