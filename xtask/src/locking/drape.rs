@@ -2,23 +2,25 @@
 
 use super::clamped::median;
 use super::course::{Course, Plan, Scene};
-use super::effort::LockingEffort;
 use super::findings::Findings;
-use super::isometry::Isometry;
+use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
+use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::records::Records;
 use super::rim::{Rim, analyse};
 use super::table::Results;
-use crate::draw::Drawing;
-use crate::progress::Progress;
+use super::targets::{Target, at_least};
+use crate::draw::{Axis, Drawing};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{ImplicitOptions, Method};
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{Sheet, VertexId};
 use nalgebra::Isometry3;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 pub(super) const ABOUT: &str = "A flat disk of paper (radius 0.5 m, 80 g/m², 5e-4 N m, damping 4/s) is let go on a round table of half its radius, \
-    with contact between disk and table, without and with friction. Nothing but the triangulation prefers a direction, so that for a smooth sheet \
+    with contact between disk and table and of the disk with itself, without and with friction. Nothing but the triangulation prefers a direction, so that for a smooth sheet \
     all seeds and all meshes would give the same folds, turned. The seed turns the disk and perturbs the solver's first choice; of the irregular mesh it \
     is the mesh as well. Folds are counted on the rim: rises of the height through the middle of its range.";
 
@@ -26,8 +28,7 @@ pub(super) const ABOUT: &str = "A flat disk of paper (radius 0.5 m, 80 g/m², 5e
 const DISK: f64 = 0.5;
 const TABLE: [f64; 2] = [0.25, 0.1];
 
-/// Flexural rigidity, N m, mass per area, kg/m2, and rate of damping, 1/s.
-const RIGIDITY: f64 = 5e-4;
+/// Mass per area, kg/m2, and rate of damping, 1/s.
 const DENSITY: f64 = 0.08;
 const DAMPING: f64 = 4.0;
 
@@ -37,8 +38,11 @@ const GRAVITY: f64 = 9.8;
 /// its own vertex.
 const START: f64 = 0.95;
 
+/// Rings of the concentric mesh; the others have rods of about the same length.
+const RINGS: usize = 6;
+
 /// A triangulation of the disk.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum Mesh {
     Concentric,
     Delaunay,
@@ -88,6 +92,7 @@ impl Mesh {
 }
 
 /// A drape.
+#[derive(Serialize, Deserialize)]
 struct Drape {
     mesh: Mesh,
     friction: f64,
@@ -111,8 +116,13 @@ impl Drape {
         plan: &Plan,
     ) -> Result<Self> {
         let sheet = mesh.disk(rings, seed)?;
+        let material = Material {
+            mass: DENSITY * sheet.area(),
+            rigidity: Some(PAPER_RIGIDITY),
+            clamped: &[],
+        };
         let model = isometry
-            .bending(&sheet, DENSITY * sheet.area(), RIGIDITY, &[])?
+            .model(&sheet, material)?
             .with_acceleration([0.0, 0.0, -GRAVITY])
             .with_damping(DAMPING)?;
         let weights = model.mass().row_sums(sheet.topology());
@@ -129,7 +139,9 @@ impl Drape {
         } else {
             Coefficients::FRICTIONLESS
         };
-        let contacts = Contacts::new(&model, options)?.with_body(table, coefficients)?;
+        let contacts = Contacts::new(&model, options)?
+            .with_body(table, coefficients)?
+            .with_self_contact(coefficients)?;
         let scene = Scene {
             model,
             start: sheet.positions().to_vec(),
@@ -143,8 +155,8 @@ impl Drape {
         let total: f64 = weights.iter().sum();
         let places = || course.x.as_chunks::<3>().0.iter().zip(&weights);
         let centre = |k: usize| places().map(|(p, w)| w * p[k]).sum::<f64>() / total;
-        let energy =
-            total * GRAVITY * centre(2) + isometry.bending_energy(&sheet, RIGIDITY, &course.x)?;
+        let energy = total * GRAVITY * centre(2)
+            + isometry.bending_energy(&sheet, (PAPER_RIGIDITY, &[]), &course.x)?;
         Ok(Self {
             mesh,
             friction,
@@ -156,6 +168,14 @@ impl Drape {
             aside: centre(0).hypot(centre(1)),
             course,
         })
+    }
+}
+
+impl Drape {
+    /// The number of folds at the end of a run that reached it.
+    fn folds(&self) -> Option<usize> {
+        let rim = self.rim.filter(|_| self.course.ending.is_good());
+        Some(rim?.folds)
     }
 }
 
@@ -176,45 +196,121 @@ fn rim(sheet: &Sheet, x: &[f64]) -> Option<Rim> {
 }
 
 /// Runs the yardstick.
-pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+    let effort = records.effort;
     let plan = Plan {
         step: 1.0 / 60.0,
         duration: effort.pick(0.3, 10.0),
         rest_speed: Some(2e-3),
-        patience: effort.patience(0.8, 4.0),
+        patience: effort.patience(0.5, 8.0),
     };
-    let rings = effort.pick(3, 4);
+    let rings = effort.pick(3, RINGS);
     let meshes: &[Mesh] = effort.pick(&Mesh::ALL[..1], &Mesh::ALL);
     let frictions: &[f64] = effort.pick(&[0.3], &[0.0, 0.3]);
     let seeds = effort.pick(1, 10);
-    let count = Isometry::ALL.len() * meshes.len() * frictions.len() * seeds as usize;
-    let bar = Progress::start("drape", count);
-    let mut all = Vec::new();
-    for isometry in Isometry::ALL {
-        for &mesh in meshes {
-            for &friction in frictions {
-                for seed in 0..seeds {
-                    all.push(Drape::measure(
-                        isometry,
-                        (mesh, rings),
-                        friction,
-                        seed,
-                        &plan,
-                    )?);
-                    bar.step();
-                }
-            }
+    let mut jobs: Vec<(Mesh, f64, u64)> = Vec::new();
+    for &mesh in meshes {
+        for &friction in frictions {
+            jobs.extend((0..seeds).map(|seed| (mesh, friction, seed)));
         }
     }
-    bar.finish("measured");
+    let all = records.of_models(
+        |_| jobs.clone(),
+        |isometry, &(mesh, friction, seed)| {
+            Drape::measure(isometry, (mesh, rings), friction, seed, &plan)
+        },
+    )?;
+    let of = |isometry: &Isometry| {
+        let isometry = *isometry;
+        let all = &all;
+        frictions
+            .iter()
+            .map(move |mu| target(isometry, all, meshes, *mu))
+    };
     Ok((
         Findings {
             tables: vec![summary(&all, meshes, frictions, &plan)],
             files: vec![runs(&all)],
+            targets: Isometry::ALL.iter().flat_map(of).collect(),
             remarks: Vec::new(),
         },
-        None,
+        Some(plot(&all, meshes, frictions)),
     ))
+}
+
+/// Of every mesh at least this part of the seeds has the same number of folds: the largest such part, over
+/// all numbers of folds.
+fn target(isometry: Isometry, all: &[Drape], meshes: &[Mesh], friction: f64) -> Target {
+    let of = |mesh: Mesh| -> Vec<&Drape> {
+        let of = all
+            .iter()
+            .filter(|d| d.isometry == isometry && d.mesh == mesh);
+        of.filter(|d| d.friction == friction).collect()
+    };
+    let share = |mesh: Mesh, folds: usize| {
+        let of = of(mesh);
+        let with = of.iter().filter(|d| d.folds() == Some(folds)).count();
+        with as f64 / of.len() as f64
+    };
+    let common = |folds: usize| {
+        meshes
+            .iter()
+            .map(|mesh| share(*mesh, folds))
+            .fold(1.0, f64::min)
+    };
+    let best = (0..=64).map(common).fold(0.0, f64::max);
+    let quantity = format!(
+        "part of the seeds with the same number of folds on all meshes, friction {friction}"
+    );
+    at_least(isometry, &quantity, 0.8, &[Some(best)])
+}
+
+/// Numbers of folds of every run, over the meshes.
+fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
+    let panel = |&friction: &f64| Panel {
+        title: format!("coefficient of friction {friction}"),
+        dots: all
+            .iter()
+            .filter(|d| d.friction == friction)
+            .filter_map(|d| {
+                let place = meshes.iter().position(|m| *m == d.mesh)? as f64;
+                // Models and seeds beside one another: numbers of folds are whole.
+                let aside = 0.28 * (d.isometry as i32 as f64 - 1.0) + 0.022 * (d.seed as f64 - 4.5);
+                Some(Dot {
+                    isometry: d.isometry,
+                    mesh: d.mesh as usize,
+                    x: place + aside,
+                    y: d.folds().map(|n| n as f64),
+                })
+            })
+            .collect(),
+        guides: Vec::new(),
+    };
+    let ticks = meshes
+        .iter()
+        .enumerate()
+        .map(|(k, m)| (k as f64, m.name().to_owned()));
+    let range = [-0.6, meshes.len() as f64 - 0.4];
+    let most = all
+        .iter()
+        .filter_map(Drape::folds)
+        .max()
+        .unwrap_or(0)
+        .max(6);
+    let folds = (0..=most).step_by(if most > 12 { 2 } else { 1 });
+    let folds = folds.map(|n| (n as f64, n.to_string())).collect();
+    Figure {
+        x: Scale::Linear(Axis::linear("mesh", range, ticks.collect())),
+        rows: vec![(
+            Scale::Linear(Axis::linear("folds", [0.0, most as f64 + 0.5], folds)),
+            frictions.iter().map(panel).collect(),
+        )],
+        meshes: Mesh::ALL.map(|m| m.name().to_owned()).to_vec(),
+        guide: String::new(),
+        joined: Joined::No,
+        size: [200.0, 150.0],
+    }
+    .draw()
 }
 
 fn runs(all: &[Drape]) -> Results {
