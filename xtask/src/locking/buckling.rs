@@ -1,4 +1,4 @@
-//! Yardstick 7: lateral buckling of a strip that is clamped at one end and stands on edge.
+//! Lateral buckling of a strip that is clamped at one end and stands on edge.
 
 use super::bisection::{Bracket, Verdict, bisect};
 use super::course::{Plan, Scene};
@@ -251,11 +251,14 @@ fn plot(all: &[Buckled], patterns: &[(Pattern, f64)]) -> Drawing {
     };
     let dots = all.iter().filter_map(|b| {
         let (pattern, degrees, across) = b.mesh;
-        let place = patterns.iter().position(|p| *p == (pattern, degrees))?;
+        let place = patterns.iter().position(|p| *p == (pattern, degrees))? as f64;
+        let mesh = sizes.iter().position(|n| *n == across)?;
+        // Models and sizes beside one another.
+        let aside = 0.24 * (f64::from(b.isometry as u8) - 1.0) + 0.1 * (mesh as f64 - 0.5);
         Some(Dot {
             isometry: b.isometry,
-            mesh: sizes.iter().position(|n| *n == across)?,
-            x: place as f64 + 0.2 * (b.isometry as i32 as f64 - 1.0),
+            mesh,
+            x: place + aside,
             y: b.found.middle(),
         })
     });
@@ -271,7 +274,7 @@ fn plot(all: &[Buckled], patterns: &[(Pattern, f64)]) -> Drawing {
         )
     });
     let ends = [-0.6, patterns.len() as f64 - 0.4];
-    let loads = vec![10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 60.0, 90.0];
+    let loads = vec![15.0, 20.0, 25.0, 30.0, 40.0, 60.0];
     let loads = loads.into_iter().map(|l| (l, format!("{l}"))).collect();
     Figure {
         x: Scale::Linear(Axis::linear("mesh", ends, ticks.collect())),

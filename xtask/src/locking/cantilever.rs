@@ -1,4 +1,4 @@
-//! Yardstick 4: the drop of a heavy strip against the exact elastica, on meshes turned against the strip.
+//! The drop of a heavy strip against the exact elastica, on meshes turned against the strip.
 
 use super::course::{Course, Plan, Scene};
 use super::cylinder::DIRECTIONS;

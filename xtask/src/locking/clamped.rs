@@ -1,4 +1,4 @@
-//! Yardstick 1: flat sheets that are clamped along lines of any direction.
+//! Flat sheets that are clamped along lines of any direction.
 
 use super::course::{Course, Plan, Scene};
 use super::effort::LockingEffort;
@@ -40,7 +40,6 @@ const SEED: u64 = 20;
 /// A sheet of the family.
 #[derive(Debug)]
 pub(super) struct Clamped {
-    pub(super) kind: &'static str,
     pub(super) sheet: Sheet,
     pub(super) pins: Vec<VertexId>,
     /// Flexural rigidity, N m.
@@ -68,7 +67,6 @@ impl Clamped {
         along.truncate(sheet.topology().vertex_count().div_ceil(4));
         let rigidity = 10f64.powf(rng.random_range(-4.0..0.0));
         Ok(Self {
-            kind,
             sheet,
             pins: along,
             rigidity,
@@ -435,7 +433,6 @@ mod tests {
             let c = Clamped::new(number).unwrap();
             let count = c.sheet.topology().vertex_count();
             assert!(VERTICES.contains(&count), "{number}: {count}");
-            assert_eq!(c.kind, KINDS[number % 5]);
             assert_eq!(c.pins.len(), count.div_ceil(4));
             assert!((1e-4..1.0).contains(&c.rigidity));
             let again = Clamped::new(number).unwrap();

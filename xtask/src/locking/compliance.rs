@@ -1,4 +1,4 @@
-//! Yardstick 5: how elastic sheets approach rigid rods, and the inextensible strip, as they become stiffer.
+//! How elastic sheets approach rigid rods, and the inextensible strip, as they become stiffer.
 
 use super::cantilever;
 use super::course::{Course, Plan, Scene};
@@ -38,7 +38,8 @@ const MASS: f64 = 0.1;
 const STEP: f64 = 0.01;
 const DURATION: f64 = 0.2;
 
-/// Tolerance of the minimiser for the ladder: what it leaves must be below the error at the largest stiffness.
+/// Tolerance of the minimiser for the ladder: what it leaves must be below the error at the largest
+/// stiffness.
 const TOLERANCE: f64 = 1e-12;
 
 /// Distances below this are those of the tolerance, metres.

@@ -1,4 +1,4 @@
-//! Yardstick 3: a square that clamps bend to a cylinder, with exact energy and moment.
+//! A square that clamps bend to a cylinder, with exact energy and moment.
 
 use super::course::{Course, Plan, Scene};
 use super::findings::Findings;
@@ -19,8 +19,8 @@ pub(super) const ABOUT: &str = "A square of office paper (0.2 m, 5e-4 N m, witho
     the clamps move to the two tangent planes at the ends of a cylinder of curvature κ = 5/m, and stay there. A smooth inextensible sheet takes the shape of that \
     cylinder: it stores D κ² / 2 per area and pulls at a clamp with the moment D κ per width, without boundary layers (Poisson's ratio does not matter: \
     the bending energy of all models is that of the ratio zero). The mesh is turned against the axis of the cylinder; an irregular mesh \
-    has no direction, other angles are other seeds. Every mesh has vertices and edges along the lines of the clamps. Measured at rest: the whole elastic \
-    energy, the moment of the forces of the pins on one clamp, the root mean square distance of the vertices from their places on the cylinder.";
+    has no direction, other angles are other seeds. Every mesh has vertices and edges along the lines of the clamps. Measured at rest: the error of the bending \
+    energy plus the energy of the membrane (zero in the smooth sheet), both relative to D κ² / 2 per area; the moment of the forces of the pins on one clamp, the root mean square distance of the vertices from their places on the cylinder.";
 
 /// Side of the free square, metres, and length of the clamp at each end: a cell of the coarsest mesh.
 const SIDE: f64 = 0.2;
@@ -59,7 +59,7 @@ fn square(pattern: Pattern, cells: usize, degrees: f64) -> Result<Sheet> {
 }
 
 fn clamped(sheet: &Sheet) -> Vec<VertexId> {
-    vertices(sheet, |[x, ..]| x < 1e-9 || x > SIDE - 1e-9)
+    vertices(sheet, |[x, ..]| !(1e-9..=SIDE - 1e-9).contains(&x))
 }
 
 /// The place of the point (x, y) of the flat sheet when the part between the clamps has the curvature `k`.
@@ -153,9 +153,11 @@ impl Bent {
         SIDE / self.mesh.1 as f64
     }
 
+    /// The error of the bending energy plus the energy of the membrane, which is zero in the smooth sheet: of
+    /// the sum of both energies the two errors would cancel on some meshes.
     fn energy_error(&self) -> Option<f64> {
-        let is_good = self.course.ending.is_good();
-        is_good.then(|| (self.energy - 1.0).abs())
+        let error = (self.bending - 1.0).abs() + (self.energy - self.bending).abs();
+        self.course.ending.is_good().then_some(error)
     }
 
     fn moment_error(&self) -> Option<f64> {
@@ -200,9 +202,9 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         step: STEP,
         duration: 6.0,
         rest_speed: Some(REST),
-        patience: effort.patience(0.3, 12.0),
+        patience: effort.patience(0.3, 4.0),
     };
-    let sizes: &[usize] = effort.pick(&[4], &[4, 8, 16, 32]);
+    let sizes: &[usize] = effort.pick(&[4], &[4, 8, 16]);
     let directions: &[f64] = effort.pick(&[0.0, 22.5, 45.0], &DIRECTIONS);
     let mut meshes: Vec<Mesh> = Vec::new();
     for pattern in Pattern::ALL {
@@ -460,16 +462,16 @@ mod tests {
         assert!(coarse < 0.03 && fine < 0.4 * coarse, "{coarse} {fine}");
     }
 
-    /// On mesh lines the springs of rods carry the moment of the plate: one fold in each row.
+    /// On mesh lines a coarse elastic sheet has the energy of the cylinder, and pulls with its moment.
     #[test]
-    fn aligned_rods_have_nearly_the_moment_of_the_plate() {
+    fn an_aligned_sheet_has_energy_and_moment_of_the_cylinder() {
         let plan = Plan {
             step: STEP,
             duration: 4.0,
             rest_speed: Some(REST),
             patience: std::time::Duration::from_secs(60),
         };
-        let bent = Bent::measure(Isometry::Paper, (Pattern::UnionJack, 4, 0.0), &plan).unwrap();
+        let bent = Bent::measure(Isometry::Soft, (Pattern::UnionJack, 8, 0.0), &plan).unwrap();
         assert!(bent.course.ending.is_good(), "{:?}", bent.course.ending);
         assert!(bent.moment_error().unwrap() < 0.05, "{:?}", bent.moment);
         assert!(bent.energy_error().unwrap() < 0.05, "{:?}", bent.energy);

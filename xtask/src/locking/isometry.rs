@@ -18,7 +18,8 @@ pub(super) const PAPER_RIGIDITY: f64 = 5e-4;
 pub(super) enum Isometry {
     /// Every edge is a rigid rod; springs at the edges, see [`CreaseSprings::bending`].
     Rods,
-    /// The membrane of office paper, see [`Membrane`]; the bending stiffness of a plate, see [`PlateBending`].
+    /// The membrane of office paper, see [`Membrane`]; the bending stiffness of a plate, see
+    /// [`PlateBending`].
     Paper,
     /// A membrane of the stiffness [`soft_stiffness`]; the bending stiffness of a plate.
     Soft,
@@ -109,8 +110,8 @@ pub(super) fn elastic(
     })
 }
 
-/// Membrane stiffness `100 D / h^2` that leaves bends free (see [`Membrane`]), newtons per metre, with `h^2` twice
-/// the mean area of a triangle: the square of the side of a cell in a mesh of squares cut in two.
+/// Membrane stiffness `100 D / h^2` that leaves bends free (see [`Membrane`]), newtons per metre, with `h^2`
+/// twice the mean area of a triangle: the square of the side of a cell in a mesh of squares cut in two.
 pub(super) fn soft_stiffness(sheet: &Sheet, rigidity: f64) -> f64 {
     let mean = sheet.area() / sheet.topology().faces().len() as f64;
     100.0 * rigidity / (2.0 * mean)

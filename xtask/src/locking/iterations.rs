@@ -1,4 +1,4 @@
-//! Yardstick 5: what a step costs where the sheet has to find a pattern of folds.
+//! What a step costs where the sheet has to find a pattern of folds.
 
 use super::course::{Course, Plan, Scene};
 use super::findings::Findings;
@@ -7,7 +7,7 @@ use super::meshes::nearest;
 use super::plot::{Dot, Figure, Joined, Panel, Scale};
 use super::records::Records;
 use super::table::Results;
-use super::targets::{Target, at_most};
+use super::targets::{Target, at_most, strain};
 use crate::draw::Drawing;
 use anyhow::Result;
 use isosheet_dynamics::Method;
@@ -69,7 +69,7 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         step: 1.0 / 60.0,
         duration: effort.pick(0.25, 1.0),
         rest_speed: None,
-        patience: effort.patience(0.5, 60.0),
+        patience: effort.patience(0.5, 35.0),
     };
     let levels: &[u32] = effort.pick(&[1, 2], &[2, 3, 4, 5]);
     // The longest runs begin first, so that no core is left alone with one of them.
@@ -152,6 +152,8 @@ fn targets(isometry: Isometry, all: &[Hanging]) -> Vec<Target> {
             targets.push(at_most(isometry, &quantity, bound, &costs));
         }
     }
+    let of = all.iter().filter(|h| h.isometry == isometry);
+    targets.push(strain(isometry, of.map(|h| &h.course)));
     targets
 }
 

@@ -2,8 +2,8 @@
 
 use super::isometry::Isometry;
 use crate::draw::{
-    Anchor, Axis, Drawing, Legend, Line, Marker, Plot, Series, Stroke, TEXT, Vertical,
-    column, palette, row,
+    Anchor, Axis, Drawing, Legend, Line, Marker, Plot, Series, Stroke, TEXT, Vertical, column,
+    palette, row,
 };
 use crate::scale::exponent;
 
@@ -20,7 +20,7 @@ const NOT_ENDED: f64 = 13.0;
 const TITLE: f64 = 22.0;
 
 /// Distance of the symbols of two models or meshes on that line, points.
-const BESIDE: f64 = 2.6;
+const BESIDE: f64 = 3.0;
 
 /// The result of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,7 +91,7 @@ impl Scale {
         let mut axis = Axis::decades(label, 0, 1, 1);
         let low = ticks.iter().map(|t| t.0).fold(f64::INFINITY, f64::min);
         let high = ticks.iter().map(|t| t.0).fold(0.0, f64::max);
-        axis.range = [low / 1.4, high * 1.4];
+        axis.range = [low / 1.5, high * 1.5];
         axis.ticks = ticks;
         Self::Logarithmic(axis)
     }
@@ -198,14 +198,19 @@ impl Figure {
         drawing.line(&[[0.0, y], [w, y]], Stroke::new(grey, 0.5).dashed());
         let at = [-4.0, y];
         drawing.text(at, "did not end", 6.0, Anchor::End, Vertical::Centre, grey);
-        let count = Isometry::ALL.len() * self.meshes.len();
+        // Where lines join the meshes of a model, all of them are at the same places.
+        let meshes = match self.joined {
+            Joined::Yes => self.meshes.len(),
+            Joined::No => 1,
+        };
+        let count = Isometry::ALL.len() * meshes;
         for dot in panel.dots.iter().filter(|d| d.y.is_none()) {
             let model = Isometry::ALL.iter().position(|m| *m == dot.isometry);
-            let place = model.unwrap_or(0) * self.meshes.len() + dot.mesh;
+            let place = model.unwrap_or(0) * meshes + dot.mesh % meshes;
             let beside = BESIDE * (place as f64 - 0.5 * (count as f64 - 1.0));
             let marker = MARKERS[dot.mesh % MARKERS.len()];
             let at = [w * self.x.part(dot.x) + beside, y];
-            marker.draw(drawing, at, 2.0, dot.isometry.colour(), rim);
+            marker.draw(drawing, at, 1.8, dot.isometry.colour(), rim);
         }
     }
 

@@ -1,4 +1,4 @@
-//! Yardstick 8: the angle at which a sheet begins to slide down a plane.
+//! The angle at which a sheet begins to slide down a plane.
 
 use super::bisection::{Bracket, Verdict, bisect};
 use super::course::{Plan, Scene};
@@ -167,7 +167,8 @@ fn plot(all: &[Slide], coefficients: &[f64]) -> Drawing {
         isometry: s.isometry,
         mesh: s.pattern.number(),
         // Beside one another: the values differ by less than a symbol.
-        x: s.mu * 1.06_f64.powf(3.0 * s.isometry as i32 as f64 + s.pattern.number() as f64 - 4.0),
+        x: s.mu
+            * 1.06_f64.powf(3.0 * f64::from(s.isometry as u8) + s.pattern.number() as f64 - 4.0),
         y: s.found.middle(),
     });
     let ends = [

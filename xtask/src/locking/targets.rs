@@ -1,5 +1,6 @@
 //! What a model of isometry is required to reach, and what was measured.
 
+use super::course::Course;
 use super::isometry::Isometry;
 use super::table::Results;
 use serde::{Deserialize, Serialize};
@@ -71,6 +72,13 @@ fn worst(
         bound,
         measured: known.and_then(|values| values.into_iter().reduce(select)),
     }
+}
+
+/// A requirement of every scene in which nothing but the membrane or the rods keeps the sheet together: no edge
+/// is longer or shorter by more than 1 % at any time, which is what paper bears before it tears.
+pub(super) fn strain<'a>(model: Isometry, courses: impl Iterator<Item = &'a Course>) -> Target {
+    let strains: Vec<Option<f64>> = courses.map(|c| Some(c.strain)).collect();
+    at_most(model, "largest strain of an edge", 0.01, &strains)
 }
 
 /// All requirements as a table.
