@@ -11,6 +11,7 @@ mod clamped;
 mod compliance;
 mod course;
 mod cylinder;
+mod disk;
 mod drape;
 mod effort;
 mod elastica;

@@ -106,7 +106,7 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         step: STEP,
         duration: effort.pick(3.0, 10.0),
         rest_speed: Some(REST),
-        patience: effort.patience(0.3, 2.5),
+        patience: effort.patience(0.3, 4.0),
     };
     let sizes: &[usize] = effort.pick(&[2], &[2, 4, 8]);
     let directions: &[f64] = effort.pick(&[0.0, 22.5], &DIRECTIONS);

@@ -5,10 +5,10 @@ use super::course::{Course, Plan, Scene};
 use super::findings::Findings;
 use super::isometry::{Material, PAPER, PAPER_RIGIDITY, elastic, rods};
 use super::meshes::Pattern;
-use super::plot::{Scale, order};
+use super::plot::{Scale, TITLE, not_ended_line, order};
 use super::records::Records;
 use super::table::Results;
-use crate::draw::{Anchor, Drawing, Legend, Plot, Series, TEXT, Vertical, palette, row};
+use crate::draw::{Anchor, Drawing, Legend, Plot, Series, Stroke, TEXT, Vertical, palette, row};
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method};
 use isosheet_mesh::{Sheet, VertexId, generate};
@@ -266,53 +266,62 @@ fn orders(all: &[Run], problems: &[Problem]) -> Results {
 
 /// The errors against the compliance: the ladders, and the elastica on meshes of every size.
 fn plot(all: &[Run], sizes: &[usize]) -> Drawing {
-    let ladders = LADDERS.iter().enumerate().map(|(k, n)| {
-        let name = format!("ladder, {n} squares");
-        Series::styled(k, &name, points(all, Problem::Ladder(*n)))
-    });
-    let mut ladders: Vec<Series> = ladders.collect();
-    let first = points(all, Problem::Ladder(LADDERS[0]));
-    if let (Some(a), Some(b)) = (first.first(), first.last()) {
-        let guide = vec![*a, [b[0], a[1] * b[0] / a[0]]];
-        ladders.push(Series::guide("1 / (~Eh~)", guide));
-    }
-    let mut panels = vec![("Ladders".to_owned(), "distance from rods, m", ladders)];
+    let is_ladder = |r: &&Run| matches!(r.problem, Problem::Ladder(_));
+    let ladder_errors = all.iter().filter(is_ladder).filter_map(|r| r.error);
+    let errors = all.iter().filter(|r| !is_ladder(r)).filter_map(|r| r.error);
+    let y = Scale::decades("relative error of the drop", errors);
+    let of = LADDERS.map(|n| (Problem::Ladder(n), format!("ladder, {n} squares")));
+    let mut drawings = vec![panel(
+        (all, &of, 0),
+        "Ladders",
+        Scale::decades("distance from rods, m", ladder_errors),
+        Legend::Right,
+    )];
     for &across in sizes {
-        let series = MESHES.iter().enumerate().map(|(mesh, (pattern, degrees))| {
-            let points = points(all, Problem::Elastica { mesh, across });
-            Series::styled(3 + mesh, &format!("{pattern}, {degrees}°"), points)
-        });
+        let of: Vec<(Problem, String)> = MESHES
+            .iter()
+            .enumerate()
+            .map(|(mesh, (p, d))| (Problem::Elastica { mesh, across }, format!("{p}, {d}°")))
+            .collect();
+        let legend = if Some(&across) == sizes.last() {
+            Legend::Right
+        } else {
+            Legend::None
+        };
         let title = format!("Heavy elastica, {across} squares across");
-        panels.push((title, "relative error of the drop", series.collect()));
+        drawings.push(panel((all, &of, 3), &title, y.clone(), legend));
     }
-    let last = panels.len() - 1;
-    let errors = |is_ladder: fn(&Problem) -> bool| {
-        let of = all.iter().filter(move |r| is_ladder(&r.problem));
-        of.filter_map(|r| r.error)
-    };
-    let drawings: Vec<Drawing> = panels
-        .into_iter()
-        .enumerate()
-        .map(|(k, (title, label, series))| {
-            let y = if k == 0 {
-                Scale::decades(label, errors(|p| matches!(p, Problem::Ladder(_))))
-            } else {
-                Scale::decades(label, errors(|p| matches!(p, Problem::Elastica { .. })))
-            };
-            let legend = if k == 0 || k == last {
-                Legend::Right
-            } else {
-                Legend::None
-            };
-            panel((title, y), series, legend)
-        })
-        .collect();
     row(&drawings, 16.0)
 }
 
-fn panel((title, y): (String, Scale), series: Vec<Series>, legend: Legend) -> Drawing {
+/// Some problems with their names, in the styles from the given number on. Guides: the first order for
+/// ladders, through the largest compliance.
+fn panel(
+    (all, problems, style): (&[Run], &[(Problem, String)], usize),
+    title: &str,
+    y: Scale,
+    legend: Legend,
+) -> Drawing {
     let size = [120.0, 140.0];
     let x = Scale::decades("compliance 1 / (~Eh~), m/N", [1e-7, 1e-3].into_iter());
+    let styled = |(k, (problem, name)): (usize, &(Problem, String))| {
+        Series::styled(style + k, name, points(all, *problem))
+    };
+    let mut series: Vec<Series> = problems.iter().enumerate().map(styled).collect();
+    let marks: Vec<(f64, Series)> = problems
+        .iter()
+        .zip(&series)
+        .flat_map(|((problem, _), series)| {
+            let of = all
+                .iter()
+                .filter(|r| r.problem == *problem && r.error.is_none());
+            of.map(|r| (size[0] * x.part(1.0 / r.stiffness), series.clone()))
+        })
+        .collect();
+    if let (Problem::Ladder(_), [a, .., b]) = (problems[0].0, series[0].points.as_slice()) {
+        let guide = vec![*a, [b[0], a[1] * b[0] / a[0]]];
+        series.push(Series::guide("1 / (~Eh~)", guide));
+    }
     let mut drawing = Plot {
         x: x.axis().clone(),
         y: y.axis().clone(),
@@ -321,8 +330,15 @@ fn panel((title, y): (String, Scale), series: Vec<Series>, legend: Legend) -> Dr
         legend,
     }
     .draw();
-    let (at, ink) = ([0.5 * size[0], size[1] + 8.0], palette::INK);
-    drawing.text(at, &title, TEXT, Anchor::Middle, Vertical::Above, ink);
+    let above = not_ended_line(&mut drawing, size);
+    let rim = Stroke::new(palette::WHITE, 0.4);
+    for (x, series) in marks {
+        if let Some(marker) = series.marker {
+            marker.draw(&mut drawing, [x, above], 1.8, series.colour, rim);
+        }
+    }
+    let (at, ink) = ([0.5 * size[0], size[1] + TITLE], palette::INK);
+    drawing.text(at, title, TEXT, Anchor::Middle, Vertical::Above, ink);
     drawing
 }
 

@@ -69,7 +69,7 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         step: 1.0 / 60.0,
         duration: effort.pick(0.25, 1.0),
         rest_speed: None,
-        patience: effort.patience(0.5, 35.0),
+        patience: effort.patience(0.5, 60.0),
     };
     let levels: &[u32] = effort.pick(&[1, 2], &[2, 3, 4, 5]);
     // The longest runs begin first, so that no core is left alone with one of them.

@@ -17,7 +17,7 @@ const MARKERS: [Marker; 4] = [
 
 /// Heights above the axes of the line of runs that did not end and of the title, points.
 const NOT_ENDED: f64 = 13.0;
-const TITLE: f64 = 22.0;
+pub(super) const TITLE: f64 = 22.0;
 
 /// Distance of the symbols of two models or meshes on that line, points.
 const BESIDE: f64 = 3.0;
@@ -103,7 +103,7 @@ impl Scale {
     }
 
     /// Where on the axis a value is: 0 and 1 are the ends.
-    fn part(&self, value: f64) -> f64 {
+    pub(super) fn part(&self, value: f64) -> f64 {
         let [low, high] = self.axis().range;
         match self {
             Self::Linear(_) => (value - low) / (high - low),
@@ -192,26 +192,30 @@ impl Figure {
 
     /// The line above the axes with the runs that did not end.
     fn not_ended(&self, drawing: &mut Drawing, panel: &Panel) {
-        let [w, h] = self.size;
-        let y = h + NOT_ENDED;
-        let (grey, rim) = (palette::GREY, Stroke::new(palette::WHITE, 0.4));
-        drawing.line(&[[0.0, y], [w, y]], Stroke::new(grey, 0.5).dashed());
-        let at = [-4.0, y];
-        drawing.text(at, "did not end", 6.0, Anchor::End, Vertical::Centre, grey);
+        let y = not_ended_line(drawing, self.size);
+        let rim = Stroke::new(palette::WHITE, 0.4);
+        for (x, dot) in self.marks(panel) {
+            let marker = MARKERS[dot.mesh % MARKERS.len()];
+            marker.draw(drawing, [x, y], 1.8, dot.isometry.colour(), rim);
+        }
+    }
+
+    /// The runs that did not end with their horizontal places, points: models and meshes beside one another.
+    fn marks(&self, panel: &Panel) -> Vec<(f64, Dot)> {
         // Where lines join the meshes of a model, all of them are at the same places.
         let meshes = match self.joined {
             Joined::Yes => self.meshes.len(),
             Joined::No => 1,
         };
         let count = Isometry::ALL.len() * meshes;
-        for dot in panel.dots.iter().filter(|d| d.y.is_none()) {
+        let place = |dot: &Dot| {
             let model = Isometry::ALL.iter().position(|m| *m == dot.isometry);
             let place = model.unwrap_or(0) * meshes + dot.mesh % meshes;
             let beside = BESIDE * (place as f64 - 0.5 * (count as f64 - 1.0));
-            let marker = MARKERS[dot.mesh % MARKERS.len()];
-            let at = [w * self.x.part(dot.x) + beside, y];
-            marker.draw(drawing, at, 1.8, dot.isometry.colour(), rim);
-        }
+            (self.size[0] * self.x.part(dot.x) + beside, *dot)
+        };
+        let not_ended = panel.dots.iter().filter(|d| d.y.is_none());
+        not_ended.map(place).collect()
     }
 
     /// Series without points for the names of models, meshes and lines.
@@ -235,6 +239,15 @@ impl Figure {
         }
         legend
     }
+}
+
+/// Draws the line of runs that did not end above axes of a size (points), and returns its height.
+pub(super) fn not_ended_line(drawing: &mut Drawing, [width, height]: [f64; 2]) -> f64 {
+    let (y, grey) = (height + NOT_ENDED, palette::GREY);
+    drawing.line(&[[0.0, y], [width, y]], Stroke::new(grey, 0.5).dashed());
+    let at = [-4.0, y];
+    drawing.text(at, "did not end", 6.0, Anchor::End, Vertical::Centre, grey);
+    y
 }
 
 /// The points of a line that are on the axis.
@@ -311,6 +324,40 @@ mod tests {
         assert!((line[0][0] - 4.0).abs() < 1e-12 && (line[0][1] - 0.2).abs() < 1e-12);
         assert!((line[32][0] - 1.0).abs() < 1e-12);
         assert!(slope(&dots[3..], 2.0).is_empty());
+    }
+
+    /// Marks of runs that did not end are near their place, and those of two models or meshes apart.
+    #[test]
+    fn marks_of_runs_that_did_not_end_are_apart() {
+        let dot = |isometry, mesh: usize, y: Option<f64>| Dot {
+            isometry,
+            mesh,
+            x: 2.0,
+            y,
+        };
+        let mut dots = vec![dot(Isometry::Rods, 0, Some(0.1))];
+        for isometry in Isometry::ALL {
+            dots.extend([0, 1].map(|mesh| dot(isometry, mesh, None)));
+        }
+        let figure = Figure {
+            x: Scale::ticks("h", vec![(1.0, "1".into()), (4.0, "4".into())]),
+            rows: Vec::new(),
+            meshes: vec!["a".into(), "b".into()],
+            guide: String::new(),
+            joined: Joined::Yes,
+            size: [100.0, 80.0],
+        };
+        let marks = figure.marks(&Panel {
+            title: String::new(),
+            dots,
+            guides: Vec::new(),
+        });
+        assert_eq!(marks.len(), 2 * Isometry::ALL.len());
+        let mean = marks.iter().map(|m| m.0).sum::<f64>() / marks.len() as f64;
+        assert!((mean - 50.0).abs() < 1e-9, "{mean}");
+        for pair in marks.windows(2) {
+            assert!((pair[1].0 - pair[0].0 - BESIDE).abs() < 1e-9);
+        }
     }
 
     #[test]

@@ -119,6 +119,30 @@ mod tests {
         assert!(each(&[0_u64; 0], |k| Ok(*k)).unwrap().is_empty());
     }
 
+    /// What an earlier report has computed is not computed again.
+    #[test]
+    fn runs_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(&folder.path().join("out")).unwrap();
+        let records = Records {
+            store: &store,
+            part: Part::Sliding,
+            effort: LockingEffort::Quick,
+        };
+        let count = AtomicUsize::new(0);
+        let run = || {
+            records.runs("a name", &[0.1, 0.2], |k| {
+                count.fetch_add(1, Ordering::Relaxed);
+                Ok(k / 3.0)
+            })
+        };
+        let (first, second) = (run().unwrap(), run().unwrap());
+        assert_eq!((&first, first.len()), (&second, 2));
+        assert_eq!(count.into_inner(), 2);
+        let other = records.runs("another", &[0.0], |_| Ok(7.0));
+        assert_eq!(other.unwrap(), [7.0]);
+    }
+
     #[test]
     fn the_first_error_is_returned_and_no_further_job_begins() {
         let begun = AtomicUsize::new(0);

@@ -74,8 +74,9 @@ fn worst(
     }
 }
 
-/// A requirement of every scene in which nothing but the membrane or the rods keeps the sheet together: no edge
-/// is longer or shorter by more than 1 % at any time, which is what paper bears before it tears.
+/// No edge is longer or shorter by more than 1 % at any time: what the error in length of a sheet that stands
+/// for paper may be at most. (Paper tears at a few per cent.) A model that meets other requirements by
+/// stretching fails this one.
 pub(super) fn strain<'a>(model: Isometry, courses: impl Iterator<Item = &'a Course>) -> Target {
     let strains: Vec<Option<f64>> = courses.map(|c| Some(c.strain)).collect();
     at_most(model, "largest strain of an edge", 0.01, &strains)
