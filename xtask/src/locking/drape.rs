@@ -184,7 +184,7 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         step: 1.0 / 60.0,
         duration: effort.pick(0.3, 10.0),
         rest_speed: Some(2e-3),
-        patience: effort.patience(0.5, 6.0),
+        patience: effort.patience(0.5, 9.0),
     };
     let rings = effort.pick(3, RINGS);
     let meshes: &[Mesh] = effort.pick(&Mesh::ALL[..1], &Mesh::ALL);
