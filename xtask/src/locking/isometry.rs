@@ -79,8 +79,8 @@ impl fmt::Display for Isometry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Rods => "rods",
-            Self::Paper => "elastic, paper",
-            Self::Soft => "elastic, soft",
+            Self::Paper => "elastic (paper)",
+            Self::Soft => "elastic (soft)",
         })
     }
 }

@@ -51,7 +51,8 @@ impl Records<'_> {
         run: impl Fn(&J) -> Result<T> + Sync,
     ) -> Result<Vec<T>> {
         let title = format!("{}, {name}", self.part);
-        let unit = format!("locking-{}-{}", self.part, name.replace([',', ' '], ""));
+        let word = name.replace(|c: char| !c.is_alphanumeric(), "");
+        let unit = format!("locking-{}-{word}", self.part);
         let options = json!({ "effort": self.effort });
         let kept = self.store.current(&unit, &options);
         if let Some(runs) = kept.and_then(|s| serde_json::from_value(s.facts).ok()) {
