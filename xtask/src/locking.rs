@@ -1,16 +1,17 @@
 //! `locking`: how much stiffer than a smooth inextensible sheet a triangulated one is, by yardsticks with
 //! exact or published references.
 //!
-//! Every yardstick is kept in the output folder with what it found, so that an interrupted run continues
-//! where it stopped, and the page is written from what is there.
+//! The runs of every model and the findings of every yardstick are kept in the output folder, so that an
+//! interrupted report continues where it stopped, and the page is written from what is there.
 
 mod bisection;
 mod buckling;
 mod cantilever;
 mod clamped;
+mod compliance;
 mod course;
 mod cylinder;
-mod cylinder_fit;
+mod disk;
 mod drape;
 mod effort;
 mod elastica;
@@ -22,9 +23,11 @@ mod limit;
 mod meshes;
 mod page;
 mod plot;
+mod records;
 mod rim;
 mod sliding;
 mod table;
+mod targets;
 
 use crate::cli::LockingArgs;
 use crate::draw::Drawing;
@@ -34,6 +37,7 @@ use crate::{Outcome, interrupt, progress};
 use anyhow::Result;
 use effort::LockingEffort;
 use findings::Findings;
+use records::Records;
 use serde_json::json;
 use std::fmt;
 use std::str::FromStr;
@@ -49,6 +53,8 @@ pub(crate) enum Part {
     Cylinder,
     /// The drop of a heavy strip.
     Cantilever,
+    /// Elastic sheets against rods and against an inextensible strip.
+    Compliance,
     /// Iterations of the hanging sheet.
     Iterations,
     /// A disk on a round table.
@@ -61,11 +67,12 @@ pub(crate) enum Part {
 
 impl Part {
     /// All of them, in the order of the page.
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Clamped,
         Self::Everyday,
         Self::Cylinder,
         Self::Cantilever,
+        Self::Compliance,
         Self::Iterations,
         Self::Drape,
         Self::Buckling,
@@ -78,6 +85,7 @@ impl Part {
             Self::Everyday => "Everyday scenes",
             Self::Cylinder => "Bent to a cylinder",
             Self::Cantilever => "The heavy elastica",
+            Self::Compliance => "Error against compliance",
             Self::Iterations => "Iterations of the hanging sheet",
             Self::Drape => "A disk on a round table",
             Self::Buckling => "Lateral buckling",
@@ -92,6 +100,7 @@ impl Part {
             Self::Everyday => everyday::ABOUT,
             Self::Cylinder => cylinder::ABOUT,
             Self::Cantilever => cantilever::ABOUT,
+            Self::Compliance => compliance::ABOUT,
             Self::Iterations => iterations::ABOUT,
             Self::Drape => drape::ABOUT,
             Self::Buckling => buckling::ABOUT,
@@ -99,16 +108,17 @@ impl Part {
         }
     }
 
-    fn make(self, effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+    fn make(self, records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
         match self {
-            Self::Clamped => clamped::make(effort),
-            Self::Everyday => everyday::make(effort),
-            Self::Cylinder => cylinder::make(effort),
-            Self::Cantilever => cantilever::make(effort),
-            Self::Iterations => iterations::make(effort),
-            Self::Drape => drape::make(effort),
-            Self::Buckling => buckling::make(effort),
-            Self::Sliding => sliding::make(effort),
+            Self::Clamped => clamped::make(records),
+            Self::Everyday => everyday::make(records),
+            Self::Cylinder => cylinder::make(records),
+            Self::Cantilever => cantilever::make(records),
+            Self::Compliance => compliance::make(records),
+            Self::Iterations => iterations::make(records),
+            Self::Drape => drape::make(records),
+            Self::Buckling => buckling::make(records),
+            Self::Sliding => sliding::make(records),
         }
     }
 }
@@ -120,6 +130,7 @@ impl fmt::Display for Part {
             Self::Everyday => "everyday",
             Self::Cylinder => "cylinder",
             Self::Cantilever => "cantilever",
+            Self::Compliance => "compliance",
             Self::Iterations => "iterations",
             Self::Drape => "drape",
             Self::Buckling => "buckling",
@@ -166,7 +177,12 @@ pub(crate) fn run(args: &LockingArgs) -> Result<Outcome> {
             print(&serde_json::from_value(stamp.facts)?);
             continue;
         }
-        match part.make(effort) {
+        let records = Records {
+            store: &store,
+            part,
+            effort,
+        };
+        match part.make(&records) {
             Ok((found, drawing)) => {
                 keep(&store, part, effort, &found, drawing)?;
                 print(&found);

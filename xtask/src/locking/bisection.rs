@@ -1,6 +1,7 @@
 //! Bisection for the value from which on a scene behaves otherwise.
 
 use anyhow::Result;
+use serde::{Deserialize, Serialize};
 
 /// What a scene does at a value.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +15,7 @@ pub(super) enum Verdict {
 }
 
 /// Where the critical value lies.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Bracket {
     /// The largest value known to be below.
     pub(super) below: Option<f64>,
@@ -22,6 +23,15 @@ pub(super) struct Bracket {
     pub(super) above: Option<f64>,
     /// Why the bisection ended early; empty if it did not.
     pub(super) undecided: String,
+}
+
+impl Bracket {
+    /// The critical value: the geometric mean of both bounds. Nothing where a bound is missing or the
+    /// bisection ended early.
+    pub(super) fn middle(&self) -> Option<f64> {
+        let middle = (self.below? * self.above?).sqrt();
+        self.undecided.is_empty().then_some(middle)
+    }
 }
 
 /// Halves the interval of logarithms so many times, or until a scene is undecided. The ends of the interval
@@ -70,8 +80,9 @@ mod tests {
         assert!(below < 3.0 && above >= 3.0 && found.undecided.is_empty());
         // Ten halvings of a ratio of 16.
         assert!((above / below - 16.0_f64.powf(1.0 / 1024.0)).abs() < 1e-12);
+        assert!((found.middle().unwrap() - (below * above).sqrt()).abs() < 1e-15);
         let never = bisect([1.0, 16.0], 4, |_| Ok(Verdict::Below)).unwrap();
-        assert_eq!(never.above, None);
+        assert_eq!((never.above, never.middle()), (None, None));
         let lost = bisect([1.0, 16.0], 4, |_| Ok(Verdict::Undecided("lost".into())));
         assert_eq!(lost.unwrap().undecided, "at 4.000: lost");
     }

@@ -1,17 +1,20 @@
-//! Yardstick 7: lateral buckling of a strip that is clamped at one end and stands on edge.
+//! Lateral buckling of a strip that is clamped at one end and stands on edge.
 
-use super::bisection::{Verdict, bisect};
+use super::bisection::{Bracket, Verdict, bisect};
 use super::course::{Plan, Scene};
 use super::effort::LockingEffort;
 use super::findings::Findings;
-use super::isometry::Isometry;
+use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
+use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::records::Records;
 use super::table::Results;
-use crate::draw::Drawing;
-use crate::progress::Progress;
+use super::targets::{Target, at_most};
+use crate::draw::{Axis, Drawing};
 use anyhow::Result;
 use isosheet_dynamics::Method;
 use isosheet_mesh::Sheet;
+use serde::{Deserialize, Serialize};
 
 pub(super) const ABOUT: &str = "A strip of 0.30 m x 0.02 m and 80 g/m² is clamped at one end with its width upright; gravity acts in its plane, and one \
     thousandth of it across. Below a critical weight the strip stays upright, above it bends and twists sideways (a test of Romero et al., \
@@ -80,11 +83,17 @@ fn prandtl_michell() -> f64 {
 /// What the strip does under a load.
 fn verdict(isometry: Isometry, flat: &Sheet, load: f64, plan: &Plan) -> Result<Verdict> {
     let rigidity = DENSITY * GRAVITY * STRIP.free.powi(3) / load;
+    let clamp = STRIP.clamp(flat);
+    let material = Material {
+        mass: DENSITY * flat.area(),
+        rigidity: Some(rigidity),
+        clamped: &clamp,
+    };
     let model = isometry
-        .bending(flat, DENSITY * flat.area(), rigidity, &STRIP.clamp(flat))?
+        .model(flat, material)?
         .with_acceleration([0.0, -GRAVITY, -IMPERFECTION * GRAVITY])
         .with_damping(DAMPING)?
-        .with_pins(&STRIP.clamp(flat))?;
+        .with_pins(&clamp)?;
     let scene = Scene {
         model,
         start: flat.positions().to_vec(),
@@ -104,22 +113,71 @@ fn verdict(isometry: Isometry, flat: &Sheet, load: f64, plan: &Plan) -> Result<V
     })
 }
 
+/// A mesh: its pattern, the angle of its squares against the strip (degrees), squares across.
+type Mesh = (Pattern, f64, usize);
+
+/// Where a strip buckles.
+#[derive(Serialize, Deserialize)]
+struct Buckled {
+    isometry: Isometry,
+    mesh: Mesh,
+    vertices: usize,
+    /// Critical load `q L^3 / (D w)`.
+    found: Bracket,
+}
+
+/// Critical loads of the beams that bound the strip: its energy lies between theirs.
+fn bounds() -> [f64; 2] {
+    [2.0_f64, 4.0].map(|torsion| prandtl_michell() * torsion.sqrt())
+}
+
 /// Runs the yardstick.
-pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+    let effort = records.effort;
     let plan = Plan {
         step: STEP,
         duration: effort.pick(5.0, 20.0),
         rest_speed: Some(REST),
-        patience: effort.patience(0.3, 4.0),
+        patience: effort.patience(0.2, 6.0),
     };
-    let halvings = effort.pick(4, 8);
+    let halvings = effort.pick(3, 8);
     let sizes: &[usize] = effort.pick(&[2], &[2, 4]);
-    let mut meshes: Vec<(Pattern, f64)> = Pattern::ALL.map(|p| (p, 0.0)).to_vec();
+    let mut patterns: Vec<(Pattern, f64)> = Pattern::ALL.map(|p| (p, 0.0)).to_vec();
     if effort == LockingEffort::Full {
-        meshes.extend([(Pattern::UnionJack, 45.0), (Pattern::OneWay, 22.5)]);
+        patterns.extend([(Pattern::UnionJack, 45.0), (Pattern::OneWay, 22.5)]);
     }
-    let unit = prandtl_michell();
-    let bounds = [2.0_f64, 4.0].map(|torsion| unit * torsion.sqrt());
+    let meshes: Vec<Mesh> = sizes
+        .iter()
+        .rev()
+        .flat_map(|n| patterns.iter().map(|(p, d)| (*p, *d, *n)))
+        .collect();
+    let mut all = records.of_models(
+        |_| meshes.clone(),
+        |isometry, &(pattern, degrees, across)| {
+            let sheet = STRIP.mesh(pattern, across, degrees)?;
+            let found = bisect(LOADS, halvings, |load| {
+                verdict(isometry, &sheet, load, &plan)
+            })?;
+            Ok(Buckled {
+                isometry,
+                mesh: (pattern, degrees, across),
+                vertices: sheet.topology().vertex_count(),
+                found,
+            })
+        },
+    )?;
+    all.sort_by_key(|b| (b.isometry, b.mesh.0.number(), b.mesh.1 as usize, b.mesh.2));
+    Ok((
+        Findings {
+            tables: vec![table(&all, &plan, halvings)],
+            targets: Isometry::ALL.map(|m| target(m, &all)).to_vec(),
+            ..Findings::default()
+        },
+        Some(plot(&all, &patterns)),
+    ))
+}
+
+fn table(all: &[Buckled], plan: &Plan, halvings: usize) -> Results {
     let mut table = Results::new(
         "buckling",
         format!(
@@ -142,32 +200,101 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
             "not decided",
         ],
     );
-    let bar = Progress::start("lateral buckling", meshes.len() * sizes.len());
-    for isometry in Isometry::ALL {
-        for &(pattern, degrees) in &meshes {
-            for &across in sizes {
-                let sheet = STRIP.mesh(pattern, across, degrees)?;
-                let found = bisect(LOADS, halvings, |load| {
-                    verdict(isometry, &sheet, load, &plan)
-                })?;
-                table.push(vec![
-                    pattern.to_string().into(),
-                    degrees.into(),
-                    across.into(),
-                    sheet.topology().vertex_count().into(),
-                    isometry.to_string().into(),
-                    found.below.into(),
-                    found.above.into(),
-                    bounds[0].into(),
-                    bounds[1].into(),
-                    found.undecided.into(),
-                ]);
-                bar.step();
-            }
-        }
+    let bounds = bounds();
+    for b in all {
+        let (pattern, degrees, across) = b.mesh;
+        table.push(vec![
+            pattern.to_string().into(),
+            degrees.into(),
+            across.into(),
+            b.vertices.into(),
+            b.isometry.to_string().into(),
+            b.found.below.into(),
+            b.found.above.into(),
+            bounds[0].into(),
+            bounds[1].into(),
+            b.found.undecided.as_str().into(),
+        ]);
     }
-    bar.finish("measured");
-    Ok((Findings::table(table), None))
+    table
+}
+
+/// How far the critical load on the finest meshes is from the reference, relative: of an elastic strip the
+/// load of the plate, see [`ABOUT`]; of rods the nearest load between both bounds.
+fn target(isometry: Isometry, all: &[Buckled]) -> Target {
+    let [low, high] = bounds();
+    let reference = |load: f64| match isometry {
+        Isometry::Rods => load.clamp(low, high),
+        _ => low,
+    };
+    let finest = all.iter().map(|b| b.mesh.2).max();
+    let of = all
+        .iter()
+        .filter(|b| b.isometry == isometry && Some(b.mesh.2) == finest);
+    let errors: Vec<Option<f64>> = of
+        .map(|b| {
+            let load = b.found.middle()?;
+            Some((load / reference(load) - 1.0).abs())
+        })
+        .collect();
+    let quantity = "relative error of the critical load on the finest of every mesh";
+    at_most(isometry, quantity, 0.1, &errors)
+}
+
+/// The critical loads over the meshes, with the two bounds.
+fn plot(all: &[Buckled], patterns: &[(Pattern, f64)]) -> Drawing {
+    let sizes: Vec<usize> = {
+        let mut sizes: Vec<usize> = all.iter().map(|b| b.mesh.2).collect();
+        sizes.sort_unstable();
+        sizes.dedup();
+        sizes
+    };
+    let dots = all.iter().filter_map(|b| {
+        let (pattern, degrees, across) = b.mesh;
+        let place = patterns.iter().position(|p| *p == (pattern, degrees))? as f64;
+        let mesh = sizes.iter().position(|n| *n == across)?;
+        // Models and sizes beside one another.
+        let aside = 0.24 * (f64::from(b.isometry as u8) - 1.0) + 0.1 * (mesh as f64 - 0.5);
+        Some(Dot {
+            isometry: b.isometry,
+            mesh,
+            x: place + aside,
+            y: b.found.middle(),
+        })
+    });
+    let ticks = patterns.iter().enumerate();
+    let ticks = ticks.map(|(k, (p, d))| {
+        (
+            k as f64,
+            if *d == 0.0 {
+                p.to_string()
+            } else {
+                format!("{p} {d}°")
+            },
+        )
+    });
+    let ends = [-0.6, patterns.len() as f64 - 0.4];
+    let loads = vec![15.0, 20.0, 25.0, 30.0, 40.0, 60.0];
+    let loads = loads.into_iter().map(|l| (l, format!("{l}"))).collect();
+    Figure {
+        x: Scale::Linear(Axis::linear("mesh", ends, ticks.collect())),
+        rows: vec![(
+            Scale::ticks("critical load ~qL~^{3} / (~Dw~)", loads),
+            vec![Panel {
+                title: "Lateral buckling".into(),
+                dots: dots.collect(),
+                guides: bounds().map(|b| ends.map(|x| [x, b]).to_vec()).to_vec(),
+            }],
+        )],
+        meshes: sizes
+            .iter()
+            .map(|n| format!("{n} squares across"))
+            .collect(),
+        guide: "bounds of the load".into(),
+        joined: Joined::No,
+        size: [74.0 * patterns.len() as f64, 150.0],
+    }
+    .draw()
 }
 
 #[cfg(test)]

@@ -1,32 +1,34 @@
-//! Yardstick 4: the drop of a heavy strip against the exact elastica, on meshes turned against the strip.
+//! The drop of a heavy strip against the exact elastica, on meshes turned against the strip.
 
 use super::course::{Course, Plan, Scene};
 use super::cylinder::DIRECTIONS;
-use super::effort::LockingEffort;
 use super::elastica::Elastica;
 use super::findings::Findings;
-use super::isometry::Isometry;
+use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
-use super::plot::{order, panels, series};
+use super::plot::{Dot, Figure, Joined, Panel, Scale, order, slope};
+use super::records::Records;
 use super::table::{Results, number};
-use crate::draw::{Drawing, Series};
-use crate::progress::Progress;
+use super::targets::{Target, at_most};
+use crate::draw::Drawing;
 use anyhow::Result;
-use isosheet_dynamics::Method;
+use isosheet_dynamics::{Method, SheetModel};
+use isosheet_mesh::Sheet;
+use serde::{Deserialize, Serialize};
 
 pub(super) const ABOUT: &str = "A strip of 0.06 m width and 80 g/m² is clamped horizontally over 0.03 m and hangs free over 0.30 m: the heavy elastica. The \
     exact drop of the tip comes from its differential equation. The squares of the mesh are turned against the strip; an irregular mesh \
     has no direction, other angles are other seeds. Every mesh has vertices and edges along the line of the clamp, so that the clamp \
     itself does not lock. The drop is the mean over the vertices of the free edge.";
 
-const STRIP: Strip = Strip {
+pub(super) const STRIP: Strip = Strip {
     free: 0.3,
     clamped: 0.03,
     width: 0.06,
 };
 
 /// Mass per area, kg/m2, acceleration of gravity, m/s2, and rate of damping, 1/s.
-const DENSITY: f64 = 0.08;
+pub(super) const DENSITY: f64 = 0.08;
 const GRAVITY: f64 = 9.8;
 const DAMPING: f64 = 4.0;
 
@@ -34,12 +36,16 @@ const DAMPING: f64 = 4.0;
 const RIGIDITIES: [f64; 2] = [5e-3, 5e-4];
 
 /// Steps of implicit Euler, seconds: long ones, which damp all motion.
-const STEP: f64 = 0.05;
+pub(super) const STEP: f64 = 0.05;
 
 /// The sheet is at rest when no vertex is faster, metres per second.
-const REST: f64 = 5e-4;
+pub(super) const REST: f64 = 5e-4;
+
+/// Squares across at which the error is limited.
+const JUDGED: usize = 8;
 
 /// A strip at rest.
+#[derive(Serialize, Deserialize)]
 struct Hung {
     pattern: Pattern,
     across: usize,
@@ -61,25 +67,14 @@ impl Hung {
         plan: &Plan,
     ) -> Result<Self> {
         let sheet = STRIP.mesh(pattern, across, degrees)?;
-        let model = isometry
-            .bending(
-                &sheet,
-                DENSITY * sheet.area(),
-                rigidity,
-                &STRIP.clamp(&sheet),
-            )?
-            .with_acceleration([0.0, 0.0, -GRAVITY])
-            .with_damping(DAMPING)?
-            .with_pins(&STRIP.clamp(&sheet))?;
-        let scene = Scene {
-            model,
-            start: sheet.positions().to_vec(),
-            method: Method::ImplicitEuler(Default::default()),
-            contacts: None,
+        let clamp = STRIP.clamp(&sheet);
+        let material = Material {
+            mass: DENSITY * sheet.area(),
+            rigidity: Some(rigidity),
+            clamped: &clamp,
         };
-        let course = scene.run(plan)?;
-        let tip = STRIP.tip(&sheet);
-        let heights = tip.iter().map(|v| course.x[3 * v.index() + 2]);
+        let model = isometry.model(&sheet, material)?;
+        let course = scene(&sheet, model)?.run(plan)?;
         Ok(Self {
             pattern,
             across,
@@ -87,7 +82,7 @@ impl Hung {
             rigidity,
             vertices: sheet.topology().vertex_count(),
             isometry,
-            drop: 0.0 - heights.sum::<f64>() / tip.len() as f64,
+            drop: drop(&sheet, &course),
             exact,
             course,
         })
@@ -105,53 +100,74 @@ impl Hung {
 }
 
 /// Runs the yardstick.
-pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+    let effort = records.effort;
     let plan = Plan {
         step: STEP,
         duration: effort.pick(3.0, 10.0),
         rest_speed: Some(REST),
-        patience: effort.patience(0.4, 2.0),
+        patience: effort.patience(0.3, 4.0),
     };
     let sizes: &[usize] = effort.pick(&[2], &[2, 4, 8]);
     let directions: &[f64] = effort.pick(&[0.0, 22.5], &DIRECTIONS);
-    let exact = RIGIDITIES.map(|rigidity| {
-        let elastica = Elastica {
-            length: STRIP.free,
-            rigidity,
-            weight: DENSITY * GRAVITY,
-        };
-        (rigidity, elastica.drop())
-    });
-    let count = Isometry::ALL.len() * 2 * Pattern::ALL.len() * sizes.len() * directions.len();
-    let bar = Progress::start("cantilever", count);
-    let mut all = Vec::new();
-    for isometry in Isometry::ALL {
-        for of in exact {
-            for pattern in Pattern::ALL {
-                for &degrees in directions {
-                    for &across in sizes {
-                        let mesh = (pattern, degrees);
-                        all.push(Hung::measure(isometry, mesh, across, of, &plan)?);
-                        bar.step();
-                    }
-                }
+    let exact = RIGIDITIES.map(|rigidity| (rigidity, exact_drop(rigidity)));
+    let mut jobs = Vec::new();
+    for of in exact {
+        for pattern in Pattern::ALL {
+            for &degrees in directions {
+                jobs.extend(sizes.iter().map(|&across| ((pattern, degrees), across, of)));
             }
         }
     }
-    bar.finish("measured");
+    let all = records.of_models(
+        |_| jobs.clone(),
+        |isometry, (mesh, across, of)| Hung::measure(isometry, *mesh, *across, *of, &plan),
+    )?;
     let mut remarks: Vec<String> = exact
         .iter()
         .map(|(rigidity, drop)| format!("Exact drop at D = {rigidity:e} N m: {drop:.4} m."))
         .collect();
-    remarks.push(remark(&all));
+    remarks.extend(Isometry::ALL.map(|isometry| remark(isometry, &all)));
     Ok((
         Findings {
             remarks,
-            tables: vec![table(&all, &plan), orders(&all, directions)],
+            tables: vec![orders(&all, directions), table(&all, &plan)],
+            targets: Isometry::ALL.map(|m| target(m, &all)).to_vec(),
             files: Vec::new(),
         },
-        Some(plot(&all, directions)),
+        Some(plot(&all, directions, sizes)),
     ))
+}
+
+/// A strip of this yardstick with its clamp, weight and damping, from flat.
+pub(super) fn scene(sheet: &Sheet, model: SheetModel) -> Result<Scene> {
+    let model = model
+        .with_acceleration([0.0, 0.0, -GRAVITY])
+        .with_damping(DAMPING)?
+        .with_pins(&STRIP.clamp(sheet))?;
+    Ok(Scene {
+        model,
+        start: sheet.positions().to_vec(),
+        method: Method::ImplicitEuler(Default::default()),
+        contacts: None,
+    })
+}
+
+/// How far the free edge is below the clamp at the end, metres: the mean over its vertices.
+pub(super) fn drop(sheet: &Sheet, course: &Course) -> f64 {
+    let tip = STRIP.tip(sheet);
+    let heights = tip.iter().map(|v| course.x[3 * v.index() + 2]);
+    0.0 - heights.sum::<f64>() / tip.len() as f64
+}
+
+/// The exact drop of the tip, metres.
+pub(super) fn exact_drop(rigidity: f64) -> f64 {
+    Elastica {
+        length: STRIP.free,
+        rigidity,
+        weight: DENSITY * GRAVITY,
+    }
+    .drop()
 }
 
 fn table(all: &[Hung], plan: &Plan) -> Results {
@@ -250,38 +266,71 @@ fn orders(all: &[Hung], directions: &[f64]) -> Results {
     table
 }
 
-fn remark(all: &[Hung]) -> String {
-    let errors: Vec<f64> = all.iter().filter_map(Hung::error).collect();
+fn remark(isometry: Isometry, all: &[Hung]) -> String {
+    let of: Vec<&Hung> = all.iter().filter(|h| h.isometry == isometry).collect();
+    let errors: Vec<f64> = of.iter().filter_map(|h| h.error()).collect();
     if errors.is_empty() {
-        return "No strip reaches the end.".into();
+        return format!("{isometry}: no strip reaches the end.");
     }
     let low = errors.iter().copied().fold(f64::INFINITY, f64::min);
     let high = errors.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     format!(
-        "{} of {} strips reach the end, with errors of the drop from {} to {} %.",
+        "{isometry}: {} of {} strips reach the end, with errors of the drop from {} to {} %.",
         errors.len(),
-        all.len(),
+        of.len(),
         number(100.0 * low),
         number(100.0 * high)
     )
 }
 
-/// The error against the spacing for every direction, at the stiffness of paper.
-fn plot(all: &[Hung], directions: &[f64]) -> Drawing {
-    let [_, paper] = RIGIDITIES;
-    let first = points(all, Pattern::UnionJack, Isometry::Rods, paper, 0.0);
-    let panel = |pattern: Pattern| {
-        let line = |(k, &degrees): (usize, &f64)| {
-            let points = points(all, pattern, Isometry::Rods, paper, degrees);
-            series(k, &format!("{degrees}°"), points)
+fn target(isometry: Isometry, all: &[Hung]) -> Target {
+    let judged = all.iter();
+    let judged = judged.filter(|h| h.isometry == isometry && h.across == JUDGED);
+    let errors: Vec<Option<f64>> = judged.map(|h| Some(h.error()?.abs())).collect();
+    let quantity = "relative error of the drop, 8 squares across, every mesh, direction and D";
+    at_most(isometry, quantity, 0.02, &errors)
+}
+
+/// The error against the spacing, a panel for every direction and a row for every rigidity.
+fn plot(all: &[Hung], directions: &[f64], sizes: &[usize]) -> Drawing {
+    let rows = RIGIDITIES.map(|rigidity| {
+        let panel = |&degrees: &f64| {
+            let of = all.iter();
+            let of = of.filter(|h| h.rigidity == rigidity && h.degrees == degrees);
+            let dots: Vec<Dot> = of
+                .map(|h| Dot {
+                    isometry: h.isometry,
+                    mesh: h.pattern.number(),
+                    x: h.spacing(),
+                    y: h.error().map(f64::abs),
+                })
+                .collect();
+            Panel {
+                title: format!("mesh turned by {degrees}°"),
+                guides: vec![slope(&dots, 2.0)],
+                dots,
+            }
         };
-        let mut lines: Vec<Series> = directions.iter().enumerate().map(line).collect();
-        if let Some(&[h, e]) = first.first() {
-            lines.push(Series::guide("~h~", vec![[h, e], [h / 4.0, e / 4.0]]));
-        }
-        (format!("{pattern}: error of the drop"), lines)
+        let errors = all.iter().filter_map(Hung::error).map(f64::abs);
+        let label = format!("error of the drop, ~D~ = {rigidity} N m");
+        (
+            Scale::decades(&label, errors),
+            directions.iter().map(panel).collect(),
+        )
+    });
+    let tick = |&across: &usize| {
+        let h = STRIP.width / across as f64;
+        (h, format!("{}", 1e3 * h))
     };
-    panels("~h~, m", Pattern::ALL.map(panel).to_vec())
+    Figure {
+        x: Scale::ticks("~h~, mm", sizes.iter().map(tick).collect()),
+        rows: rows.to_vec(),
+        meshes: Pattern::ALL.map(|p| p.to_string()).to_vec(),
+        guide: "~h~^{2}".into(),
+        joined: Joined::Yes,
+        size: [96.0, 130.0],
+    }
+    .draw()
 }
 
 #[cfg(test)]

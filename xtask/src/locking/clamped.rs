@@ -1,18 +1,21 @@
-//! Yardstick 1: flat sheets that are clamped along lines of any direction.
+//! Flat sheets that are clamped along lines of any direction.
 
 use super::course::{Course, Plan, Scene};
 use super::effort::LockingEffort;
 use super::findings::Findings;
-use super::isometry::Isometry;
+use super::isometry::{Isometry, Material};
+use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::records::Records;
 use super::table::Results;
-use crate::draw::Drawing;
-use crate::progress::Progress;
+use super::targets::{Target, at_least, at_most};
+use crate::draw::{Axis, Drawing};
 use anyhow::Result;
 use isosheet_dynamics::Method;
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{Sheet, VertexId};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -37,7 +40,6 @@ const SEED: u64 = 20;
 /// A sheet of the family.
 #[derive(Debug)]
 pub(super) struct Clamped {
-    pub(super) kind: &'static str,
     pub(super) sheet: Sheet,
     pub(super) pins: Vec<VertexId>,
     /// Flexural rigidity, N m.
@@ -65,7 +67,6 @@ impl Clamped {
         along.truncate(sheet.topology().vertex_count().div_ceil(4));
         let rigidity = 10f64.powf(rng.random_range(-4.0..0.0));
         Ok(Self {
-            kind,
             sheet,
             pins: along,
             rigidity,
@@ -73,8 +74,13 @@ impl Clamped {
     }
 
     fn scene(&self, isometry: Isometry, method: Method) -> Result<Scene> {
+        let material = Material {
+            mass: MASS,
+            rigidity: Some(self.rigidity),
+            clamped: &self.pins,
+        };
         let model = isometry
-            .bending(&self.sheet, MASS, self.rigidity, &self.pins)?
+            .model(&self.sheet, material)?
             .with_gravity()
             .with_damping(DAMPING)?
             .with_pins(&self.pins)?;
@@ -104,28 +110,110 @@ fn random_sheet(kind: &str, rng: &mut ChaCha8Rng) -> Result<Sheet> {
     })
 }
 
-/// The methods of the table with the number of sheets that each is tried on.
-fn methods(effort: LockingEffort) -> Vec<(&'static str, Method, usize)> {
-    let mut methods = vec![("BDF2", Method::default(), effort.pick(15, 200))];
-    if effort == LockingEffort::Full {
-        methods.push((
-            "implicit Euler",
-            Method::ImplicitEuler(Default::default()),
-            25,
-        ));
-        methods.push(("projection", Method::Projection(Default::default()), 25));
+/// A method of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+enum By {
+    Bdf2,
+    ImplicitEuler,
+    Projection,
+}
+
+impl By {
+    const ALL: [Self; 3] = [Self::Bdf2, Self::ImplicitEuler, Self::Projection];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Bdf2 => "BDF2",
+            Self::ImplicitEuler => "implicit Euler",
+            Self::Projection => "projection",
+        }
     }
-    methods
+
+    fn method(self) -> Method {
+        match self {
+            Self::Bdf2 => Method::default(),
+            Self::ImplicitEuler => Method::ImplicitEuler(Default::default()),
+            Self::Projection => Method::Projection(Default::default()),
+        }
+    }
+
+    /// The number of sheets that a model is tried on.
+    fn sheets(self, isometry: Isometry, effort: LockingEffort) -> usize {
+        match self {
+            Self::Bdf2 => effort.pick(10, 200),
+            Self::ImplicitEuler => effort.pick(0, 25),
+            // The projection step is one onto the lengths of rods.
+            Self::Projection if isometry == Isometry::Rods => effort.pick(0, 25),
+            Self::Projection => 0,
+        }
+    }
+}
+
+/// A clamped sheet at the end of its run.
+#[derive(Serialize, Deserialize)]
+struct Fallen {
+    isometry: Isometry,
+    by: By,
+    /// The number in the family.
+    number: usize,
+    vertices: usize,
+    rigidity: f64,
+    course: Course,
+    /// How far the lowest vertex is below the clamp, metres.
+    drop: f64,
+}
+
+impl Fallen {
+    fn measure(isometry: Isometry, by: By, number: usize, plan: &Plan) -> Result<Self> {
+        let clamped = Clamped::new(number)?;
+        let course = clamped.scene(isometry, by.method())?.run(plan)?;
+        Ok(Self {
+            isometry,
+            by,
+            number,
+            vertices: clamped.sheet.topology().vertex_count(),
+            rigidity: clamped.rigidity,
+            drop: 0.0 - course.lowest(),
+            course,
+        })
+    }
+
+    fn kind(&self) -> usize {
+        self.number % KINDS.len()
+    }
 }
 
 /// Runs the yardstick.
-pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+    let effort = records.effort;
     let plan = Plan {
         step: 1.0 / 60.0,
         duration: effort.pick(0.5, 2.0),
         rest_speed: None,
-        patience: effort.patience(0.3, 3.0),
+        patience: effort.patience(0.3, 2.0),
     };
+    let jobs = |isometry| -> Vec<(By, usize)> {
+        let of = |by: By| (0..by.sheets(isometry, effort)).map(move |number| (by, number));
+        By::ALL.into_iter().flat_map(of).collect()
+    };
+    let all = records.of_models(jobs, |isometry, (by, number)| {
+        Fallen::measure(isometry, *by, *number, &plan)
+    })?;
+    Ok((
+        Findings {
+            tables: vec![summary(&all)],
+            files: vec![runs(&all, &plan)],
+            remarks: remarks(&all),
+            targets: Isometry::ALL
+                .iter()
+                .flat_map(|m| targets(*m, &all))
+                .collect(),
+        },
+        Some(plot(&all)),
+    ))
+}
+
+fn runs(all: &[Fallen], plan: &Plan) -> Results {
     let mut runs = Results::new(
         "clamped-runs",
         format!(
@@ -149,56 +237,38 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
             "message",
         ],
     );
-    let mut groups: BTreeMap<(&str, String, usize), Vec<Course>> = BTreeMap::new();
-    for isometry in Isometry::ALL {
-        for (method_name, method, count) in methods(effort) {
-            if isometry == Isometry::Elastic && matches!(method, Method::Projection(_)) {
-                // The projection step is one onto the lengths of rods.
-                continue;
-            }
-            let bar = Progress::start(format!("clamped, {method_name}"), count);
-            for number in 0..count {
-                let clamped = Clamped::new(number)?;
-                let course = clamped.scene(isometry, method.clone())?.run(&plan)?;
-                runs.push(vec![
-                    number.into(),
-                    clamped.kind.into(),
-                    clamped.sheet.topology().vertex_count().into(),
-                    isometry.to_string().into(),
-                    method_name.into(),
-                    clamped.rigidity.into(),
-                    course.ending.name().into(),
-                    course.t.into(),
-                    course.factorisations_per_step().into(),
-                    course.worst.into(),
-                    (0.0 - course.lowest()).into(),
-                    course.wall.into(),
-                    course.ending.message().into(),
-                ]);
-                let kind = number % KINDS.len();
-                let key = (method_name, isometry.to_string(), kind);
-                groups.entry(key).or_default().push(course);
-                bar.step();
-            }
-            bar.finish("measured");
-        }
+    for f in all {
+        runs.push(vec![
+            f.number.into(),
+            KINDS[f.kind()].into(),
+            f.vertices.into(),
+            f.isometry.to_string().into(),
+            f.by.name().into(),
+            f.rigidity.into(),
+            f.course.ending.name().into(),
+            f.course.t.into(),
+            f.course.factorisations_per_step().into(),
+            f.course.worst.into(),
+            f.drop.into(),
+            f.course.wall.into(),
+            f.course.ending.message().into(),
+        ]);
     }
-    let summary = summary(&groups);
-    let remarks = remarks(&groups);
-    Ok((
-        Findings {
-            tables: vec![summary],
-            files: vec![runs],
-            remarks,
-        },
-        None,
-    ))
+    runs
 }
 
-type Groups<'a> = BTreeMap<(&'a str, String, usize), Vec<Course>>;
+/// The sheets of a model and a method.
+fn of(all: &[Fallen], isometry: Isometry, by: By) -> Vec<&Fallen> {
+    let of = all.iter().filter(|f| f.isometry == isometry && f.by == by);
+    of.collect()
+}
 
-/// The sheets by method, model and kind.
-fn summary(groups: &Groups<'_>) -> Results {
+fn ended(fallen: &[&Fallen]) -> usize {
+    fallen.iter().filter(|f| f.course.ending.is_good()).count()
+}
+
+/// The sheets by model, method and kind.
+fn summary(all: &[Fallen]) -> Results {
     let mut table = Results::new(
         "clamped",
         "Clamped sheets by kind. Factorisations belong to the steps that were completed, the drop to the runs that reached their end",
@@ -217,37 +287,56 @@ fn summary(groups: &Groups<'_>) -> Results {
             "mean drop, m",
         ],
     );
-    for ((method, model, kind), courses) in groups {
-        let (good, bad): (Vec<&Course>, Vec<&Course>) =
-            courses.iter().partition(|c| c.ending.is_good());
-        let over = bad.iter().filter(|c| c.ending.name() == "wall time over");
+    let mut groups: BTreeMap<(Isometry, By, usize), Vec<&Fallen>> = BTreeMap::new();
+    for f in all {
+        groups
+            .entry((f.isometry, f.by, f.kind()))
+            .or_default()
+            .push(f);
+    }
+    for ((isometry, by, kind), group) in &groups {
+        let (good, bad): (Vec<&Fallen>, Vec<&Fallen>) =
+            group.iter().partition(|f| f.course.ending.is_good());
+        let over = bad
+            .iter()
+            .filter(|f| f.course.ending.name() == "wall time over");
         let over = over.count();
-        let steps: usize = courses.iter().map(|c| c.steps).sum();
-        let factorisations: usize = courses.iter().map(|c| c.factorisations).sum();
-        let drop: f64 = good.iter().map(|c| -c.lowest()).sum();
+        let drop: f64 = good.iter().map(|f| f.drop).sum();
         table.push(vec![
             KINDS[*kind].into(),
-            model.as_str().into(),
-            (*method).into(),
-            courses.len().into(),
+            isometry.to_string().into(),
+            by.name().into(),
+            group.len().into(),
             good.len().into(),
             over.into(),
             (bad.len() - over).into(),
             errors(&bad).into(),
-            median(bad.iter().map(|c| c.t).collect()).into(),
-            (factorisations as f64 / steps as f64).into(),
-            courses.iter().map(|c| c.worst).max().unwrap_or(0).into(),
+            median(bad.iter().map(|f| f.course.t).collect()).into(),
+            factorisations(group).into(),
+            group
+                .iter()
+                .map(|f| f.course.worst)
+                .max()
+                .unwrap_or(0)
+                .into(),
             (drop / good.len() as f64).into(),
         ]);
     }
     table
 }
 
+/// Mean number of factorisations in the steps that were completed; nothing where none was.
+fn factorisations(fallen: &[&Fallen]) -> Option<f64> {
+    let steps: usize = fallen.iter().map(|f| f.course.steps).sum();
+    let factorisations: usize = fallen.iter().map(|f| f.course.factorisations).sum();
+    (steps > 0).then(|| factorisations as f64 / steps as f64)
+}
+
 /// The kinds of errors with their numbers.
-fn errors(bad: &[&Course]) -> String {
+fn errors(bad: &[&Fallen]) -> String {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for course in bad.iter().filter(|c| !c.ending.message().is_empty()) {
-        *counts.entry(course.ending.name()).or_default() += 1;
+    for f in bad.iter().filter(|f| !f.course.ending.message().is_empty()) {
+        *counts.entry(f.course.ending.name()).or_default() += 1;
     }
     let texts: Vec<String> = counts.iter().map(|(k, n)| format!("{n} {k}")).collect();
     texts.join(", ")
@@ -263,19 +352,75 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
     0.5 * (values[(n - 1) / 2] + values[n / 2])
 }
 
-fn remarks(groups: &Groups<'_>) -> Vec<String> {
-    let mut totals: BTreeMap<(&str, &str), [usize; 2]> = BTreeMap::new();
-    for ((method, model, _), courses) in groups {
-        let total = totals.entry((*method, model.as_str())).or_default();
-        total[0] += courses.iter().filter(|c| c.ending.is_good()).count();
-        total[1] += courses.len();
+fn remarks(all: &[Fallen]) -> Vec<String> {
+    let mut remarks = Vec::new();
+    for isometry in Isometry::ALL {
+        for by in By::ALL {
+            let of = of(all, isometry, by);
+            if !of.is_empty() {
+                remarks.push(format!(
+                    "{isometry}, {}: {} of {} sheets reach the end.",
+                    by.name(),
+                    ended(&of),
+                    of.len()
+                ));
+            }
+        }
     }
-    totals
-        .iter()
-        .map(|((method, model), [good, all])| {
-            format!("{model}, {method}: {good} of {all} sheets reach the end.")
-        })
-        .collect()
+    remarks
+}
+
+fn targets(isometry: Isometry, all: &[Fallen]) -> Vec<Target> {
+    let of = of(all, isometry, By::Bdf2);
+    let share = ended(&of) as f64 / of.len() as f64;
+    vec![
+        at_least(
+            isometry,
+            "part of the sheets that reach the end, BDF2",
+            1.0,
+            &[Some(share)],
+        ),
+        at_most(
+            isometry,
+            "mean factorisations a step, BDF2",
+            20.0,
+            &[factorisations(&of)],
+        ),
+    ]
+}
+
+/// Factorisations a step of every sheet against its number of vertices, for the default method.
+fn plot(all: &[Fallen]) -> Drawing {
+    let panel = |kind: usize| Panel {
+        title: KINDS[kind].into(),
+        dots: all
+            .iter()
+            .filter(|f| f.by == By::Bdf2 && f.kind() == kind)
+            .map(|f| Dot {
+                isometry: f.isometry,
+                mesh: 0,
+                x: f.vertices as f64,
+                y: f.course
+                    .factorisations_per_step()
+                    .filter(|_| f.course.ending.is_good()),
+            })
+            .collect(),
+        guides: Vec::new(),
+    };
+    let costs = all.iter().filter(|f| f.course.ending.is_good());
+    let costs = costs.filter_map(|f| f.course.factorisations_per_step());
+    Figure {
+        x: Scale::Linear(Axis::round("vertices ~V~", [15.0, 135.0], 4)),
+        rows: vec![(
+            Scale::decades("factorisations a step", costs),
+            (0..KINDS.len()).map(panel).collect(),
+        )],
+        meshes: vec!["one sheet".into()],
+        guide: String::new(),
+        joined: Joined::No,
+        size: [96.0, 130.0],
+    }
+    .draw()
 }
 
 #[cfg(test)]
@@ -288,7 +433,6 @@ mod tests {
             let c = Clamped::new(number).unwrap();
             let count = c.sheet.topology().vertex_count();
             assert!(VERTICES.contains(&count), "{number}: {count}");
-            assert_eq!(c.kind, KINDS[number % 5]);
             assert_eq!(c.pins.len(), count.div_ceil(4));
             assert!((1e-4..1.0).contains(&c.rigidity));
             let again = Clamped::new(number).unwrap();

@@ -4,7 +4,10 @@ use super::limit::{GivenUp, Guard, unless_given_up};
 use crate::interrupt::Interrupted;
 use anyhow::Result;
 use isosheet_collide::Contacts;
-use isosheet_dynamics::{Method, RunEnd, SheetModel, Simulation, State, StepError, StepReport};
+use isosheet_dynamics::{
+    Method, Reaction, RunEnd, SheetModel, Simulation, State, StepError, StepReport,
+};
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -26,7 +29,7 @@ pub(super) struct Plan {
 pub(super) const QUIET: usize = 5;
 
 /// How a run ended.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Ending {
     /// The whole time was simulated.
     Complete,
@@ -64,11 +67,15 @@ impl Ending {
 }
 
 /// What happened in a run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Course {
     pub(super) ending: Ending,
-    /// Positions at the end, metres; the start where no step was taken.
+    /// Positions at the end, metres; the start where no step was taken. They are not kept in records.
+    #[serde(skip)]
     pub(super) x: Vec<f64>,
+    /// Forces of the supports in the last step of a run that reached its end; not kept in records either.
+    #[serde(skip)]
+    pub(super) reactions: Vec<Reaction>,
     /// Time at the end, seconds.
     pub(super) t: f64,
     /// Steps that were completed; the counts below belong to these.
@@ -92,6 +99,7 @@ impl Course {
         Self {
             ending: Ending::Complete,
             x: start.to_vec(),
+            reactions: Vec::new(),
             t: 0.0,
             steps: 0,
             iterations: 0,
@@ -197,6 +205,9 @@ impl Scene {
             Err(GivenUp::TimeOver) => Ending::WallTime,
             Err(GivenUp::Interrupted) => return Err(Interrupted),
         };
+        if course.ending.is_good() {
+            course.reactions = simulation.reactions();
+        }
         course.x.copy_from_slice(&simulation.state().x);
         course.t = simulation.state().t;
         course.wall = clock.elapsed().as_secs_f64();
@@ -231,14 +242,20 @@ fn refused(error: &impl std::error::Error, cause: &impl std::fmt::Debug) -> Endi
 
 #[cfg(test)]
 mod tests {
-    use super::super::isometry::Isometry;
+    use super::super::isometry::{Isometry, Material};
     use super::*;
     use isosheet_mesh::generate;
 
     fn falling() -> Scene {
         let sheet = generate::isotropic_square(1, 1.0).unwrap();
+        let material = Material {
+            mass: 0.1,
+            rigidity: None,
+            clamped: &[],
+        };
+        let model = Isometry::Rods.model(&sheet, material).unwrap();
         Scene {
-            model: Isometry::Rods.model(&sheet, 0.1).unwrap().with_gravity(),
+            model: model.with_gravity(),
             start: sheet.positions().to_vec(),
             method: Method::default(),
             contacts: None,

@@ -1,93 +1,54 @@
-//! Yardstick 6: a disk on a smaller round table, on several triangulations.
+//! A disk on a smaller round table, on several triangulations.
 
 use super::clamped::median;
 use super::course::{Course, Plan, Scene};
-use super::effort::LockingEffort;
+use super::disk::{DISK, Mesh};
 use super::findings::Findings;
-use super::isometry::Isometry;
+use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
+use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::records::Records;
 use super::rim::{Rim, analyse};
 use super::table::Results;
-use crate::draw::Drawing;
-use crate::progress::Progress;
+use super::targets::{Target, at_least, strain};
+use crate::draw::{Axis, Drawing};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
-use isosheet_dynamics::{ImplicitOptions, Method};
-use isosheet_mesh::generate::{self, Diagonals};
-use isosheet_mesh::{Sheet, VertexId};
+use isosheet_dynamics::{Gravity, ImplicitOptions, Method};
+use isosheet_mesh::Sheet;
 use nalgebra::Isometry3;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 pub(super) const ABOUT: &str = "A flat disk of paper (radius 0.5 m, 80 g/m², 5e-4 N m, damping 4/s) is let go on a round table of half its radius, \
-    with contact between disk and table, without and with friction. Nothing but the triangulation prefers a direction, so that for a smooth sheet \
-    all seeds and all meshes would give the same folds, turned. The seed turns the disk and perturbs the solver's first choice; of the irregular mesh it \
-    is the mesh as well. Folds are counted on the rim: rises of the height through the middle of its range.";
+    with contact between disk and table and of the disk with itself, without and with friction. Its weight is uneven by 1 %: by a smooth random function of the place on the disk, which the seed chooses, and which is the same on all meshes, so that \
+    folds need not have the symmetry of a mesh. The seed also turns the mesh and perturbs the solver's first choice; of the irregular mesh it \
+    is the mesh as well. For a smooth sheet all meshes would give the same folds. Folds are counted on the rim: rises of the height through the middle of its range.";
 
-/// Radius of the disk and of the table, height of the table, metres.
-const DISK: f64 = 0.5;
+/// Radius and height of the table, metres.
 const TABLE: [f64; 2] = [0.25, 0.1];
 
-/// Flexural rigidity, N m, mass per area, kg/m2, and rate of damping, 1/s.
-const RIGIDITY: f64 = 5e-4;
+/// Mass per area, kg/m2, and rate of damping, 1/s.
 const DENSITY: f64 = 0.08;
 const DAMPING: f64 = 4.0;
 
 const GRAVITY: f64 = 9.8;
 
+/// Largest part by which the weight is uneven, and the numbers of its waves around the centre.
+const UNEVEN: f64 = 0.01;
+const WAVES: std::ops::RangeInclusive<u32> = 2..=9;
+
 /// Part of the activation distance that the disk starts above the table: the gap at which a contact carries
 /// its own vertex.
 const START: f64 = 0.95;
 
-/// A triangulation of the disk.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Mesh {
-    Concentric,
-    Delaunay,
-    UnionJack,
-}
-
-impl Mesh {
-    const ALL: [Self; 3] = [Self::Concentric, Self::Delaunay, Self::UnionJack];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Concentric => "concentric",
-            Self::Delaunay => "Delaunay",
-            Self::UnionJack => "union jack",
-        }
-    }
-
-    /// The disk with rods about 1 / `rings` of its radius long, turned by an angle that the seed chooses.
-    fn disk(self, rings: usize, seed: u64) -> Result<Sheet> {
-        let sheet = match self {
-            Self::Concentric => generate::disk(rings, DISK)?,
-            Self::Delaunay => {
-                let sides = 6 * rings;
-                let corner = |k: usize| {
-                    let (s, c) = (TAU * k as f64 / sides as f64).sin_cos();
-                    [DISK * c, DISK * s]
-                };
-                let outline: Vec<[f64; 2]> = (0..sides).map(corner).collect();
-                generate::delaunay(&outline, TAU * DISK / sides as f64, seed)?
-            }
-            Self::UnionJack => {
-                let n = 2 * rings;
-                let grid = generate::grid(n, n, 2.0 * DISK, 2.0 * DISK, Diagonals::UnionJack)?;
-                let grid = grid.map_positions(|[x, y, z]| [x - DISK, y - DISK, z])?;
-                let t = grid.topology();
-                let is_inside = |v: &VertexId| {
-                    let [x, y, _] = grid.position(*v);
-                    x.hypot(y) < DISK + 1e-9
-                };
-                grid.keep_faces(|f| t.faces()[f.index()].iter().all(is_inside))?
-            }
-        };
-        // The golden angle: no two seeds are near one another.
-        let (s, c) = (2.399_963 * seed as f64).sin_cos();
-        Ok(sheet.map_positions(|[x, y, z]| [c * x - s * y, s * x + c * y, z])?)
-    }
-}
+/// Rings of the concentric mesh; the others have rods of about the same length.
+const RINGS: usize = 8;
 
 /// A drape.
+#[derive(Serialize, Deserialize)]
 struct Drape {
     mesh: Mesh,
     friction: f64,
@@ -111,11 +72,17 @@ impl Drape {
         plan: &Plan,
     ) -> Result<Self> {
         let sheet = mesh.disk(rings, seed)?;
+        let material = Material {
+            mass: DENSITY * sheet.area(),
+            rigidity: Some(PAPER_RIGIDITY),
+            clamped: &[],
+        };
         let model = isometry
-            .bending(&sheet, DENSITY * sheet.area(), RIGIDITY, &[])?
+            .model(&sheet, material)?
             .with_acceleration([0.0, 0.0, -GRAVITY])
             .with_damping(DAMPING)?;
         let weights = model.mass().row_sums(sheet.topology());
+        let model = model.with_potential(uneven(&sheet, &weights, seed));
         let options = ContactOptions::for_sheet(&model);
         let top = -START * options.activation;
         let shape = Shape::Cylinder {
@@ -129,7 +96,9 @@ impl Drape {
         } else {
             Coefficients::FRICTIONLESS
         };
-        let contacts = Contacts::new(&model, options)?.with_body(table, coefficients)?;
+        let contacts = Contacts::new(&model, options)?
+            .with_body(table, coefficients)?
+            .with_self_contact(coefficients)?;
         let scene = Scene {
             model,
             start: sheet.positions().to_vec(),
@@ -143,8 +112,8 @@ impl Drape {
         let total: f64 = weights.iter().sum();
         let places = || course.x.as_chunks::<3>().0.iter().zip(&weights);
         let centre = |k: usize| places().map(|(p, w)| w * p[k]).sum::<f64>() / total;
-        let energy =
-            total * GRAVITY * centre(2) + isometry.bending_energy(&sheet, RIGIDITY, &course.x)?;
+        let energy = total * GRAVITY * centre(2)
+            + isometry.bending_energy(&sheet, (PAPER_RIGIDITY, &[]), &course.x)?;
         Ok(Self {
             mesh,
             friction,
@@ -157,6 +126,39 @@ impl Drape {
             course,
         })
     }
+}
+
+impl Drape {
+    /// The number of folds at the end of a run that reached it with the disk on the table.
+    fn folds(&self) -> Option<usize> {
+        let is_on_table = self.aside < TABLE[0];
+        let is_good = self.course.ending.is_good() && is_on_table;
+        Some(self.rim.filter(|_| is_good)?.folds)
+    }
+}
+
+/// The weight that a disk has beside its even one: [`UNEVEN`] of it, times a sum of waves around the centre
+/// with random amplitudes and phases, `sum_k a_k (r / R)^2 cos(k (angle - phase_k))`. The function belongs to
+/// the place in space, not to the mesh.
+fn uneven(sheet: &Sheet, weights: &[f64], seed: u64) -> Gravity {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let waves: Vec<[f64; 3]> = WAVES
+        .map(|k| {
+            [
+                f64::from(k),
+                rng.random_range(-1.0..1.0),
+                rng.random_range(0.0..TAU),
+            ]
+        })
+        .collect();
+    let norm: f64 = waves.iter().map(|w| w[1].abs()).sum();
+    let places = sheet.positions().as_chunks::<3>().0.iter().zip(weights);
+    let weights = places.map(|([x, y, _], weight)| {
+        let (angle, square) = (y.atan2(*x), (x * x + y * y) / (DISK * DISK));
+        let wave = |[k, a, phase]: &[f64; 3]| a * (k * (angle - phase)).cos();
+        UNEVEN * weight * square * waves.iter().map(wave).sum::<f64>() / norm
+    });
+    Gravity::new(weights.collect(), [0.0, 0.0, -GRAVITY])
 }
 
 /// The rim at positions `x`, over the angle in the flat disk.
@@ -176,45 +178,112 @@ fn rim(sheet: &Sheet, x: &[f64]) -> Option<Rim> {
 }
 
 /// Runs the yardstick.
-pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+    let effort = records.effort;
     let plan = Plan {
         step: 1.0 / 60.0,
         duration: effort.pick(0.3, 10.0),
         rest_speed: Some(2e-3),
-        patience: effort.patience(0.8, 4.0),
+        patience: effort.patience(0.5, 9.0),
     };
-    let rings = effort.pick(3, 4);
+    let rings = effort.pick(3, RINGS);
     let meshes: &[Mesh] = effort.pick(&Mesh::ALL[..1], &Mesh::ALL);
     let frictions: &[f64] = effort.pick(&[0.3], &[0.0, 0.3]);
     let seeds = effort.pick(1, 10);
-    let count = Isometry::ALL.len() * meshes.len() * frictions.len() * seeds as usize;
-    let bar = Progress::start("drape", count);
-    let mut all = Vec::new();
-    for isometry in Isometry::ALL {
-        for &mesh in meshes {
-            for &friction in frictions {
-                for seed in 0..seeds {
-                    all.push(Drape::measure(
-                        isometry,
-                        (mesh, rings),
-                        friction,
-                        seed,
-                        &plan,
-                    )?);
-                    bar.step();
-                }
-            }
+    let mut jobs: Vec<(Mesh, f64, u64)> = Vec::new();
+    for &mesh in meshes {
+        for &friction in frictions {
+            jobs.extend((0..seeds).map(|seed| (mesh, friction, seed)));
         }
     }
-    bar.finish("measured");
+    let all = records.of_models(
+        |_| jobs.clone(),
+        |isometry, &(mesh, friction, seed)| {
+            Drape::measure(isometry, (mesh, rings), friction, seed, &plan)
+        },
+    )?;
+    let of = |isometry: &Isometry| {
+        let isometry = *isometry;
+        let all = &all;
+        frictions.iter().map(move |mu| target(isometry, all, *mu))
+    };
+    let strains = Isometry::ALL.map(|isometry| {
+        let of = all.iter().filter(|d| d.isometry == isometry);
+        strain(isometry, of.map(|d| &d.course))
+    });
     Ok((
         Findings {
             tables: vec![summary(&all, meshes, frictions, &plan)],
             files: vec![runs(&all)],
+            targets: Isometry::ALL.iter().flat_map(of).chain(strains).collect(),
             remarks: Vec::new(),
         },
-        None,
+        Some(plot(&all, meshes, frictions)),
     ))
+}
+
+/// The part of the seeds for which all meshes have the same number of folds.
+fn target(isometry: Isometry, all: &[Drape], friction: f64) -> Target {
+    let mut folds: BTreeMap<u64, Vec<Option<usize>>> = BTreeMap::new();
+    let of = all.iter().filter(|d| d.isometry == isometry);
+    for d in of.filter(|d| d.friction == friction) {
+        folds.entry(d.seed).or_default().push(d.folds());
+    }
+    let agree = |f: &&Vec<Option<usize>>| f.iter().all(|n| n.is_some() && *n == f[0]);
+    let share = folds.values().filter(agree).count() as f64 / folds.len() as f64;
+    let quantity = format!(
+        "part of the seeds with the same number of folds on all meshes, friction {friction}"
+    );
+    at_least(isometry, &quantity, 0.8, &[Some(share)])
+}
+
+/// Numbers of folds of every run, over the meshes.
+fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
+    let panel = |&friction: &f64| Panel {
+        title: format!("coefficient of friction {friction}"),
+        dots: all
+            .iter()
+            .filter(|d| d.friction == friction)
+            .filter_map(|d| {
+                let place = meshes.iter().position(|m| *m == d.mesh)? as f64;
+                // Models and seeds beside one another: numbers of folds are whole.
+                let aside =
+                    0.28 * (f64::from(d.isometry as u8) - 1.0) + 0.022 * (d.seed as f64 - 4.5);
+                Some(Dot {
+                    isometry: d.isometry,
+                    mesh: d.mesh as usize,
+                    x: place + aside,
+                    y: d.folds().map(|n| n as f64),
+                })
+            })
+            .collect(),
+        guides: Vec::new(),
+    };
+    let ticks = meshes
+        .iter()
+        .enumerate()
+        .map(|(k, m)| (k as f64, m.name().to_owned()));
+    let range = [-0.6, meshes.len() as f64 - 0.4];
+    let most = all
+        .iter()
+        .filter_map(Drape::folds)
+        .max()
+        .unwrap_or(0)
+        .max(6);
+    let folds = (0..=most).step_by(if most > 12 { 2 } else { 1 });
+    let folds = folds.map(|n| (n as f64, n.to_string())).collect();
+    Figure {
+        x: Scale::Linear(Axis::linear("mesh", range, ticks.collect())),
+        rows: vec![(
+            Scale::Linear(Axis::linear("folds", [0.0, most as f64 + 0.5], folds)),
+            frictions.iter().map(panel).collect(),
+        )],
+        meshes: Mesh::ALL.map(|m| m.name().to_owned()).to_vec(),
+        guide: String::new(),
+        joined: Joined::No,
+        size: [200.0, 150.0],
+    }
+    .draw()
 }
 
 fn runs(all: &[Drape]) -> Results {
@@ -235,6 +304,7 @@ fn runs(all: &[Drape]) -> Results {
             "its share",
             "rim, m",
             "energy, J",
+            "strain",
             "centre off by, m",
             "speed left, m/s",
             "message",
@@ -255,6 +325,7 @@ fn runs(all: &[Drape]) -> Results {
             d.rim.map(|r| r.share).into(),
             d.rim.map(|r| r.mean).into(),
             d.energy.into(),
+            d.course.strain.into(),
             d.aside.into(),
             d.course.speed.into(),
             d.course.ending.message().into(),
@@ -268,7 +339,7 @@ fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Re
         "drape",
         format!(
             "Disks on a round table: default method, steps of 1/60 s, {} s simulated, at most {} s of wall time. Numbers of folds with how often \
-             they occur, medians and ranges (largest minus smallest) are of the runs that reached their end",
+             they occur, of the disks that are still on the table, medians and ranges (largest minus smallest) are of the runs that reached their end",
             plan.duration,
             plan.patience.as_secs_f64()
         ),
@@ -328,9 +399,9 @@ fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Re
 
 /// Numbers of folds with how often they occur, such as "4 x 7, 5 x 3".
 fn folds(drapes: &[&Drape]) -> String {
-    let mut counts = std::collections::BTreeMap::<usize, usize>::new();
-    for rim in drapes.iter().filter_map(|d| d.rim) {
-        *counts.entry(rim.folds).or_default() += 1;
+    let mut counts = BTreeMap::<usize, usize>::new();
+    for folds in drapes.iter().filter_map(|d| d.folds()) {
+        *counts.entry(folds).or_default() += 1;
     }
     let texts: Vec<String> = counts.iter().map(|(k, n)| format!("{k} × {n}")).collect();
     texts.join(", ")
@@ -345,29 +416,35 @@ fn range(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use isosheet_dynamics::Potential;
 
     #[test]
-    fn disks_have_one_rim_about_the_centre() {
+    fn three_waves_of_the_rim_are_three_folds() {
         for mesh in Mesh::ALL {
-            for seed in 0..10 {
-                let sheet = mesh.disk(4, seed).unwrap();
-                let loops = sheet.topology().boundary_loops();
-                assert_eq!(loops.len(), 1);
-                for v in &loops[0] {
-                    let [x, y, _] = sheet.position(*v);
-                    assert!((0.3..0.501).contains(&x.hypot(y)));
-                }
-                let bumped: Vec<f64> = sheet
-                    .positions()
-                    .as_chunks::<3>()
-                    .0
-                    .iter()
-                    .flat_map(|[x, y, _]| [*x, *y, (3.0 * y.atan2(*x)).cos()])
-                    .collect();
-                assert_eq!(rim(&sheet, &bumped).unwrap().folds, 3);
-            }
+            let sheet = mesh.disk(4, 1).unwrap();
+            let points = sheet.positions().as_chunks::<3>().0.iter();
+            let bumped: Vec<f64> = points
+                .flat_map(|[x, y, _]| [*x, *y, (3.0 * y.atan2(*x)).cos()])
+                .collect();
+            assert_eq!(rim(&sheet, &bumped).unwrap().folds, 3);
         }
         assert_eq!(range(&[2.0, 5.0, 3.0]), 3.0);
         assert!(range(&[]).is_nan());
+    }
+
+    /// The uneven weight is a function of the place, the same on every mesh, within its bound.
+    #[test]
+    fn the_uneven_weight_does_not_depend_on_the_mesh() {
+        let unit = |mesh: Mesh| {
+            let sheet = mesh.disk(4, 0).unwrap();
+            let ones = vec![1.0; sheet.topology().vertex_count()];
+            let mut force = vec![0.0; sheet.positions().len()];
+            uneven(&sheet, &ones, 3).add_gradient(0.0, sheet.positions(), &mut force);
+            let at = super::super::meshes::nearest(&sheet, [DISK, 0.0]).index();
+            force[3 * at + 2] / GRAVITY
+        };
+        let concentric = unit(Mesh::Concentric);
+        assert!((concentric - unit(Mesh::UnionJack)).abs() < 1e-12);
+        assert!(concentric.abs() < UNEVEN && concentric != 0.0);
     }
 }

@@ -1,17 +1,20 @@
-//! Yardstick 2: single everyday scenes with paper.
+//! Single everyday scenes with paper.
 
-use super::course::{Plan, Scene};
+use super::course::{Course, Plan, Scene};
 use super::effort::LockingEffort;
 use super::findings::Findings;
-use super::isometry::Isometry;
+use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::vertices;
+use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::records::Records;
 use super::table::Results;
-use crate::draw::Drawing;
-use crate::progress::Progress;
+use super::targets::{at_least, strain};
+use crate::draw::{Axis, Drawing};
 use anyhow::Result;
 use isosheet_dynamics::{Method, PointProfile, Profile, SheetModel};
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{Sheet, VertexId};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 pub(super) const ABOUT: &str = "Paper of 80 g/m² with a flexural rigidity of 5e-4 N m, damping 2/s, in steps of 1/60 s by the default method. \
@@ -19,8 +22,7 @@ pub(super) const ABOUT: &str = "Paper of 80 g/m² with a flexural rigidity of 5e
     Roll: a sheet of 0.30 m x 0.20 m that starts as a roll of radius 0.05 m about mesh lines, one edge clamped, is let go. Banner: a square of 1 m, flat and \
     horizontal, is held at the two corners of one side and swings down. Opposite corners: the same square is held at two opposite corners at their distance in the flat state.";
 
-/// Flexural rigidity (N m) and mass per area (kg/m2) of office paper.
-const RIGIDITY: f64 = 5e-4;
+/// Mass per area of office paper, kg/m2.
 const DENSITY: f64 = 0.08;
 
 /// Rate of damping, 1/s.
@@ -33,7 +35,7 @@ const ROLL: f64 = 0.05;
 const PUSH: f64 = 0.1;
 
 /// A scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 enum Everyday {
     Pushed(usize),
     Roll(usize),
@@ -109,8 +111,13 @@ impl Everyday {
     }
 
     fn model(self, isometry: Isometry, sheet: &Sheet) -> Result<SheetModel> {
+        let material = Material {
+            mass: DENSITY * sheet.area(),
+            rigidity: Some(PAPER_RIGIDITY),
+            clamped: &self.clamp(sheet),
+        };
         let model = isometry
-            .bending(sheet, DENSITY * sheet.area(), RIGIDITY, &self.clamp(sheet))?
+            .model(sheet, material)?
             .with_gravity()
             .with_damping(DAMPING)?;
         Ok(match self {
@@ -172,14 +179,78 @@ fn rolled(sheet: &Sheet) -> Vec<f64> {
         .collect()
 }
 
+/// What happened in a scene.
+#[derive(Serialize, Deserialize)]
+struct Day {
+    isometry: Isometry,
+    scene: Everyday,
+    vertices: usize,
+    course: Course,
+    /// Heights of the lowest and the highest vertex at the end, metres.
+    heights: [f64; 2],
+    /// Energy of bending at the end, joules.
+    bending: f64,
+}
+
+impl Day {
+    fn measure(isometry: Isometry, scene: Everyday, plan: &Plan) -> Result<Self> {
+        let sheet = scene.sheet()?;
+        let course = Scene {
+            model: scene.model(isometry, &sheet)?,
+            start: scene.start(&sheet),
+            method: Method::default(),
+            contacts: None,
+        }
+        .run(plan)?;
+        let bending = (PAPER_RIGIDITY, scene.clamp(&sheet));
+        Ok(Self {
+            isometry,
+            scene,
+            vertices: sheet.topology().vertex_count(),
+            heights: [course.lowest(), course.highest()],
+            bending: isometry.bending_energy(&sheet, (bending.0, &bending.1), &course.x)?,
+            course,
+        })
+    }
+}
+
 /// Runs the yardstick.
-pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+    let effort = records.effort;
     let plan = Plan {
         step: 1.0 / 60.0,
         duration: effort.pick(0.5, 3.0),
         rest_speed: None,
-        patience: effort.patience(0.5, 8.0),
+        patience: effort.patience(0.3, 10.0),
     };
+    let scenes = Everyday::all(effort);
+    let all = records.of_models(
+        |_| scenes.clone(),
+        |isometry, scene| Day::measure(isometry, *scene, &plan),
+    )?;
+    let targets = |isometry: &Isometry| {
+        let isometry = *isometry;
+        let of: Vec<&Day> = all.iter().filter(|d| d.isometry == isometry).collect();
+        let ended = of.iter().filter(|d| d.course.ending.is_good()).count();
+        let share = Some(ended as f64 / of.len() as f64);
+        let quantity = "part of the scenes that run to their end";
+        [
+            at_least(isometry, quantity, 1.0, &[share]),
+            strain(isometry, of.iter().map(|d| &d.course)),
+        ]
+    };
+    let drawing = plot(&all, &scenes);
+    Ok((
+        Findings {
+            tables: vec![table(&all, &plan)],
+            targets: Isometry::ALL.iter().flat_map(targets).collect(),
+            ..Findings::default()
+        },
+        Some(drawing),
+    ))
+}
+
+fn table(all: &[Day], plan: &Plan) -> Results {
     let mut table = Results::new(
         "everyday",
         format!(
@@ -198,41 +269,83 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
             "lowest vertex, m",
             "highest vertex, m",
             "energy of bending, J",
+            "strain",
             "wall time, s",
             "message",
         ],
     );
-    let scenes = Everyday::all(effort);
-    let bar = Progress::start("everyday scenes", scenes.len());
-    for isometry in Isometry::ALL {
-        for everyday in &scenes {
-            let sheet = everyday.sheet()?;
-            let scene = Scene {
-                model: everyday.model(isometry, &sheet)?,
-                start: everyday.start(&sheet),
-                method: Method::default(),
-                contacts: None,
-            };
-            let course = scene.run(&plan)?;
-            table.push(vec![
-                everyday.to_string().into(),
-                sheet.topology().vertex_count().into(),
-                isometry.to_string().into(),
-                course.ending.name().into(),
-                course.t.into(),
-                course.factorisations_per_step().into(),
-                course.worst.into(),
-                course.lowest().into(),
-                course.highest().into(),
-                isometry.bending_energy(&sheet, RIGIDITY, &course.x)?.into(),
-                course.wall.into(),
-                course.ending.message().into(),
-            ]);
-            bar.step();
-        }
+    for d in all {
+        table.push(vec![
+            d.scene.to_string().into(),
+            d.vertices.into(),
+            d.isometry.to_string().into(),
+            d.course.ending.name().into(),
+            d.course.t.into(),
+            d.course.factorisations_per_step().into(),
+            d.course.worst.into(),
+            d.heights[0].into(),
+            d.heights[1].into(),
+            d.bending.into(),
+            d.course.strain.into(),
+            d.course.wall.into(),
+            d.course.ending.message().into(),
+        ]);
     }
-    bar.finish("measured");
-    Ok((Findings::table(table), None))
+    table
+}
+
+/// Factorisations a step of every scene.
+fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
+    let kinds = ["pushed together", "roll", "banner", "opposite corners"];
+    let kind = |scene: Everyday| match scene {
+        Everyday::Pushed(_) => 0,
+        Everyday::Roll(_) => 1,
+        Everyday::Banner(_) => 2,
+        Everyday::Corners(_) => 3,
+    };
+    let dots: Vec<Dot> = all
+        .iter()
+        .filter_map(|d| {
+            let cost = d
+                .course
+                .factorisations_per_step()
+                .filter(|_| d.course.ending.is_good());
+            Some(Dot {
+                isometry: d.isometry,
+                mesh: kind(d.scene),
+                x: scenes.iter().position(|s| *s == d.scene)? as f64,
+                y: cost,
+            })
+        })
+        .collect();
+    let ticks = scenes.iter().enumerate().map(|(k, scene)| {
+        let size = match scene {
+            Everyday::Pushed(n) | Everyday::Roll(n) => format!("{n}"),
+            Everyday::Banner(level) | Everyday::Corners(level) => format!("M^{{{level}}}"),
+        };
+        (k as f64, size)
+    });
+    let range = [-0.7, scenes.len() as f64 - 0.3];
+    let x = Axis::linear("squares across, or mesh", range, ticks.collect());
+    let cost = all
+        .iter()
+        .filter_map(|d| d.course.factorisations_per_step());
+    Figure {
+        x: Scale::Linear(x),
+        rows: vec![(
+            Scale::decades("factorisations a step", cost),
+            vec![Panel {
+                title: "Everyday scenes".into(),
+                dots,
+                guides: Vec::new(),
+            }],
+        )],
+        meshes: kinds.map(str::to_owned).to_vec(),
+        guide: String::new(),
+        joined: Joined::No,
+        size: [260.0, 150.0],
+    }
+    .draw()
 }
 
 #[cfg(test)]

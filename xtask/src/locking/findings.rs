@@ -1,6 +1,7 @@
 //! What a yardstick found.
 
 use super::table::Results;
+use super::targets::Target;
 use serde::{Deserialize, Serialize};
 
 /// What a yardstick found.
@@ -12,14 +13,6 @@ pub(super) struct Findings {
     pub(super) files: Vec<Results>,
     /// What the numbers say, one sentence or two each.
     pub(super) remarks: Vec<String>,
-}
-
-impl Findings {
-    /// One table of the page.
-    pub(super) fn table(table: Results) -> Self {
-        Self {
-            tables: vec![table],
-            ..Self::default()
-        }
-    }
+    /// What the models are required to reach here.
+    pub(super) targets: Vec<Target>,
 }

@@ -1,16 +1,18 @@
-//! Yardstick 5: what a step costs where the sheet has to find a pattern of folds.
+//! What a step costs where the sheet has to find a pattern of folds.
 
-use super::course::{Plan, Scene};
-use super::effort::LockingEffort;
+use super::course::{Course, Plan, Scene};
 use super::findings::Findings;
-use super::isometry::Isometry;
+use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::nearest;
+use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::records::Records;
 use super::table::Results;
+use super::targets::{Target, at_most, strain};
 use crate::draw::Drawing;
-use crate::progress::Progress;
 use anyhow::Result;
 use isosheet_dynamics::Method;
 use isosheet_mesh::{Sheet, VertexId, generate};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 pub(super) const ABOUT: &str = "A square of 1 m and 0.1 kg, flat but for a bump of 1 mm, hangs by a corner (the hanging sheet of the other reports), with \
@@ -22,7 +24,7 @@ const BUMP: f64 = 1e-3;
 
 /// Mass, kilograms, and the rigidities compared, N m.
 const MASS: f64 = 0.1;
-const RIGIDITIES: [f64; 2] = [0.0, 5e-4];
+const RIGIDITIES: [Option<f64>; 2] = [None, Some(PAPER_RIGIDITY)];
 
 /// The square M^level with its bump.
 fn bumped(level: u32) -> Result<Sheet> {
@@ -30,14 +32,71 @@ fn bumped(level: u32) -> Result<Sheet> {
     Ok(flat.map_positions(|[x, y, _]| [x, y, BUMP * (PI * x).sin() * (PI * y).sin()])?)
 }
 
+/// A hanging sheet.
+#[derive(Serialize, Deserialize)]
+struct Hanging {
+    isometry: Isometry,
+    level: u32,
+    vertices: usize,
+    rigidity: Option<f64>,
+    course: Course,
+}
+
+impl Hanging {
+    fn measure(isometry: Isometry, level: u32, rigidity: Option<f64>, plan: &Plan) -> Result<Self> {
+        let sheet = bumped(level)?;
+        let corner = nearest(&sheet, [0.0, 1.0]);
+        Ok(Self {
+            isometry,
+            level,
+            vertices: sheet.topology().vertex_count(),
+            rigidity,
+            course: scene(isometry, &sheet, corner, rigidity)?.run(plan)?,
+        })
+    }
+
+    /// Factorisations a step of a run that reached its end.
+    fn cost(&self) -> Option<f64> {
+        let cost = self.course.factorisations_per_step();
+        cost.filter(|_| self.course.ending.is_good())
+    }
+}
+
 /// Runs the yardstick.
-pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+    let effort = records.effort;
     let plan = Plan {
         step: 1.0 / 60.0,
         duration: effort.pick(0.25, 1.0),
         rest_speed: None,
-        patience: effort.patience(1.0, 15.0),
+        patience: effort.patience(0.5, 60.0),
     };
+    let levels: &[u32] = effort.pick(&[1, 2], &[2, 3, 4, 5]);
+    // The longest runs begin first, so that no core is left alone with one of them.
+    let jobs: Vec<(u32, Option<f64>)> = levels
+        .iter()
+        .rev()
+        .flat_map(|l| RIGIDITIES.map(|r| (*l, r)))
+        .collect();
+    let mut all = records.of_models(
+        |_| jobs.clone(),
+        |isometry, (level, rigidity)| Hanging::measure(isometry, *level, *rigidity, &plan),
+    )?;
+    all.sort_by_key(|h| (h.isometry, h.level));
+    Ok((
+        Findings {
+            tables: vec![table(&all, &plan)],
+            targets: Isometry::ALL
+                .iter()
+                .flat_map(|m| targets(*m, &all))
+                .collect(),
+            ..Findings::default()
+        },
+        Some(plot(&all, levels)),
+    ))
+}
+
+fn table(all: &[Hanging], plan: &Plan) -> Results {
     let mut table = Results::new(
         "iterations",
         format!(
@@ -61,44 +120,94 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
             "message",
         ],
     );
-    let levels = effort.pick(1..=2, 2..=5);
-    let bar = Progress::start("iterations", 2 * levels.clone().count());
-    for isometry in Isometry::ALL {
-        for level in levels.clone() {
-            for rigidity in RIGIDITIES {
-                let sheet = bumped(level)?;
-                let corner = nearest(&sheet, [0.0, 1.0]);
-                let course = scene(isometry, &sheet, corner, rigidity)?.run(&plan)?;
-                table.push(vec![
-                    format!("M^{level}").into(),
-                    sheet.topology().vertex_count().into(),
-                    rigidity.into(),
-                    isometry.to_string().into(),
-                    course.ending.name().into(),
-                    course.steps.into(),
-                    course.iterations_per_step().into(),
-                    course.factorisations_per_step().into(),
-                    course.worst.into(),
-                    (course.steps > 0)
-                        .then(|| course.wall / course.steps as f64)
-                        .into(),
-                    course.strain.into(),
-                    course.ending.message().into(),
-                ]);
-                bar.step();
-            }
-        }
+    for h in all {
+        let course = &h.course;
+        let per_step = (course.steps > 0).then(|| course.wall / course.steps as f64);
+        table.push(vec![
+            format!("M^{}", h.level).into(),
+            h.vertices.into(),
+            h.rigidity.unwrap_or(0.0).into(),
+            h.isometry.to_string().into(),
+            course.ending.name().into(),
+            course.steps.into(),
+            course.iterations_per_step().into(),
+            course.factorisations_per_step().into(),
+            course.worst.into(),
+            per_step.into(),
+            course.strain.into(),
+            course.ending.message().into(),
+        ]);
     }
-    bar.finish("measured");
-    Ok((Findings::table(table), None))
+    table
 }
 
-fn scene(isometry: Isometry, sheet: &Sheet, corner: VertexId, rigidity: f64) -> Result<Scene> {
-    let model = if rigidity > 0.0 {
-        isometry.bending(sheet, MASS, rigidity, &[])?
-    } else {
-        isometry.model(sheet, MASS)?
+fn targets(isometry: Isometry, all: &[Hanging]) -> Vec<Target> {
+    let mut targets = Vec::new();
+    for (level, bound) in [(4, 8.0), (5, 10.0)] {
+        for rigidity in RIGIDITIES {
+            let of = all.iter().filter(|h| h.isometry == isometry);
+            let of = of.filter(|h| h.level == level && h.rigidity == rigidity);
+            let costs: Vec<Option<f64>> = of.map(Hanging::cost).collect();
+            let quantity = format!("factorisations a step at M^{level}, {}", bending(rigidity));
+            targets.push(at_most(isometry, &quantity, bound, &costs));
+        }
+    }
+    let of = all.iter().filter(|h| h.isometry == isometry);
+    targets.push(strain(isometry, of.map(|h| &h.course)));
+    targets
+}
+
+fn bending(rigidity: Option<f64>) -> String {
+    rigidity.map_or_else(
+        || "no bending stiffness".to_owned(),
+        |d| format!("D = {d} N m"),
+    )
+}
+
+/// Factorisations a step against the number of vertices.
+fn plot(all: &[Hanging], levels: &[u32]) -> Drawing {
+    let panel = |rigidity: Option<f64>| Panel {
+        title: bending(rigidity),
+        dots: all
+            .iter()
+            .filter(|h| h.rigidity == rigidity)
+            .map(|h| Dot {
+                isometry: h.isometry,
+                mesh: 0,
+                x: f64::from(1_u32 << (h.level + 1)),
+                y: h.cost(),
+            })
+            .collect(),
+        guides: Vec::new(),
     };
+    let tick = |level: &u32| (f64::from(1_u32 << (level + 1)), format!("M^{{{level}}}"));
+    let costs = all.iter().filter_map(Hanging::cost);
+    Figure {
+        x: Scale::ticks("mesh", levels.iter().map(tick).collect()),
+        rows: vec![(
+            Scale::decades("factorisations a step", costs),
+            RIGIDITIES.map(panel).to_vec(),
+        )],
+        meshes: vec!["union jack".into()],
+        guide: String::new(),
+        joined: Joined::Yes,
+        size: [140.0, 140.0],
+    }
+    .draw()
+}
+
+fn scene(
+    isometry: Isometry,
+    sheet: &Sheet,
+    corner: VertexId,
+    rigidity: Option<f64>,
+) -> Result<Scene> {
+    let material = Material {
+        mass: MASS,
+        rigidity,
+        clamped: &[],
+    };
+    let model = isometry.model(sheet, material)?;
     Ok(Scene {
         model: model.with_gravity().with_pins(&[corner])?,
         start: sheet.positions().to_vec(),
@@ -121,7 +230,7 @@ mod tests {
             patience: std::time::Duration::from_secs(60),
         };
         let sheet = bumped(1).unwrap();
-        let scene = scene(Isometry::Rods, &sheet, VertexId(20), 5e-4).unwrap();
+        let scene = scene(Isometry::Rods, &sheet, VertexId(20), Some(5e-4)).unwrap();
         assert_eq!(scene.model.pins(), [VertexId(20)]);
         let course = scene.run(&plan).unwrap();
         assert!(course.ending.is_good() && course.steps == 6, "{course:?}");

@@ -4,11 +4,12 @@
 use anyhow::Result;
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{Sheet, VertexId};
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fmt;
 
 /// A kind of triangulation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Pattern {
     /// Squares with alternating diagonals: mesh lines in four directions, 45 degrees apart.
     UnionJack,
@@ -20,6 +21,11 @@ pub(super) enum Pattern {
 
 impl Pattern {
     pub(super) const ALL: [Self; 3] = [Self::UnionJack, Self::OneWay, Self::Delaunay];
+
+    /// The place in [`Pattern::ALL`], which is the number of the mesh in figures.
+    pub(super) fn number(self) -> usize {
+        self as usize
+    }
 
     /// A flat rectangle (corners `low` and `high`, metres) with squares of the side `cell`, whose sides are
     /// turned by `angle` (radians) against the x axis; an irregular mesh has edges of the same mean length.
@@ -93,7 +99,7 @@ const SNAP: f64 = 0.25;
 
 /// The mesh cut along the line of the given `x` (metres), parallel to y: it gets vertices on the line and
 /// edges along it; vertices within a quarter of the cell are moved onto the line first.
-fn with_line(sheet: &Sheet, x: f64, cell: f64) -> Result<Sheet> {
+pub(super) fn with_line(sheet: &Sheet, x: f64, cell: f64) -> Result<Sheet> {
     let mut flat = Flat::of(sheet);
     flat.split([x, 0.0], [1.0, 0.0], SNAP * cell);
     flat.sheet()

@@ -1,9 +1,10 @@
 //! Folds of a draped disk, counted on its rim.
 
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// A rim: heights over the angle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Rim {
     /// Number of folds: how often the height rises from its lower to its upper part once around.
     pub(super) folds: usize,

@@ -1,19 +1,21 @@
-//! Yardstick 8: the angle at which a sheet begins to slide down a plane.
+//! The angle at which a sheet begins to slide down a plane.
 
-use super::bisection::{Verdict, bisect};
+use super::bisection::{Bracket, Verdict, bisect};
 use super::course::{Plan, Scene};
-use super::effort::LockingEffort;
 use super::findings::Findings;
-use super::isometry::Isometry;
+use super::isometry::{Isometry, Material};
 use super::meshes::Pattern;
+use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::records::Records;
 use super::table::Results;
-use crate::draw::Drawing;
-use crate::progress::Progress;
+use super::targets::{Target, at_most};
+use crate::draw::{Axis, Drawing};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::Method;
 use isosheet_mesh::Sheet;
 use nalgebra::Isometry3;
+use serde::{Deserialize, Serialize};
 
 pub(super) const ABOUT: &str = "A flat square of 0.2 m lies on a plane that is tilted (gravity is turned) and begins to slide where the tangent of the angle is the \
     coefficient of friction, by Coulomb's law. The sheet slides if it is faster than twice the speed of creep that counts as rest after 1 s.";
@@ -39,9 +41,15 @@ fn slides(
     plan: &Plan,
 ) -> Result<Verdict> {
     let (s, c) = tangent.atan().sin_cos();
-    let model = isometry
-        .model(sheet, MASS)?
-        .with_acceleration([GRAVITY * s, 0.0, -GRAVITY * c]);
+    let material = Material {
+        mass: MASS,
+        rigidity: None,
+        clamped: &[],
+    };
+    let model =
+        isometry
+            .model(sheet, material)?
+            .with_acceleration([GRAVITY * s, 0.0, -GRAVITY * c]);
     let options = ContactOptions::for_sheet(&model);
     let pose = Isometry3::translation(0.0, 0.0, -START * options.activation);
     let plane = Obstacle::fixed(Shape::HalfSpace, pose)?;
@@ -62,8 +70,21 @@ fn slides(
     })
 }
 
+/// Where a sheet begins to slide.
+#[derive(Serialize, Deserialize)]
+struct Slide {
+    isometry: Isometry,
+    pattern: Pattern,
+    vertices: usize,
+    /// Coefficient of friction.
+    mu: f64,
+    /// Tangents of the critical tilt over the coefficient.
+    found: Bracket,
+}
+
 /// Runs the yardstick.
-pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+    let effort = records.effort;
     let plan = Plan {
         step: 1.0 / 60.0,
         duration: 1.0,
@@ -72,6 +93,38 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
     };
     let (halvings, cells) = effort.pick((4, 2), (9, 4));
     let coefficients: &[f64] = effort.pick(&[0.3], &[0.1, 0.3, 0.6]);
+    let jobs: Vec<(Pattern, f64)> = Pattern::ALL
+        .iter()
+        .flat_map(|p| coefficients.iter().map(|mu| (*p, *mu)))
+        .collect();
+    let all = records.of_models(
+        |_| jobs.clone(),
+        |isometry, &(pattern, mu)| {
+            let cell = SIDE / cells as f64;
+            let sheet = pattern.rectangle([0.0; 2], [SIDE; 2], cell, 0.0)?;
+            let found = bisect(TANGENTS, halvings, |part| {
+                slides(isometry, &sheet, mu, mu * part, &plan)
+            })?;
+            Ok(Slide {
+                isometry,
+                pattern,
+                vertices: sheet.topology().vertex_count(),
+                mu,
+                found,
+            })
+        },
+    )?;
+    Ok((
+        Findings {
+            tables: vec![table(&all, halvings)],
+            targets: Isometry::ALL.map(|m| target(m, &all)).to_vec(),
+            ..Findings::default()
+        },
+        Some(plot(&all, coefficients)),
+    ))
+}
+
+fn table(all: &[Slide], halvings: usize) -> Results {
     let mut table = Results::new(
         "sliding",
         format!(
@@ -87,30 +140,62 @@ pub(super) fn make(effort: LockingEffort) -> Result<(Findings, Option<Drawing>)>
             "not decided",
         ],
     );
-    let bar = Progress::start("sliding", Pattern::ALL.len() * coefficients.len());
-    for isometry in Isometry::ALL {
-        for pattern in Pattern::ALL {
-            let cell = SIDE / cells as f64;
-            let sheet = pattern.rectangle([0.0; 2], [SIDE; 2], cell, 0.0)?;
-            for &mu in coefficients {
-                let found = bisect(TANGENTS, halvings, |part| {
-                    slides(isometry, &sheet, mu, mu * part, &plan)
-                })?;
-                table.push(vec![
-                    pattern.to_string().into(),
-                    sheet.topology().vertex_count().into(),
-                    isometry.to_string().into(),
-                    mu.into(),
-                    found.below.into(),
-                    found.above.into(),
-                    found.undecided.into(),
-                ]);
-                bar.step();
-            }
-        }
+    for s in all {
+        table.push(vec![
+            s.pattern.to_string().into(),
+            s.vertices.into(),
+            s.isometry.to_string().into(),
+            s.mu.into(),
+            s.found.below.into(),
+            s.found.above.into(),
+            s.found.undecided.as_str().into(),
+        ]);
     }
-    bar.finish("measured");
-    Ok((Findings::table(table), None))
+    table
+}
+
+fn target(isometry: Isometry, all: &[Slide]) -> Target {
+    let of = all.iter().filter(|s| s.isometry == isometry);
+    let errors: Vec<Option<f64>> = of.map(|s| Some((s.found.middle()? - 1.0).abs())).collect();
+    let quantity = "relative error of the critical tangent, every mesh and coefficient";
+    at_most(isometry, quantity, 0.1, &errors)
+}
+
+/// The critical tangent over the coefficient of friction.
+fn plot(all: &[Slide], coefficients: &[f64]) -> Drawing {
+    let dots = all.iter().map(|s| Dot {
+        isometry: s.isometry,
+        mesh: s.pattern.number(),
+        // Beside one another: the values differ by less than a symbol.
+        x: s.mu
+            * 1.06_f64.powf(3.0 * f64::from(s.isometry as u8) + s.pattern.number() as f64 - 4.0),
+        y: s.found.middle(),
+    });
+    let ends = [
+        coefficients[0] / 1.4,
+        coefficients[coefficients.len() - 1] * 1.4,
+    ];
+    let ticks = coefficients.iter().map(|mu| (*mu, mu.to_string()));
+    Figure {
+        x: Scale::ticks("coefficient of friction ~μ~", ticks.collect()),
+        rows: vec![(
+            Scale::Linear(Axis::round(
+                "critical tangent of the tilt / ~μ~",
+                [0.98, 1.02],
+                4,
+            )),
+            vec![Panel {
+                title: "Beginning of sliding".into(),
+                dots: dots.collect(),
+                guides: vec![ends.map(|mu| [mu, 1.0]).to_vec()],
+            }],
+        )],
+        meshes: Pattern::ALL.map(|p| p.to_string()).to_vec(),
+        guide: "Coulomb's law".into(),
+        joined: Joined::No,
+        size: [220.0, 140.0],
+    }
+    .draw()
 }
 
 #[cfg(test)]

@@ -1,0 +1,363 @@
+//! How elastic sheets approach rigid rods, and the inextensible strip, as they become stiffer.
+
+use super::cantilever;
+use super::course::{Course, Plan, Scene};
+use super::findings::Findings;
+use super::isometry::{Material, PAPER, PAPER_RIGIDITY, elastic, rods};
+use super::meshes::Pattern;
+use super::plot::{Scale, TITLE, not_ended_line, order};
+use super::records::Records;
+use super::table::Results;
+use crate::draw::{Anchor, Drawing, Legend, Plot, Series, Stroke, TEXT, Vertical, palette, row};
+use anyhow::Result;
+use isosheet_dynamics::{ImplicitOptions, Method};
+use isosheet_mesh::{Sheet, VertexId, generate};
+use serde::{Deserialize, Serialize};
+
+pub(super) const ABOUT: &str = "Elastic sheets with the membrane stiffness E h from 1e3 to 1e7 N/m. Ladder: a narrow strip of two rows of vertices, pinned at one end, \
+    swings in gravity for 0.2 s from a tilted position; rods can move here, and are the limit: the error is the largest distance of a vertex from the \
+    same run with rods. Heavy elastica: the strip of that yardstick with D = 5e-4 N m, on meshes without rods that run; the error is the relative one of the \
+    drop of the tip against the exact inextensible strip. It is the sum of the mesh's own error, of the stretch, which is proportional to the compliance 1 / (E h), and of \
+    locking, which grows with the stiffness.";
+
+/// Membrane stiffnesses, newtons per metre.
+const STIFFNESSES: [f64; 9] = [1e3, 3e3, 1e4, 3e4, 1e5, 3e5, 1e6, 3e6, 1e7];
+
+/// Squares of the ladders, each 0.1 m long.
+const LADDERS: [usize; 3] = [3, 5, 8];
+
+/// Meshes of the elastica: pattern and angle, degrees.
+const MESHES: [(Pattern, f64); 3] = [
+    (Pattern::UnionJack, 45.0),
+    (Pattern::OneWay, 22.5),
+    (Pattern::Delaunay, 0.0),
+];
+
+/// Mass of the ladder (kilograms), length of a step and of the run (seconds).
+const MASS: f64 = 0.1;
+const STEP: f64 = 0.01;
+const DURATION: f64 = 0.2;
+
+/// Tolerance of the minimiser for the ladder: what it leaves must be below the error at the largest
+/// stiffness.
+const TOLERANCE: f64 = 1e-12;
+
+/// Distances below this are those of the tolerance, metres.
+const FLOOR: f64 = 1e-9;
+
+/// What moves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Problem {
+    /// A ladder of so many squares.
+    Ladder(usize),
+    /// The heavy elastica on the mesh of this number, with so many squares across.
+    Elastica { mesh: usize, across: usize },
+}
+
+impl Problem {
+    fn name(self) -> String {
+        match self {
+            Self::Ladder(squares) => format!("ladder of {squares} squares"),
+            Self::Elastica { mesh, across } => {
+                let (pattern, degrees) = MESHES[mesh];
+                format!("elastica, {pattern} {degrees}°, {across} squares across")
+            }
+        }
+    }
+
+    /// The error, and how the run ended.
+    fn measure(self, stiffness: f64, plan: &Plan) -> Result<Run> {
+        let (course, error) = match self {
+            Self::Ladder(squares) => ladder_error(squares, stiffness, plan)?,
+            Self::Elastica { mesh, across } => elastica_error(mesh, across, stiffness, plan)?,
+        };
+        Ok(Run {
+            problem: self,
+            stiffness,
+            error: error.filter(|_| course.ending.is_good()),
+            course,
+        })
+    }
+}
+
+/// A run with a stiffness.
+#[derive(Serialize, Deserialize)]
+struct Run {
+    problem: Problem,
+    stiffness: f64,
+    /// Metres for a ladder, relative for an elastica.
+    error: Option<f64>,
+    course: Course,
+}
+
+/// The ladder turned out of its plane about the pinned end, so that it bends.
+fn tilted(ladder: &Sheet) -> Vec<f64> {
+    let points = ladder.positions().as_chunks::<3>().0;
+    points
+        .iter()
+        .flat_map(|p| [p[0], 0.8 * p[1], 0.6 * p[1]])
+        .collect()
+}
+
+/// A run of a ladder with the stiffness, or with rods.
+fn ladder(sheet: &Sheet, stiffness: Option<f64>, plan: &Plan) -> Result<Course> {
+    let material = Material {
+        mass: MASS,
+        rigidity: None,
+        clamped: &[],
+    };
+    let model = match stiffness {
+        None => rods(sheet, material)?,
+        Some(stiffness) => elastic(sheet, material, (stiffness, PAPER.1))?,
+    };
+    let options = ImplicitOptions {
+        tolerance: TOLERANCE,
+        ..ImplicitOptions::default()
+    };
+    let scene = Scene {
+        model: model
+            .with_acceleration([0.0, -9.8, 0.0])
+            .with_pins(&[VertexId(0), VertexId(1)])?,
+        start: tilted(sheet),
+        method: Method::ImplicitEuler(options),
+        contacts: None,
+    };
+    Ok(scene.run(plan)?)
+}
+
+fn ladder_error(squares: usize, stiffness: f64, plan: &Plan) -> Result<(Course, Option<f64>)> {
+    let sheet = generate::ladder(squares, 0.1, 0.1)?;
+    let plan = Plan {
+        step: STEP,
+        duration: DURATION,
+        rest_speed: None,
+        ..*plan
+    };
+    let limit = ladder(&sheet, None, &plan)?;
+    let course = ladder(&sheet, Some(stiffness), &plan)?;
+    let pairs = course
+        .x
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .zip(limit.x.as_chunks::<3>().0);
+    let distance =
+        |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+    let largest = pairs.map(distance).fold(0.0, f64::max);
+    let error = limit.ending.is_good().then_some(largest);
+    Ok((course, error))
+}
+
+fn elastica_error(
+    mesh: usize,
+    across: usize,
+    stiffness: f64,
+    plan: &Plan,
+) -> Result<(Course, Option<f64>)> {
+    let (pattern, degrees) = MESHES[mesh];
+    let sheet = cantilever::STRIP.mesh(pattern, across, degrees)?;
+    let clamp = cantilever::STRIP.clamp(&sheet);
+    let material = Material {
+        mass: cantilever::DENSITY * sheet.area(),
+        rigidity: Some(PAPER_RIGIDITY),
+        clamped: &clamp,
+    };
+    let model = elastic(&sheet, material, (stiffness, PAPER.1))?;
+    let course = cantilever::scene(&sheet, model)?.run(plan)?;
+    let exact = cantilever::exact_drop(PAPER_RIGIDITY);
+    let error = (cantilever::drop(&sheet, &course) / exact - 1.0).abs();
+    Ok((course, Some(error)))
+}
+
+/// Runs the yardstick.
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+    let effort = records.effort;
+    let plan = Plan {
+        step: cantilever::STEP,
+        duration: 10.0,
+        rest_speed: Some(cantilever::REST),
+        patience: effort.patience(0.5, 5.0),
+    };
+    let stiffnesses: &[f64] = effort.pick(&[1e4, 1e6], &STIFFNESSES);
+    let sizes: &[usize] = effort.pick(&[2], &[2, 4, 8]);
+    let mut problems: Vec<Problem> = LADDERS.map(Problem::Ladder).to_vec();
+    for &across in sizes {
+        problems.extend((0..MESHES.len()).map(|mesh| Problem::Elastica { mesh, across }));
+    }
+    let jobs: Vec<(Problem, f64)> = problems
+        .iter()
+        .flat_map(|p| stiffnesses.iter().map(|k| (*p, *k)))
+        .collect();
+    let all = records.runs("elastic", &jobs, |(problem, stiffness)| {
+        problem.measure(*stiffness, &plan)
+    })?;
+    Ok((
+        Findings {
+            tables: vec![orders(&all, &problems)],
+            files: vec![table(&all)],
+            ..Findings::default()
+        },
+        Some(plot(&all, sizes)),
+    ))
+}
+
+/// Errors against the compliance, of the runs that ended.
+fn points(all: &[Run], problem: Problem) -> Vec<[f64; 2]> {
+    let of = all.iter().filter(|r| r.problem == problem);
+    of.filter_map(|r| Some([1.0 / r.stiffness, r.error?]))
+        .collect()
+}
+
+fn table(all: &[Run]) -> Results {
+    let mut table = Results::new(
+        "compliance-runs",
+        "Every run",
+        &[
+            "problem",
+            "E h, N/m",
+            "ending",
+            "factorisations per step",
+            "error",
+            "message",
+        ],
+    );
+    for r in all {
+        table.push(vec![
+            r.problem.name().into(),
+            r.stiffness.into(),
+            r.course.ending.name().into(),
+            r.course.factorisations_per_step().into(),
+            r.error.into(),
+            r.course.ending.message().into(),
+        ]);
+    }
+    table
+}
+
+fn orders(all: &[Run], problems: &[Problem]) -> Results {
+    let mut table = Results::new(
+        "compliance",
+        "Errors (metres for ladders, relative for the elastica) and their fitted power of the compliance: 1 where the stretch decides, 0 where the mesh \
+         does, negative where the sheet locks",
+        &[
+            "problem",
+            "runs",
+            "error at the softest",
+            "smallest error",
+            "error at the stiffest",
+            "power",
+        ],
+    );
+    for &problem in problems {
+        let points = points(all, problem);
+        let error = |p: &[f64; 2]| p[1];
+        let smallest = points.iter().map(error).reduce(f64::min);
+        table.push(vec![
+            problem.name().into(),
+            points.len().into(),
+            points.first().map(error).into(),
+            smallest.into(),
+            points.last().map(error).into(),
+            order(&points, FLOOR).into(),
+        ]);
+    }
+    table
+}
+
+/// The errors against the compliance: the ladders, and the elastica on meshes of every size.
+fn plot(all: &[Run], sizes: &[usize]) -> Drawing {
+    let is_ladder = |r: &&Run| matches!(r.problem, Problem::Ladder(_));
+    let ladder_errors = all.iter().filter(is_ladder).filter_map(|r| r.error);
+    let errors = all.iter().filter(|r| !is_ladder(r)).filter_map(|r| r.error);
+    let y = Scale::decades("relative error of the drop", errors);
+    let of = LADDERS.map(|n| (Problem::Ladder(n), format!("ladder, {n} squares")));
+    let mut drawings = vec![panel(
+        (all, &of, 0),
+        "Ladders",
+        Scale::decades("distance from rods, m", ladder_errors),
+        Legend::Right,
+    )];
+    for &across in sizes {
+        let of: Vec<(Problem, String)> = MESHES
+            .iter()
+            .enumerate()
+            .map(|(mesh, (p, d))| (Problem::Elastica { mesh, across }, format!("{p}, {d}°")))
+            .collect();
+        let legend = if Some(&across) == sizes.last() {
+            Legend::Right
+        } else {
+            Legend::None
+        };
+        let title = format!("Heavy elastica, {across} squares across");
+        drawings.push(panel((all, &of, 3), &title, y.clone(), legend));
+    }
+    row(&drawings, 16.0)
+}
+
+/// Some problems with their names, in the styles from the given number on. Guides: the first order for
+/// ladders, through the largest compliance.
+fn panel(
+    (all, problems, style): (&[Run], &[(Problem, String)], usize),
+    title: &str,
+    y: Scale,
+    legend: Legend,
+) -> Drawing {
+    let size = [120.0, 140.0];
+    let x = Scale::decades("compliance 1 / (~Eh~), m/N", [1e-7, 1e-3].into_iter());
+    let styled = |(k, (problem, name)): (usize, &(Problem, String))| {
+        Series::styled(style + k, name, points(all, *problem))
+    };
+    let mut series: Vec<Series> = problems.iter().enumerate().map(styled).collect();
+    let marks: Vec<(f64, Series)> = problems
+        .iter()
+        .zip(&series)
+        .flat_map(|((problem, _), series)| {
+            let of = all
+                .iter()
+                .filter(|r| r.problem == *problem && r.error.is_none());
+            of.map(|r| (size[0] * x.part(1.0 / r.stiffness), series.clone()))
+        })
+        .collect();
+    if let (Problem::Ladder(_), [a, .., b]) = (problems[0].0, series[0].points.as_slice()) {
+        let guide = vec![*a, [b[0], a[1] * b[0] / a[0]]];
+        series.push(Series::guide("1 / (~Eh~)", guide));
+    }
+    let mut drawing = Plot {
+        x: x.axis().clone(),
+        y: y.axis().clone(),
+        size,
+        series,
+        legend,
+    }
+    .draw();
+    let above = not_ended_line(&mut drawing, size);
+    let rim = Stroke::new(palette::WHITE, 0.4);
+    for (x, series) in marks {
+        if let Some(marker) = series.marker {
+            marker.draw(&mut drawing, [x, above], 1.8, series.colour, rim);
+        }
+    }
+    let (at, ink) = ([0.5 * size[0], size[1] + TITLE], palette::INK);
+    drawing.text(at, title, TEXT, Anchor::Middle, Vertical::Above, ink);
+    drawing
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ladders approach rods to first order in the compliance.
+    #[test]
+    fn ladders_approach_rods_to_first_order() {
+        let plan = Plan {
+            step: STEP,
+            duration: DURATION,
+            rest_speed: None,
+            patience: std::time::Duration::from_secs(60),
+        };
+        let run = |stiffness: f64| Problem::Ladder(3).measure(stiffness, &plan).unwrap();
+        let all = [1e4, 1e5, 1e6].map(run);
+        let power = order(&points(&all, Problem::Ladder(3)), FLOOR).unwrap();
+        assert!((power - 1.0).abs() < 0.05, "{power}");
+    }
+}

@@ -1,0 +1,159 @@
+//! Runs that are computed on all cores and kept in the output folder, so that an interrupted report
+//! continues where it stopped.
+
+use super::Part;
+use super::effort::LockingEffort;
+use super::isometry::Isometry;
+use crate::progress::{Progress, note};
+use crate::store::{Extent, Store};
+use anyhow::Result;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::json;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+/// The runs of one yardstick.
+pub(super) struct Records<'a> {
+    pub(super) store: &'a Store,
+    pub(super) part: Part,
+    pub(super) effort: LockingEffort,
+}
+
+impl Records<'_> {
+    /// The runs of all models, model by model in the order of [`Isometry::ALL`], each in the order of its
+    /// jobs. Those of a model are kept as soon as they are complete.
+    ///
+    /// # Errors
+    /// Those of [`Records::runs`].
+    pub(super) fn of_models<J: Sync, T: Serialize + DeserializeOwned + Send>(
+        &self,
+        jobs: impl Fn(Isometry) -> Vec<J>,
+        run: impl Fn(Isometry, &J) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        let mut all = Vec::new();
+        for isometry in Isometry::ALL {
+            let jobs = jobs(isometry);
+            all.extend(self.runs(&isometry.to_string(), &jobs, |job| run(isometry, job))?);
+        }
+        Ok(all)
+    }
+
+    /// Named runs in the order of their jobs: those kept by an earlier report, or new ones, which are kept.
+    ///
+    /// # Errors
+    /// The first error of a run, in the order of the jobs; those of the output folder.
+    pub(super) fn runs<J: Sync, T: Serialize + DeserializeOwned + Send>(
+        &self,
+        name: &str,
+        jobs: &[J],
+        run: impl Fn(&J) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        let title = format!("{}, {name}", self.part);
+        let word = name.replace(|c: char| !c.is_alphanumeric(), "");
+        let unit = format!("locking-{}-{word}", self.part);
+        let options = json!({ "effort": self.effort });
+        let kept = self.store.current(&unit, &options);
+        if let Some(runs) = kept.and_then(|s| serde_json::from_value(s.facts).ok()) {
+            note(&title, "kept");
+            return Ok(runs);
+        }
+        let bar = Progress::start(title, jobs.len());
+        let runs = each(jobs, |job| {
+            let result = run(job);
+            bar.step();
+            result
+        })?;
+        bar.finish("measured");
+        let facts = serde_json::to_value(&runs)?;
+        let draft = self.store.draft()?;
+        let extent = Extent::Complete;
+        self.store.commit(draft, &unit, &options, extent, facts)?;
+        Ok(runs)
+    }
+}
+
+/// The results of all jobs in their order, computed on as many threads as the machine has cores. After an
+/// error no further job begins.
+fn each<J: Sync, T: Send>(jobs: &[J], work: impl Fn(&J) -> Result<T> + Sync) -> Result<Vec<T>> {
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let next = AtomicUsize::new(0);
+    let results: Vec<Mutex<Option<Result<T>>>> = jobs.iter().map(|_| Mutex::new(None)).collect();
+    thread::scope(|scope| {
+        for _ in 0..threads.min(jobs.len()) {
+            scope.spawn(|| {
+                loop {
+                    let k = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(job) = jobs.get(k) else {
+                        break;
+                    };
+                    let result = work(job);
+                    if result.is_err() {
+                        next.store(jobs.len(), Ordering::Relaxed);
+                    }
+                    if let Ok(mut slot) = results[k].lock() {
+                        *slot = Some(result);
+                    }
+                }
+            });
+        }
+    });
+    // Only jobs after one that failed have no result.
+    let results = results.into_iter().filter_map(|r| r.into_inner().ok()?);
+    results.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_are_in_the_order_of_the_jobs() {
+        let jobs: Vec<u64> = (0..100).collect();
+        let squares = each(&jobs, |k| {
+            thread::sleep(std::time::Duration::from_micros(50 * (k % 7)));
+            Ok(k * k)
+        });
+        let known: Vec<u64> = (0..100).map(|k| k * k).collect();
+        assert_eq!(squares.unwrap(), known);
+        assert!(each(&[0_u64; 0], |k| Ok(*k)).unwrap().is_empty());
+    }
+
+    /// What an earlier report has computed is not computed again.
+    #[test]
+    fn runs_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(&folder.path().join("out")).unwrap();
+        let records = Records {
+            store: &store,
+            part: Part::Sliding,
+            effort: LockingEffort::Quick,
+        };
+        let count = AtomicUsize::new(0);
+        let run = || {
+            records.runs("a name", &[0.1, 0.2], |k| {
+                count.fetch_add(1, Ordering::Relaxed);
+                Ok(k / 3.0)
+            })
+        };
+        let (first, second) = (run().unwrap(), run().unwrap());
+        assert_eq!((&first, first.len()), (&second, 2));
+        assert_eq!(count.into_inner(), 2);
+        let other = records.runs("another", &[0.0], |_| Ok(7.0));
+        assert_eq!(other.unwrap(), [7.0]);
+    }
+
+    #[test]
+    fn the_first_error_is_returned_and_no_further_job_begins() {
+        let begun = AtomicUsize::new(0);
+        let jobs: Vec<usize> = (0..10_000).collect();
+        let result = each(&jobs, |k| {
+            begun.fetch_add(1, Ordering::Relaxed);
+            anyhow::ensure!(*k < 10, "job {k}");
+            Ok(*k)
+        });
+        assert!(result.unwrap_err().to_string().starts_with("job 1"));
+        assert!(begun.into_inner() < 10_000);
+    }
+}

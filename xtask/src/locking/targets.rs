@@ -1,0 +1,139 @@
+//! What a model of isometry is required to reach, and what was measured.
+
+use super::course::Course;
+use super::isometry::Isometry;
+use super::table::Results;
+use serde::{Deserialize, Serialize};
+
+/// On which side of its bound a measured number has to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Bound {
+    AtMost,
+    AtLeast,
+}
+
+/// A requirement, and what a model reaches.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Target {
+    pub(super) model: Isometry,
+    /// What is required, in words, without the bound.
+    pub(super) quantity: String,
+    pub(super) side: Bound,
+    pub(super) bound: f64,
+    /// The worst value measured; nothing where a run that it needs did not end.
+    pub(super) measured: Option<f64>,
+}
+
+impl Target {
+    /// Whether the requirement is met; a missing value does not meet it.
+    pub(super) fn is_met(&self) -> bool {
+        self.measured.is_some_and(|value| match self.side {
+            Bound::AtMost => value <= self.bound,
+            Bound::AtLeast => value >= self.bound,
+        })
+    }
+}
+
+/// A requirement that a value is at most `bound`, checked at the largest of all values; values of runs that
+/// did not end are missing, and no values at all are missing, too.
+pub(super) fn at_most(
+    model: Isometry,
+    quantity: &str,
+    bound: f64,
+    values: &[Option<f64>],
+) -> Target {
+    worst(model, quantity, (Bound::AtMost, bound), values, f64::max)
+}
+
+/// A requirement that a value is at least `bound`, checked at the smallest of all values.
+pub(super) fn at_least(
+    model: Isometry,
+    quantity: &str,
+    bound: f64,
+    values: &[Option<f64>],
+) -> Target {
+    worst(model, quantity, (Bound::AtLeast, bound), values, f64::min)
+}
+
+fn worst(
+    model: Isometry,
+    quantity: &str,
+    (side, bound): (Bound, f64),
+    values: &[Option<f64>],
+    select: fn(f64, f64) -> f64,
+) -> Target {
+    let finite = |v: &Option<f64>| v.filter(|v| v.is_finite());
+    let known: Option<Vec<f64>> = values.iter().map(finite).collect();
+    Target {
+        model,
+        quantity: quantity.to_owned(),
+        side,
+        bound,
+        measured: known.and_then(|values| values.into_iter().reduce(select)),
+    }
+}
+
+/// No edge is longer or shorter by more than 1 % at any time: what the error in length of a sheet that stands
+/// for paper may be at most. (Paper tears at a few per cent.) A model that meets other requirements by
+/// stretching fails this one.
+pub(super) fn strain<'a>(model: Isometry, courses: impl Iterator<Item = &'a Course>) -> Target {
+    let strains: Vec<Option<f64>> = courses.map(|c| Some(c.strain)).collect();
+    at_most(model, "largest strain of an edge", 0.01, &strains)
+}
+
+/// All requirements as a table.
+pub(super) fn table<'a>(targets: impl Iterator<Item = (&'a str, &'a Target)>) -> Results {
+    let mut table = Results::new(
+        "targets",
+        "Measured against target. A number is the worst of all runs that the requirement names; where it is missing, one of these runs did not end",
+        &[
+            "yardstick",
+            "quantity",
+            "model",
+            "required",
+            "bound",
+            "measured",
+            "met",
+        ],
+    );
+    for (yardstick, t) in targets {
+        table.push(vec![
+            yardstick.into(),
+            t.quantity.as_str().into(),
+            t.model.to_string().into(),
+            match t.side {
+                Bound::AtMost => "at most",
+                Bound::AtLeast => "at least",
+            }
+            .into(),
+            t.bound.into(),
+            t.measured.into(),
+            if t.is_met() { "yes" } else { "no" }.into(),
+        ]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_worst_value_decides_and_a_missing_one_fails() {
+        let model = Isometry::Rods;
+        let met = |values: &[Option<f64>]| {
+            let [most, least] = [at_most, at_least].map(|f| f(model, "q", 2.0, values));
+            (most.is_met(), least.is_met())
+        };
+        assert_eq!(met(&[Some(1.0), Some(2.0)]), (true, false));
+        assert_eq!(met(&[Some(2.0), Some(3.0)]), (false, true));
+        assert_eq!(met(&[Some(2.0), None]), (false, false));
+        assert_eq!(met(&[Some(2.0), Some(f64::NAN)]), (false, false));
+        assert_eq!(met(&[]), (false, false));
+        let worst = at_most(model, "q", 2.0, &[Some(1.0), Some(5.0)]);
+        assert_eq!(worst.measured, Some(5.0));
+        let text = table([("y", &worst)].into_iter()).csv();
+        assert!(text.ends_with("y,q,rods,at most,2,5,no\n"), "{text}");
+    }
+}
