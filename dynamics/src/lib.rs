@@ -74,6 +74,7 @@ mod feasibility;
 mod history;
 mod implicit;
 mod integrator;
+mod isometry_rows;
 mod iterate;
 mod layout;
 mod load;
@@ -103,6 +104,7 @@ mod subdivision;
 mod support;
 mod taut;
 mod unassigned;
+mod weak_isometry;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use constraint::VertexConstraint;
@@ -133,6 +135,7 @@ pub use simulation_error::SimulationError;
 pub use start::{leave_flat, project_positions};
 pub use state::State;
 pub use support::Support;
+pub use weak_isometry::{WeakIsometry, WeakIsometryError};
 
 pub use nalgebra;
 

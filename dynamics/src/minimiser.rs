@@ -149,7 +149,7 @@ impl Minimiser {
             restoration: Restoration::new(model),
             faces: Faces::of(model),
             balance: Balance::with_unassigned(model, ForceTime::End),
-            remembered: vec![0.0; model.rods().len()],
+            remembered: vec![0.0; model.isometry_rows().len()],
             prediction: vec![0.0; n],
             applied: vec![0.0; n],
             options,
@@ -236,7 +236,7 @@ impl Minimiser {
                 break;
             }
             if let Some(Ok(minimum)) = outcome {
-                let strain = problem.model.rods().max_strain(self.x());
+                let strain = problem.model.constrained_strain(self.x());
                 let residual = minimum.residual;
                 outcome = Some(Err(not_converged(problem, effort, residual, strain)));
             }
@@ -274,7 +274,7 @@ impl Minimiser {
                 }
                 let found = Sqp::new(self, problem, regularisation, effort).run();
                 let residual = found.ok_or_else(|| {
-                    let strain = problem.model.rods().max_strain(self.x());
+                    let strain = problem.model.constrained_strain(self.x());
                     not_converged(problem, effort, f64::INFINITY, strain)
                 })?;
                 let outcome = StepOutcome::Newton;
@@ -369,9 +369,10 @@ impl Minimiser {
         if let Some(terms) = lagrangian.iterate.terms(problem.contact()) {
             self.balance.add_contact(&terms);
         }
-        let x = lagrangian.iterate.x();
+        let (rows, x) = (model.isometry_rows(), lagrangian.iterate.x());
+        rows.densities_into(&lagrangian.multipliers, &mut lagrangian.transverse);
         self.balance
-            .add_rods(model, x, &lagrangian.multipliers, per);
+            .add_rods(model, x, &lagrangian.transverse, per);
         let rows = &lagrangian.vertex_rows;
         self.balance.add_constraints(rows, &rows.multipliers, per);
         self.balance.leave(model, x, &rows.active);

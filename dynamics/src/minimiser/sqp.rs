@@ -224,18 +224,18 @@ impl<'a, 'b> Sqp<'a, 'b> {
         for _ in 0..self.regularisation.passes() {
             lagrangian.set_gradient(self.problem);
             lagrangian.solve(model);
-            let rods = model.rods();
+            let rows = model.isometry_rows();
             let x = lagrangian.iterate.x();
-            rods.apply(x, &lagrangian.dx, &mut lagrangian.change);
+            rows.apply(x, &lagrangian.dx, &mut lagrangian.change);
             let [mut change, mut largest] = lagrangian.vertex_rows.update_after(&lagrangian.dx);
             let mut strain = 0.0_f64;
-            for (e, l) in rods.lengths().iter().enumerate() {
+            for e in 0..lagrangian.c.len() {
                 let left = lagrangian.c[e] - lagrangian.change[e];
                 let update = lagrangian.penalty(e) * left;
                 lagrangian.multipliers[e] += update;
                 largest = largest.max(lagrangian.multipliers[e].abs());
                 change = change.max(update.abs());
-                strain = strain.max(left.abs() / (l * l));
+                strain = strain.max(left.abs() / lagrangian.scales[e].unit);
             }
             if self.regularisation == Regularisation::Strong && strain > MAX_LINEARISED_STRAIN {
                 return None;
@@ -284,7 +284,7 @@ impl<'a, 'b> Sqp<'a, 'b> {
     /// exact enough.)
     fn is_near(&self) -> bool {
         let x = self.minimiser.lagrangian.iterate.x();
-        self.problem.has_contact() || self.problem.model.rods().max_strain(x) <= SMALL_STRAIN
+        self.problem.has_contact() || self.problem.model.constrained_strain(x) <= SMALL_STRAIN
     }
 
     /// Begins anew from a point that has converged but is no minimum: a saddle, where the sheet could fold
