@@ -74,7 +74,9 @@ impl PrimalMatrix {
             .iter_mut()
             .flatten()
             .for_each(|(b, _)| slots.resolve(b));
-        let rings = model.weak_rows().map(|rows| ring_blocks(model, rows, &vertex_slots, &pattern));
+        let rings = model
+            .weak_rows()
+            .map(|rows| ring_blocks(model, rows, &vertex_slots, &pattern));
         Ok(Self {
             rings,
             llt: SparseLlt::with_blocks(pattern, 3)?,
@@ -356,7 +358,11 @@ fn ring_blocks(
             return vertex_slots[a.index()].map(Block::Diagonal);
         }
         let start = block_start(pattern, i.max(j), i.min(j))?;
-        let rows = if i > j { BlockRows::First } else { BlockRows::Second };
+        let rows = if i > j {
+            BlockRows::First
+        } else {
+            BlockRows::Second
+        };
         Some(Block::Pair(start.map(|s| s as u32), rows))
     })
 }

@@ -4,6 +4,7 @@ use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
 use crate::contact::StepContact;
 use crate::iterate::Iterate;
+use crate::model::PINNED;
 use crate::primal::{PrimalMatrix, penalties};
 use crate::report::SolverEffort;
 use crate::unassigned::UnassignedMomentum;
@@ -288,7 +289,10 @@ impl Restoration {
 
     /// Largest strain or relative violation of a vertex constraint, those being evaluated.
     fn worst(&self, model: &SheetModel, x: &[f64]) -> f64 {
-        let strain = model.constrained_strain(x);
+        let strain = match model.weak_rows() {
+            Some(weak) => weak.largest_of(&self.c, |v| model.free_index()[v] != PINNED),
+            None => model.constrained_strain(x),
+        };
         if model.constraints().is_empty() {
             return strain;
         }

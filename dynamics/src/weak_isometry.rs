@@ -1,6 +1,7 @@
 //! Isometry in weak form: two equations for each vertex, and a soft membrane for what they leave free.
 
 mod blocks;
+mod columns;
 mod plane;
 mod rows;
 #[cfg(test)]

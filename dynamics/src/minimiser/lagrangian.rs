@@ -1,7 +1,6 @@
 //! The augmented Lagrangian of a step at an iterate: value, gradient and Hessian.
 
 use super::problem::StepProblem;
-use crate::{Isometry, SheetModel};
 use crate::constraint::rows::{HessianPart, VertexRows};
 use crate::contact::StepSpan;
 use crate::isometry_rows::RowScale;
@@ -9,6 +8,7 @@ use crate::iterate::Iterate;
 use crate::model::PINNED;
 use crate::primal::{PrimalMatrix, dot, penalties};
 use crate::report::SolverEffort;
+use crate::{Isometry, SheetModel};
 use isosheet_coords::linalg::LinalgError;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};

