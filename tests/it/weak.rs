@@ -340,6 +340,45 @@ fn charts_are_refused() {
     );
 }
 
+/// An upright strip of the height `l`, clamped at its foot, falls over by its own weight where `q l^3 / d` is above
+/// 7.837 (A. G. Greenhill, Proc. Cambridge Philos. Soc. 4, 1881), with `q` the weight per area and the rigidity `d`.
+#[test]
+fn upright_strips_buckle_at_the_load_of_greenhill() {
+    let (height, rigidity) = (0.3, 5e-4);
+    let flat = generate::grid(2, 10, 0.06, height, Diagonals::UnionJack).expect("valid");
+    let fallen = |load: f64, h: f64, slope: f64| {
+        let clamp = vertices(&flat, |[_, y, _]| y < 0.035);
+        let mass = load * rigidity / height.powi(3) / GRAVITY * flat.area();
+        let model = SheetModel::new(&flat, mass, MassKind::Lumped)
+            .expect("positive mass")
+            .with_acceleration([0.0, -GRAVITY, 0.0])
+            .with_damping(2.0)
+            .and_then(|m| m.with_pins(&clamp))
+            .expect("vertices")
+            .with_potential(PlateBending::clamped(&flat, rigidity, &clamp).expect("rigidity"))
+            .with_weak_isometry(WeakIsometry::of_plate(&flat, rigidity).expect("flat"))
+            .expect("the same sheet");
+        let mut x = flat.positions().to_vec();
+        for p in x.as_chunks_mut::<3>().0 {
+            p[2] = slope * (p[1] - 0.03).max(0.0).powi(2) / height;
+        }
+        project_positions(&model, &mut x, TOLERANCE).expect("near");
+        let method = Method::ImplicitEuler(ImplicitOptions::default());
+        let mut run = Simulation::new(model, State::at_rest(x), method).expect("starts");
+        advance(&mut run, 60, h);
+        let heights = run.state().x.as_chunks::<3>().0.iter().map(|p| p[2].abs());
+        heights.fold(0.0, f64::max)
+    };
+    // The part that is free is 0.9 of the height: 7.837 / 0.9^3 = 10.75.
+    let stable = fallen(9.5, 0.5, 1e-3);
+    assert!(stable < 1e-5, "{stable}");
+    let unstable = fallen(12.0, 0.5, 1e-3);
+    assert!(unstable > 0.05, "{unstable}");
+    // A strip that stands exactly upright has to be brought off the saddle of the incremental potential.
+    let exact = fallen(40.0, 0.5, 0.0);
+    assert!(exact > 0.05, "{exact}");
+}
+
 /// How far the free end of a heavy strip of length `l` (metres) hangs below its clamp, for the weight per area `q`
 /// (newtons per square metre) and the rigidity `d` (newton metres): `d theta'' = -q (l - s) cos theta`, `theta(0) = 0`,
 /// `theta'(l) = 0`, with the slope `theta` below the horizontal, by the classical Runge-Kutta method and bisection

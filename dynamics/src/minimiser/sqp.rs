@@ -309,9 +309,13 @@ impl<'a, 'b> Sqp<'a, 'b> {
     /// either way, or one with friction that belongs to other normal forces. Returns false if there is no
     /// reason to.
     fn goes_on(&mut self, direction: &Direction) -> bool {
-        let may_be_saddle = direction.hessian == Definiteness::Modified
-            && self.regularisation == Regularisation::Strong
-            && !self.is_perturbed;
+        // The strategy that comes first: others start off the saddle.
+        let comes_first = match self.problem.model.isometry() {
+            Isometry::Weak => !self.problem.has_contact(),
+            Isometry::Rods | Isometry::Elastic => self.regularisation == Regularisation::Strong,
+        };
+        let may_be_saddle =
+            direction.hessian == Definiteness::Modified && comes_first && !self.is_perturbed;
         let Minimiser {
             options,
             lagrangian,
