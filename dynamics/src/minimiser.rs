@@ -6,6 +6,8 @@ pub(crate) mod problem;
 mod sqp;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod weak_tests;
 
 use crate::ImplicitOptions;
 use crate::contact::{ContactState, ContactWork};

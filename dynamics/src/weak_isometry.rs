@@ -92,9 +92,11 @@ pub enum WeakIsometryError {
 ///
 /// # What is guaranteed
 /// Every accepted step has `|C_i| <= 1e-12` (or the tolerance that was asked for, or round-off where that is
-/// larger) at every vertex that is not pinned. The rank of the equations is the same in flat and in bent states:
-/// all of them are independent once vertices are pinned, and three depend on the others where none are (rigid
-/// motions of the rest plane).
+/// larger) at every vertex that is not pinned. The rank of the equations is the same in flat and in bent states: all
+/// of them are independent once two vertices are pinned. With a single pin one depends on the others, without pins
+/// three do (rigid motions of the rest plane). They can be met wherever pins go: they are the conditions of
+/// equilibrium of an elastic sheet in its plane, and pins that move apart stretch the sheet as they stretch its
+/// membrane.
 ///
 /// Not guaranteed are the lengths of single edges. [`StepReport::strain`](crate::StepReport::strain) tells by how
 /// much they stretch: some 1e-4 to 2e-3 where the mesh resolves the bends, several per cent in a sheet that

@@ -8,7 +8,7 @@ use isosheet_dynamics::chart::{ChartDynamicsError, ChartOptions};
 use isosheet_dynamics::constraint::{Plane, Side};
 use isosheet_dynamics::{
     Checkpoint, CheckpointError, CreaseSprings, ImplicitOptions, Membrane, Method, PlateBending,
-    PointProfile, Profile, SheetModel, Simulation, SimulationError, State, StepReport,
+    PointProfile, Profile, SheetModel, Simulation, SimulationError, State, StepReport, Support,
     VertexConstraint, WeakIsometry, project_positions,
 };
 use isosheet_mesh::generate::{self, Diagonals};
@@ -116,7 +116,7 @@ fn every_step_satisfies_the_equations() {
 #[test]
 fn hinges_bend_a_sheet_without_a_plate() {
     let sheet = generate::isotropic_square(1, 0.2).expect("valid");
-    let model = SheetModel::new(&sheet, 3e-3, MassKind::Lumped)
+    let model = SheetModel::new(&sheet, 3e-3, MassKind::Consistent)
         .expect("positive mass")
         .with_pins(&[VertexId(0), VertexId(1), VertexId(5)])
         .expect("vertices")
@@ -210,6 +210,75 @@ fn reactions_balance_the_change_of_momentum() {
         let left = (forces + weight - rate).norm();
         assert!(left < 1e-6 * weight.norm(), "{left}");
     }
+}
+
+/// Pins that move apart stretch a strip of the length `l` and the width `b` to `s l` as its membrane does: evenly, with
+/// the energy `k b l E^2 / 2` and the force `k b E s` for `E = (s^2 - 1) / 2`.
+#[test]
+fn pins_that_move_apart_stretch_a_strip_evenly() {
+    let (length, width, stiffness, stretch) = (0.3, 0.06, 40.0, 1.02);
+    let sheet = strip(0.4);
+    let sheet = sheet
+        .map_positions(|[x, y, z]| [(x + 0.03) * length / 0.33, y, z])
+        .expect("stretched");
+    let mut model = SheetModel::new(&sheet, 1.5e-3, MassKind::Consistent)
+        .expect("positive mass")
+        .with_damping(5.0)
+        .expect("rate")
+        .with_weak_isometry(WeakIsometry::new(&sheet, stiffness).expect("flat"))
+        .expect("the same sheet");
+    let (left, right) = (
+        vertices(&sheet, |[x, ..]| x < 1e-9),
+        vertices(&sheet, |[x, ..]| x > length - 1e-9),
+    );
+    for v in left.iter().chain(&right) {
+        let place = sheet.position(*v);
+        let end = if place[0] > 0.1 {
+            (stretch - 1.0) * length
+        } else {
+            0.0
+        };
+        let motion = PointProfile {
+            offset: place,
+            x: Profile::SmoothStep {
+                from: 0.0,
+                to: end,
+                begin: 0.0,
+                end: 1.0,
+            },
+            ..PointProfile::default()
+        };
+        model = model.with_moving_pin(*v, motion).expect("vertex");
+    }
+    let options = ImplicitOptions {
+        tolerance: 1e-12,
+        ..ImplicitOptions::default()
+    };
+    let mut run = start(model, &sheet, Method::ImplicitEuler(options));
+    let reports = advance(&mut run, 40, 0.1);
+    for (p, rest) in run
+        .state()
+        .x
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .zip(sheet.positions().as_chunks::<3>().0)
+    {
+        let exact = [stretch * rest[0], rest[1], 0.0];
+        let distance = (0..3).fold(0.0_f64, |m, k| m.max((p[k] - exact[k]).abs()));
+        assert!(distance < 1e-7, "{distance}");
+    }
+    let strain = 0.5 * (stretch * stretch - 1.0);
+    let energy = 0.5 * stiffness * width * length * strain * strain;
+    let last = reports.last().expect("steps");
+    assert!((last.potential / energy - 1.0).abs() < 1e-6);
+    let forces = run.reactions().into_iter().filter(|r| match r.support {
+        Support::Pin(v) => right.contains(&v),
+        Support::Constraint { .. } => false,
+    });
+    let force: f64 = forces.map(|r| r.force.x).sum();
+    let exact = stiffness * width * strain * stretch;
+    assert!((force / exact - 1.0).abs() < 1e-5, "{force} {exact}");
 }
 
 /// A quarter of the sheet clamped flat, along lines that are no lines of the mesh.
