@@ -3,10 +3,10 @@
 use crate::weak_isometry::WeakRows;
 use isosheet_mesh::LengthConstraints;
 
-/// The equations `W d(x) = 0` of a model, with the length errors `d_e = (|x_a - x_b|^2 - l_e^2) / 2` of the edges:
-/// `W` is the identity for rods, and the matrix of [`WeakIsometry`](crate::WeakIsometry) in weak form. Their
-/// Jacobian is `J = W G` with the rigidity matrix `G = dd/dx`. (An elastic sheet has the equations of rods with
-/// penalties of zero.)
+/// The equations `W d(x) = 0` of a model, with the length errors `d_e = (|x_a - x_b|^2 - l_e^2) / 2` of the
+/// edges: `W` is the identity for rods, and the matrix of [`WeakIsometry`](crate::WeakIsometry) in weak form.
+/// Their Jacobian is `J = W G` with the rigidity matrix `G = dd/dx`. (An elastic sheet has the equations of
+/// rods with penalties of zero.)
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum IsometryRows<'a> {
     /// One equation for each edge, square metres.
@@ -51,7 +51,8 @@ impl IsometryRows<'_> {
         }
     }
 
-    /// Force densities of the edges `W^T m`: the Hessian of `m . W d` is that of springs with these densities.
+    /// Force densities of the edges `W^T m`: the Hessian of `m . W d` is that of springs with these
+    /// densities.
     pub(crate) fn densities_into(&self, multipliers: &[f64], densities: &mut [f64]) {
         match self {
             Self::Rods(_) => densities.copy_from_slice(multipliers),

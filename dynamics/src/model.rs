@@ -80,8 +80,8 @@ pub enum Isometry {
     Rods,
     /// The elasticity of the material, a [`Membrane`](crate::Membrane): edges stretch.
     Elastic,
-    /// Two equations for each vertex and a soft membrane, a [`WeakIsometry`](crate::WeakIsometry): the strains
-    /// around each vertex vanish in the mean, and edges stretch a little.
+    /// Two equations for each vertex and a soft membrane, a [`WeakIsometry`](crate::WeakIsometry): the
+    /// strains around each vertex vanish in the mean, and edges stretch a little.
     Weak,
 }
 
@@ -206,8 +206,9 @@ impl SheetModel {
     }
 
     /// Replaces the rigid rods by an isometry in weak form: two equations for each vertex that is not pinned,
-    /// kept to the tolerance of a step, and a soft membrane. Sheets that rods would lock move, and stretch less
-    /// than with the membrane alone; single edges keep their lengths approximately (see [`WeakIsometry`]).
+    /// kept to the tolerance of a step, and a soft membrane. Sheets that rods would lock move, and stretch
+    /// less than with the membrane alone; single edges keep their lengths approximately (see
+    /// [`WeakIsometry`]).
     ///
     /// For BDF2 and implicit Euler; other methods and charts are refused. The sheet has to be flat at rest.
     ///
@@ -283,9 +284,10 @@ impl SheetModel {
         &self.rods
     }
 
-    /// Largest violation of the equations of isometry at positions `x` (`3V`, metres), which an accepted step keeps
-    /// below its tolerance: of rods the largest edge strain, in weak form the largest `|C_i|` of a vertex that is not
-    /// pinned ([`WeakIsometry`], a strain), zero for elastic sheets. Not a number if a position is not.
+    /// Largest violation of the equations of isometry at positions `x` (`3V`, metres), which an accepted step
+    /// keeps below its tolerance: of rods the largest edge strain, in weak form the largest `|C_i|` of a
+    /// vertex that is not pinned ([`WeakIsometry`], a strain), zero for elastic sheets. Not a number if a
+    /// position is not.
     ///
     /// # Panics
     /// If `x` is not of length `3V`.

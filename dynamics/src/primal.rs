@@ -154,8 +154,8 @@ impl PrimalMatrix {
         });
     }
 
-    /// Sets the values: `axial[e] = r_e`, `transverse[e] = p_e`. In weak form `axial` are the penalties of the
-    /// equations, whose `J^T r J` takes the place of the rods' `G^T r G`.
+    /// Sets the values: `axial[e] = r_e`, `transverse[e] = p_e`. In weak form `axial` are the penalties of
+    /// the equations, whose `J^T r J` takes the place of the rods' `G^T r G`.
     pub(crate) fn assemble(
         &mut self,
         model: &SheetModel,
@@ -327,8 +327,8 @@ impl HessianSink for Sink<'_> {
     }
 }
 
-/// Pairs of free vertices (in free numbers, larger first) that potentials and the equations of isometry couple
-/// beyond the mesh's edges.
+/// Pairs of free vertices (in free numbers, larger first) that potentials and the equations of isometry
+/// couple beyond the mesh's edges.
 fn wide_pairs(model: &SheetModel) -> Vec<[u32; 2]> {
     let free = model.free_index();
     let pairs = model.potentials().iter().flat_map(|p| p.couplings());
@@ -427,9 +427,9 @@ pub(crate) fn scatter(model: &SheetModel, packed: &[f64], full: &mut [f64]) {
     }
 }
 
-/// Penalty of each equation of isometry, `kappa` times the inverse of `J M^-1 J^T` at rest: scale free, so that
-/// slivers and heavy vertices are treated alike. For a rod `kappa m_e / l_e^2` with `m_e` the reduced mass of its
-/// free ends, kilograms per square metre; in weak form kilogram square metres.
+/// Penalty of each equation of isometry, `kappa` times the inverse of `J M^-1 J^T` at rest: scale free, so
+/// that slivers and heavy vertices are treated alike. For a rod `kappa m_e / l_e^2` with `m_e` the reduced
+/// mass of its free ends, kilograms per square metre; in weak form kilogram square metres.
 pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
     let rods = model.rods();
     let inverse = |v: usize| {
@@ -460,8 +460,8 @@ pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Smallest edge strain, or strain of the isometry in weak form, that round-off in the coordinates allows to ask
-/// for.
+/// Smallest edge strain, or strain of the isometry in weak form, that round-off in the coordinates allows to
+/// ask for.
 pub(crate) fn strain_floor(model: &SheetModel, state: &State) -> f64 {
     let size = norm_inf(&state.x);
     if let Some(weak) = model.weak_rows() {

@@ -65,8 +65,8 @@ pub struct StepReport {
     pub energy_drift: f64,
     /// Largest relative edge length error at the end.
     pub strain: f64,
-    /// Largest violation of the equations of isometry at the end, which the tolerance of the method bounds: the
-    /// edge strain of rods, zero for elastic sheets (see
+    /// Largest violation of the equations of isometry at the end, which the tolerance of the method bounds:
+    /// the edge strain of rods, zero for elastic sheets (see
     /// [`SheetModel::constrained_strain`](crate::SheetModel::constrained_strain)).
     pub constrained_strain: f64,
     /// Smallest gap to an obstacle or between parts of the sheet, metres; `None` without contact.

@@ -61,7 +61,8 @@ impl Simulation {
     ///
     /// # Errors
     /// [`SimulationError`] if the options or the state make no sense, or the state does not
-    /// have the rest lengths (in weak form: the strains zero that it constrains) to 1e-8 (see [`project_positions`](crate::project_positions)).
+    /// have the rest lengths (in weak form: the strains zero that it constrains) to 1e-8 (see
+    /// [`project_positions`](crate::project_positions)).
     pub fn new(
         model: SheetModel,
         mut state: State,

@@ -1,5 +1,5 @@
-//! Sheets that are isometric in weak form: tolerance, orders, balances, supports, contact, checkpoints, and the
-//! heavy elastica.
+//! Sheets that are isometric in weak form: tolerance, orders, balances, supports, contact, checkpoints, and
+//! the heavy elastica.
 
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_coords::FrontChart;
@@ -72,8 +72,8 @@ fn bits(x: &[f64]) -> Vec<u64> {
     x.iter().map(|x| x.to_bits()).collect()
 }
 
-/// Exactly flat at the start, hanging by a corner that moves, with a vertex on a plane and another that may not
-/// pass a plane.
+/// Exactly flat at the start, hanging by a corner that moves, with a vertex on a plane and another that may
+/// not pass a plane.
 #[test]
 fn every_step_satisfies_the_equations() {
     let sheet = generate::isotropic_square(2, 1.0).expect("valid");
@@ -144,7 +144,8 @@ fn swing(method: &Method, steps: usize) -> (Vec<f64>, f64) {
     (run.state().x.clone(), drift)
 }
 
-/// The error of the positions against a run with steps an eighth of the smallest, and the energy that is lost.
+/// The error of the positions against a run with steps an eighth of the smallest, and the energy that is
+/// lost.
 #[test]
 fn methods_keep_their_orders() {
     let options = ImplicitOptions {
@@ -175,8 +176,8 @@ fn methods_keep_their_orders() {
     }
 }
 
-/// Reactions, weight and the rate of change of the momentum add up to nothing, and the work of a pin that is lifted
-/// is the energy that the sheet gains and the method loses.
+/// Reactions, weight and the rate of change of the momentum add up to nothing, and the work of a pin that is
+/// lifted is the energy that the sheet gains and the method loses.
 #[test]
 fn reactions_balance_the_change_of_momentum() {
     let sheet = irregular(0.3);
@@ -212,8 +213,8 @@ fn reactions_balance_the_change_of_momentum() {
     }
 }
 
-/// Pins that move apart stretch a strip of the length `l` and the width `b` to `s l` as its membrane does: evenly, with
-/// the energy `k b l E^2 / 2` and the force `k b E s` for `E = (s^2 - 1) / 2`.
+/// Pins that move apart stretch a strip of the length `l` and the width `b` to `s l` as its membrane does:
+/// evenly, with the energy `k b l E^2 / 2` and the force `k b E s` for `E = (s^2 - 1) / 2`.
 #[test]
 fn pins_that_move_apart_stretch_a_strip_evenly() {
     let (length, width, stiffness, stretch) = (0.3, 0.06, 40.0, 1.02);
@@ -409,8 +410,9 @@ fn charts_are_refused() {
     );
 }
 
-/// An upright strip of the height `l`, clamped at its foot, falls over by its own weight where `q l^3 / d` is above
-/// 7.837 (A. G. Greenhill, Proc. Cambridge Philos. Soc. 4, 1881), with `q` the weight per area and the rigidity `d`.
+/// An upright strip of the height `l`, clamped at its foot, falls over by its own weight where `q l^3 / d` is
+/// above 7.837 (A. G. Greenhill, Proc. Cambridge Philos. Soc. 4, 1881), with `q` the weight per area and the
+/// rigidity `d`.
 #[test]
 fn upright_strips_buckle_at_the_load_of_greenhill() {
     let (height, rigidity) = (0.3, 5e-4);
@@ -448,10 +450,10 @@ fn upright_strips_buckle_at_the_load_of_greenhill() {
     assert!(exact > 0.05, "{exact}");
 }
 
-/// How far the free end of a heavy strip of length `l` (metres) hangs below its clamp, for the weight per area `q`
-/// (newtons per square metre) and the rigidity `d` (newton metres): `d theta'' = -q (l - s) cos theta`, `theta(0) = 0`,
-/// `theta'(l) = 0`, with the slope `theta` below the horizontal, by the classical Runge-Kutta method and bisection
-/// for the curvature at the clamp.
+/// How far the free end of a heavy strip of length `l` (metres) hangs below its clamp, for the weight per
+/// area `q` (newtons per square metre) and the rigidity `d` (newton metres):
+/// `d theta'' = -q (l - s) cos theta`, `theta(0) = 0`, `theta'(l) = 0`, with the slope `theta` below the
+/// horizontal, by the classical Runge-Kutta method and bisection for the curvature at the clamp.
 fn elastica(l: f64, q: f64, d: f64) -> f64 {
     const STEPS: usize = 2000;
     let h = l / STEPS as f64;
@@ -481,8 +483,9 @@ fn elastica(l: f64, q: f64, d: f64) -> f64 {
     shoot(low)[2]
 }
 
-/// A strip with eight squares across, clamped over its part up to x = 0. Its mesh lines are turned by up to `turn`
-/// (radians) in swirls along the strip: rotations that depend on the distance from a point alone keep areas.
+/// A strip with eight squares across, clamped over its part up to x = 0. Its mesh lines are turned by up to
+/// `turn` (radians) in swirls along the strip: rotations that depend on the distance from a point alone keep
+/// areas.
 fn strip(turn: f64) -> Sheet {
     let (width, radius) = (0.06, 0.03);
     let grid = generate::grid(44, 8, 0.33, width, Diagonals::UnionJack).expect("valid");

@@ -36,16 +36,16 @@ const POSITION_OPERATIONS: f64 = 64.0;
 /// ```
 ///
 /// with the multipliers `L_e` of the rods (`h^2` times force densities, tension positive) and penalties
-/// `r_e`. In weak form the equations of [`IsometryRows`](crate::isometry_rows::IsometryRows) take the place of
-/// those of the rods.
+/// `r_e`. In weak form the equations of [`IsometryRows`](crate::isometry_rows::IsometryRows) take the place
+/// of those of the rods.
 pub(crate) struct Lagrangian {
     pub(super) iterate: Iterate,
     pub(super) matrix: PrimalMatrix,
     pub(super) multipliers: Vec<f64>,
     pub(super) vertex_rows: VertexRows,
-    /// Penalties `r_e` of rods as stiff as the masses.
+    /// Penalties `r_e` of equations as stiff as the masses.
     unit_penalty: Vec<f64>,
-    /// Sizes of the equations of the rods.
+    /// Sizes of the equations.
     pub(super) scales: Vec<RowScale>,
     /// How many times as stiff as the masses rods are in the value.
     stiffness: f64,

@@ -55,8 +55,8 @@ const PART_IN_CONTACT: usize = 4;
 /// restorations goes from four per step to hardly any.
 const ITERATE_STRAIN: f64 = 1e-2;
 /// The same for sheets that are isometric in weak form, whose equations stay independent as far from their
-/// solutions: a hanging sheet of 2000 triangles needs 5.9 factorisations for each step of 1/60 s, and with 1e-2
-/// 6.6.
+/// solutions: a hanging sheet of 2000 triangles needs 5.9 factorisations for each step of 1/60 s, and with
+/// 1e-2 6.6.
 const WEAK_ITERATE_STRAIN: f64 = 1e-1;
 /// Largest number of iterations of a restoration of an iterate: more are a sign that the step is not a small
 /// one.
@@ -200,8 +200,9 @@ impl<'a, 'b> Sqp<'a, 'b> {
     }
 
     /// Starts at the positions at the start of the step or, where supports have moved on without contact, at
-    /// the prediction if its merit is lower. Without contact an isometry in weak form starts at the prediction:
-    /// its equations are independent there, too, and hanging sheets need two thirds of the factorisations.
+    /// the prediction if its merit is lower. Without contact an isometry in weak form starts at the
+    /// prediction: its equations are independent there, too, and hanging sheets need two thirds of the
+    /// factorisations.
     fn choose_start(&mut self) {
         let stiffness = self.minimiser.options.stiffness;
         let lagrangian = &mut self.minimiser.lagrangian;

@@ -122,8 +122,8 @@ fn gradient_and_hessian_are_derivatives_of_the_value() {
     }
 }
 
-/// While a pin is on its way the gradient has what the rest of the way will change it by, but for the share of the
-/// potentials: here next to nothing.
+/// While a pin is on its way the gradient has what the rest of the way will change it by, but for the share
+/// of the potentials: here next to nothing.
 #[test]
 fn the_gradient_knows_the_rest_of_the_motion_of_a_pin() {
     let left = |shift: f64| {

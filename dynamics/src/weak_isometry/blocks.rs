@@ -5,8 +5,8 @@ use crate::constraint::rows::point;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 
-/// Where the blocks of the matrix `J^T P J` of the equations in weak form are in a sparse matrix: for each ring the
-/// lower triangle of its vertices' blocks, row by row.
+/// Where the blocks of the matrix `J^T P J` of the equations in weak form are in a sparse matrix: for each
+/// ring the lower triangle of its vertices' blocks, row by row.
 #[derive(Debug)]
 pub(crate) struct RingBlocks {
     /// Where the blocks of each ring begin.

@@ -25,15 +25,10 @@ impl RestPlane {
         let faces = sheet.topology().faces();
         let area = |[a, b, c]: [VertexId; 3]| (at(b) - at(a)).cross(&(at(c) - at(a)));
         let sum: Vector3<f64> = faces.iter().map(|f| area(*f)).sum();
-        let longest = faces.iter().map(|f| area(*f)).fold(sum, |m, a| {
-            if a.norm_squared() > m.norm_squared() {
-                a
-            } else {
-                m
-            }
-        });
-        // (The normals of a sheet that is folded over may cancel: the largest face alone will do.)
-        let normal = longest.normalize();
+        // The normals of a sheet that is folded over may cancel: then that of a face will do, to tell which
+        // faces are turned over.
+        let areas = faces.iter().map(|f| area(*f));
+        let normal = areas.fold(sum, longer).normalize();
         let height = |v: VertexId| (at(v) - centre).dot(&normal).abs();
         let furthest = vertices().max_by(|a, b| height(*a).total_cmp(&height(*b)));
         let furthest = furthest.unwrap_or(VertexId(0));
@@ -61,6 +56,14 @@ impl RestPlane {
     /// The place of a vertex, metres.
     pub(super) fn at(&self, v: VertexId) -> Vector2<f64> {
         self.0[v.index()]
+    }
+}
+
+fn longer(a: Vector3<f64>, b: Vector3<f64>) -> Vector3<f64> {
+    if b.norm_squared() > a.norm_squared() {
+        b
+    } else {
+        a
     }
 }
 

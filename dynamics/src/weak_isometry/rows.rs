@@ -148,8 +148,8 @@ impl WeakRows {
         self.columns.product_into(rate, out);
     }
 
-    /// `W^T m`, one entry for each edge: `J^T m = G^T W^T m`, and the Hessian of `m . C` is that of springs with
-    /// these force densities.
+    /// `W^T m`, one entry for each edge: `J^T m = G^T W^T m`, and the Hessian of `m . C` is that of springs
+    /// with these force densities.
     pub(crate) fn densities_into(&self, multipliers: &[f64], out: &mut [f64]) {
         self.columns.transpose_product_into(multipliers, out);
     }
@@ -182,8 +182,8 @@ impl WeakRows {
         VertexId(worst.map_or(0, |(v, _)| v as u32))
     }
 
-    /// Of each equation the sums of `|W| l^2` and of `|W| l` (1/m) over the edges: round-off of coordinates of the
-    /// size `X` is `eps` times the first plus `X` times the second.
+    /// Of each equation the sums of `|W| l^2` and of `|W| l` (1/m) over the edges: round-off of coordinates
+    /// of the size `X` is `eps` times the first plus `X` times the second.
     pub(crate) fn scales(&self) -> Vec<[f64; 2]> {
         let scales = self.iter().flat_map(|ring| {
             let sum = |power: i32| {
@@ -202,8 +202,9 @@ impl WeakRows {
         self.largest_scale[0] + size * self.largest_scale[1]
     }
 
-    /// Of each equation the inverse of `J M^-1 J^T` at rest, the mean over the two of its vertex, kilograms square
-    /// metres: a penalty of this size is as stiff as the masses. Zero at pinned vertices (`inverse_mass` zero).
+    /// Of each equation the inverse of `J M^-1 J^T` at rest, the mean over the two of its vertex, kilograms
+    /// square metres: a penalty of this size is as stiff as the masses. Zero at pinned vertices
+    /// (`inverse_mass` zero).
     pub(crate) fn unit_penalties(&self, inverse_mass: impl Fn(VertexId) -> f64) -> Vec<f64> {
         let mut jacobian = Vec::new();
         let penalties = (0..self.vertex_count()).flat_map(|v| {

@@ -62,9 +62,9 @@ fn rank(j: &DMatrix<f64>) -> usize {
     values.iter().filter(|s| **s > 1e-8 * largest).count()
 }
 
-/// For any displacement `u` of the plane that is linear in each face `sum_i A_i / h_i u_i . C_i` is the virtual
-/// work `sum_T A_T E_T : grad u` of the strain `E_T = (F^T F - 1) / 2`, here by the deformation gradients `F` of
-/// the faces.
+/// For any displacement `u` of the plane that is linear in each face `sum_i A_i / h_i u_i . C_i` is the
+/// virtual work `sum_T A_T E_T : grad u` of the strain `E_T = (F^T F - 1) / 2`, here by the deformation
+/// gradients `F` of the faces.
 #[test]
 fn equations_are_the_virtual_work_of_greens_strain() {
     let sheet = irregular();
@@ -223,8 +223,8 @@ fn cylinder(p: Vector2<f64>) -> Vector3<f64> {
     (s * t + p.dot(&n) * n).push(1.0 - c)
 }
 
-/// In flat and in bent states 2 V equations of which 3 depend on the others; no motion within the plane but the
-/// rigid ones is left free.
+/// In flat and in bent states 2 V equations of which 3 depend on the others; no motion within the plane but
+/// the rigid ones is left free.
 #[test]
 fn the_rank_is_the_same_in_flat_and_in_bent_states() {
     let square = generate::isotropic_square(2, 1.0).unwrap();
@@ -246,8 +246,8 @@ fn the_rank_is_the_same_in_flat_and_in_bent_states() {
     }
 }
 
-/// Rods lose rank where a sheet is flat, one for each interior vertex; these equations do not. What depends on the
-/// others are the rotation about a single pin, and nothing once two vertices are pinned.
+/// Rods lose rank where a sheet is flat, one for each interior vertex; these equations do not. What depends
+/// on the others are the rotation about a single pin, and nothing once two vertices are pinned.
 #[test]
 fn equations_are_independent_once_two_vertices_are_pinned() {
     let sheet = generate::isotropic_square(1, 1.0).unwrap();
