@@ -47,9 +47,9 @@ const COMPARISON_SLACK: f64 = 10.0;
 ///
 /// Elastic sheets have no rods that programming would solve for, and are minimised by the last two strategies.
 /// The equations of an isometry in weak form are independent, which leaves nothing to strong regularisation
-/// (hanging sheets of 128 to 2048 faces need a fifth more factorisations with it, and four to nine times as
-/// many with the augmented Lagrangian alone): sheets that are isometric in weak form begin with the second
-/// strategy, without contact from the prediction, in contact as rods do.
+/// (hanging sheets of 128 to 2048 faces need up to a fifth more factorisations with it, and three to nine
+/// times as many with the augmented Lagrangian alone): sheets that are isometric in weak form begin with the
+/// second strategy, without contact from the prediction, in contact as rods do.
 ///
 /// Sheets with slivers, without contact, begin with the augmented Lagrangian from the prediction and its own
 /// multipliers, and are left to weakly regularised programming after that.
