@@ -235,6 +235,23 @@ impl Lagrangian {
         model.clear_pinned(&mut self.gradient);
     }
 
+    /// Adds what the penalties of the equations in weak form change the gradient by along the motions to come
+    /// of pins, to first order.
+    fn add_weak_drive(&mut self, model: &SheetModel) {
+        let (rows, x) = (model.isometry_rows(), self.iterate.x());
+        self.weighted.fill(0.0);
+        for v in model.moving_pins() {
+            for i in 3 * v..3 * v + 3 {
+                self.weighted[i] = self.end[i] - x[i];
+            }
+        }
+        rows.apply(x, &self.weighted, &mut self.change);
+        for (e, change) in self.change.iter_mut().enumerate() {
+            *change *= self.stiffness * self.unit_penalty[e];
+        }
+        rows.apply_transpose_add(x, &self.change, &mut self.transverse, &mut self.gradient);
+    }
+
     /// Adds the change of the gradient by the motions to come of bodies and pins, to first order.
     fn add_drive(&mut self, problem: &StepProblem<'_>) {
         let model = problem.model;
@@ -263,23 +280,6 @@ impl Lagrangian {
                 self.gradient[3 * end + k] -= change[k];
             }
         }
-    }
-
-    /// Adds what the penalties of the equations in weak form change the gradient by along the motions to come
-    /// of pins, to first order.
-    fn add_weak_drive(&mut self, model: &SheetModel) {
-        let (rows, x) = (model.isometry_rows(), self.iterate.x());
-        self.weighted.fill(0.0);
-        for v in model.moving_pins() {
-            for i in 3 * v..3 * v + 3 {
-                self.weighted[i] = self.end[i] - x[i];
-            }
-        }
-        rows.apply(x, &self.weighted, &mut self.change);
-        for (e, change) in self.change.iter_mut().enumerate() {
-            *change *= self.stiffness * self.unit_penalty[e];
-        }
-        rows.apply_transpose_add(x, &self.change, &mut self.transverse, &mut self.gradient);
     }
 
     /// Factorises the Hessian at the iterate; where it is indefinite, a positive definite part: the rods'
