@@ -111,7 +111,7 @@ pub(crate) struct SheetFingerprint {
     vertices: usize,
     edges: usize,
     connectivity: u64,
-    /// Rest lengths, and whether rods keep them.
+    /// Rest lengths, and what keeps them.
     lengths: u64,
     masses: u64,
     supports: u64,
@@ -131,12 +131,16 @@ impl SheetFingerprint {
         let edge_mass = mass.edge.iter().flatten();
         let pins = model.pins().into_iter().map(|v| u64::from(v.0));
         let constrained = model.constraints().iter().map(|c| u64::from(c.vertex().0));
-        let elastic = (model.isometry() == Isometry::Elastic).then_some(u64::MAX);
+        let isometry = match model.isometry() {
+            Isometry::Rods => None,
+            Isometry::Elastic => Some(u64::MAX),
+            Isometry::Weak => Some(u64::MAX - 1),
+        };
         Self {
             vertices: model.topology().vertex_count(),
             edges: rods.len(),
             connectivity: sum(&mut faces.flatten().map(|v| u64::from(v.0))),
-            lengths: sum(&mut rods.lengths().iter().map(|l| l.to_bits()).chain(elastic)),
+            lengths: sum(&mut rods.lengths().iter().map(|l| l.to_bits()).chain(isometry)),
             masses: sum(&mut mass.vertex.iter().chain(edge_mass).map(|m| m.to_bits())),
             supports: sum(&mut pins.chain([u64::MAX]).chain(constrained)),
         }
@@ -153,7 +157,7 @@ impl SheetFingerprint {
         } else if self.connectivity != found.connectivity {
             differs("connectivity")
         } else if self.lengths != found.lengths {
-            differs("rest lengths")
+            differs("rest lengths or isometry")
         } else if self.masses != found.masses {
             differs("masses")
         } else if self.supports != found.supports {

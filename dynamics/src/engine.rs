@@ -46,7 +46,7 @@ impl Engine {
     ) -> Result<Self, SimulationError> {
         let fixed = match model.isometry() {
             Isometry::Rods => vertices_on_taut_lines(&model, &state.x),
-            Isometry::Elastic => Vec::new(),
+            Isometry::Elastic | Isometry::Weak => Vec::new(),
         };
         model.fix(&fixed);
         model.clear_velocities(&fixed, &mut state.v);
@@ -59,7 +59,7 @@ impl Engine {
         state: State,
         fixed: Vec<VertexId>,
     ) -> Result<Self, SimulationError> {
-        if model.isometry() == Isometry::Elastic && !method.is_minimising() {
+        if model.isometry() != Isometry::Rods && !method.is_minimising() {
             return Err(SimulationError::Elastic);
         }
         let integrator = method.build(&model)?;
@@ -403,7 +403,7 @@ fn check_energy(model: &SheetModel, state: &State) -> Result<(), StepError> {
 fn check_lengths(model: &SheetModel, motion: &FreeMotion) -> Result<(), CheckpointError> {
     let (n, m, k) = (
         model.coordinate_count(),
-        model.rods().len(),
+        model.isometry_rows().len(),
         model.constraints().len(),
     );
     let Moment { state, history, .. } = &motion.moment;
@@ -423,7 +423,7 @@ fn check_lengths(model: &SheetModel, motion: &FreeMotion) -> Result<(), Checkpoi
         ("positions of the step before", previous.x.len(), n),
         ("velocities of the step before", previous.v.len(), n),
         (
-            "multipliers of rods",
+            "multipliers of the isometry",
             optional(multipliers.rods.len(), m),
             m,
         ),

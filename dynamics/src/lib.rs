@@ -31,6 +31,15 @@
 //! kinetic energy in all steps together: compressed rods that snap through can feed any implicit method. Such
 //! steps are taken with implicit Euler, or shortened.
 //!
+//! # Isometry
+//!
+//! What keeps the lengths is chosen with the model ([`Isometry`]). The default are rigid rods along all
+//! edges. An elastic membrane ([`SheetModel::with_membrane`]) stretches as the material does. An isometry in
+//! weak form ([`SheetModel::with_weak_isometry`]) keeps lengths in the mean over the faces around each
+//! vertex: smooth bends in any direction, clamps along any line, single edges that stretch a little. The last
+//! two are for BDF2 and implicit Euler. [`StepReport::strain`] is the strain of edges whatever keeps them;
+//! [`StepReport::constrained_strain`] is what an accepted step holds below its tolerance.
+//!
 //! # Limits
 //!
 //! Constraints that leave a vertex no room at all, such as two pins that stretch a straight line of rods
@@ -74,6 +83,7 @@ mod feasibility;
 mod history;
 mod implicit;
 mod integrator;
+mod isometry_rows;
 mod iterate;
 mod layout;
 mod load;
@@ -103,6 +113,7 @@ mod subdivision;
 mod support;
 mod taut;
 mod unassigned;
+mod weak_isometry;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use constraint::VertexConstraint;
@@ -133,6 +144,7 @@ pub use simulation_error::SimulationError;
 pub use start::{leave_flat, project_positions};
 pub use state::State;
 pub use support::Support;
+pub use weak_isometry::{WeakIsometry, WeakIsometryError};
 
 pub use nalgebra;
 

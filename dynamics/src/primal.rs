@@ -3,6 +3,7 @@
 use crate::contact::{ContactTerms, CouplingSink};
 use crate::layout::{FULL, LOWER, Layout};
 use crate::model::PINNED;
+use crate::weak_isometry::{Block, BlockRows, RingBlocks, WeakRows};
 use crate::{HessianSink, Isometry, SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt, norm_inf};
 use isosheet_mesh::{EdgeId, VertexId};
@@ -28,6 +29,8 @@ pub(crate) struct PrimalMatrix {
     vertex_slots: Vec<Option<[u32; 6]>>,
     /// Slots of each edge block and whether its rows belong to end `b` (else to `a`).
     edge_slots: Vec<Option<([u32; 9], bool)>>,
+    /// Blocks of the equations of isometry in weak form, of models that have them.
+    rings: Option<RingBlocks>,
     rhs: Vec<f64>,
     /// Pairs of free vertices (in free numbers, larger first) that contact couples beyond the mesh's edges,
     /// sorted.
@@ -58,7 +61,7 @@ impl PrimalMatrix {
                 both_free.then(|| (layout.block([i.max(j), i.min(j)], FULL), j > i))
             })
             .collect();
-        for &pair in potential_pairs(model).iter().chain(&extra) {
+        for &pair in wide_pairs(model).iter().chain(&extra) {
             layout.block(pair, FULL);
         }
         let n = 3 * model.free_count();
@@ -71,7 +74,11 @@ impl PrimalMatrix {
             .iter_mut()
             .flatten()
             .for_each(|(b, _)| slots.resolve(b));
+        let rings = model
+            .weak_rows()
+            .map(|rows| ring_blocks(model, rows, &vertex_slots, &pattern));
         Ok(Self {
+            rings,
             llt: SparseLlt::with_blocks(pattern, 3)?,
             vertex_slots,
             edge_slots,
@@ -147,7 +154,8 @@ impl PrimalMatrix {
         });
     }
 
-    /// Sets the values: `axial[e] = r_e`, `transverse[e] = p_e`.
+    /// Sets the values: `axial[e] = r_e`, `transverse[e] = p_e`. In weak form `axial` are the penalties of
+    /// the equations, whose `J^T r J` takes the place of the rods' `G^T r G`.
     pub(crate) fn assemble(
         &mut self,
         model: &SheetModel,
@@ -168,7 +176,8 @@ impl PrimalMatrix {
         for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
             let (ia, ib) = (3 * a, 3 * b);
             let d = [x[ia] - x[ib], x[ia + 1] - x[ib + 1], x[ia + 2] - x[ib + 2]];
-            let (r, p) = (axial[e], transverse[e]);
+            let r = if self.rings.is_some() { 0.0 } else { axial[e] };
+            let p = transverse[e];
             let block = [
                 r * d[0] * d[0] + p,
                 r * d[1] * d[0],
@@ -196,6 +205,9 @@ impl PrimalMatrix {
                     }
                 }
             }
+        }
+        if let Some((rings, rows)) = self.rings.as_mut().zip(model.weak_rows()) {
+            rings.add(rows, x, axial, values);
         }
     }
 
@@ -315,15 +327,44 @@ impl HessianSink for Sink<'_> {
     }
 }
 
-/// Pairs of free vertices (in free numbers, larger first) that the potentials couple beyond the mesh's edges.
-fn potential_pairs(model: &SheetModel) -> Vec<[u32; 2]> {
+/// Pairs of free vertices (in free numbers, larger first) that potentials and the equations of isometry
+/// couple beyond the mesh's edges.
+fn wide_pairs(model: &SheetModel) -> Vec<[u32; 2]> {
     let free = model.free_index();
     let pairs = model.potentials().iter().flat_map(|p| p.couplings());
+    let rings = model.weak_rows().into_iter().flat_map(WeakRows::couplings);
     pairs
+        .chain(rings)
         .map(|[a, b]| [free[a.index()], free[b.index()]])
         .filter(|[i, j]| *i != PINNED && *j != PINNED && i != j)
         .map(|[i, j]| [i.max(j), i.min(j)])
         .collect()
+}
+
+/// Where the blocks of the equations in weak form are.
+fn ring_blocks(
+    model: &SheetModel,
+    rows: &WeakRows,
+    vertex_slots: &[Option<[u32; 6]>],
+    pattern: &Pattern,
+) -> RingBlocks {
+    let free = model.free_index();
+    RingBlocks::new(rows, |a, b| {
+        let (i, j) = (free[a.index()], free[b.index()]);
+        if i == PINNED || j == PINNED {
+            return None;
+        }
+        if i == j {
+            return vertex_slots[a.index()].map(Block::Diagonal);
+        }
+        let start = block_start(pattern, i.max(j), i.min(j))?;
+        let rows = if i > j {
+            BlockRows::First
+        } else {
+            BlockRows::Second
+        };
+        Some(Block::Pair(start.map(|s| s as u32), rows))
+    })
 }
 
 impl CouplingSink for Sink<'_> {
@@ -386,10 +427,22 @@ pub(crate) fn scatter(model: &SheetModel, packed: &[f64], full: &mut [f64]) {
     }
 }
 
-/// Penalty of each rod, `kappa m_e / l_e^2` with `m_e` the reduced mass of its free ends: scale
-/// free, so that slivers and heavy vertices are treated alike. Kilograms per square metre.
+/// Penalty of each equation of isometry, `kappa` times the inverse of `J M^-1 J^T` at rest: scale free, so
+/// that slivers and heavy vertices are treated alike. For a rod `kappa m_e / l_e^2` with `m_e` the reduced
+/// mass of its free ends, kilograms per square metre; in weak form kilogram square metres.
 pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
     let rods = model.rods();
+    let inverse = |v: usize| {
+        if model.free_index()[v] == PINNED {
+            0.0
+        } else {
+            1.0 / model.mass().vertex[v]
+        }
+    };
+    if let Some(weak) = model.weak_rows() {
+        let unit = weak.unit_penalties(|v| inverse(v.index()));
+        return unit.into_iter().map(|p| kappa * p).collect();
+    }
     if model.isometry() == Isometry::Elastic {
         return vec![0.0; rods.len()];
     }
@@ -397,13 +450,6 @@ pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
         .iter()
         .zip(rods.lengths())
         .map(|(&[a, b], l)| {
-            let inverse = |v: usize| {
-                if model.free_index()[v] == PINNED {
-                    0.0
-                } else {
-                    1.0 / model.mass().vertex[v]
-                }
-            };
             let sum = inverse(a) + inverse(b);
             if sum == 0.0 {
                 0.0
@@ -414,9 +460,13 @@ pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Smallest edge strain that round-off in the coordinates allows to ask for.
+/// Smallest edge strain, or strain of the isometry in weak form, that round-off in the coordinates allows to
+/// ask for.
 pub(crate) fn strain_floor(model: &SheetModel, state: &State) -> f64 {
     let size = norm_inf(&state.x);
+    if let Some(weak) = model.weak_rows() {
+        return 4.0 * f64::EPSILON * weak.round_off(size);
+    }
     let shortest = model
         .rods()
         .lengths()

@@ -65,6 +65,10 @@ pub struct StepReport {
     pub energy_drift: f64,
     /// Largest relative edge length error at the end.
     pub strain: f64,
+    /// Largest violation of the equations of isometry at the end, which the tolerance of the method bounds:
+    /// the edge strain of rods, zero for elastic sheets (see
+    /// [`SheetModel::constrained_strain`](crate::SheetModel::constrained_strain)).
+    pub constrained_strain: f64,
     /// Smallest gap to an obstacle or between parts of the sheet, metres; `None` without contact.
     pub gap: Option<f64>,
     /// Largest distance by which a vertex constraint is broken at the end, metres; `None` without
@@ -186,6 +190,19 @@ pub enum StepError {
         length: f64,
         /// Its rest length, metres.
         rest: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// The start state of a sheet that is isometric in weak form does not satisfy its equations.
+    #[error(
+        "the strain around {vertex} is {strain:e} in the mean at t = {t} s, which the isometry in weak form does \
+         not allow; start from a state that satisfies it (see `project_positions`)"
+    )]
+    OffWeakIsometry {
+        /// The worst vertex.
+        vertex: VertexId,
+        /// Its violation `|C_i|`.
+        strain: f64,
         /// Time, seconds.
         t: f64,
     },

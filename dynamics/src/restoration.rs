@@ -4,6 +4,7 @@ use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
 use crate::contact::StepContact;
 use crate::iterate::Iterate;
+use crate::model::PINNED;
 use crate::primal::{PrimalMatrix, penalties};
 use crate::report::SolverEffort;
 use crate::unassigned::UnassignedMomentum;
@@ -62,6 +63,8 @@ pub(crate) struct Restoration {
     unit: Vec<f64>,
     c: Vec<f64>,
     w: Vec<f64>,
+    /// Force densities of the edges by `w`.
+    density: Vec<f64>,
     rhs: Vec<f64>,
     dx: Vec<f64>,
     start: Vec<f64>,
@@ -106,13 +109,15 @@ enum Solved {
 
 impl Restoration {
     pub(crate) fn new(model: &SheetModel) -> Self {
-        let (n, m) = (model.coordinate_count(), model.rods().len());
+        let (n, edges) = (model.coordinate_count(), model.rods().len());
+        let m = model.isometry_rows().len();
         Self {
             axial: vec![0.0; m],
-            transverse: vec![0.0; m],
+            transverse: vec![0.0; edges],
             unit: penalties(model, 1.0),
             c: vec![0.0; m],
             w: vec![0.0; m],
+            density: vec![0.0; edges],
             rhs: vec![0.0; n],
             dx: vec![0.0; n],
             start: vec![0.0; n],
@@ -211,7 +216,7 @@ impl Restoration {
 
     /// Evaluates the constraints.
     fn evaluate(&mut self, model: &SheetModel, t: f64, x: &[f64]) {
-        model.rods().residual_into(x, &mut self.c);
+        model.isometry_rows().residual_into(x, &mut self.c);
         self.vertex_rows.evaluate(model.constraints(), t, x);
     }
 
@@ -224,8 +229,8 @@ impl Restoration {
         iterate: &mut Iterate,
         penalty: f64,
     ) -> Solved {
-        let rods = model.rods();
-        for e in 0..rods.len() {
+        let rows = model.isometry_rows();
+        for e in 0..self.c.len() {
             self.axial[e] = penalty * self.unit[e];
             self.w[e] = -self.axial[e] * self.c[e];
         }
@@ -252,7 +257,7 @@ impl Restoration {
         if matrix.factorize().is_err() {
             return Solved::PenaltyTooLarge;
         }
-        rods.apply_transpose_add(iterate.x(), &self.w, &mut self.rhs);
+        rows.apply_transpose_add(iterate.x(), &self.w, &mut self.density, &mut self.rhs);
         matrix.solve(model, &self.rhs, &mut self.dx);
         Solved::Yes
     }
@@ -284,7 +289,10 @@ impl Restoration {
 
     /// Largest strain or relative violation of a vertex constraint, those being evaluated.
     fn worst(&self, model: &SheetModel, x: &[f64]) -> f64 {
-        let strain = model.constrained_strain(x);
+        let strain = match model.weak_rows() {
+            Some(weak) => weak.largest_of(&self.c, |v| model.free_index()[v] != PINNED),
+            None => model.constrained_strain(x),
+        };
         if model.constraints().is_empty() {
             return strain;
         }
@@ -412,7 +420,7 @@ impl Restoration {
 
     /// What the linearised lengths leave of the error after the whole step.
     fn linearised_error(&mut self, model: &SheetModel, x: &[f64]) -> f64 {
-        model.rods().apply(x, &self.dx, &mut self.w);
+        model.isometry_rows().apply(x, &self.dx, &mut self.w);
         let errors = self.c.iter().zip(&self.w).zip(&self.unit);
         errors
             .map(|((c, w), u)| u * (c + w).powi(2))

@@ -61,7 +61,8 @@ impl Simulation {
     ///
     /// # Errors
     /// [`SimulationError`] if the options or the state make no sense, or the state does not
-    /// have the rest lengths to 1e-8 (see [`project_positions`](crate::project_positions)).
+    /// have the rest lengths (in weak form: the strains zero that it constrains) to 1e-8 (see
+    /// [`project_positions`](crate::project_positions)).
     pub fn new(
         model: SheetModel,
         mut state: State,
@@ -373,6 +374,7 @@ impl Simulation {
             friction,
             energy_drift: kinetic + potential - work + dissipated + friction - start,
             strain: model.rods().max_strain(x),
+            constrained_strain: model.constrained_strain(x),
             taut: totals.taut,
             violation: model.largest_violation(*t, x),
             gap: self.contacts().map(ActiveContacts::gap),

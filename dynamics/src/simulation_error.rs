@@ -47,8 +47,10 @@ pub enum SimulationError {
         /// Place in the order in which the constraints were added.
         index: usize,
     },
-    /// An elastic sheet is in a scene of a method that needs rods.
-    #[error("the sheet is elastic, and the method needs rigid rods; use BDF2 or implicit Euler")]
+    /// An elastic sheet, or one that is isometric in weak form, is in a scene of a method that needs rods.
+    #[error(
+        "the sheet has no rigid rods (it is elastic, or isometric in weak form), and the method needs them; use BDF2 or implicit Euler"
+    )]
     Elastic,
     /// The checkpoint does not belong to the model or cannot be resumed this way.
     #[error(transparent)]

@@ -242,7 +242,7 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert_eq!(
         other,
         CheckpointError::OtherSheet {
-            what: "rest lengths"
+            what: "rest lengths or isometry"
         }
     );
     let pinned = refused(plain(&sheet).with_pins(&[VertexId(3)]).expect("exists"));

@@ -21,3 +21,4 @@ mod scenes;
 mod statics;
 mod stress;
 mod watch;
+mod weak;

@@ -84,9 +84,9 @@ pub enum ChartDynamicsError {
         /// The vertex.
         vertex: VertexId,
     },
-    /// The sheet is elastic.
+    /// The sheet is elastic, or isometric in weak form.
     #[error(
-        "the sheet is elastic, and charts need rigid rods; use BDF2 or implicit Euler without a chart"
+        "the sheet has no rigid rods (it is elastic, or isometric in weak form), and charts need them; use BDF2 or implicit Euler without a chart"
     )]
     Elastic,
     /// A one-sided constraint makes no closure equation.

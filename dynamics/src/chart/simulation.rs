@@ -392,7 +392,7 @@ impl ChartSimulation {
 /// Refuses a state of the wrong length or with values that are not finite, and supports that a chart cannot
 /// have.
 fn check_start(model: &SheetModel, start: &State) -> Result<(), ChartDynamicsError> {
-    if model.isometry() == Isometry::Elastic {
+    if model.isometry() != Isometry::Rods {
         return Err(ChartDynamicsError::Elastic);
     }
     let State { t, x, v } = start;

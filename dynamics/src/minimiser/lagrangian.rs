@@ -1,13 +1,14 @@
 //! The augmented Lagrangian of a step at an iterate: value, gradient and Hessian.
 
 use super::problem::StepProblem;
-use crate::SheetModel;
 use crate::constraint::rows::{HessianPart, VertexRows};
 use crate::contact::StepSpan;
+use crate::isometry_rows::RowScale;
 use crate::iterate::Iterate;
 use crate::model::PINNED;
 use crate::primal::{PrimalMatrix, dot, penalties};
 use crate::report::SolverEffort;
+use crate::{Isometry, SheetModel};
 use isosheet_coords::linalg::LinalgError;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -35,19 +36,24 @@ const POSITION_OPERATIONS: f64 = 64.0;
 /// ```
 ///
 /// with the multipliers `L_e` of the rods (`h^2` times force densities, tension positive) and penalties
-/// `r_e`.
+/// `r_e`. In weak form the equations of [`IsometryRows`](crate::isometry_rows::IsometryRows) take the place
+/// of those of the rods.
 pub(crate) struct Lagrangian {
     pub(super) iterate: Iterate,
     pub(super) matrix: PrimalMatrix,
     pub(super) multipliers: Vec<f64>,
     pub(super) vertex_rows: VertexRows,
-    /// Penalties `r_e` of rods as stiff as the masses.
+    /// Penalties `r_e` of equations as stiff as the masses.
     unit_penalty: Vec<f64>,
+    /// Sizes of the equations.
+    pub(super) scales: Vec<RowScale>,
     /// How many times as stiff as the masses rods are in the value.
     stiffness: f64,
     /// Length errors `c_e` at the last evaluation, square metres.
     pub(super) c: Vec<f64>,
     /// `L_e + r_e c_e` at the last gradient.
+    estimates: Vec<f64>,
+    /// Force densities of the edges by these.
     pub(super) density: Vec<f64>,
     pub(super) gradient: Vec<f64>,
     /// Conservative forces without contact at the last gradient, newtons.
@@ -59,7 +65,7 @@ pub(crate) struct Lagrangian {
     /// Where prescribed motions end, at the pinned vertices.
     end: Vec<f64>,
     axial: Vec<f64>,
-    transverse: Vec<f64>,
+    pub(super) transverse: Vec<f64>,
     difference: Vec<f64>,
     weighted: Vec<f64>,
     /// Changes of length errors, for linearised constraints.
@@ -101,7 +107,8 @@ pub(super) enum RodLoad {
 
 impl Lagrangian {
     pub(super) fn new(model: &SheetModel) -> Result<Self, LinalgError> {
-        let (n, m) = (model.coordinate_count(), model.rods().len());
+        let (n, edges) = (model.coordinate_count(), model.rods().len());
+        let m = model.isometry_rows().len();
         let vertices = model.constrained_vertices();
         Ok(Self {
             iterate: Iterate::new(n),
@@ -109,16 +116,18 @@ impl Lagrangian {
             multipliers: vec![0.0; m],
             vertex_rows: VertexRows::new(model.constraints(), vertices, 1.0),
             unit_penalty: penalties(model, 1.0),
+            scales: model.isometry_rows().scales(),
             stiffness: 1.0,
             c: vec![0.0; m],
-            density: vec![0.0; m],
+            estimates: vec![0.0; m],
+            density: vec![0.0; edges],
             gradient: vec![0.0; n],
             force: vec![0.0; n],
             dx: vec![0.0; n],
             start: vec![0.0; n],
             end: vec![0.0; n],
             axial: vec![0.0; m],
-            transverse: vec![0.0; m],
+            transverse: vec![0.0; edges],
             difference: vec![0.0; n],
             weighted: vec![0.0; n],
             change: vec![0.0; m],
@@ -167,17 +176,17 @@ impl Lagrangian {
         }
         let inertia = model.kinetic_energy(&self.difference);
         let work = dot(problem.applied, &self.difference);
-        model.rods().residual_into(x, &mut self.c);
+        model.isometry_rows().residual_into(x, &mut self.c);
         self.vertex_rows.evaluate(model.constraints(), t, x);
         let size = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         // Round-off of c is that of the squared lengths; and where inertia alone has the right lengths
         // already, nothing but the round-off of the positions is left to minimise.
         let (mut rods, mut rod_scale, mut squares) = (0.0, 0.0, 0.0);
-        for (e, l) in model.rods().lengths().iter().enumerate() {
+        for (e, scale) in self.scales.iter().enumerate() {
             let (m, p, c) = (self.multipliers[e], self.penalty(e), self.c[e]);
             rods += (m + 0.5 * p * c) * c;
-            rod_scale += m.abs() * l * l;
-            squares += p * (f64::EPSILON * l * (size + l)).powi(2);
+            rod_scale += m.abs() * scale.size;
+            squares += p * (f64::EPSILON * (scale.slope * size + scale.size)).powi(2);
         }
         rods += self.vertex_rows.value();
         let (vertex_scale, vertex_squares) = self.vertex_rows.scales(size);
@@ -212,10 +221,10 @@ impl Lagrangian {
             self.gradient[i] = self.weighted[i] - h * h * (self.force[i] + problem.applied[i]);
         }
         for e in 0..self.c.len() {
-            self.density[e] = self.multipliers[e] + self.penalty(e) * self.c[e];
+            self.estimates[e] = self.multipliers[e] + self.penalty(e) * self.c[e];
         }
-        let rods = model.rods();
-        rods.apply_transpose_add(x, &self.density, &mut self.gradient);
+        let rows = model.isometry_rows();
+        rows.apply_transpose_add(x, &self.estimates, &mut self.density, &mut self.gradient);
         self.vertex_rows.add_gradient(&mut self.gradient);
         if let Some(terms) = self.iterate.terms(problem.contact()) {
             terms.add_gradient(h * h, &mut self.gradient);
@@ -226,11 +235,31 @@ impl Lagrangian {
         model.clear_pinned(&mut self.gradient);
     }
 
+    /// Adds what the penalties of the equations in weak form change the gradient by along the motions to come
+    /// of pins, to first order.
+    fn add_weak_drive(&mut self, model: &SheetModel) {
+        let (rows, x) = (model.isometry_rows(), self.iterate.x());
+        self.weighted.fill(0.0);
+        for v in model.moving_pins() {
+            for i in 3 * v..3 * v + 3 {
+                self.weighted[i] = self.end[i] - x[i];
+            }
+        }
+        rows.apply(x, &self.weighted, &mut self.change);
+        for (e, change) in self.change.iter_mut().enumerate() {
+            *change *= self.stiffness * self.unit_penalty[e];
+        }
+        rows.apply_transpose_add(x, &self.change, &mut self.transverse, &mut self.gradient);
+    }
+
     /// Adds the change of the gradient by the motions to come of bodies and pins, to first order.
     fn add_drive(&mut self, problem: &StepProblem<'_>) {
         let model = problem.model;
         if let Some(terms) = self.iterate.terms(problem.contact()) {
             terms.add_drive(problem.h * problem.h, &mut self.gradient);
+        }
+        if model.weak_rows().is_some() {
+            self.add_weak_drive(model);
         }
         let x = self.iterate.x();
         let free = model.free_index();
@@ -242,7 +271,11 @@ impl Lagrangian {
             };
             let at = |x: &[f64], v: usize| Vector3::new(x[3 * v], x[3 * v + 1], x[3 * v + 2]);
             let (d, u) = (at(x, end) - at(x, pin), at(&self.end, pin) - at(x, pin));
-            let change = self.density[e] * u + self.penalty(e) * d.dot(&u) * d;
+            let stretch = match model.isometry() {
+                Isometry::Weak => 0.0,
+                Isometry::Rods | Isometry::Elastic => self.penalty(e) * d.dot(&u),
+            };
+            let change = self.density[e] * u + stretch * d;
             for k in 0..3 {
                 self.gradient[3 * end + k] -= change[k];
             }
@@ -268,10 +301,13 @@ impl Lagrangian {
         for e in 0..self.c.len() {
             self.axial[e] = self.penalty(e);
         }
-        self.transverse.copy_from_slice(match load {
-            RodLoad::Multipliers => &self.multipliers,
-            RodLoad::Estimates => &self.density,
-        });
+        match load {
+            RodLoad::Multipliers => {
+                let rows = problem.model.isometry_rows();
+                rows.densities_into(&self.multipliers, &mut self.transverse);
+            }
+            RodLoad::Estimates => self.transverse.copy_from_slice(&self.density),
+        }
         if part == HessianPart::Full {
             effort.factorisations += 1;
             self.assemble(problem, HessianPart::Full);
@@ -297,11 +333,12 @@ impl Lagrangian {
 
     /// Replaces each rod's own Hessian, with eigenvalues `p` across and `p + r |d|^2` along the rod, by its
     /// positive semidefinite part. (With multipliers far from the estimates the part along the rod stays as
-    /// it is.)
+    /// it is, and so it does in weak form.)
     fn project_rods(&mut self, model: &SheetModel, load: RodLoad) {
-        for e in 0..self.c.len() {
+        let along = load == RodLoad::Estimates && model.weak_rows().is_none();
+        for e in 0..self.transverse.len() {
             if self.transverse[e] < 0.0 {
-                if load == RodLoad::Estimates {
+                if along {
                     let l = model.rods().lengths()[e];
                     let squared = (l * l + 2.0 * self.c[e]).max(f64::MIN_POSITIVE);
                     self.axial[e] = (self.axial[e] + self.transverse[e] / squared).max(0.0);
