@@ -5,6 +5,7 @@ use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
 use crate::control::{Decision, Stepping, take_substep};
 use crate::energy_account::{EnergyAccount, Exchange};
 use crate::feasibility::{Excess, excess};
+use crate::immobile::immobile_vertices;
 use crate::implicit::ImplicitEuler;
 use crate::integrator::{
     Attempt, ContactSupport, Integrator, Memory, Moment, Proposal, RodDemand, Scene,
@@ -13,7 +14,6 @@ use crate::rank::rod_rank;
 use crate::reaction::Balance;
 use crate::report::{StepError, StepOutcome, StepTotals};
 use crate::subdivision::Subdivision;
-use crate::taut::vertices_on_taut_lines;
 use crate::{
     Fallback, Isometry, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
 };
@@ -38,14 +38,14 @@ pub(crate) struct Engine {
 }
 
 impl Engine {
-    /// Vertices on straight lines of rods between pins at rest become pins.
+    /// Vertices that rods to pins at rest hold in place become pins.
     pub(crate) fn new(
         mut model: SheetModel,
         method: Method,
         mut state: State,
     ) -> Result<Self, SimulationError> {
         let fixed = match model.isometry() {
-            Isometry::Rods => vertices_on_taut_lines(&model, &state.x),
+            Isometry::Rods => immobile_vertices(&model, &state.x),
             Isometry::Elastic | Isometry::Weak => Vec::new(),
         };
         model.fix(&fixed);
@@ -132,6 +132,11 @@ impl Engine {
     }
 
     /// Where the sheet is.
+    /// Vertices that became pins at the start because they cannot move.
+    pub(crate) fn immobile(&self) -> &[VertexId] {
+        &self.fixed
+    }
+
     pub(crate) fn state(&self) -> &State {
         &self.moment.state
     }
@@ -201,9 +206,13 @@ impl Engine {
                 }
             };
         }
+        let rank = match self.model.isometry() {
+            Isometry::Rods => rod_rank(&self.model, &state.x),
+            Isometry::Elastic | Isometry::Weak => None,
+        };
+        let dependent = rank.filter(|rank| rank.nearly_dependent > 0);
         if self.integrator.traits().demand == RodDemand::Independent
-            && let Some(rank) = rod_rank(&self.model, &state.x)
-            && rank.smallest < DEPENDENT_RODS
+            && let Some(rank) = &dependent
         {
             return Stop::Error(StepError::RankDeficient {
                 t: state.t,
@@ -214,6 +223,7 @@ impl Engine {
         Stop::Error(StepError::StepTooSmall {
             t: state.t,
             min_step: lengths.smallest(),
+            dependent_rods: dependent.map_or(0, |rank| rank.nearly_dependent),
             cause: Box::new(cause),
         })
     }
@@ -460,11 +470,6 @@ fn damp(model: &SheetModel, state: &mut State, h: f64) -> f64 {
     state.v.iter_mut().for_each(|v| *v *= factor);
     before * (1.0 - factor * factor)
 }
-
-/// Smallest singular value (of the rigidity matrix with unit rods) below which dependence of
-/// the rods is named as the reason of a failure: the referee integrations of the smoothest
-/// known runs pass values down to 1e-6 only with steps of a microsecond.
-const DEPENDENT_RODS: f64 = 1e-5;
 
 #[cfg(test)]
 mod tests;

@@ -279,12 +279,18 @@ pub enum StepError {
         excess: Excess,
     },
     /// Even the smallest step allowed was rejected.
-    #[error("no step of at least {min_step} s was accepted at t = {t} s; last reason: {cause}")]
+    #[error(
+        "no step of at least {min_step} s was accepted at t = {t} s{}; last reason: {cause}",
+        locking(*.dependent_rods)
+    )]
     StepTooSmall {
         /// Time, seconds.
         t: f64,
         /// Smallest step allowed, seconds.
         min_step: f64,
+        /// Number of length equations that depend on others at this state. Where it is not zero the sheet lies
+        /// flat in parts, and next to fixed vertices such parts may lock.
+        dependent_rods: usize,
         /// Why the last step was rejected.
         cause: Box<StepError>,
     },
@@ -360,4 +366,15 @@ pub(crate) fn not_converged(
         residual,
         strain,
     }
+}
+
+/// What to do about sheets whose rods may lock.
+fn locking(dependent_rods: usize) -> String {
+    if dependent_rods == 0 {
+        return String::new();
+    }
+    format!(
+        ", where {dependent_rods} rods depend on others and may lock: model the sheet as elastic \
+         (SheetModel::with_membrane) or as isometric in weak form (SheetModel::with_weak_isometry)"
+    )
 }

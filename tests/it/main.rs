@@ -14,6 +14,7 @@ mod flat;
 mod forces;
 mod impacts;
 mod invariance;
+mod locking;
 mod orders;
 mod origami;
 mod robust;

@@ -206,7 +206,10 @@ fn a_step_that_fails_altogether_changes_nothing() {
         let before = bits(&engine.motion());
         let mut totals = StepTotals::default();
         let error = engine.advance(H, &mut totals).unwrap_err();
-        let StepError::StepTooSmall { t, min_step, cause } = error else {
+        let StepError::StepTooSmall {
+            t, min_step, cause, ..
+        } = error
+        else {
             panic!("{error}");
         };
         assert_eq!((t, min_step), (0.125, H / 16.0));
