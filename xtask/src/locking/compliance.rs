@@ -21,8 +21,8 @@ pub(super) const ABOUT: &str = "Elastic sheets with the membrane stiffness E h f
     swings in gravity for 0.2 s from a tilted position; rods can move here, and are the limit: the error is the largest distance of a vertex from the \
     same run with rods. Heavy elastica: the strip of that yardstick with D = 5e-4 N m, on meshes without rods that run; the error is the relative one of the \
     drop of the tip against the exact inextensible strip. It is the sum of the mesh's own error, of the stretch, which is proportional to the compliance 1 / (E h), and of \
-    locking, which grows with the stiffness. The elastica is measured with isometry in weak form, too: its equations keep strains away that an elastic sheet has, and it stretches less with a membrane of the same \
-    stiffness. (On ladders, which have no interior vertices, its equations are those of rods.)";
+    locking, which grows with the stiffness. The elastica is measured with isometry in weak form, too, with its equations beside a membrane \
+    of the same stiffness (on ladders, which have no interior vertices, these equations are the lengths of rods).";
 
 /// Membrane stiffnesses, newtons per metre.
 const STIFFNESSES: [f64; 9] = [1e3, 3e3, 1e4, 3e4, 1e5, 3e5, 1e6, 3e6, 1e7];
