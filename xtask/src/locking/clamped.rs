@@ -7,7 +7,7 @@ use super::isometry::{Isometry, Material};
 use super::plot::{Dot, Figure, Joined, Panel, Scale};
 use super::records::Records;
 use super::table::Results;
-use super::targets::{Target, at_least, at_most};
+use super::targets::{Target, at_least, at_most, kept};
 use crate::draw::{Axis, Drawing};
 use anyhow::Result;
 use isosheet_dynamics::Method;
@@ -373,7 +373,7 @@ fn remarks(all: &[Fallen]) -> Vec<String> {
 fn targets(isometry: Isometry, all: &[Fallen]) -> Vec<Target> {
     let of = of(all, isometry, By::Bdf2);
     let share = ended(&of) as f64 / of.len() as f64;
-    vec![
+    let mut targets = vec![
         at_least(
             isometry,
             "part of the sheets that reach the end, BDF2",
@@ -386,7 +386,10 @@ fn targets(isometry: Isometry, all: &[Fallen]) -> Vec<Target> {
             20.0,
             &[factorisations(&of)],
         ),
-    ]
+    ];
+    let runs = all.iter().filter(|f| f.isometry == isometry);
+    targets.extend(kept(isometry, runs.map(|f| f.course.kept)));
+    targets
 }
 
 /// Factorisations a step of every sheet against its number of vertices, for the default method.

@@ -1,14 +1,17 @@
-//! How elastic sheets approach rigid rods, and the inextensible strip, as they become stiffer.
+//! How elastic sheets approach rigid rods, and elastic and weakly isometric ones the inextensible strip, as
+//! their membrane becomes stiffer.
 
 use super::cantilever;
 use super::course::{Course, Plan, Scene};
 use super::findings::Findings;
-use super::isometry::{Material, PAPER, PAPER_RIGIDITY, elastic, rods};
+use super::isometry::{Material, PAPER, PAPER_RIGIDITY, elastic, rods, weak};
 use super::meshes::Pattern;
 use super::plot::{Scale, TITLE, not_ended_line, order};
 use super::records::Records;
 use super::table::Results;
-use crate::draw::{Anchor, Drawing, Legend, Plot, Series, Stroke, TEXT, Vertical, palette, row};
+use crate::draw::{
+    Anchor, Drawing, Legend, Plot, Series, Stroke, TEXT, Vertical, column, palette, row,
+};
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method};
 use isosheet_mesh::{Sheet, VertexId, generate};
@@ -18,7 +21,8 @@ pub(super) const ABOUT: &str = "Elastic sheets with the membrane stiffness E h f
     swings in gravity for 0.2 s from a tilted position; rods can move here, and are the limit: the error is the largest distance of a vertex from the \
     same run with rods. Heavy elastica: the strip of that yardstick with D = 5e-4 N m, on meshes without rods that run; the error is the relative one of the \
     drop of the tip against the exact inextensible strip. It is the sum of the mesh's own error, of the stretch, which is proportional to the compliance 1 / (E h), and of \
-    locking, which grows with the stiffness.";
+    locking, which grows with the stiffness. The elastica is measured with isometry in weak form, too, with its equations beside a membrane \
+    of the same stiffness (on ladders, which have no interior vertices, these equations are the lengths of rods).";
 
 /// Membrane stiffnesses, newtons per metre.
 const STIFFNESSES: [f64; 9] = [1e3, 3e3, 1e4, 3e4, 1e5, 3e5, 1e6, 3e6, 1e7];
@@ -45,22 +49,38 @@ const TOLERANCE: f64 = 1e-12;
 /// Distances below this are those of the tolerance, metres.
 const FLOOR: f64 = 1e-9;
 
+/// What a membrane is the stiffness of.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Form {
+    Elastic,
+    /// The sheet is isometric in weak form, and the membrane has Poisson's ratio zero.
+    Weak,
+}
+
 /// What moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Problem {
     /// A ladder of so many squares.
     Ladder(usize),
     /// The heavy elastica on the mesh of this number, with so many squares across.
-    Elastica { mesh: usize, across: usize },
+    Elastica {
+        form: Form,
+        mesh: usize,
+        across: usize,
+    },
 }
 
 impl Problem {
     fn name(self) -> String {
         match self {
             Self::Ladder(squares) => format!("ladder of {squares} squares"),
-            Self::Elastica { mesh, across } => {
+            Self::Elastica { form, mesh, across } => {
                 let (pattern, degrees) = MESHES[mesh];
-                format!("elastica, {pattern} {degrees}°, {across} squares across")
+                let form = match form {
+                    Form::Elastic => "elastic",
+                    Form::Weak => "weak",
+                };
+                format!("elastica, {form}, {pattern} {degrees}°, {across} squares across")
             }
         }
     }
@@ -69,7 +89,9 @@ impl Problem {
     fn measure(self, stiffness: f64, plan: &Plan) -> Result<Run> {
         let (course, error) = match self {
             Self::Ladder(squares) => ladder_error(squares, stiffness, plan)?,
-            Self::Elastica { mesh, across } => elastica_error(mesh, across, stiffness, plan)?,
+            Self::Elastica { form, mesh, across } => {
+                elastica_error(form, (mesh, across), stiffness, plan)?
+            }
         };
         Ok(Run {
             problem: self,
@@ -149,8 +171,8 @@ fn ladder_error(squares: usize, stiffness: f64, plan: &Plan) -> Result<(Course, 
 }
 
 fn elastica_error(
-    mesh: usize,
-    across: usize,
+    form: Form,
+    (mesh, across): (usize, usize),
     stiffness: f64,
     plan: &Plan,
 ) -> Result<(Course, Option<f64>)> {
@@ -162,7 +184,10 @@ fn elastica_error(
         rigidity: Some(PAPER_RIGIDITY),
         clamped: &clamp,
     };
-    let model = elastic(&sheet, material, (stiffness, PAPER.1))?;
+    let model = match form {
+        Form::Elastic => elastic(&sheet, material, (stiffness, PAPER.1))?,
+        Form::Weak => weak(&sheet, material, stiffness)?,
+    };
     let course = cantilever::scene(&sheet, model)?.run(plan)?;
     let exact = cantilever::exact_drop(PAPER_RIGIDITY);
     let error = (cantilever::drop(&sheet, &course) / exact - 1.0).abs();
@@ -181,14 +206,17 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     let stiffnesses: &[f64] = effort.pick(&[1e4, 1e6], &STIFFNESSES);
     let sizes: &[usize] = effort.pick(&[2], &[2, 4, 8]);
     let mut problems: Vec<Problem> = LADDERS.map(Problem::Ladder).to_vec();
-    for &across in sizes {
-        problems.extend((0..MESHES.len()).map(|mesh| Problem::Elastica { mesh, across }));
+    for form in [Form::Elastic, Form::Weak] {
+        for &across in sizes {
+            let elastica = |mesh| Problem::Elastica { form, mesh, across };
+            problems.extend((0..MESHES.len()).map(elastica));
+        }
     }
     let jobs: Vec<(Problem, f64)> = problems
         .iter()
         .flat_map(|p| stiffnesses.iter().map(|k| (*p, *k)))
         .collect();
-    let all = records.runs("elastic", &jobs, |(problem, stiffness)| {
+    let all = records.runs("membranes", &jobs, |(problem, stiffness)| {
         problem.measure(*stiffness, &plan)
     })?;
     Ok((
@@ -214,7 +242,7 @@ fn table(all: &[Run]) -> Results {
         "Every run",
         &[
             "problem",
-            "E h, N/m",
+            "stiffness, N/m",
             "ending",
             "factorisations per step",
             "error",
@@ -264,34 +292,43 @@ fn orders(all: &[Run], problems: &[Problem]) -> Results {
     table
 }
 
-/// The errors against the compliance: the ladders, and the elastica on meshes of every size.
+/// The errors against the compliance: the ladders and the elastic elastica on meshes of every size in the first
+/// row, the elastica in weak form in the second.
 fn plot(all: &[Run], sizes: &[usize]) -> Drawing {
     let is_ladder = |r: &&Run| matches!(r.problem, Problem::Ladder(_));
     let ladder_errors = all.iter().filter(is_ladder).filter_map(|r| r.error);
     let errors = all.iter().filter(|r| !is_ladder(r)).filter_map(|r| r.error);
     let y = Scale::decades("relative error of the drop", errors);
     let of = LADDERS.map(|n| (Problem::Ladder(n), format!("ladder, {n} squares")));
-    let mut drawings = vec![panel(
+    let mut elastic = vec![panel(
         (all, &of, 0),
         "Ladders",
         Scale::decades("distance from rods, m", ladder_errors),
         Legend::Right,
     )];
-    for &across in sizes {
-        let of: Vec<(Problem, String)> = MESHES
-            .iter()
-            .enumerate()
-            .map(|(mesh, (p, d))| (Problem::Elastica { mesh, across }, format!("{p}, {d}°")))
-            .collect();
-        let legend = if Some(&across) == sizes.last() {
-            Legend::Right
-        } else {
-            Legend::None
+    let panels = |form: Form, name: &str, last: Legend| {
+        let of_size = |(k, &across): (usize, &usize)| {
+            let of: Vec<(Problem, String)> = MESHES
+                .iter()
+                .enumerate()
+                .map(|(mesh, (p, d))| {
+                    let problem = Problem::Elastica { form, mesh, across };
+                    (problem, format!("{p}, {d}°"))
+                })
+                .collect();
+            let legend = if k + 1 == sizes.len() {
+                last
+            } else {
+                Legend::None
+            };
+            let title = format!("{name}, {across} squares across");
+            panel((all, &of, 3), &title, y.clone(), legend)
         };
-        let title = format!("Heavy elastica, {across} squares across");
-        drawings.push(panel((all, &of, 3), &title, y.clone(), legend));
-    }
-    row(&drawings, 16.0)
+        sizes.iter().enumerate().map(of_size).collect::<Vec<_>>()
+    };
+    elastic.extend(panels(Form::Elastic, "Elastica, elastic", Legend::Right));
+    let weak = panels(Form::Weak, "Elastica, weak", Legend::None);
+    column(&[row(&elastic, 16.0), row(&weak, 16.0)], 14.0)
 }
 
 /// Some problems with their names, in the styles from the given number on. Guides: the first order for
@@ -359,5 +396,37 @@ mod tests {
         let all = [1e4, 1e5, 1e6].map(run);
         let power = order(&points(&all, Problem::Ladder(3)), FLOOR).unwrap();
         assert!((power - 1.0).abs() < 0.05, "{power}");
+    }
+
+    /// The faces of a ladder form a strip without interior vertices: as many independent equations in weak form
+    /// as rods, all of which are met by the lengths of the rods alone.
+    #[test]
+    fn weak_equations_of_a_ladder_hold_its_lengths() {
+        let sheet = generate::ladder(5, 0.1, 0.1).unwrap();
+        let material = Material {
+            mass: MASS,
+            rigidity: None,
+            clamped: &[],
+        };
+        let model = weak(&sheet, material, 1.0)
+            .unwrap()
+            .with_acceleration([0.0, -9.8, 0.0])
+            .with_pins(&[VertexId(0), VertexId(1)])
+            .unwrap();
+        let plan = Plan {
+            step: STEP,
+            duration: DURATION,
+            rest_speed: None,
+            patience: std::time::Duration::from_secs(60),
+        };
+        let scene = Scene {
+            model,
+            start: tilted(&sheet),
+            method: Method::ImplicitEuler(ImplicitOptions::default()),
+            contacts: None,
+        };
+        let course = scene.run(&plan).unwrap();
+        assert!(course.ending.is_good() && course.kept.violation <= 1e-12);
+        assert!(course.strain < 1e-10, "{}", course.strain);
     }
 }

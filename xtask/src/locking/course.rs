@@ -66,6 +66,24 @@ impl Ending {
     }
 }
 
+/// What a step guarantees where the model has equations of isometry and where there is contact: the worst of
+/// steps or of runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Kept {
+    /// Largest violation of the equations of isometry (see [`StepReport::constrained_strain`]).
+    pub(super) violation: f64,
+    /// Smallest gap, metres; nothing without contact.
+    pub(super) gap: Option<f64>,
+}
+
+impl Kept {
+    /// Takes other steps into account.
+    pub(super) fn add(&mut self, other: Self) {
+        self.violation = self.violation.max(other.violation);
+        self.gap = [self.gap, other.gap].into_iter().flatten().reduce(f64::min);
+    }
+}
+
 /// What happened in a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Course {
@@ -90,6 +108,7 @@ pub(super) struct Course {
     pub(super) speed: f64,
     /// Largest relative error of an edge length.
     pub(super) strain: f64,
+    pub(super) kept: Kept,
     /// Wall time, seconds.
     pub(super) wall: f64,
 }
@@ -108,6 +127,7 @@ impl Course {
             kinetic: 0.0,
             speed: 0.0,
             strain: 0.0,
+            kept: Kept::default(),
             wall: 0.0,
         }
     }
@@ -119,6 +139,10 @@ impl Course {
         self.worst = self.worst.max(report.factorisations);
         self.kinetic = report.kinetic;
         self.strain = self.strain.max(report.strain);
+        self.kept.add(Kept {
+            violation: report.constrained_strain,
+            gap: report.gap,
+        });
         let square = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>();
         let fastest = state.v.as_chunks::<3>().0.iter().map(square);
         self.speed = fastest.fold(0.0, f64::max).sqrt();

@@ -7,7 +7,7 @@ use super::meshes::{Pattern, vertices, with_line};
 use super::plot::{Dot, Figure, Joined, Panel, Scale, order, slope};
 use super::records::Records;
 use super::table::{Results, number};
-use super::targets::{Target, at_least, at_most};
+use super::targets::{Target, at_least, at_most, kept};
 use crate::draw::Drawing;
 use anyhow::Result;
 use isosheet_dynamics::{Method, Profile, SheetModel, Support};
@@ -334,6 +334,8 @@ fn targets(isometry: Isometry, all: &[Bent], directions: &[f64]) -> Vec<Target> 
         let quantity = format!("relative error of the {name} at M^3, every mesh and direction");
         targets.push(at_most(isometry, &quantity, 0.05, &errors));
     }
+    let runs = all.iter().filter(|b| b.isometry == isometry);
+    targets.extend(kept(isometry, runs.map(|b| b.course.kept)));
     targets
 }
 

@@ -9,7 +9,7 @@ use super::plot::{Dot, Figure, Joined, Panel, Scale};
 use super::records::Records;
 use super::rim::{Rim, analyse};
 use super::table::Results;
-use super::targets::{Target, at_least, strain};
+use super::targets::{Target, at_least, kept, strain};
 use crate::draw::{Axis, Drawing};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
@@ -207,15 +207,19 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         let all = &all;
         frictions.iter().map(move |mu| target(isometry, all, *mu))
     };
-    let strains = Isometry::ALL.map(|isometry| {
-        let of = all.iter().filter(|d| d.isometry == isometry);
-        strain(isometry, of.map(|d| &d.course))
-    });
+    let general = |isometry: &Isometry| {
+        let isometry = *isometry;
+        let of = || all.iter().filter(|d| d.isometry == isometry);
+        let mut targets = vec![strain(isometry, of().map(|d| &d.course))];
+        targets.extend(kept(isometry, of().map(|d| d.course.kept)));
+        targets
+    };
+    let general = Isometry::ALL.iter().flat_map(general);
     Ok((
         Findings {
             tables: vec![summary(&all, meshes, frictions, &plan)],
             files: vec![runs(&all)],
-            targets: Isometry::ALL.iter().flat_map(of).chain(strains).collect(),
+            targets: Isometry::ALL.iter().flat_map(of).chain(general).collect(),
             remarks: Vec::new(),
         },
         Some(plot(&all, meshes, frictions)),
@@ -247,8 +251,7 @@ fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
             .filter_map(|d| {
                 let place = meshes.iter().position(|m| *m == d.mesh)? as f64;
                 // Models and seeds beside one another: numbers of folds are whole.
-                let aside =
-                    0.28 * (f64::from(d.isometry as u8) - 1.0) + 0.022 * (d.seed as f64 - 4.5);
+                let aside = 0.22 * d.isometry.aside() + 0.017 * (d.seed as f64 - 4.5);
                 Some(Dot {
                     isometry: d.isometry,
                     mesh: d.mesh as usize,

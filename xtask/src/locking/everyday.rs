@@ -8,7 +8,7 @@ use super::meshes::vertices;
 use super::plot::{Dot, Figure, Joined, Panel, Scale};
 use super::records::Records;
 use super::table::Results;
-use super::targets::{at_least, strain};
+use super::targets::{at_least, kept, strain};
 use crate::draw::{Axis, Drawing};
 use anyhow::Result;
 use isosheet_dynamics::{Method, PointProfile, Profile, SheetModel};
@@ -234,10 +234,12 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         let ended = of.iter().filter(|d| d.course.ending.is_good()).count();
         let share = Some(ended as f64 / of.len() as f64);
         let quantity = "part of the scenes that run to their end";
-        [
+        let mut targets = vec![
             at_least(isometry, quantity, 1.0, &[share]),
             strain(isometry, of.iter().map(|d| &d.course)),
-        ]
+        ];
+        targets.extend(kept(isometry, of.iter().map(|d| d.course.kept)));
+        targets
     };
     let drawing = plot(&all, &scenes);
     Ok((

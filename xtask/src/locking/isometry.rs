@@ -2,7 +2,9 @@
 
 use crate::draw::{Colour, palette};
 use anyhow::Result;
-use isosheet_dynamics::{CreaseSprings, Membrane, PlateBending, Potential, SheetModel};
+use isosheet_dynamics::{
+    CreaseSprings, Membrane, PlateBending, Potential, SheetModel, WeakIsometry,
+};
 use isosheet_mesh::{MassKind, Sheet, VertexId};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -21,8 +23,12 @@ pub(super) enum Isometry {
     /// The membrane of office paper, see [`Membrane`]; the bending stiffness of a plate, see
     /// [`PlateBending`].
     Paper,
-    /// A membrane of the stiffness [`soft_stiffness`]; the bending stiffness of a plate.
+    /// A membrane of the stiffness [`WeakIsometry::stiffness_for`], which leaves bends free; the bending
+    /// stiffness of a plate.
     Soft,
+    /// Two equations for each vertex and a membrane of that stiffness, see [`WeakIsometry`]; the bending
+    /// stiffness of a plate.
+    Weak,
 }
 
 /// Mass and bending stiffness of a sheet, and which vertices clamps fix.
@@ -37,17 +43,18 @@ pub(super) struct Material<'a> {
 
 impl Isometry {
     /// The models that every table has rows for.
-    pub(super) const ALL: [Self; 3] = [Self::Rods, Self::Paper, Self::Soft];
+    pub(super) const ALL: [Self; 4] = [Self::Rods, Self::Paper, Self::Soft, Self::Weak];
 
-    /// A sheet of a material, without weight and support.
+    /// A sheet of a material, without weight and support. The membranes whose stiffness follows from the
+    /// flexural rigidity have that of [`PAPER_RIGIDITY`] where there is none.
     pub(super) fn model(self, sheet: &Sheet, material: Material<'_>) -> Result<SheetModel> {
+        let rigidity = material.rigidity.unwrap_or(PAPER_RIGIDITY);
+        let soft = WeakIsometry::stiffness_for(sheet, rigidity);
         match self {
             Self::Rods => rods(sheet, material),
             Self::Paper => elastic(sheet, material, PAPER),
-            Self::Soft => {
-                let rigidity = material.rigidity.unwrap_or(PAPER_RIGIDITY);
-                elastic(sheet, material, (soft_stiffness(sheet, rigidity), PAPER.1))
-            }
+            Self::Soft => elastic(sheet, material, (soft, PAPER.1)),
+            Self::Weak => weak(sheet, material, soft),
         }
     }
 
@@ -71,7 +78,18 @@ impl Isometry {
             Self::Rods => palette::VERMILION,
             Self::Paper => palette::BLUE,
             Self::Soft => palette::GREEN,
+            Self::Weak => palette::PURPLE,
         }
+    }
+
+    /// The place among the models that are drawn beside one another, in whole steps from the middle.
+    pub(super) fn aside(self) -> f64 {
+        f64::from(self as u8) - 0.5 * (Self::ALL.len() as f64 - 1.0)
+    }
+
+    /// Whether a step keeps equations of isometry to a tolerance.
+    pub(super) fn has_equations(self) -> bool {
+        matches!(self, Self::Rods | Self::Weak)
     }
 }
 
@@ -81,6 +99,7 @@ impl fmt::Display for Isometry {
             Self::Rods => "rods",
             Self::Paper => "elastic (paper)",
             Self::Soft => "elastic (soft)",
+            Self::Weak => "weak",
         })
     }
 }
@@ -102,6 +121,18 @@ pub(super) fn elastic(
 ) -> Result<SheetModel> {
     let model = SheetModel::new(sheet, material.mass, MassKind::Lumped)?
         .with_membrane(Membrane::new(sheet, stiffness, poisson)?);
+    with_plate(model, sheet, material)
+}
+
+/// A sheet that is isometric in weak form, with a membrane of the given stiffness, newtons per metre.
+pub(super) fn weak(sheet: &Sheet, material: Material<'_>, stiffness: f64) -> Result<SheetModel> {
+    let model = SheetModel::new(sheet, material.mass, MassKind::Lumped)?
+        .with_weak_isometry(WeakIsometry::new(sheet, stiffness)?)?;
+    with_plate(model, sheet, material)
+}
+
+/// Adds the bending stiffness of a plate.
+fn with_plate(model: SheetModel, sheet: &Sheet, material: Material<'_>) -> Result<SheetModel> {
     Ok(match material.rigidity {
         None => model,
         Some(rigidity) => {
@@ -110,30 +141,14 @@ pub(super) fn elastic(
     })
 }
 
-/// Membrane stiffness `100 D / h^2` that leaves bends free (see [`Membrane`]), newtons per metre, with `h^2`
-/// twice the mean area of a triangle: the square of the side of a cell in a mesh of squares cut in two.
-pub(super) fn soft_stiffness(sheet: &Sheet, rigidity: f64) -> f64 {
-    let mean = sheet.area() / sheet.topology().faces().len() as f64;
-    100.0 * rigidity / (2.0 * mean)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use isosheet_mesh::generate;
 
-    #[test]
-    fn the_soft_stiffness_is_that_of_the_side_of_a_cell() {
-        let sheet = generate::isotropic_square(2, 1.0).unwrap();
-        let stiffness = soft_stiffness(&sheet, 2.0);
-        assert!(
-            (stiffness / (200.0 * 64.0) - 1.0).abs() < 1e-12,
-            "{stiffness}"
-        );
-    }
-
     /// A uniform stretch by 1 % along x stores `A K E^2 / 2` with Green's strain `E` and
-    /// `K = E h / (1 - nu^2)` in every elastic model, and no bending energy.
+    /// `K = E h / (1 - nu^2)` in every model with a membrane, and no bending energy. The stiffness of the soft
+    /// ones is `100 D` over the square of the side of a cell, 0.25 m.
     #[test]
     fn the_energies_of_a_stretched_square_are_known() {
         let sheet = generate::isotropic_square(1, 1.0).unwrap();
@@ -150,12 +165,14 @@ mod tests {
             clamped: &[],
         };
         let strain = 0.5 * (1.01 * 1.01 - 1.0);
-        for (isometry, stiffness) in [
-            (Isometry::Paper, 3e5),
-            (Isometry::Soft, 100.0 * PAPER_RIGIDITY * 16.0),
+        let soft = 100.0 * PAPER_RIGIDITY * 16.0;
+        for (isometry, stiffness, poisson) in [
+            (Isometry::Paper, 3e5, 0.3),
+            (Isometry::Soft, soft, 0.3),
+            (Isometry::Weak, soft, 0.0),
         ] {
             let model = isometry.model(&sheet, material).unwrap();
-            let known = 0.5 * stiffness / (1.0 - 0.09) * strain * strain;
+            let known = 0.5 * stiffness / (1.0 - poisson * poisson) * strain * strain;
             let energy = model.potential_energy(0.0, &x);
             assert!((energy / known - 1.0).abs() < 1e-9, "{energy} {known}");
             let bending = isometry.bending_energy(&sheet, (PAPER_RIGIDITY, &[]), &x);

@@ -1,14 +1,14 @@
 //! The angle at which a sheet begins to slide down a plane.
 
 use super::bisection::{Bracket, Verdict, bisect};
-use super::course::{Plan, Scene};
+use super::course::{Kept, Plan, Scene};
 use super::findings::Findings;
 use super::isometry::{Isometry, Material};
 use super::meshes::Pattern;
 use super::plot::{Dot, Figure, Joined, Panel, Scale};
 use super::records::Records;
 use super::table::Results;
-use super::targets::{Target, at_most};
+use super::targets::{Target, at_most, kept};
 use crate::draw::{Axis, Drawing};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
@@ -32,14 +32,14 @@ const START: f64 = 0.95;
 /// Tangents of the angle, over the coefficient, between which the critical one is sought.
 const TANGENTS: [f64; 2] = [0.8, 1.2];
 
-/// Whether the sheet slides: above the critical angle it does.
+/// Whether the sheet slides, which it does above the critical angle, and what its steps kept.
 fn slides(
     isometry: Isometry,
     sheet: &Sheet,
     mu: f64,
     tangent: f64,
     plan: &Plan,
-) -> Result<Verdict> {
+) -> Result<(Verdict, Kept)> {
     let (s, c) = tangent.atan().sin_cos();
     let material = Material {
         mass: MASS,
@@ -61,13 +61,14 @@ fn slides(
         contacts: Some(contacts),
     };
     let course = scene.run(plan)?;
-    Ok(if !course.ending.is_good() {
+    let verdict = if !course.ending.is_good() {
         Verdict::Undecided(course.ending.name().to_owned())
     } else if course.speed > 2.0 * options.rest_speed {
         Verdict::Above
     } else {
         Verdict::Below
-    })
+    };
+    Ok((verdict, course.kept))
 }
 
 /// Where a sheet begins to slide.
@@ -80,6 +81,7 @@ struct Slide {
     mu: f64,
     /// Tangents of the critical tilt over the coefficient.
     found: Bracket,
+    kept: Kept,
 }
 
 /// Runs the yardstick.
@@ -102,8 +104,11 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         |isometry, &(pattern, mu)| {
             let cell = SIDE / cells as f64;
             let sheet = pattern.rectangle([0.0; 2], [SIDE; 2], cell, 0.0)?;
+            let mut kept = Kept::default();
             let found = bisect(TANGENTS, halvings, |part| {
-                slides(isometry, &sheet, mu, mu * part, &plan)
+                let (verdict, run) = slides(isometry, &sheet, mu, mu * part, &plan)?;
+                kept.add(run);
+                Ok(verdict)
             })?;
             Ok(Slide {
                 isometry,
@@ -111,13 +116,17 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
                 vertices: sheet.topology().vertex_count(),
                 mu,
                 found,
+                kept,
             })
         },
     )?;
     Ok((
         Findings {
             tables: vec![table(&all, halvings)],
-            targets: Isometry::ALL.map(|m| target(m, &all)).to_vec(),
+            targets: Isometry::ALL
+                .iter()
+                .flat_map(|m| targets(*m, &all))
+                .collect(),
             ..Findings::default()
         },
         Some(plot(&all, coefficients)),
@@ -154,11 +163,15 @@ fn table(all: &[Slide], halvings: usize) -> Results {
     table
 }
 
-fn target(isometry: Isometry, all: &[Slide]) -> Target {
-    let of = all.iter().filter(|s| s.isometry == isometry);
-    let errors: Vec<Option<f64>> = of.map(|s| Some((s.found.middle()? - 1.0).abs())).collect();
+fn targets(isometry: Isometry, all: &[Slide]) -> Vec<Target> {
+    let of = || all.iter().filter(|s| s.isometry == isometry);
+    let errors: Vec<Option<f64>> = of()
+        .map(|s| Some((s.found.middle()? - 1.0).abs()))
+        .collect();
     let quantity = "relative error of the critical tangent, every mesh and coefficient";
-    at_most(isometry, quantity, 0.1, &errors)
+    let mut targets = vec![at_most(isometry, quantity, 0.1, &errors)];
+    targets.extend(kept(isometry, of().map(|s| s.kept)));
+    targets
 }
 
 /// The critical tangent over the coefficient of friction.
@@ -167,8 +180,7 @@ fn plot(all: &[Slide], coefficients: &[f64]) -> Drawing {
         isometry: s.isometry,
         mesh: s.pattern.number(),
         // Beside one another: the values differ by less than a symbol.
-        x: s.mu
-            * 1.06_f64.powf(3.0 * f64::from(s.isometry as u8) + s.pattern.number() as f64 - 4.0),
+        x: s.mu * 1.05_f64.powf(3.0 * s.isometry.aside() + s.pattern.number() as f64 - 1.0),
         y: s.found.middle(),
     });
     let ends = [
@@ -214,8 +226,11 @@ mod tests {
         let sheet = Pattern::UnionJack
             .rectangle([0.0; 2], [SIDE; 2], 0.5 * SIDE, 0.0)
             .unwrap();
-        let at = |tangent: f64| slides(Isometry::Rods, &sheet, 0.3, tangent, &plan).unwrap();
-        assert!(matches!(at(0.25), Verdict::Below));
-        assert!(matches!(at(0.35), Verdict::Above));
+        for isometry in [Isometry::Rods, Isometry::Weak] {
+            let at = |tangent: f64| slides(isometry, &sheet, 0.3, tangent, &plan).unwrap();
+            let (below, kept) = at(0.25);
+            assert!(matches!(below, Verdict::Below) && kept.gap.is_some_and(|gap| gap > 0.0));
+            assert!(matches!(at(0.35).0, Verdict::Above));
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! What a model of isometry is required to reach, and what was measured.
 
-use super::course::Course;
+use super::course::{Course, Kept};
 use super::isometry::Isometry;
 use super::table::Results;
 use serde::{Deserialize, Serialize};
@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 pub(super) enum Bound {
     AtMost,
     AtLeast,
+    Above,
 }
 
 /// A requirement, and what a model reaches.
@@ -31,6 +32,7 @@ impl Target {
         self.measured.is_some_and(|value| match self.side {
             Bound::AtMost => value <= self.bound,
             Bound::AtLeast => value >= self.bound,
+            Bound::Above => value > self.bound,
         })
     }
 }
@@ -82,6 +84,29 @@ pub(super) fn strain<'a>(model: Isometry, courses: impl Iterator<Item = &'a Cour
     at_most(model, "largest strain of an edge", 0.01, &strains)
 }
 
+/// What every accepted step guarantees, over all steps of all runs, those of runs included that did not reach
+/// their end: equations of isometry to a tolerance of 1e-12 (of models that have some), gaps above 0 (of scenes
+/// with contact).
+pub(super) fn kept(model: Isometry, runs: impl Iterator<Item = Kept>) -> Vec<Target> {
+    let mut worst = Kept::default();
+    runs.for_each(|kept| worst.add(kept));
+    let mut targets = Vec::new();
+    if model.has_equations() {
+        let quantity = "largest violation of the equations of isometry";
+        targets.push(at_most(model, quantity, 1e-12, &[Some(worst.violation)]));
+    }
+    if worst.gap.is_some() {
+        targets.push(Target {
+            model,
+            quantity: "smallest gap, m".into(),
+            side: Bound::Above,
+            bound: 0.0,
+            measured: worst.gap,
+        });
+    }
+    targets
+}
+
 /// All requirements as a table.
 pub(super) fn table<'a>(targets: impl Iterator<Item = (&'a str, &'a Target)>) -> Results {
     let mut table = Results::new(
@@ -105,6 +130,7 @@ pub(super) fn table<'a>(targets: impl Iterator<Item = (&'a str, &'a Target)>) ->
             match t.side {
                 Bound::AtMost => "at most",
                 Bound::AtLeast => "at least",
+                Bound::Above => "above",
             }
             .into(),
             t.bound.into(),
@@ -135,5 +161,23 @@ mod tests {
         assert_eq!(worst.measured, Some(5.0));
         let text = table([("y", &worst)].into_iter()).csv();
         assert!(text.ends_with("y,q,rods,at most,2,5,no\n"), "{text}");
+    }
+
+    #[test]
+    fn guarantees_are_those_of_the_worst_step() {
+        let run = |violation, gap| Kept { violation, gap };
+        let met = |model, runs: &[Kept]| -> Vec<bool> {
+            let targets = kept(model, runs.iter().copied());
+            targets.iter().map(Target::is_met).collect()
+        };
+        let [good, loose] = [1e-13, 1e-11].map(|violation| run(violation, None));
+        assert_eq!(met(Isometry::Weak, &[good, good]), [true]);
+        assert_eq!(met(Isometry::Weak, &[good, loose, good]), [false]);
+        let [near, touching] = [1e-6, 0.0].map(|gap| run(1e-13, Some(gap)));
+        assert_eq!(met(Isometry::Rods, &[near, good]), [true, true]);
+        assert_eq!(met(Isometry::Rods, &[near, touching]), [true, false]);
+        // Elastic sheets have no equations.
+        assert_eq!(met(Isometry::Paper, &[loose, near]), [true]);
+        assert!(met(Isometry::Soft, &[loose]).is_empty());
     }
 }
