@@ -180,19 +180,24 @@ const SNAP: &str = "At 0.442 s the heavy apexes have pulled the light hinge flat
 const FLUTTER: &str = "The energy of a heavy vertex gives a light one the root of the mass ratio times its speed: the light vertices flutter at time scales of \
                        1e-4 of a step, and no sub-step allowed (6e-5 of a step) resolves that.";
 
-/// Between which times (seconds) a method stops at a checkerboard of masses. Measured: from flat BDF2 0.517 s and
-/// the projection 0.0395 s, from a bump the projection 0.0473 s and energy-momentum 0.0537 s. (Of sixteen
-/// checkerboards 1 : 1e8 whose light masses differ by half a percent each BDF2 stops at four, implicit Euler at
-/// three.)
+/// Between which times (seconds) a method stops at a checkerboard of masses. Measured: from flat
+/// the projection 0.0395 s, from a bump the projection 0.0473 s and energy-momentum 0.0537 s.
 fn flutters(method: &str, ratio: f64, bump: f64) -> Option<[f64; 2]> {
     match (method, ratio, bump == 0.0) {
-        ("BDF2", 1e8, true) => Some([0.05, 0.99]),
         ("projection", 1e8, true) => Some([0.02, 0.5]),
         ("projection", 1e8, false) => Some([0.02, 0.1]),
         ("energy-momentum", 1e8, false) => Some([0.03, 0.1]),
         _ => None,
     }
 }
+
+/// Number of checkerboards that differ by half a percent of the light masses each. Whether a damped method
+/// passes one from flat is a matter of chance; how many of them is not.
+const NEIGHBOURS: u32 = 16;
+
+/// Smallest and largest number of these that a damped method stops at within a second. Measured: BDF2 and
+/// implicit Euler four each.
+const STOPPED: [f64; 2] = [0.5, 8.5];
 
 fn masses(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
@@ -243,17 +248,17 @@ fn masses(effort: Effort) -> Result<Findings> {
         }
     }
     // A checkerboard of light and heavy vertices.
-    let board = |ratio: f64, bump: f64| -> Result<(SheetModel, Sheet)> {
+    let board = |ratio: f64, bump: f64, light: f64| -> Result<(SheetModel, Sheet)> {
         let sheet = bumped(1, bump)?;
         let masses = (0..25)
-            .map(|i| if i % 2 == 0 { 0.004 } else { 0.004 * ratio })
+            .map(|i| 0.004 * if i % 2 == 0 { light } else { ratio })
             .collect();
         let model = SheetModel::with_mass(&sheet, MassMatrix::from_vertex_masses(masses)?)?
             .with_gravity()
             .with_pins(&[VertexId(0)])?;
         Ok((model, sheet))
     };
-    let (model, sheet) = board(1e8, 0.0)?;
+    let (model, sheet) = board(1e8, 0.0, 1.0)?;
     let (strain, _) = gauss_seidel(&model, sheet.positions(), FRAME, 60);
     f.naive(
         GAUSS_SEIDEL,
@@ -273,7 +278,25 @@ fn masses(effort: Effort) -> Result<Findings> {
                 Vec::new()
             };
             for (name, method) in damped().into_iter().chain(some) {
-                let (model, sheet) = board(ratio, bump)?;
+                if ratio == 1e8 && bump == 0.0 && name != "projection" {
+                    let mut stopped = 0;
+                    for k in 0..NEIGHBOURS {
+                        let (model, sheet) = board(ratio, bump, 1.0 + 0.005 * f64::from(k))?;
+                        let mut run = at_rest(model, sheet.positions(), method.clone())?;
+                        let c = course(&mut run, FRAME, 60, |_, _| {})?;
+                        stopped += u32::from(c.steps < 60);
+                    }
+                    f.at_most(
+                        format!(
+                            "{NEIGHBOURS} checkerboards 1 : 1e8, {state}, {name}: how many stop within 1 s"
+                        ),
+                        f64::from(stopped),
+                        0.0,
+                    )
+                    .limited(FLUTTER, Shortfall::Value(STOPPED));
+                    continue;
+                }
+                let (model, sheet) = board(ratio, bump, 1.0)?;
                 let weight = 9.8 * model.mass().total();
                 let mut run = at_rest(model, sheet.positions(), method)?;
                 let c = course(&mut run, FRAME, 60, |_, _| {})?;
