@@ -6,8 +6,9 @@
 
 mod analysis;
 mod barrier;
+pub(crate) mod comparison;
 mod effort;
-mod hanging;
+pub(crate) mod hanging;
 mod matrices;
 mod measure;
 mod page;
@@ -17,7 +18,7 @@ mod reference;
 mod scheme;
 mod solvers;
 mod study;
-mod tablecloth;
+pub(crate) mod tablecloth;
 mod verdict;
 
 use crate::cli::SpeedArgs;
@@ -32,6 +33,9 @@ use serde::Serialize;
 use serde_json::json;
 use std::fmt;
 use std::str::FromStr;
+
+pub(crate) use analysis::short;
+pub(crate) use problem::{bumped, corner};
 
 /// A part of the report that can be made alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

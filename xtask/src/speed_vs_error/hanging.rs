@@ -25,10 +25,10 @@ pub(crate) const ABOUT: &str = "Square sheet, side 1 m, union-jack mesh M^k, mas
     damping, 1.0 s.";
 
 /// Height of the bump, metres: nearly flat, so that the length constraints are nearly dependent.
-pub(super) const BUMP: f64 = 1e-3;
+pub(crate) const BUMP: f64 = 1e-3;
 
 /// Simulated time, seconds.
-const DURATION: f64 = 1.0;
+pub(crate) const DURATION: f64 = 1.0;
 
 /// One run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -133,13 +133,18 @@ fn measure(level: u32, name: &str, method: &Method, step: f64, patience: f64) ->
     }
 }
 
-fn run(level: u32, name: &str, method: &Method, step: f64, patience: f64) -> Result<Hanging> {
-    let sheet = bumped(level, BUMP)?;
+/// The sheet `M^level` with a bump of the given height (metres), held at its corner.
+pub(crate) fn scene(level: u32, bump: f64, method: Method) -> Result<Simulation> {
+    let sheet = bumped(level, bump)?;
     let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)?
         .with_gravity()
         .with_pins(&[corner(level)])?;
     let start = State::at_rest(sheet.positions().to_vec());
-    let mut simulation = Simulation::new(model, start, method.clone())?;
+    Ok(Simulation::new(model, start, method)?)
+}
+
+fn run(level: u32, name: &str, method: &Method, step: f64, patience: f64) -> Result<Hanging> {
+    let mut simulation = scene(level, BUMP, method.clone())?;
     let potential = |s: &Simulation| s.model().potential_energy(s.state().t, &s.state().x);
     let (energy, height) = (simulation.energy(), potential(&simulation));
     let mut row = Hanging {

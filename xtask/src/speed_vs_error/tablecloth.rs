@@ -34,10 +34,10 @@ const CLEARANCE: f64 = 1e-3;
 const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
 
 /// Step, seconds.
-const STEP: f64 = 1.0 / 60.0;
+pub(crate) const STEP: f64 = 1.0 / 60.0;
 
 /// Steps: 1.5 s.
-const STEPS: usize = 90;
+pub(crate) const STEPS: usize = 90;
 
 /// Steps between two checks for penetration.
 const CHECK: usize = 6;
