@@ -137,8 +137,12 @@ fn unit(part: Part) -> String {
     format!("speed-{part}")
 }
 
+/// Layout of what is kept of a part; raised with each change of it, so that results in an older layout are
+/// made again and not read.
+const LAYOUT: u32 = 2;
+
 fn options(effort: StudyEffort) -> serde_json::Value {
-    json!({ "effort": effort })
+    json!({ "effort": effort, "layout": LAYOUT })
 }
 
 /// What is known about a part, whatever its effort.

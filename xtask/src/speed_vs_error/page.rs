@@ -168,7 +168,7 @@ fn conclusions(results: &Results) -> Vec<String> {
             .map(verdict::words),
     );
     if let Some(rows) = &results.hanging {
-        all.extend(hanging::targets(rows));
+        all.extend(hanging::comparisons(rows));
     }
     if let Some(rows) = &results.tablecloth {
         all.extend(tablecloth::conclusions(rows));
