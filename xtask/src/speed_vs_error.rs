@@ -12,7 +12,6 @@ pub(crate) mod hanging;
 mod matrices;
 mod measure;
 mod page;
-mod peers;
 mod problem;
 mod reference;
 mod scheme;
