@@ -1,7 +1,8 @@
-//! Two scenes in the middle of their runs, with meshes of 81 to 1089 vertices: a nearly flat sheet of 1 m that
-//! is held at a corner, and the same sheet, free, above a table, with contact with the table and with itself.
-//! Measured are the search for pairs, the narrow phase, the derivatives of contact, and one whole step. A step
-//! continues from a checkpoint, so that history, multipliers and active contacts are those of the run.
+//! Two scenes in the middle of their runs, with meshes of 81 to 1089 vertices: a nearly flat sheet of 1 m
+//! that is held at a corner, and the same sheet, free, above a table, with contact with the table and with
+//! itself. Measured are the search for pairs, the narrow phase, the derivatives of contact, and one whole
+//! step. A step continues from a checkpoint, so that history, multipliers and active contacts are those of
+//! the run.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
