@@ -35,11 +35,11 @@ pub(crate) enum Command {
     /// there and was made by the same program with the same effort is kept. Times are wall times on one core:
     /// leave the machine alone meanwhile.
     SpeedVsError(SpeedArgs),
-    /// Measure what a step costs as the mesh is refined, without and with contact: time, memory, fill, fitted
-    /// powers
+    /// Measure what steps and whole runs cost as the mesh is refined, without and with contact: time, memory,
+    /// fill, fitted powers
     ///
-    /// Writes DIR/scale.html (self-contained), DIR/scale.csv, DIR/draping.csv, DIR/scale.svg and
-    /// DIR/scale.png and prints the tables.
+    /// Writes DIR/scale.html (self-contained), DIR/scale.csv, DIR/draping.csv, DIR/runs.csv, DIR/scale.svg
+    /// and DIR/scale.png and prints the tables.
     Scale(ScaleArgs),
     /// Measure how much a triangulated sheet locks: how much stiffer it is than a smooth one, by yardsticks
     /// with references
@@ -129,8 +129,12 @@ pub(crate) struct ScaleArgs {
     pub(crate) out: PathBuf,
 
     /// Small meshes only: checks that everything works in seconds, and shows no result
-    #[arg(long)]
+    #[arg(long, conflicts_with = "full")]
     pub(crate) quick: bool,
+
+    /// Whole runs up to M^5 instead of M^3, with ten minutes of wall time for each: about an hour
+    #[arg(long)]
+    pub(crate) full: bool,
 }
 
 /// Arguments of `locking`.

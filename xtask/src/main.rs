@@ -3,7 +3,7 @@
 //! * `reproduce-figures`: the figures and the table of Liu, Tang and Joneja 2007, made with this workspace.
 //! * `condition-table`: the condition numbers of the system coordinates.
 //! * `speed-vs-error`: time against errors of all methods and solvers.
-//! * `scale`: time, memory and fill of a step against the size of the mesh.
+//! * `scale`: time, memory and fill of a step, and the cost of whole runs, against the size of the mesh.
 //! * `locking`: how much stiffer than a smooth sheet a triangulated one is.
 //! * `hard-cases`: what the solvers do where others break.
 //!

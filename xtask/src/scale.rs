@@ -1,10 +1,14 @@
-//! `scale`: what a step costs as the mesh is refined.
+//! `scale`: what steps and whole runs cost as the mesh is refined.
 
 mod drape;
+mod findings;
 mod measure;
 mod plot;
 mod report;
+mod tables;
 mod timed;
+mod whole;
+mod whole_report;
 
 use crate::cli::ScaleArgs;
 use crate::progress::Progress;
@@ -12,39 +16,55 @@ use crate::store::Store;
 use crate::{Outcome, interrupt};
 use anyhow::Result;
 use measure::measure;
+use std::ops::RangeInclusive;
+use whole::{Scene, WholeRun};
 
 pub(crate) use drape::DrapeRow;
 pub(crate) use measure::{Row, exponent, factorisation_time};
 
-/// Levels of a run that only shows that everything works.
-const QUICK: std::ops::RangeInclusive<u32> = 1..=3;
+/// What is measured.
+struct Extent {
+    /// Meshes of the single steps.
+    steps: RangeInclusive<u32>,
+    /// Meshes of the whole runs.
+    runs: RangeInclusive<u32>,
+    /// Longest whole run, seconds of wall time.
+    limit: f64,
+}
 
-/// Coarsest level of a full run.
-const COARSEST: u32 = 2;
+impl Extent {
+    fn of(args: &ScaleArgs) -> Self {
+        if args.quick {
+            // Shows that everything works.
+            return Self {
+                steps: 1..=3,
+                runs: 1..=2,
+                limit: 5.0,
+            };
+        }
+        let (finest, limit) = if args.full { (5, 600.0) } else { (3, 60.0) };
+        Self {
+            steps: 2..=args.level,
+            runs: 1..=finest,
+            limit,
+        }
+    }
+}
 
 /// Runs the command.
 pub(crate) fn run(args: &ScaleArgs) -> Result<Outcome> {
     let store = Store::open(&args.out)?;
-    let levels = if args.quick {
-        QUICK
-    } else {
-        COARSEST..=args.level
-    };
-    let Some(results) = measured(levels)? else {
+    let Some(results) = measured(&Extent::of(args))? else {
         return Ok(Outcome::Interrupted);
     };
-    for (path, bytes) in report::files(&results)? {
-        store.write(&path, &bytes)?;
+    let mut names = Vec::new();
+    for (name, bytes) in report::files(&results)? {
+        store.write(&name, &bytes)?;
+        names.push(name);
     }
     store.write("scale.html", report::page(&results)?.as_bytes())?;
     print!("{}", report::text(&results));
-    for name in [
-        "scale.csv",
-        "draping.csv",
-        "scale.svg",
-        "scale.png",
-        "scale.html",
-    ] {
+    for name in names.iter().map(String::as_str).chain(["scale.html"]) {
         println!("{}", store.root().join(name).display());
     }
     Ok(Outcome::Complete)
@@ -54,16 +74,28 @@ pub(crate) fn run(args: &ScaleArgs) -> Result<Outcome> {
 pub(crate) struct Results {
     pub(crate) hanging: Vec<Row>,
     pub(crate) draping: Vec<DrapeRow>,
+    /// Whole runs, and the limit of wall time of each, seconds.
+    pub(crate) whole: Vec<WholeRun>,
+    pub(crate) limit: f64,
 }
 
-/// One row of each kind for each level, coarse to fine, so that the peak of the memory is that of the level;
+impl Results {
+    /// The whole runs of a scene.
+    fn whole_of(&self, scene: Scene) -> Vec<&WholeRun> {
+        self.whole.iter().filter(|r| r.scene == scene).collect()
+    }
+}
+
+/// Single steps first, coarse to fine, so that the peak of the memory is that of the level; then whole runs.
 /// `None` when stopped.
-fn measured(levels: impl Iterator<Item = u32>) -> Result<Option<Results>> {
+fn measured(extent: &Extent) -> Result<Option<Results>> {
     let mut results = Results {
         hanging: Vec::new(),
         draping: Vec::new(),
+        whole: Vec::new(),
+        limit: extent.limit,
     };
-    for level in levels {
+    for level in extent.steps.clone() {
         if interrupt::requested() {
             return Ok(None);
         }
@@ -72,6 +104,19 @@ fn measured(levels: impl Iterator<Item = u32>) -> Result<Option<Results>> {
         bar.step();
         results.draping.push(draping(level)?);
         bar.finish("hanging and draping measured");
+    }
+    for level in extent.runs.clone() {
+        let bar = Progress::start(format!("whole runs of M^{level}"), Scene::ALL.len());
+        for scene in Scene::ALL {
+            if interrupt::requested() {
+                return Ok(None);
+            }
+            results
+                .whole
+                .extend(whole::measure(scene, level, extent.limit)?);
+            bar.step();
+        }
+        bar.finish("measured");
     }
     Ok(Some(results))
 }

@@ -6,18 +6,18 @@
 
 mod analysis;
 mod barrier;
+pub(crate) mod comparison;
 mod effort;
-mod hanging;
+pub(crate) mod hanging;
 mod matrices;
 mod measure;
 mod page;
-mod peers;
 mod problem;
 mod reference;
 mod scheme;
 mod solvers;
 mod study;
-mod tablecloth;
+pub(crate) mod tablecloth;
 mod verdict;
 
 use crate::cli::SpeedArgs;
@@ -32,6 +32,9 @@ use serde::Serialize;
 use serde_json::json;
 use std::fmt;
 use std::str::FromStr;
+
+pub(crate) use analysis::short;
+pub(crate) use problem::{bumped, corner};
 
 /// A part of the report that can be made alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,8 +136,12 @@ fn unit(part: Part) -> String {
     format!("speed-{part}")
 }
 
+/// Layout of what is kept of a part; raised with each change of it, so that results in an older layout are
+/// made again and not read.
+const LAYOUT: u32 = 2;
+
 fn options(effort: StudyEffort) -> serde_json::Value {
-    json!({ "effort": effort })
+    json!({ "effort": effort, "layout": LAYOUT })
 }
 
 /// What is known about a part, whatever its effort.

@@ -1,8 +1,9 @@
 //! What a step with contact costs at one mesh size.
 
-use super::measure::{STEP, bumped, peak_memory};
+use super::measure::{STEP, peak_memory};
 use super::timed::Timed;
 use crate::interrupt;
+use crate::speed_vs_error::bumped;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Method, RunEnd, SheetModel, Simulation, State, StepReport};

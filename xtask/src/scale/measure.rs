@@ -1,11 +1,11 @@
 //! What is measured at one mesh size.
 
 use crate::interrupt;
+use crate::speed_vs_error::{bumped, corner};
 use anyhow::{Context, Result};
 use isosheet_coords::linalg::{Fill, Ordering, Pattern, SparseLlt, elimination_order};
 use isosheet_dynamics::{History, Method, SheetModel, Simulation, State, StepReport};
-use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
-use std::f64::consts::PI;
+use isosheet_mesh::{MassKind, Sheet};
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
@@ -82,22 +82,6 @@ impl Row {
 
 /// Height of the bump of the hanging sheet, metres: all but flat.
 const BUMP: f64 = 1e-3;
-
-/// A sheet of 1 m, flat but for a bump of the given height (metres), in the isotropic mesh of a level.
-pub(super) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
-    let flat = generate::isotropic_square(level, 1.0)?;
-    let mut x = flat.positions().to_vec();
-    for p in x.chunks_mut(3) {
-        p[2] = bump * (PI * p[0]).sin() * (PI * p[1]).sin();
-    }
-    Ok(Sheet::new(x, &flat.face_indices())?)
-}
-
-/// The corner (0, 1).
-fn corner(level: u32) -> VertexId {
-    let n = (1 << (level + 1)) + 1;
-    VertexId(n * (n - 1))
-}
 
 /// Measures one level: orders of elimination, and `steps` steps of the hanging sheet after a first one that
 /// is not timed.

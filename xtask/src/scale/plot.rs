@@ -1,7 +1,9 @@
 //! The plots of the scaling study.
 
+use super::findings::points;
 use super::measure::Row;
-use super::report::{factor_bytes, points};
+use super::tables::factor_bytes;
+use super::whole::{Damped, Scene};
 use super::{DrapeRow, Results};
 use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, column, palette};
 
@@ -148,5 +150,39 @@ pub(super) fn plot(results: &Results) -> Drawing {
             law("~V~^{1.5}", &drape(|r| r.per_step), |v| v.powf(1.5)),
         ],
     );
-    column(&[time, contact, memory, operations], 26.0)
+    let mut panels = vec![time, contact, memory, operations];
+    panels.extend(whole(results));
+    column(&panels, 26.0)
+}
+
+/// Whole runs by the default method from the first start, of meshes on which they came to the end.
+fn whole(results: &Results) -> Option<Drawing> {
+    let of = |scene| -> Vec<[f64; 2]> {
+        let mut runs = results.whole_of(scene);
+        runs.retain(|r| r.ended() && r.method == Damped::Bdf2 && r.start == 1);
+        runs.iter()
+            .filter_map(|r| Some([r.vertices as f64, r.rate()?]))
+            .collect()
+    };
+    let [hanging, tablecloth] = [of(Scene::Hanging), of(Scene::Tablecloth)];
+    let law = law("~V~^{1.5}", &hanging, |v| v.powf(1.5));
+    let all: Vec<Series> = [
+        series(
+            Scene::Hanging.name(),
+            hanging,
+            palette::BLUE,
+            Some(Marker::Disc),
+        ),
+        series(
+            Scene::Tablecloth.name(),
+            tablecloth,
+            palette::VERMILION,
+            Some(Marker::Square),
+        ),
+        law,
+    ]
+    .into_iter()
+    .filter(|s| !s.points.is_empty())
+    .collect();
+    (!all.is_empty()).then(|| panel("seconds per simulated second", all))
 }

@@ -67,45 +67,28 @@ struct Pass {
 /// Most repetitions of short runs.
 const REPETITIONS: usize = 5;
 
-/// Measures a method at `intervals` steps between checkpoints, or with a tolerance relative to the energy
-/// scale. Runs that take longer than `patience` seconds are given up.
+/// Measures a method at a fineness. Runs that take longer than `patience` seconds are given up.
 pub(crate) fn point(
     problem: Problem,
     scheme: &Scheme,
     reference: &Reference,
-    fineness: Asked,
+    asked: Asked,
     patience: f64,
 ) -> Result<Point> {
-    let (asked, value, pieces) = match fineness {
-        Asked::Steps(n) => {
-            let h = reference.interval() / n as f64;
-            (Fineness::Step(h), h, n)
-        }
-        Asked::Tolerance(part) => (Fineness::Tolerance(part * reference.energy), part, 1),
-    };
-    let pieces = if scheme.steps_itself() { 1 } else { pieces };
     let mut best: Option<Pass> = None;
     let mut repetitions = 0;
     let clock = Instant::now();
-    let failed = |failure: String| Point {
-        scheme: scheme.name.clone(),
-        fineness: value,
-        step: 0.0,
-        uniform: false,
-        wall: 0.0,
-        repetitions: 0,
-        steps: 0,
-        rejected: 0,
-        factorisations: 0,
-        errors: None,
-        partial: None,
-        reached: 0.0,
-        failure: Some(failure),
-    };
     while repetitions < REPETITIONS {
-        let mut simulation = match scheme.start(problem, asked)? {
+        let mut simulation = match scheme.start(problem, asked.fineness(reference))? {
             Ok(simulation) => simulation,
-            Err(error) => return Ok(failed(format!("refused at the start: {error}"))),
+            Err(error) => {
+                let failure = format!("refused at the start: {error}");
+                return Ok(refused(scheme, asked.value(reference), failure));
+            }
+        };
+        let pieces = match asked {
+            Asked::Steps(n) if !scheme.steps_itself() => n,
+            _ => 1,
         };
         let pass = run(&mut simulation, reference, pieces, patience)?;
         repetitions += 1;
@@ -117,22 +100,49 @@ pub(crate) fn point(
             break;
         }
     }
-    let Some(pass) = best else {
-        return Ok(failed("not run".into()));
+    let Some(mut pass) = best else {
+        return Ok(refused(scheme, asked.value(reference), "not run".into()));
     };
-    let mut pass = pass;
     // Differences smaller than the doubt of the reference mean nothing.
     pass.errors.position = pass.errors.position.max(reference.doubt());
-    if pass.failure.is_none() && pass.errors.energy > BLOWN_UP {
+    Ok(of_pass(pass, scheme, reference, asked, repetitions))
+}
+
+/// The point of a method that took no step.
+fn refused(scheme: &Scheme, fineness: f64, failure: String) -> Point {
+    Point {
+        scheme: scheme.name.clone(),
+        fineness,
+        step: 0.0,
+        uniform: false,
+        wall: 0.0,
+        repetitions: 0,
+        steps: 0,
+        rejected: 0,
+        factorisations: 0,
+        errors: None,
+        partial: None,
+        reached: 0.0,
+        failure: Some(failure),
+    }
+}
+
+/// The point that a pass over the checkpoints makes.
+fn of_pass(
+    mut pass: Pass,
+    scheme: &Scheme,
+    reference: &Reference,
+    asked: Asked,
+    repetitions: usize,
+) -> Point {
+    let energy = pass.errors.energy;
+    if pass.failure.is_none() && energy > BLOWN_UP {
         pass.failure = Some(format!(
-            "blown up: its energy changes by {:.0e} of the largest kinetic energy",
-            pass.errors.energy
+            "blown up: its energy changes by {energy:.0e} of the largest kinetic energy"
         ));
     }
     let finished = pass.failure.is_none();
-    let partial = (!finished && pass.checkpoints > 0 && pass.errors.energy <= BLOWN_UP)
-        .then_some(pass.errors);
-    let expected = match fineness {
+    let expected = match asked {
         Asked::Steps(n) => n * reference.usable(),
         Asked::Tolerance(_) => pass.steps,
     };
@@ -142,14 +152,16 @@ pub(crate) fn point(
     } else {
         0
     };
-    Ok(Point {
-        step: match asked {
+    let as_asked = (expected..=expected + rests).contains(&pass.steps) && pass.rejected == 0;
+    let partial = !finished && pass.checkpoints > 0 && energy <= BLOWN_UP;
+    Point {
+        scheme: scheme.name.clone(),
+        fineness: asked.value(reference),
+        step: match asked.fineness(reference) {
             Fineness::Step(h) if rests > 0 => h,
             _ => pass.reached / pass.steps.max(1) as f64,
         },
-        uniform: finished
-            && (expected..=expected + rests).contains(&pass.steps)
-            && pass.rejected == 0,
+        uniform: finished && as_asked,
         wall: if pass.reached > 0.0 {
             pass.wall / pass.reached
         } else {
@@ -160,11 +172,10 @@ pub(crate) fn point(
         rejected: pass.rejected,
         factorisations: pass.factorisations,
         errors: finished.then_some(pass.errors),
-        partial,
+        partial: partial.then_some(pass.errors),
         reached: pass.reached,
         failure: pass.failure,
-        ..failed(String::new())
-    })
+    }
 }
 
 /// How fine a run is asked to be.
@@ -174,6 +185,24 @@ pub(crate) enum Asked {
     Steps(usize),
     /// Change of energy in a step, parts of the energy scale.
     Tolerance(f64),
+}
+
+impl Asked {
+    /// The step in seconds or the tolerance in joules.
+    fn fineness(self, reference: &Reference) -> Fineness {
+        match self {
+            Self::Steps(n) => Fineness::Step(reference.interval() / n as f64),
+            Self::Tolerance(part) => Fineness::Tolerance(part * reference.energy),
+        }
+    }
+
+    /// The step in seconds or the tolerance as asked for, see [`Point::fineness`].
+    fn value(self, reference: &Reference) -> f64 {
+        match self {
+            Self::Steps(n) => reference.interval() / n as f64,
+            Self::Tolerance(part) => part,
+        }
+    }
 }
 
 fn run(

@@ -8,12 +8,21 @@ use super::scheme::DEFAULT;
 use super::solvers::{self, SolverRow};
 use super::study::Study;
 use super::tablecloth::{self, Tablecloth};
-use super::{Part, options, peers, stamp, verdict};
+use super::{Part, options, stamp, verdict};
 use crate::figures::machine;
 use crate::report::html::{STYLE, escape, inline_svg, table};
 use crate::store::Store;
 use anyhow::Result;
 use std::fmt::Write;
+
+/// Page of the repository on what other programs took for the same scenes.
+const ELSEWHERE: &str = "docs/measured-elsewhere.md";
+
+fn elsewhere() -> String {
+    format!(
+        "What other programs took for this scene was measured elsewhere, and not by this command: see {ELSEWHERE} in the repository."
+    )
+}
 
 /// What has been made so far with one effort.
 struct Results {
@@ -85,24 +94,18 @@ fn page(
         problem(&mut out, study, picture)?;
     }
     if let Some(rows) = &results.hanging {
-        out.push_str(
-            "<section id=\"hanging\"><h2>The hanging sheet, as other programs did it</h2>",
-        );
+        out.push_str("<section id=\"hanging\"><h2>The hanging sheet</h2>");
         paragraph(&mut out, hanging::ABOUT);
         list(&mut out, &hanging::conclusions(rows));
         table(&mut out, &hanging::table(rows));
-        table(&mut out, &peers::table());
-        paragraph(&mut out, peers::REMARK);
+        paragraph(&mut out, &elsewhere());
         out.push_str("</section>");
     }
     if let Some(rows) = &results.tablecloth {
-        out.push_str(
-            "<section id=\"tablecloth\"><h2>The tablecloth, as other programs did it</h2>",
-        );
+        out.push_str("<section id=\"tablecloth\"><h2>The tablecloth</h2>");
         paragraph(&mut out, tablecloth::ABOUT);
         table(&mut out, &tablecloth::table(rows));
-        table(&mut out, &peers::tablecloth());
-        paragraph(&mut out, peers::REMARK);
+        paragraph(&mut out, &elsewhere());
         out.push_str("</section>");
     }
     if let Some(rows) = &results.solvers {
@@ -168,7 +171,7 @@ fn conclusions(results: &Results) -> Vec<String> {
             .map(verdict::words),
     );
     if let Some(rows) = &results.hanging {
-        all.extend(hanging::targets(rows));
+        all.extend(hanging::comparisons(rows));
     }
     if let Some(rows) = &results.tablecloth {
         all.extend(tablecloth::conclusions(rows));
@@ -212,4 +215,17 @@ fn list(out: &mut String, items: &[String]) {
         let _ = write!(out, "<li>{}</li>", escape(item));
     }
     out.push_str("</ul>");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn the_page_on_other_programs_exists() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let text = std::fs::read_to_string(root.join(ELSEWHERE)).expect("the page is there");
+        assert!(text.contains("The hanging sheet") && text.contains("The tablecloth"));
+    }
 }

@@ -232,7 +232,7 @@ fn strip(links: u32) -> Result<Sheet> {
 }
 
 /// The union-jack square `M^level` of side 1 m with `z = bump sin(pi x) sin(pi y)`.
-pub(super) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
+pub(crate) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
     let flat = isotropic_square(level, 1.0)?;
     let mut x = flat.positions().to_vec();
     for p in x.as_chunks_mut::<3>().0 {
@@ -242,7 +242,7 @@ pub(super) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
 }
 
 /// The corner (0, 1) of `M^level`.
-pub(super) fn corner(level: u32) -> VertexId {
+pub(crate) fn corner(level: u32) -> VertexId {
     let n = (1 << (level + 1)) + 1;
     VertexId(n * (n - 1))
 }

@@ -8,7 +8,6 @@ use isosheet_dynamics::{Method, RunEnd, Simulation, State, StepReport, leave_fla
 use isosheet_tests::max_difference;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 /// Positions that errors are measured against.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -71,6 +70,13 @@ impl Reference {
     }
 }
 
+/// Work of a run: factorisations times vertices. A step counts as at least as many factorisations as a
+/// Runge-Kutta step has stages: what factorises less often evaluates forces instead.
+pub(crate) type Work = u64;
+
+/// Stages of a Runge-Kutta step.
+const STAGES: usize = 4;
+
 /// A motion sampled at the checkpoints.
 struct Track {
     states: Vec<Vec<f64>>,
@@ -81,8 +87,10 @@ struct Track {
     change: f64,
 }
 
-/// The reference of a problem; either half of the work may take `budget` seconds.
-pub(crate) fn compute(problem: Problem, budget: f64) -> Result<Reference> {
+/// The reference of a problem; either half of the work may take `budget` units, see [`Work`].
+///
+/// Neither the reference nor the time over which it is trusted depends on the clock: the work is counted.
+pub(crate) fn compute(problem: Problem, budget: Work) -> Result<Reference> {
     let duration = problem.duration();
     let times: Vec<f64> = (1..=CHECKPOINTS)
         .map(|k| duration * k as f64 / CHECKPOINTS as f64)
@@ -136,24 +144,25 @@ pub(crate) fn compute(problem: Problem, budget: f64) -> Result<Reference> {
     })
 }
 
-/// Halves the steps until nothing changes any more or the budget in seconds is used up; with an `order`, the
-/// last two runs are then extrapolated to steps of zero. `None` when there are no two runs.
+/// Halves the steps until nothing changes any more or the budget is used up; with an `order`, the last two
+/// runs are then extrapolated to steps of zero. `None` when there are no two runs.
 fn refine(
     problem: Problem,
     scheme: &Scheme,
-    budget: f64,
+    budget: Work,
     order: Option<f64>,
 ) -> Result<Option<Track>> {
-    let clock = Instant::now();
+    let mut spent = 0;
     let mut tracks: Vec<Track> = Vec::new();
     for k in 2..=14 {
-        let started = Instant::now();
-        let patience = if tracks.len() < 2 {
+        let limit = if tracks.len() < 2 {
             FIRST * budget
         } else {
-            budget - clock.elapsed().as_secs_f64()
+            budget.saturating_sub(spent)
         };
-        match sample(problem, scheme, 1 << k, patience)? {
+        let (track, work) = sample(problem, scheme, 1 << k, limit)?;
+        spent += work;
+        match track {
             Some(mut track) => {
                 if let Some(before) = tracks.last() {
                     track.change = distance(&track.states, &before.states);
@@ -165,11 +174,10 @@ fn refine(
                 tracks.push(track);
             }
             // Steps too coarse for the method may be too coarse no longer.
-            None if tracks.is_empty() && clock.elapsed().as_secs_f64() < budget => continue,
+            None if tracks.is_empty() && spent < budget => continue,
             None => break,
         }
-        let left = budget - clock.elapsed().as_secs_f64();
-        let late = 2.0 * started.elapsed().as_secs_f64() > left;
+        let late = 2 * work > budget.saturating_sub(spent);
         let settled = tracks.last().is_some_and(|t| t.change < SETTLED);
         if tracks.len() > 1 && (settled || late) {
             break;
@@ -191,7 +199,7 @@ const SETTLED: f64 = 1e-13;
 const ROUNDED: f64 = 1e-9;
 
 /// The first two runs may take so many times the budget: without them there is no reference at all.
-const FIRST: f64 = 10.0;
+const FIRST: Work = 10;
 
 /// `(2^p x(h/2) - x(h)) / (2^p - 1)`.
 fn richardson(fine: &mut Track, coarse: &Track, order: f64) {
@@ -204,7 +212,7 @@ fn richardson(fine: &mut Track, coarse: &Track, order: f64) {
 }
 
 /// Runge-Kutta in a chart where it gets through, else the energy-momentum method, extrapolated.
-fn second_opinion(problem: Problem, budget: f64) -> Result<(&'static str, Track)> {
+fn second_opinion(problem: Problem, budget: Work) -> Result<(&'static str, Track)> {
     let chart = refine(problem, &Scheme::runge_kutta(), budget, None)?;
     if let Some(track) = chart
         && track.change < 1e-7
@@ -225,11 +233,17 @@ fn distance(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
         .fold(0.0, |m: f64, (a, b)| m.max(max_difference(a, b)))
 }
 
-fn sample(problem: Problem, scheme: &Scheme, steps: usize, patience: f64) -> Result<Option<Track>> {
+/// A run and its work; no run if it failed or its work exceeded the limit.
+fn sample(
+    problem: Problem,
+    scheme: &Scheme,
+    steps: usize,
+    limit: Work,
+) -> Result<(Option<Track>, Work)> {
     let interval = problem.duration() / CHECKPOINTS as f64;
     match scheme.start(problem, Fineness::Step(interval / steps as f64))? {
-        Ok(mut run) => follow(&mut run, interval, CHECKPOINTS, steps, patience),
-        Err(_) => Ok(None),
+        Ok(mut run) => follow(&mut run, interval, CHECKPOINTS, steps, limit),
+        Err(_) => Ok((None, 0)),
     }
 }
 
@@ -238,9 +252,8 @@ fn follow(
     interval: f64,
     checkpoints: usize,
     steps: usize,
-    patience: f64,
-) -> Result<Option<Track>> {
-    let clock = Instant::now();
+    limit: Work,
+) -> Result<(Option<Track>, Work)> {
     let mut track = Track {
         states: Vec::new(),
         energy: run.model().kinetic_energy(&run.state().v),
@@ -248,22 +261,26 @@ fn follow(
         change: f64::INFINITY,
     };
     let h = interval / steps as f64;
-    let mut watch = |_: &Simulation, _: &StepReport| {
-        if clock.elapsed().as_secs_f64() > patience {
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
-    };
+    let vertices = run.state().x.len() / 3;
+    let mut work = 0;
     for _ in 0..checkpoints {
+        let mut watch = |_: &Simulation, report: &StepReport| {
+            let factorisations = report.factorisations.max(STAGES * report.substeps);
+            work += (factorisations * vertices) as Work;
+            if work > limit {
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        };
         let end = run.run(interval, h, &mut [&mut watch, &mut interrupt::observe]);
         interrupt::check()?;
         if end != Ok(RunEnd::Complete) {
-            return Ok(None);
+            return Ok((None, work));
         }
         track.energy = track.energy.max(run.model().kinetic_energy(&run.state().v));
         track.states.push(run.state().x.clone());
     }
-    Ok(Some(track))
+    Ok((Some(track), work))
 }
 
 /// Random displacement of the perturbed start, mean edge lengths.
@@ -275,7 +292,7 @@ fn growth(
     interval: f64,
     usable: usize,
     steps: usize,
-    budget: f64,
+    budget: Work,
 ) -> Result<Option<Growth>> {
     let mut tracks = Vec::new();
     let mut starts = Vec::new();
@@ -287,7 +304,7 @@ fn growth(
         let Ok(mut run) = problem.simulation(&method, State::moving(x, v))? else {
             return Ok(None);
         };
-        match follow(&mut run, interval, usable, steps.max(1), budget)? {
+        match follow(&mut run, interval, usable, steps.max(1), budget)?.0 {
             Some(track) => tracks.push(track.states),
             None => return Ok(None),
         }
@@ -310,12 +327,38 @@ mod tests {
 
     #[test]
     fn the_exact_pendulum_and_the_reference_method_agree() {
-        let reference = compute(Problem::Pendulum, 1.0).unwrap();
+        let reference = compute(Problem::Pendulum, BUDGET).unwrap();
         assert_eq!(reference.usable(), CHECKPOINTS);
         assert!(reference.doubt() < 1e-8, "{:e}", reference.doubt());
         let growth = reference.growth.unwrap();
         // Neighbouring pendulums part in proportion to time only.
         assert!((1.0..100.0).contains(&(growth.end / growth.start)));
+    }
+
+    /// Work for some hundred steps of the pendulum between checkpoints.
+    const BUDGET: Work = 100_000;
+
+    #[test]
+    fn more_work_gives_a_finer_reference_and_the_same_work_the_same_bits() {
+        let scheme = Scheme::reference();
+        let track = |budget| {
+            refine(Problem::Pendulum, &scheme, budget, None)
+                .unwrap()
+                .unwrap()
+        };
+        let (coarse, fine, again) = (track(BUDGET / 50), track(BUDGET), track(BUDGET));
+        assert!(
+            fine.steps > coarse.steps && fine.change < coarse.change,
+            "{} {}",
+            fine.steps,
+            coarse.steps
+        );
+        assert!(fine.steps == again.steps && fine.states == again.states);
+        // The work of a run grows with its steps, and a run beyond its limit is given up.
+        let (run, work) = sample(Problem::Pendulum, &scheme, 8, Work::MAX).unwrap();
+        assert!(run.is_some() && work >= (8 * CHECKPOINTS * STAGES * 3) as Work);
+        let (run, cut) = sample(Problem::Pendulum, &scheme, 8, work / 2).unwrap();
+        assert!(run.is_none() && cut > work / 2 && cut < work);
     }
 
     #[test]
