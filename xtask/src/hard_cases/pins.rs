@@ -45,7 +45,7 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
         })
         .collect();
     let corners = [0, n - 1, n * (n - 1), n * n - 1].map(VertexId);
-    let steps = effort.pick(10, 60, 240);
+    let steps = effort.pick(15, 60, 240);
     let flat = bumped(level, 0.0)?;
     let outcome = textbook(&pinned(&flat, &boundary)?, flat.positions(), 1e-3, 1000);
     let (text, failed) = match outcome {
