@@ -134,17 +134,15 @@ impl Strategy {
             Strategy::Sqp(Regularisation::Weak),
             Strategy::FromStart,
         ];
-        match (problem.model.isometry(), problem.has_contact()) {
-            (Isometry::Elastic, _) => return &ALL[2..],
-            (Isometry::Weak, false) => return &ALL[1..],
-            _ => {}
-        }
-        match (problem.has_contact(), problem.model.has_drives()) {
-            (false, _) if faces == Faces::Slivers => &SLIVERS,
-            (false, _) => &ALL,
+        let model = problem.model;
+        match (model.isometry(), problem.has_contact(), model.has_drives()) {
+            (Isometry::Elastic, _, _) => &ALL[2..],
+            (Isometry::Weak, false, _) => &ALL[1..],
+            (Isometry::Rods, false, _) if faces == Faces::Slivers => &SLIVERS,
+            (Isometry::Rods, false, _) => &ALL,
             // Resting in contact is a matter of nearly dependent rods.
-            (true, false) => &ALL[1..],
-            (true, true) => &ALL[2..],
+            (_, true, false) => &ALL[1..],
+            (_, true, true) => &ALL[2..],
         }
     }
 }

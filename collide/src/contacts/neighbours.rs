@@ -117,7 +117,10 @@ impl Neighbours {
         if self.scope == Scope::OneMotion || !self.is_within_skin(x, bodies) {
             self.list(x, reach, bodies);
         }
-        self.boxes.update_boxes(x, &self.end, 0.5 * reach);
+        // (Lists for one motion are made of its boxes.)
+        if self.scope == Scope::Skin {
+            self.boxes.update_boxes(x, &self.end, 0.5 * reach);
+        }
     }
 
     /// Whether the motion from `x` to the end keeps to the skin of the lists.

@@ -2,7 +2,7 @@
 
 use super::lagrangian::{Definiteness, Merit, RodLoad};
 use super::problem::StepProblem;
-use super::{FRICTION_SETTLED, Minimiser};
+use super::{FRICTION_SETTLED, Minimiser, Strategy};
 use crate::Isometry;
 use crate::constraint::rows::HessianPart;
 use crate::report::SolverEffort;
@@ -335,13 +335,12 @@ impl<'a, 'b> Sqp<'a, 'b> {
     /// either way, or one with friction that belongs to other normal forces. Returns false if there is no
     /// reason to.
     fn goes_on(&mut self, direction: &Direction) -> bool {
-        // The strategy that comes first: others start off the saddle.
-        let comes_first = match self.problem.model.isometry() {
-            Isometry::Weak => !self.problem.has_contact(),
-            Isometry::Rods | Isometry::Elastic => self.regularisation == Regularisation::Strong,
-        };
-        let may_be_saddle =
-            direction.hessian == Definiteness::Modified && comes_first && !self.is_perturbed;
+        // Without contact the strategy that comes first looks for saddles: others start off them.
+        let first = Strategy::list(self.problem, self.minimiser.faces).first();
+        let may_be_saddle = direction.hessian == Definiteness::Modified
+            && !self.problem.has_contact()
+            && first == Some(&Strategy::Sqp(self.regularisation))
+            && !self.is_perturbed;
         let Minimiser {
             options,
             lagrangian,

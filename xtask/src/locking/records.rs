@@ -7,12 +7,11 @@ use super::isometry::Isometry;
 use crate::progress::{Progress, note};
 use crate::store::{Extent, Store};
 use anyhow::Result;
+use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::json;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The runs of one yardstick.
 pub(super) struct Records<'a> {
@@ -74,39 +73,26 @@ impl Records<'_> {
     }
 }
 
-/// The results of all jobs in their order, computed on as many threads as the machine has cores. After an
-/// error no further job begins.
+/// The results of all jobs in their order, computed on the threads that rayon has, which begin with the first
+/// jobs. After an error no further job begins.
 fn each<J: Sync, T: Send>(jobs: &[J], work: impl Fn(&J) -> Result<T> + Sync) -> Result<Vec<T>> {
-    let threads = thread::available_parallelism().map_or(1, usize::from);
-    let next = AtomicUsize::new(0);
-    let results: Vec<Mutex<Option<Result<T>>>> = jobs.iter().map(|_| Mutex::new(None)).collect();
-    thread::scope(|scope| {
-        for _ in 0..threads.min(jobs.len()) {
-            scope.spawn(|| {
-                loop {
-                    let k = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(job) = jobs.get(k) else {
-                        break;
-                    };
-                    let result = work(job);
-                    if result.is_err() {
-                        next.store(jobs.len(), Ordering::Relaxed);
-                    }
-                    if let Ok(mut slot) = results[k].lock() {
-                        *slot = Some(result);
-                    }
-                }
-            });
-        }
-    });
-    // Only jobs after one that failed have no result.
-    let results = results.into_iter().filter_map(|r| r.into_inner().ok()?);
-    results.collect()
+    let has_failed = AtomicBool::new(false);
+    let begin = |(k, job)| {
+        let result = (!has_failed.load(Ordering::Relaxed)).then(|| work(job))?;
+        has_failed.fetch_or(result.is_err(), Ordering::Relaxed);
+        Some((k, result))
+    };
+    let numbered = jobs.iter().enumerate().par_bridge();
+    let mut results: Vec<(usize, Result<T>)> = numbered.filter_map(begin).collect();
+    results.sort_unstable_by_key(|(k, _)| *k);
+    results.into_iter().map(|(_, result)| result).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::AtomicUsize;
+    use std::thread;
 
     #[test]
     fn results_are_in_the_order_of_the_jobs() {
