@@ -20,7 +20,7 @@ mod findings;
 mod isometry;
 mod iterations;
 mod limit;
-mod meshes;
+pub(crate) mod meshes;
 mod page;
 mod plot;
 mod records;

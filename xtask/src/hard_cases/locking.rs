@@ -4,6 +4,7 @@ use super::case::number;
 use super::scenes::{FRAME, STRAIN, at_rest, course};
 use super::{Case, Effort, Findings};
 use crate::figures::Picture;
+use crate::locking::meshes::nearest;
 use crate::render::{Camera, Labelled, Look, SheetPicture, Solid, montage, render};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
@@ -194,19 +195,6 @@ fn drape(effort: Effort) -> Result<Findings> {
               round table prefers no direction: the folds of the overhang are where the lines of the mesh let them be."
         .into();
     Ok(f)
-}
-
-/// The vertex nearest to a point of the sheet.
-fn nearest(sheet: &Sheet, target: [f64; 2]) -> VertexId {
-    let distance = |v: VertexId| {
-        let p = sheet.position(v);
-        (p[0] - target[0]).hypot(p[1] - target[1])
-    };
-    sheet
-        .topology()
-        .vertex_ids()
-        .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
-        .unwrap_or(VertexId(0))
 }
 
 /// Depth of the centre of area below a height, and the area of the vertical projection, in which overlaps
