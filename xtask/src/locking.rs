@@ -49,7 +49,7 @@ pub(crate) enum Part {
     Clamped,
     /// Single everyday scenes with paper.
     Everyday,
-    /// A square with a natural curvature.
+    /// A square that clamps bend to a cylinder.
     Cylinder,
     /// The drop of a heavy strip.
     Cantilever,
