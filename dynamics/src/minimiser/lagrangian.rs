@@ -207,6 +207,17 @@ impl Lagrangian {
         }
     }
 
+    /// `L . (c - c_0)` with the equations `c_0` at the start of the step and `c` at the iterate: by how much
+    /// their errors alone change the incremental potential, to first order.
+    pub(super) fn multiplier_work(&mut self, problem: &StepProblem<'_>) -> f64 {
+        let rows = problem.model.isometry_rows();
+        rows.residual_into(&problem.state.x, &mut self.change);
+        rows.residual_into(self.iterate.x(), &mut self.c);
+        let errors = self.c.iter().zip(&self.change);
+        let terms = self.multipliers.iter().zip(errors);
+        terms.map(|(m, (c, c_0))| m * (c - c_0)).sum()
+    }
+
     /// Sets the gradient at the iterate, whose constraints have to be current. While bodies or pins move,
     /// with what the rest of their motions will change the gradient by, to first order.
     pub(super) fn set_gradient(&mut self, problem: &StepProblem<'_>) {
