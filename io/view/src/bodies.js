@@ -1,0 +1,88 @@
+// The bodies that the sheet meets, as objects of three.js in metres. Their poses are set for each frame.
+
+import {
+  BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, CylinderGeometry, DoubleSide, Group, LineBasicMaterial,
+  LineSegments, Mesh, MeshStandardMaterial, PlaneGeometry, Quaternion, SphereGeometry, Vector3,
+} from "three";
+
+/** Shapes of three.js stand along y, those of the document along z. */
+const upright = (geometry) => geometry.rotateX(Math.PI / 2);
+
+/** A group for a body with its surface; half-spaces get their patch by `patch`. */
+export function makeBody(body, colours) {
+  const group = new Group();
+  group.name = body.name;
+  if (body.shape.kind !== "half_space") {
+    const material = new MeshStandardMaterial({
+      color: colours.body, roughness: 0.9, side: DoubleSide, flatShading: body.shape.kind === "mesh",
+      polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
+    });
+    group.add(new Mesh(geometryOf(body.shape), material));
+  }
+  return group;
+}
+
+function geometryOf(shape) {
+  switch (shape.kind) {
+    case "cuboid":
+      return new BoxGeometry(...shape.half.map((h) => 2 * h));
+    case "sphere":
+      return upright(new SphereGeometry(shape.radius, 64, 32));
+    case "cylinder":
+      return upright(new CylinderGeometry(shape.radius, shape.radius, 2 * shape.half_height, 64));
+    case "capsule":
+      return upright(new CapsuleGeometry(shape.radius, 2 * shape.half_length, 16, 64));
+    case "mesh": {
+      // Coordinates are doubles, about their own centre, so that single precision has all digits that matter.
+      const geometry = new BufferGeometry();
+      geometry.setAttribute("position", new BufferAttribute(Float32Array.from(shape.vertices), 3));
+      geometry.setIndex(new BufferAttribute(shape.faces, 1));
+      return geometry;
+    }
+    default:
+      throw new Error(`unknown shape ${shape.kind}`);
+  }
+}
+
+/** Poses are seven numbers: quaternion and translation. A single pose holds for all frames. */
+export function placeBody(group, body, frame) {
+  const at = body.poses.length === 7 ? 0 : 7 * frame;
+  const p = body.poses;
+  group.quaternion.set(p[at], p[at + 1], p[at + 2], p[at + 3]).normalize();
+  group.position.set(p[at + 4], p[at + 5], p[at + 6]);
+}
+
+/** The largest of 1, 2, 5 times a power of ten that is not above `length`. */
+function roundLength(length) {
+  const power = 10 ** Math.floor(Math.log10(length));
+  const digit = length / power;
+  return (digit >= 5 ? 5 : digit >= 2 ? 2 : 1) * power;
+}
+
+/** Cells of the grid from the middle of a patch to its rim. */
+const CELLS = 10;
+
+/**
+ * The visible part of the plane of a half-space: a square patch with a grid, centred below `centre` (metres, in
+ * space) where the body is in its first pose. `reach` (metres) is how far the patch has to go at least.
+ */
+export function addPatch(group, centre, reach, colours) {
+  const cell = roundLength((2 * reach) / CELLS);
+  const half = CELLS * cell;
+  const turn = new Quaternion().copy(group.quaternion).invert();
+  const local = new Vector3(...centre).sub(group.position).applyQuaternion(turn);
+  const x0 = Math.round(local.x / cell) * cell, y0 = Math.round(local.y / cell) * cell;
+  const plane = new PlaneGeometry(2 * half, 2 * half).translate(x0, y0, 0);
+  const surface = new MeshStandardMaterial({
+    color: colours.floor, roughness: 1, polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 4,
+  });
+  const points = [];
+  for (let k = -CELLS; k <= CELLS; k++) {
+    points.push(x0 - half, y0 + k * cell, 0, x0 + half, y0 + k * cell, 0);
+    points.push(x0 + k * cell, y0 - half, 0, x0 + k * cell, y0 + half, 0);
+  }
+  const grid = new BufferGeometry();
+  grid.setAttribute("position", new BufferAttribute(Float32Array.from(points), 3));
+  group.add(new Mesh(plane, surface), new LineSegments(grid, new LineBasicMaterial({ color: colours.grid })));
+  group.userData.cell = cell;
+}

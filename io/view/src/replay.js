@@ -1,0 +1,127 @@
+// The decoded replay: positions and values of a frame, and the quantities that the sheet can be coloured by.
+
+import { DIVERGING, SEQUENTIAL } from "./colour.js";
+import { Mesh } from "./mesh.js";
+
+const AXES = { x: 0, y: 1, z: 2 };
+
+export class Replay {
+  constructor(data) {
+    this.data = data;
+    this.mesh = new Mesh(data.faces, data.vertices);
+    this.frames = data.frames;
+    this.up = AXES[data.up];
+    this.x = new Float64Array(3 * data.vertices);
+    this.frame = -1;
+    this.folds = new Float64Array(this.mesh.edgeCount);
+    this.quantities = [
+      { key: "plain", label: "Plain", place: "none" },
+      foldQuantity(this),
+      heightQuantity(this),
+      ...data.fields.map((field, k) => fieldQuantity(this, field, k)),
+    ];
+    this.seek(0);
+  }
+
+  /** Positions of a frame in metres, into `out`. */
+  positionsOf(frame, out) {
+    const { low, step, positions } = this.data;
+    const width = 3 * this.data.vertices, from = frame * width;
+    for (let k = 0; k < width; k++) out[k] = low[k % 3] + step * positions[from + k];
+    return out;
+  }
+
+  seek(frame) {
+    this.frame = frame;
+    this.positionsOf(frame, this.x);
+    this.mesh.foldAngles(this.x, this.folds);
+  }
+
+  get time() {
+    return this.data.times[this.frame];
+  }
+
+  /** The last frame that is not after a time. */
+  frameAt(time) {
+    const { times } = this.data;
+    let low = 0, high = times.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (times[middle] <= time) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+
+  /** The frame nearest to a time. */
+  nearestFrame(time) {
+    const k = this.frameAt(time), { times } = this.data;
+    return k + 1 < times.length && times[k + 1] - time < time - times[k] ? k + 1 : k;
+  }
+}
+
+// A quantity has a value for each vertex, edge or face (`place`), a range, a scale and a map of colours. Its place
+// in the map is in [0, 1]. Ranges are those of the whole run, so that colours mean the same in every frame.
+
+const DEGREES = 180 / Math.PI;
+
+function foldQuantity(replay) {
+  let range = null;
+  return {
+    key: "fold", label: "Fold angle", unit: "°", place: "edge", map: DIVERGING, scale: "linear",
+    range: () => (range ??= foldRange(replay)),
+    value: (edge) => replay.folds[edge] * DEGREES,
+  };
+}
+
+/** The largest size of a fold angle in all frames to both sides, in degrees. */
+function foldRange(replay) {
+  const x = new Float64Array(replay.x.length), folds = new Float64Array(replay.folds.length);
+  let largest = 0;
+  for (let frame = 0; frame < replay.frames; frame++) {
+    replay.mesh.foldAngles(replay.positionsOf(frame, x), folds);
+    for (const fold of folds) if (Math.abs(fold) > largest) largest = Math.abs(fold);
+  }
+  // Of a sheet that stays flat, a range below a degree would show how the positions were rounded.
+  largest = Math.max(largest * DEGREES, 1);
+  return [-largest, largest];
+}
+
+function heightQuantity(replay) {
+  const { low, step, positions } = replay.data;
+  let largest = 0;
+  for (let k = replay.up; k < positions.length; k += 3) if (positions[k] > largest) largest = positions[k];
+  const range = [low[replay.up], low[replay.up] + step * largest];
+  return {
+    key: "height", label: `Height (${replay.data.up})`, unit: "m", place: "vertex", map: SEQUENTIAL, scale: "linear",
+    range: () => range,
+    value: (vertex) => replay.x[3 * vertex + replay.up],
+  };
+}
+
+function fieldQuantity(replay, field, k) {
+  const { low, step, values } = field;
+  const width = values.length / replay.frames;
+  const logarithmic = field.scale === "logarithmic";
+  let largest = 0;
+  for (const value of values) if (value > largest) largest = value;
+  const decode = logarithmic
+    ? (q) => (q === 0 ? 0 : 10 ** (low + step * (q - 1)))
+    : (q) => low + step * q;
+  return {
+    key: `field-${k}`, label: field.name, unit: field.unit, place: field.place, map: SEQUENTIAL, scale: field.scale,
+    range: () => [decode(logarithmic ? Math.min(1, largest) : 0), decode(largest)],
+    value: (index) => decode(values[replay.frame * width + index]),
+  };
+}
+
+/** The function from values to places in [0, 1] of the map; zeros of a logarithmic scale are at its low end. */
+export function placing(quantity) {
+  const [low, high] = quantity.range();
+  if (!(high > low)) return () => 0.5;
+  if (quantity.scale === "logarithmic") {
+    const from = Math.log(low), length = Math.log(high) - from;
+    return (value) => (value > 0 ? (Math.log(value) - from) / length : 0);
+  }
+  return (value) => (value - low) / (high - low);
+}
