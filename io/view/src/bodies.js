@@ -2,7 +2,7 @@
 
 import {
   BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, CylinderGeometry, DoubleSide, Group, LineBasicMaterial,
-  LineSegments, Mesh, MeshStandardMaterial, PlaneGeometry, Quaternion, SphereGeometry, Vector3,
+  LineSegments, Mesh, MeshBasicMaterial, MeshStandardMaterial, PlaneGeometry, Quaternion, SphereGeometry, Vector3,
 } from "three";
 
 /** Shapes of three.js stand along y, those of the document along z. */
@@ -15,7 +15,7 @@ export function makeBody(body, colours) {
   if (body.shape.kind !== "half_space") {
     const material = new MeshStandardMaterial({
       color: colours.body, roughness: 0.9, side: DoubleSide, flatShading: body.shape.kind === "mesh",
-      polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
+      polygonOffset: true, polygonOffsetFactor: 5, polygonOffsetUnits: 5,
     });
     group.add(new Mesh(geometryOf(body.shape), material));
   }
@@ -73,8 +73,8 @@ export function addPatch(group, centre, reach, colours) {
   const local = new Vector3(...centre).sub(group.position).applyQuaternion(turn);
   const x0 = Math.round(local.x / cell) * cell, y0 = Math.round(local.y / cell) * cell;
   const plane = new PlaneGeometry(2 * half, 2 * half).translate(x0, y0, 0);
-  const surface = new MeshStandardMaterial({
-    color: colours.floor, roughness: 1, polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 4,
+  const surface = new MeshBasicMaterial({
+    color: colours.floor, polygonOffset: true, polygonOffsetFactor: 8, polygonOffsetUnits: 8,
   });
   const points = [];
   for (let k = -CELLS; k <= CELLS; k++) {
@@ -84,5 +84,4 @@ export function addPatch(group, centre, reach, colours) {
   const grid = new BufferGeometry();
   grid.setAttribute("position", new BufferAttribute(Float32Array.from(points), 3));
   group.add(new Mesh(plane, surface), new LineSegments(grid, new LineBasicMaterial({ color: colours.grid })));
-  group.userData.cell = cell;
 }

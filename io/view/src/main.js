@@ -57,6 +57,7 @@ class Page {
     $("colour").append(...replay.quantities.map((q) => new Option(q.label, q.key)));
     $("colour").addEventListener("change", () => this.colourBy($("colour").value));
     $("reset").addEventListener("click", () => stage.resetCamera());
+    $("fit").addEventListener("click", () => stage.frameSheet());
     const boxes = {
       edges: (on) => { stage.sheet.showEdges = on; },
       wireframe: (on) => stage.sheet.setWireframe(on),
@@ -89,11 +90,12 @@ class Page {
       Home: () => player.seek(0),
       End: () => player.seek(replay.frames - 1),
       r: () => stage.resetCamera(),
-      R: () => stage.resetCamera(),
+      f: () => stage.frameSheet(),
     };
-    if (!acts[event.key]) return;
+    const act = acts[event.key] ?? acts[event.key.toLowerCase()];
+    if (!act) return;
     event.preventDefault();
-    acts[event.key]();
+    act();
   }
 
   /** The choices that the address names, as in `index.html#frame=20&colour=fold`. */

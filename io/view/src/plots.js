@@ -1,7 +1,7 @@
 // Plots of the series over time, with a line at the time of the frame.
 
 import uPlot from "uplot";
-import { number, withUnit } from "./format.js";
+import { number } from "./format.js";
 import { themeColours } from "./theme.js";
 
 const HEIGHT = 132;
@@ -57,7 +57,7 @@ class Plot {
     this.caption = document.createElement("figcaption");
     this.labels = group.map((series, k) => {
       const name = document.createElement("span"), value = document.createElement("output");
-      name.textContent = series.name;
+      name.textContent = series.name + (series.unit ? ` (${series.unit})` : "");
       name.style.setProperty("--key", LINES[k]);
       name.className = group.length > 1 ? "key" : "";
       this.caption.append(name, " ", value, " ");
@@ -76,17 +76,17 @@ class Plot {
     this.plot = new uPlot(this.options(colours, logarithmic), [group[0].times, ...this.values], figure);
     this.plot.over.append(this.line);
     this.drag(this.plot.over);
-    this.setTime(plots.time);
   }
 
   options(colours, logarithmic) {
     const axis = { stroke: colours.text, grid: { stroke: colours.axis, width: 1 }, ticks: { show: false }, font: "11px system-ui" };
-    const { unit } = this.group[0];
     return {
       width: this.plots.container.clientWidth || 320,
       height: HEIGHT,
       legend: { show: false },
       cursor: { drag: { x: false, y: false, setScale: false }, points: { size: 5 }, y: false },
+      // The line at the time of the frame has a place once the plot knows its own size.
+      hooks: { draw: [() => this.setTime(this.plots.time)] },
       scales: {
         x: { time: false, range: this.widen },
         y: logarithmic ? { distr: 3 } : {},
@@ -94,8 +94,10 @@ class Plot {
       axes: [
         { ...axis, size: 24, space: 60, values: (_, ticks) => ticks.map((t) => `${number(t)} s`) },
         {
-          ...axis, size: 64, space: 24, gap: 4,
-          values: (_, ticks) => ticks.map((v) => (v === null ? "" : unit ? `${number(v, 3)} ${unit}` : number(v, 3))),
+          ...axis, size: 58, space: 24, gap: 4,
+          splits: logarithmic ? (_, __, low, high) => decades(low, high) : undefined,
+          filter: logarithmic ? (_, ticks) => ticks : undefined,
+          values: (_, ticks) => ticks.map((v) => number(v, 3)),
         },
       ],
       series: [{}, ...this.group.map((_, k) => ({
@@ -125,19 +127,26 @@ class Plot {
 
   setTime(time) {
     if (!this.plot) return;
-    const { times, unit } = this.group[0];
+    const { times } = this.group[0];
     const left = this.plot.valToPos(time, "x");
     this.line.style.transform = `translateX(${left}px)`;
     this.line.hidden = left < 0 || left > this.plot.over.clientWidth;
     const k = nearest(times, time);
-    this.group.forEach((series, i) => { this.labels[i].textContent = withUnit(series.values[k], unit); });
+    this.group.forEach((series, i) => { this.labels[i].textContent = number(series.values[k]); });
   }
 
   resize(width) {
-    if (!this.plot || width === 0 || width === this.plot.width) return;
-    this.plot.setSize({ width, height: HEIGHT });
-    this.setTime(this.plots.time);
+    if (this.plot && width > 0 && width !== this.plot.width) this.plot.setSize({ width, height: HEIGHT });
   }
+}
+
+/** At most five powers of ten between two numbers, with equal ratios; the numbers themselves when there is none. */
+function decades(low, high) {
+  const first = Math.ceil(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9);
+  if (last <= first) return [low, high];
+  const step = Math.ceil((last - first) / 4), powers = [];
+  for (let power = first; power <= last; power += step) powers.push(10 ** power);
+  return powers;
 }
 
 /** The index of the entry of an ascending list that is nearest to a value. */

@@ -61,14 +61,18 @@ export class Replay {
 }
 
 // A quantity has a value for each vertex, edge or face (`place`), a range, a scale and a map of colours. Its place
-// in the map is in [0, 1]. Ranges are those of the whole run, so that colours mean the same in every frame.
+// in the map is in [0, 1]; edges that `leavesOut` names by their place show nothing. Ranges are those of the whole
+// run, so that colours mean the same in every frame.
 
+/** Edges whose fold angle is less than this share of the range of colours are shown as edges that are flat. */
+const FLAT = 0.01;
 const DEGREES = 180 / Math.PI;
 
 function foldQuantity(replay) {
   let range = null;
   return {
     key: "fold", label: "Fold angle", unit: "°", place: "edge", map: DIVERGING, scale: "linear",
+    leavesOut: (place) => !(Math.abs(place - 0.5) > FLAT),
     range: () => (range ??= foldRange(replay)),
     value: (edge) => replay.folds[edge] * DEGREES,
   };
@@ -111,6 +115,7 @@ function fieldQuantity(replay, field, k) {
   return {
     key: `field-${k}`, label: field.name, unit: field.unit, place: field.place, map: SEQUENTIAL, scale: field.scale,
     range: () => [decode(logarithmic ? Math.min(1, largest) : 0), decode(largest)],
+    leavesOut: Number.isNaN,
     value: (index) => decode(values[replay.frame * width + index]),
   };
 }

@@ -55,6 +55,17 @@ function hoverSomewhere(page) {
   return null;
 }
 
+/** Whether the picture changes when a body is taken away. */
+function bodiesShow(stage) {
+  const whole = picture(stage).hash;
+  return stage.bodyGroups.map((group) => {
+    group.visible = false;
+    const without = picture(stage).hash;
+    group.visible = true;
+    return { name: group.name, shows: whole !== without };
+  });
+}
+
 /** Presses a key on the page and says which frame is shown then. */
 function press(page, key) {
   document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
@@ -62,6 +73,8 @@ function press(page, key) {
 }
 
 export async function selfTest(page, exceptions) {
+  // Plots take their places after the code that makes them has ended.
+  await new Promise((resolve) => setTimeout(resolve));
   const { replay, stage, player } = page, last = replay.frames - 1, log = [];
   const seeks = [0, 0.25, 0.5, 0.75, 1].map((part) => Math.round(part * last));
   const frames = distinct(stage, seeks.map((k) => () => player.seek(k)), log);
@@ -72,11 +85,16 @@ export async function selfTest(page, exceptions) {
   });
   const views = distinct(stage, orbit, log);
   stage.resetCamera();
+  const start = picture(stage);
+  stage.frameSheet();
+  const fitted = picture(stage);
+  stage.resetCamera();
   const modes = replay.quantities.map((q) => ({ key: q.key, label: q.label }));
   const colourings = distinct(stage, modes.map((mode) => () => page.colourBy(mode.key)), log);
   const toggles = ["wireframe", "rest", "edges"].map((id) => () => document.getElementById(id).click());
   const styles = distinct(stage, [() => page.colourBy("plain"), ...toggles], log);
   for (const act of toggles) act();
+  const bodies = bodiesShow(stage);
   const hover = hoverSomewhere(page);
   page.hover.hide();
   const keys = { end: press(page, "End"), left: press(page, "ArrowLeft"), home: press(page, "Home"), right: press(page, "ArrowRight") };
@@ -91,9 +109,11 @@ export async function selfTest(page, exceptions) {
     edgeEnds: Array.from(replay.mesh.edges),
     values: replay.quantities.filter((q) => q.key.startsWith("field-")).map((q) => q.value(0)),
     pictures: { frames, views, colourings, styles, seeks: new Set(seeks).size },
+    coveredAtStart: start.covered, coveredFitted: fitted.covered,
     covered: Math.min(...log.map((p) => p.covered)),
     glErrors: log.map((p) => p.error).filter((error) => error !== 0),
-    modes, hover, keys, clicked,
+    modes, bodies, hover, keys, clicked, title: document.getElementById("title").textContent,
+    scene: document.getElementById("scene").textContent, footer: document.getElementById("footer").textContent,
     plots: document.querySelectorAll("#plots canvas").length,
     requests: performance.getEntriesByType("resource").map((entry) => entry.name).filter((name) => !name.startsWith("data:")),
     overflow: document.documentElement.scrollWidth - window.innerWidth,

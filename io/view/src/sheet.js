@@ -2,8 +2,8 @@
 // Positions are those of the stage: metres less a centre, divided by a size.
 
 import {
-  BackSide, BufferAttribute, BufferGeometry, FrontSide, Group, Mesh as Surface, MeshStandardMaterial, Points,
-  PointsMaterial, Sphere, Vector3,
+  BackSide, BufferAttribute, BufferGeometry, FrontSide, Group, InstancedMesh, Matrix4, Mesh as Surface,
+  MeshStandardMaterial, Sphere, SphereGeometry, Vector3,
 } from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
@@ -11,10 +11,13 @@ import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js
 import { put } from "./colour.js";
 import { placing } from "./replay.js";
 
-/** Width in pixels of edges that show no value. */
-const PLAIN_WIDTH = 1;
+/** Opacity of edges at full strength. */
+const STRENGTH = 0.6;
 /** Largest width in pixels of edges that show a value. */
-const VALUE_WIDTH = 4;
+const VALUE_WIDTH = 3;
+/** Radius of the balls that mark pins, on the stage and as a share of the mean length of the edges. */
+const PIN_RADIUS = 0.014;
+const PIN_SHARE = 0.22;
 /** Edges that are shorter on the screen than this are invisible, in pixels: a pixel of line for three of face. */
 const FADED_LENGTH = 4;
 /** Edges that are longer on the screen than this have their full strength, in pixels. */
@@ -23,7 +26,8 @@ const FULL_LENGTH = 24;
 const everywhere = () => new Sphere(new Vector3(), Infinity);
 
 export class SheetObjects {
-  constructor(replay, colours) {
+  /** `meanLength` is the mean length of the edges on the stage. */
+  constructor(replay, meanLength, colours) {
     this.replay = replay;
     const { mesh } = replay;
     this.group = new Group();
@@ -36,25 +40,23 @@ export class SheetObjects {
     geometry.boundingSphere = everywhere();
     this.materials = [FrontSide, BackSide].map((side) => new MeshStandardMaterial({
       side, vertexColors: true, flatShading: true, roughness: 0.85,
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+      polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
     }));
     this.surfaces = this.materials.map((material) => new Surface(geometry, material));
     this.lines = makeLines(mesh.edgeCount, 1);
-    this.lines.material.vertexColors = true;
-    this.ends = new Float32Array(6 * mesh.edgeCount);
-    this.lineColours = new Float32Array(6 * mesh.edgeCount);
+    this.bars = makeLines(mesh.edgeCount, 1);
+    this.bars.geometry.setColors(new Float32Array(6 * mesh.edgeCount));
+    this.bars.material.vertexColors = true;
     this.ghost = makeLines(mesh.edgeCount, 0.35);
     this.ghost.visible = false;
     this.mark = makeLines(1, 1);
     this.mark.material.linewidth = 5;
     this.mark.visible = false;
-    this.pins = new Points(new BufferGeometry(), new PointsMaterial({ size: 9, sizeAttenuation: false }));
-    this.pinPositions = new BufferAttribute(new Float32Array(3 * replay.data.pins.length), 3);
-    this.pins.geometry.setAttribute("position", this.pinPositions);
-    this.pins.visible = replay.data.pins.length > 0;
+    const ball = new SphereGeometry(Math.min(PIN_RADIUS, PIN_SHARE * meanLength), 16, 12);
+    this.pins = new InstancedMesh(ball, new MeshStandardMaterial({ roughness: 0.6 }), replay.data.pins.length);
     this.pins.frustumCulled = false;
     for (const object of this.surfaces) object.frustumCulled = false;
-    this.group.add(...this.surfaces, this.lines, this.ghost, this.mark, this.pins);
+    this.group.add(...this.surfaces, this.lines, this.bars, this.ghost, this.mark, this.pins);
     this.quantity = replay.quantities[0];
     this.showEdges = true;
     this.setColours(colours);
@@ -77,9 +79,8 @@ export class SheetObjects {
     const [front, back] = this.materials;
     front.color.set(onFaces ? "#ffffff" : pale ? this.colours.pale : this.colours.front);
     back.color.set(onFaces ? "#ffffff" : pale ? this.colours.pale : this.colours.back);
-    this.lines.material.vertexColors = pale;
-    this.lines.material.color.set(pale ? "#ffffff" : this.colours.edge);
-    this.lines.material.needsUpdate = true;
+    this.bars.visible = pale;
+    this.lines.material.color.set(this.colours.edge);
     if (!onFaces) this.shades.array.fill(1);
     this.shades.needsUpdate = true;
   }
@@ -90,7 +91,7 @@ export class SheetObjects {
 
   /** Takes over positions of the stage and the values of the frame. */
   update(x) {
-    const { faces, edges } = this.replay.mesh;
+    const { faces } = this.replay.mesh;
     const corners = this.corners.array;
     for (let k = 0; k < faces.length; k++) {
       const from = 3 * faces[k];
@@ -99,41 +100,48 @@ export class SheetObjects {
       corners[3 * k + 2] = x[from + 2];
     }
     this.corners.needsUpdate = true;
-    this.copyEnds(x, this.ends);
-    this.lines.geometry.attributes.instanceStart.data.needsUpdate = true;
-    this.replay.data.pins.forEach((v, k) => this.pinPositions.setXYZ(k, x[3 * v], x[3 * v + 1], x[3 * v + 2]));
-    this.pinPositions.needsUpdate = true;
-    if (this.quantity.place === "edge") this.colourEdges(edges.length / 2);
+    this.copyEnds(x, this.lines);
+    const place = new Matrix4();
+    this.replay.data.pins.forEach((v, k) => (
+      this.pins.setMatrixAt(k, place.makeTranslation(x[3 * v], x[3 * v + 1], x[3 * v + 2]))));
+    this.pins.instanceMatrix.needsUpdate = true;
+    if (this.quantity.place === "edge") this.colourEdges();
     else if (this.place) this.colourFaces(faces);
   }
 
-  /** Sets up the buffers of the lines; after this, their content alone changes. */
-  start(x, rest) {
-    this.lines.geometry.setPositions(this.copyEnds(x, this.ends));
-    this.ends = this.lines.geometry.attributes.instanceStart.data.array;
-    this.lines.geometry.setColors(this.lineColours);
-    this.lineColours = this.lines.geometry.attributes.instanceColorStart.data.array;
-    this.ghost.geometry.setPositions(this.copyEnds(rest, new Float32Array(this.ends.length)));
+  /** Takes over the rest shape, in positions of the stage. */
+  setRest(x) {
+    this.copyEnds(x, this.ghost);
   }
 
-  copyEnds(x, out) {
-    const { edges } = this.replay.mesh;
+  /** Puts lines along all edges. */
+  copyEnds(x, lines) {
+    const { edges } = this.replay.mesh, { data } = lines.geometry.attributes.instanceStart, out = data.array;
     for (let k = 0; k < edges.length; k++) {
       const from = 3 * edges[k];
       out[3 * k] = x[from];
       out[3 * k + 1] = x[from + 1];
       out[3 * k + 2] = x[from + 2];
     }
-    return out;
+    data.needsUpdate = true;
   }
 
-  colourEdges(count) {
-    const { quantity, place, lineColours } = this;
-    for (let e = 0; e < count; e++) {
-      put(quantity.map, place(quantity.value(e)), lineColours, 6 * e);
-      lineColours.copyWithin(6 * e + 3, 6 * e, 6 * e + 3);
+  /** Puts bars with colours along the edges that have something to show. */
+  colourEdges() {
+    const { quantity, place } = this, { geometry } = this.bars;
+    const from = this.lines.geometry.attributes.instanceStart.data.array;
+    const ends = geometry.attributes.instanceStart.data, colours = geometry.attributes.instanceColorStart.data;
+    let count = 0;
+    for (let e = 0; e < this.replay.mesh.edgeCount; e++) {
+      const at = place(quantity.value(e));
+      if (quantity.leavesOut(at)) continue;
+      for (let k = 0; k < 6; k++) ends.array[6 * count + k] = from[6 * e + k];
+      put(quantity.map, at, colours.array, 6 * count);
+      colours.array.copyWithin(6 * count + 3, 6 * count, 6 * count + 3);
+      count++;
     }
-    this.lines.geometry.attributes.instanceColorStart.data.needsUpdate = true;
+    geometry.instanceCount = count;
+    ends.needsUpdate = colours.needsUpdate = true;
   }
 
   colourFaces(faces) {
@@ -147,24 +155,21 @@ export class SheetObjects {
 
   /** Fades edges by their mean length on the screen, in pixels: many thin lines would darken the sheet. */
   fade(pixels) {
-    const strength = Math.min(Math.max((pixels - FADED_LENGTH) / (FULL_LENGTH - FADED_LENGTH), 0), 1);
-    const { material } = this.lines;
-    if (this.quantity.place === "edge") {
-      material.linewidth = Math.min(Math.max(pixels / 6, 1), VALUE_WIDTH);
-      material.opacity = 1;
-      this.lines.visible = true;
-    } else {
-      material.linewidth = PLAIN_WIDTH;
-      material.opacity = 0.6 * strength;
-      this.lines.visible = (this.showEdges && strength > 0) || !this.surfaces[0].visible;
-      if (!this.surfaces[0].visible) material.opacity = Math.max(material.opacity, 0.25);
-    }
+    const share = Math.min(Math.max((pixels - FADED_LENGTH) / (FULL_LENGTH - FADED_LENGTH), 0), 1);
+    const wireframe = !this.surfaces[0].visible;
+    this.bars.material.linewidth = Math.min(Math.max(pixels / 6, 1), VALUE_WIDTH);
+    this.lines.material.opacity = STRENGTH * (wireframe ? Math.max(share, 0.5) : share);
+    this.lines.visible = wireframe || (this.showEdges && share > 0);
   }
 
   /** Marks an edge, or none for null. */
   markEdge(edge) {
     this.mark.visible = edge !== null;
-    if (edge !== null) this.mark.geometry.setPositions(this.ends.slice(6 * edge, 6 * edge + 6));
+    if (edge === null) return;
+    const { data } = this.mark.geometry.attributes.instanceStart;
+    const { array } = this.lines.geometry.attributes.instanceStart.data;
+    data.array.set(array.subarray(6 * edge, 6 * edge + 6));
+    data.needsUpdate = true;
   }
 }
 

@@ -12,7 +12,11 @@ import { themeColours } from "./theme.js";
 /** Vertical angle of view in degrees. */
 const ANGLE_OF_VIEW = 32;
 /** How much of the radius of what is framed the half-spaces reach beyond it. */
-const PATCH_REACH = 1.6;
+const PATCH_REACH = 1.2;
+/** By how much the camera is farther away than it has to be. */
+const MARGIN = 1.08;
+/** The smallest distance from which the camera looks at a box, on the stage. */
+const NEAREST = 0.05;
 /** Where the camera looks from, in axes (right, depth, up). */
 const DIRECTION = [0.55, -1, 0.5];
 
@@ -24,7 +28,7 @@ export class Stage {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     container.prepend(this.renderer.domElement);
     this.scene = new Scene();
-    this.camera = new PerspectiveCamera(ANGLE_OF_VIEW, 1, 0.01, 100);
+    this.camera = new PerspectiveCamera(ANGLE_OF_VIEW, 1, 0.02, 200);
     this.up = new Vector3().setComponent(replay.up, 1);
     this.camera.up.copy(this.up);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
@@ -34,8 +38,8 @@ export class Stage {
     this.addBodies();
     this.chooseUnits();
     this.positions = new Float32Array(replay.x.length);
-    this.sheet = new SheetObjects(replay, this.colours);
-    this.sheet.start(this.toStage(replay.x, this.positions), this.toStage(replay.data.rest, new Float32Array(replay.x.length)));
+    this.sheet = new SheetObjects(replay, this.meanLength, this.colours);
+    this.sheet.setRest(this.toStage(replay.data.rest, new Float32Array(replay.x.length)));
     this.scene.add(this.sheet.group);
     this.raycaster = new Raycaster();
     this.applyTheme();
@@ -46,9 +50,9 @@ export class Stage {
   }
 
   addLights() {
-    this.scene.add(new HemisphereLight(0xffffff, 0x8f8a80, 1.5));
+    this.scene.add(new HemisphereLight(0xffffff, 0xb5b0a8, 2.3));
     // The light stands beside the camera and moves with it, so that no side of the sheet is dark.
-    const light = new DirectionalLight(0xffffff, 2);
+    const light = new DirectionalLight(0xffffff, 1.6);
     light.position.set(-0.6, 0.9, 0.6);
     this.camera.add(light, light.target);
     light.target.position.set(0, 0, -1);
@@ -74,6 +78,8 @@ export class Stage {
     for (const group of this.bodyGroups) if (group.children.length > 0) box.expandByObject(group);
     this.centre = box.getCenter(new Vector3()).toArray();
     this.size = box.getSize(point).length() / 2 || 1;
+    const half = point.divideScalar(2 * this.size);
+    this.box = new Box3(half.clone().negate(), half);
     this.replay.data.bodies.forEach((body, k) => {
       if (body.shape.kind === "half_space") {
         addPatch(this.bodyGroups[k], this.centre, PATCH_REACH * this.size, this.colours);
@@ -115,15 +121,35 @@ export class Stage {
     this.update();
   }
 
-  /** The camera at its start, at a distance from which a ball of radius one fits into the narrower angle. */
+  /** The camera at its start: rest shape, first frame and bodies fill the view. */
   resetCamera() {
-    const half = (ANGLE_OF_VIEW * Math.PI) / 360;
-    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
     const [right, depth, up] = DIRECTION;
     const [a, b] = [(this.replay.up + 1) % 3, (this.replay.up + 2) % 3];
     const direction = new Vector3().setComponent(a, right).setComponent(b, depth).setComponent(this.replay.up, up);
-    this.camera.position.copy(direction.normalize().multiplyScalar(1 / Math.sin(narrow)));
-    this.controls.target.set(0, 0, 0);
+    this.frameBox(this.box, direction);
+  }
+
+  /** Moves the camera along its direction of view to where the sheet, as it is now, fills the view. */
+  frameSheet() {
+    const box = new Box3().setFromArray(this.positions);
+    this.frameBox(box, this.camera.position.clone().sub(this.controls.target));
+  }
+
+  /** Looks at a box (on the stage) from a direction, from as near as its corners allow. */
+  frameBox(box, direction) {
+    const toCamera = direction.clone().normalize();
+    const across = new Vector3().crossVectors(this.up, toCamera).normalize();
+    const upward = new Vector3().crossVectors(toCamera, across);
+    const slope = Math.tan((ANGLE_OF_VIEW * Math.PI) / 360);
+    const centre = box.getCenter(new Vector3()), half = box.getSize(new Vector3()).divideScalar(2).toArray();
+    let distance = NEAREST;
+    for (let k = 0; k < 8; k++) {
+      const corner = new Vector3(...half.map((side, axis) => (k & (1 << axis) ? side : -side)));
+      const aside = Math.max(Math.abs(corner.dot(upward)), Math.abs(corner.dot(across)) / this.camera.aspect);
+      distance = Math.max(distance, MARGIN * (corner.dot(toCamera) + aside / slope));
+    }
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(toCamera, distance);
     this.controls.update();
     this.request();
   }
