@@ -1,23 +1,32 @@
 // The bodies that the sheet meets, as objects of three.js in metres. Their poses are set for each frame.
 
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, CylinderGeometry, DoubleSide, Group, LineBasicMaterial,
-  LineSegments, Mesh, MeshBasicMaterial, MeshStandardMaterial, PlaneGeometry, Quaternion, SphereGeometry, Vector3,
+  BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, CylinderGeometry, DoubleSide, EdgesGeometry, Group,
+  LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshStandardMaterial, PlaneGeometry, Quaternion,
+  SphereGeometry, Vector3,
 } from "three";
 
 /** Shapes of three.js stand along y, those of the document along z. */
 const upright = (geometry) => geometry.rotateX(Math.PI / 2);
 
-/** A group for a body with its surface; half-spaces get their patch by `patch`. */
-export function makeBody(body, colours) {
+/** Edges of a body are outlined where its faces meet at more than this angle, in degrees. */
+const OUTLINED = 25;
+
+/** Gives an object the name of its colour in the theme, which sets the colour. */
+const coloured = (name, object) => Object.assign(object, { name });
+
+/** A group for a body with its surface and its outline; half-spaces get theirs from `addPatch`. */
+export function makeBody(body) {
   const group = new Group();
   group.name = body.name;
   if (body.shape.kind !== "half_space") {
     const material = new MeshStandardMaterial({
-      color: colours.body, roughness: 0.9, side: DoubleSide, flatShading: body.shape.kind === "mesh",
-      polygonOffset: true, polygonOffsetFactor: 5, polygonOffsetUnits: 5,
+      roughness: 0.9, side: DoubleSide, flatShading: body.shape.kind === "mesh",
+      polygonOffset: true, polygonOffsetFactor: 6, polygonOffsetUnits: 6,
     });
-    group.add(new Mesh(geometryOf(body.shape), material));
+    const geometry = geometryOf(body.shape);
+    const outline = new LineSegments(new EdgesGeometry(geometry, OUTLINED), new LineBasicMaterial());
+    group.add(coloured("body", new Mesh(geometry, material)), coloured("outline", outline));
   }
   return group;
 }
@@ -66,7 +75,7 @@ const CELLS = 10;
  * The visible part of the plane of a half-space: a square patch with a grid, centred below `centre` (metres, in
  * space) where the body is in its first pose. `reach` (metres) is how far the patch has to go at least.
  */
-export function addPatch(group, centre, reach, colours) {
+export function addPatch(group, centre, reach) {
   const cell = roundLength((2 * reach) / CELLS);
   const half = CELLS * cell;
   const turn = new Quaternion().copy(group.quaternion).invert();
@@ -74,7 +83,7 @@ export function addPatch(group, centre, reach, colours) {
   const x0 = Math.round(local.x / cell) * cell, y0 = Math.round(local.y / cell) * cell;
   const plane = new PlaneGeometry(2 * half, 2 * half).translate(x0, y0, 0);
   const surface = new MeshBasicMaterial({
-    color: colours.floor, polygonOffset: true, polygonOffsetFactor: 8, polygonOffsetUnits: 8,
+    polygonOffset: true, polygonOffsetFactor: 9, polygonOffsetUnits: 9,
   });
   const points = [];
   for (let k = -CELLS; k <= CELLS; k++) {
@@ -83,5 +92,6 @@ export function addPatch(group, centre, reach, colours) {
   }
   const grid = new BufferGeometry();
   grid.setAttribute("position", new BufferAttribute(Float32Array.from(points), 3));
-  group.add(new Mesh(plane, surface), new LineSegments(grid, new LineBasicMaterial({ color: colours.grid })));
+  const lines = new LineSegments(grid, new LineBasicMaterial());
+  group.add(coloured("floor", new Mesh(plane, surface)), coloured("grid", lines));
 }

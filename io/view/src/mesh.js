@@ -17,12 +17,13 @@ export class Mesh {
       sides.push({ key: Math.min(from, to) * vertices + Math.max(from, to), from, opposite, face: (k / 3) | 0, k });
     }
     sides.sort((a, b) => a.key - b.key || a.k - b.k);
-    const edges = [], hinges = [];
+    const edges = [], hinges = [], edgeFaces = [];
     this.faceEdges = new Uint32Array(faces.length);
     for (let i = 0; i < sides.length; i++) {
       const side = sides[i], low = Math.floor(side.key / vertices), high = side.key % vertices;
       this.faceEdges[side.k] = edges.length / 2;
       edges.push(low, high);
+      edgeFaces.push(side.face);
       const other = sides[i + 1];
       if (other?.key !== side.key) {
         hinges.push(-1, -1);
@@ -38,6 +39,8 @@ export class Mesh {
     this.edges = Uint32Array.from(edges);
     /** The vertices opposite each edge in its left and right face, or -1, -1 on the boundary. */
     this.hinges = Int32Array.from(hinges);
+    /** A face of each edge. */
+    this.edgeFaces = Uint32Array.from(edgeFaces);
     this.edgeCount = edges.length / 2;
   }
 

@@ -60,7 +60,9 @@ class Plot {
       name.textContent = series.name + (series.unit ? ` (${series.unit})` : "");
       name.style.setProperty("--key", LINES[k]);
       name.className = group.length > 1 ? "key" : "";
-      this.caption.append(name, " ", value, " ");
+      const entry = document.createElement("span");
+      entry.append(name, " ", value);
+      this.caption.append(entry, " ");
       return value;
     });
     figure.append(this.caption);

@@ -97,6 +97,7 @@ function heightQuantity(replay) {
   for (let k = replay.up; k < positions.length; k += 3) if (positions[k] > largest) largest = positions[k];
   const range = [low[replay.up], low[replay.up] + step * largest];
   return {
+    leavesOut: Number.isNaN,
     key: "height", label: `Height (${replay.data.up})`, unit: "m", place: "vertex", map: SEQUENTIAL, scale: "linear",
     range: () => range,
     value: (vertex) => replay.x[3 * vertex + replay.up],

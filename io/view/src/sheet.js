@@ -40,10 +40,12 @@ export class SheetObjects {
     geometry.boundingSphere = everywhere();
     this.materials = [FrontSide, BackSide].map((side) => new MeshStandardMaterial({
       side, vertexColors: true, flatShading: true, roughness: 0.85,
-      polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2,
+      polygonOffset: true, polygonOffsetFactor: 3, polygonOffsetUnits: 3,
     }));
     this.surfaces = this.materials.map((material) => new Surface(geometry, material));
     this.lines = makeLines(mesh.edgeCount, 1);
+    // Of what is in the same place, bars are in front of edges, edges in front of faces, faces in front of bodies.
+    Object.assign(this.lines.material, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     this.bars = makeLines(mesh.edgeCount, 1);
     this.bars.geometry.setColors(new Float32Array(6 * mesh.edgeCount));
     this.bars.material.vertexColors = true;
@@ -59,6 +61,7 @@ export class SheetObjects {
     this.group.add(...this.surfaces, this.lines, this.bars, this.ghost, this.mark, this.pins);
     this.quantity = replay.quantities[0];
     this.showEdges = true;
+    this.wireframe = false;
     this.setColours(colours);
   }
 
@@ -79,14 +82,17 @@ export class SheetObjects {
     const [front, back] = this.materials;
     front.color.set(onFaces ? "#ffffff" : pale ? this.colours.pale : this.colours.front);
     back.color.set(onFaces ? "#ffffff" : pale ? this.colours.pale : this.colours.back);
-    this.bars.visible = pale;
     this.lines.material.color.set(this.colours.edge);
+    this.bars.visible = false;
     if (!onFaces) this.shades.array.fill(1);
     this.shades.needsUpdate = true;
   }
 
+  /** In a wireframe, edges show what faces show else. */
   setWireframe(on) {
+    this.wireframe = on;
     for (const surface of this.surfaces) surface.visible = !on;
+    if (this.place) this.colour();
   }
 
   /** Takes over positions of the stage and the values of the frame. */
@@ -105,8 +111,13 @@ export class SheetObjects {
     this.replay.data.pins.forEach((v, k) => (
       this.pins.setMatrixAt(k, place.makeTranslation(x[3 * v], x[3 * v + 1], x[3 * v + 2]))));
     this.pins.instanceMatrix.needsUpdate = true;
-    if (this.quantity.place === "edge") this.colourEdges();
-    else if (this.place) this.colourFaces(faces);
+    if (this.place) this.colour();
+  }
+
+  colour() {
+    this.bars.visible = this.wireframe || this.quantity.place === "edge";
+    if (this.bars.visible) this.colourEdges();
+    else this.colourFaces(this.replay.mesh.faces);
   }
 
   /** Takes over the rest shape, in positions of the stage. */
@@ -128,16 +139,17 @@ export class SheetObjects {
 
   /** Puts bars with colours along the edges that have something to show. */
   colourEdges() {
-    const { quantity, place } = this, { geometry } = this.bars;
+    const { quantity, place } = this, { geometry } = this.bars, { edges, edgeFaces } = this.replay.mesh;
+    const indexAt = { edge: (e) => e, face: (e) => edgeFaces[e], vertex: (e, end) => edges[2 * e + end] }[quantity.place];
     const from = this.lines.geometry.attributes.instanceStart.data.array;
     const ends = geometry.attributes.instanceStart.data, colours = geometry.attributes.instanceColorStart.data;
     let count = 0;
     for (let e = 0; e < this.replay.mesh.edgeCount; e++) {
-      const at = place(quantity.value(e));
-      if (quantity.leavesOut(at)) continue;
+      const first = place(quantity.value(indexAt(e, 0)));
+      if (quantity.leavesOut(first)) continue;
       for (let k = 0; k < 6; k++) ends.array[6 * count + k] = from[6 * e + k];
-      put(quantity.map, at, colours.array, 6 * count);
-      colours.array.copyWithin(6 * count + 3, 6 * count, 6 * count + 3);
+      put(quantity.map, first, colours.array, 6 * count);
+      put(quantity.map, place(quantity.value(indexAt(e, 1))), colours.array, 6 * count + 3);
       count++;
     }
     geometry.instanceCount = count;
@@ -156,10 +168,9 @@ export class SheetObjects {
   /** Fades edges by their mean length on the screen, in pixels: many thin lines would darken the sheet. */
   fade(pixels) {
     const share = Math.min(Math.max((pixels - FADED_LENGTH) / (FULL_LENGTH - FADED_LENGTH), 0), 1);
-    const wireframe = !this.surfaces[0].visible;
     this.bars.material.linewidth = Math.min(Math.max(pixels / 6, 1), VALUE_WIDTH);
-    this.lines.material.opacity = STRENGTH * (wireframe ? Math.max(share, 0.5) : share);
-    this.lines.visible = wireframe || (this.showEdges && share > 0);
+    this.lines.material.opacity = STRENGTH * (this.wireframe ? Math.max(share, 0.5) : share);
+    this.lines.visible = this.wireframe || (this.showEdges && share > 0);
   }
 
   /** Marks an edge, or none for null. */

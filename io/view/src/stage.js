@@ -14,7 +14,7 @@ const ANGLE_OF_VIEW = 32;
 /** How much of the radius of what is framed the half-spaces reach beyond it. */
 const PATCH_REACH = 1.2;
 /** By how much the camera is farther away than it has to be. */
-const MARGIN = 1.08;
+const MARGIN = 1.15;
 /** The smallest distance from which the camera looks at a box, on the stage. */
 const NEAREST = 0.05;
 /** Where the camera looks from, in axes (right, depth, up). */
@@ -61,7 +61,7 @@ export class Stage {
 
   addBodies() {
     this.bodies = new Group();
-    this.bodyGroups = this.replay.data.bodies.map((body) => makeBody(body, this.colours));
+    this.bodyGroups = this.replay.data.bodies.map((body) => makeBody(body));
     this.replay.data.bodies.forEach((body, k) => placeBody(this.bodyGroups[k], body, 0));
     if (this.bodyGroups.length > 0) this.bodies.add(...this.bodyGroups);
     this.scene.add(this.bodies);
@@ -82,7 +82,7 @@ export class Stage {
     this.box = new Box3(half.clone().negate(), half);
     this.replay.data.bodies.forEach((body, k) => {
       if (body.shape.kind === "half_space") {
-        addPatch(this.bodyGroups[k], this.centre, PATCH_REACH * this.size, this.colours);
+        addPatch(this.bodyGroups[k], this.centre, PATCH_REACH * this.size);
       }
     });
     this.bodies.scale.setScalar(1 / this.size);
@@ -113,11 +113,7 @@ export class Stage {
     this.colours = themeColours();
     this.renderer.setClearColor(this.colours.background);
     this.sheet.setColours(this.colours);
-    for (const group of this.bodyGroups) {
-      const [surface, grid] = group.children;
-      surface.material.color.set(grid ? this.colours.floor : this.colours.body);
-      grid?.material.color.set(this.colours.grid);
-    }
+    this.bodies.traverse((object) => object.material?.color.set(this.colours[object.name]));
     this.update();
   }
 
@@ -186,7 +182,7 @@ export class Stage {
     const { clientWidth, clientHeight } = this.container;
     const place = new Vector2((2 * left) / clientWidth - 1, 1 - (2 * top) / clientHeight);
     this.raycaster.setFromCamera(place, this.camera);
-    const sheet = this.raycaster.intersectObjects(this.sheet.surfaces.filter((s) => s.visible), false)[0];
+    const sheet = this.raycaster.intersectObjects(this.sheet.surfaces, false)[0];
     const surfaces = this.bodyGroups.map((group) => group.children[0]);
     const body = this.raycaster.intersectObjects(surfaces, false)[0];
     if (body && !(sheet?.distance < body.distance)) return { body: body.object.parent.name };
