@@ -33,7 +33,7 @@
 //! the last one; the page says so. Series keep all their values.
 //!
 //! # Browsers
-//! WebGL 2 and `DecompressionStream` are needed: Chrome and Edge 80, Firefox 113, Safari 16.4, or newer. With
+//! WebGL 2 and `DecompressionStream` are needed: Chrome and Edge 111, Firefox 113, Safari 16.4, or newer. With
 //! `#selftest=1` the page tests itself and leaves the result as JSON in the attribute `data-selftest` of its body.
 //!
 //! # Encoding

@@ -4,7 +4,7 @@
 
 use super::decoder::{checksum, document, field, positions, rows};
 use super::scenes::{every_body, waving};
-use isosheet_io::view::{PageOptions, Replay};
+use isosheet_io::view::{BodyShape, PageOptions, Replay};
 use isosheet_mesh::{Topology, fold_angle};
 use serde_json::Value;
 use std::fs::File;
@@ -186,6 +186,12 @@ fn every_body_is_drawn_and_moves() {
         assert_eq!(body["shows"], true, "{body}");
     }
     assert_eq!(number(&result["pictures"]["frames"]), 5.0);
+    let played = serde_json::json!({ "starts": true, "middle": 2, "end": 4, "ends": true });
+    assert_eq!(result["played"], played);
+    assert!(
+        number(&result["coveredFitted"]) > 0.2,
+        "the sheet does not fill the view"
+    );
     let keys = serde_json::json!({ "end": 4, "left": 3, "home": 0, "right": 1 });
     assert_eq!(result["keys"], keys);
     // A click at three quarters of a plot of 4/60 s shows the frame at 3/60 s.
@@ -239,6 +245,70 @@ fn one_frame_makes_a_page_on_a_narrow_screen() {
 }
 
 #[test]
+fn small_sheets_far_from_the_origin_are_drawn() {
+    let mut replay = every_body(5);
+    // A thousandth of the size, a hundred metres away; the page has single precision on the graphics card.
+    let change = |x: &mut Vec<f64>| x.iter_mut().for_each(|c| *c = 1e-3 * *c + 100.0);
+    change(&mut replay.rest);
+    replay.positions.iter_mut().for_each(change);
+    for body in &mut replay.bodies {
+        body.shape = smaller(&body.shape);
+        for pose in &mut body.poses {
+            pose.translation = pose.translation.map(|c| 1e-3 * c + 100.0);
+        }
+    }
+    let page = replay.to_html().unwrap();
+    let Some(result) = self_test(&page, "1200,800") else {
+        return;
+    };
+    check_pictures(&result);
+    for body in result["bodies"].as_array().unwrap() {
+        assert_eq!(body["shows"], true, "{body}");
+    }
+    let near = self_test(&every_body(5).to_html().unwrap(), "1200,800").unwrap();
+    let (far, near) = (
+        number(&result["coveredFitted"]),
+        number(&near["coveredFitted"]),
+    );
+    assert!(
+        (far - near).abs() < 0.01,
+        "covers {far}, at the origin {near}"
+    );
+}
+
+/// A thousandth of a body.
+fn smaller(shape: &BodyShape) -> BodyShape {
+    let part = 1e-3;
+    match shape {
+        BodyShape::HalfSpace => BodyShape::HalfSpace,
+        BodyShape::Cuboid { half } => BodyShape::Cuboid {
+            half: half.map(|h| part * h),
+        },
+        BodyShape::Sphere { radius } => BodyShape::Sphere {
+            radius: part * radius,
+        },
+        BodyShape::Cylinder {
+            radius,
+            half_height,
+        } => BodyShape::Cylinder {
+            radius: part * radius,
+            half_height: part * half_height,
+        },
+        BodyShape::Capsule {
+            radius,
+            half_length,
+        } => BodyShape::Capsule {
+            radius: part * radius,
+            half_length: part * half_length,
+        },
+        BodyShape::Mesh { vertices, faces } => BodyShape::Mesh {
+            vertices: vertices.iter().map(|v| part * v).collect(),
+            faces: faces.clone(),
+        },
+    }
+}
+
+#[test]
 fn six_hundred_frames_are_decoded_exactly() {
     let replay = waving(3, 600);
     let page = replay.to_html().unwrap();
@@ -266,5 +336,5 @@ fn a_fine_mesh_with_frames_left_out_is_shown() {
     check_numbers(&result, &replay, &page);
     assert_eq!(result["frames"].as_u64(), Some(21));
     let footer = result["footer"].as_str().unwrap();
-    assert!(footer.contains("every second of 40 frames"), "{footer}");
+    assert!(footer.contains("one in 2 of the 40 frames"), "{footer}");
 }

@@ -167,6 +167,19 @@ fn the_page_asks_for_nothing_from_elsewhere() {
 }
 
 #[test]
+fn the_licences_of_the_libraries_are_in_the_page() {
+    let page = waving(1, 3).to_html().unwrap();
+    for holder in ["three.js authors", "Leon Sorokin"] {
+        assert!(page.contains(holder), "{holder}");
+    }
+    assert_eq!(
+        page.matches("Permission is hereby granted, free of charge")
+            .count(),
+        2
+    );
+}
+
+#[test]
 fn equal_replays_make_equal_pages() {
     assert_eq!(waving(2, 20).to_html(), waving(2, 20).to_html());
 }

@@ -24,13 +24,26 @@ export function makeBody(body) {
       roughness: 0.9, side: DoubleSide, flatShading: body.shape.kind === "mesh",
       polygonOffset: true, polygonOffsetFactor: 6, polygonOffsetUnits: 6,
     });
-    const geometry = geometryOf(body.shape);
+    const geometry = geometryOf(body.shape), centre = centreOf(body.shape);
     const outline = new LineSegments(new EdgesGeometry(geometry, OUTLINED), new LineBasicMaterial());
     group.add(coloured("body", new Mesh(geometry, material)), coloured("outline", outline));
+    for (const child of group.children) child.position.set(...centre);
   }
   return group;
 }
 
+/** The centre of a shape in its own frame. */
+function centreOf(shape) {
+  if (shape.kind !== "mesh") return [0, 0, 0];
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  shape.vertices.forEach((value, k) => {
+    low[k % 3] = Math.min(low[k % 3], value);
+    high[k % 3] = Math.max(high[k % 3], value);
+  });
+  return low.map((value, axis) => (value + high[axis]) / 2);
+}
+
+/** A shape about its centre, so that single precision has all the digits that are seen. */
 function geometryOf(shape) {
   switch (shape.kind) {
     case "cuboid":
@@ -43,8 +56,9 @@ function geometryOf(shape) {
       return upright(new CapsuleGeometry(shape.radius, 2 * shape.half_length, 16, 64));
     case "mesh": {
       // Coordinates are doubles, about their own centre, so that single precision has all digits that matter.
-      const geometry = new BufferGeometry();
-      geometry.setAttribute("position", new BufferAttribute(Float32Array.from(shape.vertices), 3));
+      const geometry = new BufferGeometry(), centre = centreOf(shape);
+      const positions = Float32Array.from(shape.vertices, (value, k) => value - centre[k % 3]);
+      geometry.setAttribute("position", new BufferAttribute(positions, 3));
       geometry.setIndex(new BufferAttribute(shape.faces, 1));
       return geometry;
     }

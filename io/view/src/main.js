@@ -81,7 +81,8 @@ class Page {
 
   key(event) {
     // Controls have keys of their own: arrows change a choice, space presses a button.
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("select, button, summary")) return;
+    const taken = event.target.closest(event.key === " " ? "select, button, summary, input" : "select");
+    if (event.ctrlKey || event.metaKey || event.altKey || taken) return;
     const { player, replay, stage } = this, step = event.shiftKey ? 10 : 1;
     const acts = {
       " ": () => player.toggle(),
@@ -112,7 +113,7 @@ async function main() {
   const choices = new URLSearchParams(location.hash.slice(1));
   const exceptions = watchErrors();
   if (typeof DecompressionStream === "undefined") {
-    throw new Error("this browser cannot unpack the data; Chrome 80, Firefox 113, Safari 16.4 or newer can");
+    throw new Error("this browser cannot unpack the data; Chrome 111, Firefox 113, Safari 16.4 or newer can");
   }
   const data = await decode(JSON.parse($("replay").textContent));
   const page = new Page(new Replay(data));

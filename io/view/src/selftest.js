@@ -34,7 +34,7 @@ function backgroundOf(words, width, height) {
   return corners.sort((a, b) => corners.filter((c) => c === b).length - corners.filter((c) => c === a).length)[0];
 }
 
-/** The distinct pictures of `acts`, with the pixels that the emptiest one covers. */
+/** The number of distinct pictures that `acts` lead to; the pictures are added to `log`. */
 function distinct(stage, acts, log) {
   const pictures = acts.map((act) => {
     act();
@@ -100,6 +100,9 @@ export async function selfTest(page, exceptions) {
   const keys = { end: press(page, "End"), left: press(page, "ArrowLeft"), home: press(page, "Home"), right: press(page, "ArrowRight") };
   const over = document.querySelector("#plots .u-over");
   const clicked = over ? clickPlot(page, over) : null;
+  const played = play(page);
+  stage.applyTheme();
+  page.plots.build();
   player.seek(last);
   return {
     vertices: replay.data.vertices, edges: replay.mesh.edgeCount, frames: replay.frames,
@@ -112,13 +115,26 @@ export async function selfTest(page, exceptions) {
     coveredAtStart: start.covered, coveredFitted: fitted.covered,
     covered: Math.min(...log.map((p) => p.covered)),
     glErrors: log.map((p) => p.error).filter((error) => error !== 0),
-    modes, bodies, hover, keys, clicked, title: document.getElementById("title").textContent,
+    modes, bodies, hover, keys, clicked, played, title: document.getElementById("title").textContent,
     scene: document.getElementById("scene").textContent, footer: document.getElementById("footer").textContent,
     plots: document.querySelectorAll("#plots canvas").length,
     requests: performance.getEntriesByType("resource").map((entry) => entry.name).filter((name) => !name.startsWith("data:")),
     overflow: document.documentElement.scrollWidth - window.innerWidth,
     exceptions,
   };
+}
+
+/** Plays to a little after the middle and beyond the end, by a clock that starts at one second. */
+function play(page) {
+  const { player, replay } = page, { times } = replay.data, duration = times[times.length - 1] - times[0];
+  player.seek(0);
+  player.toggle();
+  const starts = player.playing;
+  player.tick(1000);
+  player.tick(1000 + 550 * duration);
+  const middle = replay.frame;
+  player.tick(1001 + 1000 * duration);
+  return { starts, middle, end: replay.frame, ends: !player.playing };
 }
 
 /** Clicks at three quarters of the width of a plot; the frame nearest to the time there has to be shown. */

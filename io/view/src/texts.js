@@ -32,7 +32,7 @@ export function showTexts(replay) {
     `${data.program} ${data.version}.`,
     `Positions are rounded to ${number(data.step / 2, 2)} m in each coordinate.`,
     data.stride > 1
-      ? `To keep the page small, it has every ${data.stride}th of ${data.frames_of_run} frames, and the last one.`.replace("2th", "second")
+      ? `To keep the page small, it has one in ${data.stride} of the ${data.frames_of_run} frames of the run, and the last one.`
       : "",
     "Contains three.js and uPlot (MIT licence; the texts are in the source of this page).",
   ].map((text) => Object.assign(document.createElement("p"), { textContent: text })));
