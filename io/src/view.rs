@@ -1,45 +1,50 @@
-//! The page of a run: one HTML file that shows the sheet and the bodies in 3D, plays the motion and plots what
-//! was measured.
+//! The page of a run: one HTML file that shows the sheet and the bodies in 3D, plays the motion and plots
+//! what was measured.
 //!
-//! [`Replay`] holds all that the page shows; [`Replay::to_html`] makes the page. The page needs neither other files
-//! nor a connection: the program ([three.js](https://threejs.org) for the 3D view, [uPlot](https://github.com/leeoniya/uPlot)
-//! for the plots, both under the MIT licence) and the data are in it. It works from a disk, from a server and as
-//! an attachment.
+//! [`Replay`] holds all that the page shows; [`Replay::to_html`] makes the page. The page needs neither other
+//! files nor a connection: the program ([three.js](https://threejs.org) for the 3D view,
+//! [uPlot](https://github.com/leeoniya/uPlot) for the plots, both under the MIT licence) and the data are in
+//! it. It works from a disk, from a server and as an attachment.
 //!
 //! # What the page shows
-//! The sheet has two colours, one for each side. It can be coloured by the fold angles of the edges, by height and
-//! by every [`Field`]; the range of colours is that of the whole run. [`Field::edge_strain`] makes the field of
-//! the strains. Pins are marked, bodies are drawn where their poses say, the rest shape is shown on demand. What is
-//! under the pointer (vertex, edge, face) is named with its fold angle and values. A click in a plot goes to that
-//! time. Space plays, arrow keys step. The part of the address after `#` makes choices, as in
-//! `page.html#frame=20&colour=fold&rest=1`; colours are `plain`, `fold`, `height`, and `field-K` for field K from 0.
+//! The sheet has two colours, one for each side. It can be coloured by the fold angles of the edges, by
+//! height and by every [`Field`]; the range of colours is that of the whole run. [`Field::edge_strain`] makes
+//! the field of the strains. Pins are marked, bodies are drawn where their poses say, the rest shape is shown
+//! on demand. What is under the pointer (vertex, edge, face) is named with its fold angle and values. A click
+//! in a plot goes to that time. Space plays, arrow keys step. The part of the address after `#` makes
+//! choices, as in `page.html#frame=20&colour=fold&rest=1`; colours are `plain`, `fold`, `height`, and
+//! `field-K` for field K from 0.
 //!
 //! # Precision
-//! Let `L` be the longest side of the box that holds the positions of all frames.
+//! Let `L` be the longest side of the box that holds the positions of all frames, `h` the height of
+//! triangles, and `min` and `max` the extremes of a field in the run: of a logarithmic one, those above zero.
+//! Zero has a byte of its own.
 //!
-//! | quantity | stored as | error |
+//! | quantity | stored as | error, at most |
 //! |---|---|---|
-//! | positions | 16-bit integers, one step for all axes | at most `L / 65535 / 2` in a coordinate, and round-off |
-//! | fold angles | computed from the positions in the page | about `2 L / 65535 / h` radians, with the height `h` of the triangles |
-//! | fields, linear | 16-bit integers between the extremes of the run | at most `(max - min) / 65535 / 2` |
-//! | fields, logarithmic | bytes, and one for zero | at most a factor `(max / min)^(1 / 508)`, extremes of the values above zero |
+//! | positions | 16-bit integers | `L / 65535 / 2` in each coordinate, and round-off |
+//! | fold angles | not stored | about `2 L / 65535 / h` radians |
+//! | fields, linear | 16-bit integers | `(max - min) / 65535 / 2` |
+//! | fields, logarithmic | bytes | a factor `(max / min)^(1 / 508)` |
 //! | rest shape, times, series, poses | doubles | none |
 //!
 //! # Size
 //! The program has 0.7 MB. Integers of `b` bytes take `4/3 c b` bytes for each number and frame: `c` is what
 //! compression leaves of differences in time, a quarter to a half for smooth motions and nearly 1 for noise.
-//! Positions have 3V numbers of two bytes in a frame: 289 vertices in 600 frames take about half a megabyte. Doubles
-//! of series take up to 11 bytes each. Above [`PageOptions::budget`] every second, fourth, ... frame is kept, and
-//! the last one; the page says so. Series keep all their values.
+//! Positions have 3V numbers of two bytes in a frame: 289 vertices in 600 frames take about half a megabyte.
+//! Doubles of series take up to 11 bytes each. Above [`PageOptions::budget`] every second, fourth, ... frame
+//! is kept, and the last one; the page says so. Series keep all their values.
 //!
 //! # Browsers
-//! WebGL 2 and `DecompressionStream` are needed: Chrome and Edge 111, Firefox 113, Safari 16.4, or newer. With
-//! `#selftest=1` the page tests itself and leaves the result as JSON in the attribute `data-selftest` of its body.
+//! WebGL 2 and `DecompressionStream` are needed: Chrome and Edge 111, Firefox 113, Safari 16.4, or newer.
+//! With `#selftest=1` the page tests itself and leaves the result as JSON in the attribute `data-selftest` of
+//! its body.
 //!
 //! # Encoding
-//! The data are JSON in the element `replay`. Integers are replaced by differences of order 0, 1 or 2 in time,
-//! whichever is shortest, modulo `2^(8 b)`; differences become unsigned by the zigzag map; all low bytes precede all
-//! high bytes; gzip and base64 follow. Doubles and indices are split into byte planes and packed likewise.
+//! The data are JSON in the element `replay`. Integers are replaced by differences of order 0, 1 or 2 in
+//! time, whichever is shortest, modulo `2^(8 b)`; differences become unsigned by the zigzag map; all low
+//! bytes precede all high bytes; gzip and base64 follow. Doubles and indices are split into byte planes and
+//! packed likewise.
 //!
 //! ```
 //! use isosheet_io::view::{Field, Replay};

@@ -8,7 +8,10 @@ import { build } from "esbuild";
 const { outdir } = parseArgs({ options: { outdir: { type: "string", default: "dist" } } }).values;
 const { dependencies } = JSON.parse(readFileSync("package.json", "utf8"));
 const licences = Object.entries(dependencies)
-  .map(([name, version]) => `${name} ${version}\n\n${readFileSync(`node_modules/${name}/LICENSE`, "utf8").trim()}\n`)
+  .map(
+    ([name, version]) =>
+      `${name} ${version}\n\n${readFileSync(`node_modules/${name}/LICENSE`, "utf8").trim()}\n`,
+  )
   .join("\n");
 
 await build({
@@ -21,6 +24,6 @@ await build({
   outdir,
   // The licences are in the banner, and in a file of their own.
   legalComments: "none",
-  banner: { js: `/*!\n${licences}*/`, css: "/*! The style of uPlot: MIT licence, see the program of the page. */" },
+  banner: { js: `/*!\n${licences}*/`, css: "/*! Has the style of uPlot, MIT licence: see the program. */" },
 });
 writeFileSync(`${outdir}/LICENSES.txt`, licences);

@@ -282,7 +282,8 @@ fn edge_strain_is_the_relative_change_of_length() {
 
 #[test]
 fn the_decoder_of_the_tests_undoes_known_differences() {
-    // Second differences of 0, 1, 4, 9 are 0, 1, 2, 2, in zigzag form 0, 2, 4, 4; low bytes before high bytes.
+    // Second differences of 0, 1, 4, 9 are 0, 1, 2, 2, in zigzag form 0, 2, 4, 4; low bytes before high
+    // bytes.
     let planes = [0, 2, 4, 4, 0, 0, 0, 0];
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     std::io::Write::write_all(&mut encoder, &planes).unwrap();

@@ -8,7 +8,8 @@ pub(crate) fn scattered(k: usize) -> f64 {
     (k as f64 * 0.618_033_988_749_894_9).fract()
 }
 
-/// A sheet with sides of 1 m that waves: smooth motion of every coordinate, with some noise of 10 micrometres.
+/// A sheet with sides of 1 m that waves: smooth motion of every coordinate, with some noise of 10
+/// micrometres.
 pub(crate) fn waving(level: u32, frames: usize) -> Replay {
     let sheet = generate::isotropic_square(level, 1.0).unwrap();
     let times: Vec<f64> = (0..frames).map(|k| k as f64 / 60.0).collect();

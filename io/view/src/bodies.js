@@ -1,9 +1,23 @@
 // The bodies that the sheet meets, as objects of three.js in metres. Their poses are set for each frame.
 
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, CylinderGeometry, DoubleSide, EdgesGeometry, Group,
-  LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshStandardMaterial, PlaneGeometry, Quaternion,
-  SphereGeometry, Vector3,
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  CapsuleGeometry,
+  CylinderGeometry,
+  DoubleSide,
+  EdgesGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  MeshStandardMaterial,
+  PlaneGeometry,
+  Quaternion,
+  SphereGeometry,
+  Vector3,
 } from "three";
 
 /** Shapes of three.js stand along y, those of the document along z. */
@@ -21,10 +35,15 @@ export function makeBody(body) {
   group.name = body.name;
   if (body.shape.kind !== "half_space") {
     const material = new MeshStandardMaterial({
-      roughness: 0.9, side: DoubleSide, flatShading: body.shape.kind === "mesh",
-      polygonOffset: true, polygonOffsetFactor: 6, polygonOffsetUnits: 6,
+      roughness: 0.9,
+      side: DoubleSide,
+      flatShading: body.shape.kind === "mesh",
+      polygonOffset: true,
+      polygonOffsetFactor: 6,
+      polygonOffsetUnits: 6,
     });
-    const geometry = geometryOf(body.shape), centre = centreOf(body.shape);
+    const geometry = geometryOf(body.shape),
+      centre = centreOf(body.shape);
     const outline = new LineSegments(new EdgesGeometry(geometry, OUTLINED), new LineBasicMaterial());
     group.add(coloured("body", new Mesh(geometry, material)), coloured("outline", outline));
     for (const child of group.children) child.position.set(...centre);
@@ -35,7 +54,8 @@ export function makeBody(body) {
 /** The centre of a shape in its own frame. */
 function centreOf(shape) {
   if (shape.kind !== "mesh") return [0, 0, 0];
-  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  const low = [Infinity, Infinity, Infinity],
+    high = [-Infinity, -Infinity, -Infinity];
   shape.vertices.forEach((value, k) => {
     low[k % 3] = Math.min(low[k % 3], value);
     high[k % 3] = Math.max(high[k % 3], value);
@@ -56,7 +76,8 @@ function geometryOf(shape) {
       return upright(new CapsuleGeometry(shape.radius, 2 * shape.half_length, 16, 64));
     case "mesh": {
       // Coordinates are doubles, about their own centre, so that single precision has all digits that matter.
-      const geometry = new BufferGeometry(), centre = centreOf(shape);
+      const geometry = new BufferGeometry(),
+        centre = centreOf(shape);
       const positions = Float32Array.from(shape.vertices, (value, k) => value - centre[k % 3]);
       geometry.setAttribute("position", new BufferAttribute(positions, 3));
       geometry.setIndex(new BufferAttribute(shape.faces, 1));
@@ -86,18 +107,21 @@ function roundLength(length) {
 const CELLS = 10;
 
 /**
- * The visible part of the plane of a half-space: a square patch with a grid, centred below `centre` (metres, in
- * space) where the body is in its first pose. `reach` (metres) is how far the patch has to go at least.
+ * The visible part of the plane of a half-space: a square patch with a grid, centred below `centre` (metres,
+ * in space) where the body is in its first pose. `reach` (metres) is how far the patch has to go at least.
  */
 export function addPatch(group, centre, reach) {
   const cell = roundLength((2 * reach) / CELLS);
   const half = CELLS * cell;
   const turn = new Quaternion().copy(group.quaternion).invert();
   const local = new Vector3(...centre).sub(group.position).applyQuaternion(turn);
-  const x0 = Math.round(local.x / cell) * cell, y0 = Math.round(local.y / cell) * cell;
+  const x0 = Math.round(local.x / cell) * cell,
+    y0 = Math.round(local.y / cell) * cell;
   const plane = new PlaneGeometry(2 * half, 2 * half).translate(x0, y0, 0);
   const surface = new MeshBasicMaterial({
-    polygonOffset: true, polygonOffsetFactor: 9, polygonOffsetUnits: 9,
+    polygonOffset: true,
+    polygonOffsetFactor: 9,
+    polygonOffsetUnits: 9,
   });
   const points = [];
   for (let k = -CELLS; k <= CELLS; k++) {

@@ -2,7 +2,8 @@
 
 // Viridis by Smith and van der Walt (CC0), every eighth part.
 const VIRIDIS = [0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c, 0x28ae80, 0x5ec962, 0xaddc30, 0xfde725];
-// Diverging colours after Moreland (2009), "Diverging Color Maps for Scientific Visualization", every eighth part.
+// Diverging colours after Moreland (2009), "Diverging Color Maps for Scientific Visualization", every eighth
+// part.
 const COOLWARM = [0x3b4cc0, 0x688aef, 0x99baff, 0xc9d8ef, 0xdddddd, 0xf7c4ad, 0xf49a7b, 0xde614d, 0xb40426];
 const SIZE = 256;
 
@@ -11,7 +12,8 @@ function table(stops) {
   const linear = new Float32Array(3 * SIZE);
   for (let k = 0; k < SIZE; k++) {
     const place = (k / (SIZE - 1)) * (stops.length - 1);
-    const i = Math.min(Math.floor(place), stops.length - 2), part = place - i;
+    const i = Math.min(Math.floor(place), stops.length - 2),
+      part = place - i;
     for (let c = 0; c < 3; c++) {
       const shift = 16 - 8 * c;
       const value = ((stops[i] >> shift) & 255) * (1 - part) + ((stops[i + 1] >> shift) & 255) * part;

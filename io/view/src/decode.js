@@ -1,5 +1,5 @@
-// Numbers from the texts of the document: base64, gzip, byte planes, differences in time. This is the inverse of
-// io/src/view/pack.rs and quantise.rs.
+// Numbers from the texts of the document: base64, gzip, byte planes, differences in time. This is the inverse
+// of io/src/view/pack.rs and quantise.rs.
 
 async function inflate(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -25,7 +25,7 @@ export async function indices(text) {
   return new Uint32Array(joinPlanes(await inflate(text), 4));
 }
 
-/** Integers of `packed`, `rows` rows one after the other; `Uint8Array` or `Uint16Array` wrap as the encoder does. */
+/** Integers, `rows` rows one after the other. Typed arrays wrap around as the encoder does. */
 export async function rows(packed, rows) {
   const planes = await inflate(packed.data);
   const values = packed.bytes === 1 ? planes : new Uint16Array(joinPlanes(planes, 2));
@@ -55,18 +55,25 @@ export function checksum(values) {
 export async function decode(data) {
   const frames = data.frames;
   const [times, faces, rest, positions] = await Promise.all([
-    doubles(data.times), indices(data.faces), doubles(data.rest), rows(data.positions, frames),
+    doubles(data.times),
+    indices(data.faces),
+    doubles(data.rest),
+    rows(data.positions, frames),
   ]);
-  const bodies = await Promise.all(data.bodies.map(async (body) => {
-    const shape = { ...body.shape };
-    if (shape.kind === "mesh") {
-      [shape.vertices, shape.faces] = await Promise.all([doubles(shape.vertices), indices(shape.faces)]);
-    }
-    return { name: body.name, shape, poses: await doubles(body.poses) };
-  }));
-  const fields = await Promise.all(data.fields.map(async (field) => (
-    { ...field, values: await rows(field.values, frames) })));
-  const series = await Promise.all(data.series.map(async (s) => (
-    { ...s, times: await doubles(s.times), values: await doubles(s.values) })));
+  const bodies = await Promise.all(
+    data.bodies.map(async (body) => {
+      const shape = { ...body.shape };
+      if (shape.kind === "mesh") {
+        [shape.vertices, shape.faces] = await Promise.all([doubles(shape.vertices), indices(shape.faces)]);
+      }
+      return { name: body.name, shape, poses: await doubles(body.poses) };
+    }),
+  );
+  const fields = await Promise.all(
+    data.fields.map(async (field) => ({ ...field, values: await rows(field.values, frames) })),
+  );
+  const series = await Promise.all(
+    data.series.map(async (s) => ({ ...s, times: await doubles(s.times), values: await doubles(s.values) })),
+  );
   return { ...data, times, faces, rest, positions, bodies, fields, series };
 }

@@ -6,7 +6,8 @@ import { number, withUnit } from "./format.js";
 export function describe(replay, found) {
   if (found.body !== undefined) return [`Body ${found.body}`];
   const { face, vertex, edge } = found;
-  const { edges } = replay.mesh, x = replay.x;
+  const { edges } = replay.mesh,
+    x = replay.x;
   const position = [0, 1, 2].map((k) => number(x[3 * vertex + k])).join(", ");
   const fold = replay.folds[edge] * (180 / Math.PI);
   const lines = [
@@ -33,7 +34,9 @@ export class Hover {
     this.container = container;
     this.stage = stage;
     this.found = null;
-    container.addEventListener("pointermove", (event) => { if (event.buttons === 0) this.at(event); });
+    container.addEventListener("pointermove", (event) => {
+      if (event.buttons === 0) this.at(event);
+    });
     container.addEventListener("pointerup", (event) => this.at(event));
     container.addEventListener("pointerleave", () => this.hide());
   }
@@ -48,17 +51,23 @@ export class Hover {
     this.place = [left, top];
     if (!this.found) return this.hide();
     this.refresh();
-    const { clientWidth, clientHeight } = this.container, { box } = this;
-    const x = left + GAP + box.offsetWidth > clientWidth ? Math.max(left - GAP - box.offsetWidth, 0) : left + GAP;
-    const y = top + GAP + box.offsetHeight > clientHeight ? Math.max(top - GAP - box.offsetHeight, 0) : top + GAP;
+    const { clientWidth, clientHeight } = this.container,
+      { box } = this;
+    const x =
+      left + GAP + box.offsetWidth > clientWidth ? Math.max(left - GAP - box.offsetWidth, 0) : left + GAP;
+    const y =
+      top + GAP + box.offsetHeight > clientHeight ? Math.max(top - GAP - box.offsetHeight, 0) : top + GAP;
     box.style.transform = `translate(${x}px, ${y}px)`;
     return this.found;
   }
 
   /** The values of what was found last, in the frame that is shown now. */
   refresh() {
-    this.box.replaceChildren(...describe(this.stage.replay, this.found).map((line) => (
-      Object.assign(document.createElement("div"), { textContent: line }))));
+    this.box.replaceChildren(
+      ...describe(this.stage.replay, this.found).map((line) =>
+        Object.assign(document.createElement("div"), { textContent: line }),
+      ),
+    );
     this.box.hidden = false;
     this.stage.sheet.markEdge(this.found.edge ?? null);
     this.stage.request();

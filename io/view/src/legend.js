@@ -9,11 +9,16 @@ export function showLegend(quantity) {
   $("legend").hidden = !quantity.map;
   if (!quantity.map) return;
   const [low, high] = quantity.range();
-  $("legend-name").textContent = quantity.label + (quantity.unit ? ` (${quantity.unit})` : "")
-    + (quantity.scale === "logarithmic" ? ", logarithmic" : "");
+  $("legend-name").textContent =
+    quantity.label +
+    (quantity.unit ? ` (${quantity.unit})` : "") +
+    (quantity.scale === "logarithmic" ? ", logarithmic" : "");
   drawMap(quantity.map, $("legend-bar"));
   const middle = quantity.scale === "logarithmic" ? Math.sqrt(low * high) : (low + high) / 2;
   const ticks = high > low ? [low, middle, high] : ["", low, ""];
-  $("legend-ticks").replaceChildren(...ticks.map((value) => (
-    Object.assign(document.createElement("span"), { textContent: value === "" ? "" : number(value, 3) }))));
+  $("legend-ticks").replaceChildren(
+    ...ticks.map((value) =>
+      Object.assign(document.createElement("span"), { textContent: value === "" ? "" : number(value, 3) }),
+    ),
+  );
 }

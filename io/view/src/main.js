@@ -15,7 +15,16 @@ import { showTexts } from "./texts.js";
 import { onThemeChange } from "./theme.js";
 
 const $ = (id) => document.getElementById(id);
-const SPEEDS = [[0.0625, "1/16"], [0.125, "1/8"], [0.25, "1/4"], [0.5, "1/2"], [1, "1"], [2, "2"], [4, "4"], [8, "8"]];
+const SPEEDS = [
+  [0.0625, "1/16"],
+  [0.125, "1/8"],
+  [0.25, "1/4"],
+  [0.5, "1/2"],
+  [1, "1"],
+  [2, "2"],
+  [4, "4"],
+  [8, "8"],
+];
 
 class Page {
   constructor(replay) {
@@ -52,16 +61,24 @@ class Page {
     $("scrub").addEventListener("input", () => player.seek(Number($("scrub").value)));
     $("play").addEventListener("click", () => player.toggle());
     $("transport").hidden = replay.frames === 1;
-    $("speed").append(...SPEEDS.map(([value, name]) => new Option(`${name}×`, value, value === 1, value === 1)));
-    $("speed").addEventListener("change", () => { player.speed = Number($("speed").value); });
+    $("speed").append(
+      ...SPEEDS.map(([value, name]) => new Option(`${name}×`, value, value === 1, value === 1)),
+    );
+    $("speed").addEventListener("change", () => {
+      player.speed = Number($("speed").value);
+    });
     $("colour").append(...replay.quantities.map((q) => new Option(q.label, q.key)));
     $("colour").addEventListener("change", () => this.colourBy($("colour").value));
     $("reset").addEventListener("click", () => stage.resetCamera());
     $("fit").addEventListener("click", () => stage.frameSheet());
     const boxes = {
-      edges: (on) => { stage.sheet.showEdges = on; },
+      edges: (on) => {
+        stage.sheet.showEdges = on;
+      },
       wireframe: (on) => stage.sheet.setWireframe(on),
-      rest: (on) => { stage.sheet.ghost.visible = on; },
+      rest: (on) => {
+        stage.sheet.ghost.visible = on;
+      },
     };
     for (const [id, act] of Object.entries(boxes)) {
       $(id).addEventListener("change", () => {
@@ -83,7 +100,8 @@ class Page {
     // Controls have keys of their own: arrows change a choice, space presses a button.
     const taken = event.target.closest(event.key === " " ? "select, button, summary, input" : "select");
     if (event.ctrlKey || event.metaKey || event.altKey || taken) return;
-    const { player, replay, stage } = this, step = event.shiftKey ? 10 : 1;
+    const { player, replay, stage } = this,
+      step = event.shiftKey ? 10 : 1;
     const acts = {
       " ": () => player.toggle(),
       ArrowLeft: () => player.seek(replay.frame - step),
@@ -119,7 +137,8 @@ async function main() {
   const page = new Page(new Replay(data));
   $("message").hidden = true;
   page.choose(choices);
-  if (choices.has("selftest")) document.body.dataset.selftest = JSON.stringify(await selfTest(page, exceptions));
+  if (choices.has("selftest"))
+    document.body.dataset.selftest = JSON.stringify(await selfTest(page, exceptions));
 }
 
 main().catch((error) => {

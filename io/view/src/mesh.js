@@ -12,15 +12,26 @@ export class Mesh {
     this.faceCount = faces.length / 3;
     const sides = [];
     for (let k = 0; k < faces.length; k++) {
-      const from = faces[k], to = faces[k - (k % 3) + ((k + 1) % 3)];
+      const from = faces[k],
+        to = faces[k - (k % 3) + ((k + 1) % 3)];
       const opposite = faces[k - (k % 3) + ((k + 2) % 3)];
-      sides.push({ key: Math.min(from, to) * vertices + Math.max(from, to), from, opposite, face: (k / 3) | 0, k });
+      sides.push({
+        key: Math.min(from, to) * vertices + Math.max(from, to),
+        from,
+        opposite,
+        face: (k / 3) | 0,
+        k,
+      });
     }
     sides.sort((a, b) => a.key - b.key || a.k - b.k);
-    const edges = [], hinges = [], edgeFaces = [];
+    const edges = [],
+      hinges = [],
+      edgeFaces = [];
     this.faceEdges = new Uint32Array(faces.length);
     for (let i = 0; i < sides.length; i++) {
-      const side = sides[i], low = Math.floor(side.key / vertices), high = side.key % vertices;
+      const side = sides[i],
+        low = Math.floor(side.key / vertices),
+        high = side.key % vertices;
       this.faceEdges[side.k] = edges.length / 2;
       edges.push(low, high);
       edgeFaces.push(side.face);
@@ -45,24 +56,39 @@ export class Mesh {
   }
 
   /**
-   * The fold angle of each edge, in radians within [-pi, pi]; zero when flat, NaN on the boundary, positive for
-   * a valley as seen from the front: `atan2((nR x nL) . e, nL . nR)` with the unit vector e along the edge.
+   * The fold angle of each edge, in radians within [-pi, pi]; zero when flat, NaN on the boundary, positive
+   * for a valley as seen from the front: `atan2((nR x nL) . e, nL . nR)` with the unit vector e along the
+   * edge.
    */
   foldAngles(x, out) {
     const { edges, hinges } = this;
     for (let e = 0; e < this.edgeCount; e++) {
-      const left = 3 * hinges[2 * e], right = 3 * hinges[2 * e + 1];
+      const left = 3 * hinges[2 * e],
+        right = 3 * hinges[2 * e + 1];
       if (left < 0) {
         out[e] = NaN;
         continue;
       }
-      const a = 3 * edges[2 * e], b = 3 * edges[2 * e + 1];
-      const ex = x[b] - x[a], ey = x[b + 1] - x[a + 1], ez = x[b + 2] - x[a + 2];
-      const lx = x[left] - x[a], ly = x[left + 1] - x[a + 1], lz = x[left + 2] - x[a + 2];
-      const rx = x[right] - x[a], ry = x[right + 1] - x[a + 1], rz = x[right + 2] - x[a + 2];
-      const nlx = ey * lz - ez * ly, nly = ez * lx - ex * lz, nlz = ex * ly - ey * lx;
-      const nrx = ry * ez - rz * ey, nry = rz * ex - rx * ez, nrz = rx * ey - ry * ex;
-      const sx = nry * nlz - nrz * nly, sy = nrz * nlx - nrx * nlz, sz = nrx * nly - nry * nlx;
+      const a = 3 * edges[2 * e],
+        b = 3 * edges[2 * e + 1];
+      const ex = x[b] - x[a],
+        ey = x[b + 1] - x[a + 1],
+        ez = x[b + 2] - x[a + 2];
+      const lx = x[left] - x[a],
+        ly = x[left + 1] - x[a + 1],
+        lz = x[left + 2] - x[a + 2];
+      const rx = x[right] - x[a],
+        ry = x[right + 1] - x[a + 1],
+        rz = x[right + 2] - x[a + 2];
+      const nlx = ey * lz - ez * ly,
+        nly = ez * lx - ex * lz,
+        nlz = ex * ly - ey * lx;
+      const nrx = ry * ez - rz * ey,
+        nry = rz * ex - rx * ez,
+        nrz = rx * ey - ry * ex;
+      const sx = nry * nlz - nrz * nly,
+        sy = nrz * nlx - nrx * nlz,
+        sz = nrx * nly - nry * nlx;
       const sine = (sx * ex + sy * ey + sz * ez) / Math.hypot(ex, ey, ez);
       out[e] = Math.atan2(sine, nlx * nrx + nly * nry + nlz * nrz);
     }
@@ -73,7 +99,8 @@ export class Mesh {
   meanLength(x) {
     let sum = 0;
     for (let k = 0; k < this.edges.length; k += 2) {
-      const a = 3 * this.edges[k], b = 3 * this.edges[k + 1];
+      const a = 3 * this.edges[k],
+        b = 3 * this.edges[k + 1];
       sum += Math.hypot(x[b] - x[a], x[b + 1] - x[a + 1], x[b + 2] - x[a + 2]);
     }
     return sum / this.edgeCount;

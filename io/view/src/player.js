@@ -39,7 +39,8 @@ export class Player {
   /** Goes on in the time of the run by the time that passed, times the speed; stops at the last frame. */
   tick(now) {
     if (!this.playing) return;
-    const { times } = this.replay.data, end = times[times.length - 1];
+    const { times } = this.replay.data,
+      end = times[times.length - 1];
     if (this.clock !== null) this.time += ((now - this.clock) / 1000) * this.speed;
     this.clock = now;
     this.show(this.replay.frameAt(this.time));

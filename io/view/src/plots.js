@@ -15,8 +15,13 @@ export function groupSeries(series) {
   const groups = [];
   for (const s of series) {
     const last = groups.at(-1);
-    const joins = last && s.unit !== "" && last.length < LINES.length && last[0].unit === s.unit
-      && last[0].scale === s.scale && sameTimes(last[0].times, s.times);
+    const joins =
+      last &&
+      s.unit !== "" &&
+      last.length < LINES.length &&
+      last[0].unit === s.unit &&
+      last[0].scale === s.scale &&
+      sameTimes(last[0].times, s.times);
     if (joins) last.push(s);
     else groups.push([s]);
   }
@@ -56,7 +61,8 @@ class Plot {
     const figure = document.createElement("figure");
     this.caption = document.createElement("figcaption");
     this.labels = group.map((series, k) => {
-      const name = document.createElement("span"), value = document.createElement("output");
+      const name = document.createElement("span"),
+        value = document.createElement("output");
       name.textContent = series.name + (series.unit ? ` (${series.unit})` : "");
       name.style.setProperty("--key", LINES[k]);
       name.className = group.length > 1 ? "key" : "";
@@ -81,7 +87,12 @@ class Plot {
   }
 
   options(colours, logarithmic) {
-    const axis = { stroke: colours.text, grid: { stroke: colours.axis, width: 1 }, ticks: { show: false }, font: "11px system-ui" };
+    const axis = {
+      stroke: colours.text,
+      grid: { stroke: colours.axis, width: 1 },
+      ticks: { show: false },
+      font: "11px system-ui",
+    };
     return {
       width: this.plots.container.clientWidth || 320,
       height: HEIGHT,
@@ -96,15 +107,23 @@ class Plot {
       axes: [
         { ...axis, size: 24, space: 60, values: (_, ticks) => ticks.map((t) => `${number(t)} s`) },
         {
-          ...axis, size: 58, space: 24, gap: 4,
+          ...axis,
+          size: 58,
+          space: 24,
+          gap: 4,
           splits: logarithmic ? (_, __, low, high) => decades(low, high) : undefined,
           filter: logarithmic ? (_, ticks) => ticks : undefined,
           values: (_, ticks) => ticks.map((v) => number(v, 3)),
         },
       ],
-      series: [{}, ...this.group.map((_, k) => ({
-        stroke: this.group.length > 1 ? LINES[k] : colours.line, width: 1.5, points: { show: this.group[0].times.length < 3 },
-      }))],
+      series: [
+        {},
+        ...this.group.map((_, k) => ({
+          stroke: this.group.length > 1 ? LINES[k] : colours.line,
+          width: 1.5,
+          points: { show: this.group[0].times.length < 3 },
+        })),
+      ],
     };
   }
 
@@ -134,7 +153,9 @@ class Plot {
     this.line.style.transform = `translateX(${left}px)`;
     this.line.hidden = left < 0 || left > this.plot.over.clientWidth;
     const k = nearest(times, time);
-    this.group.forEach((series, i) => { this.labels[i].textContent = number(series.values[k]); });
+    this.group.forEach((series, i) => {
+      this.labels[i].textContent = number(series.values[k]);
+    });
   }
 
   resize(width) {
@@ -142,18 +163,21 @@ class Plot {
   }
 }
 
-/** At most five powers of ten between two numbers, with equal ratios; the numbers themselves when there is none. */
+/** At most five powers of ten between two numbers, or the numbers where there are fewer than two. */
 function decades(low, high) {
-  const first = Math.ceil(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9);
+  const first = Math.ceil(Math.log10(low) - 1e-9),
+    last = Math.floor(Math.log10(high) + 1e-9);
   if (last <= first) return [low, high];
-  const step = Math.ceil((last - first) / 4), powers = [];
+  const step = Math.ceil((last - first) / 4),
+    powers = [];
   for (let power = first; power <= last; power += step) powers.push(10 ** power);
   return powers;
 }
 
 /** The index of the entry of an ascending list that is nearest to a value. */
 function nearest(list, value) {
-  let low = 0, high = list.length - 1;
+  let low = 0,
+    high = list.length - 1;
   while (high - low > 1) {
     const middle = (low + high) >> 1;
     if (list[middle] <= value) low = middle;

@@ -26,7 +26,8 @@ export class Replay {
   /** Positions of a frame in metres, into `out`. */
   positionsOf(frame, out) {
     const { low, step, positions } = this.data;
-    const width = 3 * this.data.vertices, from = frame * width;
+    const width = 3 * this.data.vertices,
+      from = frame * width;
     for (let k = 0; k < width; k++) out[k] = low[k % 3] + step * positions[from + k];
     return out;
   }
@@ -44,7 +45,8 @@ export class Replay {
   /** The last frame that is not after a time. */
   frameAt(time) {
     const { times } = this.data;
-    let low = 0, high = times.length - 1;
+    let low = 0,
+      high = times.length - 1;
     while (low < high) {
       const middle = (low + high + 1) >> 1;
       if (times[middle] <= time) low = middle;
@@ -55,23 +57,29 @@ export class Replay {
 
   /** The frame nearest to a time. */
   nearestFrame(time) {
-    const k = this.frameAt(time), { times } = this.data;
+    const k = this.frameAt(time),
+      { times } = this.data;
     return k + 1 < times.length && times[k + 1] - time < time - times[k] ? k + 1 : k;
   }
 }
 
-// A quantity has a value for each vertex, edge or face (`place`), a range, a scale and a map of colours. Its place
-// in the map is in [0, 1]; edges that `leavesOut` names by their place show nothing. Ranges are those of the whole
-// run, so that colours mean the same in every frame.
+// A quantity has a value for each vertex, edge or face (`place`), a range, a scale and a map of colours. Its
+// place in the map is in [0, 1]; edges that `leavesOut` names by their place show nothing. Ranges are those
+// of the whole run, so that colours mean the same in every frame.
 
-/** Edges whose fold angle is less than this share of the range of colours are shown as edges that are flat. */
+/** Edges whose fold angle is less than this share of the range of colours are shown as flat. */
 const FLAT = 0.01;
 const DEGREES = 180 / Math.PI;
 
 function foldQuantity(replay) {
   let range = null;
   return {
-    key: "fold", label: "Fold angle", unit: "°", place: "edge", map: DIVERGING, scale: "linear",
+    key: "fold",
+    label: "Fold angle",
+    unit: "°",
+    place: "edge",
+    map: DIVERGING,
+    scale: "linear",
     leavesOut: (place) => !(Math.abs(place - 0.5) > FLAT),
     range: () => (range ??= foldRange(replay)),
     value: (edge) => replay.folds[edge] * DEGREES,
@@ -80,7 +88,8 @@ function foldQuantity(replay) {
 
 /** The largest size of a fold angle in all frames to both sides, in degrees. */
 function foldRange(replay) {
-  const x = new Float64Array(replay.x.length), folds = new Float64Array(replay.folds.length);
+  const x = new Float64Array(replay.x.length),
+    folds = new Float64Array(replay.folds.length);
   let largest = 0;
   for (let frame = 0; frame < replay.frames; frame++) {
     replay.mesh.foldAngles(replay.positionsOf(frame, x), folds);
@@ -98,7 +107,12 @@ function heightQuantity(replay) {
   const range = [low[replay.up], low[replay.up] + step * largest];
   return {
     leavesOut: Number.isNaN,
-    key: "height", label: `Height (${replay.data.up})`, unit: "m", place: "vertex", map: SEQUENTIAL, scale: "linear",
+    key: "height",
+    label: `Height (${replay.data.up})`,
+    unit: "m",
+    place: "vertex",
+    map: SEQUENTIAL,
+    scale: "linear",
     range: () => range,
     value: (vertex) => replay.x[3 * vertex + replay.up],
   };
@@ -110,23 +124,27 @@ function fieldQuantity(replay, field, k) {
   const logarithmic = field.scale === "logarithmic";
   let largest = 0;
   for (const value of values) if (value > largest) largest = value;
-  const decode = logarithmic
-    ? (q) => (q === 0 ? 0 : 10 ** (low + step * (q - 1)))
-    : (q) => low + step * q;
+  const decode = logarithmic ? (q) => (q === 0 ? 0 : 10 ** (low + step * (q - 1))) : (q) => low + step * q;
   return {
-    key: `field-${k}`, label: field.name, unit: field.unit, place: field.place, map: SEQUENTIAL, scale: field.scale,
+    key: `field-${k}`,
+    label: field.name,
+    unit: field.unit,
+    place: field.place,
+    map: SEQUENTIAL,
+    scale: field.scale,
     range: () => [decode(logarithmic ? Math.min(1, largest) : 0), decode(largest)],
     leavesOut: Number.isNaN,
     value: (index) => decode(values[replay.frame * width + index]),
   };
 }
 
-/** The function from values to places in [0, 1] of the map; zeros of a logarithmic scale are at its low end. */
+/** The function from values to places in [0, 1]; zeros of a logarithmic scale are at its low end. */
 export function placing(quantity) {
   const [low, high] = quantity.range();
   if (!(high > low)) return () => 0.5;
   if (quantity.scale === "logarithmic") {
-    const from = Math.log(low), length = Math.log(high) - from;
+    const from = Math.log(low),
+      length = Math.log(high) - from;
     return (value) => (value > 0 ? (Math.log(value) - from) / length : 0);
   }
   return (value) => (value - low) / (high - low);

@@ -1,5 +1,5 @@
-// What `#selftest=1` measures. The result is JSON in the attribute data-selftest of the body, for tests that run a
-// browser without a window. Time may stand still there, so nothing here depends on a clock.
+// What `#selftest=1` measures. The result is JSON in the attribute data-selftest of the body, for tests that
+// run a browser without a window. Time may stand still there, so nothing here depends on a clock.
 
 import { checksum } from "./decode.js";
 import { describe } from "./hover.js";
@@ -19,8 +19,10 @@ function picture(stage) {
   const { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
   const pixels = new Uint8Array(4 * width * height);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-  const words = new Uint32Array(pixels.buffer), background = backgroundOf(words, width, height);
-  let hash = 0x811c9dc5, covered = 0;
+  const words = new Uint32Array(pixels.buffer),
+    background = backgroundOf(words, width, height);
+  let hash = 0x811c9dc5,
+    covered = 0;
   for (const word of words) {
     if (word !== background) covered++;
     hash = Math.imul(hash ^ word, 0x01000193);
@@ -31,7 +33,9 @@ function picture(stage) {
 /** The colour that most of the four corners of the picture have. */
 function backgroundOf(words, width, height) {
   const corners = [words[0], words[width - 1], words[width * (height - 1)], words[width * height - 1]];
-  return corners.sort((a, b) => corners.filter((c) => c === b).length - corners.filter((c) => c === a).length)[0];
+  return corners.sort(
+    (a, b) => corners.filter((c) => c === b).length - corners.filter((c) => c === a).length,
+  )[0];
 }
 
 /** The number of distinct pictures that `acts` lead to; the pictures are added to `log`. */
@@ -46,11 +50,16 @@ function distinct(stage, acts, log) {
 
 /** Looks for the sheet under a grid of places, and at what the hover text says there. */
 function hoverSomewhere(page) {
-  const { container } = page.stage, parts = 24;
+  const { container } = page.stage,
+    parts = 24;
   for (let i = 1; i < parts * parts; i++) {
-    const place = [(i % parts) / parts * container.clientWidth, Math.floor(i / parts) / parts * container.clientHeight];
+    const place = [
+      ((i % parts) / parts) * container.clientWidth,
+      (Math.floor(i / parts) / parts) * container.clientHeight,
+    ];
     const found = page.hover.show(...place);
-    if (found?.face !== undefined) return { ...found, lines: describe(page.replay, found), shown: !page.hover.box.hidden };
+    if (found?.face !== undefined)
+      return { ...found, lines: describe(page.replay, found), shown: !page.hover.box.hidden };
   }
   return null;
 }
@@ -75,9 +84,15 @@ function press(page, key) {
 export async function selfTest(page, exceptions) {
   // Plots take their places after the code that makes them has ended.
   await new Promise((resolve) => setTimeout(resolve));
-  const { replay, stage, player } = page, last = replay.frames - 1, log = [];
+  const { replay, stage, player } = page,
+    last = replay.frames - 1,
+    log = [];
   const seeks = [0, 0.25, 0.5, 0.75, 1].map((part) => Math.round(part * last));
-  const frames = distinct(stage, seeks.map((k) => () => player.seek(k)), log);
+  const frames = distinct(
+    stage,
+    seeks.map((k) => () => player.seek(k)),
+    log,
+  );
   player.seek(Math.round(last / 2));
   const orbit = [0, 1, 2, 3].map((k) => () => {
     stage.camera.position.applyAxisAngle(stage.up, k === 0 ? 0 : 0.4);
@@ -90,14 +105,23 @@ export async function selfTest(page, exceptions) {
   const fitted = picture(stage);
   stage.resetCamera();
   const modes = replay.quantities.map((q) => ({ key: q.key, label: q.label }));
-  const colourings = distinct(stage, modes.map((mode) => () => page.colourBy(mode.key)), log);
+  const colourings = distinct(
+    stage,
+    modes.map((mode) => () => page.colourBy(mode.key)),
+    log,
+  );
   const toggles = ["wireframe", "rest", "edges"].map((id) => () => document.getElementById(id).click());
   const styles = distinct(stage, [() => page.colourBy("plain"), ...toggles], log);
   for (const act of toggles) act();
   const bodies = bodiesShow(stage);
   const hover = hoverSomewhere(page);
   page.hover.hide();
-  const keys = { end: press(page, "End"), left: press(page, "ArrowLeft"), home: press(page, "Home"), right: press(page, "ArrowRight") };
+  const keys = {
+    end: press(page, "End"),
+    left: press(page, "ArrowLeft"),
+    home: press(page, "Home"),
+    right: press(page, "ArrowRight"),
+  };
   const over = document.querySelector("#plots .u-over");
   const clicked = over ? clickPlot(page, over) : null;
   const played = play(page);
@@ -105,20 +129,34 @@ export async function selfTest(page, exceptions) {
   page.plots.build();
   player.seek(last);
   return {
-    vertices: replay.data.vertices, edges: replay.mesh.edgeCount, frames: replay.frames,
+    vertices: replay.data.vertices,
+    edges: replay.mesh.edgeCount,
+    frames: replay.frames,
     checksum: checksum(replay.data.positions),
     fieldChecksums: replay.data.fields.map((f) => checksum(f.values)),
-    positions: Array.from(replay.x), folds: Array.from(replay.folds, (a) => (Number.isNaN(a) ? null : a)),
+    positions: Array.from(replay.x),
+    folds: Array.from(replay.folds, (a) => (Number.isNaN(a) ? null : a)),
     edgeEnds: Array.from(replay.mesh.edges),
     values: replay.quantities.filter((q) => q.key.startsWith("field-")).map((q) => q.value(0)),
     pictures: { frames, views, colourings, styles, seeks: new Set(seeks).size },
-    coveredAtStart: start.covered, coveredFitted: fitted.covered,
+    coveredAtStart: start.covered,
+    coveredFitted: fitted.covered,
     covered: Math.min(...log.map((p) => p.covered)),
     glErrors: log.map((p) => p.error).filter((error) => error !== 0),
-    modes, bodies, hover, keys, clicked, played, title: document.getElementById("title").textContent,
-    scene: document.getElementById("scene").textContent, footer: document.getElementById("footer").textContent,
+    modes,
+    bodies,
+    hover,
+    keys,
+    clicked,
+    played,
+    title: document.getElementById("title").textContent,
+    scene: document.getElementById("scene").textContent,
+    footer: document.getElementById("footer").textContent,
     plots: document.querySelectorAll("#plots canvas").length,
-    requests: performance.getEntriesByType("resource").map((entry) => entry.name).filter((name) => !name.startsWith("data:")),
+    requests: performance
+      .getEntriesByType("resource")
+      .map((entry) => entry.name)
+      .filter((name) => !name.startsWith("data:")),
     overflow: document.documentElement.scrollWidth - window.innerWidth,
     exceptions,
   };
@@ -126,7 +164,9 @@ export async function selfTest(page, exceptions) {
 
 /** Plays to a little after the middle and beyond the end, by a clock that starts at one second. */
 function play(page) {
-  const { player, replay } = page, { times } = replay.data, duration = times[times.length - 1] - times[0];
+  const { player, replay } = page,
+    { times } = replay.data,
+    duration = times[times.length - 1] - times[0];
   player.seek(0);
   player.toggle();
   const starts = player.playing;

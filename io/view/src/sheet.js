@@ -2,8 +2,18 @@
 // Positions are those of the stage: metres less a centre, divided by a size.
 
 import {
-  BackSide, BufferAttribute, BufferGeometry, FrontSide, Group, InstancedMesh, Matrix4, Mesh as Surface,
-  MeshStandardMaterial, Sphere, SphereGeometry, Vector3,
+  BackSide,
+  BufferAttribute,
+  BufferGeometry,
+  FrontSide,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  Mesh as Surface,
+  MeshStandardMaterial,
+  Sphere,
+  SphereGeometry,
+  Vector3,
 } from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
@@ -18,7 +28,8 @@ const VALUE_WIDTH = 3;
 /** Radius of the balls that mark pins, on the stage and as a share of the mean length of the edges. */
 const PIN_RADIUS = 0.014;
 const PIN_SHARE = 0.22;
-/** Edges that are shorter on the screen than this are invisible, in pixels: a pixel of line for three of face. */
+// Squares of side s with a diagonal have 3.4 s pixels of lines on s^2 pixels: 85 % for s = 4, 14 % for s = 24.
+/** Edges that are shorter on the screen than this are invisible, in pixels. */
 const FADED_LENGTH = 4;
 /** Edges that are longer on the screen than this have their full strength, in pixels. */
 const FULL_LENGTH = 24;
@@ -38,14 +49,27 @@ export class SheetObjects {
     geometry.setAttribute("position", this.corners);
     geometry.setAttribute("color", this.shades);
     geometry.boundingSphere = everywhere();
-    this.materials = [FrontSide, BackSide].map((side) => new MeshStandardMaterial({
-      side, vertexColors: true, flatShading: true, roughness: 0.85,
-      polygonOffset: true, polygonOffsetFactor: 3, polygonOffsetUnits: 3,
-    }));
+    this.materials = [FrontSide, BackSide].map(
+      (side) =>
+        new MeshStandardMaterial({
+          side,
+          vertexColors: true,
+          flatShading: true,
+          roughness: 0.85,
+          polygonOffset: true,
+          polygonOffsetFactor: 3,
+          polygonOffsetUnits: 3,
+        }),
+    );
     this.surfaces = this.materials.map((material) => new Surface(geometry, material));
     this.lines = makeLines(mesh.edgeCount, 1);
-    // Of what is in the same place, bars are in front of edges, edges in front of faces, faces in front of bodies.
-    Object.assign(this.lines.material, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+    // Of what is in the same place, bars are in front of edges, edges in front of faces, faces in front of
+    // bodies.
+    Object.assign(this.lines.material, {
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    });
     this.bars = makeLines(mesh.edgeCount, 1);
     this.bars.geometry.setColors(new Float32Array(6 * mesh.edgeCount));
     this.bars.material.vertexColors = true;
@@ -55,7 +79,11 @@ export class SheetObjects {
     this.mark.material.linewidth = 5;
     this.mark.visible = false;
     const ball = new SphereGeometry(Math.min(PIN_RADIUS, PIN_SHARE * meanLength), 16, 12);
-    this.pins = new InstancedMesh(ball, new MeshStandardMaterial({ roughness: 0.6 }), replay.data.pins.length);
+    this.pins = new InstancedMesh(
+      ball,
+      new MeshStandardMaterial({ roughness: 0.6 }),
+      replay.data.pins.length,
+    );
     this.pins.frustumCulled = false;
     for (const object of this.surfaces) object.frustumCulled = false;
     this.group.add(...this.surfaces, this.lines, this.bars, this.ghost, this.mark, this.pins);
@@ -73,7 +101,7 @@ export class SheetObjects {
     this.setQuantity(this.quantity);
   }
 
-  /** Colours by another quantity. Faces that show values are white beneath, those beside coloured edges are pale. */
+  /** Colours by another quantity. Faces that show values are white beneath, beside coloured edges pale. */
   setQuantity(quantity) {
     this.quantity = quantity;
     this.place = quantity.map ? placing(quantity) : null;
@@ -108,8 +136,9 @@ export class SheetObjects {
     this.corners.needsUpdate = true;
     this.copyEnds(x, this.lines);
     const place = new Matrix4();
-    this.replay.data.pins.forEach((v, k) => (
-      this.pins.setMatrixAt(k, place.makeTranslation(x[3 * v], x[3 * v + 1], x[3 * v + 2]))));
+    this.replay.data.pins.forEach((v, k) =>
+      this.pins.setMatrixAt(k, place.makeTranslation(x[3 * v], x[3 * v + 1], x[3 * v + 2])),
+    );
     this.pins.instanceMatrix.needsUpdate = true;
     if (this.place) this.colour();
   }
@@ -127,7 +156,9 @@ export class SheetObjects {
 
   /** Puts lines along all edges. */
   copyEnds(x, lines) {
-    const { edges } = this.replay.mesh, { data } = lines.geometry.attributes.instanceStart, out = data.array;
+    const { edges } = this.replay.mesh,
+      { data } = lines.geometry.attributes.instanceStart,
+      out = data.array;
     for (let k = 0; k < edges.length; k++) {
       const from = 3 * edges[k];
       out[3 * k] = x[from];
@@ -139,10 +170,15 @@ export class SheetObjects {
 
   /** Puts bars with colours along the edges that have something to show. */
   colourEdges() {
-    const { quantity, place } = this, { geometry } = this.bars, { edges, edgeFaces } = this.replay.mesh;
-    const indexAt = { edge: (e) => e, face: (e) => edgeFaces[e], vertex: (e, end) => edges[2 * e + end] }[quantity.place];
+    const { quantity, place } = this,
+      { geometry } = this.bars,
+      { edges, edgeFaces } = this.replay.mesh;
+    const indexAt = { edge: (e) => e, face: (e) => edgeFaces[e], vertex: (e, end) => edges[2 * e + end] }[
+      quantity.place
+    ];
     const from = this.lines.geometry.attributes.instanceStart.data.array;
-    const ends = geometry.attributes.instanceStart.data, colours = geometry.attributes.instanceColorStart.data;
+    const ends = geometry.attributes.instanceStart.data,
+      colours = geometry.attributes.instanceColorStart.data;
     let count = 0;
     for (let e = 0; e < this.replay.mesh.edgeCount; e++) {
       const first = place(quantity.value(indexAt(e, 0)));
@@ -157,7 +193,8 @@ export class SheetObjects {
   }
 
   colourFaces(faces) {
-    const { quantity, place } = this, shades = this.shades.array;
+    const { quantity, place } = this,
+      shades = this.shades.array;
     const perFace = quantity.place === "face";
     for (let k = 0; k < faces.length; k++) {
       put(quantity.map, place(quantity.value(perFace ? Math.floor(k / 3) : faces[k])), shades, 3 * k);

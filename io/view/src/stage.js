@@ -1,8 +1,18 @@
-// The 3D view: camera, lights, the sheet and the bodies. Positions on the stage are metres less the centre of what
-// the camera frames, divided by its radius, so that single precision serves small sheets and distant ones alike.
+// The 3D view: camera, lights, the sheet and the bodies. Positions on the stage are metres less the centre of
+// what the camera frames, divided by its radius, so that single precision serves small sheets and distant
+// ones alike.
 
 import {
-  Box3, DirectionalLight, Group, HemisphereLight, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
+  Box3,
+  DirectionalLight,
+  Group,
+  HemisphereLight,
+  PerspectiveCamera,
+  Raycaster,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { addPatch, makeBody, placeBody } from "./bodies.js";
@@ -70,7 +80,8 @@ export class Stage {
   /** Frames the rest shape, the first frame and the bodies; half-spaces then reach beyond that. */
   chooseUnits() {
     const { rest } = this.replay.data;
-    const box = new Box3(), point = new Vector3();
+    const box = new Box3(),
+      point = new Vector3();
     for (const x of [rest, this.replay.x]) {
       for (let k = 0; k < x.length; k += 3) box.expandByPoint(point.set(x[k], x[k + 1], x[k + 2]));
     }
@@ -121,7 +132,10 @@ export class Stage {
   resetCamera() {
     const [right, depth, up] = DIRECTION;
     const [a, b] = [(this.replay.up + 1) % 3, (this.replay.up + 2) % 3];
-    const direction = new Vector3().setComponent(a, right).setComponent(b, depth).setComponent(this.replay.up, up);
+    const direction = new Vector3()
+      .setComponent(a, right)
+      .setComponent(b, depth)
+      .setComponent(this.replay.up, up);
     this.frameBox(this.box, direction);
   }
 
@@ -137,7 +151,8 @@ export class Stage {
     const across = new Vector3().crossVectors(this.up, toCamera).normalize();
     const upward = new Vector3().crossVectors(toCamera, across);
     const slope = Math.tan((ANGLE_OF_VIEW * Math.PI) / 360);
-    const centre = box.getCenter(new Vector3()), half = box.getSize(new Vector3()).divideScalar(2).toArray();
+    const centre = box.getCenter(new Vector3()),
+      half = box.getSize(new Vector3()).divideScalar(2).toArray();
     let distance = NEAREST;
     for (let k = 0; k < 8; k++) {
       const corner = new Vector3(...half.map((side, axis) => (k & (1 << axis) ? side : -side)));
@@ -175,8 +190,8 @@ export class Stage {
   }
 
   /**
-   * What is at a place of the view (pixels from its upper left corner): `{ body }`, or the face, its nearest vertex
-   * and its nearest edge, or null.
+   * What is at a place of the view (pixels from its upper left corner): `{ body }`, or the face, its nearest
+   * vertex and its nearest edge, or null.
    */
   pick(left, top) {
     const { clientWidth, clientHeight } = this.container;
@@ -190,11 +205,17 @@ export class Stage {
   }
 
   nearest(face, point) {
-    const { faces, faceEdges } = this.replay.mesh, x = this.positions;
+    const { faces, faceEdges } = this.replay.mesh,
+      x = this.positions;
     const corner = (k) => new Vector3().fromArray(x, 3 * faces[3 * face + (k % 3)]);
-    let vertex = 0, edge = 0, toVertex = Infinity, toEdge = Infinity;
+    let vertex = 0,
+      edge = 0,
+      toVertex = Infinity,
+      toEdge = Infinity;
     for (let k = 0; k < 3; k++) {
-      const a = corner(k), along = corner(k + 1).sub(a), offset = point.clone().sub(a);
+      const a = corner(k),
+        along = corner(k + 1).sub(a),
+        offset = point.clone().sub(a);
       if (offset.length() < toVertex) [toVertex, vertex] = [offset.length(), faces[3 * face + k]];
       const part = Math.min(Math.max(offset.dot(along) / along.lengthSq(), 0), 1);
       const distance = offset.addScaledVector(along, -part).length();

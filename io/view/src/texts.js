@@ -15,7 +15,9 @@ export function showTexts(replay) {
   $("title").textContent = data.title || "Run";
   const duration = data.times[data.frames - 1] - data.times[0];
   $("subtitle").textContent = [
-    count(data.vertices, "vertex", "vertices"), count(mesh.edgeCount, "edge", "edges"), count(mesh.faceCount, "face", "faces"),
+    count(data.vertices, "vertex", "vertices"),
+    count(mesh.edgeCount, "edge", "edges"),
+    count(mesh.faceCount, "face", "faces"),
     count(data.frames, "frame", "frames") + (data.frames > 1 ? ` over ${withUnit(duration, "s")}` : ""),
   ].join(" · ");
   const rows = data.summary.map(([name, value]) => {
@@ -28,12 +30,14 @@ export function showTexts(replay) {
   $("summary-section").hidden = rows.length === 0;
   section("scene", data.scene);
   section("reproduce", data.reproduce);
-  $("footer").replaceChildren(...[
-    `${data.program} ${data.version}.`,
-    `Positions are rounded to ${number(data.step / 2, 2)} m in each coordinate.`,
-    data.stride > 1
-      ? `To keep the page small, it has one in ${data.stride} of the ${data.frames_of_run} frames of the run, and the last one.`
-      : "",
-    "Contains three.js and uPlot (MIT licence; the texts are in the source of this page).",
-  ].map((text) => Object.assign(document.createElement("p"), { textContent: text })));
+  $("footer").replaceChildren(
+    ...[
+      `${data.program} ${data.version}.`,
+      `Positions are rounded to ${number(data.step / 2, 2)} m in each coordinate.`,
+      data.stride > 1
+        ? `Has one in ${data.stride} of the ${data.frames_of_run} frames of the run, and the last one.`
+        : "",
+      "Contains three.js and uPlot (MIT licence; the texts are in the source of this page).",
+    ].map((text) => Object.assign(document.createElement("p"), { textContent: text })),
+  );
 }

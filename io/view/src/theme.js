@@ -1,7 +1,22 @@
 // Colours of the scheme that the reader prefers; view.css has them as variables.
 
-const NAMES = ["background", "front", "back", "pale", "edge", "ghost", "mark", "pin", "body", "outline", "floor",
-  "grid", "line", "text", "axis"];
+const NAMES = [
+  "background",
+  "front",
+  "back",
+  "pale",
+  "edge",
+  "ghost",
+  "mark",
+  "pin",
+  "body",
+  "outline",
+  "floor",
+  "grid",
+  "line",
+  "text",
+  "axis",
+];
 
 export function themeColours() {
   const style = getComputedStyle(document.documentElement);
