@@ -245,6 +245,26 @@ fn one_frame_makes_a_page_on_a_narrow_screen() {
 }
 
 #[test]
+fn a_sheet_and_nothing_else_makes_a_page() {
+    let full = waving(1, 4);
+    let replay = Replay {
+        faces: full.faces,
+        times: full.times,
+        positions: full.positions,
+        rest: full.rest,
+        ..Replay::default()
+    };
+    let page = replay.to_html().unwrap();
+    let Some(result) = self_test(&page, "1200,800") else {
+        return;
+    };
+    check_pictures(&result);
+    check_numbers(&result, &replay, &page);
+    assert_eq!(result["plots"].as_u64(), Some(0));
+    assert_eq!(result["title"], "Run");
+}
+
+#[test]
 fn small_sheets_far_from_the_origin_are_drawn() {
     let mut replay = every_body(5);
     // A thousandth of the size, a hundred metres away; the page has single precision on the graphics card.

@@ -77,6 +77,8 @@ export class SheetObjects {
     this.ghost.visible = false;
     this.mark = makeLines(1, 1);
     this.mark.material.linewidth = 5;
+    this.mark.material.depthTest = false;
+    this.mark.renderOrder = 1;
     this.mark.visible = false;
     const ball = new SphereGeometry(Math.min(PIN_RADIUS, PIN_SHARE * meanLength), 16, 12);
     this.pins = new InstancedMesh(
