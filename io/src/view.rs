@@ -8,12 +8,14 @@
 //!
 //! # What the page shows
 //! The sheet has two colours, one for each side. It can be coloured by the fold angles of the edges, by
-//! height and by every [`Field`]; the range of colours is that of the whole run. [`Field::edge_strain`] makes
-//! the field of the strains. Pins are marked, bodies are drawn where their poses say, the rest shape is shown
-//! on demand. What is under the pointer (vertex, edge, face) is named with its fold angle and values. A click
-//! in a plot goes to that time. Space plays, arrow keys step. The part of the address after `#` makes
-//! choices, as in `page.html#frame=20&colour=fold&rest=1`; colours are `plain`, `fold`, `height`, and
-//! `field-K` for field K from 0.
+//! height and by every [`Field`]. The range of colours is that of the whole run; of the fold angles above a
+//! degree it has 98 %, and the legend says so. [`Field::edge_strain`] makes the field of the strains. The
+//! camera frames the rest shape, the first frame, the bodies, and where the sheet usually is (90 % of each
+//! coordinate over all frames) unless this is far away. Pins are marked, bodies are drawn where their poses
+//! say, the rest shape is shown on demand. What is under the pointer (vertex, edge, face) is named with its
+//! fold angle and values. A click in a plot goes to that time. Space plays, arrow keys step. The part of the
+//! address after `#` makes choices, as in `page.html#frame=20&colour=fold&rest=1`; colours are `plain`,
+//! `fold`, `height`, and `field-K` for field K from 0.
 //!
 //! # Precision
 //! Let `L` be the longest side of the box that holds the positions of all frames, `h` the height of
@@ -29,11 +31,12 @@
 //! | rest shape, times, series, poses | doubles | none |
 //!
 //! # Size
-//! The program has 0.7 MB. Integers of `b` bytes take `4/3 c b` bytes for each number and frame: `c` is what
-//! compression leaves of differences in time, a quarter to a half for smooth motions and nearly 1 for noise.
-//! Positions have 3V numbers of two bytes in a frame: 289 vertices in 600 frames take about half a megabyte.
-//! Doubles of series take up to 11 bytes each. Above [`PageOptions::budget`] every second, fourth, ... frame
-//! is kept, and the last one; the page says so. Series keep all their values.
+//! The program takes a quarter of a megabyte, compressed like the data. Integers of `b` bytes take `4/3 c b`
+//! bytes for each number and frame: `c` is what compression leaves, a fifth of smooth motions, half of
+//! crumpling ones, nearly all of noise. Positions have 3V numbers of two bytes in a frame: 289 vertices in
+//! 600 frames take 0.3 to 0.7 megabytes. Doubles of series take up to 11 bytes each. Above
+//! [`PageOptions::budget`] every second, fourth, ... frame is kept, and the last one; the page says so.
+//! Series keep all their values.
 //!
 //! # Browsers
 //! WebGL 2 and `DecompressionStream` are needed: Chrome and Edge 111, Firefox 113, Safari 16.4, or newer.

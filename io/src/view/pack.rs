@@ -84,6 +84,11 @@ pub(super) fn pack_indices(values: &[u32]) -> String {
     compress(&planes(values.iter().map(|v| v.to_le_bytes()).collect(), 4))
 }
 
+/// Packs a text.
+pub(super) fn pack_text(text: &str) -> String {
+    compress(text.as_bytes())
+}
+
 fn compress(bytes: &[u8]) -> String {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::new(6));
     let written = encoder.write_all(bytes).and_then(|()| encoder.finish());

@@ -1,13 +1,25 @@
 //! The page: its program, its style and the data in one text.
 
+use std::sync::LazyLock;
+
 use super::document::Document;
 use super::error::ViewError;
+use super::pack::pack_text;
 use super::replay::Replay;
 
-/// The page without title, style, data and program, which belong at the four markers, in this order.
+/// The page without title, style, licences, data and program, which belong at the markers, in this order.
 const TEMPLATE: &str = include_str!("../../view/page.html");
 const STYLE: &str = include_str!("../../view/dist/view.css");
+const LICENCES: &str = include_str!("../../view/dist/LICENSES.txt");
 const PROGRAM: &str = include_str!("../../view/dist/view.js");
+
+/// The program as it is in a page.
+static PACKED_PROGRAM: LazyLock<String> = LazyLock::new(|| pack_text(PROGRAM));
+
+/// The size of a page without data.
+fn shell_size() -> usize {
+    TEMPLATE.len() + STYLE.len() + LICENCES.len() + PACKED_PROGRAM.len()
+}
 
 /// How a page is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,7 +42,7 @@ impl PageOptions {
     /// # Errors
     /// [`ViewError::Budget`].
     pub fn validate(&self) -> Result<(), ViewError> {
-        let least = TEMPLATE.len() + STYLE.len() + PROGRAM.len();
+        let least = shell_size();
         if self.budget < least {
             return Err(ViewError::Budget {
                 budget: self.budget,
@@ -79,18 +91,18 @@ impl Replay {
 
 /// Fills the template. Texts that are filled in are not searched for markers.
 fn fill(title: &str, data: &str) -> String {
-    let mut page = String::with_capacity(TEMPLATE.len() + STYLE.len() + PROGRAM.len() + data.len());
+    let mut page = String::with_capacity(shell_size() + title.len() + data.len());
     let mut rest = TEMPLATE;
-    let title = escape(title);
     for (marker, text) in [
-        ("{title}", title.as_str()),
+        ("{title}", escape(title).as_str()),
         ("{style}", STYLE),
+        ("{licences}", &escape(LICENCES)),
         ("{data}", data),
-        ("{program}", PROGRAM),
+        ("{program}", &PACKED_PROGRAM),
     ] {
         let (before, after) = rest
             .split_once(marker)
-            .expect("the template has four markers");
+            .expect("the template has the markers");
         page.push_str(before);
         page.push_str(text);
         rest = after;

@@ -338,6 +338,43 @@ fn six_hundred_frames_are_decoded_exactly() {
     check_pictures(&result);
     check_numbers(&result, &replay, &page);
     assert_eq!(number(&result["pictures"]["frames"]), 5.0);
+    check_ranges(&result, &replay, &positions(&document(&page)));
+}
+
+/// Checks the range of colours of fold angles, which has 98 % of those above a degree in bins of a tenth of a
+/// degree, and the range of coordinates that the camera frames, which leaves out at most 5 % at either end.
+fn check_ranges(result: &Value, replay: &Replay, decoded: &[Vec<f64>]) {
+    let topology = Topology::from_faces(replay.rest.len() / 3, &replay.faces).unwrap();
+    let mut angles: Vec<f64> = Vec::new();
+    for x in decoded {
+        let of_frame = topology
+            .edge_ids()
+            .filter_map(|e| fold_angle(&topology, x, e));
+        angles.extend(of_frame.map(|a| a.to_degrees().abs()).filter(|&a| a > 1.0));
+    }
+    let share =
+        |limit: f64| angles.iter().filter(|&&a| a <= limit).count() as f64 / angles.len() as f64;
+    let range = numbers(&result["foldRange"]);
+    assert_eq!(range[0], -range[1]);
+    assert!(share(range[1] + 1e-9) >= 0.98, "{range:?}");
+    assert!(share(range[1] - 0.1 - 1e-9) < 0.98, "{range:?}");
+
+    for axis in 0..3 {
+        let values = || {
+            decoded
+                .iter()
+                .flat_map(move |x| x.iter().skip(axis).step_by(3).copied())
+        };
+        let ends = numbers(&result["usualRange"][axis]);
+        let count = values().count() as f64;
+        let (below, above) = (
+            values().filter(|&v| v < ends[0]),
+            values().filter(|&v| v > ends[1]),
+        );
+        let (below, above) = (below.count() as f64 / count, above.count() as f64 / count);
+        assert!((0.04..=0.05).contains(&below), "{below} are below {ends:?}");
+        assert!((0.04..=0.05).contains(&above), "{above} are above {ends:?}");
+    }
 }
 
 #[test]

@@ -144,7 +144,7 @@ fn what_is_stored_as_doubles_comes_back_to_the_bit() {
 #[test]
 fn no_text_ends_an_element_of_the_page() {
     let page = waving(1, 3).to_html().unwrap();
-    assert_eq!(page.matches("</script").count(), 2);
+    assert_eq!(page.matches("</script").count(), 3);
     assert_eq!(page.matches("</title").count(), 1);
     assert_eq!(
         page.matches("<title>A waving sheet &lt;/title&gt;&lt;/script&gt; &amp; more</title>")
@@ -159,10 +159,7 @@ fn the_page_asks_for_nothing_from_elsewhere() {
     let data = document(&page).to_string();
     let shell = page.replace(&data, "");
     for attribute in ["src=\"", "href=\"http", "@import", "url(http"] {
-        assert!(
-            !shell[..shell.find("<script>").unwrap()].contains(attribute),
-            "{attribute}"
-        );
+        assert!(!shell.contains(attribute), "{attribute}");
     }
 }
 
@@ -187,8 +184,8 @@ fn equal_replays_make_equal_pages() {
 #[test]
 fn sizes_are_those_that_the_documentation_states() {
     let page = waving(3, 600).to_html().unwrap();
-    assert!(page.len() < 1_500_000, "{} bytes", page.len());
-    assert!(frame_size(&page) < 800_000, "{} bytes", frame_size(&page));
+    assert!(page.len() < 1_000_000, "{} bytes", page.len());
+    assert!(frame_size(&page) < 300_000, "{} bytes", frame_size(&page));
     assert_eq!(frames(&document(&page)), 600);
 }
 

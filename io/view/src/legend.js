@@ -14,11 +14,12 @@ export function showLegend(quantity) {
     (quantity.unit ? ` (${quantity.unit})` : "") +
     (quantity.scale === "logarithmic" ? ", logarithmic" : "");
   drawMap(quantity.map, $("legend-bar"));
-  const middle = quantity.scale === "logarithmic" ? Math.sqrt(low * high) : (low + high) / 2;
-  const ticks = high > low ? [low, middle, high] : ["", low, ""];
+  const middle = quantity.scale === "logarithmic" ? Math.sqrt(low) * Math.sqrt(high) : (low + high) / 2;
+  const [below, above] = quantity.open?.() ? ["\u2264 ", "\u2265 "] : ["", ""];
+  const ticks = [below + number(low, 3), number(middle, 3), above + number(high, 3)];
   $("legend-ticks").replaceChildren(
-    ...ticks.map((value) =>
-      Object.assign(document.createElement("span"), { textContent: value === "" ? "" : number(value, 3) }),
+    ...(high > low ? ticks : ["", ticks[1], ""]).map((textContent) =>
+      Object.assign(document.createElement("span"), { textContent }),
     ),
   );
 }

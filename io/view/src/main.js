@@ -130,9 +130,6 @@ class Page {
 async function main() {
   const choices = new URLSearchParams(location.hash.slice(1));
   const exceptions = watchErrors();
-  if (typeof DecompressionStream === "undefined") {
-    throw new Error("this browser cannot unpack the data; Chrome 111, Firefox 113, Safari 16.4 or newer can");
-  }
   const data = await decode(JSON.parse($("replay").textContent));
   const page = new Page(new Replay(data));
   $("message").hidden = true;

@@ -42,6 +42,21 @@ export class Replay {
     return this.data.times[this.frame];
   }
 
+  /** The two quantiles of each coordinate over all frames between which a share of its values lies. */
+  usualRange(share) {
+    const { low, step, positions } = this.data;
+    return [0, 1, 2].map((axis) => {
+      const histogram = new Uint32Array(65536);
+      for (let k = axis; k < positions.length; k += 3) histogram[positions[k]]++;
+      const outside = (positions.length / 3) * ((1 - share) / 2);
+      let first = 0,
+        last = 65535;
+      for (let below = histogram[0]; below <= outside;) below += histogram[++first];
+      for (let above = histogram[65535]; above <= outside;) above += histogram[--last];
+      return [low[axis] + step * first, low[axis] + step * last];
+    });
+  }
+
   /** The last frame that is not after a time. */
   frameAt(time) {
     const { times } = this.data;
@@ -65,14 +80,14 @@ export class Replay {
 
 // A quantity has a value for each vertex, edge or face (`place`), a range, a scale and a map of colours. Its
 // place in the map is in [0, 1]; edges that `leavesOut` names by their place show nothing. Ranges are those
-// of the whole run, so that colours mean the same in every frame.
+// of the whole run, so that colours mean the same in every frame; there are values beyond an `open` one.
 
 /** Edges whose fold angle is less than this share of the range of colours are shown as flat. */
 const FLAT = 0.01;
 const DEGREES = 180 / Math.PI;
 
 function foldQuantity(replay) {
-  let range = null;
+  let found = null;
   return {
     key: "fold",
     label: "Fold angle",
@@ -80,24 +95,43 @@ function foldQuantity(replay) {
     place: "edge",
     map: DIVERGING,
     scale: "linear",
+    open: () => found.open,
     leavesOut: (place) => !(Math.abs(place - 0.5) > FLAT),
-    range: () => (range ??= foldRange(replay)),
+    range: () => (found ??= foldRange(replay)).range,
     value: (edge) => replay.folds[edge] * DEGREES,
   };
 }
 
-/** The largest size of a fold angle in all frames to both sides, in degrees. */
+/** Of the fold angles above a degree in all frames, the share that is inside the range of colours. */
+const FOLDS_IN_RANGE = 0.98;
+/** Bins in a degree of the histogram of fold angles. */
+const BINS = 10;
+
+/**
+ * A range to both sides of zero, in degrees, that has most of the fold angles in all frames, and whether there
+ * are others. A few sharp creases do not take the colours from all other folds.
+ */
 function foldRange(replay) {
   const x = new Float64Array(replay.x.length),
     folds = new Float64Array(replay.folds.length);
-  let largest = 0;
+  const histogram = new Uint32Array(180 * BINS + 1);
+  let count = 0,
+    largest = 0;
   for (let frame = 0; frame < replay.frames; frame++) {
     replay.mesh.foldAngles(replay.positionsOf(frame, x), folds);
-    for (const fold of folds) if (Math.abs(fold) > largest) largest = Math.abs(fold);
+    for (const fold of folds) {
+      const size = Math.abs(fold) * DEGREES;
+      if (!(size > 1)) continue;
+      histogram[Math.min(Math.ceil(size * BINS), 180 * BINS)]++;
+      count++;
+      largest = Math.max(largest, size);
+    }
   }
+  let bin = -1;
+  for (let within = 0; within < FOLDS_IN_RANGE * count;) within += histogram[++bin];
   // Of a sheet that stays flat, a range below a degree would show how the positions were rounded.
-  largest = Math.max(largest * DEGREES, 1);
-  return [-largest, largest];
+  const end = Math.max(bin / BINS, 1);
+  return { range: [-end, end], open: largest > end };
 }
 
 function heightQuantity(replay) {

@@ -136,6 +136,8 @@ export async function selfTest(page, exceptions) {
     fieldChecksums: replay.data.fields.map((f) => checksum(f.values)),
     positions: Array.from(replay.x),
     folds: Array.from(replay.folds, (a) => (Number.isNaN(a) ? null : a)),
+    foldRange: replay.quantities.find((q) => q.key === "fold").range(),
+    usualRange: replay.usualRange(0.9),
     edgeEnds: Array.from(replay.mesh.edges),
     values: replay.quantities.filter((q) => q.key.startsWith("field-")).map((q) => q.value(0)),
     pictures: { frames, views, colourings, styles, seeks: new Set(seeks).size },

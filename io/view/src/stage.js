@@ -23,6 +23,10 @@ import { themeColours } from "./theme.js";
 const ANGLE_OF_VIEW = 32;
 /** How much of the radius of what is framed the half-spaces reach beyond it. */
 const PATCH_REACH = 1.2;
+/** The share of the coordinates in all frames that says where the sheet usually is. */
+const USUAL = 0.9;
+/** How much longer what is framed may become by this. */
+const LARGEST_FRAME = 2.5;
 /** By how much the camera is farther away than it has to be. */
 const MARGIN = 1.15;
 /** The smallest distance from which the camera looks at a box, on the stage. */
@@ -77,7 +81,10 @@ export class Stage {
     this.scene.add(this.bodies);
   }
 
-  /** Frames the rest shape, the first frame and the bodies; half-spaces then reach beyond that. */
+  /**
+   * Frames the rest shape, the first frame and the bodies, and where the sheet usually is, unless this is so far
+   * away that everything else would be small. Half-spaces then reach beyond that.
+   */
   chooseUnits() {
     const { rest } = this.replay.data;
     const box = new Box3(),
@@ -87,6 +94,11 @@ export class Stage {
     }
     this.bodies.updateMatrixWorld(true);
     for (const group of this.bodyGroups) if (group.children.length > 0) box.expandByObject(group);
+    const usual = box.clone(),
+      range = this.replay.usualRange(USUAL);
+    for (const end of [0, 1]) usual.expandByPoint(point.set(...range.map((ends) => ends[end])));
+    const length = (b) => b.getSize(point).length();
+    if (length(usual) <= LARGEST_FRAME * length(box)) box.copy(usual);
     this.centre = box.getCenter(new Vector3()).toArray();
     this.size = box.getSize(point).length() / 2 || 1;
     const half = point.divideScalar(2 * this.size);

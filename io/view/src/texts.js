@@ -37,7 +37,6 @@ export function showTexts(replay) {
       data.stride > 1
         ? `Has one in ${data.stride} of the ${data.frames_of_run} frames of the run, and the last one.`
         : "",
-      "Contains three.js and uPlot (MIT licence; the texts are in the source of this page).",
     ].map((text) => Object.assign(document.createElement("p"), { textContent: text })),
   );
 }
