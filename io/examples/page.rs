@@ -1,6 +1,6 @@
 //! Writes the page of an analytic motion: a square sheet that rolls around a lying cylinder and back.
 //!
-//! `cargo run -p isosheet-io --features view --example page` writes `out/page.html`, or the path that follows.
+//! `cargo run -p isosheet-io --features view --example page` writes `out/page.html` or another path.
 
 use std::error::Error;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};

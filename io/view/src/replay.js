@@ -108,8 +108,8 @@ const FOLDS_IN_RANGE = 0.98;
 const BINS = 10;
 
 /**
- * A range to both sides of zero, in degrees, that has most of the fold angles in all frames, and whether there
- * are others. A few sharp creases do not take the colours from all other folds.
+ * A range to both sides of zero, in degrees, that has most of the fold angles in all frames, and whether
+ * there are others. A few sharp creases do not take the colours from all other folds.
  */
 function foldRange(replay) {
   const x = new Float64Array(replay.x.length),

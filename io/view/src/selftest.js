@@ -81,6 +81,24 @@ function press(page, key) {
   return page.replay.frame;
 }
 
+/** What was decoded and computed, for a comparison with the program that made the page. */
+function numbers(replay) {
+  const { data, mesh, quantities } = replay;
+  return {
+    vertices: data.vertices,
+    edges: mesh.edgeCount,
+    frames: replay.frames,
+    checksum: checksum(data.positions),
+    fieldChecksums: data.fields.map((f) => checksum(f.values)),
+    positions: Array.from(replay.x),
+    folds: Array.from(replay.folds, (a) => (Number.isNaN(a) ? null : a)),
+    edgeEnds: Array.from(mesh.edges),
+    values: quantities.filter((q) => q.key.startsWith("field-")).map((q) => q.value(0)),
+    foldRange: quantities.find((q) => q.key === "fold").range(),
+    usualRange: replay.usualRange(0.9),
+  };
+}
+
 export async function selfTest(page, exceptions) {
   // Plots take their places after the code that makes them has ended.
   await new Promise((resolve) => setTimeout(resolve));
@@ -129,17 +147,7 @@ export async function selfTest(page, exceptions) {
   page.plots.build();
   player.seek(last);
   return {
-    vertices: replay.data.vertices,
-    edges: replay.mesh.edgeCount,
-    frames: replay.frames,
-    checksum: checksum(replay.data.positions),
-    fieldChecksums: replay.data.fields.map((f) => checksum(f.values)),
-    positions: Array.from(replay.x),
-    folds: Array.from(replay.folds, (a) => (Number.isNaN(a) ? null : a)),
-    foldRange: replay.quantities.find((q) => q.key === "fold").range(),
-    usualRange: replay.usualRange(0.9),
-    edgeEnds: Array.from(replay.mesh.edges),
-    values: replay.quantities.filter((q) => q.key.startsWith("field-")).map((q) => q.value(0)),
+    ...numbers(replay),
     pictures: { frames, views, colourings, styles, seeks: new Set(seeks).size },
     coveredAtStart: start.covered,
     coveredFitted: fitted.covered,

@@ -82,8 +82,8 @@ export class Stage {
   }
 
   /**
-   * Frames the rest shape, the first frame and the bodies, and where the sheet usually is, unless this is so far
-   * away that everything else would be small. Half-spaces then reach beyond that.
+   * Frames the rest shape, the first frame and the bodies, and where the sheet usually is, unless this is so
+   * far away that everything else would be small. Half-spaces then reach beyond that.
    */
   chooseUnits() {
     const { rest } = this.replay.data;
