@@ -7,6 +7,7 @@
 //! | trajectory npz, see [`Trajectory`] | [`Trajectory::read`] | [`Trajectory::write`] |
 //! | Matrix Market, coordinate format | | [`write_matrix_market`] |
 //! | summary JSON | [`read_json`] | [`write_json`] |
+//! | 3D page of a run (feature `view`) | | `view::Replay` |
 //!
 //! Two rules hold for everything that is written: no number that is not finite gets into a file (a typed
 //! error says which one it was), and a file appears under its name only when it is complete
@@ -23,6 +24,8 @@ mod obj_error;
 mod obj_write;
 mod polygon;
 mod trajectory;
+#[cfg(feature = "view")]
+pub mod view;
 
 pub use atomic::{FileWriter, WriteError, write_atomically};
 pub use history::{HistoryError, HistoryRow, HistoryWriter, read_history};
