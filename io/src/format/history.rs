@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::atomic::{WriteError, prepare_folder};
+use crate::format::atomic::{WriteError, prepare_folder};
 
 /// One step of a run. The field order is the column order of the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
