@@ -23,3 +23,9 @@ mod format;
 
 pub use format::*;
 pub use isosheet_mesh as mesh;
+
+#[cfg(feature = "scene")]
+pub mod scene;
+
+#[cfg(feature = "scene")]
+pub use {isosheet_collide as collide, isosheet_dynamics as dynamics};
