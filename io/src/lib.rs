@@ -29,3 +29,6 @@ pub mod scene;
 
 #[cfg(feature = "scene")]
 pub use {isosheet_collide as collide, isosheet_dynamics as dynamics};
+
+#[cfg(feature = "run")]
+pub mod run;
