@@ -9,6 +9,7 @@ mod obj;
 mod obj_error;
 mod obj_write;
 mod polygon;
+mod repair;
 mod trajectory;
 
 pub use atomic::{FileWriter, WriteError, write_atomically};
@@ -18,4 +19,5 @@ pub use matrix_market::{MatrixMarketError, MatrixSymmetry, write_matrix_market};
 pub use obj::{ObjMesh, ObjOptions, Polygons, parse_obj, read_obj, read_sheet};
 pub use obj_error::{ObjError, ObjProblem};
 pub use obj_write::{ObjWriteError, frame_path, write_obj, write_obj_to};
+pub use repair::Repair;
 pub use trajectory::{Trajectory, TrajectoryError};
