@@ -82,7 +82,8 @@ pub(crate) fn read(path: &Path) -> Result<(Progress, Checkpoint), RunError> {
         let (length, rest) = content.strip_prefix(MAGIC)?.split_first_chunk::<8>()?;
         rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)
     };
-    let (head, body) = whole().ok_or_else(|| damaged("it is not a whole checkpoint of this version"))?;
+    let (head, body) =
+        whole().ok_or_else(|| damaged("it is not a whole checkpoint of this version"))?;
     let progress = serde_json::from_slice(head).map_err(|e| damaged(&e.to_string()))?;
     let simulation = Checkpoint::from_bytes(body).map_err(|e| damaged(&e.to_string()))?;
     Ok((progress, simulation))

@@ -60,7 +60,9 @@ impl<'a> Material<'a> {
         }
         let stored = self.file.with_files(&names)?;
         let text = &stored.text().text;
-        write_atomically(&folder.join(RunFolder::SCENE), |w| w.write_all(text.as_bytes()))?;
+        write_atomically(&folder.join(RunFolder::SCENE), |w| {
+            w.write_all(text.as_bytes())
+        })?;
         Ok(())
     }
 }
@@ -156,11 +158,7 @@ impl RunFolder {
 
     /// Removes the unfinished files that a killed process left.
     fn remove_parts(&self) -> io::Result<()> {
-        for folder in [
-            self.root.clone(),
-            self.path(MESHES),
-            self.path(Self::OBJ),
-        ] {
+        for folder in [self.root.clone(), self.path(MESHES), self.path(Self::OBJ)] {
             if !folder.is_dir() {
                 continue;
             }

@@ -97,7 +97,11 @@ impl FrameFile {
 pub(crate) fn read_frames(path: &Path, coordinates: usize) -> io::Result<Vec<Frame>> {
     let bytes = std::fs::read(path)?;
     let frame = |record: &[u8]| {
-        let mut numbers = record.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b));
+        let mut numbers = record
+            .as_chunks::<8>()
+            .0
+            .iter()
+            .map(|b| f64::from_le_bytes(*b));
         Frame {
             t: numbers.next().unwrap_or_default(),
             x: numbers.collect(),

@@ -199,7 +199,10 @@ impl<'a> Builder<'a> {
         let forces = &self.scene.forces;
         let key = Key::root().name("forces");
         if let Some(gravity) = forces.gravity {
-            self.change(|m| Ok(m.with_acceleration(gravity)), at::<SimulationError>(&key))?;
+            self.change(
+                |m| Ok(m.with_acceleration(gravity)),
+                at::<SimulationError>(&key),
+            )?;
             self.modelled.push("gravity".into());
         }
         for (k, load) in forces.load.iter().enumerate() {
@@ -277,7 +280,11 @@ impl<'a> Builder<'a> {
     /// A vertex may be pinned twice at rest; with anything else a pin would decide silently.
     fn check_free(&self, v: VertexId, number: usize, key: &Key) -> Result<(), Problem> {
         let supports = &self.scene.support;
-        let constrained = self.model().constraints().iter().position(|c| c.vertex() == v);
+        let constrained = self
+            .model()
+            .constraints()
+            .iter()
+            .position(|c| c.vertex() == v);
         let constrained = constrained.map(|c| self.origins.constraints[c]);
         let pins = matches!(supports[number].hold, Hold::Pin | Hold::MovingPin(_));
         let other = match self.origins.pins.get(&v) {
@@ -331,7 +338,10 @@ impl<'a> Builder<'a> {
                 let springs = CreaseSprings::bending(&self.rest.sheet, rigidity);
                 let springs = springs.map_err(at(&key))?;
                 self.modelled.push("bending stiffness at edges".into());
-                self.change(|m| Ok(m.with_potential(springs)), at::<SimulationError>(&key))
+                self.change(
+                    |m| Ok(m.with_potential(springs)),
+                    at::<SimulationError>(&key),
+                )
             }
         }
     }
@@ -343,7 +353,10 @@ impl<'a> Builder<'a> {
             let springs = crease.springs(&key, &self.unplaced, assignments)?;
             let springs = CreaseSprings::new(self.rest.sheet.topology(), springs);
             let springs = springs.map_err(at(&key))?;
-            self.change(|m| Ok(m.with_potential(springs)), at::<SimulationError>(&key))?;
+            self.change(
+                |m| Ok(m.with_potential(springs)),
+                at::<SimulationError>(&key),
+            )?;
         }
         self.count(self.scene.crease.len(), "crease");
         Ok(())
@@ -357,7 +370,10 @@ impl<'a> Builder<'a> {
             Isometry::Membrane { stiffness, poisson } => {
                 let membrane = Membrane::new(sheet, stiffness, poisson).map_err(at(&key))?;
                 self.modelled.push("elastic membrane".into());
-                self.change(|m| Ok(m.with_membrane(membrane)), at::<SimulationError>(&key))?;
+                self.change(
+                    |m| Ok(m.with_membrane(membrane)),
+                    at::<SimulationError>(&key),
+                )?;
             }
             Isometry::Weak { stiffness } => {
                 let weak = match stiffness {
@@ -380,7 +396,8 @@ impl<'a> Builder<'a> {
             leave_flat(self.model(), &mut x, size, seed)
                 .map_err(|e| SceneError::from(self.origins.of_start(&e)))?;
             self.x = x;
-            self.modelled.push("random displacement at the start".into());
+            self.modelled
+                .push("random displacement at the start".into());
         }
         Ok(())
     }
@@ -407,7 +424,8 @@ impl<'a> Builder<'a> {
             return Ok((None, Vec::new()));
         }
         let options = scene.contact.options(self.model(), scene.sheet.thickness);
-        let mut contacts = Contacts::new(self.model(), options).map_err(at(&key.name("contact")))?;
+        let mut contacts =
+            Contacts::new(self.model(), options).map_err(at(&key.name("contact")))?;
         let mut obstacles = Vec::new();
         for (k, obstacle) in scene.obstacle.iter().enumerate() {
             let key = key.name("obstacle").entry(k);

@@ -127,7 +127,10 @@ fn by_ends(ends: &[[usize; 2]], key: &Key, sheet: &Sheet) -> Result<Vec<(EdgeId,
             Problem::new(
                 key.entry(k),
                 format!("the mesh has no interior edge between the vertices {a} and {b}"),
-                format!("name two neighbours; the vertices have the numbers 0 to {}", count - 1),
+                format!(
+                    "name two neighbours; the vertices have the numbers 0 to {}",
+                    count - 1
+                ),
             )
         })
     };

@@ -37,7 +37,8 @@ impl Origins {
         let (key, remedy) = match error {
             StepError::StepTooSmall { cause, .. } => {
                 let inner = self.of_step(cause);
-                let remedy = "take a smaller `method.step`, more damping, or another `sheet.isometry`";
+                let remedy =
+                    "take a smaller `method.step`, more damping, or another `sheet.isometry`";
                 return Problem::new(inner.key, error.to_string(), remedy);
             }
             StepError::OffSupport { support, .. } => (
@@ -68,9 +69,10 @@ impl Origins {
                 root.name("sheet.start.perturbation"),
                 "choose a smaller perturbation",
             ),
-            StepError::NonFiniteForce { .. } | StepError::NonFiniteEnergy { .. } => {
-                (root.name("forces"), "check the sizes of forces and stiffnesses")
-            }
+            StepError::NonFiniteForce { .. } | StepError::NonFiniteEnergy { .. } => (
+                root.name("forces"),
+                "check the sizes of forces and stiffnesses",
+            ),
             _ => (
                 root.name("method"),
                 "take a smaller `method.step` or more damping",

@@ -155,17 +155,14 @@ impl SceneError {
     }
 }
 
-fn group<'a>(
-    problem: &'a Problem,
-    path: &'a Path,
-    text: &'a str,
-    span: Range<usize>,
-) -> Group<'a> {
+fn group<'a>(problem: &'a Problem, path: &'a Path, text: &'a str, span: Range<usize>) -> Group<'a> {
     let marker = AnnotationKind::Primary.span(span);
     let snippet = Snippet::source(text)
         .path(path.to_string_lossy())
         .annotation(marker);
-    let group = Level::ERROR.primary_title(&problem.message).element(snippet);
+    let group = Level::ERROR
+        .primary_title(&problem.message)
+        .element(snippet);
     match &problem.remedy {
         Some(remedy) => group.element(Level::HELP.message(remedy)),
         None => group,

@@ -251,7 +251,11 @@ impl Mesh {
                 checks.count(key.name("rows"), *rows, 1);
                 if !(*angle > 0.0 && *angle < 90.0) {
                     let message = format!("the panels have an angle of {angle} degrees");
-                    checks.report(key.name("angle"), message, "give more than 0 and less than 90");
+                    checks.report(
+                        key.name("angle"),
+                        message,
+                        "give more than 0 and less than 90",
+                    );
                 }
             }
             Self::File(file) => file.check(&key, checks),

@@ -171,7 +171,9 @@ impl Method {
             min_fraction: self.min_fraction,
             fallback: match self.fallback {
                 Fallback::Refuse => engine::Fallback::Refuse,
-                Fallback::ImplicitEuler => engine::Fallback::ImplicitEuler(ImplicitOptions::default()),
+                Fallback::ImplicitEuler => {
+                    engine::Fallback::ImplicitEuler(ImplicitOptions::default())
+                }
             },
             unsatisfiable: match self.taut {
                 Taut::Refuse => engine::Unsatisfiable::Refuse,

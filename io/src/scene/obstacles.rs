@@ -142,7 +142,8 @@ impl Shape {
                 let Triangles { positions, faces } = file.read(&key, folder)?;
                 let surface = TriangleSurface::new(&positions, &faces).map_err(|error| {
                     let message = format!("{}: {error}", file.path.display());
-                    let remedy = "repair the surface, `isosheet check` says what else is wrong with it";
+                    let remedy =
+                        "repair the surface, `isosheet check` says what else is wrong with it";
                     Problem::new(key.name("path"), message, remedy)
                 })?;
                 collide::Shape::Surface(Arc::new(surface))

@@ -134,7 +134,11 @@ impl Checks {
     pub(crate) fn not_negative(&mut self, key: Key, value: f64, unit: &str) {
         if !(value.is_finite() && value >= 0.0) {
             let message = format!("`{key}` is {value} {unit}, which is less than 0 or not finite");
-            self.report(key, message, format!("give 0 or a positive number, in {unit}"));
+            self.report(
+                key,
+                message,
+                format!("give 0 or a positive number, in {unit}"),
+            );
         }
     }
 
@@ -142,7 +146,11 @@ impl Checks {
     pub(crate) fn within(&mut self, key: Key, value: f64, [least, most]: [f64; 2]) {
         if !(least..=most).contains(&value) {
             let message = format!("`{key}` is {value}, which is out of range");
-            self.report(key, message, format!("give a number from {least} to {most}"));
+            self.report(
+                key,
+                message,
+                format!("give a number from {least} to {most}"),
+            );
         }
     }
 

@@ -24,6 +24,8 @@ pub fn reference_page() -> String {
             choice_table(&mut page, choices);
         } else if part["properties"].is_object() {
             object_table(&mut page, part);
+        } else {
+            page.push_str(&format!("Value: {}.\n", kind_of(part)));
         }
     }
     page
@@ -65,6 +67,8 @@ fn rows(page: &mut String, prefix: &str, object: &Value) {
         let default = match property.get("default") {
             _ if required.contains(&name.as_str()) => "required".to_owned(),
             None | Some(Value::Null) => "none".to_owned(),
+            Some(Value::Object(_)) => "see there".to_owned(),
+            Some(Value::Array(entries)) if entries.is_empty() => "none".to_owned(),
             Some(value) => format!("`{}`", toml_value(value)),
         };
         let (kind, text) = (kind_of(property), text_of(property));
@@ -125,24 +129,34 @@ fn kind_of(part: &Value) -> String {
         "integer" => "whole number".into(),
         "string" => "text".into(),
         "boolean" => "true or false".into(),
-        "array" => match part["minItems"].as_u64() {
-            Some(3) => format!("three times {}", kind_of(&part["items"])),
-            Some(2) => format!("two times {}", kind_of(&part["items"])),
-            _ => format!("list of {}", kind_of(&part["items"])),
-        },
+        "array" => {
+            let entries = plural(&kind_of(&part["items"]));
+            match part["minItems"].as_u64() {
+                Some(3) => format!("three {entries}"),
+                Some(2) => format!("two {entries}"),
+                _ => format!("list of {entries}"),
+            }
+        }
         _ => "table".into(),
+    }
+}
+
+/// The plural of what a value is.
+fn plural(kind: &str) -> String {
+    if kind.ends_with("number") {
+        format!("{kind}s")
+    } else if let Some(count) = kind
+        .split_once(' ')
+        .filter(|(n, _)| ["two", "three"].contains(n))
+    {
+        let size = if count.0 == "two" { "pairs" } else { "triples" };
+        format!("{size} of {}", count.1)
+    } else {
+        kind.to_owned()
     }
 }
 
 /// A default as it is written in a scene.
 fn toml_value(value: &Value) -> String {
-    match value {
-        Value::Object(entries) if entries.values().all(Value::is_null) => "{}".into(),
-        Value::Object(entries) => {
-            let entries = entries.iter().filter(|(_, v)| !v.is_null());
-            let entries = entries.map(|(k, v)| format!("{k} = {}", toml_value(v)));
-            format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
-        }
-        other => other.to_string(),
-    }
+    value.to_string().replace(',', ", ")
 }

@@ -52,7 +52,8 @@ impl Selection {
                 checks.finite(key.name("min"), min);
                 checks.finite(key.name("max"), max);
                 if let Some(k) = (0..3).find(|&k| min[k] > max[k]) {
-                    let message = format!("the box begins at {} m and ends at {} m", min[k], max[k]);
+                    let message =
+                        format!("the box begins at {} m and ends at {} m", min[k], max[k]);
                     checks.report(
                         key.name("min").entry(k),
                         message,
@@ -88,9 +89,9 @@ impl Selection {
             }
             Self::Vertices(numbers) => by_number(numbers, key, points.len())?,
             Self::Nearest(wanted) => wanted.iter().map(|p| nearest(points, p)).collect(),
-            Self::Box { min, max } => in_region(&|p| {
-                (0..3).all(|k| (min[k] - slack..=max[k] + slack).contains(&p[k]))
-            }),
+            Self::Box { min, max } => {
+                in_region(&|p| (0..3).all(|k| (min[k] - slack..=max[k] + slack).contains(&p[k])))
+            }
             Self::HalfSpace { point, normal } => {
                 let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
                 let height = |p: &[f64; 3]| -> f64 {

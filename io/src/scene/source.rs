@@ -84,7 +84,11 @@ impl SceneFile {
         scene.validate()?;
         let text = toml::to_string(&scene).map_err(|e| {
             let remedy = "paths of mesh files have to be valid UTF-8";
-            Problem::new(Key::root(), format!("the scene cannot be written: {e}"), remedy)
+            Problem::new(
+                Key::root(),
+                format!("the scene cannot be written: {e}"),
+                remedy,
+            )
         })?;
         Ok(Self {
             scene,
@@ -160,7 +164,7 @@ fn toml_problem(error: &toml::de::Error) -> Problem {
             "add it; docs/scene.md describes all keys".to_owned(),
         ),
         _ if message.starts_with("invalid type") => (
-            message.to_owned(),
+            in_plain_words(message),
             "write a value of the expected type; numbers have no quotes".to_owned(),
         ),
         _ => (
@@ -174,6 +178,17 @@ fn toml_problem(error: &toml::de::Error) -> Problem {
         remedy: Some(remedy),
         span: error.span(),
     }
+}
+
+/// A message with the names of types as a stranger to Rust reads them.
+fn in_plain_words(message: &str) -> String {
+    let (start, expected) = message.rsplit_once("expected ").unwrap_or((message, ""));
+    let plain = match expected {
+        "f64" => "a number",
+        "u32" | "u64" | "usize" => "a whole number of at least 0",
+        other => other,
+    };
+    format!("{start}expected {plain}")
 }
 
 /// The nearest known name, and all of them.

@@ -33,7 +33,10 @@ impl Check {
         let setup = scene.build()?;
         let text = describe_scene(&setup);
         setup.start()?;
-        to_stdout(&format!("{}: a scene that can start\n{text}", self.file.display()))
+        to_stdout(&format!(
+            "{}: a scene that can start\n{text}",
+            self.file.display()
+        ))
     }
 
     fn check_mesh(&self) -> Done {

@@ -44,7 +44,9 @@ pub(crate) fn describe_scene(setup: &Setup) -> String {
     let pins = setup.model.pins().len();
     let mass = setup.model.mass().total();
     let modelled = setup.modelled.join(", ");
-    format!("{sheet}mass             {mass:.6} kg\npinned vertices  {pins}\nmodelled         {modelled}\n")
+    format!(
+        "{sheet}mass             {mass:.6} kg\npinned vertices  {pins}\nmodelled         {modelled}\n"
+    )
 }
 
 /// A sheet at positions `x` in a few lines.
@@ -63,7 +65,11 @@ fn describe_sheet(sheet: &Sheet, model: &SheetModel, x: &[f64]) -> String {
         None => "not computed as given: more than 1000 rods".to_owned(),
     };
     let [shortest, longest] = [
-        sheet.lengths().iter().copied().fold(f64::INFINITY, f64::min),
+        sheet
+            .lengths()
+            .iter()
+            .copied()
+            .fold(f64::INFINITY, f64::min),
         sheet.lengths().iter().copied().fold(0.0, f64::max),
     ];
     let [low, high] = bounds(x);

@@ -50,7 +50,11 @@ struct How {
 
 impl How {
     fn format(&self) -> Format {
-        if self.json { Format::Json } else { Format::Text }
+        if self.json {
+            Format::Json
+        } else {
+            Format::Text
+        }
     }
 
     fn prepare(&self) -> Done {
@@ -113,7 +117,10 @@ impl Simulate {
         let scene = SceneFile::read(&self.scene, &self.edits)?;
         // What is wrong with the scene is told apart from a step that fails.
         scene.build()?;
-        let folder = self.out.clone().unwrap_or_else(|| default_folder(&self.scene));
+        let folder = self
+            .out
+            .clone()
+            .unwrap_or_else(|| default_folder(&self.scene));
         self.how.prepare()?;
         self.how
             .show(&folder, |progress| simulate(&scene, &folder, progress))
