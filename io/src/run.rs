@@ -9,7 +9,7 @@
 //! | `trajectory.npz` | the frames ([`Trajectory`](crate::Trajectory)), at the end |
 //! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
 //! | `summary.json` | what came of it ([`Summary`]), last: a folder that has it is complete |
-//! | `frames.bin`, `checkpoint.bin` | what is needed to go on; the frames are removed at the end |
+//! | `frames.bin`, `checkpoint.bin` | what is needed to go on; a trajectory takes the place of the frames at the end |
 //! | `run.lock` | locked while a process works in the folder |
 //!
 //! A folder with a complete run of the same scene is left as it is. One with a part of it is continued, and
@@ -123,13 +123,13 @@ pub fn simulate(
 ) -> Result<Outcome, RunError> {
     let clock = Instant::now();
     let material = Material::read(file)?;
+    if RunFolder::is_complete(folder, &material)? {
+        return already_complete(folder);
+    }
     let setup = file.build()?;
     let modelled = setup.modelled.clone();
     let (open, saved) = match RunFolder::open(folder, &material)? {
-        Contents::Complete => {
-            let summary = read_json(&folder.join(RunFolder::SUMMARY))?;
-            return Ok(Outcome::AlreadyComplete(Box::new(summary)));
-        }
+        Contents::Complete => return already_complete(folder),
         Contents::Empty(open) => (open, None),
         Contents::Partial(open) => {
             let saved = checkpoint::read(&open.path(RunFolder::CHECKPOINT))?;
@@ -151,7 +151,9 @@ pub fn simulate(
         modelled: facts.modelled.clone(),
         vertices: facts.sheet.topology().vertex_count(),
     });
-    let interval = Duration::from_secs_f64(file.scene().output.checkpoint_interval);
+    let interval = file.scene().output.checkpoint_interval;
+    // More seconds than a duration can hold are as good as never.
+    let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
     while stepping.progress.ending.is_none() {
         let tick = stepping.step()?;
         let go_on = watch.step(&tick);
@@ -172,6 +174,11 @@ pub fn simulate(
 /// As [`simulate`]; [`RunError::NoRun`] if the folder is not that of a run.
 pub fn resume_folder(folder: &Path, watch: &mut dyn Watch) -> Result<Outcome, RunError> {
     simulate(&open_scene(folder)?, folder, watch)
+}
+
+fn already_complete(folder: &Path) -> Result<Outcome, RunError> {
+    let summary = read_json(&folder.join(RunFolder::SUMMARY))?;
+    Ok(Outcome::AlreadyComplete(Box::new(summary)))
 }
 
 /// What is known before the first step.
@@ -195,7 +202,10 @@ fn start<'a>(
         origins,
         history: HistoryWriter::create(&folder.path(RunFolder::HISTORY))?,
         frames: FrameFile::create(&folder.path(RunFolder::FRAMES))?,
-        progress: Progress::default(),
+        progress: Progress {
+            version: env!("CARGO_PKG_VERSION").into(),
+            ..Progress::default()
+        },
         clock,
     };
     stepping.record_start()?;
@@ -209,6 +219,12 @@ fn resume<'a>(
     (progress, checkpoint): (Progress, isosheet_dynamics::Checkpoint),
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
+    if progress.version != env!("CARGO_PKG_VERSION") {
+        return Err(RunError::OtherVersion {
+            folder: folder.root().to_owned(),
+            begun: progress.version,
+        });
+    }
     let origins = setup.origins.clone();
     let path = folder.path(RunFolder::FRAMES);
     let coordinates = setup.start.x.len();
@@ -277,7 +293,9 @@ fn finish(
         ending,
     };
     write_json(&folder.path(RunFolder::SUMMARY), &summary)?;
-    // The run is complete; a frame file that stays does no harm.
-    let _ = std::fs::remove_file(path);
+    if output.trajectory {
+        // The run is complete; a frame file that stays does no harm.
+        let _ = std::fs::remove_file(path);
+    }
     Ok(Outcome::Complete(Box::new(summary)))
 }

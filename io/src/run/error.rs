@@ -10,9 +10,12 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// The scene cannot be simulated, or a step failed. What was recorded up to the last checkpoint stays.
+    /// The scene cannot be simulated.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A step failed. What was recorded up to the last checkpoint stays.
+    #[error("{0}")]
+    Step(SceneError),
     /// A scene file cannot be used.
     #[error(transparent)]
     SceneFile(#[from] SceneFileError),
@@ -70,7 +73,18 @@ pub enum RunError {
         /// What is wrong.
         problem: String,
     },
-    /// A file of the scene cannot be read.
+    /// The run was begun by another version of the program, which does not compute the same bits.
+    #[error(
+        "the run in {} was begun by version {begun} of the program, this is {}; continue it with that version, or \
+         run the scene in another folder with --out", folder.display(), env!("CARGO_PKG_VERSION")
+    )]
+    OtherVersion {
+        /// The folder.
+        folder: PathBuf,
+        /// The version that began the run.
+        begun: String,
+    },
+    /// A file of the run cannot be read.
     #[error("cannot read {}: {source}; check the path", path.display())]
     Read {
         /// The file.

@@ -2,7 +2,7 @@
 
 use super::RunError;
 use crate::format::write_atomically;
-use crate::scene::{Scene, SceneFile};
+use crate::scene::{Problem, Scene, SceneError, SceneFile};
 use crc::{CRC_64_XZ, Crc};
 use std::fmt;
 use std::fs::{self, File, TryLockError};
@@ -37,11 +37,13 @@ impl<'a> Material<'a> {
     /// Reads the mesh files of a scene.
     pub(crate) fn read(file: &'a SceneFile) -> Result<Self, RunError> {
         let mut meshes = Vec::new();
-        for (_, path) in file.scene().files() {
+        for (key, path) in file.scene().files() {
             let path = file.folder().join(path);
-            let bytes = fs::read(&path).map_err(|source| RunError::Read {
-                path: path.clone(),
-                source,
+            let bytes = fs::read(&path).map_err(|e| {
+                let message = format!("cannot read {}: {e}", path.display());
+                let remedy = "check the path, which is relative to the scene";
+                let problem = Problem::new(key.name("path"), message, remedy);
+                SceneError::from(problem).in_text(file.text())
             })?;
             meshes.push((path, bytes));
         }
@@ -110,17 +112,22 @@ impl RunFolder {
     pub(crate) const TRAJECTORY: &'static str = "trajectory.npz";
     pub(crate) const OBJ: &'static str = "obj";
 
+    /// Whether the folder holds a complete run of the scene. A complete run is not touched: its folder may be
+    /// read-only.
+    pub(crate) fn is_complete(root: &Path, material: &Material<'_>) -> Result<bool, RunError> {
+        let complete = root.join(Self::SUMMARY).is_file() && root.join(LOCK).is_file();
+        if complete {
+            check_scene(root, material)?;
+        }
+        Ok(complete)
+    }
+
     /// Creates the folder when missing, locks it and says what is in it.
     pub(crate) fn open(root: &Path, material: &Material<'_>) -> Result<Contents, RunError> {
         let unwritable = |source| RunError::Unwritable {
             folder: root.to_owned(),
             source,
         };
-        // A complete run is not touched: its folder may be read-only.
-        if root.join(Self::SUMMARY).is_file() && root.join(LOCK).is_file() {
-            check_scene(root, material)?;
-            return Ok(Contents::Complete);
-        }
         fs::create_dir_all(root).map_err(unwritable)?;
         if !root.join(LOCK).is_file() && fs::read_dir(root).map_err(unwritable)?.next().is_some() {
             return Err(RunError::Foreign {
@@ -142,7 +149,9 @@ impl RunFolder {
             _lock: lock,
         };
         folder.remove_parts().map_err(unwritable)?;
-        if root.join(Self::SCENE).is_file() {
+        // The scene is stored after the mesh files.
+        let stored = root.join(Self::SCENE).is_file();
+        if stored {
             check_scene(root, material)?;
         }
         // Another process may have completed the run before the lock was free.
@@ -152,7 +161,9 @@ impl RunFolder {
         if root.join(Self::CHECKPOINT).is_file() {
             return Ok(Contents::Partial(folder));
         }
-        material.store(root)?;
+        if !stored {
+            material.store(root)?;
+        }
         Ok(Contents::Empty(folder))
     }
 
@@ -172,6 +183,10 @@ impl RunFolder {
             }
         }
         Ok(())
+    }
+
+    pub(crate) fn root(&self) -> &Path {
+        &self.root
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {

@@ -69,7 +69,8 @@ impl Stepping<'_> {
         let number = self.progress.steps + 1;
         let h = step_length(scene, number);
         let report = self.simulation.step(h).map_err(|error| {
-            SceneError::from(self.origins.of_step(&error)).in_text(self.file.text())
+            let problem = SceneError::from(self.origins.of_step(&error));
+            RunError::Step(problem.in_text(self.file.text()))
         })?;
         self.progress.steps = number;
         self.count(&report);

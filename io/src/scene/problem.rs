@@ -172,11 +172,13 @@ impl Checks {
 
     /// Finite components that are not all zero.
     pub(crate) fn direction(&mut self, key: Key, vector: &[f64; 3]) {
-        if *vector == [0.0; 3] {
-            let message = format!("`{key}` is zero and has no direction");
-            self.report(key, message, "give a vector of any length other than 0");
-        } else {
+        let length2: f64 = vector.iter().map(|c| c * c).sum();
+        if !vector.iter().all(|c| c.is_finite()) {
             self.finite(key, vector);
+        } else if !length2.is_normal() {
+            let message =
+                format!("`{key}` has no direction: its length is zero, or its square out of range");
+            self.report(key, message, "give a vector of about unit length");
         }
     }
 }

@@ -151,6 +151,16 @@ fn syntax_problem(error: &toml_edit::TomlError) -> Problem {
 fn toml_problem(error: &toml::de::Error) -> Problem {
     let full = error.message();
     let message = full.lines().next().unwrap_or_default();
+    if let Some((bad, known)) = unexpected_keys(message) {
+        return Problem {
+            span: error.span(),
+            ..Problem::new(
+                Key::root(),
+                format!("unknown key `{bad}`"),
+                suggestion(bad, &known),
+            )
+        };
+    }
     let names: Vec<&str> = full.split('`').skip(1).step_by(2).collect();
     let (message, remedy) = match names.split_first() {
         Some((bad, known)) if message.starts_with("unknown field") => {
@@ -178,6 +188,14 @@ fn toml_problem(error: &toml::de::Error) -> Problem {
         remedy: Some(remedy),
         span: error.span(),
     }
+}
+
+/// The first unknown key and all known ones of the other form of that message, which the choices of an
+/// enumeration have.
+fn unexpected_keys(message: &str) -> Option<(&str, Vec<&str>)> {
+    let names = message.strip_prefix("unexpected keys in table: ")?;
+    let (bad, known) = names.split_once(", available keys: ")?;
+    Some((bad.split(", ").next()?, known.split(", ").collect()))
 }
 
 /// A message with the names of types as a stranger to Rust reads them.

@@ -13,7 +13,7 @@ Exit codes:
   1    a step of the simulation failed
   2    the command line is wrong
   3    the scene or the mesh is wrong, or a file cannot be read
-  4    the folder holds the run of another scene, or other files
+  4    the folder holds the run of another scene or version, or other files
   5    another process is writing to the folder
   6    a file or a folder cannot be written
   130  stopped by Ctrl-C; the same command continues";
@@ -67,28 +67,6 @@ impl Failure {
         }
     }
 
-    /// A failure while a scene is run: a scene that is wrong, or a step.
-    pub(crate) fn of_run(error: RunError, code_of_scene: Code) -> Self {
-        let code = match &error {
-            RunError::Scene(_) => code_of_scene,
-            RunError::OtherScene { .. } | RunError::Foreign { .. } => Code::OtherScene,
-            RunError::Busy { .. } => Code::Busy,
-            RunError::SceneFile(_)
-            | RunError::NoRun { .. }
-            | RunError::Damaged { .. }
-            | RunError::Read { .. } => Code::Input,
-            _ => Code::Output,
-        };
-        match error {
-            RunError::Scene(error) | RunError::SceneFile(SceneFileError::Scene(error)) => Self {
-                code,
-                message: Message::Scene(error),
-                format: Format::Text,
-            },
-            error => Self::new(code, error),
-        }
-    }
-
     pub(crate) fn in_format(self, format: Format) -> Self {
         Self { format, ..self }
     }
@@ -121,14 +99,42 @@ impl Failure {
     }
 }
 
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        let code = match &error {
+            RunError::Step(_) => Code::Step,
+            RunError::OtherScene { .. }
+            | RunError::OtherVersion { .. }
+            | RunError::Foreign { .. } => Code::OtherScene,
+            RunError::Busy { .. } => Code::Busy,
+            RunError::Scene(_)
+            | RunError::SceneFile(_)
+            | RunError::NoRun { .. }
+            | RunError::Damaged { .. }
+            | RunError::Read { .. } => Code::Input,
+            _ => Code::Output,
+        };
+        match error {
+            RunError::Scene(error)
+            | RunError::Step(error)
+            | RunError::SceneFile(SceneFileError::Scene(error)) => Self {
+                code,
+                message: Message::Scene(error),
+                format: Format::Text,
+            },
+            error => Self::new(code, error),
+        }
+    }
+}
+
 impl From<SceneFileError> for Failure {
     fn from(error: SceneFileError) -> Self {
-        Self::of_run(RunError::SceneFile(error), Code::Input)
+        RunError::from(error).into()
     }
 }
 
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
-        Self::of_run(RunError::Scene(error), Code::Input)
+        RunError::from(error).into()
     }
 }

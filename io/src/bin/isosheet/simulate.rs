@@ -74,7 +74,7 @@ impl How {
         let mut progress = Progress::new(format);
         let outcome = run(&mut progress);
         progress.end();
-        let outcome = outcome.map_err(|error| Failure::of_run(error, Code::Step))?;
+        let outcome = outcome.map_err(Failure::from)?;
         let (event_name, summary) = match outcome {
             Outcome::AlreadyComplete(summary) => ("already complete", summary),
             Outcome::Complete(summary) => ("complete", summary),
@@ -115,8 +115,6 @@ impl Simulate {
 
     fn simulate(&self) -> Done {
         let scene = SceneFile::read(&self.scene, &self.edits)?;
-        // What is wrong with the scene is told apart from a step that fails.
-        scene.build()?;
         let folder = self
             .out
             .clone()
