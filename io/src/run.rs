@@ -124,12 +124,12 @@ pub fn simulate(
     let clock = Instant::now();
     let material = Material::read(file)?;
     if RunFolder::is_complete(folder, &material)? {
-        return already_complete(folder);
+        return already_complete(folder, material.hash);
     }
     let setup = file.build()?;
     let modelled = setup.modelled.clone();
     let (open, saved) = match RunFolder::open(folder, &material)? {
-        Contents::Complete => return already_complete(folder),
+        Contents::Complete => return already_complete(folder, material.hash),
         Contents::Empty(open) => (open, None),
         Contents::Partial(open) => {
             let saved = checkpoint::read(&open.path(RunFolder::CHECKPOINT))?;
@@ -142,8 +142,11 @@ pub fn simulate(
         sheet: setup.sheet.clone(),
     };
     let mut stepping = match saved {
-        None => start(file, &open, setup, clock)?,
-        Some(saved) => resume(file, &open, setup, saved, clock)?,
+        None => start(file, &open, setup, facts.hash, clock)?,
+        Some(saved) => {
+            check_origin(&open, &saved.0, facts.hash)?;
+            resume(file, &open, setup, saved, clock)?
+        }
     };
     watch.begin(&Beginning {
         steps: stepping.progress.steps,
@@ -176,8 +179,13 @@ pub fn resume_folder(folder: &Path, watch: &mut dyn Watch) -> Result<Outcome, Ru
     simulate(&open_scene(folder)?, folder, watch)
 }
 
-fn already_complete(folder: &Path) -> Result<Outcome, RunError> {
-    let summary = read_json(&folder.join(RunFolder::SUMMARY))?;
+fn already_complete(folder: &Path, hash: SceneHash) -> Result<Outcome, RunError> {
+    let summary: Summary = read_json(&folder.join(RunFolder::SUMMARY))?;
+    if summary.scene != hash.to_string() {
+        return Err(RunError::OtherScene {
+            folder: folder.to_owned(),
+        });
+    }
     Ok(Outcome::AlreadyComplete(Box::new(summary)))
 }
 
@@ -192,6 +200,7 @@ fn start<'a>(
     file: &'a SceneFile,
     folder: &'a RunFolder,
     setup: Setup,
+    hash: SceneHash,
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
     let origins = setup.origins.clone();
@@ -203,6 +212,7 @@ fn start<'a>(
         history: HistoryWriter::create(&folder.path(RunFolder::HISTORY))?,
         frames: FrameFile::create(&folder.path(RunFolder::FRAMES))?,
         progress: Progress {
+            scene: hash.to_string(),
             version: env!("CARGO_PKG_VERSION").into(),
             ..Progress::default()
         },
@@ -212,6 +222,21 @@ fn start<'a>(
     Ok(stepping)
 }
 
+/// Refuses a checkpoint of another scene, which was put in place of that of the folder, or of another version.
+fn check_origin(folder: &RunFolder, progress: &Progress, hash: SceneHash) -> Result<(), RunError> {
+    let root = folder.root().to_owned();
+    if progress.scene != hash.to_string() {
+        return Err(RunError::OtherScene { folder: root });
+    }
+    if progress.version != env!("CARGO_PKG_VERSION") {
+        return Err(RunError::OtherVersion {
+            folder: root,
+            begun: progress.version.clone(),
+        });
+    }
+    Ok(())
+}
+
 fn resume<'a>(
     file: &'a SceneFile,
     folder: &'a RunFolder,
@@ -219,12 +244,6 @@ fn resume<'a>(
     (progress, checkpoint): (Progress, isosheet_dynamics::Checkpoint),
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
-    if progress.version != env!("CARGO_PKG_VERSION") {
-        return Err(RunError::OtherVersion {
-            folder: folder.root().to_owned(),
-            begun: progress.version,
-        });
-    }
     let origins = setup.origins.clone();
     let path = folder.path(RunFolder::FRAMES);
     let coordinates = setup.start.x.len();

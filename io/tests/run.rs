@@ -211,6 +211,12 @@ fn a_complete_folder_ends_at_once_and_is_not_touched() {
     let of_folder = run(dir, &["resume", "scene-run"]);
     assert_eq!(code(&of_folder), Some(0), "{}", stderr(&of_folder));
     assert_eq!(times(), before);
+    // A scene that was changed in the folder is not the one of the results.
+    let stored = out.join("scene.toml");
+    let text = fs::read_to_string(&stored).unwrap();
+    fs::write(&stored, text.replace("time = 1.5", "time = 1.6")).unwrap();
+    assert_eq!(code(&run(dir, &["resume", "scene-run"])), Some(4));
+    fs::write(&stored, text).unwrap();
     let summary = summary(&out);
     assert_eq!(summary.ending.reason, EndReason::Time);
     assert_eq!(
@@ -267,6 +273,12 @@ fn damaged_checkpoints_are_refused() {
     let mut child = started(dir, &simulate, "run", 3);
     child.kill().unwrap();
     child.wait().unwrap();
+    let stored = dir.join("run/scene.toml");
+    let text = fs::read_to_string(&stored).unwrap();
+    fs::write(&stored, text.replace("time = 1.0", "time = 0.9")).unwrap();
+    let changed = run(dir, &["resume", "run"]);
+    assert_eq!(code(&changed), Some(4), "{}", stderr(&changed));
+    fs::write(&stored, text).unwrap();
     let path = dir.join("run/checkpoint.bin");
     let mut bytes = fs::read(&path).unwrap();
     let middle = bytes.len() / 2;

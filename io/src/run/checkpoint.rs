@@ -12,6 +12,8 @@ use std::path::Path;
 /// How far a run has come.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Progress {
+    /// Hash of the scene.
+    pub(crate) scene: String,
     /// Version of the program that began the run.
     pub(crate) version: String,
     /// Steps taken.

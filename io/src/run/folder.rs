@@ -76,8 +76,8 @@ fn hash(scene: &Scene, meshes: &[(PathBuf, Vec<u8>)]) -> SceneHash {
         file.path = PathBuf::new();
     }
     let mut sum = SUM.digest();
-    let canonical = serde_json::to_vec(&scene).unwrap_or_default();
-    sum.update(&canonical);
+    let canonical = serde_json::to_vec(&scene);
+    sum.update(&canonical.expect("numbers, names and lists have a form in JSON"));
     for (_, bytes) in meshes {
         sum.update(&(bytes.len() as u64).to_le_bytes());
         sum.update(bytes);

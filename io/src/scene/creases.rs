@@ -63,7 +63,7 @@ impl Crease {
         checks.not_negative(key.name("stiffness"), self.stiffness, "N");
         self.angle.check(key.name("angle"), checks);
         if let Profile::Constant(angle) = self.angle
-            && !(-180.0..=180.0).contains(&angle)
+            && angle.is_finite()
         {
             checks.within(key.name("angle"), angle, [-180.0, 180.0]);
         }
