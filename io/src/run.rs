@@ -9,7 +9,7 @@
 //! | `trajectory.npz` | the frames ([`Trajectory`](crate::Trajectory)), at the end |
 //! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
 //! | `summary.json` | what came of it ([`Summary`]), last: a folder that has it is complete |
-//! | `frames.bin`, `checkpoint.bin` | what is needed to go on; a trajectory takes the place of the frames at the end |
+//! | `frames.bin`, `checkpoint.bin` | what is needed to go on; in the end `trajectory.npz` replaces the frames |
 //! | `run.lock` | locked while a process works in the folder |
 //!
 //! A folder with a complete run of the same scene is left as it is. One with a part of it is continued, and
@@ -222,7 +222,8 @@ fn start<'a>(
     Ok(stepping)
 }
 
-/// Refuses a checkpoint of another scene, which was put in place of that of the folder, or of another version.
+/// Refuses a checkpoint of another scene, where the one in the folder was changed since, or of another
+/// version.
 fn check_origin(folder: &RunFolder, progress: &Progress, hash: SceneHash) -> Result<(), RunError> {
     let root = folder.root().to_owned();
     if progress.scene != hash.to_string() {

@@ -144,7 +144,8 @@ impl Scene {
         self.contact.check(&root.name("contact"), &mut checks);
         self.method.check(&root.name("method"), &mut checks);
         self.check_method_fits(&mut checks);
-        self.stop.check(&root.name("stop"), &mut checks);
+        let step = self.method.step;
+        self.stop.check(step, &root.name("stop"), &mut checks);
         self.output.check(&root.name("output"), &mut checks);
         SceneError::of(checks.problems)
     }

@@ -145,8 +145,8 @@ impl HistoryWriter {
         Ok(history)
     }
 
-    /// Continues a history after its first `length` bytes, an earlier value of [`HistoryWriter::length`]; what
-    /// follows them is cut off.
+    /// Continues a history after its first `length` bytes, an earlier value of [`HistoryWriter::length`];
+    /// what follows them is cut off.
     ///
     /// # Errors
     /// [`HistoryError::Read`] if the file cannot be opened, [`HistoryError::Shorter`] if it does not have as

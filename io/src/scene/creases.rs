@@ -54,8 +54,8 @@ pub enum PatternEdges {
     Flat,
 }
 
-/// Largest distance of the ends of an edge from a line, as a part of the size of the sheet: above the round-off of
-/// coordinates that went through a text file with seven digits, below any mesh.
+/// Largest distance of the ends of an edge from a line, as a part of the size of the sheet: above the
+/// round-off of coordinates that went through a text file with seven digits, below any mesh.
 const ON_LINE: f64 = 1e-6;
 
 impl Crease {

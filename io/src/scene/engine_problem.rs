@@ -16,8 +16,8 @@ pub struct Origins {
 }
 
 impl Origins {
-    /// The number of the support in the scene, if the scene named it. (Vertices that the engine pins by itself,
-    /// because rods hold them in place, belong to none.)
+    /// The number of the support in the scene, if the scene named it. (Vertices that the engine pins by
+    /// itself, because rods hold them in place, belong to none.)
     pub fn support(&self, support: Support) -> Option<usize> {
         match support {
             Support::Pin(vertex) => self.pins.get(&vertex).copied(),

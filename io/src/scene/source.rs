@@ -218,7 +218,7 @@ fn suggestion(bad: &str, known: &[&str]) -> String {
         .map(|k| (strsim::damerau_levenshtein(bad, k), k))
         .min();
     match nearest {
-        // As many wrong letters as a word of this length has by accident: one, and one more for three letters.
+        // As many wrong letters as a word of this length has by accident: one, and one more for every three.
         Some((distance, k)) if distance <= 1 + k.len() / 3 => {
             format!("did you mean `{k}`? Known here: {all}")
         }

@@ -4,6 +4,10 @@ use super::problem::{Checks, Key};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Most steps of a run: a history of so many rows has a hundred gigabytes, and at ten microseconds a step, the
+/// least that a step of the smallest sheets takes, the run goes on for three hours.
+const MOST_STEPS: f64 = 1e9;
+
 /// When a run ends: at the first of these conditions that holds after a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -39,8 +43,16 @@ impl Default for Stop {
 }
 
 impl Stop {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+    /// Checks the conditions for a run in steps of `step` seconds.
+    pub(crate) fn check(&self, step: f64, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("time"), self.time, "s");
+        let steps = self.time / step;
+        if step > 0.0 && self.time.is_finite() && steps > MOST_STEPS {
+            let time = self.time;
+            let message = format!("{time:e} s in steps of {step:e} s are {steps:.3e} steps");
+            let remedy = "choose a shorter time or a longer `method.step`, for at most 1e9 steps";
+            checks.report(key.name("time"), message, remedy);
+        }
         if let Some(rest) = &self.rest {
             checks.positive(key.name("rest.speed"), rest.speed, "m/s");
             checks.positive(key.name("rest.duration"), rest.duration, "s");
