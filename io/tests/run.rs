@@ -501,6 +501,38 @@ fn meshes_are_checked_and_repaired() {
         code(&run(dir, &["check", "quad.obj", "--fix", "cut.obj"])),
         Some(0)
     );
+    // Two triangles that touch along a side are a sheet of two parts; merging joins them. Three that touch along
+    // one side cannot be joined, and stay as they are.
+    let touching = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 0\nv 0 -1 0\nf 1 2 3\nf 4 5 6\n";
+    fs::write(dir.join("touch.obj"), touching).unwrap();
+    let check = run(dir, &["check", "touch.obj"]);
+    let text = String::from_utf8_lossy(&check.stdout).into_owned();
+    assert!(
+        text.contains("in 2 parts") && text.contains("2 coincident"),
+        "{text}"
+    );
+    assert_eq!(
+        code(&run(dir, &["check", "touch.obj", "--fix", "one.obj"])),
+        Some(0)
+    );
+    assert_eq!(
+        read_sheet(&dir.join("one.obj"))
+            .unwrap()
+            .topology()
+            .component_count(),
+        1
+    );
+    let up = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 7 8 9\n";
+    fs::write(dir.join("three.obj"), format!("{touching}{up}")).unwrap();
+    let kept = run(dir, &["check", "three.obj", "--fix", "kept.obj"]);
+    assert_eq!(code(&kept), Some(0), "{}", stderr(&kept));
+    assert_eq!(
+        read_sheet(&dir.join("kept.obj"))
+            .unwrap()
+            .topology()
+            .component_count(),
+        3
+    );
     let fan = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
     fs::write(dir.join("fan.obj"), fan).unwrap();
     let refused = run(dir, &["check", "fan.obj", "--fix", "no.obj"]);
