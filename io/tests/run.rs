@@ -123,6 +123,33 @@ fn a_run_that_is_killed_at_any_moment_continues_to_the_same_bits() {
     assert_eq!(recording.poses(0.0)[0].translation.z, -0.16);
 }
 
+/// Moving pins, moving bodies and friction continue as well.
+#[test]
+fn scenes_with_motions_continue_to_the_same_bits() {
+    for (kind, time) in [
+        (StartingPoint::Feed, "0.12"),
+        (StartingPoint::Stamp, "0.08"),
+    ] {
+        let dir = with_scene(kind);
+        let dir = dir.path();
+        let time = format!("stop.time={time}");
+        let scene = ["simulate", "scene.toml", "--set", &time];
+        let scene = [&scene[..], &["--set", "output.checkpoint_interval=0.1"]].concat();
+        let with_out = |out| [&scene[..], &["--out", out]].concat();
+        let done = run(dir, &with_out("whole"));
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+        for rows in [3, 8, 14] {
+            let mut child = started(dir, &with_out("killed"), "killed", rows);
+            child.kill().unwrap();
+            child.wait().unwrap();
+            assert!(!dir.join("killed/summary.json").exists(), "killed too late");
+        }
+        let done = run(dir, &with_out("killed"));
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+        assert_same(&dir.join("whole"), &dir.join("killed"));
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_writes_a_checkpoint_and_the_same_command_continues() {
@@ -467,7 +494,18 @@ fn new_check_info_and_completions() {
     let script = run(dir, &["completions", "bash"]);
     assert!(String::from_utf8_lossy(&script.stdout).contains("simulate"));
     let help = run(dir, &["--help"]);
-    assert!(String::from_utf8_lossy(&help.stdout).contains("Exit codes"));
+    let help = String::from_utf8_lossy(&help.stdout).into_owned();
+    let codes = help.split("Exit codes:").nth(1).unwrap().lines().skip(1);
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/scene.md");
+    let page = fs::read_to_string(page).unwrap();
+    let rows = codes.map(|line| line.trim().split_once(' ').unwrap());
+    let rows: Vec<String> = rows
+        .map(|(n, text)| format!("| {n} | {} |", text.trim()))
+        .collect();
+    assert!(
+        rows.len() == 8 && rows.iter().all(|row| page.contains(row)),
+        "{rows:?}"
+    );
     assert_eq!(code(&run(dir, &["simulate"])), Some(2));
 }
 
