@@ -2,7 +2,7 @@
 //!
 //! Without features the crate has the formats of files and needs the mesh alone. The feature `scene` adds
 //! scene files, `run` runs that survive being killed, and `cli` the command `isosheet`; each implies the ones
-//! before it.
+//! before it. With them the crate re-exports all others, so that a program needs to name this one alone.
 //!
 //! # Formats
 //!
@@ -28,7 +28,7 @@ pub use isosheet_mesh as mesh;
 pub mod scene;
 
 #[cfg(feature = "scene")]
-pub use {isosheet_collide as collide, isosheet_dynamics as dynamics};
+pub use {isosheet_collide as collide, isosheet_coords as coords, isosheet_dynamics as dynamics};
 
 #[cfg(feature = "run")]
 pub mod run;
