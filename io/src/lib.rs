@@ -1,4 +1,10 @@
-//! Files that a run reads and writes.
+//! Files, scenes and runs of isosheet: the crate on top of all others.
+//!
+//! Without features the crate has the formats of files and needs the mesh alone. The feature `scene` adds
+//! scene files, `run` runs that survive being killed, and `cli` the command `isosheet`; each implies the ones
+//! before it. With them the crate re-exports all others, so that a program needs to name this one alone.
+//!
+//! # Formats
 //!
 //! | file | read | written |
 //! |---|---|---|
@@ -14,24 +20,19 @@
 //! ([`write_atomically`]). The one exception is the history, which grows by whole rows, so that what an
 //! interrupted run leaves behind can be read.
 
-mod atomic;
-mod finite;
-mod history;
-mod json;
-mod matrix_market;
-mod obj;
-mod obj_error;
-mod obj_write;
-mod polygon;
-mod trajectory;
+mod format;
+
+pub use format::*;
+pub use isosheet_mesh as mesh;
+
+#[cfg(feature = "scene")]
+pub mod scene;
+
+#[cfg(feature = "scene")]
+pub use {isosheet_collide as collide, isosheet_coords as coords, isosheet_dynamics as dynamics};
+
+#[cfg(feature = "run")]
+pub mod run;
+
 #[cfg(feature = "view")]
 pub mod view;
-
-pub use atomic::{FileWriter, WriteError, write_atomically};
-pub use history::{HistoryError, HistoryRow, HistoryWriter, read_history};
-pub use json::{JsonError, read_json, write_json};
-pub use matrix_market::{MatrixMarketError, MatrixSymmetry, write_matrix_market};
-pub use obj::{ObjMesh, ObjOptions, Polygons, parse_obj, read_obj, read_sheet};
-pub use obj_error::{ObjError, ObjProblem};
-pub use obj_write::{ObjWriteError, frame_path, write_obj, write_obj_to};
-pub use trajectory::{Trajectory, TrajectoryError};

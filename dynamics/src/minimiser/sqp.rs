@@ -10,10 +10,10 @@ use crate::report::SolverEffort;
 
 /// Stiffness of the rods in the linear systems, in units of that of the masses. The systems are regularised
 /// saddle-point systems `[H G^T; G -1/r]` with penalties `r`, solved by elimination of the multipliers;
-/// [`MultiplierSolver`](crate::multipliers::MultiplierSolver) takes the regularisation out again. With 1e10 to
-/// 1e12 hanging sheets of 128 and 512 triangles need the same numbers of factorisations, those of 2048
-/// triangles 5 to 25 % more with 1e12; beyond 1e13 the masses drown in the round-off of the penalty.
-const STIFFNESS: f64 = 1e11;
+/// [`MultiplierSolver`](crate::multipliers::MultiplierSolver) takes the regularisation out again. With 1e10, 1e11
+/// and 1e12 hanging sheets of 128 to 2048 triangles need the same numbers of factorisations within a tenth (the
+/// largest 5 to 25 % more with 1e12). With 1e10 steps keep the momentum to round-off, with 1e11 no longer.
+const STIFFNESS: f64 = 1e10;
 /// Conjugate gradient iterations for the multipliers of a step: nearly dependent rods, as in a sheet that lies
 /// flat, have a few eigenvalues each of which takes an iteration. With none, clamped strips of nearly dependent
 /// rods need three to ten times the factorisations; 6 and 16 differ by less than a tenth.

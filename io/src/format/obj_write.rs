@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use isosheet_mesh::{Topology, VertexId};
 use thiserror::Error;
 
-use crate::atomic::{WriteError, write_atomically};
+use crate::format::atomic::{WriteError, write_atomically};
 
 /// A state that cannot be written as OBJ.
 #[derive(Debug, Error)]

@@ -1,13 +1,13 @@
 //! The history of a run: one row per step.
 
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::atomic::{WriteError, prepare_folder};
+use crate::format::atomic::{WriteError, prepare_folder};
 
 /// One step of a run. The field order is the column order of the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -75,6 +75,19 @@ pub enum HistoryError {
         /// What the system said.
         source: io::Error,
     },
+    /// A history that is to be continued has lost rows.
+    #[error(
+        "{} has {found} bytes, {length} were written: it was cut or replaced; start the run anew in another folder",
+        path.display()
+    )]
+    Shorter {
+        /// The file.
+        path: PathBuf,
+        /// Its length in bytes.
+        found: u64,
+        /// The length that it had.
+        length: u64,
+    },
     /// The first line is not the expected one.
     #[error("{} does not start with the columns {}, but with {found:?}; it is not a history of a run", path.display(), COLUMNS.join(","))]
     Header {
@@ -111,6 +124,7 @@ pub enum HistoryError {
 pub struct HistoryWriter {
     path: PathBuf,
     file: File,
+    length: u64,
 }
 
 impl HistoryWriter {
@@ -125,9 +139,56 @@ impl HistoryWriter {
         let mut history = Self {
             path: path.to_owned(),
             file,
+            length: 0,
         };
         history.write_record(|w| w.write_record(COLUMNS))?;
         Ok(history)
+    }
+
+    /// Continues a history after its first `length` bytes, an earlier value of [`HistoryWriter::length`];
+    /// what follows them is cut off.
+    ///
+    /// # Errors
+    /// [`HistoryError::Read`] if the file cannot be opened, [`HistoryError::Shorter`] if it does not have as
+    /// many bytes.
+    pub fn resume(path: &Path, length: u64) -> Result<Self, HistoryError> {
+        let read = |source| HistoryError::Read {
+            path: path.to_owned(),
+            source,
+        };
+        let mut file = File::options().write(true).open(path).map_err(read)?;
+        let found = file.metadata().map_err(read)?.len();
+        if found < length {
+            return Err(HistoryError::Shorter {
+                path: path.to_owned(),
+                found,
+                length,
+            });
+        }
+        file.set_len(length).map_err(read)?;
+        file.seek(io::SeekFrom::End(0)).map_err(read)?;
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            length,
+        })
+    }
+
+    /// Number of bytes written so far.
+    pub fn length(&self) -> u64 {
+        self.length
+    }
+
+    /// Waits until all rows are on the disk, so that they survive the end of the system too.
+    ///
+    /// # Errors
+    /// [`HistoryError::File`].
+    pub fn sync(&self) -> Result<(), HistoryError> {
+        let synced = self.file.sync_data();
+        Ok(synced.map_err(|source| WriteError::Write {
+            path: self.path.clone(),
+            source,
+        })?)
     }
 
     /// Adds a row.
@@ -180,6 +241,7 @@ impl HistoryWriter {
             writer.flush().map_err(failed)?;
         }
         self.file.write_all(&line).map_err(failed)?;
+        self.length += line.len() as u64;
         Ok(())
     }
 }
@@ -277,6 +339,32 @@ mod tests {
             std::fs::write(&path, &text[..cut]).unwrap();
             assert_eq!(read_history(&path).unwrap(), [row(0), row(1)]);
         }
+    }
+
+    #[test]
+    fn a_history_continues_where_it_is_told() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("history.csv");
+        let mut whole = HistoryWriter::create(&path).unwrap();
+        let mut lengths = vec![whole.length()];
+        for k in 0..4 {
+            whole.append(&row(k)).unwrap();
+            lengths.push(whole.length());
+        }
+        whole.sync().unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        assert_eq!(bytes.len() as u64, lengths[4]);
+        for (k, length) in lengths.iter().enumerate() {
+            let mut resumed = HistoryWriter::resume(&path, *length).unwrap();
+            for j in k..4 {
+                resumed.append(&row(j)).unwrap();
+            }
+            assert_eq!(std::fs::read(&path).unwrap(), bytes);
+        }
+        let longer = HistoryWriter::resume(&path, lengths[4] + 1);
+        assert!(matches!(longer, Err(HistoryError::Shorter { .. })));
+        let missing = HistoryWriter::resume(&dir.path().join("none.csv"), 0);
+        assert!(matches!(missing, Err(HistoryError::Read { .. })));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use crate::atomic::{WriteError, write_atomically};
+use crate::format::atomic::{WriteError, write_atomically};
 
 /// Which entries of a matrix are given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

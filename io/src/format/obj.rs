@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use isosheet_mesh::Sheet;
 
-use crate::obj_error::{ObjError, ObjProblem};
-use crate::polygon;
+use crate::format::obj_error::{ObjError, ObjProblem};
+use crate::format::polygon;
 
 /// What to do with faces of more than three corners.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

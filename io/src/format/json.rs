@@ -7,8 +7,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
-use crate::atomic::{WriteError, write_atomically};
-use crate::finite::{Finding, check_finite};
+use crate::format::atomic::{WriteError, write_atomically};
+use crate::format::finite::{Finding, check_finite};
 
 /// A JSON file that cannot be written or read.
 #[derive(Debug, Error)]

@@ -11,7 +11,7 @@ use npyz::zip::DateTime;
 use npyz::zip::write::FileOptions;
 use thiserror::Error;
 
-use crate::atomic::{WriteError, write_atomically};
+use crate::format::atomic::{WriteError, write_atomically};
 
 /// The frames of a run with its mesh, as kept in an `.npz` file.
 ///

@@ -1,0 +1,140 @@
+//! `isosheet check`.
+
+use crate::Done;
+use crate::exit::{Code, Failure};
+use crate::info::{describe_scene, is_scene};
+use crate::write::to_stdout;
+use clap::Args;
+use isosheet_io::mesh::Sheet;
+use isosheet_io::scene::SceneFile;
+use isosheet_io::{ObjMesh, ObjOptions, ObjProblem, Polygons, read_obj, write_obj};
+use std::path::{Path, PathBuf};
+
+/// Say what a scene or a mesh file is, what is wrong with it and how to repair it
+#[derive(Debug, Args)]
+pub(crate) struct Check {
+    /// A scene (.toml) or a mesh (Wavefront OBJ)
+    file: PathBuf,
+    /// Write the repaired mesh to this OBJ file
+    #[arg(long, value_name = "FILE2")]
+    fix: Option<PathBuf>,
+}
+
+impl Check {
+    pub(crate) fn run(&self) -> Done {
+        if !is_scene(&self.file) {
+            return self.check_mesh();
+        }
+        if self.fix.is_some() {
+            let message = "--fix repairs mesh files; correct a scene by hand";
+            return Err(Failure::new(Code::Input, message));
+        }
+        let scene = SceneFile::read(&self.file, &[])?;
+        let setup = scene.build()?;
+        let text = describe_scene(&setup);
+        setup.start()?;
+        to_stdout(&format!(
+            "{}: a scene that can start\n{text}",
+            self.file.display()
+        ))
+    }
+
+    fn check_mesh(&self) -> Done {
+        let name = self.file.display();
+        if let Some(fixed) = &self.fix {
+            return self.fix_mesh(fixed);
+        }
+        let mesh = read(&self.file, Polygons::Refuse)?;
+        match mesh.clone().into_sheet() {
+            Ok(sheet) => to_stdout(&format!(
+                "{name}: a sheet of {}\n{}",
+                counts(&sheet),
+                what_merging_does(mesh)
+            )),
+            Err(error) => Err(Failure::new(
+                Code::Input,
+                format!("{error}\n{}", what_repair_does(mesh, &self.file)),
+            )),
+        }
+    }
+
+    fn fix_mesh(&self, fixed: &Path) -> Done {
+        let name = self.file.display();
+        let given = read(&self.file, Polygons::Triangulate)?;
+        let mut mesh = given.clone();
+        let repair = mesh
+            .repair()
+            .map_err(|e| format!("{name}: {e}; edit the mesh there"));
+        let polygons = match mesh.polygons {
+            0 => String::new(),
+            n => format!("{n} polygons cut into triangles, "),
+        };
+        let repaired = repair.and_then(|repair| match mesh.into_sheet() {
+            Ok(sheet) => Ok((sheet, repair.to_string())),
+            Err(error) => Err(format!("{error}\n(after the repair: {repair})")),
+        });
+        // Where parts of a valid sheet touch, merging their vertices may join more than two faces.
+        let (sheet, done) = match (repaired, given.into_sheet()) {
+            (Ok(repaired), _) => repaired,
+            (Err(_), Ok(sheet)) => (sheet, "valid as it was; parts that touch stay apart".into()),
+            (Err(message), Err(_)) => return Err(Failure::new(Code::Input, message)),
+        };
+        write_obj(fixed, sheet.topology(), sheet.positions())
+            .map_err(|e| Failure::new(Code::Output, e))?;
+        to_stdout(&format!(
+            "{}: a sheet of {} ({polygons}{done})\n",
+            fixed.display(),
+            counts(&sheet)
+        ))
+    }
+}
+
+/// What a repair would do to a mesh that is a sheet already.
+fn what_merging_does(mut mesh: ObjMesh) -> String {
+    match mesh.repair() {
+        Ok(repair) if !repair.is_nothing() => {
+            format!("note: `--fix FILE2` would join parts that touch: {repair}\n")
+        }
+        _ => String::new(),
+    }
+}
+
+fn read(path: &Path, polygons: Polygons) -> Result<ObjMesh, Failure> {
+    read_obj(path, &ObjOptions { polygons }).map_err(|error| {
+        let remedy = match error.problem {
+            ObjProblem::Polygon { .. } => {
+                "\nhelp: `--fix FILE2` cuts polygons into triangles: their new edges are lines along which \
+                 the sheet can fold"
+            }
+            _ => "",
+        };
+        Failure::new(Code::Input, format!("{error}{remedy}"))
+    })
+}
+
+fn what_repair_does(mut mesh: ObjMesh, path: &Path) -> String {
+    let repair = match mesh.repair() {
+        Ok(repair) => repair,
+        Err(error) => return format!("help: this cannot be repaired automatically: {error}"),
+    };
+    match mesh.into_sheet() {
+        Ok(_) => format!(
+            "help: `isosheet check {} --fix FILE2` repairs this: {repair}",
+            path.display()
+        ),
+        Err(error) => format!("help: repair is not enough ({repair}): {error}"),
+    }
+}
+
+fn counts(sheet: &Sheet) -> String {
+    let t = sheet.topology();
+    let parts = match t.component_count() {
+        1 => String::new(),
+        n => format!(" in {n} parts"),
+    };
+    format!(
+        "{} vertices and {} faces{parts}",
+        t.vertex_count(),
+        t.face_count()
+    )
+}

@@ -1,0 +1,140 @@
+//! How the command ends.
+
+use isosheet_io::run::RunError;
+use isosheet_io::scene::{Colours, SceneError, SceneFileError};
+use serde_json::json;
+use std::io::{IsTerminal, Write};
+use std::process::ExitCode;
+
+/// The exit codes, as `--help` shows them.
+pub(crate) const EXIT_CODES: &str = "\
+Exit codes:
+  0    done; of `simulate`, the run is complete
+  1    a step of the simulation failed
+  2    the command line is wrong
+  3    the scene or the mesh is wrong, or a file cannot be read
+  4    the folder holds the run of another scene or version, or other files
+  5    another process is writing to the folder
+  6    a file or a folder cannot be written
+  130  stopped by Ctrl-C; the same command continues";
+
+/// A class of failures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Code {
+    /// A step failed.
+    Step = 1,
+    /// Scene, mesh or a file that is read.
+    Input = 3,
+    /// Another scene in the folder.
+    OtherScene = 4,
+    /// The folder is in use.
+    Busy = 5,
+    /// A file cannot be written.
+    Output = 6,
+    /// Ctrl-C.
+    Interrupted = 130,
+}
+
+/// How messages are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    /// For people.
+    Text,
+    /// One JSON object a line, for programs.
+    Json,
+}
+
+/// A failure with its message.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    pub(crate) code: Code,
+    message: Message,
+    format: Format,
+}
+
+#[derive(Debug)]
+enum Message {
+    Text(String),
+    Scene(SceneError),
+}
+
+impl Failure {
+    pub(crate) fn new(code: Code, message: impl ToString) -> Self {
+        Self {
+            code,
+            message: Message::Text(message.to_string()),
+            format: Format::Text,
+        }
+    }
+
+    pub(crate) fn in_format(self, format: Format) -> Self {
+        Self { format, ..self }
+    }
+
+    /// Writes the message to stderr, or as JSON to stdout, and returns the exit code.
+    pub(crate) fn report(self) -> ExitCode {
+        let code = self.code as u8;
+        match self.format {
+            Format::Text => {
+                let text = match &self.message {
+                    Message::Text(text) => format!("error: {text}"),
+                    Message::Scene(error) if std::io::stderr().is_terminal() => {
+                        error.render(Colours::Terminal)
+                    }
+                    Message::Scene(error) => error.render(Colours::Plain),
+                };
+                eprintln!("{text}");
+            }
+            Format::Json => {
+                let problems = match &self.message {
+                    Message::Text(text) => json!([{ "message": text }]),
+                    Message::Scene(error) => json!(error.placed()),
+                };
+                let line = json!({ "event": "error", "code": code, "problems": problems });
+                // Nobody is left to be told that stdout is closed.
+                let _ = writeln!(std::io::stdout(), "{line}");
+            }
+        }
+        ExitCode::from(code)
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        let code = match &error {
+            RunError::Step(_) => Code::Step,
+            RunError::OtherScene { .. }
+            | RunError::OtherVersion { .. }
+            | RunError::Foreign { .. } => Code::OtherScene,
+            RunError::Busy { .. } => Code::Busy,
+            RunError::Scene(_)
+            | RunError::SceneFile(_)
+            | RunError::NoRun { .. }
+            | RunError::Damaged { .. }
+            | RunError::Read { .. } => Code::Input,
+            _ => Code::Output,
+        };
+        match error {
+            RunError::Scene(error)
+            | RunError::Step(error)
+            | RunError::SceneFile(SceneFileError::Scene(error)) => Self {
+                code,
+                message: Message::Scene(error),
+                format: Format::Text,
+            },
+            error => Self::new(code, error),
+        }
+    }
+}
+
+impl From<SceneFileError> for Failure {
+    fn from(error: SceneFileError) -> Self {
+        RunError::from(error).into()
+    }
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        RunError::from(error).into()
+    }
+}

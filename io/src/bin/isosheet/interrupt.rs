@@ -1,0 +1,21 @@
+//! Ctrl-C: the first one asks the run to stop after the step, a second one ends the process at once.
+
+use crate::exit::{Code, Failure};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static REQUESTED: AtomicBool = AtomicBool::new(false);
+
+/// Takes over Ctrl-C.
+pub(crate) fn install() -> Result<(), Failure> {
+    ctrlc::set_handler(|| {
+        if REQUESTED.swap(true, Ordering::SeqCst) {
+            std::process::exit(Code::Interrupted as i32);
+        }
+    })
+    .map_err(|e| Failure::new(Code::Output, format!("cannot take over Ctrl-C: {e}")))
+}
+
+/// Whether Ctrl-C was pressed.
+pub(crate) fn requested() -> bool {
+    REQUESTED.load(Ordering::SeqCst)
+}

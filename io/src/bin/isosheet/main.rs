@@ -1,0 +1,71 @@
+//! The command `isosheet`: simulates scenes, checks and repairs what they are made of.
+
+mod check;
+mod exit;
+mod info;
+mod interrupt;
+mod progress;
+mod simulate;
+mod start;
+mod write;
+
+use clap::{CommandFactory, Parser, Subcommand};
+use exit::{EXIT_CODES, Failure};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Simulates sheets that bend and crease but never stretch.
+#[derive(Debug, Parser)]
+#[command(name = "isosheet", version, after_help = EXIT_CODES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scene; continue it if a part of it is done, do nothing if it is complete
+    Simulate(simulate::Simulate),
+    /// Continue the run in a folder, with the scene that is stored there
+    Resume(simulate::Resume),
+    /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
+    Check(check::Check),
+    /// Print counts, degrees of freedom, boundary loops and sizes of the sheet of a scene or a mesh file
+    Info(info::Info),
+    /// Write a commented scene to start from
+    New(start::New),
+    /// Print the completion script of a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write the reference of scene files: scene.md and the JSON schema scene.schema.json
+    Reference {
+        /// The folder
+        dir: PathBuf,
+    },
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let done = match cli.command {
+        Command::Simulate(simulate) => simulate.run(),
+        Command::Resume(resume) => resume.run(),
+        Command::Check(check) => check.run(),
+        Command::Info(info) => info.run(),
+        Command::New(new) => new.run(),
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "isosheet", &mut script);
+            write::to_stdout(&String::from_utf8_lossy(&script))
+        }
+        Command::Reference { dir } => write::reference(&dir),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+/// A failure of a subcommand, or nothing to say.
+type Done = Result<(), Failure>;

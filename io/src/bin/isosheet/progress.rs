@@ -1,0 +1,122 @@
+//! Progress of a run: a bar on a terminal, plain lines elsewhere, JSON lines for programs.
+
+use crate::exit::Format;
+use crate::interrupt;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use isosheet_io::run::{Beginning, Tick, Watch};
+use serde_json::{Value, json};
+use std::io::{IsTerminal, Write};
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+/// Time between two lines where there is no terminal: a log of a long run stays readable.
+const LINES: Duration = Duration::from_secs(5);
+
+/// Time between two JSON lines, which programs read.
+const EVENTS: Duration = Duration::from_secs(1);
+
+/// Progress of a run.
+pub(crate) struct Progress {
+    format: Format,
+    bar: Option<ProgressBar>,
+    begun: Instant,
+    last: Instant,
+    /// Steps that other processes took before.
+    before: u64,
+}
+
+impl Progress {
+    pub(crate) fn new(format: Format) -> Self {
+        Self {
+            format,
+            bar: None,
+            begun: Instant::now(),
+            last: Instant::now(),
+            before: 0,
+        }
+    }
+
+    /// Takes the bar away.
+    pub(crate) fn end(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+
+    /// Steps per second of this process, and seconds that are left at that rate.
+    fn rate(&self, tick: &Tick) -> [f64; 2] {
+        let seconds = self.begun.elapsed().as_secs_f64().max(1e-9);
+        let rate = (tick.steps - self.before) as f64 / seconds;
+        [rate, (tick.of - tick.steps) as f64 / rate]
+    }
+}
+
+/// Writes an event as a line of JSON. A closed stdout ends nothing: the run is worth more than its log.
+pub(crate) fn event(event: &Value) {
+    let _ = writeln!(std::io::stdout(), "{event}");
+}
+
+impl Watch for Progress {
+    fn begin(&mut self, beginning: &Beginning) {
+        (self.begun, self.last) = (Instant::now(), Instant::now());
+        self.before = beginning.steps;
+        let modelled = beginning.modelled.join(", ");
+        let Beginning {
+            steps,
+            of,
+            vertices,
+            ..
+        } = beginning;
+        if self.format == Format::Json {
+            event(&json!({
+                "event": "begin", "steps": steps, "of": of, "vertices": vertices,
+                "modelled": beginning.modelled,
+            }));
+            return;
+        }
+        let from = match steps {
+            0 => String::new(),
+            n => format!(", continued after step {n}"),
+        };
+        eprintln!("{vertices} vertices: {modelled}; {of} steps{from}");
+        if std::io::stderr().is_terminal() {
+            let bar = ProgressBar::with_draw_target(Some(*of), ProgressDrawTarget::stderr());
+            let template = "{wide_bar} {pos}/{len} steps, {per_sec}, {eta} left";
+            if let Ok(style) = ProgressStyle::with_template(template) {
+                bar.set_style(style);
+            }
+            bar.set_position(*steps);
+            bar.reset_eta();
+            self.bar = Some(bar);
+        }
+    }
+
+    fn step(&mut self, tick: &Tick) -> ControlFlow<()> {
+        if let Some(bar) = &self.bar {
+            bar.set_position(tick.steps);
+        }
+        let [rate, left] = self.rate(tick);
+        match self.format {
+            Format::Json if self.last.elapsed() >= EVENTS || tick.steps == tick.of => {
+                self.last = Instant::now();
+                event(&json!({
+                    "event": "step", "steps": tick.steps, "of": tick.of, "t": tick.t,
+                    "strain": tick.strain, "gap": tick.gap, "rate": rate, "left": left,
+                }));
+            }
+            Format::Text if self.bar.is_none() && self.last.elapsed() >= LINES => {
+                self.last = Instant::now();
+                eprintln!(
+                    "step {} of {}, t = {:.4} s, {rate:.1} steps/s, {left:.0} s left",
+                    tick.steps, tick.of, tick.t
+                );
+            }
+            _ => {}
+        }
+        if interrupt::requested() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! `isosheet simulate` and `isosheet resume`.
+
+use crate::Done;
+use crate::exit::{Code, Failure, Format};
+use crate::interrupt;
+use crate::progress::{Progress, event};
+use clap::Args;
+use isosheet_io::run::{Outcome, RunError, Summary, resume_folder, simulate};
+use isosheet_io::scene::SceneFile;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Run a scene
+///
+/// A folder with a complete run of the same scene is left as it is, and one with a part of it is continued:
+/// the same command line may be given again at any time.
+#[derive(Debug, Args)]
+pub(crate) struct Simulate {
+    /// The scene file
+    scene: PathBuf,
+    /// The folder to write to [default: the name of the scene with `-run`, in the current folder]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Change a key of the scene, for example `stop.time=0.5` or `obstacle[0].friction=0.3`
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    edits: Vec<String>,
+    #[command(flatten)]
+    how: How,
+}
+
+/// Continue a run
+#[derive(Debug, Args)]
+pub(crate) struct Resume {
+    /// The folder of the run
+    dir: PathBuf,
+    #[command(flatten)]
+    how: How,
+}
+
+/// How a run is computed and shown.
+#[derive(Debug, Args)]
+struct How {
+    /// Write one JSON object a line to stdout instead of text
+    #[arg(long)]
+    json: bool,
+    /// Number of threads; the results do not depend on it
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    threads: usize,
+}
+
+impl How {
+    fn format(&self) -> Format {
+        if self.json {
+            Format::Json
+        } else {
+            Format::Text
+        }
+    }
+
+    fn prepare(&self) -> Done {
+        interrupt::install()?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.max(1));
+        let threads = |e| Failure::new(Code::Step, format!("cannot start the threads: {e}"));
+        pool.build_global().map_err(threads)
+    }
+
+    /// Runs, shows the progress and says how it ended.
+    fn show(
+        &self,
+        folder: &Path,
+        run: impl FnOnce(&mut Progress) -> Result<Outcome, RunError>,
+    ) -> Done {
+        let format = self.format();
+        let mut progress = Progress::new(format);
+        let outcome = run(&mut progress);
+        progress.end();
+        let outcome = outcome.map_err(Failure::from)?;
+        let (event_name, summary) = match outcome {
+            Outcome::AlreadyComplete(summary) => ("already complete", summary),
+            Outcome::Complete(summary) => ("complete", summary),
+            Outcome::Interrupted => {
+                let message = "stopped by Ctrl-C; the same command continues";
+                return Err(Failure::new(Code::Interrupted, message));
+            }
+        };
+        if self.json {
+            event(&json!({ "event": event_name, "folder": folder, "summary": summary }));
+        } else {
+            eprintln!("{}", sentence(event_name, folder, &summary));
+        }
+        Ok(())
+    }
+}
+
+fn sentence(what: &str, folder: &Path, summary: &Summary) -> String {
+    let gap = match summary.smallest_gap {
+        Some(gap) => format!(", smallest gap {gap:.1e} m"),
+        None => String::new(),
+    };
+    format!(
+        "{what}: {} steps to t = {:.4} s in {:.1} s, largest strain {:.1e}{gap}; see {}",
+        summary.steps,
+        summary.ending.t,
+        summary.wall_time,
+        summary.largest_strain,
+        folder.display()
+    )
+}
+
+impl Simulate {
+    pub(crate) fn run(&self) -> Done {
+        let format = self.how.format();
+        self.simulate().map_err(|failure| failure.in_format(format))
+    }
+
+    fn simulate(&self) -> Done {
+        let scene = SceneFile::read(&self.scene, &self.edits)?;
+        let folder = self
+            .out
+            .clone()
+            .unwrap_or_else(|| default_folder(&self.scene));
+        self.how.prepare()?;
+        self.how
+            .show(&folder, |progress| simulate(&scene, &folder, progress))
+    }
+}
+
+/// The folder of a scene without `--out`: `drape-run` in the current folder for `scenes/drape.toml`.
+fn default_folder(scene: &Path) -> PathBuf {
+    let name = scene.file_stem().unwrap_or_default().to_string_lossy();
+    PathBuf::from(format!("{name}-run"))
+}
+
+impl Resume {
+    pub(crate) fn run(&self) -> Done {
+        let format = self.how.format();
+        self.resume().map_err(|failure| failure.in_format(format))
+    }
+
+    fn resume(&self) -> Done {
+        self.how.prepare()?;
+        self.how
+            .show(&self.dir, |progress| resume_folder(&self.dir, progress))
+    }
+}

@@ -1,0 +1,61 @@
+//! `isosheet new`.
+
+use crate::Done;
+use crate::exit::{Code, Failure};
+use clap::{Args, ValueEnum};
+use isosheet_io::scene::StartingPoint;
+use isosheet_io::write_atomically;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Write a commented scene to start from
+#[derive(Debug, Args)]
+pub(crate) struct New {
+    /// The name of the scene; the file is NAME.toml in the current folder
+    name: PathBuf,
+    /// What it shows
+    #[arg(long, value_enum, default_value_t = Kind::Hanging)]
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Kind {
+    /// A sheet of paper that hangs by two corners
+    Hanging,
+    /// A cloth that drapes over a box
+    Drape,
+    /// A sheet of metal that a punch presses between two bars
+    Stamp,
+    /// A strip of paper that is pushed up a ramp
+    Feed,
+    /// Miura's crease pattern, folded by driven angles
+    Fold,
+}
+
+impl New {
+    pub(crate) fn run(&self) -> Done {
+        let mut path = self.name.clone();
+        if path.extension().is_none_or(|e| e != "toml") {
+            path.as_mut_os_string().push(".toml");
+        }
+        if path.exists() {
+            let message = format!("{} exists; choose another name", path.display());
+            return Err(Failure::new(Code::Output, message));
+        }
+        let text = match self.kind {
+            Kind::Hanging => StartingPoint::Hanging,
+            Kind::Drape => StartingPoint::Drape,
+            Kind::Stamp => StartingPoint::Stamp,
+            Kind::Feed => StartingPoint::Feed,
+            Kind::Fold => StartingPoint::Fold,
+        }
+        .text();
+        write_atomically(&path, |w| w.write_all(text.as_bytes()))
+            .map_err(|e| Failure::new(Code::Output, e))?;
+        eprintln!(
+            "wrote {path}; run it with `isosheet simulate {path}`",
+            path = path.display()
+        );
+        Ok(())
+    }
+}

@@ -1,0 +1,27 @@
+//! Files and text that subcommands write.
+
+use crate::Done;
+use crate::exit::{Code, Failure};
+use isosheet_io::scene::{reference_page, schema};
+use isosheet_io::{write_atomically, write_json};
+use std::io::Write;
+use std::path::Path;
+
+/// Writes text to stdout.
+pub(crate) fn to_stdout(text: &str) -> Done {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        // A reader such as `head` has enough.
+        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        Err(e) => Err(Failure::new(Code::Output, format!("cannot write: {e}"))),
+        Ok(()) => Ok(()),
+    }
+}
+
+/// Writes the reference of scene files.
+pub(crate) fn reference(dir: &Path) -> Done {
+    let failed = |e: &dyn std::fmt::Display| Failure::new(Code::Output, e);
+    let page = dir.join("scene.md");
+    write_atomically(&page, |w| w.write_all(reference_page().as_bytes()))
+        .map_err(|e| failed(&e))?;
+    write_json(&dir.join("scene.schema.json"), &schema()).map_err(|e| failed(&e))
+}

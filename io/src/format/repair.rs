@@ -1,0 +1,158 @@
+//! Repair of mesh files on request.
+
+use super::obj::ObjMesh;
+use isosheet_mesh::{Sheet, TopologyError, orient_consistently};
+use std::collections::{HashMap, HashSet};
+use std::fmt;
+
+/// What a repair changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Repair {
+    /// Vertices that were merged with another one at exactly the same place.
+    pub merged_vertices: usize,
+    /// Faces that were removed because they have no area.
+    pub degenerate_faces: usize,
+    /// Faces that were removed because another one has the same corners.
+    pub duplicate_faces: usize,
+    /// Vertices that were removed because no face uses them.
+    pub unused_vertices: usize,
+    /// Faces whose winding was reversed, so that neighbours agree.
+    pub reversed_faces: usize,
+}
+
+impl Repair {
+    /// Whether nothing had to be changed.
+    pub fn is_nothing(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl fmt::Display for Repair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = [
+            (self.merged_vertices, "coincident vertices merged"),
+            (self.degenerate_faces, "faces without area removed"),
+            (self.duplicate_faces, "duplicate faces removed"),
+            (self.unused_vertices, "unused vertices removed"),
+            (self.reversed_faces, "faces reversed"),
+        ];
+        let done: Vec<String> = parts
+            .iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, what)| format!("{count} {what}"))
+            .collect();
+        if done.is_empty() {
+            return f.write_str("nothing to repair");
+        }
+        f.write_str(&done.join(", "))
+    }
+}
+
+impl ObjMesh {
+    /// Repairs what can be repaired without a decision: merges vertices at exactly the same place, removes
+    /// faces without area, faces that are there twice and vertices that no face uses, and reverses faces so
+    /// that neighbours agree. The order of what stays is kept.
+    ///
+    /// Not repaired, because there is more than one way: edges with more than two faces, vertices at which a
+    /// surface only touches itself, Moebius bands, holes.
+    ///
+    /// # Errors
+    /// [`TopologyError`] if the faces cannot be oriented; everything else is then repaired.
+    pub fn repair(&mut self) -> Result<Repair, TopologyError> {
+        let mut repair = Repair {
+            merged_vertices: self.merge_vertices(),
+            degenerate_faces: self.remove_degenerate(),
+            duplicate_faces: self.remove_duplicates(),
+            ..Repair::default()
+        };
+        // A vertex that was merged away is not counted twice.
+        repair.unused_vertices = self.drop_unreferenced() - repair.merged_vertices;
+        let count = self.vertex_count();
+        repair.reversed_faces = orient_consistently(count, &mut self.faces)?.len();
+        Ok(repair)
+    }
+
+    /// Makes all faces use the first of the vertices at one place; returns how many others are used.
+    fn merge_vertices(&mut self) -> usize {
+        let mut first = HashMap::new();
+        let places = self.positions.as_chunks::<3>().0.iter().zip(0_u32..);
+        let label: Vec<u32> = places
+            // Adding zero makes a negative zero positive.
+            .map(|(p, v)| *first.entry(p.map(|c| (c + 0.0).to_bits())).or_insert(v))
+            .collect();
+        let mut merged = HashSet::new();
+        for v in self.faces.iter_mut().flatten() {
+            if label[*v as usize] != *v {
+                merged.insert(*v);
+                *v = label[*v as usize];
+            }
+        }
+        merged.len()
+    }
+
+    fn remove_degenerate(&mut self) -> usize {
+        let points = self.positions.as_chunks::<3>().0;
+        let before = self.faces.len();
+        self.faces.retain(|f| {
+            let corners = f.map(|v| points[v as usize]);
+            Sheet::new(corners.as_flattened().to_vec(), &[[0, 1, 2]]).is_ok()
+        });
+        before - self.faces.len()
+    }
+
+    fn remove_duplicates(&mut self) -> usize {
+        let before = self.faces.len();
+        let mut seen = HashSet::new();
+        self.faces.retain(|f| {
+            let mut corners = *f;
+            corners.sort_unstable();
+            seen.insert(corners)
+        });
+        before - self.faces.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ObjOptions, parse_obj};
+    use std::path::Path;
+
+    fn mesh(text: &str) -> ObjMesh {
+        let options = ObjOptions::default();
+        parse_obj(text.as_bytes(), Path::new("test.obj"), &options).unwrap()
+    }
+
+    #[test]
+    fn everything_that_has_one_remedy_is_repaired() {
+        // Two triangles with corners of their own, the second one reversed and there twice; a needle without
+        // area; a vertex that no face uses.
+        let mut broken = mesh(
+            "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 -0\nv 1 1 0\nv 0 1 0\nv 9 9 9\nv 2 0 0\n\
+             f 1 2 3\nf 4 6 5\nf 6 5 4\nf 1 2 8\n",
+        );
+        assert!(broken.clone().into_sheet().is_err());
+        let repair = broken.repair().unwrap();
+        let expected = Repair {
+            merged_vertices: 2,
+            degenerate_faces: 1,
+            duplicate_faces: 1,
+            unused_vertices: 2,
+            reversed_faces: 1,
+        };
+        assert_eq!(repair, expected, "{repair}");
+        let sheet = broken.clone().into_sheet().unwrap();
+        assert_eq!((sheet.topology().vertex_count(), sheet.area()), (4, 1.0));
+        assert!(broken.repair().unwrap().is_nothing());
+    }
+
+    #[test]
+    fn what_needs_a_decision_is_refused() {
+        let fan = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
+        let error = mesh(fan).repair().unwrap_err();
+        assert!(matches!(
+            error,
+            TopologyError::NonManifoldEdge { count: 3, .. }
+        ));
+    }
+}

@@ -1,0 +1,321 @@
+//! Runs of scenes that survive being killed.
+//!
+//! [`simulate`] runs a scene in a folder:
+//!
+//! | file | what |
+//! |---|---|
+//! | `scene.toml` | the scene as it is run, edits included; mesh files are copied to `meshes/` |
+//! | `history.csv` | one row for each step ([`HistoryRow`](crate::HistoryRow)) |
+//! | `trajectory.npz` | the frames ([`Trajectory`](crate::Trajectory)), at the end |
+//! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
+//! | `summary.json` | what came of it ([`Summary`]), last: a folder that has it is complete |
+//! | `frames.bin`, `checkpoint.bin` | what is needed to go on; the trajectory replaces the frames |
+//! | `run.lock` | locked while a process works in the folder |
+//!
+//! A folder with a complete run of the same scene is left as it is. One with a part of it is continued, and
+//! gives the same bits as a run without a stop. A folder with another scene, with other files, or in use by
+//! another process is refused. When the process is killed, at most the steps since the last checkpoint are
+//! lost ([`Output::checkpoint_interval`](crate::scene::Output::checkpoint_interval)).
+
+mod checkpoint;
+mod error;
+mod folder;
+mod frames;
+mod recording;
+mod stepping;
+mod summary;
+
+pub use error::RunError;
+pub use folder::SceneHash;
+pub use recording::Recording;
+pub use summary::{EndReason, Ending, Summary};
+
+use crate::format::{HistoryWriter, frame_path, read_json, write_json, write_obj};
+use crate::scene::{SceneFile, Setup};
+use checkpoint::Progress;
+use folder::{Contents, Material, RunFolder};
+use frames::{FrameFile, read_frames};
+use recording::{open_scene, trajectory_of};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::{Duration, Instant};
+use stepping::{Stepping, step_count};
+
+/// How a call of [`simulate`] ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// The run was complete already.
+    AlreadyComplete(Box<Summary>),
+    /// The run is complete now.
+    Complete(Box<Summary>),
+    /// The watcher asked for a stop. A checkpoint was written; the same call continues.
+    Interrupted,
+}
+
+/// How a run begins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beginning {
+    /// Steps that were taken before, 0 for a new run.
+    pub steps: u64,
+    /// Most steps of the whole run.
+    pub of: u64,
+    /// What is modelled, in words.
+    pub modelled: Vec<String>,
+    /// Number of vertices.
+    pub vertices: usize,
+}
+
+/// What has been reached after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tick {
+    /// Time, seconds.
+    pub t: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Most steps of the whole run.
+    pub of: u64,
+    /// Largest edge strain at the end of the step.
+    pub strain: f64,
+    /// Smallest gap, metres; none if nothing is close.
+    pub gap: Option<f64>,
+}
+
+/// Watches a run.
+pub trait Watch {
+    /// Called before the first step.
+    fn begin(&mut self, _beginning: &Beginning) {}
+
+    /// Called after every step. [`ControlFlow::Break`] writes a checkpoint and stops.
+    fn step(&mut self, tick: &Tick) -> ControlFlow<()>;
+}
+
+impl<F: FnMut(&Tick) -> ControlFlow<()>> Watch for F {
+    fn step(&mut self, tick: &Tick) -> ControlFlow<()> {
+        self(tick)
+    }
+}
+
+/// Runs a scene in a folder, from the last checkpoint if there is one.
+///
+/// ```
+/// use isosheet_io::run::{Outcome, simulate};
+/// use isosheet_io::scene::{Mesh, Scene, SceneFile, Sheet};
+/// use std::ops::ControlFlow;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let folder = tempfile::tempdir()?;
+/// # let folder = folder.path().join("fall");
+/// let mut scene = Scene::new(Sheet::new(Mesh::Disk { radius: 0.1, rings: 2 }));
+/// scene.forces.gravity = Some([0.0, 0.0, -9.81]);
+/// let file = SceneFile::of(scene, &folder)?;
+/// let outcome = simulate(&file, &folder, &mut |_: &_| ControlFlow::Continue(()))?;
+/// assert!(matches!(outcome, Outcome::Complete(summary) if summary.steps == 60));
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+/// [`RunError`]; whatever was recorded up to the last checkpoint stays.
+pub fn simulate(
+    file: &SceneFile,
+    folder: &Path,
+    watch: &mut dyn Watch,
+) -> Result<Outcome, RunError> {
+    let clock = Instant::now();
+    let material = Material::read(file)?;
+    if RunFolder::is_complete(folder, &material)? {
+        return already_complete(folder, material.hash);
+    }
+    let setup = file.build()?;
+    let modelled = setup.modelled.clone();
+    let (open, saved) = match RunFolder::open(folder, &material)? {
+        Contents::Complete => return already_complete(folder, material.hash),
+        Contents::Empty(open) => (open, None),
+        Contents::Partial(open) => {
+            let saved = checkpoint::read(&open.path(RunFolder::CHECKPOINT))?;
+            (open, Some(saved))
+        }
+    };
+    let facts = Facts {
+        hash: material.hash,
+        modelled,
+        sheet: setup.sheet.clone(),
+    };
+    let mut stepping = match saved {
+        None => start(file, &open, setup, facts.hash, clock)?,
+        Some(saved) => {
+            check_origin(&open, &saved.0, facts.hash)?;
+            resume(file, &open, setup, saved, clock)?
+        }
+    };
+    watch.begin(&Beginning {
+        steps: stepping.progress.steps,
+        of: step_count(file.scene()),
+        modelled: facts.modelled.clone(),
+        vertices: facts.sheet.topology().vertex_count(),
+    });
+    let interval = file.scene().output.checkpoint_interval;
+    // More seconds than a duration can hold are as good as never.
+    let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
+    while stepping.progress.ending.is_none() {
+        let tick = stepping.step()?;
+        let go_on = watch.step(&tick);
+        let due = stepping.clock.elapsed() >= interval;
+        if due || go_on.is_break() || stepping.progress.ending.is_some() {
+            stepping.save()?;
+        }
+        if go_on.is_break() && stepping.progress.ending.is_none() {
+            return Ok(Outcome::Interrupted);
+        }
+    }
+    finish(file, &open, &facts, &stepping.progress)
+}
+
+/// Continues the run in a folder, with the scene that is stored there.
+///
+/// # Errors
+/// As [`simulate`]; [`RunError::NoRun`] if the folder is not that of a run.
+pub fn resume_folder(folder: &Path, watch: &mut dyn Watch) -> Result<Outcome, RunError> {
+    simulate(&open_scene(folder)?, folder, watch)
+}
+
+fn already_complete(folder: &Path, hash: SceneHash) -> Result<Outcome, RunError> {
+    let summary: Summary = read_json(&folder.join(RunFolder::SUMMARY))?;
+    if summary.scene != hash.to_string() {
+        return Err(RunError::OtherScene {
+            folder: folder.to_owned(),
+        });
+    }
+    Ok(Outcome::AlreadyComplete(Box::new(summary)))
+}
+
+/// What is known before the first step.
+struct Facts {
+    hash: SceneHash,
+    modelled: Vec<String>,
+    sheet: isosheet_mesh::Sheet,
+}
+
+fn start<'a>(
+    file: &'a SceneFile,
+    folder: &'a RunFolder,
+    setup: Setup,
+    hash: SceneHash,
+    clock: Instant,
+) -> Result<Stepping<'a>, RunError> {
+    let origins = setup.origins.clone();
+    let mut stepping = Stepping {
+        file,
+        folder,
+        simulation: setup.start()?,
+        origins,
+        history: HistoryWriter::create(&folder.path(RunFolder::HISTORY))?,
+        frames: FrameFile::create(&folder.path(RunFolder::FRAMES))?,
+        progress: Progress {
+            scene: hash.to_string(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            ..Progress::default()
+        },
+        clock,
+    };
+    stepping.record_start()?;
+    Ok(stepping)
+}
+
+/// Refuses a checkpoint of another scene, where the one in the folder was changed since, or of another
+/// version.
+fn check_origin(folder: &RunFolder, progress: &Progress, hash: SceneHash) -> Result<(), RunError> {
+    let root = folder.root().to_owned();
+    if progress.scene != hash.to_string() {
+        return Err(RunError::OtherScene { folder: root });
+    }
+    if progress.version != env!("CARGO_PKG_VERSION") {
+        return Err(RunError::OtherVersion {
+            folder: root,
+            begun: progress.version.clone(),
+        });
+    }
+    Ok(())
+}
+
+fn resume<'a>(
+    file: &'a SceneFile,
+    folder: &'a RunFolder,
+    setup: Setup,
+    (progress, checkpoint): (Progress, isosheet_dynamics::Checkpoint),
+    clock: Instant,
+) -> Result<Stepping<'a>, RunError> {
+    let origins = setup.origins.clone();
+    let path = folder.path(RunFolder::FRAMES);
+    let coordinates = setup.start.x.len();
+    let frames = FrameFile::resume(&path, progress.frames, coordinates);
+    let frames = frames.map_err(|e| RunError::Damaged {
+        path,
+        problem: e.to_string(),
+    })?;
+    Ok(Stepping {
+        file,
+        folder,
+        simulation: setup.resume(checkpoint)?,
+        origins,
+        history: HistoryWriter::resume(&folder.path(RunFolder::HISTORY), progress.history)?,
+        frames,
+        progress,
+        clock,
+    })
+}
+
+/// Writes the files that only a complete run has, the summary last.
+fn finish(
+    file: &SceneFile,
+    folder: &RunFolder,
+    facts: &Facts,
+    progress: &Progress,
+) -> Result<Outcome, RunError> {
+    let Some(ending) = progress.ending.clone() else {
+        return Ok(Outcome::Interrupted);
+    };
+    let clock = Instant::now();
+    let topology = facts.sheet.topology();
+    let path = folder.path(RunFolder::FRAMES);
+    let frames = read_frames(&path, 3 * topology.vertex_count());
+    let frames = frames.map_err(|source| RunError::Read {
+        path: path.clone(),
+        source,
+    })?;
+    let output = &file.scene().output;
+    if output.trajectory {
+        let trajectory = trajectory_of(&facts.sheet, &frames)?;
+        trajectory.write(&folder.path(RunFolder::TRAJECTORY))?;
+    }
+    if output.obj {
+        let obj = folder.path(RunFolder::OBJ);
+        for (k, frame) in frames.iter().enumerate() {
+            write_obj(&frame_path(&obj, k), topology, &frame.x)?;
+        }
+    }
+    let summary = Summary {
+        program: "isosheet".into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        commit: option_env!("ISOSHEET_COMMIT").map(str::to_owned),
+        scene: facts.hash.to_string(),
+        wall_time: progress.wall + clock.elapsed().as_secs_f64(),
+        modelled: facts.modelled.clone(),
+        vertices: topology.vertex_count(),
+        faces: topology.face_count(),
+        steps: progress.steps,
+        frames: progress.frames,
+        largest_strain: progress.strain,
+        smallest_gap: progress.gap,
+        iterations: progress.iterations,
+        factorisations: progress.factorisations,
+        rejected: progress.rejected,
+        ending,
+    };
+    write_json(&folder.path(RunFolder::SUMMARY), &summary)?;
+    if output.trajectory {
+        // The run is complete; a frame file that stays does no harm.
+        let _ = std::fs::remove_file(path);
+    }
+    Ok(Outcome::Complete(Box::new(summary)))
+}

@@ -1,0 +1,94 @@
+//! The checkpoint of a run: how far it has come, with the checkpoint of its simulation.
+
+use super::RunError;
+use super::summary::Ending;
+use crate::format::write_atomically;
+use crc::{CRC_64_XZ, Crc};
+use isosheet_dynamics::Checkpoint;
+use serde::{Deserialize, Serialize};
+use std::io::Write;
+use std::path::Path;
+
+/// How far a run has come.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Progress {
+    /// Hash of the scene.
+    pub(crate) scene: String,
+    /// Version of the program that began the run.
+    pub(crate) version: String,
+    /// Steps taken.
+    pub(crate) steps: u64,
+    /// Length of the history, bytes.
+    pub(crate) history: u64,
+    /// Number of frames.
+    pub(crate) frames: u64,
+    /// Wall time of all processes up to here, seconds.
+    pub(crate) wall: f64,
+    /// Total energy at the start, joules.
+    pub(crate) start_energy: f64,
+    /// Since when the sheet is at rest, seconds of simulated time.
+    pub(crate) slow_since: Option<f64>,
+    /// Largest edge strain so far.
+    pub(crate) strain: f64,
+    /// Smallest gap so far, metres.
+    pub(crate) gap: Option<f64>,
+    /// Newton iterations so far.
+    pub(crate) iterations: u64,
+    /// Factorisations so far.
+    pub(crate) factorisations: u64,
+    /// Rejected sub-steps so far.
+    pub(crate) rejected: u64,
+    /// How it ended, if it did.
+    pub(crate) ending: Option<Ending>,
+}
+
+/// First bytes of the file; the last two are the version of the format.
+const MAGIC: &[u8; 8] = b"isorun01";
+
+/// Sum over the file.
+const SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
+
+/// Writes a checkpoint: the eight bytes `isorun01`, the length of the progress (little-endian `u64`), the
+/// progress as JSON, the simulation as [`Checkpoint::to_bytes`] has it, and the CRC-64 of all that.
+pub(crate) fn write(
+    path: &Path,
+    progress: &Progress,
+    simulation: &Checkpoint,
+) -> Result<(), RunError> {
+    let damaged = |problem: String| RunError::Damaged {
+        path: path.to_owned(),
+        problem,
+    };
+    let head = serde_json::to_vec(progress).map_err(|e| damaged(e.to_string()))?;
+    let body = simulation.to_bytes().map_err(|e| damaged(e.to_string()))?;
+    let mut bytes = Vec::with_capacity(head.len() + body.len() + 24);
+    bytes.extend_from_slice(MAGIC);
+    bytes.extend((head.len() as u64).to_le_bytes());
+    bytes.extend(head);
+    bytes.extend(body);
+    bytes.extend(SUM.checksum(&bytes).to_le_bytes());
+    write_atomically(path, |w| w.write_all(&bytes))?;
+    Ok(())
+}
+
+/// Reads a checkpoint.
+pub(crate) fn read(path: &Path) -> Result<(Progress, Checkpoint), RunError> {
+    let damaged = |problem: &str| RunError::Damaged {
+        path: path.to_owned(),
+        problem: problem.to_owned(),
+    };
+    let bytes = std::fs::read(path).map_err(|e| damaged(&e.to_string()))?;
+    let whole = || -> Option<(&[u8], &[u8])> {
+        let (content, sum) = bytes.split_last_chunk::<8>()?;
+        if SUM.checksum(content).to_le_bytes() != *sum {
+            return None;
+        }
+        let (length, rest) = content.strip_prefix(MAGIC)?.split_first_chunk::<8>()?;
+        rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)
+    };
+    let (head, body) =
+        whole().ok_or_else(|| damaged("it is not a whole checkpoint of this version"))?;
+    let progress = serde_json::from_slice(head).map_err(|e| damaged(&e.to_string()))?;
+    let simulation = Checkpoint::from_bytes(body).map_err(|e| damaged(&e.to_string()))?;
+    Ok((progress, simulation))
+}

@@ -1,0 +1,110 @@
+//! Why a run cannot go on.
+
+use crate::format::{HistoryError, JsonError, ObjWriteError, TrajectoryError, WriteError};
+use crate::scene::{SceneError, SceneFileError};
+use std::io;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why a run cannot start or go on.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// The scene cannot be simulated.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A step failed. What was recorded up to the last checkpoint stays.
+    #[error("{0}")]
+    Step(SceneError),
+    /// A scene file cannot be used.
+    #[error(transparent)]
+    SceneFile(#[from] SceneFileError),
+    /// The folder holds the run of another scene.
+    #[error(
+        "{} holds a run of another scene (see {}); choose another folder with --out", folder.display(),
+        folder.join("scene.toml").display()
+    )]
+    OtherScene {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The folder holds other files.
+    #[error(
+        "{} holds files and is not the folder of a run; choose an empty or a new folder with --out",
+        folder.display()
+    )]
+    Foreign {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// Another process works in the folder.
+    #[error(
+        "another process is writing to {}; wait for it or choose another folder with --out", folder.display()
+    )]
+    Busy {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The folder cannot be made or written to.
+    #[error(
+        "cannot write to the folder {}: {source}; check the permissions and the free space, or choose another \
+         folder with --out", folder.display()
+    )]
+    Unwritable {
+        /// The folder.
+        folder: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// There is no run in the folder.
+    #[error(
+        "{} is not the folder of a run: it has no scene.toml; name the folder that `isosheet simulate` wrote",
+        folder.display()
+    )]
+    NoRun {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A file of the run cannot be read or is damaged.
+    #[error("{}: {problem}; delete the folder and run the scene again", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The run was begun by another version of the program, which does not compute the same bits.
+    #[error(
+        "the run in {} was begun by version {begun} of the program, this is {}; continue it with that version, or \
+         run the scene in another folder with --out", folder.display(), env!("CARGO_PKG_VERSION")
+    )]
+    OtherVersion {
+        /// The folder.
+        folder: PathBuf,
+        /// The version that began the run.
+        begun: String,
+    },
+    /// A file of the run cannot be read.
+    #[error("cannot read {}: {source}; check the path", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The history cannot be written.
+    #[error(transparent)]
+    History(#[from] HistoryError),
+    /// The frames cannot be written or read.
+    #[error(transparent)]
+    Trajectory(#[from] TrajectoryError),
+    /// The summary cannot be written or read.
+    #[error(transparent)]
+    Json(#[from] JsonError),
+    /// An OBJ file cannot be written.
+    #[error(transparent)]
+    Obj(#[from] ObjWriteError),
+}

@@ -1,0 +1,207 @@
+//! The folder of a run.
+
+use super::RunError;
+use crate::format::write_atomically;
+use crate::scene::{Problem, Scene, SceneError, SceneFile};
+use crc::{CRC_64_XZ, Crc};
+use std::fmt;
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Locked while a process works in the folder; also marks a folder as that of a run.
+const LOCK: &str = "run.lock";
+
+/// The folder of copied mesh files.
+const MESHES: &str = "meshes";
+
+/// CRC-64 of a scene, in a canonical form, and of the mesh files that it names: the same for the same run,
+/// wherever the files lie and whatever comments the scene has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SceneHash(u64);
+
+impl fmt::Display for SceneHash {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:016x}", self.0)
+    }
+}
+
+/// A scene with the bytes of the mesh files that it names.
+pub(crate) struct Material<'a> {
+    pub(crate) file: &'a SceneFile,
+    meshes: Vec<(PathBuf, Vec<u8>)>,
+    pub(crate) hash: SceneHash,
+}
+
+impl<'a> Material<'a> {
+    /// Reads the mesh files of a scene.
+    pub(crate) fn read(file: &'a SceneFile) -> Result<Self, RunError> {
+        let mut meshes = Vec::new();
+        for (key, path) in file.scene().files() {
+            let path = file.folder().join(path);
+            let bytes = fs::read(&path).map_err(|e| {
+                let message = format!("cannot read {}: {e}", path.display());
+                let remedy = "check the path, which is relative to the scene";
+                let problem = Problem::new(key.name("path"), message, remedy);
+                SceneError::from(problem).in_text(file.text())
+            })?;
+            meshes.push((path, bytes));
+        }
+        let hash = hash(file.scene(), &meshes);
+        Ok(Self { file, meshes, hash })
+    }
+
+    /// Copies the mesh files and writes the scene that names the copies.
+    fn store(&self, folder: &Path) -> Result<(), RunError> {
+        let mut names = Vec::new();
+        for (k, (path, bytes)) in self.meshes.iter().enumerate() {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let name = Path::new(MESHES).join(format!("{k}-{name}"));
+            write_atomically(&folder.join(&name), |w| w.write_all(bytes))?;
+            names.push(name);
+        }
+        let stored = self.file.with_files(&names)?;
+        let text = &stored.text().text;
+        write_atomically(&folder.join(RunFolder::SCENE), |w| {
+            w.write_all(text.as_bytes())
+        })?;
+        Ok(())
+    }
+}
+
+fn hash(scene: &Scene, meshes: &[(PathBuf, Vec<u8>)]) -> SceneHash {
+    const SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
+    let mut scene = scene.clone();
+    for (_, file) in scene.files_mut() {
+        file.path = PathBuf::new();
+    }
+    let mut sum = SUM.digest();
+    let canonical = serde_json::to_vec(&scene);
+    sum.update(&canonical.expect("numbers, names and lists have a form in JSON"));
+    for (_, bytes) in meshes {
+        sum.update(&(bytes.len() as u64).to_le_bytes());
+        sum.update(bytes);
+    }
+    SceneHash(sum.finalize())
+}
+
+/// What is in a folder at the start.
+pub(crate) enum Contents {
+    /// A complete run of the same scene.
+    Complete,
+    /// Nothing that could be continued.
+    Empty(RunFolder),
+    /// A checkpoint of the same scene.
+    Partial(RunFolder),
+}
+
+/// The folder of a run, locked against other processes.
+#[derive(Debug)]
+pub(crate) struct RunFolder {
+    root: PathBuf,
+    /// Held until the end: the lock goes with the file.
+    _lock: File,
+}
+
+impl RunFolder {
+    pub(crate) const SCENE: &'static str = "scene.toml";
+    pub(crate) const SUMMARY: &'static str = "summary.json";
+    pub(crate) const CHECKPOINT: &'static str = "checkpoint.bin";
+    pub(crate) const FRAMES: &'static str = "frames.bin";
+    pub(crate) const HISTORY: &'static str = "history.csv";
+    pub(crate) const TRAJECTORY: &'static str = "trajectory.npz";
+    pub(crate) const OBJ: &'static str = "obj";
+
+    /// Whether the folder holds a complete run of the scene. A complete run is not touched: its folder may be
+    /// read-only.
+    pub(crate) fn is_complete(root: &Path, material: &Material<'_>) -> Result<bool, RunError> {
+        let complete = root.join(Self::SUMMARY).is_file() && root.join(LOCK).is_file();
+        if complete {
+            check_scene(root, material)?;
+        }
+        Ok(complete)
+    }
+
+    /// Creates the folder when missing, locks it and says what is in it.
+    pub(crate) fn open(root: &Path, material: &Material<'_>) -> Result<Contents, RunError> {
+        let unwritable = |source| RunError::Unwritable {
+            folder: root.to_owned(),
+            source,
+        };
+        fs::create_dir_all(root).map_err(unwritable)?;
+        if !root.join(LOCK).is_file() && fs::read_dir(root).map_err(unwritable)?.next().is_some() {
+            return Err(RunError::Foreign {
+                folder: root.to_owned(),
+            });
+        }
+        let lock = File::create(root.join(LOCK)).map_err(unwritable)?;
+        match lock.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                return Err(RunError::Busy {
+                    folder: root.to_owned(),
+                });
+            }
+            Err(TryLockError::Error(source)) => return Err(unwritable(source)),
+        }
+        let folder = Self {
+            root: root.to_owned(),
+            _lock: lock,
+        };
+        folder.remove_parts().map_err(unwritable)?;
+        // The scene is stored after the mesh files.
+        let stored = root.join(Self::SCENE).is_file();
+        if stored {
+            check_scene(root, material)?;
+        }
+        // Another process may have completed the run before the lock was free.
+        if root.join(Self::SUMMARY).is_file() {
+            return Ok(Contents::Complete);
+        }
+        if root.join(Self::CHECKPOINT).is_file() {
+            return Ok(Contents::Partial(folder));
+        }
+        if !stored {
+            material.store(root)?;
+        }
+        Ok(Contents::Empty(folder))
+    }
+
+    /// Removes the unfinished files that a killed process left.
+    fn remove_parts(&self) -> io::Result<()> {
+        for folder in [self.root.clone(), self.path(MESHES), self.path(Self::OBJ)] {
+            if !folder.is_dir() {
+                continue;
+            }
+            for entry in fs::read_dir(folder)? {
+                let entry = entry?;
+                let name = entry.file_name();
+                let name = name.to_string_lossy();
+                if name.starts_with('.') && name.ends_with(".part") {
+                    fs::remove_file(entry.path())?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn root(&self) -> &Path {
+        &self.root
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.root.join(name)
+    }
+}
+
+/// Refuses a folder with a run of another scene.
+fn check_scene(root: &Path, material: &Material<'_>) -> Result<(), RunError> {
+    let stored = SceneFile::read(&root.join(RunFolder::SCENE), &[])?;
+    let stored = Material::read(&stored)?.hash;
+    if stored == material.hash {
+        return Ok(());
+    }
+    Err(RunError::OtherScene {
+        folder: root.to_owned(),
+    })
+}

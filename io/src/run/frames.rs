@@ -1,0 +1,148 @@
+//! The frames of a run while it goes on: one file that grows.
+
+use crate::format::WriteError;
+use std::fs::File;
+use std::io::{self, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// A file of frames of equal length: time (seconds) and positions (`3V`, metres), little-endian `f64`.
+#[derive(Debug)]
+pub(crate) struct FrameFile {
+    path: PathBuf,
+    file: File,
+    count: u64,
+    /// One frame as bytes.
+    record: Vec<u8>,
+}
+
+/// One frame.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Frame {
+    pub(crate) t: f64,
+    pub(crate) x: Vec<f64>,
+}
+
+/// Bytes of a frame of some coordinates.
+fn record_length(coordinates: usize) -> usize {
+    8 * (coordinates + 1)
+}
+
+impl FrameFile {
+    /// Starts a new file.
+    pub(crate) fn create(path: &Path) -> Result<Self, WriteError> {
+        let file = File::create(path).map_err(|source| WriteError::Write {
+            path: path.to_owned(),
+            source,
+        })?;
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            count: 0,
+            record: Vec::new(),
+        })
+    }
+
+    /// Continues a file after its first `count` frames; what follows them is cut off.
+    ///
+    /// # Errors
+    /// [`io::Error`] if the file cannot be opened or has fewer frames.
+    pub(crate) fn resume(path: &Path, count: u64, coordinates: usize) -> io::Result<Self> {
+        let mut file = File::options().write(true).open(path)?;
+        let length = count * record_length(coordinates) as u64;
+        let found = file.metadata()?.len();
+        if found < length {
+            let problem = format!("it has {found} bytes, {length} were written");
+            return Err(io::Error::other(problem));
+        }
+        file.set_len(length)?;
+        file.seek(SeekFrom::End(0))?;
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            count,
+            record: Vec::new(),
+        })
+    }
+
+    /// Number of frames.
+    pub(crate) fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Adds a frame.
+    pub(crate) fn append(&mut self, t: f64, x: &[f64]) -> Result<(), WriteError> {
+        self.record.clear();
+        self.record.extend(t.to_le_bytes());
+        self.record.extend(x.iter().flat_map(|c| c.to_le_bytes()));
+        let written = self.file.write_all(&self.record);
+        written.map_err(|source| self.failed(source))?;
+        self.count += 1;
+        Ok(())
+    }
+
+    /// Waits until all frames are on the disk.
+    pub(crate) fn sync(&self) -> Result<(), WriteError> {
+        self.file.sync_data().map_err(|source| self.failed(source))
+    }
+
+    fn failed(&self, source: io::Error) -> WriteError {
+        WriteError::Write {
+            path: self.path.clone(),
+            source,
+        }
+    }
+}
+
+/// Reads all whole frames.
+pub(crate) fn read_frames(path: &Path, coordinates: usize) -> io::Result<Vec<Frame>> {
+    let bytes = std::fs::read(path)?;
+    let frame = |record: &[u8]| {
+        let mut numbers = record
+            .as_chunks::<8>()
+            .0
+            .iter()
+            .map(|b| f64::from_le_bytes(*b));
+        Frame {
+            t: numbers.next().unwrap_or_default(),
+            x: numbers.collect(),
+        }
+    };
+    let records = bytes.chunks_exact(record_length(coordinates));
+    Ok(records.map(frame).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_come_back_and_continue_where_they_are_told() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("frames.bin");
+        let x = |k: usize| -> Vec<f64> { (0..6).map(|i| (k * 6 + i) as f64 / 7.0).collect() };
+        let mut file = FrameFile::create(&path).unwrap();
+        for k in 0..4 {
+            file.append(k as f64 / 3.0, &x(k)).unwrap();
+        }
+        file.sync().unwrap();
+        let frames = read_frames(&path, 6).unwrap();
+        assert_eq!(frames.len(), 4);
+        for (k, frame) in frames.iter().enumerate() {
+            let t = k as f64 / 3.0;
+            assert_eq!(*frame, Frame { t, x: x(k) });
+        }
+        // Half a frame, as a full disk leaves it.
+        File::options()
+            .append(true)
+            .open(&path)
+            .unwrap()
+            .write_all(&[1; 20])
+            .unwrap();
+        assert_eq!(read_frames(&path, 6).unwrap(), frames);
+        let mut resumed = FrameFile::resume(&path, 2, 6).unwrap();
+        resumed.append(2.0 / 3.0, &x(2)).unwrap();
+        assert_eq!(resumed.count(), 3);
+        assert_eq!(read_frames(&path, 6).unwrap(), frames[..3]);
+        assert!(FrameFile::resume(&path, 4, 6).is_err());
+    }
+}

@@ -1,0 +1,192 @@
+//! The steps of a run and what is recorded of them.
+
+use super::checkpoint::{self, Progress};
+use super::folder::RunFolder;
+use super::frames::FrameFile;
+use super::summary::{EndReason, Ending};
+use super::{RunError, Tick};
+use crate::format::{HistoryRow, HistoryWriter};
+use crate::scene::{Origins, Scene, SceneError, SceneFile};
+use isosheet_dynamics::{Simulation, StepReport};
+use nalgebra::Vector3;
+use std::time::Instant;
+
+/// A run between two steps.
+pub(crate) struct Stepping<'a> {
+    pub(crate) file: &'a SceneFile,
+    pub(crate) folder: &'a RunFolder,
+    pub(crate) simulation: Simulation,
+    pub(crate) origins: Origins,
+    pub(crate) history: HistoryWriter,
+    pub(crate) frames: FrameFile,
+    pub(crate) progress: Progress,
+    /// Since when the wall time in the progress counts.
+    pub(crate) clock: Instant,
+}
+
+/// Part of a step by which the time of a run may differ from a whole number of steps, to allow for round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Number of steps of a run.
+pub(crate) fn step_count(scene: &Scene) -> u64 {
+    let steps = (scene.stop.time / scene.method.step - ROUND_OFF).ceil();
+    steps.max(1.0) as u64
+}
+
+/// Length of a step, from 1 to the number of steps: the last one is as short as the time asks for.
+fn step_length(scene: &Scene, number: u64) -> f64 {
+    let (h, count) = (scene.method.step, step_count(scene));
+    let rest = scene.stop.time - (count - 1) as f64 * h;
+    if number == count && (rest - h).abs() > ROUND_OFF * h {
+        rest
+    } else {
+        h
+    }
+}
+
+impl Stepping<'_> {
+    /// Records the state at the start.
+    pub(crate) fn record_start(&mut self) -> Result<(), RunError> {
+        let state = self.simulation.state();
+        let kinetic = self.simulation.model().kinetic_energy(&state.v);
+        let total = self.simulation.energy();
+        self.progress.start_energy = total;
+        self.history.append(&HistoryRow {
+            t: state.t,
+            kinetic,
+            potential: total - kinetic,
+            total,
+            strain: self.simulation.model().rods().max_strain(&state.x),
+            ..HistoryRow::default()
+        })?;
+        self.frames.append(state.t, &state.x)?;
+        self.save()
+    }
+
+    /// Takes and records a step. Says what has been reached.
+    pub(crate) fn step(&mut self) -> Result<Tick, RunError> {
+        let scene = self.file.scene();
+        let number = self.progress.steps + 1;
+        let h = step_length(scene, number);
+        let report = self.simulation.step(h).map_err(|error| {
+            let problem = SceneError::from(self.origins.of_step(&error));
+            RunError::Step(problem.in_text(self.file.text()))
+        })?;
+        self.progress.steps = number;
+        self.count(&report);
+        self.history.append(&self.row(&report))?;
+        let reason = self.end_reason(&report);
+        let frame = scene.output.steps_per_frame(scene.method.step);
+        if number.is_multiple_of(frame) || reason.is_some() {
+            let state = self.simulation.state();
+            self.frames.append(state.t, &state.x)?;
+        }
+        if let Some(reason) = reason {
+            self.progress.ending = Some(self.ending(reason, &report));
+        }
+        Ok(Tick {
+            t: report.t,
+            steps: number,
+            of: step_count(scene),
+            strain: report.strain,
+            gap: report.gap.filter(|gap| gap.is_finite()),
+        })
+    }
+
+    fn count(&mut self, report: &StepReport) {
+        let progress = &mut self.progress;
+        progress.strain = progress.strain.max(report.strain);
+        progress.iterations += report.iterations as u64;
+        progress.factorisations += report.factorisations as u64;
+        progress.rejected += report.rejected as u64;
+        // An infinite gap means that nothing is within reach.
+        if let Some(gap) = report.gap.filter(|gap| gap.is_finite()) {
+            progress.gap = Some(progress.gap.map_or(gap, |least| least.min(gap)));
+        }
+    }
+
+    fn row(&self, report: &StepReport) -> HistoryRow {
+        let total = report.hamiltonian();
+        HistoryRow {
+            t: report.t,
+            h: report.h,
+            iterations: report.iterations,
+            kinetic: report.kinetic,
+            potential: report.potential,
+            total,
+            drift: total - self.progress.start_energy,
+            strain: report.strain,
+            gap: report.gap.filter(|gap| gap.is_finite()),
+        }
+    }
+
+    /// Whether a condition to stop holds after a step.
+    fn end_reason(&mut self, report: &StepReport) -> Option<EndReason> {
+        let scene = self.file.scene();
+        if report.taut.is_some() {
+            return Some(EndReason::Taut);
+        }
+        if let Some(limit) = scene.stop.support_force {
+            let forces = self.support_forces();
+            if forces.iter().any(|f| Vector3::from(*f).norm() > limit) {
+                return Some(EndReason::SupportForce);
+            }
+        }
+        if let Some(rest) = &scene.stop.rest {
+            if self.largest_speed() > rest.speed {
+                self.progress.slow_since = None;
+            } else {
+                let since = *self.progress.slow_since.get_or_insert(report.t);
+                if report.t - since >= rest.duration {
+                    return Some(EndReason::Rest);
+                }
+            }
+        }
+        (self.progress.steps >= step_count(scene)).then_some(EndReason::Time)
+    }
+
+    fn largest_speed(&self) -> f64 {
+        let velocities = self.simulation.state().v.as_chunks::<3>().0.iter();
+        let speeds = velocities.map(|v| Vector3::from(*v).norm());
+        speeds.fold(0.0, f64::max)
+    }
+
+    /// Force of each support of the scene on the sheet, newtons.
+    fn support_forces(&self) -> Vec<[f64; 3]> {
+        let mut forces = vec![[0.0; 3]; self.file.scene().support.len()];
+        for reaction in self.simulation.reactions() {
+            if let Some(number) = self.origins.support(reaction.support) {
+                for k in 0..3 {
+                    forces[number][k] += reaction.force[k];
+                }
+            }
+        }
+        forces
+    }
+
+    fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {
+        let loads = self.simulation.body_loads();
+        Ending {
+            reason,
+            t: report.t,
+            kinetic: report.kinetic,
+            potential: report.potential,
+            energy_drift: report.energy_drift,
+            largest_speed: self.largest_speed(),
+            supports: self.support_forces(),
+            obstacles: loads.iter().map(|load| load.force.into()).collect(),
+        }
+    }
+
+    /// Writes a checkpoint, after everything that it counts is on the disk.
+    pub(crate) fn save(&mut self) -> Result<(), RunError> {
+        self.history.sync()?;
+        self.frames.sync()?;
+        self.progress.history = self.history.length();
+        self.progress.frames = self.frames.count();
+        self.progress.wall += self.clock.elapsed().as_secs_f64();
+        self.clock = Instant::now();
+        let path = self.folder.path(RunFolder::CHECKPOINT);
+        checkpoint::write(&path, &self.progress, &self.simulation.checkpoint())
+    }
+}

@@ -1,0 +1,76 @@
+//! What a complete run says of itself.
+
+use serde::{Deserialize, Serialize};
+
+/// The contents of `summary.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// The program.
+    pub program: String,
+    /// Its version.
+    pub version: String,
+    /// The commit that it was built from, if it was known then.
+    pub commit: Option<String>,
+    /// Hash of the scene and the mesh files that it names; see [`SceneHash`](super::SceneHash).
+    pub scene: String,
+    /// Wall time of all processes that worked on the run, seconds.
+    pub wall_time: f64,
+    /// What was modelled, in words.
+    pub modelled: Vec<String>,
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Number of faces.
+    pub faces: usize,
+    /// Steps taken.
+    pub steps: u64,
+    /// Frames recorded, that of the start included.
+    pub frames: u64,
+    /// Largest relative change of an edge length in any step.
+    pub largest_strain: f64,
+    /// Smallest gap in any step, metres; none without contact, or if nothing ever came close.
+    pub smallest_gap: Option<f64>,
+    /// Newton iterations.
+    pub iterations: u64,
+    /// Matrix factorisations.
+    pub factorisations: u64,
+    /// Sub-steps that were tried and rejected.
+    pub rejected: u64,
+    /// The state at the end.
+    pub ending: Ending,
+}
+
+/// The state at the end of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ending {
+    /// Why it ended.
+    pub reason: EndReason,
+    /// Time, seconds.
+    pub t: f64,
+    /// Kinetic energy, joules.
+    pub kinetic: f64,
+    /// Potential energy, joules.
+    pub potential: f64,
+    /// Error of the energy balance, joules: energy less work of supports and forces, plus what damping and
+    /// friction took, minus the energy at the start.
+    pub energy_drift: f64,
+    /// Largest speed of a vertex, m/s.
+    pub largest_speed: f64,
+    /// Force of each support of the scene on the sheet, newtons.
+    pub supports: Vec<[f64; 3]>,
+    /// Force of the sheet on each obstacle of the scene, newtons.
+    pub obstacles: Vec<[f64; 3]>,
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EndReason {
+    /// The whole time has passed (`stop.time`).
+    Time,
+    /// The sheet is at rest (`stop.rest`).
+    Rest,
+    /// The force at a support is reached (`stop.support_force`).
+    SupportForce,
+    /// The supports ask for more than the lengths allow (`method.taut`).
+    Taut,
+}

@@ -1,0 +1,204 @@
+//! Scenes: everything that decides how a run goes, as data that can be written, read and checked.
+//!
+//! A scene is a TOML file ([`SceneFile`]) or is put together in a program ([`Scene`]). Lengths are in metres,
+//! times in seconds, masses in kilograms, **angles in degrees**. `docs/scene.md` lists all keys.
+
+mod build;
+mod contact;
+mod creases;
+mod edit;
+mod engine_problem;
+mod error;
+mod forces;
+mod mesh;
+mod method;
+mod obstacles;
+mod output;
+mod pose;
+mod problem;
+mod profile;
+mod reference;
+mod selection;
+mod sheet;
+mod source;
+mod starting_point;
+mod stop;
+mod supports;
+
+pub use build::Setup;
+pub use contact::Contact;
+pub use creases::{Crease, CreaseEdges, PatternEdges};
+pub use edit::EditError;
+pub use engine_problem::Origins;
+pub use error::{Colours, PlacedProblem, SceneError, SceneText};
+pub use forces::{Acceleration, Forces, Load};
+pub use mesh::{Diagonals, Mesh, MeshFile, PolygonFaces, UpAxis};
+pub use method::{Fallback, Integrator, Method, Taut};
+pub use obstacles::{Obstacle, Shape};
+pub use output::Output;
+pub use pose::{Motion, Pose, Rotation, Turn};
+pub use problem::{Key, KeyPart, Problem};
+pub use profile::{Change, Course, Interpolation, Profile};
+pub use reference::{reference_page, schema};
+pub use selection::Selection;
+pub use sheet::{Bending, Isometry, Sheet, Start};
+pub use source::{SceneFile, SceneFileError};
+pub use starting_point::StartingPoint;
+pub use stop::{Rest, Stop};
+pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
+
+use problem::Checks;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// The version of the format of scene files.
+pub const VERSION: u32 = 1;
+
+/// A scene.
+///
+/// ```
+/// use isosheet_io::scene::{Mesh, Scene, Selection, Sheet, Support};
+/// use std::path::Path;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut scene = Scene::new(Sheet::new(Mesh::Square { side: 0.21, level: 1 }));
+/// scene.support.push(Support::pin(Selection::Vertices(vec![20])));
+/// scene.forces.gravity = Some([0.0, 0.0, -9.81]);
+/// let mut simulation = scene.build(Path::new("."))?.start()?;
+/// assert!(simulation.step(scene.method.step)?.strain < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Version of the format: 1.
+    pub version: u32,
+    /// The sheet.
+    pub sheet: Sheet,
+    /// Creases with rest angles.
+    #[serde(default)]
+    pub crease: Vec<Crease>,
+    /// What holds the sheet.
+    #[serde(default)]
+    pub support: Vec<Support>,
+    /// Bodies that the sheet meets.
+    #[serde(default)]
+    pub obstacle: Vec<Obstacle>,
+    /// Forces on the sheet.
+    #[serde(default)]
+    pub forces: Forces,
+    /// Contact of the sheet with itself and with obstacles.
+    #[serde(default)]
+    pub contact: Contact,
+    /// How the motion is computed.
+    #[serde(default)]
+    pub method: Method,
+    /// When the run ends.
+    #[serde(default)]
+    pub stop: Stop,
+    /// What the run writes.
+    #[serde(default)]
+    pub output: Output,
+}
+
+impl Scene {
+    /// A sheet alone in space, free and without gravity.
+    pub fn new(sheet: Sheet) -> Self {
+        Self {
+            version: VERSION,
+            sheet,
+            crease: Vec::new(),
+            support: Vec::new(),
+            obstacle: Vec::new(),
+            forces: Forces::default(),
+            contact: Contact::default(),
+            method: Method::default(),
+            stop: Stop::default(),
+            output: Output::default(),
+        }
+    }
+
+    /// Checks everything that can be checked without reading other files.
+    ///
+    /// # Errors
+    /// [`SceneError`] with all problems that were found.
+    pub fn validate(&self) -> Result<(), SceneError> {
+        let (root, mut checks) = (Key::root(), Checks::default());
+        if self.version != VERSION {
+            let message = format!("version {} of scene files is not known", self.version);
+            checks.report(root.name("version"), message, "write `version = 1`");
+        }
+        self.sheet.check(&root.name("sheet"), &mut checks);
+        for (k, crease) in self.crease.iter().enumerate() {
+            crease.check(&root.name("crease").entry(k), &mut checks);
+        }
+        for (k, support) in self.support.iter().enumerate() {
+            support.check(&root.name("support").entry(k), &mut checks);
+        }
+        for (k, obstacle) in self.obstacle.iter().enumerate() {
+            obstacle.check(&root.name("obstacle").entry(k), &mut checks);
+        }
+        self.forces.check(&root.name("forces"), &mut checks);
+        self.contact.check(&root.name("contact"), &mut checks);
+        self.method.check(&root.name("method"), &mut checks);
+        self.check_method_fits(&mut checks);
+        let step = self.method.step;
+        self.stop.check(step, &root.name("stop"), &mut checks);
+        self.output.check(&root.name("output"), &mut checks);
+        SceneError::of(checks.problems)
+    }
+
+    /// Contact and sheets without rods need a method whose steps are minima.
+    fn check_method_fits(&self, checks: &mut Checks) {
+        if self.method.integrator.is_minimising() {
+            return;
+        }
+        let key = Key::root().name("method.integrator");
+        let remedy = "choose `bdf2` or `implicit_euler`";
+        if self.has_contact() {
+            checks.report(
+                key.clone(),
+                "this integrator has no place for contact",
+                remedy,
+            );
+        }
+        if self.sheet.isometry != Isometry::Rods {
+            checks.report(
+                key,
+                "this integrator needs rigid rods, and the sheet has none",
+                remedy,
+            );
+        }
+    }
+
+    /// Whether contact is modelled.
+    pub fn has_contact(&self) -> bool {
+        !self.obstacle.is_empty() || self.contact.self_contact
+    }
+
+    /// The mesh files that the scene names, in the order of the scene.
+    pub fn files(&self) -> Vec<(Key, PathBuf)> {
+        let mut scene = self.clone();
+        let files = scene.files_mut().into_iter();
+        files.map(|(key, file)| (key, file.path.clone())).collect()
+    }
+
+    /// The mesh files that the scene names, with their places.
+    pub(crate) fn files_mut(&mut self) -> Vec<(Key, &mut MeshFile)> {
+        let (root, mut files) = (Key::root(), Vec::new());
+        if let Mesh::File(file) = &mut self.sheet.mesh {
+            files.push((root.name("sheet.mesh.file"), file));
+        }
+        if let Some(file) = &mut self.sheet.start.file {
+            files.push((root.name("sheet.start.file"), file));
+        }
+        for (k, obstacle) in self.obstacle.iter_mut().enumerate() {
+            if let Shape::File(file) = &mut obstacle.shape {
+                files.push((root.name("obstacle").entry(k).name("shape.file"), file));
+            }
+        }
+        files
+    }
+}

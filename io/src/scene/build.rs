@@ -1,0 +1,477 @@
+//! From a scene to a simulation.
+
+use super::error::{SceneError, SceneText};
+use super::mesh::RestMesh;
+use super::pose::{Motion, Pose};
+use super::problem::{Key, Problem};
+use super::sheet::{Bending, Isometry};
+use super::supports::{Hold, frame_motion};
+use super::{Origins, Scene};
+use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
+use isosheet_dynamics::contact::Contact;
+use isosheet_dynamics::{
+    AccelerationField, Checkpoint, CreaseSprings, Membrane, Method, PlateBending, PointMotion,
+    PointProfile, RigidProfile, SheetModel, Simulation, SimulationError, State, StepControl,
+    VertexConstraint, VertexLoad, WeakIsometry, leave_flat,
+};
+use isosheet_mesh::{MassKind, Sheet, VertexId};
+use nalgebra::{Isometry3, Point3};
+use std::fmt::Display;
+use std::path::Path;
+
+/// Everything that a simulation is made of.
+#[derive(Debug)]
+pub struct Setup {
+    /// The sheet in its rest shape, placed in space.
+    pub sheet: Sheet,
+    /// The state at the start.
+    pub start: State,
+    /// What moves.
+    pub model: SheetModel,
+    /// What it meets, in scenes with contact.
+    pub contacts: Option<Contacts>,
+    /// The bodies, in the order of the scene.
+    pub obstacles: Vec<Obstacle>,
+    /// The integrator.
+    pub method: Method,
+    /// What happens to rejected steps.
+    pub control: StepControl,
+    /// What is modelled, in words.
+    pub modelled: Vec<String>,
+    /// Which entry of the scene made what.
+    pub origins: Origins,
+    /// The text of the scene, if it is a file.
+    pub(crate) text: Option<SceneText>,
+}
+
+impl Setup {
+    /// The simulation at the start.
+    ///
+    /// # Errors
+    /// [`SceneError`] at the place of the scene that is to blame.
+    pub fn start(self) -> Result<Simulation, SceneError> {
+        let Self {
+            model,
+            start,
+            contacts,
+            method,
+            control,
+            origins,
+            text,
+            ..
+        } = self;
+        let start = || -> Result<Simulation, SimulationError> {
+            let simulation = Simulation::new(model, start, method)?.with_control(control)?;
+            match contacts {
+                Some(contacts) => simulation.with_contact(contacts),
+                None => Ok(simulation),
+            }
+        };
+        start().map_err(|e| placed(origins.of_start(&e), text.as_ref()))
+    }
+
+    /// The simulation at a checkpoint.
+    ///
+    /// # Errors
+    /// [`SceneError`] if the checkpoint belongs to another scene.
+    pub fn resume(self, checkpoint: Checkpoint) -> Result<Simulation, SceneError> {
+        let contact = self.contacts.map(|c| Box::new(c) as Box<dyn Contact>);
+        Simulation::resume(self.model, contact, checkpoint)
+            .map_err(|e| placed(self.origins.of_start(&e), self.text.as_ref()))
+    }
+}
+
+fn placed(problem: Problem, text: Option<&SceneText>) -> SceneError {
+    let error = SceneError::from(problem);
+    match text {
+        Some(text) => error.in_text(text),
+        None => error,
+    }
+}
+
+impl Scene {
+    /// Makes everything that a simulation needs. Masses are lumped: a third of that of each face at each of
+    /// its corners. Paths are relative to `folder`.
+    ///
+    /// # Errors
+    /// [`SceneError`], with all problems of the values or the first one of what is made of them.
+    pub fn build(&self, folder: &Path) -> Result<Setup, SceneError> {
+        self.validate()?;
+        let mut builder = Builder::new(self, folder)?;
+        builder.add_forces()?;
+        builder.add_supports()?;
+        builder.add_bending()?;
+        builder.add_creases()?;
+        builder.add_isometry()?;
+        builder.perturb()?;
+        let (contacts, obstacles) = builder.contacts(folder)?;
+        Ok(builder.finish(contacts, obstacles))
+    }
+}
+
+/// A model on its way.
+struct Builder<'a> {
+    scene: &'a Scene,
+    /// The rest shape, placed in space.
+    rest: RestMesh,
+    /// The rest shape as its mesh has it.
+    unplaced: Sheet,
+    /// Positions at the start, `3V`.
+    x: Vec<f64>,
+    /// Absent only while it is replaced by a changed one.
+    model: Option<SheetModel>,
+    origins: Origins,
+    modelled: Vec<String>,
+}
+
+/// An error of the engine at a key.
+fn at<E: Display>(key: &Key) -> impl Fn(E) -> SceneError {
+    let key = key.clone();
+    move |error| Problem::from_error(key.clone(), &error).into()
+}
+
+impl<'a> Builder<'a> {
+    fn new(scene: &'a Scene, folder: &Path) -> Result<Self, SceneError> {
+        let key = Key::root().name("sheet");
+        let mesh_key = key.name("mesh");
+        let RestMesh { sheet, assignments } = scene.sheet.mesh.build(&mesh_key, folder)?;
+        let pose = &scene.sheet.placement;
+        let placed = sheet
+            .map_positions(|p| place(pose, p))
+            .map_err(at(&mesh_key))?;
+        let x = match &scene.sheet.start.file {
+            None => placed.positions().to_vec(),
+            Some(file) => {
+                let key = key.name("start.file");
+                let start = file.read(&key, folder)?;
+                if start.faces != placed.face_indices() {
+                    let message = "the file does not have the vertices and faces of `sheet.mesh`";
+                    let remedy = "export both shapes from the same mesh, without reordering";
+                    return Err(Problem::new(key.name("path"), message, remedy).into());
+                }
+                let points = start.positions.as_chunks::<3>().0.iter();
+                points.flat_map(|&p| place(pose, p)).collect()
+            }
+        };
+        let mass = scene.sheet.density * placed.area();
+        let model = SheetModel::new(&placed, mass, MassKind::Lumped)
+            .and_then(|m| m.with_damping(scene.sheet.damping))
+            .map_err(at(&key))?;
+        let mut modelled = Vec::new();
+        if scene.sheet.damping > 0.0 {
+            modelled.push("velocity damping".to_owned());
+        }
+        Ok(Self {
+            scene,
+            rest: RestMesh {
+                sheet: placed,
+                assignments,
+            },
+            unplaced: sheet,
+            x,
+            model: Some(model),
+            origins: Origins::default(),
+            modelled,
+        })
+    }
+
+    /// Replaces the model by what `change` makes of it.
+    fn change<E>(
+        &mut self,
+        change: impl FnOnce(SheetModel) -> Result<SheetModel, E>,
+        error: impl Fn(E) -> SceneError,
+    ) -> Result<(), SceneError> {
+        let model = self.model.take().map(change).transpose();
+        self.model = model.map_err(error)?;
+        Ok(())
+    }
+
+    fn model(&self) -> &SheetModel {
+        let model = self.model.as_ref();
+        model.expect("a change that fails ends the building")
+    }
+
+    fn vertices(&self, selection: &super::Selection, key: &Key) -> Result<Vec<VertexId>, Problem> {
+        selection.resolve(key, self.rest.sheet.topology(), &self.x)
+    }
+
+    fn add_forces(&mut self) -> Result<(), SceneError> {
+        let forces = &self.scene.forces;
+        let key = Key::root().name("forces");
+        if let Some(gravity) = forces.gravity {
+            self.change(
+                |m| Ok(m.with_acceleration(gravity)),
+                at::<SimulationError>(&key),
+            )?;
+            self.modelled.push("gravity".into());
+        }
+        for (k, load) in forces.load.iter().enumerate() {
+            let key = key.name("load").entry(k);
+            let vertices = self.vertices(&load.at, &key.name("at"))?;
+            let size = load.size.scaled(1.0 / vertices.len() as f64);
+            let topology = self.rest.sheet.topology();
+            let load = VertexLoad::new(topology, &vertices, load.direction, size);
+            let load = load.map_err(at(&key))?;
+            self.change(|m| Ok(m.with_force(load)), at::<SimulationError>(&key))?;
+        }
+        for (k, field) in forces.acceleration.iter().enumerate() {
+            let key = key.name("acceleration").entry(k);
+            let weights = self.model().mass().row_sums(self.rest.sheet.topology());
+            let size = field.size.as_given();
+            let field = AccelerationField::new(weights, field.direction, size);
+            let field = field.map_err(at(&key))?;
+            self.change(|m| Ok(m.with_force(field)), at::<SimulationError>(&key))?;
+        }
+        self.count(forces.load.len(), "load");
+        self.count(forces.acceleration.len(), "field of acceleration");
+        Ok(())
+    }
+
+    /// Names something that is modelled some times, if it is.
+    fn count(&mut self, number: usize, what: &str) {
+        match number {
+            0 => {}
+            1 => self.modelled.push(format!("1 {what}")),
+            n => self.modelled.push(format!("{n} {what}s")),
+        }
+    }
+
+    fn add_supports(&mut self) -> Result<(), SceneError> {
+        for (k, support) in self.scene.support.iter().enumerate() {
+            let key = Key::root().name("support").entry(k);
+            let vertices = self.vertices(&support.at, &key.name("at"))?;
+            for &v in &vertices {
+                self.check_free(v, k, &key)?;
+            }
+            match &support.hold {
+                Hold::Pin => self.change(|m| m.with_pins(&vertices), at(&key))?,
+                Hold::MovingPin(motion) => {
+                    for &v in &vertices {
+                        let motion = pin_motion(motion, self.position(v));
+                        self.change(|m| m.with_moving_pin(v, motion), at(&key))?;
+                    }
+                }
+                Hold::Curve { shape, motion } => {
+                    for &v in &vertices {
+                        let constraint = shape.constrain(v).map_err(at(&key))?;
+                        self.constrain(constraint, motion, k)?;
+                    }
+                }
+                Hold::Surface {
+                    shape,
+                    side,
+                    motion,
+                } => {
+                    for &v in &vertices {
+                        let constraint = shape.constrain(v, side.as_engine());
+                        let constraint = constraint.map_err(at(&key))?;
+                        self.constrain(constraint, motion, k)?;
+                    }
+                }
+            }
+            if matches!(support.hold, Hold::Pin | Hold::MovingPin(_)) {
+                self.origins.pins.extend(vertices.iter().map(|&v| (v, k)));
+            }
+        }
+        self.count(self.scene.support.len(), "support");
+        Ok(())
+    }
+
+    /// A vertex may be pinned twice at rest; with anything else a pin would decide silently.
+    fn check_free(&self, v: VertexId, number: usize, key: &Key) -> Result<(), Problem> {
+        let supports = &self.scene.support;
+        let constrained = self
+            .model()
+            .constraints()
+            .iter()
+            .position(|c| c.vertex() == v);
+        let constrained = constrained.map(|c| self.origins.constraints[c]);
+        let pins = matches!(supports[number].hold, Hold::Pin | Hold::MovingPin(_));
+        let other = match self.origins.pins.get(&v) {
+            Some(&k) if supports[k].hold != Hold::Pin || supports[number].hold != Hold::Pin => {
+                Some(k)
+            }
+            _ => constrained.filter(|_| pins),
+        };
+        match other {
+            None => Ok(()),
+            Some(k) => Err(Problem::new(
+                key.name("at"),
+                format!("vertex {} is held by `support[{k}]` already", v.index()),
+                "let the selections of the two supports have no vertex in common",
+            )),
+        }
+    }
+
+    fn position(&self, v: VertexId) -> [f64; 3] {
+        self.x.as_chunks::<3>().0[v.index()]
+    }
+
+    fn constrain(
+        &mut self,
+        constraint: VertexConstraint,
+        motion: &Motion,
+        number: usize,
+    ) -> Result<(), SceneError> {
+        let key = Key::root().name("support").entry(number).name("hold");
+        let constraint = match frame_motion(motion) {
+            None => constraint,
+            Some(motion) => constraint.moving(motion),
+        };
+        self.change(|m| m.with_constraint(constraint), at(&key))?;
+        self.origins.constraints.push(number);
+        Ok(())
+    }
+
+    fn add_bending(&mut self) -> Result<(), SceneError> {
+        let key = Key::root().name("sheet.bending");
+        match self.scene.sheet.bending {
+            Bending::None => Ok(()),
+            Bending::Plate { rigidity } => {
+                let clamped = self.model().pins();
+                let plate = PlateBending::clamped(&self.rest.sheet, rigidity, &clamped);
+                let plate = plate.map_err(at(&key))?;
+                self.modelled.push("bending stiffness of a plate".into());
+                self.change(|m| Ok(m.with_potential(plate)), at::<SimulationError>(&key))
+            }
+            Bending::Hinges { rigidity } => {
+                let springs = CreaseSprings::bending(&self.rest.sheet, rigidity);
+                let springs = springs.map_err(at(&key))?;
+                self.modelled.push("bending stiffness at edges".into());
+                self.change(
+                    |m| Ok(m.with_potential(springs)),
+                    at::<SimulationError>(&key),
+                )
+            }
+        }
+    }
+
+    fn add_creases(&mut self) -> Result<(), SceneError> {
+        for (k, crease) in self.scene.crease.iter().enumerate() {
+            let key = Key::root().name("crease").entry(k);
+            let assignments = self.rest.assignments.as_deref();
+            let springs = crease.springs(&key, &self.unplaced, assignments)?;
+            let springs = CreaseSprings::new(self.rest.sheet.topology(), springs);
+            let springs = springs.map_err(at(&key))?;
+            self.change(
+                |m| Ok(m.with_potential(springs)),
+                at::<SimulationError>(&key),
+            )?;
+        }
+        self.count(self.scene.crease.len(), "crease");
+        Ok(())
+    }
+
+    fn add_isometry(&mut self) -> Result<(), SceneError> {
+        let key = Key::root().name("sheet.isometry");
+        let sheet = &self.rest.sheet;
+        match self.scene.sheet.isometry {
+            Isometry::Rods => self.modelled.push("rigid rods".into()),
+            Isometry::Membrane { stiffness, poisson } => {
+                let membrane = Membrane::new(sheet, stiffness, poisson).map_err(at(&key))?;
+                self.modelled.push("elastic membrane".into());
+                self.change(
+                    |m| Ok(m.with_membrane(membrane)),
+                    at::<SimulationError>(&key),
+                )?;
+            }
+            Isometry::Weak { stiffness } => {
+                let weak = match stiffness {
+                    Some(stiffness) => WeakIsometry::new(sheet, stiffness),
+                    None => WeakIsometry::of_plate(sheet, self.scene.sheet.bending.rigidity()),
+                };
+                let weak = weak.map_err(at(&key))?;
+                self.modelled.push("isometry in weak form".into());
+                self.change(|m| m.with_weak_isometry(weak), at(&key))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn perturb(&mut self) -> Result<(), SceneError> {
+        let start = &self.scene.sheet.start;
+        if start.perturbation > 0.0 {
+            let (size, seed) = (start.perturbation, start.seed);
+            let mut x = std::mem::take(&mut self.x);
+            leave_flat(self.model(), &mut x, size, seed)
+                .map_err(|e| SceneError::from(self.origins.of_start(&e)))?;
+            self.x = x;
+            self.modelled
+                .push("random displacement at the start".into());
+        }
+        Ok(())
+    }
+
+    fn finish(mut self, contacts: Option<Contacts>, obstacles: Vec<Obstacle>) -> Setup {
+        let model = self.model.take();
+        Setup {
+            start: State::at_rest(self.x),
+            sheet: self.rest.sheet,
+            model: model.expect("a change that fails ends the building"),
+            contacts,
+            obstacles,
+            method: self.scene.method.build(),
+            control: self.scene.method.control(),
+            modelled: self.modelled,
+            origins: self.origins,
+            text: None,
+        }
+    }
+
+    fn contacts(&mut self, folder: &Path) -> Result<(Option<Contacts>, Vec<Obstacle>), SceneError> {
+        let (scene, key) = (self.scene, Key::root());
+        if !scene.has_contact() {
+            return Ok((None, Vec::new()));
+        }
+        let options = scene.contact.options(self.model(), scene.sheet.thickness);
+        let mut contacts =
+            Contacts::new(self.model(), options).map_err(at(&key.name("contact")))?;
+        let mut obstacles = Vec::new();
+        for (k, obstacle) in scene.obstacle.iter().enumerate() {
+            let key = key.name("obstacle").entry(k);
+            let body = obstacle.build(&key, folder)?;
+            obstacles.push(body.clone());
+            let coefficients = Coefficients::equal(obstacle.friction);
+            contacts = contacts.with_body(body, coefficients).map_err(at(&key))?;
+        }
+        self.count(obstacles.len(), "obstacle");
+        if scene.contact.self_contact {
+            let coefficients = Coefficients::equal(scene.contact.friction);
+            contacts = contacts
+                .with_self_contact(coefficients)
+                .map_err(|e| SceneError::from(self_contact_problem(&e)))?;
+            self.modelled.push("self-contact".into());
+        }
+        Ok((Some(contacts), obstacles))
+    }
+}
+
+fn self_contact_problem(error: &ContactsError) -> Problem {
+    let key = Key::root().name("contact.self_contact");
+    let remedy = "choose a smaller `sheet.thickness` or `contact.activation`, or a mesh without narrow faces";
+    Problem::new(key, error.to_string(), remedy)
+}
+
+/// A point of the mesh in space.
+fn place(pose: &Pose, p: [f64; 3]) -> [f64; 3] {
+    if *pose == Pose::default() {
+        return p;
+    }
+    (pose.isometry() * Point3::from(p)).coords.into()
+}
+
+/// The motion of a pinned vertex that starts at `p`.
+fn pin_motion(motion: &Motion, p: [f64; 3]) -> PointMotion {
+    if motion.rotation.is_none() {
+        return PointMotion::from(PointProfile {
+            offset: p,
+            x: motion.x.as_given(),
+            y: motion.y.as_given(),
+            z: motion.z.as_given(),
+        });
+    }
+    let rigid = RigidProfile::from(motion.of_body(Isometry3::identity()));
+    PointMotion::from(move |t: f64| -> [f64; 3] {
+        (rigid.kinematics(t).pose * Point3::from(p)).coords.into()
+    })
+}

@@ -1,0 +1,54 @@
+//! Contact of the sheet with itself and with obstacles.
+
+use super::problem::{Checks, Key};
+use isosheet_collide::{ContactOptions, Stiffness};
+use isosheet_dynamics::SheetModel;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Contact. Without obstacles and without self-contact nothing of it is modelled.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Contact {
+    /// Whether the sheet meets itself.
+    pub self_contact: bool,
+    /// Coefficient of friction of the sheet with itself. (That of an obstacle is given with the obstacle.)
+    pub friction: f64,
+    /// Gap below which contact acts, metres; if left out, 1 % of the mean edge length and at most half the
+    /// smallest height of a face.
+    pub activation: Option<f64>,
+    /// Stiffness of the contact potential, joules; if left out, it follows from masses and forces.
+    pub stiffness: Option<f64>,
+    /// Speed below which sliding counts as rest, m/s; if left out, 1 % of the mean edge length per second.
+    pub rest_speed: Option<f64>,
+}
+
+impl Contact {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.not_negative(key.name("friction"), self.friction, "");
+        let lengths = [
+            ("activation", self.activation, "m"),
+            ("stiffness", self.stiffness, "J"),
+            ("rest_speed", self.rest_speed, "m/s"),
+        ];
+        for (name, value, unit) in lengths {
+            if let Some(value) = value {
+                checks.positive(key.name(name), value, unit);
+            }
+        }
+    }
+
+    /// The options of the engine for a sheet of some thickness (metres).
+    pub(crate) fn options(&self, model: &SheetModel, thickness: f64) -> ContactOptions {
+        let automatic = ContactOptions::for_sheet(model);
+        ContactOptions {
+            activation: self.activation.unwrap_or(automatic.activation),
+            thickness,
+            stiffness: self
+                .stiffness
+                .map_or(automatic.stiffness, Stiffness::Joules),
+            rest_speed: self.rest_speed.unwrap_or(automatic.rest_speed),
+            ..automatic
+        }
+    }
+}

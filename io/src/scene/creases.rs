@@ -1,0 +1,171 @@
+//! Creases with rest angles.
+
+use super::problem::{Checks, Key, Problem};
+use super::profile::Profile;
+use super::selection::size;
+use isosheet_dynamics::CreaseSpring;
+use isosheet_mesh::generate::FoldAssignment;
+use isosheet_mesh::{EdgeId, Sheet, VertexId};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Torsion springs along some edges, with the same rest angle, which may be driven.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Crease {
+    /// Which edges.
+    pub at: CreaseEdges,
+    /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre).
+    pub stiffness: f64,
+    /// Fold angle at rest, degrees: 0 for flat, positive for a valley as seen from the side from which faces
+    /// are counter-clockwise, negative for a mountain.
+    #[serde(default)]
+    pub angle: Profile,
+}
+
+/// Which edges a crease consists of. Points are those of the rest shape before it is placed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum CreaseEdges {
+    /// Edges by the numbers of their two vertices.
+    Ends(Vec<[usize; 2]>),
+    /// The interior edges on a straight line.
+    Line {
+        /// Where the line begins, metres.
+        from: [f64; 3],
+        /// Where the line ends, metres.
+        to: [f64; 3],
+    },
+    /// Edges of a crease pattern by what they are meant to do.
+    Pattern(PatternEdges),
+}
+
+/// Edges of a crease pattern.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PatternEdges {
+    /// All mountains and valleys; a positive angle folds each to its side.
+    Assigned,
+    /// The mountains. Their angles are negative.
+    Mountains,
+    /// The valleys.
+    Valleys,
+    /// The edges inside panels, which are meant to stay flat.
+    Flat,
+}
+
+/// Largest distance of the ends of an edge from a line, as a part of the size of the sheet: above the
+/// round-off of coordinates that went through a text file with seven digits, below any mesh.
+const ON_LINE: f64 = 1e-6;
+
+impl Crease {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.not_negative(key.name("stiffness"), self.stiffness, "N");
+        self.angle.check(key.name("angle"), checks);
+        if let Profile::Constant(angle) = self.angle
+            && angle.is_finite()
+        {
+            checks.within(key.name("angle"), angle, [-180.0, 180.0]);
+        }
+        if let CreaseEdges::Line { from, to } = &self.at {
+            checks.finite(key.name("at.line.from"), from);
+            checks.finite(key.name("at.line.to"), to);
+            if from == to {
+                let message = "the line begins where it ends";
+                checks.report(key.name("at.line.to"), message, "give two different points");
+            }
+        }
+    }
+
+    /// The springs of the crease on a rest shape.
+    pub(crate) fn springs(
+        &self,
+        key: &Key,
+        sheet: &Sheet,
+        assignments: Option<&[FoldAssignment]>,
+    ) -> Result<Vec<CreaseSpring>, Problem> {
+        let at = key.name("at");
+        let edges = match &self.at {
+            CreaseEdges::Ends(ends) => by_ends(ends, &at.name("ends"), sheet)?,
+            CreaseEdges::Line { from, to } => on_line(sheet, from, to),
+            CreaseEdges::Pattern(wanted) => {
+                let Some(assignments) = assignments else {
+                    return Err(Problem::new(
+                        at.name("pattern"),
+                        "the mesh of the sheet is not a crease pattern",
+                        "use `sheet.mesh.miura`, or name the edges by `ends` or `line`",
+                    ));
+                };
+                of_pattern(*wanted, assignments)
+            }
+        };
+        if edges.is_empty() {
+            return Err(Problem::new(
+                at,
+                "no interior edge of the mesh is selected here",
+                "a crease follows edges of the mesh: compare the line with the mesh before it is placed",
+            ));
+        }
+        let spring = |(edge, sign): (EdgeId, f64)| CreaseSpring {
+            edge,
+            stiffness: self.stiffness * sheet.lengths()[edge.index()],
+            rest: self.angle.scaled(sign * 1.0_f64.to_radians()).into(),
+        };
+        Ok(edges.into_iter().map(spring).collect())
+    }
+}
+
+fn by_ends(ends: &[[usize; 2]], key: &Key, sheet: &Sheet) -> Result<Vec<(EdgeId, f64)>, Problem> {
+    let t = sheet.topology();
+    let edge = |(k, &[a, b]): (usize, &[usize; 2])| {
+        let count = t.vertex_count();
+        let found = (a < count && b < count && a != b)
+            .then(|| t.find_edge(VertexId::from_index(a), VertexId::from_index(b)))
+            .flatten()
+            .filter(|&e| !t.is_boundary_edge(e));
+        found.map(|e| (e, 1.0)).ok_or_else(|| {
+            Problem::new(
+                key.entry(k),
+                format!("the mesh has no interior edge between the vertices {a} and {b}"),
+                format!(
+                    "name two neighbours; the vertices have the numbers 0 to {}",
+                    count - 1
+                ),
+            )
+        })
+    };
+    ends.iter().enumerate().map(edge).collect()
+}
+
+fn on_line(sheet: &Sheet, from: &[f64; 3], to: &[f64; 3]) -> Vec<(EdgeId, f64)> {
+    let t = sheet.topology();
+    let tolerance = ON_LINE * size(sheet.positions().as_chunks::<3>().0);
+    let along: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
+    let length2: f64 = along.iter().map(|c| c * c).sum();
+    let near = |v: VertexId| {
+        let p = sheet.position(v);
+        let part: f64 = (0..3).map(|k| along[k] * (p[k] - from[k])).sum::<f64>() / length2;
+        let part = part.clamp(0.0, 1.0);
+        let distance2: f64 = (0..3)
+            .map(|k| (from[k] + part * along[k] - p[k]).powi(2))
+            .sum();
+        distance2 <= tolerance * tolerance
+    };
+    let edges = t.edge_ids().filter(|&e| !t.is_boundary_edge(e));
+    let edges = edges.filter(|e| t.edges()[e.index()].iter().all(|&v| near(v)));
+    edges.map(|e| (e, 1.0)).collect()
+}
+
+fn of_pattern(wanted: PatternEdges, assignments: &[FoldAssignment]) -> Vec<(EdgeId, f64)> {
+    let sign = |a: FoldAssignment| match (wanted, a) {
+        (PatternEdges::Assigned, FoldAssignment::Mountain) => Some(-1.0),
+        (PatternEdges::Assigned | PatternEdges::Valleys, FoldAssignment::Valley)
+        | (PatternEdges::Mountains, FoldAssignment::Mountain)
+        | (PatternEdges::Flat, FoldAssignment::Flat) => Some(1.0),
+        _ => None,
+    };
+    let edges = assignments.iter().enumerate();
+    edges
+        .filter_map(|(e, &a)| sign(a).map(|s| (EdgeId::from_index(e), s)))
+        .collect()
+}

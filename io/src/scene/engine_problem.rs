@@ -1,0 +1,139 @@
+//! Errors of the engine as problems of the scene.
+
+use super::problem::{Key, Problem};
+use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
+use isosheet_dynamics::{Excess, SimulationError, StepError, Support};
+use isosheet_mesh::VertexId;
+use std::collections::HashMap;
+
+/// Which entry of the scene made what in the engine.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Origins {
+    /// The support that pins a vertex.
+    pub(crate) pins: HashMap<VertexId, usize>,
+    /// The support of each vertex constraint.
+    pub(crate) constraints: Vec<usize>,
+}
+
+impl Origins {
+    /// The number of the support in the scene, if the scene named it. (Vertices that the engine pins by
+    /// itself, because rods hold them in place, belong to none.)
+    pub fn support(&self, support: Support) -> Option<usize> {
+        match support {
+            Support::Pin(vertex) => self.pins.get(&vertex).copied(),
+            Support::Constraint { index, .. } => self.constraints.get(index).copied(),
+        }
+    }
+
+    fn support_key(&self, support: Support) -> Key {
+        let number = self.support(support);
+        let list = Key::root().name("support");
+        number.map_or(list.clone(), |k| list.entry(k))
+    }
+
+    /// A step that failed, at the place of the scene that is to blame as far as that is known.
+    pub fn of_step(&self, error: &StepError) -> Problem {
+        let root = Key::root();
+        let (key, remedy) = match error {
+            StepError::StepTooSmall { cause, .. } => {
+                let inner = self.of_step(cause);
+                let remedy =
+                    "take a smaller `method.step`, more damping, or another `sheet.isometry`";
+                return Problem::new(inner.key, error.to_string(), remedy);
+            }
+            StepError::OffSupport { support, .. } => (
+                self.support_key(*support).name("hold"),
+                "a motion has to be zero at the start, and a curve or surface has to go through the vertex",
+            ),
+            StepError::NonFiniteMotion { support, .. } => (
+                self.support_key(*support).name("hold"),
+                "check the profiles of the motion",
+            ),
+            StepError::Unsatisfiable {
+                excess: Excess { support, .. },
+                ..
+            } => (
+                self.support_key(*support).name("hold"),
+                "shorten the motion, or end there with `method.taut = \"stop\"`",
+            ),
+            StepError::Body(error) => return of_body_motion(error),
+            StepError::OffConstraints { .. } | StepError::OffWeakIsometry { .. } => (
+                root.name("sheet.start"),
+                "the positions at the start need the rest lengths of `sheet.mesh`",
+            ),
+            StepError::RankDeficient { .. } => (
+                root.name("method.integrator"),
+                "use `bdf2`, set `sheet.start.perturbation`, or `method.fallback = \"implicit_euler\"`",
+            ),
+            StepError::Projection { .. } => (
+                root.name("sheet.start.perturbation"),
+                "choose a smaller perturbation",
+            ),
+            StepError::NonFiniteForce { .. } | StepError::NonFiniteEnergy { .. } => (
+                root.name("forces"),
+                "check the sizes of forces and stiffnesses",
+            ),
+            _ => (
+                root.name("method"),
+                "take a smaller `method.step` or more damping",
+            ),
+        };
+        Problem::new(key, error.to_string(), remedy)
+    }
+
+    /// A simulation that cannot start, at the place of the scene that is to blame as far as that is known.
+    pub fn of_start(&self, error: &SimulationError) -> Problem {
+        let root = Key::root();
+        match error {
+            SimulationError::Start(error) => self.of_step(error),
+            SimulationError::Contact(error) => of_contact(error),
+            SimulationError::OneSided { index } => {
+                let number = self.constraints.get(*index).copied().unwrap_or(0);
+                let key = root.name("support").entry(number).name("hold.surface.side");
+                Problem::from_error(key, error)
+            }
+            SimulationError::Elastic => Problem::from_error(root.name("sheet.isometry"), error),
+            SimulationError::Options(_) => Problem::from_error(root.name("method"), error),
+            _ => Problem::from_error(root, error),
+        }
+    }
+}
+
+fn of_body_motion(error: &BodyMotionError) -> Problem {
+    let key = Key::root().name("obstacle").entry(error.body);
+    Problem::from_error(key.name("motion"), error)
+}
+
+fn of_contact(error: &ContactError) -> Problem {
+    let root = Key::root();
+    match error {
+        ContactError::Motion(error) => of_body_motion(error),
+        ContactError::Touching {
+            pair: ContactPair::Body { vertex, body },
+            gap,
+            ..
+        } => Problem::new(
+            root.name("obstacle").entry(*body),
+            format!(
+                "the obstacle touches the sheet at vertex {vertex} at the start (gap {gap} m, thickness of the \
+                 sheet taken off)"
+            ),
+            "move the obstacle or the sheet (`sheet.placement`): contact keeps a gap, it does not make one",
+        ),
+        ContactError::Touching {
+            pair: ContactPair::Sheet { first, second },
+            gap,
+            ..
+        } => Problem::new(
+            root.name("contact.self_contact"),
+            format!(
+                "the sheet touches itself at the vertices {first} and {second} at the start (gap {gap} m, \
+                 thickness taken off)"
+            ),
+            "open the sheet there, give it less `sheet.thickness`, or leave out self-contact",
+        ),
+        ContactError::Barrier(_) => Problem::from_error(root.name("contact"), error),
+        ContactError::Method => Problem::from_error(root.name("method.integrator"), error),
+        ContactError::Sheet { .. } => Problem::from_error(root.name("contact"), error),
+    }
+}

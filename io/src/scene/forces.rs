@@ -1,0 +1,60 @@
+//! Forces on the sheet.
+
+use super::problem::{Checks, Key};
+use super::profile::Profile;
+use super::selection::Selection;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Forces on the sheet besides those of supports and contact.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Forces {
+    /// Acceleration of gravity, m/s2: `[0, 0, -9.81]` on earth. Without it there is no gravity.
+    pub gravity: Option<[f64; 3]>,
+    /// Loads on vertices.
+    pub load: Vec<Load>,
+    /// Uniform accelerations that change with time, such as those of a frame that is shaken.
+    pub acceleration: Vec<Acceleration>,
+}
+
+/// A load that some vertices share equally.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    /// Which vertices.
+    pub at: Selection,
+    /// Direction in space, of any length.
+    pub direction: [f64; 3],
+    /// Size of the whole load, newtons.
+    pub size: Profile,
+}
+
+/// A uniform acceleration of the whole sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Acceleration {
+    /// Direction in space, of any length.
+    pub direction: [f64; 3],
+    /// Size, m/s2.
+    pub size: Profile,
+}
+
+impl Forces {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        if let Some(gravity) = &self.gravity {
+            checks.finite(key.name("gravity"), gravity);
+        }
+        for (k, load) in self.load.iter().enumerate() {
+            let key = key.name("load").entry(k);
+            load.at.check(&key.name("at"), checks);
+            checks.direction(key.name("direction"), &load.direction);
+            load.size.check(key.name("size"), checks);
+        }
+        for (k, field) in self.acceleration.iter().enumerate() {
+            let key = key.name("acceleration").entry(k);
+            checks.direction(key.name("direction"), &field.direction);
+            field.size.check(key.name("size"), checks);
+        }
+    }
+}

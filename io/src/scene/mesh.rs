@@ -1,0 +1,344 @@
+//! Where the mesh of a sheet comes from.
+
+use super::problem::{Checks, Key, Problem};
+use crate::format::{ObjOptions, Polygons, read_obj};
+use isosheet_mesh::Sheet;
+use isosheet_mesh::generate::{self, FoldAssignment, GenerateError};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Where a mesh comes from. Generated ones are flat in the plane z = 0.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Mesh {
+    /// The square `[0, side] x [0, side]` in the union-jack pattern, 2^(level + 1) cells each way.
+    Square {
+        /// Side, metres.
+        side: f64,
+        /// Level of refinement: 0 to 4 have 9, 25, 81, 289 and 1089 vertices.
+        level: u32,
+    },
+    /// The rectangle `[0, width] x [0, height]` in cells of two triangles. Vertex (i, j) has the number
+    /// i + j (columns + 1).
+    Rectangle {
+        /// Extent along x, metres.
+        width: f64,
+        /// Extent along y, metres.
+        height: f64,
+        /// Number of cells along x.
+        columns: usize,
+        /// Number of cells along y.
+        rows: usize,
+        /// How the cells are cut.
+        #[serde(default)]
+        diagonals: Diagonals,
+    },
+    /// A disk about the origin in concentric rings of triangles.
+    Disk {
+        /// Radius, metres.
+        radius: f64,
+        /// Number of rings.
+        rings: usize,
+    },
+    /// A ring about the origin.
+    Annulus {
+        /// Inner radius, metres.
+        inner: f64,
+        /// Outer radius, metres.
+        outer: f64,
+        /// Number of vertices of each circle.
+        segments: usize,
+        /// Number of rings of triangles.
+        rings: usize,
+    },
+    /// An irregular triangulation of a polygon.
+    Polygon {
+        /// The corners in order, x and y in metres.
+        outline: Vec<[f64; 2]>,
+        /// Length of the edges, about, metres.
+        spacing: f64,
+        /// Another number gives another triangulation.
+        #[serde(default)]
+        seed: u64,
+    },
+    /// Miura's crease pattern, with mountains and valleys.
+    Miura {
+        /// Number of panels along x.
+        columns: usize,
+        /// Number of panels along y.
+        rows: usize,
+        /// Length of the straight creases, metres.
+        straight: f64,
+        /// Length of each part of the zigzag creases, metres.
+        zigzag: f64,
+        /// Acute angle of the panels, degrees.
+        angle: f64,
+    },
+    /// A Wavefront OBJ file.
+    File(MeshFile),
+}
+
+/// A mesh in a file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshFile {
+    /// Path of the Wavefront OBJ file, relative to the scene file.
+    pub path: PathBuf,
+    /// Length of one unit of the file, metres: 0.001 for a file in millimetres.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// The axis of the file that points upwards; it becomes z.
+    #[serde(default)]
+    pub up: UpAxis,
+    /// What to do with faces of more than three corners.
+    #[serde(default)]
+    pub polygons: PolygonFaces,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// How the cells of a rectangle are cut into triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Diagonals {
+    /// In alternating directions.
+    #[default]
+    UnionJack,
+    /// All from lower right to upper left.
+    Falling,
+    /// All from lower left to upper right.
+    Rising,
+}
+
+/// The axis of a file that points upwards.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum UpAxis {
+    /// z: coordinates are used as they are.
+    #[default]
+    Z,
+    /// y: (x, y, z) becomes (x, -z, y).
+    Y,
+}
+
+/// What to do with faces of more than three corners.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PolygonFaces {
+    /// Refuse the file: new diagonals are new lines along which the sheet can fold.
+    #[default]
+    Refuse,
+    /// Cut them into triangles.
+    Triangulate,
+}
+
+/// Vertices and faces of a file in metres, z upwards.
+pub(crate) struct Triangles {
+    pub(crate) positions: Vec<f64>,
+    pub(crate) faces: Vec<[u32; 3]>,
+}
+
+impl MeshFile {
+    /// A file in metres with z upwards.
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        Self {
+            path: path.into(),
+            scale: 1.0,
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.positive(key.name("scale"), self.scale, "m");
+        if self.path.as_os_str().is_empty() {
+            checks.report(key.name("path"), "the path is empty", "name an OBJ file");
+        }
+    }
+
+    /// Reads the file; relative paths are relative to `folder`.
+    pub(crate) fn read(&self, key: &Key, folder: &Path) -> Result<Triangles, Problem> {
+        let options = ObjOptions {
+            polygons: match self.polygons {
+                PolygonFaces::Refuse => Polygons::Refuse,
+                PolygonFaces::Triangulate => Polygons::Triangulate,
+            },
+        };
+        let path = folder.join(&self.path);
+        let mut mesh = read_obj(&path, &options).map_err(|error| {
+            let remedy = "`isosheet check` says what is wrong with a mesh file; paths are relative to the scene";
+            Problem::new(key.name("path"), error.to_string(), remedy)
+        })?;
+        for p in mesh.positions.as_chunks_mut::<3>().0 {
+            let [x, y, z] = p.map(|c| self.scale * c);
+            *p = match self.up {
+                UpAxis::Z => [x, y, z],
+                UpAxis::Y => [x, -z, y],
+            };
+        }
+        Ok(Triangles {
+            positions: mesh.positions,
+            faces: mesh.faces,
+        })
+    }
+}
+
+/// A mesh, and what its edges are meant to do if it is a crease pattern.
+pub(crate) struct RestMesh {
+    pub(crate) sheet: Sheet,
+    pub(crate) assignments: Option<Vec<FoldAssignment>>,
+}
+
+impl Mesh {
+    /// The name of the key.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Square { .. } => "square",
+            Self::Rectangle { .. } => "rectangle",
+            Self::Disk { .. } => "disk",
+            Self::Annulus { .. } => "annulus",
+            Self::Polygon { .. } => "polygon",
+            Self::Miura { .. } => "miura",
+            Self::File(_) => "file",
+        }
+    }
+
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        let key = key.name(self.name());
+        let mut length = |name: &str, value: f64| checks.positive(key.name(name), value, "m");
+        match self {
+            Self::Square { side, .. } => length("side", *side),
+            Self::Rectangle {
+                width,
+                height,
+                columns,
+                rows,
+                ..
+            } => {
+                length("width", *width);
+                length("height", *height);
+                checks.count(key.name("columns"), *columns, 1);
+                checks.count(key.name("rows"), *rows, 1);
+            }
+            Self::Disk { radius, rings } => {
+                length("radius", *radius);
+                checks.count(key.name("rings"), *rings, 1);
+            }
+            Self::Annulus {
+                inner,
+                outer,
+                segments,
+                rings,
+            } => {
+                length("inner", *inner);
+                length("outer", *outer);
+                checks.count(key.name("segments"), *segments, 3);
+                checks.count(key.name("rings"), *rings, 1);
+            }
+            Self::Polygon { spacing, .. } => length("spacing", *spacing),
+            Self::Miura {
+                columns,
+                rows,
+                straight,
+                zigzag,
+                angle,
+            } => {
+                length("straight", *straight);
+                length("zigzag", *zigzag);
+                checks.count(key.name("columns"), *columns, 1);
+                checks.count(key.name("rows"), *rows, 1);
+                if !(*angle > 0.0 && *angle < 90.0) {
+                    let message = format!("the panels have an angle of {angle} degrees");
+                    checks.report(
+                        key.name("angle"),
+                        message,
+                        "give more than 0 and less than 90",
+                    );
+                }
+            }
+            Self::File(file) => file.check(&key, checks),
+        }
+    }
+
+    /// Makes the mesh; files are relative to `folder`.
+    pub(crate) fn build(&self, key: &Key, folder: &Path) -> Result<RestMesh, Problem> {
+        let key = key.name(self.name());
+        let made = match self {
+            Self::Square { side, level } => generate::isotropic_square(*level, *side),
+            Self::Rectangle {
+                width,
+                height,
+                columns,
+                rows,
+                diagonals,
+            } => {
+                let diagonals = match diagonals {
+                    Diagonals::UnionJack => generate::Diagonals::UnionJack,
+                    Diagonals::Falling => generate::Diagonals::Falling,
+                    Diagonals::Rising => generate::Diagonals::Rising,
+                };
+                generate::grid(*columns, *rows, *width, *height, diagonals)
+            }
+            Self::Disk { radius, rings } => generate::disk(*rings, *radius),
+            Self::Annulus {
+                inner,
+                outer,
+                segments,
+                rings,
+            } => generate::annulus(*segments, *rings, *inner, *outer),
+            Self::Polygon {
+                outline,
+                spacing,
+                seed,
+            } => generate::delaunay(outline, *spacing, *seed),
+            Self::Miura {
+                columns,
+                rows,
+                straight,
+                zigzag,
+                angle,
+            } => {
+                let angle = angle.to_radians();
+                let pattern = generate::miura(*columns, *rows, *straight, *zigzag, angle)
+                    .map_err(|e| generator_problem(&key, &e))?;
+                return Ok(RestMesh {
+                    sheet: pattern.sheet,
+                    assignments: Some(pattern.assignments),
+                });
+            }
+            Self::File(file) => return read_sheet(file, &key, folder),
+        };
+        Ok(RestMesh {
+            sheet: made.map_err(|e| generator_problem(&key, &e))?,
+            assignments: None,
+        })
+    }
+}
+
+fn read_sheet(file: &MeshFile, key: &Key, folder: &Path) -> Result<RestMesh, Problem> {
+    let Triangles { positions, faces } = file.read(key, folder)?;
+    let sheet = Sheet::new(positions, &faces).map_err(|error| {
+        let path = file.path.display();
+        let remedy = format!("`isosheet check {path} --fix FILE` repairs what can be repaired");
+        Problem::new(key.name("path"), format!("{path}: {error}"), remedy)
+    })?;
+    Ok(RestMesh {
+        sheet,
+        assignments: None,
+    })
+}
+
+/// The problem at the argument that a generator names.
+fn generator_problem(key: &Key, error: &GenerateError) -> Problem {
+    let key = match error {
+        GenerateError::Count { name, .. }
+        | GenerateError::Size { name, .. }
+        | GenerateError::Angle { name, .. } => key.name(name),
+        GenerateError::Order { small, .. } => key.name(small),
+        GenerateError::Outline { .. } => key.name("outline"),
+        _ => key.clone(),
+    };
+    Problem::from_error(key, error)
+}

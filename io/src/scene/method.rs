@@ -1,0 +1,184 @@
+//! How the motion is computed.
+
+use super::problem::{Checks, Key};
+use isosheet_dynamics as engine;
+use isosheet_dynamics::{
+    EnergyMomentumOptions, ImplicitOptions, ProjectionStepOptions, RattleOptions,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Integrator, step and tolerances.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Method {
+    /// The integrator.
+    pub integrator: Integrator,
+    /// Length of a step, seconds.
+    pub step: f64,
+    /// Largest relative length error of an accepted step, from 1e-15 to 0.01; if left out, that of the
+    /// integrator (1e-12, or 2e-13 for conservative ones).
+    pub strain_tolerance: Option<f64>,
+    /// Most iterations of a step; if left out, those of the integrator.
+    pub max_iterations: Option<usize>,
+    /// Stiffness of the rods against inertia on the way to a step, for `bdf2` and `implicit_euler`, from 1 to
+    /// 1e8; if left out, 1e4. Sheets that are stiff in bending need more.
+    pub rod_stiffness: Option<f64>,
+    /// Smallest part of a step that is tried where whole steps are rejected, from 1e-12 to 1.
+    pub min_fraction: f64,
+    /// What to do when even that is rejected.
+    pub fallback: Fallback,
+    /// What to do when moving supports ask for more than the lengths allow.
+    pub taut: Taut,
+}
+
+/// The integrator.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Integrator {
+    /// The second-order backward differentiation formula: lightly damped, takes any state, contact and
+    /// isometry.
+    #[default]
+    Bdf2,
+    /// First order, strongly damped, takes any state, contact and isometry.
+    ImplicitEuler,
+    /// First order, strongly damped, takes any state; rods without contact.
+    Projection,
+    /// Second order, conserves energy and momenta; rods without contact.
+    EnergyMomentum,
+    /// Second order, symplectic; rods without contact.
+    Rattle,
+    /// Fourth order, symplectic; rods without contact.
+    RattleComposition,
+}
+
+/// What to do when even the smallest part of a step is rejected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Fallback {
+    /// End the run with an error.
+    #[default]
+    Refuse,
+    /// Take the step with implicit Euler, and carry on.
+    ImplicitEuler,
+}
+
+/// What to do when moving supports ask for more than the lengths allow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Taut {
+    /// End the run with an error.
+    #[default]
+    Refuse,
+    /// End the run at the taut state, complete.
+    Stop,
+}
+
+/// Step of the default, seconds: that of common displays.
+const STEP: f64 = 1.0 / 60.0;
+
+impl Default for Method {
+    fn default() -> Self {
+        Self {
+            integrator: Integrator::default(),
+            step: STEP,
+            strain_tolerance: None,
+            max_iterations: None,
+            rod_stiffness: None,
+            min_fraction: engine::StepControl::default().min_fraction,
+            fallback: Fallback::default(),
+            taut: Taut::default(),
+        }
+    }
+}
+
+impl Integrator {
+    /// Whether steps are minima of an incremental potential: then contact, membranes and weak isometry have a
+    /// place.
+    pub(crate) fn is_minimising(self) -> bool {
+        matches!(self, Self::Bdf2 | Self::ImplicitEuler)
+    }
+}
+
+impl Method {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.positive(key.name("step"), self.step, "s");
+        checks.within(key.name("min_fraction"), self.min_fraction, [1e-12, 1.0]);
+        if let Some(tolerance) = self.strain_tolerance {
+            checks.within(key.name("strain_tolerance"), tolerance, [1e-15, 1e-2]);
+        }
+        if let Some(iterations) = self.max_iterations {
+            checks.count(key.name("max_iterations"), iterations, 1);
+        }
+        if let Some(stiffness) = self.rod_stiffness {
+            checks.within(key.name("rod_stiffness"), stiffness, [1.0, 1e8]);
+            if !self.integrator.is_minimising() {
+                checks.report(
+                    key.name("rod_stiffness"),
+                    "this integrator has no stiffness of rods",
+                    "leave the key out, or choose `bdf2` or `implicit_euler`",
+                );
+            }
+        }
+    }
+
+    fn implicit(&self) -> ImplicitOptions {
+        let usual = ImplicitOptions::default();
+        ImplicitOptions {
+            stiffness: self.rod_stiffness.unwrap_or(usual.stiffness),
+            strain_tolerance: self.strain_tolerance.unwrap_or(usual.strain_tolerance),
+            max_iterations: self.max_iterations.unwrap_or(usual.max_iterations),
+            ..usual
+        }
+    }
+
+    fn rattle(&self) -> RattleOptions {
+        let usual = RattleOptions::default();
+        RattleOptions {
+            strain_tolerance: self.strain_tolerance.unwrap_or(usual.strain_tolerance),
+            max_iterations: self.max_iterations.unwrap_or(usual.max_iterations),
+        }
+    }
+
+    /// The integrator with its options.
+    pub(crate) fn build(&self) -> engine::Method {
+        match self.integrator {
+            Integrator::Bdf2 => engine::Method::Bdf2(self.implicit()),
+            Integrator::ImplicitEuler => engine::Method::ImplicitEuler(self.implicit()),
+            Integrator::Projection => {
+                let usual = ProjectionStepOptions::default();
+                engine::Method::Projection(ProjectionStepOptions {
+                    strain_tolerance: self.strain_tolerance.unwrap_or(usual.strain_tolerance),
+                    max_projections: self.max_iterations.unwrap_or(usual.max_projections),
+                })
+            }
+            Integrator::EnergyMomentum => {
+                let usual = EnergyMomentumOptions::default();
+                engine::Method::EnergyMomentum(EnergyMomentumOptions {
+                    strain_tolerance: self.strain_tolerance.unwrap_or(usual.strain_tolerance),
+                    max_iterations: self.max_iterations.unwrap_or(usual.max_iterations),
+                    ..usual
+                })
+            }
+            Integrator::Rattle => engine::Method::Rattle(self.rattle()),
+            Integrator::RattleComposition => engine::Method::RattleComposition(self.rattle()),
+        }
+    }
+
+    /// What happens to rejected steps.
+    pub(crate) fn control(&self) -> engine::StepControl {
+        engine::StepControl {
+            min_fraction: self.min_fraction,
+            fallback: match self.fallback {
+                Fallback::Refuse => engine::Fallback::Refuse,
+                Fallback::ImplicitEuler => {
+                    engine::Fallback::ImplicitEuler(ImplicitOptions::default())
+                }
+            },
+            unsatisfiable: match self.taut {
+                Taut::Refuse => engine::Unsatisfiable::Refuse,
+                Taut::Stop => engine::Unsatisfiable::StopTaut,
+            },
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Where things are and how they move.
+
+use super::problem::{Checks, Key};
+use super::profile::Profile;
+use isosheet_dynamics::{AxisRotation, RigidDisplacement};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A rotation about an axis through the origin, by the right-hand rule.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Turn {
+    /// Direction of the axis, of any length.
+    pub axis: [f64; 3],
+    /// Angle, degrees.
+    pub angle: f64,
+}
+
+/// A pose: first the turn about the origin, then the translation.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Pose {
+    /// Where the origin comes to lie, metres.
+    pub position: [f64; 3],
+    /// The turn, if there is one.
+    pub turn: Option<Turn>,
+}
+
+impl Pose {
+    /// A translation (metres).
+    pub fn at(position: [f64; 3]) -> Self {
+        Self {
+            position,
+            turn: None,
+        }
+    }
+
+    pub(crate) fn isometry(&self) -> Isometry3<f64> {
+        let translation = Translation3::from(self.position);
+        let rotation = self.turn.as_ref().map(|turn| {
+            let axis = Vector3::from(turn.axis).normalize();
+            UnitQuaternion::from_scaled_axis(turn.angle.to_radians() * axis)
+        });
+        Isometry3::from_parts(translation, rotation.unwrap_or_default())
+    }
+
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.finite(key.name("position"), &self.position);
+        if let Some(turn) = &self.turn {
+            checks.direction(key.name("turn.axis"), &turn.axis);
+            checks.finite(key.name("turn.angle"), &[turn.angle]);
+        }
+    }
+}
+
+/// A prescribed rigid motion: a rotation, then a translation by three displacements.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Motion {
+    /// Displacement along x, metres.
+    pub x: Profile,
+    /// Displacement along y, metres.
+    pub y: Profile,
+    /// Displacement along z, metres.
+    pub z: Profile,
+    /// The rotation, if there is one.
+    pub rotation: Option<Rotation>,
+}
+
+/// A rotation about an axis of fixed direction. The axis moves with the translation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rotation {
+    /// A point of the axis at zero displacement, metres.
+    pub centre: [f64; 3],
+    /// Direction of the axis, of any length; positive angles turn counter-clockwise seen against it.
+    pub axis: [f64; 3],
+    /// Angle, degrees.
+    pub angle: Profile,
+}
+
+impl Motion {
+    /// The motion of a body that is in a pose while displacements and angle are zero.
+    pub(crate) fn of_body(&self, pose: Isometry3<f64>) -> RigidDisplacement {
+        RigidDisplacement {
+            pose,
+            x: self.x.as_given(),
+            y: self.y.as_given(),
+            z: self.z.as_given(),
+            rotation: self.rotation.as_ref().map(|r| AxisRotation {
+                centre: r.centre,
+                axis: r.axis,
+                angle: r.angle.as_angle(),
+            }),
+        }
+    }
+
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        self.x.check(key.name("x"), checks);
+        self.y.check(key.name("y"), checks);
+        self.z.check(key.name("z"), checks);
+        if let Some(rotation) = &self.rotation {
+            let key = key.name("rotation");
+            checks.finite(key.name("centre"), &rotation.centre);
+            checks.direction(key.name("axis"), &rotation.axis);
+            rotation.angle.check(key.name("angle"), checks);
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! Functions of time.
+
+use super::problem::{Checks, Key};
+use isosheet_dynamics as engine;
+use isosheet_dynamics::ProfileError;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
+use std::fmt;
+
+/// A function of time: a number, which stands for the same value at all times, or a [`Course`]. Its unit is
+/// that of what it drives: metres for a displacement, degrees for an angle, newtons for a load.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Profile {
+    /// The same value at all times.
+    Constant(f64),
+    /// A value that changes.
+    Course(Course),
+}
+
+/// A value that changes with time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Course {
+    /// A linear change.
+    Ramp(Change),
+    /// A change that begins and ends smoothly: `10 s^3 - 15 s^4 + 6 s^5` of the time that has passed.
+    SmoothStep(Change),
+    /// `mean + amplitude sin(360 frequency t + phase)`, the argument in degrees.
+    Sine {
+        /// Mean value.
+        #[serde(default)]
+        mean: f64,
+        /// Amplitude.
+        amplitude: f64,
+        /// Frequency, hertz.
+        frequency: f64,
+        /// Phase at time zero, degrees.
+        #[serde(default)]
+        phase: f64,
+    },
+    /// Through keyframes, constant before the first and after the last.
+    Keyframes {
+        /// The course between keyframes.
+        #[serde(default)]
+        interpolation: Interpolation,
+        /// Pairs of time (seconds) and value, in the order of time.
+        keys: Vec<[f64; 2]>,
+    },
+}
+
+/// A change from one value to another.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Change {
+    /// Value up to `begin`.
+    #[serde(default)]
+    pub from: f64,
+    /// Value from `end` on.
+    pub to: f64,
+    /// When the change begins, seconds.
+    #[serde(default)]
+    pub begin: f64,
+    /// When the change is complete, seconds.
+    pub end: f64,
+}
+
+/// The course between keyframes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Interpolation {
+    /// Straight lines.
+    #[default]
+    Linear,
+    /// Cubic polynomials with a continuous rate, which do not overshoot.
+    MonotoneCubic,
+}
+
+impl Default for Profile {
+    /// Zero at all times.
+    fn default() -> Self {
+        Self::Constant(0.0)
+    }
+}
+
+impl From<f64> for Profile {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
+impl Profile {
+    /// From zero at the time zero smoothly to `value` at the time `end` (seconds).
+    pub fn smooth_step(value: f64, end: f64) -> Self {
+        Self::Course(Course::SmoothStep(Change {
+            to: value,
+            end,
+            ..Change::default()
+        }))
+    }
+
+    /// The profile as the engine has it, values multiplied by `scale`.
+    pub(crate) fn scaled(&self, scale: f64) -> engine::Profile {
+        let course = match self {
+            Self::Constant(value) => return engine::Profile::Constant(scale * value),
+            Self::Course(course) => course,
+        };
+        match course {
+            Course::Ramp(c) => engine::Profile::Ramp {
+                from: scale * c.from,
+                to: scale * c.to,
+                begin: c.begin,
+                end: c.end,
+            },
+            Course::SmoothStep(c) => engine::Profile::SmoothStep {
+                from: scale * c.from,
+                to: scale * c.to,
+                begin: c.begin,
+                end: c.end,
+            },
+            Course::Sine {
+                mean,
+                amplitude,
+                frequency,
+                phase,
+            } => engine::Profile::Sine {
+                mean: scale * mean,
+                amplitude: scale * amplitude,
+                frequency: *frequency,
+                phase: phase.to_radians(),
+            },
+            Course::Keyframes {
+                interpolation,
+                keys,
+            } => engine::Profile::Keyframes {
+                interpolation: match interpolation {
+                    Interpolation::Linear => engine::Interpolation::Linear,
+                    Interpolation::MonotoneCubic => engine::Interpolation::MonotoneCubic,
+                },
+                keys: keys.iter().map(|[t, value]| [*t, scale * value]).collect(),
+            },
+        }
+    }
+
+    /// The profile in metres, newtons or other units that scene and engine share.
+    pub(crate) fn as_given(&self) -> engine::Profile {
+        self.scaled(1.0)
+    }
+
+    /// The profile of an angle, degrees here and radians in the engine.
+    pub(crate) fn as_angle(&self) -> engine::Profile {
+        self.scaled(1.0_f64.to_radians())
+    }
+
+    pub(crate) fn check(&self, key: Key, checks: &mut Checks) {
+        let Err(error) = self.as_given().validate() else {
+            return;
+        };
+        let form = match self {
+            Self::Constant(_) => None,
+            Self::Course(Course::Ramp(_)) => Some("ramp"),
+            Self::Course(Course::SmoothStep(_)) => Some("smooth_step"),
+            Self::Course(Course::Sine { .. }) => Some("sine"),
+            Self::Course(Course::Keyframes { .. }) => Some("keyframes"),
+        };
+        let mut place = form.map_or(key.clone(), |form| key.name(form));
+        match error {
+            ProfileError::NotFinite { name, .. } if form.is_some() => place = place.name(name),
+            ProfileError::Duration { .. } => place = place.name("end"),
+            ProfileError::NoKeyframes => place = place.name("keys"),
+            ProfileError::Keyframe { index, .. } | ProfileError::Order { index, .. } => {
+                place = place.name("keys").entry(index);
+            }
+            ProfileError::NotFinite { .. } => {}
+        }
+        let message = format!("the profile `{key}` cannot be used: {error}");
+        checks.problems.push(super::Problem {
+            key: place,
+            message,
+            remedy: None,
+            span: None,
+        });
+    }
+}
+
+impl Serialize for Profile {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Constant(value) => serializer.serialize_f64(*value),
+            Self::Course(course) => course.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Profile {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(ProfileVisitor)
+    }
+}
+
+struct ProfileVisitor;
+
+impl<'de> Visitor<'de> for ProfileVisitor {
+    type Value = Profile;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number, or one of `ramp`, `smooth_step`, `sine`, `keyframes` as a table")
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Profile, E> {
+        Ok(Profile::Constant(value))
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Profile, E> {
+        Ok(Profile::Constant(value as f64))
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Profile, E> {
+        Ok(Profile::Constant(value as f64))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Profile, A::Error> {
+        Course::deserialize(MapAccessDeserializer::new(map)).map(Profile::Course)
+    }
+}
+
+impl JsonSchema for Profile {
+    fn schema_name() -> Cow<'static, str> {
+        "Profile".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let course = generator.subschema_for::<Course>();
+        json_schema!({
+            "description": "A function of time: a number, which stands for the same value at all times, or a \
+                `Course`. Its unit is that of what it drives: metres for a displacement, degrees for an angle, \
+                newtons for a load.",
+            "anyOf": [{ "type": "number" }, course],
+        })
+    }
+}

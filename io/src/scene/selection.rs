@@ -1,0 +1,154 @@
+//! Which vertices are meant.
+
+use super::problem::{Checks, Key, Problem};
+use isosheet_mesh::{Topology, VertexId};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Some vertices of the sheet. Points and regions are in space, where the sheet is at the start; regions
+/// include their boundary, with an allowance of 1e-9 of the size of the sheet for round-off.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Selection {
+    /// All vertices.
+    All,
+    /// All vertices of the boundary.
+    Boundary,
+    /// Vertices by their numbers, from 0.
+    Vertices(Vec<usize>),
+    /// For each point (metres) the vertex nearest to it.
+    Nearest(Vec<[f64; 3]>),
+    /// All vertices in a box with edges along the axes.
+    Box {
+        /// Smallest x, y and z, metres.
+        min: [f64; 3],
+        /// Largest x, y and z, metres.
+        max: [f64; 3],
+    },
+    /// All vertices on the side of a plane that its normal points to.
+    HalfSpace {
+        /// A point of the plane, metres.
+        point: [f64; 3],
+        /// Normal of the plane, of any length.
+        normal: [f64; 3],
+    },
+}
+
+/// Allowance for round-off at the boundary of a region, as a part of the size of the sheet: far above the
+/// round-off of coordinates (1e-16 of their size), far below the distance of vertices.
+const ROUND_OFF: f64 = 1e-9;
+
+impl Selection {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        match self {
+            Self::All | Self::Boundary | Self::Vertices(_) => {}
+            Self::Nearest(points) => {
+                for (k, point) in points.iter().enumerate() {
+                    checks.finite(key.name("nearest").entry(k), point);
+                }
+            }
+            Self::Box { min, max } => {
+                let key = key.name("box");
+                checks.finite(key.name("min"), min);
+                checks.finite(key.name("max"), max);
+                if let Some(k) = (0..3).find(|&k| min[k] > max[k]) {
+                    let message =
+                        format!("the box begins at {} m and ends at {} m", min[k], max[k]);
+                    checks.report(
+                        key.name("min").entry(k),
+                        message,
+                        "give the smaller bound as `min`",
+                    );
+                }
+            }
+            Self::HalfSpace { point, normal } => {
+                checks.finite(key.name("half_space.point"), point);
+                checks.direction(key.name("half_space.normal"), normal);
+            }
+        }
+    }
+
+    /// The vertices at positions `x` (`3V`, metres), ascending and without repetition.
+    pub(crate) fn resolve(
+        &self,
+        key: &Key,
+        topology: &Topology,
+        x: &[f64],
+    ) -> Result<Vec<VertexId>, Problem> {
+        let points = x.as_chunks::<3>().0;
+        let slack = ROUND_OFF * size(points);
+        let in_region = |inside: &dyn Fn(&[f64; 3]) -> bool| -> Vec<VertexId> {
+            let ids = topology.vertex_ids().zip(points);
+            ids.filter(|(_, p)| inside(p)).map(|(v, _)| v).collect()
+        };
+        let mut found = match self {
+            Self::All => topology.vertex_ids().collect(),
+            Self::Boundary => {
+                let ids = topology.vertex_ids();
+                ids.filter(|&v| topology.is_boundary_vertex(v)).collect()
+            }
+            Self::Vertices(numbers) => by_number(numbers, key, points.len())?,
+            Self::Nearest(wanted) => wanted.iter().map(|p| nearest(points, p)).collect(),
+            Self::Box { min, max } => {
+                in_region(&|p| (0..3).all(|k| (min[k] - slack..=max[k] + slack).contains(&p[k])))
+            }
+            Self::HalfSpace { point, normal } => {
+                let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+                let height = |p: &[f64; 3]| -> f64 {
+                    (0..3).map(|k| normal[k] * (p[k] - point[k])).sum::<f64>() / length
+                };
+                in_region(&|p| height(p) >= -slack)
+            }
+        };
+        found.sort_unstable();
+        found.dedup();
+        if found.is_empty() {
+            return Err(Problem::new(
+                key.clone(),
+                "no vertex of the sheet is selected here",
+                "compare the region with where the sheet is (`isosheet info` gives its bounds)",
+            ));
+        }
+        Ok(found)
+    }
+}
+
+fn by_number(numbers: &[usize], key: &Key, count: usize) -> Result<Vec<VertexId>, Problem> {
+    if let Some(k) = numbers.iter().position(|&n| n >= count) {
+        return Err(Problem::new(
+            key.name("vertices").entry(k),
+            format!("there is no vertex {}: the sheet has {count}", numbers[k]),
+            format!("give numbers from 0 to {}", count - 1),
+        ));
+    }
+    Ok(numbers.iter().map(|&n| VertexId::from_index(n)).collect())
+}
+
+fn nearest(points: &[[f64; 3]], wanted: &[f64; 3]) -> VertexId {
+    let distance2 = |p: &[f64; 3]| -> f64 { (0..3).map(|k| (p[k] - wanted[k]).powi(2)).sum() };
+    let (mut best, mut least) = (0, f64::INFINITY);
+    for (i, p) in points.iter().enumerate() {
+        let d = distance2(p);
+        if d < least {
+            (best, least) = (i, d);
+        }
+    }
+    VertexId::from_index(best)
+}
+
+/// Largest extent of some points along an axis, metres.
+pub(crate) fn size(points: &[[f64; 3]]) -> f64 {
+    let [low, high] = bounds(points);
+    (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max)
+}
+
+/// Smallest and largest coordinates of some points, metres.
+pub(crate) fn bounds(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    let fold = |start: f64, choose: fn(f64, f64) -> f64| {
+        std::array::from_fn(|k| points.iter().map(|p| p[k]).fold(start, choose))
+    };
+    [
+        fold(f64::INFINITY, f64::min),
+        fold(f64::NEG_INFINITY, f64::max),
+    ]
+}

@@ -1,0 +1,234 @@
+//! Scene files.
+
+use super::edit::{self, EditError};
+use super::error::{SceneError, SceneText};
+use super::problem::{Key, Problem};
+use super::{Scene, Setup};
+use std::io;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+use toml_edit::{DocumentMut, Value};
+
+/// A scene with its text, and the folder that its paths are relative to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneFile {
+    scene: Scene,
+    text: SceneText,
+    folder: PathBuf,
+}
+
+/// A scene file that cannot be used.
+#[derive(Debug, Error)]
+pub enum SceneFileError {
+    /// The file cannot be read.
+    #[error("cannot read the scene {}: {source}; check the path", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// An edit cannot be made.
+    #[error(transparent)]
+    Edit(#[from] EditError),
+    /// The scene is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
+impl SceneFile {
+    /// Reads a scene file, makes edits of the form `key=value` and checks the result.
+    ///
+    /// # Errors
+    /// [`SceneFileError`], with all problems that were found.
+    pub fn read(path: &Path, edits: &[String]) -> Result<Self, SceneFileError> {
+        let text = std::fs::read_to_string(path).map_err(|source| SceneFileError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(text, path, edits)
+    }
+
+    /// [`SceneFile::read`] for a text in memory; `path` is used for messages and for relative paths.
+    ///
+    /// # Errors
+    /// As [`SceneFile::read`].
+    pub fn parse(text: String, path: &Path, edits: &[String]) -> Result<Self, SceneFileError> {
+        let mut text = SceneText {
+            path: path.to_owned(),
+            text,
+        };
+        if !edits.is_empty() {
+            let parsed = text.text.parse::<DocumentMut>();
+            let mut document =
+                parsed.map_err(|e| SceneError::from(syntax_problem(&e)).in_text(&text))?;
+            edit::apply(&mut document, edits)?;
+            text.text = document.to_string();
+        }
+        let scene: Scene = toml::from_str(&text.text)
+            .map_err(|e| SceneError::from(toml_problem(&e)).in_text(&text))?;
+        scene.validate().map_err(|e| e.in_text(&text))?;
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        Ok(Self {
+            scene,
+            text,
+            folder,
+        })
+    }
+
+    /// A scene that was made in a program; its paths are relative to `folder`.
+    ///
+    /// # Errors
+    /// [`SceneError`] with all problems that were found.
+    pub fn of(scene: Scene, folder: &Path) -> Result<Self, SceneError> {
+        scene.validate()?;
+        let text = toml::to_string(&scene).map_err(|e| {
+            let remedy = "paths of mesh files have to be valid UTF-8";
+            Problem::new(
+                Key::root(),
+                format!("the scene cannot be written: {e}"),
+                remedy,
+            )
+        })?;
+        Ok(Self {
+            scene,
+            text: SceneText {
+                path: folder.join("scene.toml"),
+                text,
+            },
+            folder: folder.to_owned(),
+        })
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Its text, edits included.
+    pub fn text(&self) -> &SceneText {
+        &self.text
+    }
+
+    /// The folder that its paths are relative to.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Makes everything that a simulation needs.
+    ///
+    /// # Errors
+    /// [`SceneError`], shown at its place in the text.
+    pub fn build(&self) -> Result<Setup, SceneError> {
+        let setup = self.scene.build(&self.folder);
+        let mut setup = setup.map_err(|e| e.in_text(&self.text))?;
+        setup.text = Some(self.text.clone());
+        Ok(setup)
+    }
+
+    /// The same scene with other paths of mesh files, one for each of [`Scene::files`].
+    ///
+    /// # Errors
+    /// [`SceneFileError`] if the text does not take the paths.
+    pub fn with_files(&self, names: &[PathBuf]) -> Result<Self, SceneFileError> {
+        let edits: Vec<String> = self
+            .scene
+            .files()
+            .iter()
+            .zip(names)
+            .map(|((key, _), name)| {
+                let name = Value::from(name.to_string_lossy().as_ref());
+                format!("{key}.path={name}")
+            })
+            .collect();
+        Self::parse(self.text.text.clone(), &self.text.path, &edits)
+    }
+}
+
+fn syntax_problem(error: &toml_edit::TomlError) -> Problem {
+    Problem {
+        key: Key::root(),
+        message: error.message().to_owned(),
+        remedy: Some("correct the syntax; https://toml.io describes it".into()),
+        span: error.span(),
+    }
+}
+
+fn toml_problem(error: &toml::de::Error) -> Problem {
+    let full = error.message();
+    let message = full.lines().next().unwrap_or_default();
+    if let Some((bad, known)) = unexpected_keys(message) {
+        return Problem {
+            span: error.span(),
+            ..Problem::new(
+                Key::root(),
+                format!("unknown key `{bad}`"),
+                suggestion(bad, &known),
+            )
+        };
+    }
+    let names: Vec<&str> = full.split('`').skip(1).step_by(2).collect();
+    let (message, remedy) = match names.split_first() {
+        Some((bad, known)) if message.starts_with("unknown field") => {
+            (format!("unknown key `{bad}`"), suggestion(bad, known))
+        }
+        Some((bad, known)) if message.starts_with("unknown variant") => {
+            (format!("unknown choice `{bad}`"), suggestion(bad, known))
+        }
+        Some((missing, _)) if message.starts_with("missing field") => (
+            format!("the key `{missing}` is missing here"),
+            "add it; docs/scene.md describes all keys".to_owned(),
+        ),
+        _ if message.starts_with("invalid type") => (
+            in_plain_words(message),
+            "write a value of the expected type; numbers have no quotes".to_owned(),
+        ),
+        _ => (
+            message.to_owned(),
+            "docs/scene.md describes all keys, https://toml.io the syntax".to_owned(),
+        ),
+    };
+    Problem {
+        key: Key::root(),
+        message,
+        remedy: Some(remedy),
+        span: error.span(),
+    }
+}
+
+/// The first unknown key and all known ones of the other form of that message, which the choices of an
+/// enumeration have.
+fn unexpected_keys(message: &str) -> Option<(&str, Vec<&str>)> {
+    let names = message.strip_prefix("unexpected keys in table: ")?;
+    let (bad, known) = names.split_once(", available keys: ")?;
+    Some((bad.split(", ").next()?, known.split(", ").collect()))
+}
+
+/// A message with the names of types as a stranger to Rust reads them.
+fn in_plain_words(message: &str) -> String {
+    let (start, expected) = message.rsplit_once("expected ").unwrap_or((message, ""));
+    let plain = match expected {
+        "f64" => "a number",
+        "u32" | "u64" | "usize" => "a whole number of at least 0",
+        other => other,
+    };
+    format!("{start}expected {plain}")
+}
+
+/// The nearest known name, and all of them.
+fn suggestion(bad: &str, known: &[&str]) -> String {
+    let all = known.iter().map(|k| format!("`{k}`")).collect::<Vec<_>>();
+    let all = all.join(", ");
+    let nearest = known
+        .iter()
+        .map(|k| (strsim::damerau_levenshtein(bad, k), k))
+        .min();
+    match nearest {
+        // As many wrong letters as a word of this length has by accident: one, and one more for every three.
+        Some((distance, k)) if distance <= 1 + k.len() / 3 => {
+            format!("did you mean `{k}`? Known here: {all}")
+        }
+        Some(_) => format!("known here: {all}"),
+        None => "no key is known here".to_owned(),
+    }
+}

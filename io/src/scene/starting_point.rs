@@ -1,0 +1,49 @@
+//! Scenes to start from.
+
+/// A commented scene file to start from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StartingPoint {
+    /// A sheet of paper that hangs by two corners.
+    Hanging,
+    /// A cloth that drapes over a box.
+    Drape,
+    /// A sheet that a die presses through an opening.
+    Stamp,
+    /// A strip of paper that is pushed against a ramp.
+    Feed,
+    /// Miura's crease pattern, folded by driven angles.
+    Fold,
+}
+
+impl StartingPoint {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Hanging,
+        Self::Drape,
+        Self::Stamp,
+        Self::Feed,
+        Self::Fold,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Hanging => "hanging",
+            Self::Drape => "drape",
+            Self::Stamp => "stamp",
+            Self::Feed => "feed",
+            Self::Fold => "fold",
+        }
+    }
+
+    /// The scene file.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Hanging => include_str!("starting_point/hanging.toml"),
+            Self::Drape => include_str!("starting_point/drape.toml"),
+            Self::Stamp => include_str!("starting_point/stamp.toml"),
+            Self::Feed => include_str!("starting_point/feed.toml"),
+            Self::Fold => include_str!("starting_point/fold.toml"),
+        }
+    }
+}

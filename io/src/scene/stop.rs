@@ -1,0 +1,64 @@
+//! When a run ends.
+
+use super::problem::{Checks, Key};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Most steps of a run: a history of so many rows has a hundred gigabytes, and at ten microseconds a step,
+/// the least that a step of the smallest sheets takes, the run goes on for three hours.
+const MOST_STEPS: f64 = 1e9;
+
+/// When a run ends: at the first of these conditions that holds after a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Stop {
+    /// Simulated time, seconds.
+    pub time: f64,
+    /// Rest of the sheet.
+    pub rest: Option<Rest>,
+    /// Size of the force at a support that ends the run, newtons: the sum over the vertices that a support
+    /// holds.
+    pub support_force: Option<f64>,
+}
+
+/// Rest: all vertices are slow for some time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rest {
+    /// Largest speed of a vertex, m/s.
+    pub speed: f64,
+    /// For how long, seconds of simulated time.
+    pub duration: f64,
+}
+
+impl Default for Stop {
+    /// After one second.
+    fn default() -> Self {
+        Self {
+            time: 1.0,
+            rest: None,
+            support_force: None,
+        }
+    }
+}
+
+impl Stop {
+    /// Checks the conditions for a run in steps of `step` seconds.
+    pub(crate) fn check(&self, step: f64, key: &Key, checks: &mut Checks) {
+        checks.positive(key.name("time"), self.time, "s");
+        let steps = self.time / step;
+        if step > 0.0 && self.time.is_finite() && steps > MOST_STEPS {
+            let time = self.time;
+            let message = format!("{time:e} s in steps of {step:e} s are {steps:.3e} steps");
+            let remedy = "choose a shorter time or a longer `method.step`, for at most 1e9 steps";
+            checks.report(key.name("time"), message, remedy);
+        }
+        if let Some(rest) = &self.rest {
+            checks.positive(key.name("rest.speed"), rest.speed, "m/s");
+            checks.positive(key.name("rest.duration"), rest.duration, "s");
+        }
+        if let Some(force) = self.support_force {
+            checks.positive(key.name("support_force"), force, "N");
+        }
+    }
+}

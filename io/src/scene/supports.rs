@@ -1,0 +1,251 @@
+//! What holds the sheet.
+
+use super::pose::Motion;
+use super::problem::{Checks, Key, Problem};
+use super::selection::Selection;
+use isosheet_dynamics::constraint::{
+    Circle, ConstraintError, Cylinder, Line, Plane, Polyline, Side, Sphere, Spline,
+};
+use isosheet_dynamics::{RigidMotion, VertexConstraint};
+use isosheet_mesh::VertexId;
+use nalgebra::Isometry3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Vertices that are held in the same way.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Support {
+    /// Which vertices.
+    pub at: Selection,
+    /// How they are held.
+    #[serde(default)]
+    pub hold: Hold,
+}
+
+/// How vertices are held.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Hold {
+    /// Where they are at the start.
+    #[default]
+    Pin,
+    /// In a prescribed motion, which is zero at the start: all vertices move as one rigid body.
+    MovingPin(Motion),
+    /// On a curve, along which they slide without friction. They have to be on it at the start.
+    Curve {
+        /// The curve.
+        shape: Curve,
+        /// Its motion.
+        #[serde(default)]
+        motion: Motion,
+    },
+    /// On a surface or on one side of it, without friction. They have to be there at the start.
+    Surface {
+        /// The surface.
+        shape: Surface,
+        /// On which side the vertices may be.
+        #[serde(default)]
+        side: SurfaceSide,
+        /// Its motion.
+        #[serde(default)]
+        motion: Motion,
+    },
+}
+
+/// A curve.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Curve {
+    /// A straight line without ends.
+    Line {
+        /// A point of it, metres.
+        point: [f64; 3],
+        /// Its direction, of any length.
+        direction: [f64; 3],
+    },
+    /// A circle.
+    Circle {
+        /// Centre, metres.
+        centre: [f64; 3],
+        /// Normal of its plane, of any length.
+        normal: [f64; 3],
+        /// Radius, metres.
+        radius: f64,
+    },
+    /// Straight lines between points, with rounded corners.
+    Polyline {
+        /// The points, metres.
+        points: Vec<[f64; 3]>,
+        /// Radius of the corners, metres.
+        corner_radius: f64,
+    },
+    /// A smooth curve through points.
+    Spline {
+        /// The points, metres.
+        points: Vec<[f64; 3]>,
+    },
+    /// A smooth closed curve through points.
+    ClosedSpline {
+        /// The points, metres; the first is not repeated.
+        points: Vec<[f64; 3]>,
+    },
+}
+
+/// A surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Surface {
+    /// A plane.
+    Plane {
+        /// A point of it, metres.
+        point: [f64; 3],
+        /// Its normal, of any length, which points outside.
+        normal: [f64; 3],
+    },
+    /// A sphere.
+    Sphere {
+        /// Centre, metres.
+        centre: [f64; 3],
+        /// Radius, metres.
+        radius: f64,
+    },
+    /// A cylinder without ends.
+    Cylinder {
+        /// A point of its axis, metres.
+        point: [f64; 3],
+        /// Direction of its axis, of any length.
+        axis: [f64; 3],
+        /// Radius, metres.
+        radius: f64,
+    },
+}
+
+/// On which side of a surface vertices may be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SurfaceSide {
+    /// On the surface.
+    #[default]
+    On,
+    /// On it or outside.
+    Outside,
+    /// On it or inside.
+    Inside,
+}
+
+impl Support {
+    /// Vertices that stay where they are at the start.
+    pub fn pin(at: Selection) -> Self {
+        Self {
+            at,
+            hold: Hold::Pin,
+        }
+    }
+
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        self.at.check(&key.name("at"), checks);
+        let hold = key.name("hold");
+        match &self.hold {
+            Hold::Pin => {}
+            Hold::MovingPin(motion) => motion.check(&hold.name("moving_pin"), checks),
+            Hold::Curve { shape, motion } => {
+                let key = hold.name("curve");
+                motion.check(&key.name("motion"), checks);
+                if let Err(error) = shape.constrain(VertexId(0)) {
+                    let place = key.name("shape").name(shape.name());
+                    checks.problems.push(Problem::from_error(place, &error));
+                }
+            }
+            Hold::Surface { shape, motion, .. } => {
+                let key = hold.name("surface");
+                motion.check(&key.name("motion"), checks);
+                if let Err(error) = shape.constrain(VertexId(0), Side::On) {
+                    let place = key.name("shape").name(shape.name());
+                    checks.problems.push(Problem::from_error(place, &error));
+                }
+            }
+        }
+    }
+}
+
+impl Curve {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Line { .. } => "line",
+            Self::Circle { .. } => "circle",
+            Self::Polyline { .. } => "polyline",
+            Self::Spline { .. } => "spline",
+            Self::ClosedSpline { .. } => "closed_spline",
+        }
+    }
+
+    pub(crate) fn constrain(&self, vertex: VertexId) -> Result<VertexConstraint, ConstraintError> {
+        Ok(match self {
+            Self::Line { point, direction } => {
+                VertexConstraint::on_curve(vertex, Line::new(*point, *direction)?)
+            }
+            Self::Circle {
+                centre,
+                normal,
+                radius,
+            } => VertexConstraint::on_curve(vertex, Circle::new(*centre, *normal, *radius)?),
+            Self::Polyline {
+                points,
+                corner_radius,
+            } => VertexConstraint::on_curve(vertex, Polyline::new(points, *corner_radius)?),
+            Self::Spline { points } => VertexConstraint::on_curve(vertex, Spline::open(points)?),
+            Self::ClosedSpline { points } => {
+                VertexConstraint::on_curve(vertex, Spline::closed(points)?)
+            }
+        })
+    }
+}
+
+impl Surface {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Plane { .. } => "plane",
+            Self::Sphere { .. } => "sphere",
+            Self::Cylinder { .. } => "cylinder",
+        }
+    }
+
+    pub(crate) fn constrain(
+        &self,
+        vertex: VertexId,
+        side: Side,
+    ) -> Result<VertexConstraint, ConstraintError> {
+        Ok(match self {
+            Self::Plane { point, normal } => {
+                VertexConstraint::on_surface(vertex, Plane::new(*point, *normal)?, side)
+            }
+            Self::Sphere { centre, radius } => {
+                VertexConstraint::on_surface(vertex, Sphere::new(*centre, *radius)?, side)
+            }
+            Self::Cylinder {
+                point,
+                axis,
+                radius,
+            } => VertexConstraint::on_surface(vertex, Cylinder::new(*point, *axis, *radius)?, side),
+        })
+    }
+}
+
+impl SurfaceSide {
+    pub(crate) fn as_engine(self) -> Side {
+        match self {
+            Self::On => Side::On,
+            Self::Outside => Side::Outside,
+            Self::Inside => Side::Inside,
+        }
+    }
+}
+
+/// The motion of a curve or surface, if it has any.
+pub(crate) fn frame_motion(motion: &Motion) -> Option<RigidMotion> {
+    (*motion != Motion::default()).then(|| {
+        let displacement = motion.of_body(Isometry3::identity());
+        isosheet_dynamics::RigidProfile::from(displacement).into()
+    })
+}
