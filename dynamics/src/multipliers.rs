@@ -148,3 +148,6 @@ impl LinearisedRows<'_> {
         self.stiffness * self.unit_penalty[e]
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -165,11 +165,12 @@ fn a_sheet_is_crumpled_from_four_sides() {
             "from {low} to {high} m of {room} m along axis {axis}"
         );
     }
-    // It has nowhere to go but up, by no more than its diagonal folded in half; measured: 82 mm.
+    // It has nowhere to go but up, by no more than its diagonal folded in half; measured from 14 starts that differ
+    // by displacements of 1e-5 rod lengths: 45 to 126 mm.
     let [bottom, top] = extent(scene.x(), 2);
     assert!((-margin..0.0).contains(&bottom), "lowest point {bottom} m");
     assert!(
-        (0.06..0.5 * 2.0_f64.sqrt() * SIDE).contains(&top),
+        (0.04..0.5 * 2.0_f64.sqrt() * SIDE).contains(&top),
         "highest point {top} m"
     );
 }
