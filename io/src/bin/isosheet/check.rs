@@ -7,13 +7,13 @@ use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::mesh::Sheet;
 use isosheet_io::scene::SceneFile;
-use isosheet_io::{ObjMesh, ObjOptions, ObjProblem, Polygons, read_obj, write_obj};
+use isosheet_io::{MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with, write_obj};
 use std::path::{Path, PathBuf};
 
 /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
 #[derive(Debug, Args)]
 pub(crate) struct Check {
-    /// A scene (.toml) or a mesh (Wavefront OBJ)
+    /// A scene (.toml) or a mesh (OBJ, OFF, STL, PLY, FOLD, glTF)
     file: PathBuf,
     /// Write the repaired mesh to this OBJ file
     #[arg(long, value_name = "FILE2")]
@@ -72,10 +72,14 @@ impl Check {
     }
 }
 
-fn read(path: &Path, polygons: Polygons) -> Result<ObjMesh, Failure> {
-    read_obj(path, &ObjOptions { polygons }).map_err(|error| {
+fn read(path: &Path, polygons: Polygons) -> Result<MeshFile, Failure> {
+    let options = MeshOptions {
+        polygons,
+        ..MeshOptions::default()
+    };
+    read_mesh_with(path, &options).map_err(|error| {
         let remedy = match error.problem {
-            ObjProblem::Polygon { .. } => {
+            MeshFileProblem::Polygon { .. } => {
                 "\nhelp: `--fix FILE2` cuts polygons into triangles: their new edges are lines along which \
                  the sheet can fold"
             }
@@ -85,7 +89,7 @@ fn read(path: &Path, polygons: Polygons) -> Result<ObjMesh, Failure> {
     })
 }
 
-fn what_repair_does(mut mesh: ObjMesh, path: &Path) -> String {
+fn what_repair_does(mut mesh: MeshFile, path: &Path) -> String {
     let repair = match mesh.repair() {
         Ok(repair) => repair,
         Err(error) => return format!("help: this cannot be repaired automatically: {error}"),
