@@ -217,8 +217,10 @@ impl MeshFile {
             label[v] = (kept.len() / 3) as u32;
             kept.extend_from_slice(&self.positions[3 * v..3 * v + 3]);
         }
-        self.diagonals.retain(|e| e.iter().all(|&v| used[v as usize]));
-        self.creases.retain(|c| c.ends.iter().all(|&v| used[v as usize]));
+        self.diagonals
+            .retain(|e| e.iter().all(|&v| used[v as usize]));
+        self.creases
+            .retain(|c| c.ends.iter().all(|&v| used[v as usize]));
         self.relabel(&label);
         let removed = used.len() - kept.len() / 3;
         self.positions = kept;

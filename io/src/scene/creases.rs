@@ -156,10 +156,7 @@ fn on_line(sheet: &Sheet, from: &[f64; 3], to: &[f64; 3]) -> Vec<(EdgeId, f64)> 
     edges.map(|e| (e, 1.0)).collect()
 }
 
-fn of_pattern(
-    wanted: PatternEdges,
-    assignments: &[Option<FoldAssignment>],
-) -> Vec<(EdgeId, f64)> {
+fn of_pattern(wanted: PatternEdges, assignments: &[Option<FoldAssignment>]) -> Vec<(EdgeId, f64)> {
     let sign = |a: FoldAssignment| match (wanted, a) {
         (PatternEdges::Assigned, FoldAssignment::Mountain) => Some(-1.0),
         (PatternEdges::Assigned | PatternEdges::Valleys, FoldAssignment::Valley)

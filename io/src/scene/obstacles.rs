@@ -140,12 +140,13 @@ impl Shape {
             Self::File(file) => {
                 let key = key.name("file");
                 let mesh = file.read(&key, folder)?;
-                let surface = TriangleSurface::new(&mesh.positions, &mesh.faces).map_err(|error| {
-                    let message = format!("{}: {error}", file.path.display());
-                    let remedy =
-                        "repair the surface, `isosheet check` says what else is wrong with it";
-                    Problem::new(key.name("path"), message, remedy)
-                })?;
+                let surface =
+                    TriangleSurface::new(&mesh.positions, &mesh.faces).map_err(|error| {
+                        let message = format!("{}: {error}", file.path.display());
+                        let remedy =
+                            "repair the surface, `isosheet check` says what else is wrong with it";
+                        Problem::new(key.name("path"), message, remedy)
+                    })?;
                 collide::Shape::Surface(Arc::new(surface))
             }
         })

@@ -63,7 +63,9 @@ pub enum MeshFileProblem {
         extension: String,
     },
     /// The option `weld` is not a length.
-    #[error("the tolerance for welding vertices is {tolerance}; give a length of 0 or more in the unit of the file")]
+    #[error(
+        "the tolerance for welding vertices is {tolerance}; give a length of 0 or more in the unit of the file"
+    )]
     WeldTolerance {
         /// The value.
         tolerance: f64,

@@ -93,7 +93,9 @@ fn read(bytes: &[u8], path: &Path, name: Option<&str>) -> Result<Polyhedron, Mes
     }
     let wanted = |m: &Mesh<'_>| name.is_none() || m.name() == name;
     let mesh = document.meshes().find(wanted).ok_or_else(|| {
-        let names = document.meshes().map(|m| m.name().unwrap_or_default().to_owned());
+        let names = document
+            .meshes()
+            .map(|m| m.name().unwrap_or_default().to_owned());
         GltfProblem::NoMesh {
             wanted: name.map(str::to_owned),
             names: names.collect(),
@@ -219,7 +221,10 @@ fn vectors(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<[f64; 3]>
         };
         [number(x), number(y), number(z)]
     };
-    Ok(elements(accessor, buffers, 12)?.into_iter().map(point).collect())
+    Ok(elements(accessor, buffers, 12)?
+        .into_iter()
+        .map(point)
+        .collect())
 }
 
 fn scalars(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<i64>, String> {
@@ -231,7 +236,10 @@ fn scalars(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<i64>, Str
     };
     // Little-endian.
     let number = |b: &[u8]| b.iter().rev().fold(0, |n, &byte| n << 8 | i64::from(byte));
-    Ok(elements(accessor, buffers, size)?.into_iter().map(number).collect())
+    Ok(elements(accessor, buffers, size)?
+        .into_iter()
+        .map(number)
+        .collect())
 }
 
 /// A matrix by columns, as glTF has them.
@@ -246,9 +254,13 @@ const IDENTITY: Matrix = [
 
 /// The matrix of the first node that shows a mesh; the identity if none does.
 fn placement(document: &Document, mesh: usize) -> Matrix {
-    let scene = document.default_scene().or_else(|| document.scenes().next());
+    let scene = document
+        .default_scene()
+        .or_else(|| document.scenes().next());
     let mut seen = vec![false; document.nodes().len()];
-    let roots = scene.into_iter().flat_map(|s| s.nodes().collect::<Vec<_>>());
+    let roots = scene
+        .into_iter()
+        .flat_map(|s| s.nodes().collect::<Vec<_>>());
     let mut pending: Vec<_> = roots.map(|node| (node, IDENTITY)).collect();
     pending.reverse();
     while let Some((node, parent)) = pending.pop() {
@@ -256,7 +268,10 @@ fn placement(document: &Document, mesh: usize) -> Matrix {
         if std::mem::replace(&mut seen[node.index()], true) {
             continue;
         }
-        let own = node.transform().matrix().map(|column| column.map(f64::from));
+        let own = node
+            .transform()
+            .matrix()
+            .map(|column| column.map(f64::from));
         let matrix: Matrix = own.map(|column| {
             std::array::from_fn(|row| (0..4).map(|k| parent[k][row] * column[k]).sum())
         });

@@ -107,7 +107,8 @@ impl Parser {
             return Err(bad());
         };
         let number = |w: &str| w.parse::<f64>().map_err(|_| bad());
-        self.mesh.push_vertex([number(x)?, number(y)?, number(z)?])?;
+        self.mesh
+            .push_vertex([number(x)?, number(y)?, number(z)?])?;
         // Three further numbers are a colour; a single one is a weight.
         if let [_, _, _, w] = words[..] {
             let weight = number(w)?;

@@ -18,7 +18,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
     }
     let parser = Parser::<Row>::new();
     let mut reader = Reader::new(bytes);
-    let header = parser.read_header(&mut reader).map_err(|e| located(&e, true))?;
+    let header = parser
+        .read_header(&mut reader)
+        .map_err(|e| located(&e, true))?;
     let text = header.encoding == Encoding::Ascii;
     check(&header, reader.get_ref().len() as u64)?;
     for (name, element) in &header.elements {
@@ -28,7 +30,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
         match name.as_str() {
             "vertex" => {
                 for row in rows {
-                    mesh.push_vertex(row.place).map_err(|problem| (None, problem))?;
+                    mesh.push_vertex(row.place)
+                        .map_err(|problem| (None, problem))?;
                 }
             }
             "face" => {
@@ -111,7 +114,9 @@ fn check(header: &Header, available: u64) -> Result<(), Located> {
             PropertyType::Scalar(scalar) | PropertyType::List(scalar, _) => size(scalar),
         });
         // The last separator may be missing.
-        let needed = count.saturating_mul(sizes.sum()).saturating_sub(u64::from(text));
+        let needed = count
+            .saturating_mul(sizes.sum())
+            .saturating_sub(u64::from(text));
         if needed > available {
             let problem = MeshFileProblem::Announced {
                 what: format!("elements {name:?}"),

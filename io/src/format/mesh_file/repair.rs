@@ -117,7 +117,13 @@ mod tests {
 
     fn mesh(text: &str) -> MeshFile {
         let options = MeshOptions::default();
-        parse_mesh(text.as_bytes(), MeshFormat::Obj, Path::new("test.obj"), &options).unwrap()
+        parse_mesh(
+            text.as_bytes(),
+            MeshFormat::Obj,
+            Path::new("test.obj"),
+            &options,
+        )
+        .unwrap()
     }
 
     #[test]

@@ -25,7 +25,10 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
         (count, HEADER as u64 + FACET as u64 * u64::from(count))
     });
     let length = bytes.len() as u64;
-    let is_text = bytes.trim_ascii_start().to_ascii_lowercase().starts_with(b"solid");
+    let is_text = bytes
+        .trim_ascii_start()
+        .to_ascii_lowercase()
+        .starts_with(b"solid");
     match announced {
         Some((_, needed)) if needed == length => binary(&mut mesh, bytes)?,
         _ if is_text => text(&mut mesh, &String::from_utf8_lossy(bytes))?,

@@ -35,8 +35,18 @@ fn binary_stl() -> Vec<u8> {
     bytes[..5].copy_from_slice(b"solid");
     bytes.extend(2_u32.to_le_bytes());
     for face in [[0, 1, 2], [0, 2, 3]] {
-        let numbers = [[0.0, 0.0, 1.0], POINTS[face[0]], POINTS[face[1]], POINTS[face[2]]];
-        bytes.extend(numbers.as_flattened().iter().flat_map(|&c| (c as f32).to_le_bytes()));
+        let numbers = [
+            [0.0, 0.0, 1.0],
+            POINTS[face[0]],
+            POINTS[face[1]],
+            POINTS[face[2]],
+        ];
+        bytes.extend(
+            numbers
+                .as_flattened()
+                .iter()
+                .flat_map(|&c| (c as f32).to_le_bytes()),
+        );
         bytes.extend([0, 0]);
     }
     bytes
@@ -48,7 +58,10 @@ fn text_facet(face: [usize; 3]) -> String {
         let [x, y, z] = POINTS[v];
         format!("vertex {x} {y} {z}\n")
     });
-    format!("facet normal 0 0 1\nouter loop\n{}endloop\nendfacet\n", corners.concat())
+    format!(
+        "facet normal 0 0 1\nouter loop\n{}endloop\nendfacet\n",
+        corners.concat()
+    )
 }
 
 /// A binary PLY file of the square with a colour for each vertex.
@@ -77,7 +90,11 @@ fn gltf(scale: f64) -> String {
         .iter()
         .flat_map(|[x, y, z]| [x - 1.0, *z, -y])
         .flat_map(|c| ((c / scale) as f32).to_le_bytes())
-        .chain([0_u16, 1, 2, 0, 2, 3].into_iter().flat_map(u16::to_le_bytes))
+        .chain(
+            [0_u16, 1, 2, 0, 2, 3]
+                .into_iter()
+                .flat_map(u16::to_le_bytes),
+        )
         .collect();
     let data = base64::Engine::encode(&base64::engine::general_purpose::STANDARD, data);
     format!(
@@ -100,7 +117,13 @@ const FOLD: &str = r#"{"file_spec": 1.2, "frame_unit": "cm", "frame_classes": ["
 #[test]
 fn every_format_has_the_same_square() {
     let vertices = "1 0 .5 0.1 0.2\n2 0 .5\n\n2 1 5e-1 # corner\n1 1 .5\n";
-    for head in ["OFF 4 2 0\n", "OFF\n4 2 5\n", "4 2 0\n", "  OFF4 2 0\n", "STCNOFF # x\n4 2\n"] {
+    for head in [
+        "OFF 4 2 0\n",
+        "OFF\n4 2 5\n",
+        "4 2 0\n",
+        "  OFF4 2 0\n",
+        "STCNOFF # x\n4 2\n",
+    ] {
         let off = format!("{head}{vertices}3 0 1 2 1.0 0.5 0.1\n3 0 2 3\n");
         is_the_square(&parse(MeshFormat::Off, off.as_bytes()).unwrap());
     }
@@ -133,7 +156,10 @@ fn every_format_has_the_same_square() {
     let mountain = fold.creases[4];
     assert_eq!(mountain.assignment, EdgeAssignment::Mountain);
     assert_eq!(mountain.angle, Some(-std::f64::consts::FRAC_PI_2));
-    assert_eq!((fold.creases[0].angle, fold.creases[3].angle), (Some(0.0), None));
+    assert_eq!(
+        (fold.creases[0].angle, fold.creases[3].angle),
+        (Some(0.0), None)
+    );
 }
 
 #[test]
@@ -143,7 +169,10 @@ fn formats_are_known_by_their_extension() {
         let error = read_mesh(Path::new(name)).unwrap_err();
         let text = error.to_string();
         assert!(matches!(error.problem, MeshFileProblem::Extension { .. }));
-        assert!(text.contains(".obj, .off, .stl, .ply, .fold, .gltf, .glb"), "{text}");
+        assert!(
+            text.contains(".obj, .off, .stl, .ply, .fold, .gltf, .glb"),
+            "{text}"
+        );
     }
     let error = read_mesh(Path::new("/no/such.fold")).unwrap_err();
     assert!(matches!(error.problem, MeshFileProblem::Read(_)));
@@ -152,7 +181,10 @@ fn formats_are_known_by_their_extension() {
         ..MeshOptions::default()
     };
     let error = parse_mesh(b"", MeshFormat::Off, Path::new("x"), &options).unwrap_err();
-    assert!(matches!(error.problem, MeshFileProblem::WeldTolerance { .. }));
+    assert!(matches!(
+        error.problem,
+        MeshFileProblem::WeldTolerance { .. }
+    ));
 }
 
 #[test]
@@ -161,42 +193,102 @@ fn defects_of_off_stl_and_ply_name_their_place() {
     let off = |text: &str| problem(MeshFormat::Off, text.as_bytes());
     assert!(matches!(off(""), (None, P::Truncated { .. })));
     assert!(matches!(off("OFF 0 0 0"), (None, P::Empty)));
-    assert!(matches!(off("OFF 1 0 0\n0 0 0"), (None, P::NoFaces { vertices: 1, .. })));
-    assert!(matches!(off("COFF\nx"), (Some(Place::Line(2)), P::Syntax { .. })));
-    assert!(matches!(off("OFF 2 0\n0 0 0\n0 0\n"), (Some(Place::Line(3)), P::Syntax { .. })));
-    assert!(matches!(off("OFF 99999999999 1\n0 0 0\n"), (None, P::Truncated { .. })));
+    assert!(matches!(
+        off("OFF 1 0 0\n0 0 0"),
+        (None, P::NoFaces { vertices: 1, .. })
+    ));
+    assert!(matches!(
+        off("COFF\nx"),
+        (Some(Place::Line(2)), P::Syntax { .. })
+    ));
+    assert!(matches!(
+        off("OFF 2 0\n0 0 0\n0 0\n"),
+        (Some(Place::Line(3)), P::Syntax { .. })
+    ));
+    assert!(matches!(
+        off("OFF 99999999999 1\n0 0 0\n"),
+        (None, P::Truncated { .. })
+    ));
     let nan = off("OFF 2 1\n0 0 0\n0 inf 0\n3 0 0 0\n");
-    assert!(matches!(nan, (Some(Place::Line(3)), P::NonFinite { vertex: 1, axis: 1, .. })));
+    assert!(matches!(
+        nan,
+        (
+            Some(Place::Line(3)),
+            P::NonFinite {
+                vertex: 1,
+                axis: 1,
+                ..
+            }
+        )
+    ));
     let index = off("OFF 3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n");
-    let expected = matches!(index.1, P::IndexOutOfRange { index: 3, count: 3, first: 0 });
+    let expected = matches!(
+        index.1,
+        P::IndexOutOfRange {
+            index: 3,
+            count: 3,
+            first: 0
+        }
+    );
     assert!(expected && index.0 == Some(Place::Line(5)));
     let huge = off("OFF 3 1\n0 0 0\n1 0 0\n0 1 0\n99999999999 0 1 2\n");
     assert!(matches!(huge, (Some(Place::Line(5)), P::Syntax { .. })));
 
     let stl = |bytes: &[u8]| problem(MeshFormat::Stl, bytes);
     assert!(matches!(stl(b""), (None, P::Empty)));
-    assert!(matches!(stl(b"some bytes"), (Some(Place::Byte(10)), P::Truncated { .. })));
+    assert!(matches!(
+        stl(b"some bytes"),
+        (Some(Place::Byte(10)), P::Truncated { .. })
+    ));
     let mut short = binary_stl();
     short[0] = b'x';
     short.truncate(150);
     let announced = stl(&short);
-    assert!(matches!(announced, (Some(Place::Byte(80)), P::Announced { count: 2, .. })));
+    assert!(matches!(
+        announced,
+        (Some(Place::Byte(80)), P::Announced { count: 2, .. })
+    ));
     let mut nan = binary_stl();
     nan[84 + 50 + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
-    assert!(matches!(stl(&nan), (Some(Place::Byte(134)), P::NonFinite { vertex: 3, axis: 0, .. })));
+    assert!(matches!(
+        stl(&nan),
+        (
+            Some(Place::Byte(134)),
+            P::NonFinite {
+                vertex: 3,
+                axis: 0,
+                ..
+            }
+        )
+    ));
     let text = format!("solid\n{}facet normal 0 0 x\n", text_facet([0, 1, 2]));
-    assert!(matches!(stl(text.as_bytes()), (None, P::Stl { facet: 1, .. })));
+    assert!(matches!(
+        stl(text.as_bytes()),
+        (None, P::Stl { facet: 1, .. })
+    ));
 
     let ply = |text: &str| problem(MeshFormat::Ply, text.as_bytes());
     assert!(matches!(ply("plx\n"), (Some(Place::Line(1)), P::Ply(_))));
     let many = TEXT_PLY.replace("vertex 4", "vertex 4000000000");
-    assert!(matches!(ply(&many), (None, P::Announced { count: 4_000_000_000, .. })));
+    assert!(matches!(
+        ply(&many),
+        (
+            None,
+            P::Announced {
+                count: 4_000_000_000,
+                ..
+            }
+        )
+    ));
     let empty = TEXT_PLY.replace("element face", "element nothing 99999999999\nelement face");
     assert!(matches!(ply(&empty), (None, P::Ply(_))));
     let word = TEXT_PLY.replace("2 1 0.5", "2 one 0.5");
     assert!(matches!(ply(&word), (Some(Place::Line(13)), P::Ply(_))));
     let index = TEXT_PLY.replace("3 0 2 3", "3 0 2 4");
-    assert!(matches!(ply(&index), (Some(Place::Face(1)), P::IndexOutOfRange { index: 4, .. })));
+    assert!(matches!(
+        ply(&index),
+        (Some(Place::Face(1)), P::IndexOutOfRange { index: 4, .. })
+    ));
     let flat = TEXT_PLY.replace("float z", "float w");
     assert!(matches!(ply(&flat), (None, P::Ply(_))));
 }
@@ -210,21 +302,51 @@ fn defects_of_gltf_are_typed() {
     };
     let change = |from: &str, to: &str| gltf_problem(gltf(1.0).replace(from, to));
     assert!(matches!(gltf_problem("{}".into()), G::Format(_)));
-    assert!(matches!(change("\"indices\":1", "\"indices\":7"), G::Format(_)));
-    assert!(matches!(change("\"count\":4", "\"count\":5"), G::Array { array: "positions", .. }));
-    assert!(matches!(change("\"count\":6", "\"count\":7"), G::Array { array: "indices", .. }));
+    assert!(matches!(
+        change("\"indices\":1", "\"indices\":7"),
+        G::Format(_)
+    ));
+    assert!(matches!(
+        change("\"count\":4", "\"count\":5"),
+        G::Array {
+            array: "positions",
+            ..
+        }
+    ));
+    assert!(matches!(
+        change("\"count\":6", "\"count\":7"),
+        G::Array {
+            array: "indices",
+            ..
+        }
+    ));
     let huge = change("\"count\":6", "\"count\":99999999999999");
-    assert!(matches!(huge, G::Array { array: "indices", .. }));
+    assert!(matches!(
+        huge,
+        G::Array {
+            array: "indices",
+            ..
+        }
+    ));
     let far = change("\"byteOffset\":48", "\"byteOffset\":18446744073709551615");
     assert!(matches!(far, G::Array { .. }));
-    assert!(matches!(change("\"indices\":1", "\"indices\":1,\"mode\":1"), G::Mode { .. }));
+    assert!(matches!(
+        change("\"indices\":1", "\"indices\":1,\"mode\":1"),
+        G::Mode { .. }
+    ));
     assert!(matches!(change(";base64,", ";base32,"), G::Buffer { .. }));
-    assert!(matches!(change("data:application", "none"), G::Buffer { .. }));
+    assert!(matches!(
+        change("data:application", "none"),
+        G::Buffer { .. }
+    ));
     let draco = change(
         "\"scene\":0",
         "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"scene\":0",
     );
-    assert!(matches!(draco, G::Extension { .. } | G::Format(_)), "{draco}");
+    assert!(
+        matches!(draco, G::Extension { .. } | G::Format(_)),
+        "{draco}"
+    );
     // A child that is its own parent.
     let circle = gltf(1.0).replace("\"mesh\":0,", "\"children\":[0],");
     assert!(parse(MeshFormat::Gltf, circle.as_bytes()).is_ok());
@@ -232,7 +354,12 @@ fn defects_of_gltf_are_typed() {
         mesh: Some("other".into()),
         ..MeshOptions::default()
     };
-    let error = parse_mesh(gltf(1.0).as_bytes(), MeshFormat::Gltf, Path::new("x"), &named);
+    let error = parse_mesh(
+        gltf(1.0).as_bytes(),
+        MeshFormat::Gltf,
+        Path::new("x"),
+        &named,
+    );
     let error = error.unwrap_err().to_string();
     assert!(error.contains("\"sheet\""), "{error}");
     for length in 0..12 {
@@ -250,18 +377,55 @@ fn defects_of_fold_files_are_typed() {
     };
     let change = |from: &str, to: &str| fold_problem(FOLD.replace(from, to));
     assert!(matches!(change("\"cm\"", "\"mile\""), F::Unit { .. }));
-    assert_eq!(change("[200, 0, 50]", "[200]"), F::Coordinates { vertex: 1, count: 1 });
-    assert_eq!(change("[200, 0, 50]", "[200, 0, 50, 1]"), F::Dimension { vertex: 1 });
-    assert!(matches!(change("\"M\"]", "\"M\", \"M\"]"), F::Length { got: 6, edges: 5, .. }));
-    assert!(matches!(change("[2, 3], [3, 0]", "[2, 9], [3, 0]"), F::EdgeVertex { edge: 2, .. }));
-    assert!(matches!(change("\"M\"", "\"mountain\""), F::Assignment { edge: 4, .. }));
-    assert_eq!(change("-90", "-190"), F::Angle { edge: 4, degrees: -190.0 });
+    assert_eq!(
+        change("[200, 0, 50]", "[200]"),
+        F::Coordinates {
+            vertex: 1,
+            count: 1
+        }
+    );
+    assert_eq!(
+        change("[200, 0, 50]", "[200, 0, 50, 1]"),
+        F::Dimension { vertex: 1 }
+    );
+    assert!(matches!(
+        change("\"M\"]", "\"M\", \"M\"]"),
+        F::Length {
+            got: 6,
+            edges: 5,
+            ..
+        }
+    ));
+    assert!(matches!(
+        change("[2, 3], [3, 0]", "[2, 9], [3, 0]"),
+        F::EdgeVertex { edge: 2, .. }
+    ));
+    assert!(matches!(
+        change("\"M\"", "\"mountain\""),
+        F::Assignment { edge: 4, .. }
+    ));
+    assert_eq!(
+        change("-90", "-190"),
+        F::Angle {
+            edge: 4,
+            degrees: -190.0
+        }
+    );
     assert_eq!(change("faces_vertices", "x:faces"), F::NoFacesInSpace);
-    assert!(matches!(fold_problem("{\"vertices_coords\": []}".into()), F::NoCoordinates));
+    assert!(matches!(
+        fold_problem("{\"vertices_coords\": []}".into()),
+        F::NoCoordinates
+    ));
     let (_, json) = problem(MeshFormat::Fold, &FOLD.as_bytes()[..100]);
     assert!(matches!(json, MeshFileProblem::Json(_)));
-    let (place, index) = problem(MeshFormat::Fold, FOLD.replace("[0, 2, 3]", "[0, 2, -3]").as_bytes());
-    assert!(matches!(index, MeshFileProblem::IndexOutOfRange { index: -3, .. }));
+    let (place, index) = problem(
+        MeshFormat::Fold,
+        FOLD.replace("[0, 2, 3]", "[0, 2, -3]").as_bytes(),
+    );
+    assert!(matches!(
+        index,
+        MeshFileProblem::IndexOutOfRange { index: -3, .. }
+    ));
     assert_eq!(place, Some(Place::Face(1)));
 }
 
@@ -278,16 +442,27 @@ fn frames_inherit_from_their_parents() {
             frame,
             ..MeshOptions::default()
         };
-        parse_mesh(text.as_bytes(), MeshFormat::Fold, Path::new("x.fold"), &options)
+        parse_mesh(
+            text.as_bytes(),
+            MeshFormat::Fold,
+            Path::new("x.fold"),
+            &options,
+        )
     };
     let first = frame(None).unwrap();
     assert_eq!((first.positions[3], first.faces[0]), (1e-3, [0, 1, 2]));
     assert_eq!(frame(Some(1)).unwrap(), first);
     let second = frame(Some(2)).unwrap();
-    assert_eq!((&second.positions, second.faces[0]), (&first.positions, [0, 2, 1]));
+    assert_eq!(
+        (&second.positions, second.faces[0]),
+        (&first.positions, [0, 2, 1])
+    );
     let refused = |n| frame(Some(n)).unwrap_err().problem;
     assert!(matches!(refused(0), MeshFileProblem::NoVertices { .. }));
-    assert!(matches!(refused(3), MeshFileProblem::Fold(FoldProblem::Parent { .. })));
+    assert!(matches!(
+        refused(3),
+        MeshFileProblem::Fold(FoldProblem::Parent { .. })
+    ));
     let missing = FoldProblem::NoFrame { frame: 5, last: 4 };
     assert!(matches!(refused(5), MeshFileProblem::Fold(p) if p == missing));
 }
@@ -305,7 +480,10 @@ fn cross(faces: &str) -> String {
 fn faces_of_a_crease_pattern_are_found() {
     let mesh = parse(MeshFormat::Fold, cross("").as_bytes()).unwrap();
     let sheet = mesh.clone().into_sheet().unwrap();
-    assert_eq!((mesh.polygons, sheet.topology().face_count(), sheet.area()), (4, 8, 4.0));
+    assert_eq!(
+        (mesh.polygons, sheet.topology().face_count(), sheet.area()),
+        (4, 8, 4.0)
+    );
     let given = ", \"faces_vertices\": [[0,1,8,7],[1,2,3,8],[8,3,4,5],[7,8,5,6]]";
     let given = parse(MeshFormat::Fold, cross(given).as_bytes()).unwrap();
     assert_eq!(given.into_sheet().unwrap().area(), 4.0);
@@ -344,14 +522,32 @@ fn patterns_without_faces_that_are_no_drawing_are_refused() {
     let square = "[0,0],[1,0],[1,1],[0,1]";
     let sides = "[0,1],[1,2],[2,3],[3,0]";
     let with = |more: &str| format!("{sides},{more}");
-    assert_eq!(refused(square, &with("[0,2],[3,1]")), FoldProblem::Crossing { first: 4, second: 5 });
-    assert_eq!(refused(square, &with("[0,2],[2,0]")), FoldProblem::UselessEdge { edge: 5 });
+    assert_eq!(
+        refused(square, &with("[0,2],[3,1]")),
+        FoldProblem::Crossing {
+            first: 4,
+            second: 5
+        }
+    );
+    assert_eq!(
+        refused(square, &with("[0,2],[2,0]")),
+        FoldProblem::UselessEdge { edge: 5 }
+    );
     let inner = format!("{square},[0.5,0.4]");
-    assert_eq!(refused(&inner, &with("[0,4]")), FoldProblem::LooseEnd { vertex: 4 });
+    assert_eq!(
+        refused(&inner, &with("[0,4]")),
+        FoldProblem::LooseEnd { vertex: 4 }
+    );
     let on_side = format!("{square},[0.5,0]");
-    assert!(matches!(refused(&on_side, &with("[2,4],[3,4]")), FoldProblem::Crossing { .. }));
+    assert!(matches!(
+        refused(&on_side, &with("[2,4],[3,4]")),
+        FoldProblem::Crossing { .. }
+    ));
     let two = format!("{square},[0.4,0.4],[0.6,0.4],[0.5,0.6]");
-    assert_eq!(refused(&two, &with("[4,5],[5,6],[6,4]")), FoldProblem::Pieces { pieces: 2 });
+    assert_eq!(
+        refused(&two, &with("[4,5],[5,6],[6,4]")),
+        FoldProblem::Pieces { pieces: 2 }
+    );
 }
 
 #[test]
@@ -370,17 +566,36 @@ fn cuts_separate_the_sheet() {
     // A slit from the boundary to the middle opens there and ends at the middle.
     let slit = cross("").replace("\"M\"", "\"C\"");
     let mesh = parse(MeshFormat::Fold, slit.as_bytes()).unwrap();
-    assert_eq!((mesh.vertex_count(), mesh.changes.vertices_at_cuts), (10, 1));
+    assert_eq!(
+        (mesh.vertex_count(), mesh.changes.vertices_at_cuts),
+        (10, 1)
+    );
     let sheet = mesh.clone().into_sheet().unwrap();
     let t = sheet.topology();
-    assert_eq!((t.component_count(), t.euler_characteristic(), t.boundary_edge_count()), (1, 1, 10));
-    assert_eq!(mesh.creases.iter().filter(|c| c.assignment == EdgeAssignment::Cut).count(), 2);
+    assert_eq!(
+        (
+            t.component_count(),
+            t.euler_characteristic(),
+            t.boundary_edge_count()
+        ),
+        (1, 1, 10)
+    );
+    assert_eq!(
+        mesh.creases
+            .iter()
+            .filter(|c| c.assignment == EdgeAssignment::Cut)
+            .count(),
+        2
+    );
     assert_eq!(sheet.area(), 4.0);
     // Two cuts in line separate two halves.
     let halves = slit.replace("\"V\",\"V\",\"V\"", "\"V\",\"C\",\"V\"");
     let mesh = parse(MeshFormat::Fold, halves.as_bytes()).unwrap();
     let sheet = mesh.clone().into_sheet().unwrap();
-    assert_eq!((sheet.topology().component_count(), mesh.vertex_count()), (2, 12));
+    assert_eq!(
+        (sheet.topology().component_count(), mesh.vertex_count()),
+        (2, 12)
+    );
     for crease in mesh.creases {
         let [a, b] = crease.ends.map(VertexId);
         assert!(sheet.topology().find_edge(a, b).is_some(), "{crease:?}");
@@ -409,7 +624,10 @@ fn angles_have_the_sign_of_the_mesh() {
 fn valid() -> Vec<(MeshFormat, Vec<u8>)> {
     let text = format!("solid s\n{}endsolid\n", text_facet([0, 1, 2]));
     vec![
-        (MeshFormat::Off, b"OFF 4 1 0\n1 0 0\n2 0 0\n2 1 0\n1 1 0\n4 0 1 2 3\n".to_vec()),
+        (
+            MeshFormat::Off,
+            b"OFF 4 1 0\n1 0 0\n2 0 0\n2 1 0\n1 1 0\n4 0 1 2 3\n".to_vec(),
+        ),
         (MeshFormat::Stl, binary_stl()),
         (MeshFormat::Stl, text.into_bytes()),
         (MeshFormat::Ply, binary_ply()),
@@ -418,7 +636,10 @@ fn valid() -> Vec<(MeshFormat, Vec<u8>)> {
         (MeshFormat::Glb, glb()),
         (MeshFormat::Fold, FOLD.as_bytes().to_vec()),
         (MeshFormat::Fold, cross("").into_bytes()),
-        (MeshFormat::Fold, cross("").replace("\"M\"", "\"C\"").into_bytes()),
+        (
+            MeshFormat::Fold,
+            cross("").replace("\"M\"", "\"C\"").into_bytes(),
+        ),
     ]
 }
 

@@ -18,7 +18,10 @@ impl MeshFile {
         let bound = |take: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
             std::array::from_fn(|k| points.iter().fold(start, |m, p| take(m, p[k])))
         };
-        let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
+        let (low, high) = (
+            bound(f64::min, f64::INFINITY),
+            bound(f64::max, f64::NEG_INFINITY),
+        );
         let extent = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
         // An extent beyond the largest number leaves one cell; a single place needs no more.
         let size = tolerance.max(LEAST_CELL * extent);
@@ -83,7 +86,8 @@ mod tests {
     use std::path::Path;
 
     /// Two triangles that miss each other by 1e-3 along their common edge.
-    const GAP: &str = "OFF 6 2 0\n0 0 0\n1 0 0\n0 1 0\n1 0.001 0\n1 1 0\n0 1.001 0\n3 0 1 2\n3 3 4 5\n";
+    const GAP: &str =
+        "OFF 6 2 0\n0 0 0\n1 0 0\n0 1 0\n1 0.001 0\n1 1 0\n0 1.001 0\n3 0 1 2\n3 3 4 5\n";
 
     fn welded(weld: Option<f64>) -> (usize, usize) {
         let options = MeshOptions {
@@ -113,7 +117,9 @@ mod tests {
         let mut points = Vec::new();
         for _ in 0..n {
             let mut number = || {
-                state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                state = state
+                    .wrapping_mul(6364136223846793005)
+                    .wrapping_add(1442695040888963407);
                 (state >> 40) as f64 / (1u64 << 24) as f64
             };
             let p = [number(), number(), 0.1 * number()];
@@ -126,16 +132,24 @@ mod tests {
             weld: Some(tolerance),
             ..MeshOptions::default()
         };
-        let mesh =
-            parse_mesh(text.as_bytes(), MeshFormat::Off, Path::new("x.off"), &options).unwrap();
+        let mesh = parse_mesh(
+            text.as_bytes(),
+            MeshFormat::Off,
+            Path::new("x.off"),
+            &options,
+        )
+        .unwrap();
         let kept = mesh.positions.as_chunks::<3>().0;
         assert!(kept.len() < n && kept.len() > 20);
-        let distance = |p: &[f64; 3], q: &[f64; 3]| {
-            (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt()
-        };
+        let distance =
+            |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
         for (k, p) in kept.iter().enumerate() {
             assert!(kept[..k].iter().all(|q| distance(p, q) > tolerance));
         }
-        assert!(points.iter().all(|p| kept.iter().any(|q| distance(p, q) <= tolerance)));
+        assert!(
+            points
+                .iter()
+                .all(|p| kept.iter().any(|q| distance(p, q) <= tolerance))
+        );
     }
 }

@@ -54,7 +54,11 @@ impl MeshFile {
                 };
                 let mut copied: Vec<FileCrease> = sides.iter().map(copy).collect();
                 copied.dedup_by_key(|c| c.ends);
-                if copied.is_empty() { vec![*crease] } else { copied }
+                if copied.is_empty() {
+                    vec![*crease]
+                } else {
+                    copied
+                }
             })
             .collect();
         for ends in &mut self.diagonals {

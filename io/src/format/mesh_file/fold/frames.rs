@@ -46,7 +46,11 @@ pub(super) fn read(bytes: &[u8], wanted: Option<usize>) -> Result<Frame, MeshFil
     }
     for k in 0..frames.len() {
         let frame = inherited(&frames, k)?;
-        if frame.vertices_coords.as_ref().is_some_and(|v| !v.is_empty()) {
+        if frame
+            .vertices_coords
+            .as_ref()
+            .is_some_and(|v| !v.is_empty())
+        {
             return Ok(frame);
         }
     }

@@ -45,8 +45,13 @@ pub(super) fn faces(points: &[Point], edges: &[FileCrease]) -> Result<Vec<Vec<i6
             edges[side / 2].assignment == EdgeAssignment::Boundary && is_face[face_of[side ^ 1]]
         })
     };
-    let kept = circuits.iter().enumerate().filter(|(k, c)| is_face[*k] && !is_hole(c));
-    Ok(kept.map(|(_, c)| c.iter().map(|s| corner(s) as i64).collect()).collect())
+    let kept = circuits
+        .iter()
+        .enumerate()
+        .filter(|(k, c)| is_face[*k] && !is_hole(c));
+    Ok(kept
+        .map(|(_, c)| c.iter().map(|s| corner(s) as i64).collect())
+        .collect())
 }
 
 /// Twice the signed area of a polygon in the plane z = 0.
@@ -116,7 +121,9 @@ fn check(points: &[Point], edges: &[FileCrease]) -> Result<(), FoldProblem> {
     if let Some(vertex) = degree.iter().position(|&d| d == 1) {
         return Err(FoldProblem::LooseEnd { vertex });
     }
-    let pieces = (0..points.len()).filter(|&v| degree[v] > 0 && piece[v] == v).count();
+    let pieces = (0..points.len())
+        .filter(|&v| degree[v] > 0 && piece[v] == v)
+        .count();
     if pieces == 1 {
         Ok(())
     } else {
@@ -137,7 +144,12 @@ fn root(parent: &mut [usize], mut v: usize) -> usize {
 fn check_crossings(points: &[Point], edges: &[FileCrease]) -> Result<(), FoldProblem> {
     let ends = |e: usize| edges[e].ends.map(|v| points[v as usize]);
     let extent = |k: usize| {
-        let [low, high] = bounds(edges.iter().flat_map(|e| e.ends).map(|v| points[v as usize][k]));
+        let [low, high] = bounds(
+            edges
+                .iter()
+                .flat_map(|e| e.ends)
+                .map(|v| points[v as usize][k]),
+        );
         high - low
     };
     let near = NEAR * extent(0).max(extent(1));
@@ -172,7 +184,9 @@ fn meet(e: [u32; 2], f: [u32; 2], points: &[Point], near: f64) -> bool {
     let at = |v: u32| points[v as usize];
     let ends_near = |e: [u32; 2], f: [u32; 2]| {
         let apart = |v: &&u32| !f.contains(v);
-        e.iter().filter(apart).any(|&v| distance(at(v), f.map(at)) <= near)
+        e.iter()
+            .filter(apart)
+            .any(|&v| distance(at(v), f.map(at)) <= near)
     };
     if ends_near(e, f) || ends_near(f, e) {
         return true;

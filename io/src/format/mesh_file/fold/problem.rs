@@ -15,7 +15,9 @@ pub enum FoldProblem {
         last: usize,
     },
     /// A frame inherits from one that does not exist, or from itself in a circle.
-    #[error("frame {frame} inherits from frame {parent}, which does not exist or inherits from it; correct `frame_parent`")]
+    #[error(
+        "frame {frame} inherits from frame {parent}, which does not exist or inherits from it; correct `frame_parent`"
+    )]
     Parent {
         /// The frame.
         frame: usize,
@@ -40,7 +42,9 @@ pub enum FoldProblem {
         count: usize,
     },
     /// A vertex with a fourth coordinate.
-    #[error("vertex {vertex} has a fourth coordinate; only the space of three dimensions is supported")]
+    #[error(
+        "vertex {vertex} has a fourth coordinate; only the space of three dimensions is supported"
+    )]
     Dimension {
         /// The vertex, from 0.
         vertex: usize,
@@ -56,7 +60,9 @@ pub enum FoldProblem {
         edges: usize,
     },
     /// An edge refers to a vertex that does not exist.
-    #[error("edge {edge} refers to vertex {vertex}, but there are {count} vertices, counted from 0; correct `edges_vertices`")]
+    #[error(
+        "edge {edge} refers to vertex {vertex}, but there are {count} vertices, counted from 0; correct `edges_vertices`"
+    )]
     EdgeVertex {
         /// The edge, from 0.
         edge: usize,
@@ -82,10 +88,14 @@ pub enum FoldProblem {
         degrees: f64,
     },
     /// There are no faces, and the vertices are not those of a flat crease pattern.
-    #[error("the file has no `faces_vertices`, and its vertices do not lie in the plane z = 0; faces are made of flat crease patterns only: export the file with its faces")]
+    #[error(
+        "the file has no `faces_vertices`, and its vertices do not lie in the plane z = 0; faces are made of flat crease patterns only: export the file with its faces"
+    )]
     NoFacesInSpace,
     /// Two edges of a crease pattern without faces meet where there is no vertex.
-    #[error("the file has no `faces_vertices`, and its edges {first} and {second} meet where they have no vertex in common; add the vertex, or export the file with its faces")]
+    #[error(
+        "the file has no `faces_vertices`, and its edges {first} and {second} meet where they have no vertex in common; add the vertex, or export the file with its faces"
+    )]
     Crossing {
         /// The first edge, from 0.
         first: usize,
@@ -93,25 +103,33 @@ pub enum FoldProblem {
         second: usize,
     },
     /// An edge of a crease pattern without faces has no length, or is there twice.
-    #[error("the file has no `faces_vertices`, and its edge {edge} has no length or is there twice; remove it, or export the file with its faces")]
+    #[error(
+        "the file has no `faces_vertices`, and its edge {edge} has no length or is there twice; remove it, or export the file with its faces"
+    )]
     UselessEdge {
         /// The edge, from 0.
         edge: usize,
     },
     /// A crease of a pattern without faces ends inside of a face.
-    #[error("the file has no `faces_vertices`, and vertex {vertex} is an end of one edge only; connect it to the other edges, or export the file with its faces")]
+    #[error(
+        "the file has no `faces_vertices`, and vertex {vertex} is an end of one edge only; connect it to the other edges, or export the file with its faces"
+    )]
     LooseEnd {
         /// The vertex, from 0.
         vertex: usize,
     },
     /// A crease pattern without faces is in pieces.
-    #[error("the file has no `faces_vertices`, and its edges make {pieces} separate pieces; split the file, or export it with its faces")]
+    #[error(
+        "the file has no `faces_vertices`, and its edges make {pieces} separate pieces; split the file, or export it with its faces"
+    )]
     Pieces {
         /// How many.
         pieces: usize,
     },
     /// A crease pattern without faces is too large.
-    #[error("the file has no `faces_vertices`, and its {edges} edges are more than the {limit} of which faces are made; export it with its faces")]
+    #[error(
+        "the file has no `faces_vertices`, and its {edges} edges are more than the {limit} of which faces are made; export it with its faces"
+    )]
     TooManyEdges {
         /// The number of edges.
         edges: usize,

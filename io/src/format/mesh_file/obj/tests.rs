@@ -2,8 +2,8 @@ use isosheet_mesh::{MeshError, TopologyError, generate};
 use proptest::prelude::*;
 
 use crate::{
-    MeshFile, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, ObjWriteError, Place, Polygons,
-    frame_path, parse_mesh, read_sheet, write_obj, write_obj_to,
+    MeshFile, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, ObjWriteError, Place,
+    Polygons, frame_path, parse_mesh, read_sheet, write_obj, write_obj_to,
 };
 use std::path::Path;
 
@@ -15,7 +15,12 @@ fn options(polygons: Polygons) -> MeshOptions {
 }
 
 fn parse_obj(bytes: &[u8], polygons: Polygons) -> Result<MeshFile, MeshFileError> {
-    parse_mesh(bytes, MeshFormat::Obj, Path::new("test.obj"), &options(polygons))
+    parse_mesh(
+        bytes,
+        MeshFormat::Obj,
+        Path::new("test.obj"),
+        &options(polygons),
+    )
 }
 
 fn parse(text: &str) -> Result<MeshFile, MeshFileError> {
@@ -62,7 +67,10 @@ fn reads_what_the_format_allows() {
 #[test]
 fn every_defect_names_its_line() {
     assert!(matches!(problem(""), (None, MeshFileProblem::Empty)));
-    assert!(matches!(problem("# only\n\n"), (None, MeshFileProblem::Empty)));
+    assert!(matches!(
+        problem("# only\n\n"),
+        (None, MeshFileProblem::Empty)
+    ));
     assert!(
         matches!(problem("\nsolid thing\nfacet\n"), (Some(2), MeshFileProblem::NotObj { word }) if word == "solid")
     );
@@ -112,7 +120,14 @@ fn every_defect_names_its_line() {
     let face = |f: &str| problem(&format!("{SQUARE}f {f}\n"));
     assert!(matches!(
         face("1 2 5"),
-        (Some(5), MeshFileProblem::IndexOutOfRange { index: 5, count: 4, first: 1 })
+        (
+            Some(5),
+            MeshFileProblem::IndexOutOfRange {
+                index: 5,
+                count: 4,
+                first: 1
+            }
+        )
     ));
     assert!(matches!(
         face("1 2 -5"),
