@@ -95,6 +95,7 @@ mod method;
 mod minimiser;
 mod model;
 mod motion;
+mod multipliers;
 mod observe;
 mod options;
 mod plate_bending;

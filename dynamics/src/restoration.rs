@@ -3,8 +3,10 @@
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
 use crate::contact::StepContact;
+use crate::isometry_rows::RowScale;
 use crate::iterate::Iterate;
 use crate::model::PINNED;
+use crate::multipliers::{LinearisedRows, MultiplierGoal, MultiplierSolver};
 use crate::primal::{PrimalMatrix, penalties};
 use crate::report::SolverEffort;
 use crate::unassigned::UnassignedMomentum;
@@ -35,6 +37,11 @@ const LOOSE_TOLERANCE: f64 = 1e-3;
 /// Part of the tolerance that is the goal of a projection with contact. It keeps what round-off adds in later
 /// steps below the tolerance, and so a sheet at rest from having to fold.
 const RESERVE: f64 = 0.1;
+/// Conjugate gradient iterations for the multipliers of a step, and the relative change of these from which an
+/// iteration is not worth its solve. With three iterations hanging sheets of 512 and 2048 triangles need up to a
+/// tenth fewer factorisations than with none; with eight, no fewer.
+const MULTIPLIER_ITERATIONS: usize = 3;
+const MULTIPLIERS_SETTLED: f64 = 1e-4;
 /// Passes of the method of multipliers: each contracts by the penalty, except along rods that are dependent.
 const PASSES: usize = 3;
 
@@ -51,7 +58,7 @@ const LARGEST_OPENING: f64 = 0.05;
 /// (M + r G^T G) dx = -r G^T c(x),
 /// ```
 ///
-/// with `r` raised while steps contract slowly or the masses hold them back, and lowered when the line search
+/// improved by [`MultiplierSolver`], with `r` raised while steps contract slowly or the masses hold them back, and lowered when the line search
 /// shortens them. Positive definite at any rank of `G`, so flat states are no obstacle; close to them
 /// convergence is linear instead of quadratic.
 ///
@@ -59,6 +66,11 @@ const LARGEST_OPENING: f64 = 0.05;
 /// press least on it, and nothing is passed through on the way.
 pub(crate) struct Restoration {
     axial: Vec<f64>,
+    solver: MultiplierSolver,
+    /// Sizes of the equations.
+    scales: Vec<RowScale>,
+    /// Minus the values of the equations: what a step has to change these values by.
+    wanted: Vec<f64>,
     transverse: Vec<f64>,
     unit: Vec<f64>,
     c: Vec<f64>,
@@ -113,6 +125,9 @@ impl Restoration {
         let m = model.isometry_rows().len();
         Self {
             axial: vec![0.0; m],
+            solver: MultiplierSolver::new(model),
+            scales: model.isometry_rows().scales(),
+            wanted: vec![0.0; m],
             transverse: vec![0.0; edges],
             unit: penalties(model, 1.0),
             c: vec![0.0; m],
@@ -154,7 +169,8 @@ impl Restoration {
             }
             effort.iterations += 1;
             effort.factorisations += 1;
-            match self.solve(model, matrix, contact.as_mut(), iterate, penalty) {
+            let accuracy = (penalty, tolerance);
+            match self.solve(model, matrix, contact.as_mut(), iterate, accuracy) {
                 Solved::Yes => {}
                 Solved::PenaltyTooLarge if penalty > PENALTY_RANGE.0 => {
                     penalty = (penalty * 1e-2).max(PENALTY_RANGE.0);
@@ -227,12 +243,13 @@ impl Restoration {
         matrix: &mut PrimalMatrix,
         contact: Option<&mut RestorationContact<'_, '_>>,
         iterate: &mut Iterate,
-        penalty: f64,
+        (penalty, tolerance): (f64, f64),
     ) -> Solved {
         let rows = model.isometry_rows();
         for e in 0..self.c.len() {
             self.axial[e] = penalty * self.unit[e];
-            self.w[e] = -self.axial[e] * self.c[e];
+            self.wanted[e] = -self.c[e];
+            self.w[e] = self.axial[e] * self.wanted[e];
         }
         self.transverse.fill(0.0);
         let geometry = contact.as_ref().map(|c| &*c.contact);
@@ -259,6 +276,23 @@ impl Restoration {
         }
         rows.apply_transpose_add(iterate.x(), &self.w, &mut self.density, &mut self.rhs);
         matrix.solve(model, &self.rhs, &mut self.dx);
+        let mut system = LinearisedRows {
+            model,
+            matrix,
+            x: iterate.x(),
+            values: &self.wanted,
+            scales: &self.scales,
+            stiffness: penalty,
+            unit_penalty: &self.unit,
+        };
+        let goal = MultiplierGoal {
+            max_iterations: MULTIPLIER_ITERATIONS,
+            violation: RESERVE * tolerance,
+            change: MULTIPLIERS_SETTLED,
+        };
+        self.w.fill(0.0);
+        self.solver
+            .improve(&mut system, &mut self.w, &mut self.dx, goal);
         Solved::Yes
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Without features the crate has the formats of files and needs the mesh alone. The feature `scene` adds
 //! scene files, `run` runs that survive being killed, and `cli` the command `isosheet`; each implies the ones
-//! before it.
+//! before it. With them the crate re-exports all others, so that a program needs to name this one alone.
 //!
 //! # Formats
 //!
@@ -13,6 +13,7 @@
 //! | trajectory npz, see [`Trajectory`] | [`Trajectory::read`] | [`Trajectory::write`] |
 //! | Matrix Market, coordinate format | | [`write_matrix_market`] |
 //! | summary JSON | [`read_json`] | [`write_json`] |
+//! | 3D page of a run (feature `view`) | | `view::Replay` |
 //!
 //! Two rules hold for everything that is written: no number that is not finite gets into a file (a typed
 //! error says which one it was), and a file appears under its name only when it is complete
@@ -28,7 +29,10 @@ pub use isosheet_mesh as mesh;
 pub mod scene;
 
 #[cfg(feature = "scene")]
-pub use {isosheet_collide as collide, isosheet_dynamics as dynamics};
+pub use {isosheet_collide as collide, isosheet_coords as coords, isosheet_dynamics as dynamics};
 
 #[cfg(feature = "run")]
 pub mod run;
+
+#[cfg(feature = "view")]
+pub mod view;

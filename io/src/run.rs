@@ -9,7 +9,7 @@
 //! | `trajectory.npz` | the frames ([`Trajectory`](crate::Trajectory)), at the end |
 //! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
 //! | `summary.json` | what came of it ([`Summary`]), last: a folder that has it is complete |
-//! | `frames.bin`, `checkpoint.bin` | what is needed to go on; in the end `trajectory.npz` replaces the frames |
+//! | `frames.bin`, `checkpoint.bin` | what is needed to go on; the trajectory replaces the frames |
 //! | `run.lock` | locked while a process works in the folder |
 //!
 //! A folder with a complete run of the same scene is left as it is. One with a part of it is continued, and

@@ -54,6 +54,20 @@ pub(crate) enum Command {
     /// prints a table. The exit code is 0 unless a case fails that is not declared an open limitation.
     /// Finished cases are kept, as in `reproduce-figures`.
     HardCases(HardCasesArgs),
+    /// Build the program of the 3D page of a run, io/view/dist, from io/view/src with npm and esbuild
+    ///
+    /// Only needed after a change of io/view; needs Node.js 20 or newer and the npm registry.
+    BundleView(BundleViewArgs),
+}
+
+/// Arguments of `bundle-view`.
+#[derive(Debug, Args)]
+pub(crate) struct BundleViewArgs {
+    /// Change nothing; fail if io/view/dist is not what the sources and the lock file make
+    ///
+    /// Says so and succeeds where npm is missing or the registry does not answer.
+    #[arg(long)]
+    pub(crate) check: bool,
 }
 
 /// Arguments of `speed-vs-error`.

@@ -6,10 +6,12 @@
 //! * `scale`: time, memory and fill of a step, and the cost of whole runs, against the size of the mesh.
 //! * `locking`: how much stiffer than a smooth sheet a triangulated one is.
 //! * `hard-cases`: what the solvers do where others break.
+//! * `bundle-view`: the program of the 3D page of a run.
 //!
 //! The exit code is 0 when everything was made, 1 on failure, 2 for a command line that makes no sense and
 //! 130 when stopped with Ctrl-C.
 
+mod bundle_view;
 mod cli;
 mod condition;
 mod draw;
@@ -48,6 +50,7 @@ fn main() -> ExitCode {
         cli::Command::Scale(args) => scale::run(&args),
         cli::Command::Locking(args) => locking::run(&args),
         cli::Command::HardCases(args) => hard_cases::run(&args),
+        cli::Command::BundleView(args) => bundle_view::run(&args),
     });
     match result {
         Ok(Outcome::Complete) => ExitCode::SUCCESS,

@@ -6,6 +6,7 @@ use crate::contact::StepSpan;
 use crate::isometry_rows::RowScale;
 use crate::iterate::Iterate;
 use crate::model::PINNED;
+use crate::multipliers::{LinearisedRows, MultiplierGoal, MultiplierSolver};
 use crate::primal::{PrimalMatrix, dot, penalties};
 use crate::report::SolverEffort;
 use crate::{Isometry, SheetModel};
@@ -42,6 +43,7 @@ pub(crate) struct Lagrangian {
     pub(super) iterate: Iterate,
     pub(super) matrix: PrimalMatrix,
     pub(super) multipliers: Vec<f64>,
+    solver: MultiplierSolver,
     pub(super) vertex_rows: VertexRows,
     /// Penalties `r_e` of equations as stiff as the masses.
     unit_penalty: Vec<f64>,
@@ -114,6 +116,7 @@ impl Lagrangian {
             iterate: Iterate::new(n),
             matrix: PrimalMatrix::new(model)?,
             multipliers: vec![0.0; m],
+            solver: MultiplierSolver::new(model),
             vertex_rows: VertexRows::new(model.constraints(), vertices, 1.0),
             unit_penalty: penalties(model, 1.0),
             scales: model.isometry_rows().scales(),
@@ -205,6 +208,17 @@ impl Lagrangian {
             rod_scale,
             round_off: ROUND_OFF_OPERATIONS * f64::EPSILON * sizes + POSITION_OPERATIONS * squares,
         }
+    }
+
+    /// `L . (c - c_0)` with the equations `c_0` at the start of the step and `c` at the iterate: by how much
+    /// their errors alone change the incremental potential, to first order.
+    pub(super) fn multiplier_work(&mut self, problem: &StepProblem<'_>) -> f64 {
+        let rows = problem.model.isometry_rows();
+        rows.residual_into(&problem.state.x, &mut self.change);
+        rows.residual_into(self.iterate.x(), &mut self.c);
+        let errors = self.c.iter().zip(&self.change);
+        let terms = self.multipliers.iter().zip(errors);
+        terms.map(|(m, (c, c_0))| m * (c - c_0)).sum()
     }
 
     /// Sets the gradient at the iterate, whose constraints have to be current. While bodies or pins move,
@@ -371,6 +385,22 @@ impl Lagrangian {
     pub(super) fn solve(&mut self, model: &SheetModel) -> f64 {
         self.matrix.solve(model, &self.gradient, &mut self.dx);
         self.slope()
+    }
+
+    /// Improves the multipliers of the isometry and the step `-dx` that was solved for with them; the violation
+    /// of the linearised equations that is left, as a strain.
+    pub(super) fn improve_multipliers(&mut self, model: &SheetModel, goal: MultiplierGoal) -> f64 {
+        let mut system = LinearisedRows {
+            model,
+            matrix: &mut self.matrix,
+            x: self.iterate.x(),
+            values: &self.c,
+            scales: &self.scales,
+            stiffness: self.stiffness,
+            unit_penalty: &self.unit_penalty,
+        };
+        let (multipliers, dx) = (&mut self.multipliers, &mut self.dx);
+        self.solver.improve(&mut system, multipliers, dx, goal)
     }
 
     /// Slope of the value along `-dx`, the gradient being current.

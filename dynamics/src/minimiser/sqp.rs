@@ -5,48 +5,30 @@ use super::problem::StepProblem;
 use super::{FRICTION_SETTLED, Minimiser, Strategy};
 use crate::Isometry;
 use crate::constraint::rows::HessianPart;
+use crate::multipliers::MultiplierGoal;
 use crate::report::SolverEffort;
 
-/// Regularisation of the linear systems of sequential quadratic programming.
-///
-/// With penalties `r` the regularised saddle-point system `[H G^T; G -1/r]` is solved by elimination of the
-/// multipliers, and the regularisation is taken out again by passes of the method of multipliers with the
-/// same factor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Regularisation {
-    /// Rods 1e10 times as stiff as the masses, which keeps the momentum to round-off, and one pass: what
-    /// nearly dependent rods cannot hold is left over, and multipliers stay moderate where there are no
-    /// finite ones.
-    Strong,
-    /// Rods 1e13 times as stiff (beyond, the masses drown in the round-off of the penalty) and up to four
-    /// passes. The first leaves what the stiffness lets through along nearly dependent rods, as in a sheet
-    /// that lies flat, the fourth nothing that can be seen in the imbalance of forces.
-    Weak,
-}
-
-impl Regularisation {
-    fn stiffness(self) -> f64 {
-        match self {
-            Self::Strong => 1e10,
-            Self::Weak => 1e13,
-        }
-    }
-
-    fn passes(self) -> usize {
-        match self {
-            Self::Strong => 1,
-            Self::Weak => 4,
-        }
-    }
-}
-
-/// Edge strain of the linearised rods up to which a strongly regularised step is taken. A sheet hanging by a
-/// corner, of 2000 triangles, stays below, also where it is nearly flat; one pulled with a million times its
-/// weight does not, nor do masses in the ratio of 1e8.
-const MAX_LINEARISED_STRAIN: f64 = 1e-7;
-/// Change of the multipliers, relative to the largest, from which a pass is not worth its solve. With 1e-3 a
+/// Stiffness of the rods in the linear systems, in units of that of the masses. The systems are regularised
+/// saddle-point systems `[H G^T; G -1/r]` with penalties `r`, solved by elimination of the multipliers;
+/// [`MultiplierSolver`](crate::multipliers::MultiplierSolver) takes the regularisation out again. With 1e10, 1e11
+/// and 1e12 hanging sheets of 128 to 2048 triangles need the same numbers of factorisations within a tenth (the
+/// largest 5 to 25 % more with 1e12). With 1e10 steps keep the momentum to round-off, with 1e11 no longer.
+const STIFFNESS: f64 = 1e10;
+/// Conjugate gradient iterations for the multipliers of a step: nearly dependent rods, as in a sheet that lies
+/// flat, have a few eigenvalues each of which takes an iteration. With none, clamped strips of nearly dependent
+/// rods need three to ten times the factorisations; 6 and 16 differ by less than a tenth.
+const MULTIPLIER_ITERATIONS: usize = 8;
+/// The same for isometry in weak form. Its equations are independent, but condition numbers are those of an
+/// elastic plate in its plane: a strip of 4 x 64 squares needs 2 to 4 factorisations a step, and with 8
+/// iterations up to 50.
+const WEAK_MULTIPLIER_ITERATIONS: usize = 30;
+/// Change of the multipliers, relative to the largest, from which an iteration is not worth its solve. With 1e-3 a
 /// sheet at rest on a table needs three times as many steps.
 const MULTIPLIERS_SETTLED: f64 = 1e-4;
+/// The same for isometry in weak form.
+const WEAK_MULTIPLIERS_SETTLED: f64 = 1e-8;
+/// Passes in which the multipliers of vertex constraints follow those of the isometry.
+const CONSTRAINT_PASSES: usize = 4;
 /// Part of [`ImplicitOptions::max_iterations`](crate::ImplicitOptions::max_iterations) that is the largest
 /// number of steps in contact, 20 by default: a draping sheet needs three to six steps, a sheet at rest two
 /// to six, an impact more where contact cuts them. (Without contact all iterations may be used: a hanging
@@ -62,9 +44,9 @@ const WEAK_ITERATE_STRAIN: f64 = 1e-1;
 /// Largest number of iterations of a restoration of an iterate: more are a sign that the step is not a small
 /// one.
 const MAX_RESTORATION: usize = 12;
-/// Largest number of iterations of the last restoration. Clamped strips, whose rods lock, need up to 40; with
-/// 12 half as many steps again end in the augmented Lagrangian.
-const MAX_LAST_RESTORATION: usize = 40;
+/// Largest number of iterations of the last restoration. Where they do not suffice, programming goes on from
+/// there. With 10, 20 and 40 hanging sheets of 2048 triangles need 16 600, 13 100 and 14 300 factorisations.
+const MAX_LAST_RESTORATION: usize = 20;
 /// Edge strain from which the last restoration is a small displacement.
 const SMALL_STRAIN: f64 = 1e-5;
 /// Largest number of step halvings in contact; after these the augmented Lagrangian is used. Two, four and six
@@ -96,7 +78,6 @@ const ARMIJO: f64 = 1e-4;
 pub(super) struct Sqp<'a, 'b> {
     minimiser: &'a mut Minimiser,
     problem: &'a mut StepProblem<'b>,
-    regularisation: Regularisation,
     effort: &'a mut SolverEffort,
     limits: Limits,
     /// Steps left before the iteration counts as failed.
@@ -131,7 +112,6 @@ impl<'a, 'b> Sqp<'a, 'b> {
     pub(super) fn new(
         minimiser: &'a mut Minimiser,
         problem: &'a mut StepProblem<'b>,
-        regularisation: Regularisation,
         effort: &'a mut SolverEffort,
     ) -> Self {
         // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that
@@ -159,7 +139,6 @@ impl<'a, 'b> Sqp<'a, 'b> {
         Self {
             minimiser,
             problem,
-            regularisation,
             effort,
             limits,
             steps_left: limits.steps,
@@ -209,7 +188,10 @@ impl<'a, 'b> Sqp<'a, 'b> {
                 return (is_round_off && self.restore_lengths()).then_some(residual);
             };
             if length == 1.0 && is_converged && self.is_near() && !self.goes_on(&direction) {
-                return self.restore_lengths().then_some(residual);
+                if self.restore_lengths() {
+                    return Some(residual);
+                }
+                self.minimiser.lagrangian.merit(self.problem);
             }
         }
         None
@@ -242,17 +224,14 @@ impl<'a, 'b> Sqp<'a, 'b> {
 
     /// Solves for the step `-dx` at the iterate and for the multipliers; nothing if there is no step.
     fn direction(&mut self) -> Option<Direction> {
-        let stiffness = self.regularisation.stiffness();
         let (model, merit_stiffness) = (self.problem.model, self.limits.merit_stiffness);
         let constraint_stiffness = self.minimiser.options.stiffness;
-        // Linearised lengths within the tolerance need no further pass. (The balance of momentum holds after
-        // every pass.)
-        let strain_tolerance = self.minimiser.strain_tolerance(self.problem);
+        let goal = self.multiplier_goal();
         let lagrangian = &mut self.minimiser.lagrangian;
         self.effort.iterations += 1;
         // Vertex constraints stay as soft as in the merit function: their curvature goes by the multiplier
         // estimates, which a large penalty would make those of length errors.
-        lagrangian.set_stiffness(stiffness, constraint_stiffness);
+        lagrangian.set_stiffness(STIFFNESS, constraint_stiffness);
         let hessian = lagrangian
             .factorize(
                 self.problem,
@@ -265,26 +244,12 @@ impl<'a, 'b> Sqp<'a, 'b> {
         if hessian == Definiteness::Modified {
             self.hessian = HessianPart::PositiveSemidefinite;
         }
-        for _ in 0..self.regularisation.passes() {
+        for _ in 0..CONSTRAINT_PASSES {
             lagrangian.set_gradient(self.problem);
             lagrangian.solve(model);
-            let rows = model.isometry_rows();
-            let x = lagrangian.iterate.x();
-            rows.apply(x, &lagrangian.dx, &mut lagrangian.change);
-            let [mut change, mut largest] = lagrangian.vertex_rows.update_after(&lagrangian.dx);
-            let mut strain = 0.0_f64;
-            for e in 0..lagrangian.c.len() {
-                let left = lagrangian.c[e] - lagrangian.change[e];
-                let update = lagrangian.penalty(e) * left;
-                lagrangian.multipliers[e] += update;
-                largest = largest.max(lagrangian.multipliers[e].abs());
-                change = change.max(update.abs());
-                strain = strain.max(left.abs() / lagrangian.scales[e].unit);
-            }
-            if self.regularisation == Regularisation::Strong && strain > MAX_LINEARISED_STRAIN {
-                return None;
-            }
-            if strain <= strain_tolerance || change <= MULTIPLIERS_SETTLED * largest {
+            lagrangian.improve_multipliers(model, goal);
+            let [change, largest] = lagrangian.vertex_rows.update_after(&lagrangian.dx);
+            if change <= MULTIPLIERS_SETTLED * largest {
                 break;
             }
         }
@@ -298,6 +263,19 @@ impl<'a, 'b> Sqp<'a, 'b> {
             slope,
             hessian,
         })
+    }
+
+    /// When the multipliers of a step are good enough: once the linearised lengths are within the tolerance.
+    fn multiplier_goal(&self) -> MultiplierGoal {
+        let (max_iterations, change) = match self.problem.model.isometry() {
+            Isometry::Weak => (WEAK_MULTIPLIER_ITERATIONS, WEAK_MULTIPLIERS_SETTLED),
+            Isometry::Rods | Isometry::Elastic => (MULTIPLIER_ITERATIONS, MULTIPLIERS_SETTLED),
+        };
+        MultiplierGoal {
+            max_iterations,
+            violation: self.minimiser.strain_tolerance(self.problem),
+            change,
+        }
     }
 
     /// Goes on by up to `limit` of the step, not far from the manifold; the part of the step, or nothing if
@@ -339,7 +317,7 @@ impl<'a, 'b> Sqp<'a, 'b> {
         let first = Strategy::list(self.problem, self.minimiser.faces).first();
         let may_be_saddle = direction.hessian == Definiteness::Modified
             && !self.problem.has_contact()
-            && first == Some(&Strategy::Sqp(self.regularisation))
+            && first == Some(&Strategy::Sqp)
             && !self.is_perturbed;
         let Minimiser {
             options,

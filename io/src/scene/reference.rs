@@ -45,6 +45,21 @@ SCENE` says what is wrong with one, and `--set key=value` changes a key for one 
 Where a key has several choices, a choice with keys of its own is a table with one entry
 (`shape = { sphere = { radius = 0.1 } }`), and one without keys is its name (`shape = \"half_space\"`).
 
+`isosheet simulate` writes the folder `NAME-run` (`--out` names another one): `scene.toml` as it was run, `meshes/`
+with the mesh files, `history.csv`, `trajectory.npz`, `obj/` if it is asked for, and last `summary.json`. A run that
+was stopped is continued by the same command, or by `isosheet resume DIR`. The exit codes:
+
+| code | meaning |
+|---|---|
+| 0 | done; of `simulate`, the run is complete |
+| 1 | a step of the simulation failed |
+| 2 | the command line is wrong |
+| 3 | the scene or the mesh is wrong, or a file cannot be read |
+| 4 | the folder holds the run of another scene or version, or other files |
+| 5 | another process is writing to the folder |
+| 6 | a file or a folder cannot be written |
+| 130 | stopped by Ctrl-C; the same command continues |
+
 This page and `scene.schema.json`, the JSON schema for editors, are made by `isosheet reference DIR` of the
 structs that read scenes.
 ";

@@ -7,7 +7,7 @@ use super::{Scene, Setup};
 use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
-use toml_edit::DocumentMut;
+use toml_edit::{DocumentMut, Value};
 
 /// A scene with its text, and the folder that its paths are relative to.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,14 +126,20 @@ impl SceneFile {
         Ok(setup)
     }
 
-    /// The same scene with mesh files of other names in the same folder, one for each of [`Scene::files`].
-    pub(crate) fn with_files(&self, names: &[PathBuf]) -> Result<Self, SceneFileError> {
+    /// The same scene with other paths of mesh files, one for each of [`Scene::files`].
+    ///
+    /// # Errors
+    /// [`SceneFileError`] if the text does not take the paths.
+    pub fn with_files(&self, names: &[PathBuf]) -> Result<Self, SceneFileError> {
         let edits: Vec<String> = self
             .scene
             .files()
             .iter()
             .zip(names)
-            .map(|((key, _), name)| format!("{key}.path={:?}", name.to_string_lossy()))
+            .map(|((key, _), name)| {
+                let name = Value::from(name.to_string_lossy().as_ref());
+                format!("{key}.path={name}")
+            })
             .collect();
         Self::parse(self.text.text.clone(), &self.text.path, &edits)
     }

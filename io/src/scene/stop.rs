@@ -4,8 +4,8 @@ use super::problem::{Checks, Key};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Most steps of a run: a history of so many rows has a hundred gigabytes, and at ten microseconds a step, the
-/// least that a step of the smallest sheets takes, the run goes on for three hours.
+/// Most steps of a run: a history of so many rows has a hundred gigabytes, and at ten microseconds a step,
+/// the least that a step of the smallest sheets takes, the run goes on for three hours.
 const MOST_STEPS: f64 = 1e9;
 
 /// When a run ends: at the first of these conditions that holds after a step.

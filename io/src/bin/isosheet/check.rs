@@ -41,34 +41,61 @@ impl Check {
 
     fn check_mesh(&self) -> Done {
         let name = self.file.display();
-        let Some(fixed) = &self.fix else {
-            let mesh = read(&self.file, Polygons::Refuse)?;
-            return match mesh.clone().into_sheet() {
-                Ok(sheet) => to_stdout(&format!("{name}: a sheet of {}\n", counts(&sheet))),
-                Err(error) => Err(Failure::new(
-                    Code::Input,
-                    format!("{error}\n{}", what_repair_does(mesh, &self.file)),
-                )),
-            };
-        };
-        let mut mesh = read(&self.file, Polygons::Triangulate)?;
+        if let Some(fixed) = &self.fix {
+            return self.fix_mesh(fixed);
+        }
+        let mesh = read(&self.file, Polygons::Refuse)?;
+        match mesh.clone().into_sheet() {
+            Ok(sheet) => to_stdout(&format!(
+                "{name}: a sheet of {}\n{}",
+                counts(&sheet),
+                what_merging_does(mesh)
+            )),
+            Err(error) => Err(Failure::new(
+                Code::Input,
+                format!("{error}\n{}", what_repair_does(mesh, &self.file)),
+            )),
+        }
+    }
+
+    fn fix_mesh(&self, fixed: &Path) -> Done {
+        let name = self.file.display();
+        let given = read(&self.file, Polygons::Triangulate)?;
+        let mut mesh = given.clone();
         let repair = mesh
             .repair()
-            .map_err(|e| Failure::new(Code::Input, format!("{name}: {e}; edit the mesh there")))?;
+            .map_err(|e| format!("{name}: {e}; edit the mesh there"));
         let polygons = match mesh.polygons {
             0 => String::new(),
             n => format!("{n} polygons cut into triangles, "),
         };
-        let sheet = mesh
-            .into_sheet()
-            .map_err(|e| Failure::new(Code::Input, format!("{e}\n(after the repair: {repair})")))?;
+        let repaired = repair.and_then(|repair| match mesh.into_sheet() {
+            Ok(sheet) => Ok((sheet, repair.to_string())),
+            Err(error) => Err(format!("{error}\n(after the repair: {repair})")),
+        });
+        // Where parts of a valid sheet touch, merging their vertices may join more than two faces.
+        let (sheet, done) = match (repaired, given.into_sheet()) {
+            (Ok(repaired), _) => repaired,
+            (Err(_), Ok(sheet)) => (sheet, "valid as it was; parts that touch stay apart".into()),
+            (Err(message), Err(_)) => return Err(Failure::new(Code::Input, message)),
+        };
         write_obj(fixed, sheet.topology(), sheet.positions())
             .map_err(|e| Failure::new(Code::Output, e))?;
         to_stdout(&format!(
-            "{}: a sheet of {} ({polygons}{repair})\n",
+            "{}: a sheet of {} ({polygons}{done})\n",
             fixed.display(),
             counts(&sheet)
         ))
+    }
+}
+
+/// What a repair would do to a mesh that is a sheet already.
+fn what_merging_does(mut mesh: MeshFile) -> String {
+    match mesh.repair() {
+        Ok(repair) if !repair.is_nothing() => {
+            format!("note: `--fix FILE2` would join parts that touch: {repair}\n")
+        }
+        _ => String::new(),
     }
 }
 
@@ -105,5 +132,13 @@ fn what_repair_does(mut mesh: MeshFile, path: &Path) -> String {
 
 fn counts(sheet: &Sheet) -> String {
     let t = sheet.topology();
-    format!("{} vertices and {} faces", t.vertex_count(), t.face_count())
+    let parts = match t.component_count() {
+        1 => String::new(),
+        n => format!(" in {n} parts"),
+    };
+    format!(
+        "{} vertices and {} faces{parts}",
+        t.vertex_count(),
+        t.face_count()
+    )
 }

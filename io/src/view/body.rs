@@ -1,0 +1,148 @@
+//! Bodies beside the sheet.
+
+use super::check;
+use super::error::ViewError;
+
+/// The form of a body in its own frame. Lengths in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BodyShape {
+    /// Everything with `z <= 0`. The page shows a finite patch of the plane with a grid.
+    HalfSpace,
+    /// A box about the origin with edges along the axes.
+    Cuboid {
+        /// Half the edge lengths.
+        half: [f64; 3],
+    },
+    /// A ball about the origin.
+    Sphere {
+        /// Its radius.
+        radius: f64,
+    },
+    /// A solid cylinder about the z axis, flat at both ends.
+    Cylinder {
+        /// Its radius.
+        radius: f64,
+        /// Half its height.
+        half_height: f64,
+    },
+    /// A cylinder about the z axis with half balls at both ends.
+    Capsule {
+        /// Its radius.
+        radius: f64,
+        /// Half the length between the centres of the balls.
+        half_length: f64,
+    },
+    /// Triangles, shown from both sides.
+    Mesh {
+        /// Positions of the N corners (length 3N).
+        vertices: Vec<f64>,
+        /// Corners of the triangles, counted from 0.
+        faces: Vec<[u32; 3]>,
+    },
+}
+
+/// Where a body is: a point `X` of its own frame is at `R X + translation`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// The rotation `R` as a quaternion `[x, y, z, w]` of length 1, where `w` is the real part.
+    pub rotation: [f64; 4],
+    /// Where the origin of the body is, in metres.
+    pub translation: [f64; 3],
+}
+
+impl Pose {
+    /// No rotation and no translation.
+    pub const IDENTITY: Self = Self {
+        rotation: [0.0, 0.0, 0.0, 1.0],
+        translation: [0.0; 3],
+    };
+
+    /// A translation, in metres.
+    pub const fn at(translation: [f64; 3]) -> Self {
+        Self {
+            translation,
+            ..Self::IDENTITY
+        }
+    }
+}
+
+/// A rigid body beside the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Its name.
+    pub name: String,
+    /// Its form.
+    pub shape: BodyShape,
+    /// Its pose in each frame (length T), or a single one when it does not move.
+    pub poses: Vec<Pose>,
+}
+
+/// By how much the length of a quaternion may differ from 1: quaternions that were integrated or rounded to
+/// single precision (6e-8) pass, and what is no rotation does not. The page normalises them.
+const QUATERNION_TOLERANCE: f64 = 1e-3;
+
+impl Body {
+    pub(super) fn validate(&self, index: usize, frames: usize) -> Result<(), ViewError> {
+        let what = format!("body {index} (`{}`)", self.name);
+        self.check_shape(&what)?;
+        if self.poses.len() != 1 {
+            check::length(&format!("{what}: the poses"), self.poses.len(), frames)?;
+        }
+        for (index, pose) in self.poses.iter().enumerate() {
+            check::finite_of(&pose.rotation, || {
+                format!("{what}: the rotation of pose {index}")
+            })?;
+            check::finite_of(&pose.translation, || {
+                format!("{what}: the translation of pose {index}")
+            })?;
+            let norm = pose.rotation.iter().map(|c| c * c).sum::<f64>().sqrt();
+            if (norm - 1.0).abs() > QUATERNION_TOLERANCE {
+                return Err(ViewError::Rotation { what, index, norm });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_shape(&self, what: &str) -> Result<(), ViewError> {
+        let positive = |lengths: &[(&'static str, f64)]| {
+            for &(name, value) in lengths {
+                if !value.is_finite() || value <= 0.0 {
+                    return Err(ViewError::BodyLength {
+                        what: what.into(),
+                        name,
+                        value,
+                    });
+                }
+            }
+            Ok(())
+        };
+        match &self.shape {
+            BodyShape::HalfSpace => Ok(()),
+            BodyShape::Cuboid { half: [x, y, z] } => positive(&[
+                ("half the edge along x", *x),
+                ("half the edge along y", *y),
+                ("half the edge along z", *z),
+            ]),
+            BodyShape::Sphere { radius } => positive(&[("the radius", *radius)]),
+            BodyShape::Cylinder {
+                radius,
+                half_height,
+            } => positive(&[("the radius", *radius), ("half the height", *half_height)]),
+            BodyShape::Capsule {
+                radius,
+                half_length,
+            } => positive(&[("the radius", *radius), ("half the length", *half_length)]),
+            BodyShape::Mesh { vertices, faces } => {
+                let count = vertices.len() / 3;
+                let name = format!("{what}: the corners");
+                check::length(&name, vertices.len(), 3 * count)?;
+                check::finite(&name, vertices)?;
+                if faces.is_empty() {
+                    return Err(ViewError::NoBodyFaces { what: what.into() });
+                }
+                let corners = faces.as_flattened();
+                check::vertices(&format!("{what}: the triangles"), corners, count)
+            }
+        }
+    }
+}

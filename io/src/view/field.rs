@@ -1,0 +1,136 @@
+//! Values on the sheet, and quantities over time.
+
+use isosheet_mesh::Topology;
+
+use super::check;
+use super::error::ViewError;
+
+/// Where the values of a [`Field`] belong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// One value for each vertex.
+    Vertex,
+    /// One value for each edge, in the order of [`Topology::edges`]: by smaller, then by larger vertex.
+    Edge,
+    /// One value for each face.
+    Face,
+}
+
+/// How values are laid out along a scale of colours or an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scale {
+    /// By value.
+    #[default]
+    Linear,
+    /// By logarithm: no value is negative. Zeros are shown as zeros in colours and left out of plots.
+    Logarithmic,
+}
+
+/// A quantity on the sheet, such as the strain of the edges or the gap of the vertices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Its name.
+    pub name: String,
+    /// Its unit, empty for a number without one.
+    pub unit: String,
+    /// Where its values belong.
+    pub place: Place,
+    /// The scale of its colours.
+    pub scale: Scale,
+    /// The values in each frame (T lists with one value for each vertex, edge or face).
+    pub values: Vec<Vec<f64>>,
+}
+
+/// A quantity over time, such as an energy or the number of iterations.
+///
+/// Series that follow each other and have the same unit (not empty), scale and times share a plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Its name.
+    pub name: String,
+    /// Its unit, empty for a number without one.
+    pub unit: String,
+    /// The scale of its axis.
+    pub scale: Scale,
+    /// Times, ascending, in seconds. They need not be the times of the frames.
+    pub times: Vec<f64>,
+    /// The value at each time.
+    pub values: Vec<f64>,
+}
+
+impl Field {
+    /// The relative change of the length of each edge, `| |x_a - x_b| / l_e - 1 |`, in each frame, on a
+    /// logarithmic scale. The rest length `l_e` is that of the rest positions (length 3V); `positions` has a
+    /// list of length 3V for each frame. The page cannot recover strains from its rounded positions.
+    ///
+    /// # Errors
+    /// [`ViewError`] when the triangles are no manifold, or a list has the wrong length.
+    pub fn edge_strain(
+        faces: &[[u32; 3]],
+        rest: &[f64],
+        positions: &[Vec<f64>],
+    ) -> Result<Self, ViewError> {
+        let topology = Topology::from_faces(rest.len() / 3, faces)?;
+        let size = 3 * topology.vertex_count();
+        check::length("the rest positions", rest.len(), size)?;
+        let length = |x: &[f64]| -> Vec<f64> {
+            let ends = topology.edges().iter().map(|e| e.map(|v| 3 * v.index()));
+            ends.map(|[a, b]| {
+                let d = [0, 1, 2].map(|k| x[a + k] - x[b + k]);
+                (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()
+            })
+            .collect()
+        };
+        let at_rest = length(rest);
+        let mut values = Vec::with_capacity(positions.len());
+        for (frame, x) in positions.iter().enumerate() {
+            check::length_of(x.len(), size, || format!("the positions of frame {frame}"))?;
+            let strain = length(x).into_iter().zip(&at_rest);
+            values.push(strain.map(|(l, rest)| (l / rest - 1.0).abs()).collect());
+        }
+        Ok(Self {
+            name: "strain".into(),
+            unit: String::new(),
+            place: Place::Edge,
+            scale: Scale::Logarithmic,
+            values,
+        })
+    }
+
+    pub(super) fn validate(
+        &self,
+        index: usize,
+        topology: &Topology,
+        frames: usize,
+    ) -> Result<(), ViewError> {
+        let what = format!("field {index} (`{}`)", self.name);
+        check::length(&what, self.values.len(), frames)?;
+        let expected = match self.place {
+            Place::Vertex => topology.vertex_count(),
+            Place::Edge => topology.edge_count(),
+            Place::Face => topology.face_count(),
+        };
+        for (frame, values) in self.values.iter().enumerate() {
+            let what = || format!("{what}, frame {frame}");
+            check::length_of(values.len(), expected, what)?;
+            check::finite_of(values, what)?;
+            if self.scale == Scale::Logarithmic {
+                check::not_negative(values, what)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Series {
+    pub(super) fn validate(&self, index: usize) -> Result<(), ViewError> {
+        let what = format!("series {index} (`{}`)", self.name);
+        check::length(&what, self.values.len(), self.times.len())?;
+        check::times(&format!("{what}: the times"), &self.times)?;
+        check::finite(&what, &self.values)?;
+        if self.scale == Scale::Logarithmic {
+            check::not_negative(&self.values, || what.clone())?;
+        }
+        Ok(())
+    }
+}

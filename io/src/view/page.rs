@@ -1,0 +1,119 @@
+//! The page: its program, its style and the data in one text.
+
+use std::sync::LazyLock;
+
+use super::document::Document;
+use super::error::ViewError;
+use super::pack::pack_text;
+use super::replay::Replay;
+
+/// The page without title, style, licences, data and program, which belong at the markers, in this order.
+const TEMPLATE: &str = include_str!("../../view/page.html");
+const STYLE: &str = include_str!("../../view/dist/view.css");
+const LICENCES: &str = include_str!("../../view/dist/LICENSES.txt");
+const PROGRAM: &str = include_str!("../../view/dist/view.js");
+
+/// The program as it is in a page.
+static PACKED_PROGRAM: LazyLock<String> = LazyLock::new(|| pack_text(PROGRAM));
+
+/// The size of a page without data.
+fn shell_size() -> usize {
+    TEMPLATE.len() + STYLE.len() + LICENCES.len() + PACKED_PROGRAM.len()
+}
+
+/// How a page is made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PageOptions {
+    /// The largest size of a page, in bytes; default 8 000 000, which browsers open in about a second and
+    /// which passes as an attachment. Of a run that needs more, every second, fourth, ... frame is kept, and
+    /// the last one. The page says so.
+    pub budget: usize,
+}
+
+impl Default for PageOptions {
+    fn default() -> Self {
+        Self { budget: 8_000_000 }
+    }
+}
+
+impl PageOptions {
+    /// Checks that the budget has room for the program of the page.
+    ///
+    /// # Errors
+    /// [`ViewError::Budget`].
+    pub fn validate(&self) -> Result<(), ViewError> {
+        let least = shell_size();
+        if self.budget < least {
+            return Err(ViewError::Budget {
+                budget: self.budget,
+                least,
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Replay {
+    /// The page as a text, with the default [`PageOptions`].
+    ///
+    /// # Errors
+    /// See [`Self::to_html_with`].
+    pub fn to_html(&self) -> Result<String, ViewError> {
+        self.to_html_with(&PageOptions::default())
+    }
+
+    /// The page as a text: one file that needs no other and no connection.
+    ///
+    /// # Errors
+    /// [`ViewError`] for a replay or options that are not valid, and [`ViewError::TooLarge`] when a page with
+    /// the first and the last frame alone exceeds the budget.
+    pub fn to_html_with(&self, options: &PageOptions) -> Result<String, ViewError> {
+        options.validate()?;
+        self.validate()?;
+        let mut stride = 1;
+        loop {
+            let document = Document::new(self, stride);
+            let page = fill(&self.title, &document.to_json());
+            if page.len() <= options.budget {
+                return Ok(page);
+            }
+            if document.frame_count() <= 2 {
+                return Err(ViewError::TooLarge {
+                    bytes: page.len(),
+                    frames: document.frame_count(),
+                    budget: options.budget,
+                });
+            }
+            stride *= 2;
+        }
+    }
+}
+
+/// Fills the template. Texts that are filled in are not searched for markers.
+fn fill(title: &str, data: &str) -> String {
+    let mut page = String::with_capacity(shell_size() + title.len() + data.len());
+    let mut rest = TEMPLATE;
+    for (marker, text) in [
+        ("{title}", escape(title).as_str()),
+        ("{style}", STYLE),
+        ("{licences}", &escape(LICENCES)),
+        ("{data}", data),
+        ("{program}", &PACKED_PROGRAM),
+    ] {
+        let (before, after) = rest
+            .split_once(marker)
+            .expect("the template has the markers");
+        page.push_str(before);
+        page.push_str(text);
+        rest = after;
+    }
+    page.push_str(rest);
+    page
+}
+
+/// A text in HTML.
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}

@@ -1,0 +1,100 @@
+//! What the page of a run shows.
+
+use isosheet_mesh::Topology;
+
+use super::body::Body;
+use super::check;
+use super::error::ViewError;
+use super::field::{Field, Series};
+
+/// An axis of space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Axis {
+    /// The x axis.
+    X,
+    /// The y axis.
+    Y,
+    /// The z axis.
+    #[default]
+    Z,
+}
+
+/// Everything that the page of a run shows: V vertices, T frames. Positions in metres, times in seconds.
+///
+/// All fields except [`faces`](Self::faces), [`times`](Self::times), [`positions`](Self::positions) and
+/// [`rest`](Self::rest) may be left as [`Default`] makes them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Replay {
+    /// Title of the page.
+    pub title: String,
+    /// Corners of the faces, counter-clockwise as seen from the front, counted from 0.
+    pub faces: Vec<[u32; 3]>,
+    /// Time of each frame (length T, ascending).
+    pub times: Vec<f64>,
+    /// Positions in each frame (T lists of length 3V).
+    pub positions: Vec<Vec<f64>>,
+    /// Positions of the unloaded sheet (length 3V).
+    pub rest: Vec<f64>,
+    /// The direction that is up on the screen and along which heights are measured.
+    pub up: Axis,
+    /// Bodies that the sheet meets.
+    pub bodies: Vec<Body>,
+    /// Vertices that are held.
+    pub pins: Vec<u32>,
+    /// Values at vertices, edges or faces, to colour the sheet by.
+    pub fields: Vec<Field>,
+    /// Quantities over time, to plot.
+    pub series: Vec<Series>,
+    /// Rows of a table: name and value.
+    pub summary: Vec<(String, String)>,
+    /// The scene as a text.
+    pub scene: String,
+    /// The command that makes the run again.
+    pub reproduce: String,
+}
+
+impl Replay {
+    /// Checks every length, index and number.
+    ///
+    /// # Errors
+    /// [`ViewError`] naming the first list that cannot be shown, the index and the value.
+    pub fn validate(&self) -> Result<(), ViewError> {
+        self.topology().map(drop)
+    }
+
+    /// Checks everything, and the connectivity of the sheet.
+    pub(super) fn topology(&self) -> Result<Topology, ViewError> {
+        if self.positions.is_empty() {
+            return Err(ViewError::NoFrames);
+        }
+        if self.faces.is_empty() {
+            return Err(ViewError::NoFaces);
+        }
+        let vertices = self.rest.len() / 3;
+        check::length("the rest positions", self.rest.len(), 3 * vertices)?;
+        let topology = Topology::from_faces(vertices, &self.faces)?;
+        check::finite("the rest positions", &self.rest)?;
+        let frames = self.positions.len();
+        check::length("the times of the frames", self.times.len(), frames)?;
+        check::times("the times of the frames", &self.times)?;
+        for (frame, (x, t)) in self.positions.iter().zip(&self.times).enumerate() {
+            check::length_of(x.len(), 3 * vertices, || positions_of(frame, *t))?;
+            check::finite_of(x, || positions_of(frame, *t))?;
+        }
+        check::vertices("the pins", &self.pins, vertices)?;
+        for (index, body) in self.bodies.iter().enumerate() {
+            body.validate(index, frames)?;
+        }
+        for (index, field) in self.fields.iter().enumerate() {
+            field.validate(index, &topology, frames)?;
+        }
+        for (index, series) in self.series.iter().enumerate() {
+            series.validate(index)?;
+        }
+        Ok(topology)
+    }
+}
+
+fn positions_of(frame: usize, time: f64) -> String {
+    format!("the positions of frame {frame} at {time} s")
+}

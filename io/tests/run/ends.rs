@@ -1,0 +1,103 @@
+//! How runs end.
+
+use crate::{code, run, stderr, summary, with_scene};
+use isosheet_io::run::EndReason;
+use isosheet_io::scene::StartingPoint;
+use isosheet_io::{frame_path, read_sheet};
+use serde_json::Value;
+use std::fs;
+
+#[test]
+fn conditions_to_stop_end_a_run() {
+    let dir = with_scene(StartingPoint::Feed);
+    let dir = dir.path();
+    let limit = [
+        "simulate",
+        "scene.toml",
+        "--out",
+        "slip",
+        "--set",
+        "stop.support_force=0.003",
+    ];
+    let done = run(dir, &limit);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let slip = summary(&dir.join("slip")).ending;
+    assert_eq!(slip.reason, EndReason::SupportForce);
+    let size = slip.supports[0].iter().map(|f| f * f).sum::<f64>().sqrt();
+    assert!(slip.t < 0.9 && size > 0.003, "{slip:?}");
+    let scene = "version = 1
+        [sheet]
+        mesh = { rectangle = { width = 0.1, height = 0.1, columns = 1, rows = 1 } }
+        damping = 40
+        [[support]]
+        at = { vertices = [2, 3] }
+        [forces]
+        gravity = [0, 0, -9.81]
+        [stop]
+        time = 10
+        rest = { speed = 1e-4, duration = 0.1 }
+        [output]
+        obj = true
+        trajectory = false";
+    fs::write(dir.join("rest.toml"), scene).unwrap();
+    let done = run(dir, &["simulate", "rest.toml", "--json"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let rest = summary(&dir.join("rest-run"));
+    assert_eq!(rest.ending.reason, EndReason::Rest);
+    assert!(rest.ending.t < 10.0 && rest.ending.largest_speed <= 1e-4);
+    // Half the weight of the faces is at the two vertices that are pinned, all of it is carried by them.
+    let weight = 0.08 * 0.01 * 9.81;
+    assert!(
+        (rest.ending.supports[0][2] - weight).abs() < 1e-3 * weight,
+        "{rest:?}"
+    );
+    assert!(!dir.join("rest-run/trajectory.npz").exists());
+    let last = frame_path(&dir.join("rest-run/obj"), rest.frames as usize - 1);
+    let hanging = read_sheet(&last).unwrap();
+    assert!(
+        (hanging.positions()[2] + 0.1).abs() < 1e-4,
+        "it hangs straight down"
+    );
+}
+
+#[test]
+fn steps_that_fail_are_told_at_the_scene() {
+    let dir = with_scene(StartingPoint::Fold);
+    let dir = dir.path();
+    let scene = "version = 1
+[sheet]
+mesh = { rectangle = { width = 0.2, height = 0.1, columns = 2, rows = 1 } }
+[[support]]
+at = { vertices = [0, 3] }
+[[support]]
+at = { vertices = [2, 5] }
+hold = { moving_pin = { x = { ramp = { to = 0.1, end = 1 } } } }
+";
+    fs::write(dir.join("taut.toml"), scene).unwrap();
+    let failed = run(dir, &["simulate", "taut.toml"]);
+    assert_eq!(code(&failed), Some(1), "{}", stderr(&failed));
+    assert!(
+        stderr(&failed).contains("--> taut.toml:8:8"),
+        "{}",
+        stderr(&failed)
+    );
+    let json = run(dir, &["simulate", "taut.toml", "--json"]);
+    let last = String::from_utf8_lossy(&json.stdout);
+    let error: Value = serde_json::from_str(last.lines().last().unwrap()).unwrap();
+    assert_eq!(
+        (&error["event"], &error["code"]),
+        (&"error".into(), &1.into())
+    );
+    assert_eq!(error["problems"][0]["key"], "support[1].hold");
+    let stop = [
+        "simulate",
+        "taut.toml",
+        "--set",
+        "method.taut=stop",
+        "--out",
+        "stop",
+    ];
+    let stopped = run(dir, &stop);
+    assert_eq!(code(&stopped), Some(0), "{}", stderr(&stopped));
+    assert_eq!(summary(&dir.join("stop")).ending.reason, EndReason::Taut);
+}

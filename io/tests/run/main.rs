@@ -1,0 +1,88 @@
+//! The command: runs that are killed and continued, folders in use, exit codes.
+
+mod continuing;
+mod ends;
+mod folders;
+mod tools;
+
+use isosheet_io::read_json;
+use isosheet_io::run::Summary;
+use isosheet_io::scene::StartingPoint;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+fn isosheet(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_isosheet"));
+    command.current_dir(folder);
+    command
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    let output = isosheet(folder).args(arguments).output();
+    output.expect("the command starts")
+}
+
+fn code(output: &Output) -> Option<i32> {
+    output.status.code()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// A folder with one of the scenes to start from.
+fn with_scene(kind: StartingPoint) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.toml"), kind.text()).unwrap();
+    folder
+}
+
+/// Starts a run and waits until its history has so many rows.
+fn started(folder: &Path, arguments: &[&str], out: &str, rows: usize) -> Child {
+    let mut child = isosheet(folder)
+        .args(arguments)
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let history = folder.join(out).join("history.csv");
+    let begun = Instant::now();
+    loop {
+        let text = fs::read_to_string(&history).unwrap_or_default();
+        if text.lines().count() > rows || child.try_wait().unwrap().is_some() {
+            return child;
+        }
+        assert!(begun.elapsed() < Duration::from_secs(60), "no progress");
+        sleep(Duration::from_millis(1));
+    }
+}
+
+/// The simulation in a checkpoint of a run: after eight bytes and the progress with its length, before the
+/// sum.
+fn simulation_bytes(folder: &Path) -> Vec<u8> {
+    let bytes = fs::read(folder.join("checkpoint.bin")).unwrap();
+    let length = u64::from_le_bytes(bytes[8..16].try_into().unwrap()) as usize;
+    bytes[16 + length..bytes.len() - 8].to_vec()
+}
+
+fn summary(folder: &Path) -> Summary {
+    read_json(&folder.join("summary.json")).unwrap()
+}
+
+/// Everything but the wall time is the same, to the bit.
+fn assert_same(one: &Path, other: &Path) {
+    for file in ["history.csv", "trajectory.npz", "scene.toml"] {
+        let [a, b] = [one, other].map(|folder| fs::read(folder.join(file)).unwrap());
+        assert!(a == b, "{file} differs in {}", other.display());
+    }
+    assert!(
+        simulation_bytes(one) == simulation_bytes(other),
+        "checkpoint"
+    );
+    let mut changed = summary(other);
+    changed.wall_time = summary(one).wall_time;
+    assert_eq!(changed, summary(one));
+    assert!(!other.join("frames.bin").exists());
+}

@@ -1,0 +1,121 @@
+//! The subcommands around runs.
+
+use crate::{code, run, stderr};
+use isosheet_io::read_sheet;
+use isosheet_io::scene::StartingPoint;
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn new_check_info_and_completions() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    for kind in StartingPoint::ALL {
+        let name = kind.name();
+        assert_eq!(code(&run(dir, &["new", name, "--kind", name])), Some(0));
+        let check = run(dir, &["check", &format!("{name}.toml")]);
+        assert_eq!(code(&check), Some(0), "{}", stderr(&check));
+        assert_eq!(
+            code(&run(dir, &["new", name, "--kind", name])),
+            Some(6),
+            "not overwritten"
+        );
+    }
+    let info = run(dir, &["info", "fold.toml"]);
+    let text = String::from_utf8_lossy(&info.stdout).into_owned();
+    // 25 vertices, 4 x 4 panels of two triangles: 56 edges, 75 - 56 = 19 degrees of freedom, 9 interior
+    // vertices with one dependent rod each.
+    for part in [
+        "25, of these 16 on the boundary",
+        "56,",
+        "freedom 19",
+        "rods   9 in a flat state, 9 as given",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let script = run(dir, &["completions", "bash"]);
+    assert!(String::from_utf8_lossy(&script.stdout).contains("simulate"));
+    let help = run(dir, &["--help"]);
+    let help = String::from_utf8_lossy(&help.stdout).into_owned();
+    let codes = help.split("Exit codes:").nth(1).unwrap().lines().skip(1);
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/scene.md");
+    let page = fs::read_to_string(page).unwrap();
+    let rows = codes.map(|line| line.trim().split_once(' ').unwrap());
+    let rows: Vec<String> = rows
+        .map(|(n, text)| format!("| {n} | {} |", text.trim()))
+        .collect();
+    assert!(
+        rows.len() == 8 && rows.iter().all(|row| page.contains(row)),
+        "{rows:?}"
+    );
+    assert_eq!(code(&run(dir, &["simulate"])), Some(2));
+}
+
+#[test]
+fn meshes_are_checked_and_repaired() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let soup = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\nf 4 6 5\n";
+    fs::write(dir.join("soup.obj"), soup).unwrap();
+    let check = run(dir, &["check", "soup.obj"]);
+    assert_eq!(code(&check), Some(3));
+    assert!(
+        stderr(&check).contains("--fix FILE2` repairs this"),
+        "{}",
+        stderr(&check)
+    );
+    let fix = run(dir, &["check", "soup.obj", "--fix", "sheet.obj"]);
+    assert_eq!(code(&fix), Some(0), "{}", stderr(&fix));
+    let sheet = read_sheet(&dir.join("sheet.obj")).unwrap();
+    assert_eq!((sheet.topology().vertex_count(), sheet.area()), (4, 1.0));
+    assert_eq!(code(&run(dir, &["check", "sheet.obj"])), Some(0));
+    let quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    fs::write(dir.join("quad.obj"), quad).unwrap();
+    let refused = run(dir, &["check", "quad.obj"]);
+    assert!(
+        stderr(&refused).contains("cuts polygons"),
+        "{}",
+        stderr(&refused)
+    );
+    assert_eq!(
+        code(&run(dir, &["check", "quad.obj", "--fix", "cut.obj"])),
+        Some(0)
+    );
+    // Two triangles that touch along a side are a sheet of two parts; merging joins them. Three that touch along
+    // one side cannot be joined, and stay as they are.
+    let touching = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 0\nv 0 -1 0\nf 1 2 3\nf 4 5 6\n";
+    fs::write(dir.join("touch.obj"), touching).unwrap();
+    let check = run(dir, &["check", "touch.obj"]);
+    let text = String::from_utf8_lossy(&check.stdout).into_owned();
+    assert!(
+        text.contains("in 2 parts") && text.contains("2 coincident"),
+        "{text}"
+    );
+    assert_eq!(
+        code(&run(dir, &["check", "touch.obj", "--fix", "one.obj"])),
+        Some(0)
+    );
+    assert_eq!(
+        read_sheet(&dir.join("one.obj"))
+            .unwrap()
+            .topology()
+            .component_count(),
+        1
+    );
+    let up = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 7 8 9\n";
+    fs::write(dir.join("three.obj"), format!("{touching}{up}")).unwrap();
+    let kept = run(dir, &["check", "three.obj", "--fix", "kept.obj"]);
+    assert_eq!(code(&kept), Some(0), "{}", stderr(&kept));
+    assert_eq!(
+        read_sheet(&dir.join("kept.obj"))
+            .unwrap()
+            .topology()
+            .component_count(),
+        3
+    );
+    let fan = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
+    fs::write(dir.join("fan.obj"), fan).unwrap();
+    let refused = run(dir, &["check", "fan.obj", "--fix", "no.obj"]);
+    assert_eq!(code(&refused), Some(3));
+    assert!(!dir.join("no.obj").exists());
+}

@@ -1,0 +1,239 @@
+//! Every key of the reference is accepted, and the reference in the repository is current.
+
+use crate::parse;
+use isosheet_io::scene::{SceneFile, reference_page, schema};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Every key of the reference, in scenes that are accepted.
+const ALL_KEYS: [&str; 3] = [
+    r#"version = 1
+    [sheet]
+    mesh = { square = { side = 0.2, level = 1 } }
+    density = 0.1
+    thickness = 1e-4
+    isometry = { weak = { stiffness = 100.0 } }
+    bending = { plate = { rigidity = 1e-3 } }
+    damping = 1.0
+    placement = { position = [0, 0, 1], turn = { axis = [0, 0, 1], angle = 45 } }
+    start = { perturbation = 0.01, seed = 3, file = { path = "a.obj", scale = 1.0, up = "y", polygons = "refuse" } }
+    [[crease]]
+    at = { ends = [[0, 1]] }
+    stiffness = 0.1
+    angle = { sine = { mean = 1, amplitude = 2, frequency = 3, phase = 4 } }
+    [[crease]]
+    at = { line = { from = [0, 0, 0], to = [1, 1, 0] } }
+    stiffness = 0.1
+    angle = { keyframes = { interpolation = "monotone_cubic", keys = [[0, 0], [1, 90]] } }
+    [[support]]
+    at = { nearest = [[0, 0, 0]] }
+    hold = { curve = { shape = { line = { point = [0, 0, 0], direction = [1, 0, 0] } }, motion = { x = 1.0 } } }
+    [[support]]
+    at = { vertices = [1] }
+    hold = { surface = { shape = { plane = { point = [0, 0, 0], normal = [0, 0, 1] } }, side = "outside",
+        motion = { y = 1, z = { ramp = { from = 0, to = 1, begin = 0, end = 1 } } } } }
+    [[support]]
+    at = { box = { min = [0, 0, 0], max = [1, 1, 1] } }
+    hold = { moving_pin = { rotation = { centre = [0, 0, 0], axis = [0, 0, 1], angle = 5 } } }
+    [[support]]
+    at = { half_space = { point = [0, 0, 0], normal = [0, 0, 1] } }
+    hold = "pin"
+    [[support]]
+    at = "boundary"
+    hold = { surface = { shape = { sphere = { centre = [0, 0, 0], radius = 1 } }, side = "inside" } }
+    [[support]]
+    at = "all"
+    hold = { surface = { shape = { cylinder = { point = [0, 0, 0], axis = [0, 0, 1], radius = 1 } }, side = "on" } }
+    [[obstacle]]
+    shape = { box = { size = [1, 1, 1] } }
+    pose = { position = [0, 0, -3] }
+    motion = { z = { smooth_step = { to = 1, end = 1 } } }
+    friction = 0.1
+    [[obstacle]]
+    shape = { sphere = { radius = 1 } }
+    [[obstacle]]
+    shape = { cylinder = { radius = 1, height = 1 } }
+    [[obstacle]]
+    shape = { capsule = { radius = 1, length = 1 } }
+    [[obstacle]]
+    shape = { file = { path = "b.obj" } }
+    [[obstacle]]
+    shape = "half_space"
+    [forces]
+    gravity = [0, 0, -9.81]
+    [[forces.load]]
+    at = "all"
+    direction = [1, 0, 0]
+    size = 1.0
+    [[forces.acceleration]]
+    direction = [1, 0, 0]
+    size = 1
+    [contact]
+    self_contact = true
+    friction = 0.2
+    activation = 1e-3
+    stiffness = 1e-3
+    rest_speed = 1e-3
+    [method]
+    integrator = "implicit_euler"
+    step = 0.01
+    strain_tolerance = 1e-10
+    max_iterations = 50
+    rod_stiffness = 1e5
+    min_fraction = 0.1
+    fallback = "implicit_euler"
+    taut = "stop"
+    [stop]
+    time = 2
+    rest = { speed = 1e-3, duration = 0.1 }
+    support_force = 10
+    [output]
+    frames_per_second = 25
+    checkpoint_interval = 1
+    trajectory = false
+    obj = true"#,
+    r#"version = 1
+    [sheet]
+    mesh = { rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = "union_jack" } }
+    isometry = { membrane = { stiffness = 1e5, poisson = 0.3 } }
+    bending = { hinges = { rigidity = 1e-3 } }
+    [[crease]]
+    at = { pattern = "assigned" }
+    stiffness = 1
+    [[crease]]
+    at = { pattern = "mountains" }
+    stiffness = 1
+    angle = { keyframes = { interpolation = "linear", keys = [[0, 0]] } }
+    [[crease]]
+    at = { pattern = "valleys" }
+    stiffness = 1
+    [[crease]]
+    at = { pattern = "flat" }
+    stiffness = 1
+    [[support]]
+    at = "all"
+    hold = { curve = { shape = { circle = { centre = [0, 0, 0], normal = [0, 0, 1], radius = 1 } } } }
+    [[support]]
+    at = "all"
+    hold = { curve = { shape = { polyline = { points = [[0, 0, 0], [1, 0, 0], [1, 1, 0]], corner_radius = 0.1 } } } }
+    [[support]]
+    at = "all"
+    hold = { curve = { shape = { spline = { points = [[0, 0, 0], [1, 0, 0], [1, 1, 0]] } } } }
+    [[support]]
+    at = "all"
+    hold = { curve = { shape = { closed_spline = { points = [[0, 0, 0], [1, 0, 0], [1, 1, 0]] } } } }
+    [method]
+    integrator = "bdf2"
+    fallback = "refuse"
+    taut = "refuse""#,
+    r#"version = 1
+    [sheet]
+    mesh = { file = { path = "a.obj", up = "z", polygons = "triangulate" } }
+    isometry = "rods"
+    bending = "none"
+    [method]
+    integrator = "rattle""#,
+];
+
+/// The keys of a schema that a value uses, as `Part.key`.
+fn visit(root: &Value, schema: &Value, part: &str, value: &Value, seen: &mut BTreeSet<String>) {
+    if let Some(reference) = schema["$ref"].as_str() {
+        let name = reference.rsplit('/').next().unwrap();
+        return visit(root, &root["$defs"][name], name, value, seen);
+    }
+    for options in [&schema["anyOf"], &schema["oneOf"]] {
+        for option in options.as_array().into_iter().flatten() {
+            visit(root, option, part, value, seen);
+        }
+    }
+    if let (Some(name), Some(found)) = (schema["const"].as_str(), value.as_str())
+        && name == found
+    {
+        seen.insert(format!("{part}.{name}"));
+    }
+    for entry in value.as_array().into_iter().flatten() {
+        visit(root, &schema["items"], part, entry, seen);
+    }
+    for (key, inner) in value.as_object().into_iter().flatten() {
+        if schema["properties"][key].is_object() {
+            seen.insert(format!("{part}.{key}"));
+            visit(
+                root,
+                &schema["properties"][key],
+                &format!("{part}.{key}"),
+                inner,
+                seen,
+            );
+        }
+    }
+}
+
+/// All keys of a schema, as `Part.key`.
+fn all_keys(schema: &Value, part: &str, keys: &mut BTreeSet<String>) {
+    if let Some(name) = schema["const"].as_str() {
+        keys.insert(format!("{part}.{name}"));
+    }
+    for options in [&schema["anyOf"], &schema["oneOf"]] {
+        for option in options.as_array().into_iter().flatten() {
+            all_keys(option, part, keys);
+        }
+    }
+    for (key, inner) in schema["properties"].as_object().into_iter().flatten() {
+        keys.insert(format!("{part}.{key}"));
+        all_keys(inner, &format!("{part}.{key}"), keys);
+    }
+}
+
+#[test]
+fn every_key_of_the_reference_is_accepted() {
+    let schema = schema();
+    let mut all = BTreeSet::new();
+    all_keys(&schema, "", &mut all);
+    for (name, part) in schema["$defs"].as_object().unwrap() {
+        all_keys(part, name, &mut all);
+    }
+    let mut seen = BTreeSet::new();
+    let meshes = [
+        "{ disk = { radius = 1, rings = 2 } }",
+        "{ annulus = { inner = 1, outer = 2, segments = 5, rings = 1 } }",
+        "{ polygon = { outline = [[0, 0], [1, 0], [0, 1]], spacing = 0.2, seed = 1 } }",
+        "{ miura = { columns = 2, rows = 2, straight = 1, zigzag = 1, angle = 60 } }",
+        "{ rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = \"falling\" } }",
+        "{ rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = \"rising\" } }",
+    ];
+    let with = |key: &str, value: &str| format!("{key}={value}");
+    let integrators = ["projection", "energy_momentum", "rattle_composition"];
+    let edits = meshes.iter().map(|m| with("sheet.mesh", m));
+    let edits = edits.chain(integrators.iter().map(|i| with("method.integrator", i)));
+    let mut scenes: Vec<SceneFile> = ALL_KEYS
+        .iter()
+        .map(|text| parse(text).unwrap_or_else(|e| panic!("{e}")))
+        .collect();
+    for edit in edits {
+        let scene = SceneFile::parse(ALL_KEYS[2].into(), Path::new("test.toml"), &[edit]);
+        scenes.push(scene.unwrap_or_else(|e| panic!("{e}")));
+    }
+    for scene in &scenes {
+        let value: Value = toml::from_str(&scene.text().text).unwrap();
+        visit(&schema, &schema, "", &value, &mut seen);
+    }
+    let missing: Vec<&String> = all.difference(&seen).collect();
+    assert!(missing.is_empty(), "no test scene has {missing:?}");
+}
+
+#[test]
+fn the_reference_in_the_repository_is_current() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let page = std::fs::read_to_string(docs.join("scene.md")).unwrap();
+    assert!(
+        page == reference_page(),
+        "call `cargo isosheet reference docs`"
+    );
+    let text = std::fs::read_to_string(docs.join("scene.schema.json")).unwrap();
+    let committed: Value = serde_json::from_str(&text).unwrap();
+    assert!(
+        committed == schema(),
+        "call `cargo isosheet reference docs`"
+    );
+}

@@ -1,0 +1,23 @@
+//! Scene files: what they mean, and what is said of wrong ones.
+
+mod keys;
+mod meaning;
+mod messages;
+mod values;
+
+use isosheet_io::dynamics::Simulation;
+use isosheet_io::scene::{SceneFile, SceneFileError};
+use std::path::Path;
+
+/// A scene in memory.
+fn parse(text: &str) -> Result<SceneFile, SceneFileError> {
+    SceneFile::parse(text.into(), Path::new("test.toml"), &[])
+}
+
+fn simulation(text: &str) -> Simulation {
+    let scene = parse(text).unwrap_or_else(|e| panic!("{e}"));
+    scene
+        .build()
+        .and_then(|s| s.start())
+        .unwrap_or_else(|e| panic!("{e}"))
+}

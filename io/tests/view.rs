@@ -1,0 +1,9 @@
+//! The page of a run: what is in it, read by a decoder of its own, and what a browser makes of it.
+
+mod view {
+    mod browser;
+    mod decoder;
+    mod encoding;
+    mod errors;
+    mod scenes;
+}

@@ -1,0 +1,397 @@
+//! The page in a browser without a window: it draws, turns, colours, answers, and decodes what was encoded.
+//!
+//! These tests run where Chromium or Chrome is installed, and say so where it is not.
+
+use super::decoder::{checksum, document, field, positions, rows};
+use super::scenes::{every_body, waving};
+use isosheet_io::view::{BodyShape, PageOptions, Replay};
+use isosheet_mesh::{Topology, fold_angle};
+use serde_json::Value;
+use std::fs::File;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+/// How long a browser may take: some seconds suffice on an idle machine.
+const PATIENCE: Duration = Duration::from_secs(180);
+
+fn browser() -> Option<&'static str> {
+    let runs = |name: &&str| {
+        let mut command = Command::new(name);
+        command
+            .arg("--version")
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        command.status().is_ok_and(|status| status.success())
+    };
+    BROWSERS.into_iter().find(runs)
+}
+
+/// What the page's test of itself says in a window of the given size, or `None` without a browser.
+fn self_test(page: &str, window: &str) -> Option<Value> {
+    let Some(browser) = browser() else {
+        eprintln!("skipped: none of {BROWSERS:?} is installed");
+        return None;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let (html, dump) = (
+        folder.path().join("page.html"),
+        folder.path().join("dump.html"),
+    );
+    std::fs::write(&html, page).unwrap();
+    run(browser, &html, &dump, folder.path(), window);
+    let dump = std::fs::read_to_string(&dump).unwrap();
+    let body = &dump[dump.find("<body").expect("the browser wrote a page")..];
+    let attribute = |name: &str| {
+        let (_, rest) = body[..body.find('>').unwrap()].split_once(&format!("{name}=\""))?;
+        let (text, _) = rest.split_once('"')?;
+        Some(
+            text.replace("&quot;", "\"")
+                .replace("&lt;", "<")
+                .replace("&gt;", ">")
+                .replace("&amp;", "&"),
+        )
+    };
+    assert_eq!(attribute("data-failure"), None);
+    let result = attribute("data-selftest").expect("the page tested itself");
+    Some(serde_json::from_str(&result).unwrap())
+}
+
+fn run(browser: &str, html: &Path, dump: &Path, folder: &Path, window: &str) {
+    let mut child = Command::new(browser)
+        .args([
+            "--headless",
+            "--no-sandbox",
+            "--use-angle=swiftshader",
+            "--enable-unsafe-swiftshader",
+        ])
+        .args(["--virtual-time-budget=20000", "--dump-dom"])
+        .arg(format!("--window-size={window}"))
+        .arg(format!(
+            "--user-data-dir={}",
+            folder.join("profile").display()
+        ))
+        .arg(format!("file://{}#selftest=1", html.display()))
+        .stdout(File::create(dump).unwrap())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            panic!("{browser} did not end within {PATIENCE:?}");
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    value
+        .as_f64()
+        .unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(number).collect()
+}
+
+/// Checks that the page drew, reacted and made no mistakes.
+fn check_pictures(result: &Value) {
+    for list in ["exceptions", "glErrors", "requests"] {
+        assert_eq!(result[list], serde_json::json!([]), "{list}");
+    }
+    let covered = number(&result["covered"]);
+    assert!(covered > 0.01, "the emptiest picture covers {covered}");
+    let pictures = &result["pictures"];
+    assert_eq!(number(&pictures["views"]), 4.0, "four directions of view");
+    let modes = result["modes"].as_array().unwrap().len();
+    assert_eq!(
+        number(&pictures["colourings"]),
+        modes as f64,
+        "{modes} colourings"
+    );
+    // Plain, wireframe, with the rest shape, without edges (which a wireframe shows all the same).
+    assert!(number(&pictures["styles"]) >= 3.0);
+    assert!(
+        number(&result["overflow"]) <= 0.0,
+        "the page is wider than the window"
+    );
+}
+
+/// Checks that the page decoded what the tests decode, and computed fold angles as `isosheet-mesh` does.
+fn check_numbers(result: &Value, replay: &Replay, page: &str) {
+    let data = document(page);
+    let frames = data["frames"].as_u64().unwrap() as usize;
+    assert_eq!(
+        result["checksum"].as_u64(),
+        Some(checksum(&rows(&data["positions"], frames)))
+    );
+    for (k, sum) in result["fieldChecksums"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .enumerate()
+    {
+        assert_eq!(
+            sum.as_u64(),
+            Some(checksum(&rows(&data["fields"][k]["values"], frames)))
+        );
+        let expected = field(&data, k)[frames - 1][0];
+        assert!((number(&result["values"][k]) - expected).abs() <= 1e-14 * expected.abs());
+    }
+    let x = positions(&data).pop().unwrap();
+    assert_eq!(numbers(&result["positions"]), x);
+
+    let topology = Topology::from_faces(x.len() / 3, &replay.faces).unwrap();
+    let interior = |e| !topology.is_boundary_edge(e);
+    let mut ends = numbers(&result["edgeEnds"]).into_iter().map(|v| v as u32);
+    let step = number(&data["step"]);
+    let height = 1.0 / f64::from(result["edges"].as_u64().unwrap() as u32).sqrt() / 2.0;
+    for e in topology.edge_ids() {
+        let mut pair = topology.edges()[e.index()].map(|v| v.0);
+        pair.sort_unstable();
+        assert_eq!([ends.next().unwrap(), ends.next().unwrap()], pair);
+        let angle = &result["folds"][e.index()];
+        assert_eq!(angle.is_null(), !interior(e));
+        if interior(e) {
+            let decoded = fold_angle(&topology, &x, e).unwrap();
+            assert!(
+                (number(angle) - decoded).abs() < 1e-12,
+                "{angle} of {decoded}"
+            );
+            let exact = fold_angle(&topology, replay.positions.last().unwrap(), e).unwrap();
+            assert!(
+                (decoded - exact).abs() < 2.0 * step / height,
+                "{decoded} of {exact}"
+            );
+        }
+    }
+    assert_eq!(ends.next(), None);
+}
+
+#[test]
+fn every_body_is_drawn_and_moves() {
+    let replay = every_body(5);
+    let page = replay.to_html().unwrap();
+    let Some(result) = self_test(&page, "1200,800") else {
+        return;
+    };
+    check_pictures(&result);
+    check_numbers(&result, &replay, &page);
+    let bodies = result["bodies"].as_array().unwrap();
+    assert_eq!(bodies.len(), 6);
+    for body in bodies {
+        assert_eq!(body["shows"], true, "{body}");
+    }
+    assert_eq!(number(&result["pictures"]["frames"]), 5.0);
+    let played = serde_json::json!({ "starts": true, "middle": 2, "end": 4, "ends": true });
+    assert_eq!(result["played"], played);
+    assert!(
+        number(&result["coveredFitted"]) > 0.2,
+        "the sheet does not fill the view"
+    );
+    let keys = serde_json::json!({ "end": 4, "left": 3, "home": 0, "right": 1 });
+    assert_eq!(result["keys"], keys);
+    // A click at three quarters of a plot of 4/60 s shows the frame at 3/60 s.
+    assert!((number(&result["clicked"]) - 0.05).abs() < 1e-12);
+    // Kinetic and potential energy share a plot, the constant has its own; strains are zero so early.
+    assert_eq!(result["plots"].as_u64(), Some(2));
+}
+
+#[test]
+fn texts_are_shown_as_they_are_and_the_pointer_finds_the_sheet() {
+    let replay = waving(2, 12);
+    let page = replay.to_html().unwrap();
+    let Some(result) = self_test(&page, "1200,800") else {
+        return;
+    };
+    check_pictures(&result);
+    assert_eq!(result["title"], replay.title.as_str());
+    assert_eq!(result["scene"], replay.scene.as_str());
+    let hover = &result["hover"];
+    let face = replay.faces[hover["face"].as_u64().unwrap() as usize];
+    assert!(
+        face.contains(&(hover["vertex"].as_u64().unwrap() as u32)),
+        "{hover}"
+    );
+    let edge = hover["edge"].as_u64().unwrap() as usize;
+    let ends = [0, 1].map(|k| result["edgeEnds"][2 * edge + k].as_u64().unwrap() as u32);
+    assert!(ends.iter().all(|end| face.contains(end)), "{hover}");
+    assert_eq!(hover["shown"], true);
+    let text = hover["lines"].to_string();
+    for part in [
+        "Vertex",
+        "Edge",
+        "Face",
+        "strain (edge)",
+        "depth <b>&\u{e4} (vertex)",
+    ] {
+        assert!(text.contains(part), "{text} lacks {part}");
+    }
+}
+
+#[test]
+fn one_frame_makes_a_page_on_a_narrow_screen() {
+    let replay = waving(1, 1);
+    let page = replay.to_html().unwrap();
+    let Some(result) = self_test(&page, "390,800") else {
+        return;
+    };
+    check_pictures(&result);
+    check_numbers(&result, &replay, &page);
+    assert_eq!(result["frames"].as_u64(), Some(1));
+}
+
+#[test]
+fn a_sheet_and_nothing_else_makes_a_page() {
+    let full = waving(1, 4);
+    let replay = Replay {
+        faces: full.faces,
+        times: full.times,
+        positions: full.positions,
+        rest: full.rest,
+        ..Replay::default()
+    };
+    let page = replay.to_html().unwrap();
+    let Some(result) = self_test(&page, "1200,800") else {
+        return;
+    };
+    check_pictures(&result);
+    check_numbers(&result, &replay, &page);
+    assert_eq!(result["plots"].as_u64(), Some(0));
+    assert_eq!(result["title"], "Run");
+}
+
+#[test]
+fn small_sheets_far_from_the_origin_are_drawn() {
+    let mut replay = every_body(5);
+    // A thousandth of the size, a hundred metres away; the page has single precision on the graphics card.
+    let change = |x: &mut Vec<f64>| x.iter_mut().for_each(|c| *c = 1e-3 * *c + 100.0);
+    change(&mut replay.rest);
+    replay.positions.iter_mut().for_each(change);
+    for body in &mut replay.bodies {
+        body.shape = smaller(&body.shape);
+        for pose in &mut body.poses {
+            pose.translation = pose.translation.map(|c| 1e-3 * c + 100.0);
+        }
+    }
+    let page = replay.to_html().unwrap();
+    let Some(result) = self_test(&page, "1200,800") else {
+        return;
+    };
+    check_pictures(&result);
+    for body in result["bodies"].as_array().unwrap() {
+        assert_eq!(body["shows"], true, "{body}");
+    }
+    let near = self_test(&every_body(5).to_html().unwrap(), "1200,800").unwrap();
+    let (far, near) = (
+        number(&result["coveredFitted"]),
+        number(&near["coveredFitted"]),
+    );
+    assert!(
+        (far - near).abs() < 0.01,
+        "covers {far}, at the origin {near}"
+    );
+}
+
+/// A thousandth of a body.
+fn smaller(shape: &BodyShape) -> BodyShape {
+    let part = 1e-3;
+    match shape {
+        BodyShape::HalfSpace => BodyShape::HalfSpace,
+        BodyShape::Cuboid { half } => BodyShape::Cuboid {
+            half: half.map(|h| part * h),
+        },
+        BodyShape::Sphere { radius } => BodyShape::Sphere {
+            radius: part * radius,
+        },
+        BodyShape::Cylinder {
+            radius,
+            half_height,
+        } => BodyShape::Cylinder {
+            radius: part * radius,
+            half_height: part * half_height,
+        },
+        BodyShape::Capsule {
+            radius,
+            half_length,
+        } => BodyShape::Capsule {
+            radius: part * radius,
+            half_length: part * half_length,
+        },
+        BodyShape::Mesh { vertices, faces } => BodyShape::Mesh {
+            vertices: vertices.iter().map(|v| part * v).collect(),
+            faces: faces.clone(),
+        },
+    }
+}
+
+#[test]
+fn six_hundred_frames_are_decoded_exactly() {
+    let replay = waving(3, 600);
+    let page = replay.to_html().unwrap();
+    let Some(result) = self_test(&page, "1200,800") else {
+        return;
+    };
+    check_pictures(&result);
+    check_numbers(&result, &replay, &page);
+    assert_eq!(number(&result["pictures"]["frames"]), 5.0);
+    check_ranges(&result, &replay, &positions(&document(&page)));
+}
+
+/// Checks the range of colours of fold angles, which has 98 % of those above a degree in bins of a tenth of a
+/// degree, and the range of coordinates that the camera frames, which leaves out at most 5 % at either end.
+fn check_ranges(result: &Value, replay: &Replay, decoded: &[Vec<f64>]) {
+    let topology = Topology::from_faces(replay.rest.len() / 3, &replay.faces).unwrap();
+    let mut angles: Vec<f64> = Vec::new();
+    for x in decoded {
+        let of_frame = topology
+            .edge_ids()
+            .filter_map(|e| fold_angle(&topology, x, e));
+        angles.extend(of_frame.map(|a| a.to_degrees().abs()).filter(|&a| a > 1.0));
+    }
+    let share =
+        |limit: f64| angles.iter().filter(|&&a| a <= limit).count() as f64 / angles.len() as f64;
+    let range = numbers(&result["foldRange"]);
+    assert_eq!(range[0], -range[1]);
+    assert!(share(range[1] + 1e-9) >= 0.98, "{range:?}");
+    assert!(share(range[1] - 0.1 - 1e-9) < 0.98, "{range:?}");
+
+    for axis in 0..3 {
+        let values = || {
+            decoded
+                .iter()
+                .flat_map(move |x| x.iter().skip(axis).step_by(3).copied())
+        };
+        let ends = numbers(&result["usualRange"][axis]);
+        let count = values().count() as f64;
+        let (below, above) = (
+            values().filter(|&v| v < ends[0]),
+            values().filter(|&v| v > ends[1]),
+        );
+        let (below, above) = (below.count() as f64 / count, above.count() as f64 / count);
+        assert!((0.04..=0.05).contains(&below), "{below} are below {ends:?}");
+        assert!((0.04..=0.05).contains(&above), "{above} are above {ends:?}");
+    }
+}
+
+#[test]
+fn a_fine_mesh_with_frames_left_out_is_shown() {
+    let replay = waving(5, 40);
+    assert_eq!(replay.rest.len() / 3, 4225);
+    let whole = replay.to_html().unwrap();
+    let options = PageOptions {
+        budget: whole.len() - 1000,
+    };
+    let page = replay.to_html_with(&options).unwrap();
+    let Some(result) = self_test(&page, "1200,800") else {
+        return;
+    };
+    check_pictures(&result);
+    check_numbers(&result, &replay, &page);
+    assert_eq!(result["frames"].as_u64(), Some(21));
+    let footer = result["footer"].as_str().unwrap();
+    assert!(footer.contains("one in 2 of the 40 frames"), "{footer}");
+}

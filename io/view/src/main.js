@@ -1,0 +1,145 @@
+// Starts the page: decodes the replay, connects the controls, the 3D view and the plots.
+
+import "uplot/dist/uPlot.min.css";
+import "./view.css";
+import { decode } from "./decode.js";
+import { number } from "./format.js";
+import { Hover } from "./hover.js";
+import { showLegend } from "./legend.js";
+import { Player } from "./player.js";
+import { Plots } from "./plots.js";
+import { Replay } from "./replay.js";
+import { selfTest, watchErrors } from "./selftest.js";
+import { Stage } from "./stage.js";
+import { showTexts } from "./texts.js";
+import { onThemeChange } from "./theme.js";
+
+const $ = (id) => document.getElementById(id);
+const SPEEDS = [
+  [0.0625, "1/16"],
+  [0.125, "1/8"],
+  [0.25, "1/4"],
+  [0.5, "1/2"],
+  [1, "1"],
+  [2, "2"],
+  [4, "4"],
+  [8, "8"],
+];
+
+class Page {
+  constructor(replay) {
+    this.replay = replay;
+    showTexts(replay);
+    this.stage = new Stage($("view"), replay);
+    this.hover = new Hover($("view"), this.stage);
+    this.player = new Player(replay, () => this.changed());
+    this.plots = new Plots($("plots"), replay.data.series, (time) => this.player.seekTime(time));
+    this.connect();
+    onThemeChange(() => {
+      this.stage.applyTheme();
+      this.plots.build();
+    });
+    this.player.seek(0);
+    this.changed();
+  }
+
+  /** Brings everything that shows the frame up to date. */
+  changed() {
+    const { replay, player } = this;
+    this.stage.update();
+    this.hover.update();
+    this.plots.setTime(replay.time);
+    $("scrub").value = replay.frame;
+    $("time").textContent = `${number(replay.time)} s · ${replay.frame + 1}/${replay.frames}`;
+    $("play").textContent = player.playing ? "\u275A\u275A" : "\u25B6";
+    $("play").setAttribute("aria-label", player.playing ? "Pause" : "Play");
+  }
+
+  connect() {
+    const { replay, player, stage } = this;
+    $("scrub").max = replay.frames - 1;
+    $("scrub").addEventListener("input", () => player.seek(Number($("scrub").value)));
+    $("play").addEventListener("click", () => player.toggle());
+    $("transport").hidden = replay.frames === 1;
+    $("speed").append(
+      ...SPEEDS.map(([value, name]) => new Option(`${name}×`, value, value === 1, value === 1)),
+    );
+    $("speed").addEventListener("change", () => {
+      player.speed = Number($("speed").value);
+    });
+    $("colour").append(...replay.quantities.map((q) => new Option(q.label, q.key)));
+    $("colour").addEventListener("change", () => this.colourBy($("colour").value));
+    $("reset").addEventListener("click", () => stage.resetCamera());
+    $("fit").addEventListener("click", () => stage.frameSheet());
+    const boxes = {
+      edges: (on) => {
+        stage.sheet.showEdges = on;
+      },
+      wireframe: (on) => stage.sheet.setWireframe(on),
+      rest: (on) => {
+        stage.sheet.ghost.visible = on;
+      },
+    };
+    for (const [id, act] of Object.entries(boxes)) {
+      $(id).addEventListener("change", () => {
+        act($(id).checked);
+        stage.request();
+      });
+    }
+    document.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  colourBy(key) {
+    const quantity = this.replay.quantities.find((q) => q.key === key) ?? this.replay.quantities[0];
+    $("colour").value = quantity.key;
+    this.stage.setQuantity(quantity);
+    showLegend(quantity);
+  }
+
+  key(event) {
+    // Controls have keys of their own: arrows change a choice, space presses a button.
+    const taken = event.target.closest(event.key === " " ? "select, button, summary, input" : "select");
+    if (event.ctrlKey || event.metaKey || event.altKey || taken) return;
+    const { player, replay, stage } = this,
+      step = event.shiftKey ? 10 : 1;
+    const acts = {
+      " ": () => player.toggle(),
+      ArrowLeft: () => player.seek(replay.frame - step),
+      ArrowRight: () => player.seek(replay.frame + step),
+      Home: () => player.seek(0),
+      End: () => player.seek(replay.frames - 1),
+      r: () => stage.resetCamera(),
+      f: () => stage.frameSheet(),
+    };
+    const act = acts[event.key] ?? acts[event.key.toLowerCase()];
+    if (!act) return;
+    event.preventDefault();
+    act();
+  }
+
+  /** The choices that the address names, as in `index.html#frame=20&colour=fold`. */
+  choose(choices) {
+    if (choices.has("colour")) this.colourBy(choices.get("colour"));
+    if (choices.has("frame")) this.player.seek(Number(choices.get("frame")) || 0);
+    for (const id of ["edges", "wireframe", "rest"]) {
+      if (choices.has(id) && $(id).checked !== (choices.get(id) === "1")) $(id).click();
+    }
+  }
+}
+
+async function main() {
+  const choices = new URLSearchParams(location.hash.slice(1));
+  const exceptions = watchErrors();
+  const data = await decode(JSON.parse($("replay").textContent));
+  const page = new Page(new Replay(data));
+  $("message").hidden = true;
+  page.choose(choices);
+  if (choices.has("selftest"))
+    document.body.dataset.selftest = JSON.stringify(await selfTest(page, exceptions));
+}
+
+main().catch((error) => {
+  console.error(error);
+  $("message").textContent = `The page cannot be shown: ${error.message}. It needs a browser with WebGL 2.`;
+  document.body.dataset.failure = String(error);
+});

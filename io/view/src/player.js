@@ -1,0 +1,54 @@
+// The frame that is shown, and playing.
+
+export class Player {
+  /** `onChange` is called after every change of the frame or of playing. */
+  constructor(replay, onChange) {
+    this.replay = replay;
+    this.onChange = onChange;
+    this.speed = 1;
+    this.playing = false;
+  }
+
+  seek(frame) {
+    const last = this.replay.frames - 1;
+    this.show(Math.min(Math.max(Math.round(frame), 0), last));
+    this.time = this.replay.time;
+  }
+
+  seekTime(time) {
+    this.seek(this.replay.nearestFrame(time));
+  }
+
+  show(frame) {
+    if (frame === this.replay.frame) return;
+    this.replay.seek(frame);
+    this.onChange();
+  }
+
+  toggle() {
+    this.playing = !this.playing && this.replay.frames > 1;
+    if (this.playing) {
+      const { times } = this.replay.data;
+      this.time = this.replay.frame === this.replay.frames - 1 ? times[0] : this.replay.time;
+      this.clock = null;
+      requestAnimationFrame((now) => this.tick(now));
+    }
+    this.onChange();
+  }
+
+  /** Goes on in the time of the run by the time that passed, times the speed; stops at the last frame. */
+  tick(now) {
+    if (!this.playing) return;
+    const { times } = this.replay.data,
+      end = times[times.length - 1];
+    if (this.clock !== null) this.time += ((now - this.clock) / 1000) * this.speed;
+    this.clock = now;
+    this.show(this.replay.frameAt(this.time));
+    if (this.time >= end) {
+      this.playing = false;
+      this.onChange();
+    } else {
+      requestAnimationFrame((then) => this.tick(then));
+    }
+  }
+}

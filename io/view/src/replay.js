@@ -1,0 +1,185 @@
+// The decoded replay: positions and values of a frame, and the quantities that the sheet can be coloured by.
+
+import { DIVERGING, SEQUENTIAL } from "./colour.js";
+import { Mesh } from "./mesh.js";
+
+const AXES = { x: 0, y: 1, z: 2 };
+
+export class Replay {
+  constructor(data) {
+    this.data = data;
+    this.mesh = new Mesh(data.faces, data.vertices);
+    this.frames = data.frames;
+    this.up = AXES[data.up];
+    this.x = new Float64Array(3 * data.vertices);
+    this.frame = -1;
+    this.folds = new Float64Array(this.mesh.edgeCount);
+    this.quantities = [
+      { key: "plain", label: "Plain", place: "none" },
+      foldQuantity(this),
+      heightQuantity(this),
+      ...data.fields.map((field, k) => fieldQuantity(this, field, k)),
+    ];
+    this.seek(0);
+  }
+
+  /** Positions of a frame in metres, into `out`. */
+  positionsOf(frame, out) {
+    const { low, step, positions } = this.data;
+    const width = 3 * this.data.vertices,
+      from = frame * width;
+    for (let k = 0; k < width; k++) out[k] = low[k % 3] + step * positions[from + k];
+    return out;
+  }
+
+  seek(frame) {
+    this.frame = frame;
+    this.positionsOf(frame, this.x);
+    this.mesh.foldAngles(this.x, this.folds);
+  }
+
+  get time() {
+    return this.data.times[this.frame];
+  }
+
+  /** The two quantiles of each coordinate over all frames between which a share of its values lies. */
+  usualRange(share) {
+    const { low, step, positions } = this.data;
+    return [0, 1, 2].map((axis) => {
+      const histogram = new Uint32Array(65536);
+      for (let k = axis; k < positions.length; k += 3) histogram[positions[k]]++;
+      const outside = (positions.length / 3) * ((1 - share) / 2);
+      let first = 0,
+        last = 65535;
+      for (let below = histogram[0]; below <= outside;) below += histogram[++first];
+      for (let above = histogram[65535]; above <= outside;) above += histogram[--last];
+      return [low[axis] + step * first, low[axis] + step * last];
+    });
+  }
+
+  /** The last frame that is not after a time. */
+  frameAt(time) {
+    const { times } = this.data;
+    let low = 0,
+      high = times.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (times[middle] <= time) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+
+  /** The frame nearest to a time. */
+  nearestFrame(time) {
+    const k = this.frameAt(time),
+      { times } = this.data;
+    return k + 1 < times.length && times[k + 1] - time < time - times[k] ? k + 1 : k;
+  }
+}
+
+// A quantity has a value for each vertex, edge or face (`place`), a range, a scale and a map of colours. Its
+// place in the map is in [0, 1]; edges that `leavesOut` names by their place show nothing. Ranges are those
+// of the whole run, so that colours mean the same in every frame; there are values beyond an `open` one.
+
+/** Edges whose fold angle is less than this share of the range of colours are shown as flat. */
+const FLAT = 0.01;
+const DEGREES = 180 / Math.PI;
+
+function foldQuantity(replay) {
+  let found = null;
+  return {
+    key: "fold",
+    label: "Fold angle",
+    unit: "°",
+    place: "edge",
+    map: DIVERGING,
+    scale: "linear",
+    open: () => found.open,
+    leavesOut: (place) => !(Math.abs(place - 0.5) > FLAT),
+    range: () => (found ??= foldRange(replay)).range,
+    value: (edge) => replay.folds[edge] * DEGREES,
+  };
+}
+
+/** Of the fold angles above a degree in all frames, the share that is inside the range of colours. */
+const FOLDS_IN_RANGE = 0.98;
+/** Bins in a degree of the histogram of fold angles. */
+const BINS = 10;
+
+/**
+ * A range to both sides of zero, in degrees, that has most of the fold angles in all frames, and whether
+ * there are others. A few sharp creases do not take the colours from all other folds.
+ */
+function foldRange(replay) {
+  const x = new Float64Array(replay.x.length),
+    folds = new Float64Array(replay.folds.length);
+  const histogram = new Uint32Array(180 * BINS + 1);
+  let count = 0,
+    largest = 0;
+  for (let frame = 0; frame < replay.frames; frame++) {
+    replay.mesh.foldAngles(replay.positionsOf(frame, x), folds);
+    for (const fold of folds) {
+      const size = Math.abs(fold) * DEGREES;
+      if (!(size > 1)) continue;
+      histogram[Math.min(Math.ceil(size * BINS), 180 * BINS)]++;
+      count++;
+      largest = Math.max(largest, size);
+    }
+  }
+  let bin = -1;
+  for (let within = 0; within < FOLDS_IN_RANGE * count;) within += histogram[++bin];
+  // Of a sheet that stays flat, a range below a degree would show how the positions were rounded.
+  const end = Math.max(bin / BINS, 1);
+  return { range: [-end, end], open: largest > end };
+}
+
+function heightQuantity(replay) {
+  const { low, step, positions } = replay.data;
+  let largest = 0;
+  for (let k = replay.up; k < positions.length; k += 3) if (positions[k] > largest) largest = positions[k];
+  const range = [low[replay.up], low[replay.up] + step * largest];
+  return {
+    leavesOut: Number.isNaN,
+    key: "height",
+    label: `Height (${replay.data.up})`,
+    unit: "m",
+    place: "vertex",
+    map: SEQUENTIAL,
+    scale: "linear",
+    range: () => range,
+    value: (vertex) => replay.x[3 * vertex + replay.up],
+  };
+}
+
+function fieldQuantity(replay, field, k) {
+  const { low, step, values } = field;
+  const width = values.length / replay.frames;
+  const logarithmic = field.scale === "logarithmic";
+  let largest = 0;
+  for (const value of values) if (value > largest) largest = value;
+  const decode = logarithmic ? (q) => (q === 0 ? 0 : 10 ** (low + step * (q - 1))) : (q) => low + step * q;
+  return {
+    key: `field-${k}`,
+    label: field.name,
+    unit: field.unit,
+    place: field.place,
+    map: SEQUENTIAL,
+    scale: field.scale,
+    range: () => [decode(logarithmic ? Math.min(1, largest) : 0), decode(largest)],
+    leavesOut: Number.isNaN,
+    value: (index) => decode(values[replay.frame * width + index]),
+  };
+}
+
+/** The function from values to places in [0, 1]; zeros of a logarithmic scale are at its low end. */
+export function placing(quantity) {
+  const [low, high] = quantity.range();
+  if (!(high > low)) return () => 0.5;
+  if (quantity.scale === "logarithmic") {
+    const from = Math.log(low),
+      length = Math.log(high) - from;
+    return (value) => (value > 0 ? (Math.log(value) - from) / length : 0);
+  }
+  return (value) => (value - low) / (high - low);
+}

@@ -1,0 +1,233 @@
+// The sheet as objects of three.js: faces with two sides, edges as lines of some width, pins, the rest shape.
+// Positions are those of the stage: metres less a centre, divided by a size.
+
+import {
+  BackSide,
+  BufferAttribute,
+  BufferGeometry,
+  FrontSide,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  Mesh as Surface,
+  MeshStandardMaterial,
+  Sphere,
+  SphereGeometry,
+  Vector3,
+} from "three";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
+import { put } from "./colour.js";
+import { placing } from "./replay.js";
+
+/** Opacity of edges at full strength. */
+const STRENGTH = 0.6;
+/** Largest width in pixels of edges that show a value. */
+const VALUE_WIDTH = 3;
+/** Radius of the balls that mark pins, on the stage and as a share of the mean length of the edges. */
+const PIN_RADIUS = 0.014;
+const PIN_SHARE = 0.22;
+// Squares of side s with a diagonal have 3.4 s pixels of lines on s^2 pixels: 85 % for s = 4, 14 % for 24.
+/** Edges that are shorter on the screen than this are invisible, in pixels. */
+const FADED_LENGTH = 4;
+/** Edges that are longer on the screen than this have their full strength, in pixels. */
+const FULL_LENGTH = 24;
+
+const everywhere = () => new Sphere(new Vector3(), Infinity);
+
+export class SheetObjects {
+  /** `meanLength` is the mean length of the edges on the stage. */
+  constructor(replay, meanLength, colours) {
+    this.replay = replay;
+    const { mesh } = replay;
+    this.group = new Group();
+    // Three corners of its own for each face, so that a face can have a colour.
+    this.corners = new BufferAttribute(new Float32Array(9 * mesh.faceCount), 3);
+    this.shades = new BufferAttribute(new Float32Array(9 * mesh.faceCount).fill(1), 3);
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", this.corners);
+    geometry.setAttribute("color", this.shades);
+    geometry.boundingSphere = everywhere();
+    this.materials = [FrontSide, BackSide].map(
+      (side) =>
+        new MeshStandardMaterial({
+          side,
+          vertexColors: true,
+          flatShading: true,
+          roughness: 0.85,
+          polygonOffset: true,
+          polygonOffsetFactor: 3,
+          polygonOffsetUnits: 3,
+        }),
+    );
+    this.surfaces = this.materials.map((material) => new Surface(geometry, material));
+    this.lines = makeLines(mesh.edgeCount, 1);
+    // Of what is in the same place, bars are in front of edges, edges in front of faces, faces in front of
+    // bodies.
+    Object.assign(this.lines.material, {
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    });
+    this.bars = makeLines(mesh.edgeCount, 1);
+    this.bars.geometry.setColors(new Float32Array(6 * mesh.edgeCount));
+    this.bars.material.vertexColors = true;
+    this.ghost = makeLines(mesh.edgeCount, 0.35);
+    this.ghost.visible = false;
+    this.mark = makeLines(1, 1);
+    this.mark.material.linewidth = 5;
+    this.mark.material.depthTest = false;
+    this.mark.renderOrder = 1;
+    this.mark.visible = false;
+    const ball = new SphereGeometry(Math.min(PIN_RADIUS, PIN_SHARE * meanLength), 16, 12);
+    this.pins = new InstancedMesh(
+      ball,
+      new MeshStandardMaterial({ roughness: 0.6 }),
+      replay.data.pins.length,
+    );
+    this.pins.frustumCulled = false;
+    for (const object of this.surfaces) object.frustumCulled = false;
+    this.group.add(...this.surfaces, this.lines, this.bars, this.ghost, this.mark, this.pins);
+    this.quantity = replay.quantities[0];
+    this.showEdges = true;
+    this.wireframe = false;
+    this.setColours(colours);
+  }
+
+  setColours(colours) {
+    this.colours = colours;
+    this.ghost.material.color.set(colours.ghost);
+    this.mark.material.color.set(colours.mark);
+    this.pins.material.color.set(colours.pin);
+    this.setQuantity(this.quantity);
+  }
+
+  /** Colours by another quantity. Faces that show values are white beneath, beside coloured edges pale. */
+  setQuantity(quantity) {
+    this.quantity = quantity;
+    this.place = quantity.map ? placing(quantity) : null;
+    const onFaces = quantity.place === "vertex" || quantity.place === "face";
+    const pale = quantity.place === "edge";
+    const [front, back] = this.materials;
+    front.color.set(onFaces ? "#ffffff" : pale ? this.colours.pale : this.colours.front);
+    back.color.set(onFaces ? "#ffffff" : pale ? this.colours.pale : this.colours.back);
+    this.lines.material.color.set(this.colours.edge);
+    this.bars.visible = false;
+    if (!onFaces) this.shades.array.fill(1);
+    this.shades.needsUpdate = true;
+  }
+
+  /** In a wireframe, edges show what faces show else. */
+  setWireframe(on) {
+    this.wireframe = on;
+    for (const surface of this.surfaces) surface.visible = !on;
+    if (this.place) this.colour();
+  }
+
+  /** Takes over positions of the stage and the values of the frame. */
+  update(x) {
+    const { faces } = this.replay.mesh;
+    const corners = this.corners.array;
+    for (let k = 0; k < faces.length; k++) {
+      const from = 3 * faces[k];
+      corners[3 * k] = x[from];
+      corners[3 * k + 1] = x[from + 1];
+      corners[3 * k + 2] = x[from + 2];
+    }
+    this.corners.needsUpdate = true;
+    this.copyEnds(x, this.lines);
+    const place = new Matrix4();
+    this.replay.data.pins.forEach((v, k) =>
+      this.pins.setMatrixAt(k, place.makeTranslation(x[3 * v], x[3 * v + 1], x[3 * v + 2])),
+    );
+    this.pins.instanceMatrix.needsUpdate = true;
+    if (this.place) this.colour();
+  }
+
+  colour() {
+    this.bars.visible = this.wireframe || this.quantity.place === "edge";
+    if (this.bars.visible) this.colourEdges();
+    else this.colourFaces(this.replay.mesh.faces);
+  }
+
+  /** Takes over the rest shape, in positions of the stage. */
+  setRest(x) {
+    this.copyEnds(x, this.ghost);
+  }
+
+  /** Puts lines along all edges. */
+  copyEnds(x, lines) {
+    const { edges } = this.replay.mesh,
+      { data } = lines.geometry.attributes.instanceStart,
+      out = data.array;
+    for (let k = 0; k < edges.length; k++) {
+      const from = 3 * edges[k];
+      out[3 * k] = x[from];
+      out[3 * k + 1] = x[from + 1];
+      out[3 * k + 2] = x[from + 2];
+    }
+    data.needsUpdate = true;
+  }
+
+  /** Puts bars with colours along the edges that have something to show. */
+  colourEdges() {
+    const { quantity, place } = this,
+      { geometry } = this.bars,
+      { edges, edgeFaces } = this.replay.mesh;
+    const indexAt = { edge: (e) => e, face: (e) => edgeFaces[e], vertex: (e, end) => edges[2 * e + end] }[
+      quantity.place
+    ];
+    const from = this.lines.geometry.attributes.instanceStart.data.array;
+    const ends = geometry.attributes.instanceStart.data,
+      colours = geometry.attributes.instanceColorStart.data;
+    let count = 0;
+    for (let e = 0; e < this.replay.mesh.edgeCount; e++) {
+      const first = place(quantity.value(indexAt(e, 0)));
+      if (quantity.leavesOut(first)) continue;
+      for (let k = 0; k < 6; k++) ends.array[6 * count + k] = from[6 * e + k];
+      put(quantity.map, first, colours.array, 6 * count);
+      put(quantity.map, place(quantity.value(indexAt(e, 1))), colours.array, 6 * count + 3);
+      count++;
+    }
+    geometry.instanceCount = count;
+    ends.needsUpdate = colours.needsUpdate = true;
+  }
+
+  colourFaces(faces) {
+    const { quantity, place } = this,
+      shades = this.shades.array;
+    const perFace = quantity.place === "face";
+    for (let k = 0; k < faces.length; k++) {
+      put(quantity.map, place(quantity.value(perFace ? Math.floor(k / 3) : faces[k])), shades, 3 * k);
+    }
+    this.shades.needsUpdate = true;
+  }
+
+  /** Fades edges by their mean length on the screen, in pixels: many thin lines would darken the sheet. */
+  fade(pixels) {
+    const share = Math.min(Math.max((pixels - FADED_LENGTH) / (FULL_LENGTH - FADED_LENGTH), 0), 1);
+    this.bars.material.linewidth = Math.min(Math.max(pixels / 6, 1), VALUE_WIDTH);
+    this.lines.material.opacity = STRENGTH * (this.wireframe ? Math.max(share, 0.5) : share);
+    this.lines.visible = this.wireframe || (this.showEdges && share > 0);
+  }
+
+  /** Marks an edge, or none for null. */
+  markEdge(edge) {
+    this.mark.visible = edge !== null;
+    if (edge === null) return;
+    const { data } = this.mark.geometry.attributes.instanceStart;
+    const { array } = this.lines.geometry.attributes.instanceStart.data;
+    data.array.set(array.subarray(6 * edge, 6 * edge + 6));
+    data.needsUpdate = true;
+  }
+}
+
+function makeLines(count, opacity) {
+  const material = new LineMaterial({ linewidth: 1, transparent: true, opacity });
+  const geometry = new LineSegmentsGeometry();
+  geometry.setPositions(new Float32Array(6 * count));
+  const lines = new LineSegments2(geometry, material);
+  lines.frustumCulled = false;
+  return lines;
+}

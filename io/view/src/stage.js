@@ -1,0 +1,238 @@
+// The 3D view: camera, lights, the sheet and the bodies. Positions on the stage are metres less the centre of
+// what the camera frames, divided by its radius, so that single precision serves small sheets and distant
+// ones alike.
+
+import {
+  Box3,
+  DirectionalLight,
+  Group,
+  HemisphereLight,
+  PerspectiveCamera,
+  Raycaster,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { addPatch, makeBody, placeBody } from "./bodies.js";
+import { SheetObjects } from "./sheet.js";
+import { themeColours } from "./theme.js";
+
+/** Vertical angle of view in degrees. */
+const ANGLE_OF_VIEW = 32;
+/** How much of the radius of what is framed the half-spaces reach beyond it. */
+const PATCH_REACH = 1.2;
+/** The share of the coordinates in all frames that says where the sheet usually is. */
+const USUAL = 0.9;
+/** How much longer what is framed may become by this. */
+const LARGEST_FRAME = 2.5;
+/** By how much the camera is farther away than it has to be. */
+const MARGIN = 1.15;
+/** The smallest distance from which the camera looks at a box, on the stage. */
+const NEAREST = 0.05;
+/** Where the camera looks from, in axes (right, depth, up). */
+const DIRECTION = [0.55, -1, 0.5];
+
+export class Stage {
+  constructor(container, replay) {
+    this.container = container;
+    this.replay = replay;
+    this.renderer = new WebGLRenderer({ antialias: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    container.prepend(this.renderer.domElement);
+    this.scene = new Scene();
+    this.camera = new PerspectiveCamera(ANGLE_OF_VIEW, 1, 0.02, 200);
+    this.up = new Vector3().setComponent(replay.up, 1);
+    this.camera.up.copy(this.up);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener("change", () => this.request());
+    this.colours = themeColours();
+    this.addLights();
+    this.addBodies();
+    this.chooseUnits();
+    this.positions = new Float32Array(replay.x.length);
+    this.sheet = new SheetObjects(replay, this.meanLength, this.colours);
+    this.sheet.setRest(this.toStage(replay.data.rest, new Float32Array(replay.x.length)));
+    this.scene.add(this.sheet.group);
+    this.raycaster = new Raycaster();
+    this.applyTheme();
+    this.update();
+    this.resize();
+    this.resetCamera();
+    new ResizeObserver(() => this.resize()).observe(container);
+  }
+
+  addLights() {
+    this.scene.add(new HemisphereLight(0xffffff, 0xb5b0a8, 2.3));
+    // The light stands beside the camera and moves with it, so that no side of the sheet is dark.
+    const light = new DirectionalLight(0xffffff, 1.6);
+    light.position.set(-0.6, 0.9, 0.6);
+    this.camera.add(light, light.target);
+    light.target.position.set(0, 0, -1);
+    this.scene.add(this.camera);
+  }
+
+  addBodies() {
+    this.bodies = new Group();
+    this.bodyGroups = this.replay.data.bodies.map((body) => makeBody(body));
+    this.replay.data.bodies.forEach((body, k) => placeBody(this.bodyGroups[k], body, 0));
+    if (this.bodyGroups.length > 0) this.bodies.add(...this.bodyGroups);
+    this.scene.add(this.bodies);
+  }
+
+  /**
+   * Frames the rest shape, the first frame and the bodies, and where the sheet usually is, unless this is so
+   * far away that everything else would be small. Half-spaces then reach beyond that.
+   */
+  chooseUnits() {
+    const { rest } = this.replay.data;
+    const box = new Box3(),
+      point = new Vector3();
+    for (const x of [rest, this.replay.x]) {
+      for (let k = 0; k < x.length; k += 3) box.expandByPoint(point.set(x[k], x[k + 1], x[k + 2]));
+    }
+    this.bodies.updateMatrixWorld(true);
+    for (const group of this.bodyGroups) if (group.children.length > 0) box.expandByObject(group);
+    const usual = box.clone(),
+      range = this.replay.usualRange(USUAL);
+    for (const end of [0, 1]) usual.expandByPoint(point.set(...range.map((ends) => ends[end])));
+    const length = (b) => b.getSize(point).length();
+    if (length(usual) <= LARGEST_FRAME * length(box)) box.copy(usual);
+    this.centre = box.getCenter(new Vector3()).toArray();
+    this.size = box.getSize(point).length() / 2 || 1;
+    const half = point.divideScalar(2 * this.size);
+    this.box = new Box3(half.clone().negate(), half);
+    this.replay.data.bodies.forEach((body, k) => {
+      if (body.shape.kind === "half_space") {
+        addPatch(this.bodyGroups[k], this.centre, PATCH_REACH * this.size);
+      }
+    });
+    this.bodies.scale.setScalar(1 / this.size);
+    this.bodies.position.set(...this.centre.map((c) => -c / this.size));
+    this.meanLength = this.replay.mesh.meanLength(rest) / this.size;
+  }
+
+  toStage(x, out) {
+    for (let k = 0; k < x.length; k++) out[k] = (x[k] - this.centre[k % 3]) / this.size;
+    return out;
+  }
+
+  /** Shows the frame that the replay is at. */
+  update() {
+    this.sheet.update(this.toStage(this.replay.x, this.positions));
+    this.replay.data.bodies.forEach((body, k) => {
+      if (body.poses.length > 7) placeBody(this.bodyGroups[k], body, this.replay.frame);
+    });
+    this.request();
+  }
+
+  setQuantity(quantity) {
+    this.sheet.setQuantity(quantity);
+    this.update();
+  }
+
+  applyTheme() {
+    this.colours = themeColours();
+    this.renderer.setClearColor(this.colours.background);
+    this.sheet.setColours(this.colours);
+    this.bodies.traverse((object) => object.material?.color.set(this.colours[object.name]));
+    this.update();
+  }
+
+  /** The camera at its start: rest shape, first frame and bodies fill the view. */
+  resetCamera() {
+    const [right, depth, up] = DIRECTION;
+    const [a, b] = [(this.replay.up + 1) % 3, (this.replay.up + 2) % 3];
+    const direction = new Vector3()
+      .setComponent(a, right)
+      .setComponent(b, depth)
+      .setComponent(this.replay.up, up);
+    this.frameBox(this.box, direction);
+  }
+
+  /** Moves the camera along its direction of view to where the sheet, as it is now, fills the view. */
+  frameSheet() {
+    const box = new Box3().setFromArray(this.positions);
+    this.frameBox(box, this.camera.position.clone().sub(this.controls.target));
+  }
+
+  /** Looks at a box (on the stage) from a direction, from as near as its corners allow. */
+  frameBox(box, direction) {
+    const toCamera = direction.clone().normalize();
+    const across = new Vector3().crossVectors(this.up, toCamera).normalize();
+    const upward = new Vector3().crossVectors(toCamera, across);
+    const slope = Math.tan((ANGLE_OF_VIEW * Math.PI) / 360);
+    const centre = box.getCenter(new Vector3()),
+      half = box.getSize(new Vector3()).divideScalar(2).toArray();
+    let distance = NEAREST;
+    for (let k = 0; k < 8; k++) {
+      const corner = new Vector3(...half.map((side, axis) => (k & (1 << axis) ? side : -side)));
+      const aside = Math.max(Math.abs(corner.dot(upward)), Math.abs(corner.dot(across)) / this.camera.aspect);
+      distance = Math.max(distance, MARGIN * (corner.dot(toCamera) + aside / slope));
+    }
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(toCamera, distance);
+    this.controls.update();
+    this.request();
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.container;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.render();
+  }
+
+  /** Asks for a picture at the next occasion. */
+  request() {
+    if (this.pending) return;
+    this.pending = requestAnimationFrame(() => this.render());
+  }
+
+  render() {
+    if (this.pending) cancelAnimationFrame(this.pending);
+    this.pending = 0;
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    const height = 2 * distance * Math.tan((ANGLE_OF_VIEW * Math.PI) / 360);
+    this.sheet.fade((this.meanLength / height) * this.container.clientHeight);
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  /**
+   * What is at a place of the view (pixels from its upper left corner): `{ body }`, or the face, its nearest
+   * vertex and its nearest edge, or null.
+   */
+  pick(left, top) {
+    const { clientWidth, clientHeight } = this.container;
+    const place = new Vector2((2 * left) / clientWidth - 1, 1 - (2 * top) / clientHeight);
+    this.raycaster.setFromCamera(place, this.camera);
+    const sheet = this.raycaster.intersectObjects(this.sheet.surfaces, false)[0];
+    const surfaces = this.bodyGroups.map((group) => group.children[0]);
+    const body = this.raycaster.intersectObjects(surfaces, false)[0];
+    if (body && !(sheet?.distance < body.distance)) return { body: body.object.parent.name };
+    return sheet ? this.nearest(sheet.faceIndex, sheet.point) : null;
+  }
+
+  nearest(face, point) {
+    const { faces, faceEdges } = this.replay.mesh,
+      x = this.positions;
+    const corner = (k) => new Vector3().fromArray(x, 3 * faces[3 * face + (k % 3)]);
+    let vertex = 0,
+      edge = 0,
+      toVertex = Infinity,
+      toEdge = Infinity;
+    for (let k = 0; k < 3; k++) {
+      const a = corner(k),
+        along = corner(k + 1).sub(a),
+        offset = point.clone().sub(a);
+      if (offset.length() < toVertex) [toVertex, vertex] = [offset.length(), faces[3 * face + k]];
+      const part = Math.min(Math.max(offset.dot(along) / along.lengthSq(), 0), 1);
+      const distance = offset.addScaledVector(along, -part).length();
+      if (distance < toEdge) [toEdge, edge] = [distance, faceEdges[3 * face + k]];
+    }
+    return { face, vertex, edge };
+  }
+}

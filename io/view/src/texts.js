@@ -1,0 +1,42 @@
+// The texts of the page: title, summary, scene, how to make the run again, precision.
+
+import { count, number, withUnit } from "./format.js";
+
+const $ = (id) => document.getElementById(id);
+
+/** Shows a text in its section, or leaves the section out when there is none. */
+function section(id, text) {
+  $(id).textContent = text;
+  $(`${id}-section`).hidden = text === "";
+}
+
+export function showTexts(replay) {
+  const { data, mesh } = replay;
+  $("title").textContent = data.title || "Run";
+  const duration = data.times[data.frames - 1] - data.times[0];
+  $("subtitle").textContent = [
+    count(data.vertices, "vertex", "vertices"),
+    count(mesh.edgeCount, "edge", "edges"),
+    count(mesh.faceCount, "face", "faces"),
+    count(data.frames, "frame", "frames") + (data.frames > 1 ? ` over ${withUnit(duration, "s")}` : ""),
+  ].join(" · ");
+  const rows = data.summary.map(([name, value]) => {
+    const row = document.createElement("tr");
+    const head = Object.assign(document.createElement("th"), { textContent: name, scope: "row" });
+    row.append(head, Object.assign(document.createElement("td"), { textContent: value }));
+    return row;
+  });
+  $("summary").replaceChildren(...rows);
+  $("summary-section").hidden = rows.length === 0;
+  section("scene", data.scene);
+  section("reproduce", data.reproduce);
+  $("footer").replaceChildren(
+    ...[
+      `${data.program} ${data.version}.`,
+      `Positions are rounded to ${number(data.step / 2, 2)} m in each coordinate.`,
+      data.stride > 1
+        ? `Has one in ${data.stride} of the ${data.frames_of_run} frames of the run, and the last one.`
+        : "",
+    ].map((text) => Object.assign(document.createElement("p"), { textContent: text })),
+  );
+}
