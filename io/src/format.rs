@@ -1,6 +1,7 @@
 //! Files that a run reads and writes, one format a file. Needs the mesh alone.
 
 pub(crate) mod atomic;
+mod export;
 mod finite;
 mod history;
 mod json;
@@ -10,6 +11,10 @@ mod obj_write;
 mod trajectory;
 
 pub use atomic::{FileWriter, WriteError, write_atomically};
+pub use export::{
+    ExportError, ExportMeshFormat, Exported, FieldSupport, MOST_KEY_FRAMES, Series, SeriesField,
+    SeriesFormat, SeriesOptions, write_mesh, write_series,
+};
 pub use history::{HistoryError, HistoryRow, HistoryWriter, read_history};
 pub use json::{JsonError, read_json, write_json};
 pub use matrix_market::{MatrixMarketError, MatrixSymmetry, write_matrix_market};

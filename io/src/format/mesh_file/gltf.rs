@@ -83,10 +83,7 @@ fn glb_length(bytes: &[u8]) -> usize {
 }
 
 fn read(bytes: &[u8], path: &Path, name: Option<&str>) -> Result<Polyhedron, MeshFileProblem> {
-    let Gltf { document, blob } = Gltf::from_slice(bytes).map_err(|e| {
-        let text: String = e.to_string().chars().take(300).collect();
-        GltfProblem::Format(text)
-    })?;
+    let (document, blob) = open(bytes)?;
     if let Some(name) = document.extensions_required().find(|e| !is_harmless(e)) {
         let name = name.to_owned();
         return Err(GltfProblem::Extension { name }.into());
@@ -141,6 +138,23 @@ fn read(bytes: &[u8], path: &Path, name: Option<&str>) -> Result<Polyhedron, Mes
         }
     }
     Ok(polyhedron)
+}
+
+/// The valid document and the binary part of a file.
+fn open(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), GltfProblem> {
+    let format = |e: gltf::Error| GltfProblem::Format(e.to_string().chars().take(300).collect());
+    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(format)?;
+    let json = document.into_json();
+    // The validation of the library relies on these indices.
+    let primitives = json.meshes.iter().flat_map(|m| &m.primitives);
+    let mut accessors = primitives.flat_map(|p| p.attributes.values());
+    if let Some(index) = accessors.find(|a| a.value() >= json.accessors.len()) {
+        let (index, count) = (index.value(), json.accessors.len());
+        return Err(GltfProblem::Format(format!(
+            "a mesh refers to accessor {index} of {count}"
+        )));
+    }
+    Ok((Document::from_json(json).map_err(format)?, blob))
 }
 
 /// Whether an extension changes neither positions nor triangles.

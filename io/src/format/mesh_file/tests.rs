@@ -303,6 +303,10 @@ fn defects_of_gltf_are_typed() {
     let change = |from: &str, to: &str| gltf_problem(gltf(1.0).replace(from, to));
     assert!(matches!(gltf_problem("{}".into()), G::Format(_)));
     assert!(matches!(
+        change("\"POSITION\":0", "\"POSITION\":7"),
+        G::Format(_)
+    ));
+    assert!(matches!(
         change("\"indices\":1", "\"indices\":7"),
         G::Format(_)
     ));
