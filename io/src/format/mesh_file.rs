@@ -194,12 +194,29 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
+    /// A mesh that is in no file.
+    pub(crate) fn of_frame(
+        positions: Vec<f64>,
+        faces: Vec<[u32; 3]>,
+        creases: Vec<FileCrease>,
+    ) -> Self {
+        Self {
+            positions,
+            faces,
+            polygons: 0,
+            diagonals: Vec::new(),
+            creases,
+            changes: ReadingChanges::default(),
+            path: PathBuf::new(),
+        }
+    }
+
     /// The number of vertices, used or not.
     pub fn vertex_count(&self) -> usize {
         self.positions.len() / 3
     }
 
-    /// The file that the mesh was read from.
+    /// The file that the mesh was read from; empty for a frame of a run.
     pub fn path(&self) -> &Path {
         &self.path
     }

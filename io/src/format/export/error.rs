@@ -23,6 +23,14 @@ pub enum ExportError {
     /// The trajectory has no frames.
     #[error("the trajectory has no frames; let the run take a step, or record a state")]
     NoFrames,
+    /// There is no such frame.
+    #[error("there is no frame {frame}; the trajectory has {count} frames, counted from 0")]
+    NoFrame {
+        /// The frame.
+        frame: usize,
+        /// The number of frames.
+        count: usize,
+    },
     /// The option `every` is 0.
     #[error("every 0th frame was asked for; give 1 for all frames, 2 for every second one")]
     Every,

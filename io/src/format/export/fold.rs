@@ -3,7 +3,6 @@
 use super::{ExportError, Series};
 use crate::format::atomic::{FileWriter, write_atomically};
 use crate::format::mesh_file::{EdgeAssignment, MeshFile};
-use isosheet_mesh::generate::FoldAssignment;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -52,17 +51,7 @@ const PATTERN: &[&str] = &["creasePattern"];
 ///
 /// Edges of the boundary are `B`; the others are `M`, `V` and `F` as the series knows, and `U` otherwise.
 pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathBuf>, ExportError> {
-    let t = series.topology();
-    let assignment = |e: isosheet_mesh::EdgeId| {
-        let known = series.assignments().and_then(|a| a[e.index()]);
-        match known {
-            _ if t.is_boundary_edge(e) => "B",
-            Some(FoldAssignment::Mountain) => "M",
-            Some(FoldAssignment::Valley) => "V",
-            Some(FoldAssignment::Flat) => "F",
-            Some(FoldAssignment::Boundary) | None => "U",
-        }
-    };
+    let first = series.mesh(series.frames()[0])?;
     let degrees = |frame: usize| series.fold_angles(frame).into_iter().map(f64::to_degrees);
     let frames = series.frames();
     let (time, x) = series.state(frames[0]);
@@ -90,8 +79,8 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
         frame_unit: Some("m"),
         time: Some(time),
         vertices_coords: x.as_chunks().0,
-        edges_vertices: t.edges().iter().map(|e| e.map(|v| v.0)).collect(),
-        edges_assignment: t.edge_ids().map(assignment).collect(),
+        edges_vertices: first.creases.iter().map(|c| c.ends).collect(),
+        edges_assignment: first.creases.iter().map(|c| letter(c.assignment)).collect(),
         fold_angles: degrees(frames[0]).map(Some).collect(),
         faces_vertices: series.faces(),
         file_frames: frames[1..].iter().map(later).collect(),

@@ -2,8 +2,9 @@
 
 use super::ExportError;
 use crate::format::Trajectory;
+use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
 use isosheet_mesh::generate::FoldAssignment;
-use isosheet_mesh::{Topology, VertexId, fold_angle};
+use isosheet_mesh::{EdgeId, Topology, VertexId, fold_angle};
 
 /// Which frames of a trajectory are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -203,6 +204,43 @@ impl<'a> Series<'a> {
         t.edge_ids().map(angle).collect()
     }
 
+    /// One frame of the trajectory as a mesh, with its fold angles and what its edges are meant to do.
+    ///
+    /// # Errors
+    /// [`ExportError::NoFrame`] if there is no such frame.
+    pub fn mesh(&self, frame: usize) -> Result<MeshFile, ExportError> {
+        let count = self.trajectory.len();
+        if frame >= count {
+            return Err(ExportError::NoFrame { frame, count });
+        }
+        let t = &self.topology;
+        let crease = |(e, angle): (EdgeId, f64)| {
+            let known = self.assignments.as_ref().and_then(|a| a[e.index()]);
+            FileCrease {
+                ends: t.edges()[e.index()].map(|v| v.0),
+                assignment: match known {
+                    _ if t.is_boundary_edge(e) => EdgeAssignment::Boundary,
+                    Some(FoldAssignment::Mountain) => EdgeAssignment::Mountain,
+                    Some(FoldAssignment::Valley) => EdgeAssignment::Valley,
+                    Some(FoldAssignment::Flat) => EdgeAssignment::Flat,
+                    Some(FoldAssignment::Boundary) | None => EdgeAssignment::Unassigned,
+                },
+                angle: Some(angle),
+            }
+        };
+        let creases = t
+            .edge_ids()
+            .zip(self.fold_angles(frame))
+            .map(crease)
+            .collect();
+        let positions = self.state(frame).1.to_vec();
+        Ok(MeshFile::of_frame(
+            positions,
+            self.faces().to_vec(),
+            creases,
+        ))
+    }
+
     /// Time (seconds) and positions (metres) of a frame of the trajectory.
     pub(super) fn state(&self, frame: usize) -> (f64, &'a [f64]) {
         let x = self.trajectory.frame(frame);
@@ -215,11 +253,6 @@ impl<'a> Series<'a> {
     /// The faces.
     pub(super) fn faces(&self) -> &'a [[u32; 3]] {
         self.trajectory.faces()
-    }
-
-    /// What the edges are meant to do.
-    pub(super) fn assignments(&self) -> Option<&[Option<FoldAssignment>]> {
-        self.assignments.as_deref()
     }
 
     /// The further fields with their values in a frame.
