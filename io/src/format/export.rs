@@ -72,13 +72,13 @@ impl ExportMeshFormat {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SeriesFormat {
-    /// One OBJ file for each frame in a folder: for `run.obj`, `run/frame_00000.obj` and so on, numbered as in
-    /// the trajectory. All digits; no times.
+    /// One OBJ file for each frame in a folder: for `run.obj`, `run/frame_00000.obj` and so on, numbered
+    /// as in the trajectory. All digits; no times.
     Obj,
     /// One FOLD 1.2 file with a frame for each frame, `.fold`: all digits, times, fold angles of all edges.
     Fold,
-    /// Binary glTF 2.0, `.glb`: morph targets with an animation of their weights, 32-bit floats, y upwards; at
-    /// most [`MOST_KEY_FRAMES`] frames, chosen evenly.
+    /// Binary glTF 2.0, `.glb`: morph targets with an animation of their weights, 32-bit floats, y
+    /// upwards; at most [`MOST_KEY_FRAMES`] frames, chosen evenly.
     Glb,
     /// Universal Scene Description as text with time samples, `.usda`: 32-bit floats, 24 time codes a second.
     Usda,
@@ -87,7 +87,8 @@ pub enum SeriesFormat {
     /// A collection of VTK files, one for each frame: for `run.pvd`, `run/frame_00000.vtp` and so on. All
     /// digits, times, strain and fold angle of the edges and the fields of the series.
     Pvd,
-    /// A table with a line for each vertex of each frame, `.csv`: frame, time, vertex, x, y, z with all digits.
+    /// A table with a line for each vertex of each frame, `.csv`: frame, time, vertex, x, y, z with all
+    /// digits.
     Csv,
 }
 
@@ -145,8 +146,8 @@ pub fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
     }
 }
 
-/// Writes the frames of a moving sheet in the format that the extension names ([`SeriesFormat`]). Each file is
-/// written atomically, the one of that name last.
+/// Writes the frames of a moving sheet in the format that the extension names ([`SeriesFormat`]). Each
+/// file is written atomically, the one of that name last.
 ///
 /// # Errors
 /// [`ExportError`]; other files of a format with several files may have been written then.

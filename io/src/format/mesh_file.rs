@@ -81,8 +81,8 @@ impl MeshFormat {
 /// What to do with faces of more than three corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Polygons {
-    /// Refuse the file. In a model of rods a polygon's diagonals are lines along which the sheet can fold, and
-    /// its author did not draw them.
+    /// Refuse the file. In a model of rods a polygon's diagonals are lines along which the sheet can fold,
+    /// and its author did not draw them.
     Refuse,
     /// Cut each polygon into triangles from that one of its corners which sees all others and needs the
     /// shortest cuts (so a quad is cut along its shorter diagonal). [`MeshFile::diagonals`] lists the cuts.
@@ -349,8 +349,8 @@ pub fn read_sheet(path: &Path) -> Result<Sheet, MeshFileError> {
     read_mesh_with(path, &options)?.into_sheet()
 }
 
-/// [`read_mesh_with`] for a file in memory. The folder of `path` is where glTF files with separate buffers have
-/// these; otherwise `path` is used in errors only.
+/// [`read_mesh_with`] for a file in memory. The folder of `path` is where glTF files with separate buffers
+/// have these; otherwise `path` is used in errors only.
 ///
 /// # Errors
 /// As [`read_mesh_with`].

@@ -1,8 +1,8 @@
-//! Programs of others read what is written: the validator of Khronos for glTF, OpenUSD, VTK and numpy.
+//! Programs of others read what is written: the validator of Khronos for glTF, USD, VTK and numpy.
 //!
-//! They are not part of the repository. `ISOSHEET_PYTHON` names a Python that has the packages numpy, usd-core
-//! and vtk (otherwise `python3` is tried), and `NODE_PATH` the folder that has the package gltf-validator. What
-//! is missing is skipped, with a word about it.
+//! They are not part of the repository. `ISOSHEET_PYTHON` names a Python that has the packages numpy,
+//! usd-core and vtk (otherwise `python3` is tried), and `NODE_PATH` the folder that has the package
+//! gltf-validator. What is missing is skipped, with a word about it.
 
 use isosheet_io::mesh::Sheet;
 use isosheet_io::mesh::generate::{self, Diagonals};

@@ -7,7 +7,7 @@ use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::mesh::Sheet;
 use isosheet_io::scene::SceneFile;
-use isosheet_io::{MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with, write_obj};
+use isosheet_io::{MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with, write_mesh};
 use std::path::{Path, PathBuf};
 
 /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Check {
     /// A scene (.toml) or a mesh (OBJ, OFF, STL, PLY, FOLD, glTF)
     file: PathBuf,
-    /// Write the repaired mesh to this OBJ file
+    /// Write the repaired mesh to this file, in the format of its extension
     #[arg(long, value_name = "FILE2")]
     fix: Option<PathBuf>,
 }
@@ -69,18 +69,20 @@ impl Check {
             0 => String::new(),
             n => format!("{n} polygons cut into triangles, "),
         };
-        let repaired = repair.and_then(|repair| match mesh.into_sheet() {
-            Ok(sheet) => Ok((sheet, repair.to_string())),
+        let repaired = repair.and_then(|repair| match mesh.clone().into_sheet() {
+            Ok(sheet) => Ok((mesh, sheet, repair.to_string())),
             Err(error) => Err(format!("{error}\n(after the repair: {repair})")),
         });
         // Where parts of a valid sheet touch, merging their vertices may join more than two faces.
-        let (sheet, done) = match (repaired, given.into_sheet()) {
+        let (mesh, sheet, done) = match (repaired, given.clone().into_sheet()) {
             (Ok(repaired), _) => repaired,
-            (Err(_), Ok(sheet)) => (sheet, "valid as it was; parts that touch stay apart".into()),
+            (Err(_), Ok(sheet)) => {
+                let done = "valid as it was; parts that touch stay apart";
+                (given, sheet, done.to_owned())
+            }
             (Err(message), Err(_)) => return Err(Failure::new(Code::Input, message)),
         };
-        write_obj(fixed, sheet.topology(), sheet.positions())
-            .map_err(|e| Failure::new(Code::Output, e))?;
+        write_mesh(fixed, &mesh).map_err(|e| Failure::new(Code::Output, e))?;
         to_stdout(&format!(
             "{}: a sheet of {} ({polygons}{done})\n",
             fixed.display(),

@@ -43,8 +43,8 @@ pub(crate) struct Convert {
     /// Of a run, write every Nth frame, beginning with the first
     #[arg(long, value_name = "N", conflicts_with = "frame", value_parser = clap::value_parser!(u64).range(1..))]
     every: Option<u64>,
-    /// Of a mesh file, make vertices one that are at most T apart, in the unit of the file [default: 0 for STL
-    /// and glTF, no welding for others]
+    /// Of a mesh file, make vertices one that are at most T apart, in the unit of the file [default: 0 for
+    /// STL and glTF, no welding for others]
     #[arg(long, value_name = "T")]
     weld: Option<f64>,
 }

@@ -46,8 +46,8 @@ struct Frame<'a> {
 const FOLDED: &[&str] = &["foldedForm"];
 const PATTERN: &[&str] = &["creasePattern"];
 
-/// Writes a series: the first frame as key frame, the others with their positions and fold angles. Fold angles
-/// are those of the positions, in degrees.
+/// Writes a series: the first frame as key frame, the others with their positions and fold angles. Fold
+/// angles are those of the positions, in degrees.
 ///
 /// Edges of the boundary are `B`; the others are `M`, `V` and `F` as the series knows, and `U` otherwise.
 pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathBuf>, ExportError> {

@@ -17,8 +17,8 @@ const UNSIGNED_INT: u32 = 5125;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// The frames of a series that are written: all, or [`MOST_KEY_FRAMES`] of them, evenly chosen, with the first
-/// and the last. Frames whose times are equal as 32-bit floats are written once.
+/// The frames of a series that are written: all, or [`MOST_KEY_FRAMES`] of them, evenly chosen, with the
+/// first and the last. Frames whose times are equal as 32-bit floats are written once.
 pub(super) fn key_frames(series: &Series<'_>) -> Vec<usize> {
     let all = series.frames();
     let start = series.state(all[0]).0;
@@ -35,8 +35,8 @@ pub(super) fn key_frames(series: &Series<'_>) -> Vec<usize> {
     frames
 }
 
-/// Writes a mesh that may move: times in seconds, counted from the first one in the file, positions in metres.
-/// The format has y upwards: `(x, y, z)` becomes `(x, z, -y)`.
+/// Writes a mesh that may move: times in seconds, counted from the first one in the file, positions in
+/// metres. The format has y upwards: `(x, y, z)` becomes `(x, z, -y)`.
 pub(super) fn write(
     path: &Path,
     faces: &[[u32; 3]],

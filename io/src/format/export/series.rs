@@ -172,7 +172,8 @@ impl<'a> Series<'a> {
         &self.topology
     }
 
-    /// The strain `l / L - 1` of each edge in a frame of the trajectory, with its length `l` and rest length `L`.
+    /// The strain `l / L - 1` of each edge in a frame of the trajectory, with its length `l` and rest
+    /// length `L`.
     ///
     /// # Panics
     /// If there is no such frame.
@@ -192,8 +193,8 @@ impl<'a> Series<'a> {
             .collect()
     }
 
-    /// The fold angle of each edge in a frame of the trajectory, in radians ([`fold_angle`]); 0 on the boundary
-    /// and where an edge has no length.
+    /// The fold angle of each edge in a frame of the trajectory, in radians ([`fold_angle`]); 0 on the
+    /// boundary and where an edge has no length.
     ///
     /// # Panics
     /// If there is no such frame.

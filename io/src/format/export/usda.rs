@@ -7,8 +7,8 @@ use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Time codes a second: the frames a second that a film has, so that animation programs show the motion at its
-/// own speed.
+/// Time codes a second: the frames a second that a film has, so that animation programs show the motion at
+/// its own speed.
 const TIME_CODES: f64 = 24.0;
 
 /// Writes a mesh that may move: times in seconds and positions in metres, z upwards. The time codes are

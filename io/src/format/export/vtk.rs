@@ -34,9 +34,9 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
     Ok(files)
 }
 
-/// The cells of a frame: one line for each edge, then one triangle for each face. Fields of vertices are point
-/// data; all others are cell data. A triangle has the value of that of its edges whose value is largest in
-/// size, a line the mean of the values of its faces.
+/// The cells of a frame: one line for each edge, then one triangle for each face. Fields of vertices are
+/// point data; all others are cell data. A triangle has the value of that of its edges whose value is
+/// largest in size, a line the mean of the values of its faces.
 fn frame_file(series: &Series<'_>, frame: usize) -> Vec<u8> {
     let t = series.topology();
     let (time, x) = series.state(frame);

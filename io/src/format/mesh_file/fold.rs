@@ -1,9 +1,12 @@
-//! Reading FOLD files (Flexible Origami List Datastructure, versions 1.0 to 1.2, <https://github.com/edemaine/fold>).
+//! Reading FOLD files (Flexible Origami List Datastructure, versions 1.0 to 1.2,
+//! <https://github.com/edemaine/fold>).
 
 mod cuts;
 mod frames;
 mod pattern;
 mod problem;
+#[cfg(test)]
+mod tests;
 
 pub use problem::FoldProblem;
 

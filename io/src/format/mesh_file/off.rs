@@ -6,9 +6,9 @@ use std::str::FromStr;
 
 /// Reads the vertices and faces of an OFF file in text form.
 ///
-/// Understood: the keyword `OFF`, which may be missing, stick to the counts or have the prefixes `ST`, `C` and
-/// `N`; comments; one vertex and one face a line. What follows the coordinates of a vertex (normals, colours)
-/// or the corners of a face (colours) on its line is skipped, and so is the number of edges.
+/// Understood: the keyword `OFF`, which may be missing, stick to the counts or have the prefixes `ST`, `C`
+/// and `N`; comments; one vertex and one face a line. What follows the coordinates of a vertex (normals,
+/// colours) or the corners of a face (colours) on its line is skipped, and so is the number of edges.
 pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
     let text = String::from_utf8_lossy(bytes);
     let mut lines = Lines::new(&text);

@@ -3,13 +3,14 @@
 use super::MeshFile;
 use std::collections::HashMap;
 
-/// Least size of a cell of the grid, as a part of the extent of the mesh: numbers of cells stay below 2^53, so
-/// that they are exact, and coordinates that differ by less than their round-off fall into few cells.
+/// Least size of a cell of the grid, as a part of the extent of the mesh: numbers of cells stay below
+/// 2^53, so that they are exact, and coordinates that differ by less than their round-off fall into few
+/// cells.
 const LEAST_CELL: f64 = 1e-15;
 
 impl MeshFile {
-    /// Makes each vertex within `tolerance` (Euclidean distance, in the unit of the mesh) of an earlier one that
-    /// was kept that vertex, and removes faces of which two corners were welded.
+    /// Makes each vertex within `tolerance` (Euclidean distance, in the unit of the mesh) of an earlier
+    /// one that was kept that vertex, and removes faces of which two corners were welded.
     ///
     /// Vertices are visited in order; of several kept ones within reach the nearest is taken, the first on a
     /// tie. With tolerance 0 coordinates have to be equal.

@@ -45,44 +45,58 @@ pub(super) fn read(bytes: &[u8], wanted: Option<usize>) -> Result<Frame, MeshFil
         return Ok(inherited(&frames, frame)?);
     }
     for k in 0..frames.len() {
-        let frame = inherited(&frames, k)?;
-        if frame
-            .vertices_coords
-            .as_ref()
-            .is_some_and(|v| !v.is_empty())
-        {
-            return Ok(frame);
+        let chain = ancestry(&frames, k)?;
+        let mut coordinates = chain
+            .iter()
+            .filter_map(|&a| frames[a].vertices_coords.as_ref());
+        if coordinates.next().is_some_and(|c| !c.is_empty()) {
+            return Ok(inherited(&frames, k)?);
         }
     }
     Err(FoldProblem::NoCoordinates.into())
 }
 
-/// A frame with the keys of its ancestors that it does not have itself. A frame that inherits and names no
-/// parent inherits from the key frame.
-fn inherited(frames: &[Frame], number: usize) -> Result<Frame, FoldProblem> {
-    let mut frame = frames[number].clone();
-    let (mut at, mut steps) = (number, 0);
+/// More ancestors of a frame are refused: a circle has no end.
+const MOST_ANCESTORS: usize = 1000;
+
+/// A frame and those that it inherits from, the nearest first. A frame that inherits and names no parent
+/// inherits from the key frame.
+fn ancestry(frames: &[Frame], number: usize) -> Result<Vec<usize>, FoldProblem> {
+    let mut chain = vec![number];
+    let mut at = number;
     while at != 0 && frames[at].frame_inherit == Some(true) {
         let parent = frames[at].frame_parent.unwrap_or(0);
-        steps += 1;
-        // A chain without a circle is no longer than the list of frames.
-        if parent >= frames.len() || steps > frames.len() {
+        if parent >= frames.len() || chain.len() > MOST_ANCESTORS {
             return Err(FoldProblem::Parent { frame: at, parent });
         }
+        chain.push(parent);
         at = parent;
-        let from = frames[parent].clone();
-        frame = Frame {
-            frame_classes: frame.frame_classes.or(from.frame_classes),
-            frame_unit: frame.frame_unit.or(from.frame_unit),
-            vertices_coords: frame.vertices_coords.or(from.vertices_coords),
-            edges_vertices: frame.edges_vertices.or(from.edges_vertices),
-            edges_assignment: frame.edges_assignment.or(from.edges_assignment),
-            fold_angles: frame.fold_angles.or(from.fold_angles),
-            faces_vertices: frame.faces_vertices.or(from.faces_vertices),
-            ..frame
-        };
     }
-    Ok(frame)
+    Ok(chain)
+}
+
+/// A frame with the keys of its ancestors that it does not have itself.
+fn inherited(frames: &[Frame], number: usize) -> Result<Frame, FoldProblem> {
+    let chain = ancestry(frames, number)?;
+    let merge = |frame: Frame, &ancestor: &usize| {
+        let from = &frames[ancestor];
+        Frame {
+            frame_parent: None,
+            frame_inherit: None,
+            frame_classes: frame.frame_classes.or_else(|| from.frame_classes.clone()),
+            frame_unit: frame.frame_unit.or_else(|| from.frame_unit.clone()),
+            vertices_coords: frame
+                .vertices_coords
+                .or_else(|| from.vertices_coords.clone()),
+            edges_vertices: frame.edges_vertices.or_else(|| from.edges_vertices.clone()),
+            edges_assignment: frame
+                .edges_assignment
+                .or_else(|| from.edges_assignment.clone()),
+            fold_angles: frame.fold_angles.or_else(|| from.fold_angles.clone()),
+            faces_vertices: frame.faces_vertices.or_else(|| from.faces_vertices.clone()),
+        }
+    };
+    Ok(chain.iter().fold(Frame::default(), merge))
 }
 
 impl Frame {

@@ -6,8 +6,8 @@ use std::collections::HashSet;
 
 type Point = [f64; 3];
 
-/// More edges are refused: pairs of edges are compared, which takes a second or two for so many edges that all
-/// overlap in one direction.
+/// More edges are refused: pairs of edges are compared, which takes a second or two for so many edges that
+/// all overlap in one direction.
 const MOST_EDGES: usize = 50_000;
 
 /// An edge meets another one if an end of it is so near, as a part of the size of the pattern: above the
@@ -16,9 +16,9 @@ const NEAR: f64 = 1e-7;
 
 /// The faces, counter-clockwise, as corners from 0.
 ///
-/// Each edge has two sides; at its end, a side is followed by that of the next edge clockwise. The circuits of
-/// positive area are the faces, the one of negative area is the outside. A face is a hole of the sheet if all
-/// of its edges are boundary and have another face on their other side.
+/// Each edge has two sides; at its end, a side is followed by that of the next edge clockwise. The
+/// circuits of positive area are the faces, the one of negative area is the outside. A face is a hole of
+/// the sheet if all of its edges are boundary and have another face on their other side.
 pub(super) fn faces(points: &[Point], edges: &[FileCrease]) -> Result<Vec<Vec<i64>>, FoldProblem> {
     check(points, edges)?;
     let out = outgoing(points, edges);

@@ -14,9 +14,9 @@ pub enum FoldProblem {
         /// The last frame.
         last: usize,
     },
-    /// A frame inherits from one that does not exist, or from itself in a circle.
+    /// A frame inherits from one that does not exist, from itself in a circle, or over too many frames.
     #[error(
-        "frame {frame} inherits from frame {parent}, which does not exist or inherits from it; correct `frame_parent`"
+        "frame {frame} inherits from frame {parent}, which does not exist, inherits from it in turn, or has too many ancestors; correct `frame_parent`"
     )]
     Parent {
         /// The frame.
