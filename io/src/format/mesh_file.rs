@@ -89,6 +89,15 @@ pub enum Polygons {
     Triangulate,
 }
 
+/// What to do with glTF files whose buffers are files of their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SeparateBuffers {
+    /// Read them; their paths are relative to the file.
+    Read,
+    /// Refuse the file: it cannot be copied or sent alone.
+    Refuse,
+}
+
 /// How to read a mesh file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshOptions {
@@ -103,6 +112,8 @@ pub struct MeshOptions {
     pub frame: Option<usize>,
     /// Of glTF files: the name of the mesh. `None` (the default) is the first of the file.
     pub mesh: Option<String>,
+    /// Of glTF files: buffers in files of their own, which are read unless asked otherwise.
+    pub buffers: SeparateBuffers,
 }
 
 impl Default for MeshOptions {
@@ -112,6 +123,7 @@ impl Default for MeshOptions {
             weld: None,
             frame: None,
             mesh: None,
+            buffers: SeparateBuffers::Read,
         }
     }
 }
@@ -381,7 +393,7 @@ fn parse(
         MeshFormat::Ply => ply::parse(bytes)?.assemble(options)?,
         MeshFormat::Fold => fold::parse(bytes, options)?,
         MeshFormat::Gltf | MeshFormat::Glb => {
-            gltf::parse(bytes, path, options.mesh.as_deref())?.assemble(options)?
+            gltf::parse(bytes, path, options)?.assemble(options)?
         }
     };
     mesh.path = path.to_owned();

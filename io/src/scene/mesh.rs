@@ -1,7 +1,7 @@
 //! Where the mesh of a sheet comes from.
 
 use super::problem::{Checks, Key, Problem};
-use crate::format::{self, MeshOptions, Polygons, read_mesh_with};
+use crate::format::{self, MeshOptions, Polygons, SeparateBuffers, read_mesh_with};
 use isosheet_mesh::Sheet;
 use isosheet_mesh::generate::{self, FoldAssignment, GenerateError};
 use schemars::JsonSchema;
@@ -159,6 +159,8 @@ impl MeshFile {
                 PolygonFaces::Refuse => Polygons::Refuse,
                 PolygonFaces::Triangulate => Polygons::Triangulate,
             },
+            // The folder of a run keeps a copy of one file for each mesh.
+            buffers: SeparateBuffers::Refuse,
             ..MeshOptions::default()
         };
         let path = folder.join(&self.path);

@@ -138,6 +138,26 @@ fn vtk_finds_positions_times_strains_angles_and_fields() {
     python("numpy, vtk", include_str!("vtk.py"), &files);
 }
 
+/// The readers of VTK find the mesh in the formats that it has; all but OBJ are binary.
+#[test]
+fn vtk_finds_the_mesh() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (sheet, trajectory) = run();
+    let mesh = mesh_of(&sheet, folder.path());
+    let path = |name| folder.path().join(name);
+    for name in ["mesh.obj", "mesh.ply", "mesh.stl"] {
+        write_mesh(&path(name), &mesh).expect("written");
+    }
+    trajectory.write(&path("run.npz")).expect("written");
+    let files = [
+        &*path("mesh.obj"),
+        &*path("mesh.ply"),
+        &*path("mesh.stl"),
+        &*path("run.npz"),
+    ];
+    python("numpy, vtk", include_str!("meshes.py"), &files);
+}
+
 #[test]
 fn numpy_finds_the_point_cache_and_the_table() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -2,6 +2,7 @@
 
 use super::error::{Located, MeshFileProblem, Place};
 use super::faces::Polyhedron;
+use super::{MeshOptions, SeparateBuffers};
 use base64::Engine;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Mode;
@@ -48,6 +49,14 @@ pub enum GltfProblem {
         /// What is wrong.
         problem: String,
     },
+    /// A buffer is a file of its own, where this is refused.
+    #[error("buffer {buffer} is the file {file:?}; export the mesh as one file, as .glb")]
+    Separate {
+        /// The buffer, from 0.
+        buffer: usize,
+        /// The file.
+        file: String,
+    },
     /// A buffer cannot be read.
     #[error("buffer {buffer}: {problem}; keep the file and its buffers together, or use .glb")]
     Buffer {
@@ -65,7 +74,11 @@ const GLB_HEADER: usize = 12;
 ///
 /// Coordinates are metres and have y upwards by definition of the format; they are turned to z upwards,
 /// `(x, y, z) -> (x, -z, y)`. Materials, skins and morph targets are skipped.
-pub(super) fn parse(bytes: &[u8], path: &Path, name: Option<&str>) -> Result<Polyhedron, Located> {
+pub(super) fn parse(
+    bytes: &[u8],
+    path: &Path,
+    options: &MeshOptions,
+) -> Result<Polyhedron, Located> {
     if bytes.is_empty() {
         return Ok(Polyhedron::default());
     }
@@ -74,7 +87,7 @@ pub(super) fn parse(bytes: &[u8], path: &Path, name: Option<&str>) -> Result<Pol
         let problem = MeshFileProblem::Truncated { missing };
         return Err((Some(Place::Byte(bytes.len().min(8))), problem));
     }
-    read(bytes, path, name).map_err(|problem| (None, problem))
+    read(bytes, path, options).map_err(|problem| (None, problem))
 }
 
 /// The length that the header of a binary file states.
@@ -82,7 +95,8 @@ fn glb_length(bytes: &[u8]) -> usize {
     u32::from_le_bytes([bytes[8], bytes[9], bytes[10], bytes[11]]) as usize
 }
 
-fn read(bytes: &[u8], path: &Path, name: Option<&str>) -> Result<Polyhedron, MeshFileProblem> {
+fn read(bytes: &[u8], path: &Path, options: &MeshOptions) -> Result<Polyhedron, MeshFileProblem> {
+    let name = options.mesh.as_deref();
     let (document, blob) = open(bytes)?;
     if let Some(name) = document.extensions_required().find(|e| !is_harmless(e)) {
         let name = name.to_owned();
@@ -98,7 +112,7 @@ fn read(bytes: &[u8], path: &Path, name: Option<&str>) -> Result<Polyhedron, Mes
             names: names.collect(),
         }
     })?;
-    let buffers = read_buffers(&document, blob, path)?;
+    let buffers = read_buffers(&document, blob, path, options.buffers)?;
     let placed = placement(&document, mesh.index());
     let mirrored = determinant(&placed) < 0.0;
     let mut polyhedron = Polyhedron::default();
@@ -168,6 +182,7 @@ fn read_buffers(
     document: &Document,
     mut blob: Option<Vec<u8>>,
     path: &Path,
+    separate: SeparateBuffers,
 ) -> Result<Vec<Vec<u8>>, MeshFileProblem> {
     let problem = |buffer: usize, problem: String| GltfProblem::Buffer { buffer, problem };
     let mut buffers = Vec::new();
@@ -184,6 +199,10 @@ fn read_buffers(
                     base64::engine::general_purpose::STANDARD
                         .decode(text)
                         .map_err(|e| problem(k, e.to_string()))?
+                }
+                None if separate == SeparateBuffers::Refuse => {
+                    let file = uri.chars().take(100).collect();
+                    return Err(GltfProblem::Separate { buffer: k, file }.into());
                 }
                 None => {
                     let folder = path.parent().unwrap_or(Path::new(""));

@@ -371,6 +371,28 @@ fn defects_of_gltf_are_typed() {
     );
     let error = error.unwrap_err().to_string();
     assert!(error.contains("\"sheet\""), "{error}");
+    // A buffer that is a file is read from the folder of the file, or refused.
+    let folder = tempfile::tempdir().unwrap();
+    let text = gltf(1.0);
+    let (head, rest) = text
+        .split_once("data:application/octet-stream;base64,")
+        .unwrap();
+    let (data, tail) = rest.split_once('"').unwrap();
+    let engine = base64::engine::general_purpose::STANDARD;
+    let data = base64::Engine::decode(&engine, data).unwrap();
+    std::fs::write(folder.path().join("my data.bin"), data).unwrap();
+    let path = folder.path().join("a.gltf");
+    std::fs::write(&path, format!("{head}my%20data.bin\"{tail}")).unwrap();
+    is_the_square(&read_mesh(&path).unwrap());
+    let refuse = MeshOptions {
+        buffers: SeparateBuffers::Refuse,
+        ..MeshOptions::default()
+    };
+    let error = read_mesh_with(&path, &refuse).unwrap_err();
+    assert!(
+        matches!(error.problem, P::Gltf(G::Separate { .. })),
+        "{error}"
+    );
     for length in 0..12 {
         let bytes = [&b"glTF\x02\0\0\0\x05\0\0\0"[..length], b""].concat();
         assert!(parse(MeshFormat::Glb, &bytes).is_err());
