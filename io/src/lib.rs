@@ -8,7 +8,8 @@
 //!
 //! | file | read | written |
 //! |---|---|---|
-//! | Wavefront OBJ | [`read_obj`], [`read_sheet`] | [`write_obj`], one per frame |
+//! | meshes: OBJ, OFF, STL, PLY, FOLD, glTF | [`read_mesh`], [`read_sheet`] | [`write_mesh`], [`write_obj`] |
+//! | series: FOLD, glTF, USD, PC2, VTK, OBJ, CSV | | [`write_series`] |
 //! | history CSV, see [`HistoryRow`] | [`read_history`] | [`HistoryWriter`], row by row |
 //! | trajectory npz, see [`Trajectory`] | [`Trajectory::read`] | [`Trajectory::write`] |
 //! | Matrix Market, coordinate format | | [`write_matrix_market`] |

@@ -45,7 +45,9 @@ pub enum ObjWriteError {
 /// [`ObjWriteError`]; nothing is written then.
 pub fn write_obj(path: &Path, topology: &Topology, x: &[f64]) -> Result<(), ObjWriteError> {
     check(topology, x)?;
-    Ok(write_atomically(path, |w| write_lines(w, topology, x))?)
+    Ok(write_atomically(path, |w| {
+        write_lines(w, corners(topology), x)
+    })?)
 }
 
 /// [`write_obj`] to any writer, for example into memory.
@@ -62,7 +64,7 @@ pub fn write_obj_to(
         path: PathBuf::new(),
         source,
     };
-    Ok(write_lines(w, topology, x).map_err(failed)?)
+    Ok(write_lines(w, corners(topology), x).map_err(failed)?)
 }
 
 /// The file of frame `frame` in `folder`: `frame_00000.obj` and so on, so that names sort as frames do.
@@ -87,18 +89,23 @@ fn check(topology: &Topology, x: &[f64]) -> Result<(), ObjWriteError> {
     }
 }
 
-fn write_lines(w: &mut impl Write, topology: &Topology, x: &[f64]) -> io::Result<()> {
-    writeln!(
-        w,
-        "# isosheet: {} vertices, {} faces",
-        topology.vertex_count(),
-        topology.face_count()
-    )?;
+fn corners(topology: &Topology) -> impl ExactSizeIterator<Item = [u32; 3]> {
+    topology.faces().iter().map(|f| f.map(|v| v.0))
+}
+
+/// The lines of a file; the positions are finite and the corners exist.
+pub(crate) fn write_lines(
+    w: &mut impl Write,
+    faces: impl ExactSizeIterator<Item = [u32; 3]>,
+    x: &[f64],
+) -> io::Result<()> {
+    let vertices = x.len() / 3;
+    writeln!(w, "# isosheet: {vertices} vertices, {} faces", faces.len())?;
     for p in x.chunks_exact(3) {
         writeln!(w, "v {} {} {}", p[0], p[1], p[2])?;
     }
-    for [a, b, c] in topology.faces() {
-        writeln!(w, "f {} {} {}", a.0 + 1, b.0 + 1, c.0 + 1)?;
+    for [a, b, c] in faces {
+        writeln!(w, "f {} {} {}", a + 1, b + 1, c + 1)?;
     }
     Ok(())
 }

@@ -82,7 +82,7 @@ impl Crease {
         &self,
         key: &Key,
         sheet: &Sheet,
-        assignments: Option<&[FoldAssignment]>,
+        assignments: Option<&[Option<FoldAssignment>]>,
     ) -> Result<Vec<CreaseSpring>, Problem> {
         let at = key.name("at");
         let edges = match &self.at {
@@ -93,7 +93,7 @@ impl Crease {
                     return Err(Problem::new(
                         at.name("pattern"),
                         "the mesh of the sheet is not a crease pattern",
-                        "use `sheet.mesh.miura`, or name the edges by `ends` or `line`",
+                        "use `sheet.mesh.miura` or a FOLD file, or name the edges by `ends` or `line`",
                     ));
                 };
                 of_pattern(*wanted, assignments)
@@ -156,7 +156,7 @@ fn on_line(sheet: &Sheet, from: &[f64; 3], to: &[f64; 3]) -> Vec<(EdgeId, f64)> 
     edges.map(|e| (e, 1.0)).collect()
 }
 
-fn of_pattern(wanted: PatternEdges, assignments: &[FoldAssignment]) -> Vec<(EdgeId, f64)> {
+fn of_pattern(wanted: PatternEdges, assignments: &[Option<FoldAssignment>]) -> Vec<(EdgeId, f64)> {
     let sign = |a: FoldAssignment| match (wanted, a) {
         (PatternEdges::Assigned, FoldAssignment::Mountain) => Some(-1.0),
         (PatternEdges::Assigned | PatternEdges::Valleys, FoldAssignment::Valley)
@@ -166,6 +166,6 @@ fn of_pattern(wanted: PatternEdges, assignments: &[FoldAssignment]) -> Vec<(Edge
     };
     let edges = assignments.iter().enumerate();
     edges
-        .filter_map(|(e, &a)| sign(a).map(|s| (EdgeId::from_index(e), s)))
+        .filter_map(|(e, &a)| sign(a?).map(|s| (EdgeId::from_index(e), s)))
         .collect()
 }

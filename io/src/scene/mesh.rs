@@ -1,7 +1,7 @@
 //! Where the mesh of a sheet comes from.
 
 use super::problem::{Checks, Key, Problem};
-use crate::format::{ObjOptions, Polygons, read_obj};
+use crate::format::{self, MeshOptions, Polygons, SeparateBuffers, read_mesh_with};
 use isosheet_mesh::Sheet;
 use isosheet_mesh::generate::{self, FoldAssignment, GenerateError};
 use schemars::JsonSchema;
@@ -75,7 +75,7 @@ pub enum Mesh {
         /// Acute angle of the panels, degrees.
         angle: f64,
     },
-    /// A Wavefront OBJ file.
+    /// A mesh file: OBJ, OFF, STL, PLY, FOLD (with its crease pattern) or glTF.
     File(MeshFile),
 }
 
@@ -83,7 +83,7 @@ pub enum Mesh {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshFile {
-    /// Path of the Wavefront OBJ file, relative to the scene file.
+    /// Path of the mesh file, relative to the scene file.
     pub path: PathBuf,
     /// Length of one unit of the file, metres: 0.001 for a file in millimetres.
     #[serde(default = "one")]
@@ -135,12 +135,6 @@ pub enum PolygonFaces {
     Triangulate,
 }
 
-/// Vertices and faces of a file in metres, z upwards.
-pub(crate) struct Triangles {
-    pub(crate) positions: Vec<f64>,
-    pub(crate) faces: Vec<[u32; 3]>,
-}
-
 impl MeshFile {
     /// A file in metres with z upwards.
     pub fn new(path: impl Into<PathBuf>) -> Self {
@@ -154,20 +148,23 @@ impl MeshFile {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("scale"), self.scale, "m");
         if self.path.as_os_str().is_empty() {
-            checks.report(key.name("path"), "the path is empty", "name an OBJ file");
+            checks.report(key.name("path"), "the path is empty", "name a mesh file");
         }
     }
 
-    /// Reads the file; relative paths are relative to `folder`.
-    pub(crate) fn read(&self, key: &Key, folder: &Path) -> Result<Triangles, Problem> {
-        let options = ObjOptions {
+    /// Reads the file, in metres and with z upwards; relative paths are relative to `folder`.
+    pub(crate) fn read(&self, key: &Key, folder: &Path) -> Result<format::MeshFile, Problem> {
+        let options = MeshOptions {
             polygons: match self.polygons {
                 PolygonFaces::Refuse => Polygons::Refuse,
                 PolygonFaces::Triangulate => Polygons::Triangulate,
             },
+            // The folder of a run keeps a copy of one file for each mesh.
+            buffers: SeparateBuffers::Refuse,
+            ..MeshOptions::default()
         };
         let path = folder.join(&self.path);
-        let mut mesh = read_obj(&path, &options).map_err(|error| {
+        let mut mesh = read_mesh_with(&path, &options).map_err(|error| {
             let remedy = "`isosheet check` says what is wrong with a mesh file; paths are relative to the scene";
             Problem::new(key.name("path"), error.to_string(), remedy)
         })?;
@@ -178,17 +175,14 @@ impl MeshFile {
                 UpAxis::Y => [x, -z, y],
             };
         }
-        Ok(Triangles {
-            positions: mesh.positions,
-            faces: mesh.faces,
-        })
+        Ok(mesh)
     }
 }
 
 /// A mesh, and what its edges are meant to do if it is a crease pattern.
 pub(crate) struct RestMesh {
     pub(crate) sheet: Sheet,
-    pub(crate) assignments: Option<Vec<FoldAssignment>>,
+    pub(crate) assignments: Option<Vec<Option<FoldAssignment>>>,
 }
 
 impl Mesh {
@@ -305,7 +299,7 @@ impl Mesh {
                     .map_err(|e| generator_problem(&key, &e))?;
                 return Ok(RestMesh {
                     sheet: pattern.sheet,
-                    assignments: Some(pattern.assignments),
+                    assignments: Some(pattern.assignments.into_iter().map(Some).collect()),
                 });
             }
             Self::File(file) => return read_sheet(file, &key, folder),
@@ -318,15 +312,15 @@ impl Mesh {
 }
 
 fn read_sheet(file: &MeshFile, key: &Key, folder: &Path) -> Result<RestMesh, Problem> {
-    let Triangles { positions, faces } = file.read(key, folder)?;
-    let sheet = Sheet::new(positions, &faces).map_err(|error| {
+    let mesh = file.read(key, folder)?;
+    let sheet = Sheet::new(mesh.positions.clone(), &mesh.faces).map_err(|error| {
         let path = file.path.display();
         let remedy = format!("`isosheet check {path} --fix FILE` repairs what can be repaired");
         Problem::new(key.name("path"), format!("{path}: {error}"), remedy)
     })?;
     Ok(RestMesh {
+        assignments: mesh.fold_assignments(sheet.topology()),
         sheet,
-        assignments: None,
     })
 }
 

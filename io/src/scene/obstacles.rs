@@ -1,6 +1,6 @@
 //! Bodies that the sheet meets.
 
-use super::mesh::{MeshFile, Triangles};
+use super::mesh::MeshFile;
 use super::pose::{Motion, Pose};
 use super::problem::{Checks, Key, Problem};
 use isosheet_collide as collide;
@@ -139,13 +139,14 @@ impl Shape {
             },
             Self::File(file) => {
                 let key = key.name("file");
-                let Triangles { positions, faces } = file.read(&key, folder)?;
-                let surface = TriangleSurface::new(&positions, &faces).map_err(|error| {
-                    let message = format!("{}: {error}", file.path.display());
-                    let remedy =
-                        "repair the surface, `isosheet check` says what else is wrong with it";
-                    Problem::new(key.name("path"), message, remedy)
-                })?;
+                let mesh = file.read(&key, folder)?;
+                let surface =
+                    TriangleSurface::new(&mesh.positions, &mesh.faces).map_err(|error| {
+                        let message = format!("{}: {error}", file.path.display());
+                        let remedy =
+                            "repair the surface, `isosheet check` says what else is wrong with it";
+                        Problem::new(key.name("path"), message, remedy)
+                    })?;
                 collide::Shape::Surface(Arc::new(surface))
             }
         })

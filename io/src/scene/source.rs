@@ -4,6 +4,7 @@ use super::edit::{self, EditError};
 use super::error::{SceneError, SceneText};
 use super::problem::{Key, Problem};
 use super::{Scene, Setup};
+use isosheet_mesh::generate::FoldAssignment;
 use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -124,6 +125,18 @@ impl SceneFile {
         let mut setup = setup.map_err(|e| e.in_text(&self.text))?;
         setup.text = Some(self.text.clone());
         Ok(setup)
+    }
+
+    /// What each edge of the sheet is meant to do, if its mesh is a crease pattern; `None` for an edge of which
+    /// the pattern does not say it.
+    ///
+    /// # Errors
+    /// [`SceneError`] if the mesh cannot be made.
+    pub fn fold_assignments(&self) -> Result<Option<Vec<Option<FoldAssignment>>>, SceneError> {
+        let key = Key::root().name("sheet.mesh");
+        let rest = self.scene.sheet.mesh.build(&key, &self.folder);
+        let rest = rest.map_err(|e| SceneError::from(e).in_text(&self.text))?;
+        Ok(rest.assignments)
     }
 
     /// The same scene with other paths of mesh files, one for each of [`Scene::files`].

@@ -1,6 +1,7 @@
 //! The command: runs that are killed and continued, folders in use, exit codes.
 
 mod continuing;
+mod convert;
 mod ends;
 mod folders;
 mod tools;

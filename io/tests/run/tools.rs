@@ -78,11 +78,11 @@ fn meshes_are_checked_and_repaired() {
         stderr(&refused)
     );
     assert_eq!(
-        code(&run(dir, &["check", "quad.obj", "--fix", "cut.obj"])),
+        code(&run(dir, &["check", "quad.obj", "--fix", "cut.ply"])),
         Some(0)
     );
-    // Two triangles that touch along a side are a sheet of two parts; merging joins them. Three that touch along
-    // one side cannot be joined, and stay as they are.
+    // Two triangles that touch along a side are a sheet of two parts; merging joins them. Three that touch
+    // along one side cannot be joined, and stay as they are.
     let touching = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 0\nv 0 -1 0\nf 1 2 3\nf 4 5 6\n";
     fs::write(dir.join("touch.obj"), touching).unwrap();
     let check = run(dir, &["check", "touch.obj"]);

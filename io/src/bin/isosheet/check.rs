@@ -7,15 +7,15 @@ use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::mesh::Sheet;
 use isosheet_io::scene::SceneFile;
-use isosheet_io::{ObjMesh, ObjOptions, ObjProblem, Polygons, read_obj, write_obj};
+use isosheet_io::{MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with, write_mesh};
 use std::path::{Path, PathBuf};
 
 /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
 #[derive(Debug, Args)]
 pub(crate) struct Check {
-    /// A scene (.toml) or a mesh (Wavefront OBJ)
+    /// A scene (.toml) or a mesh (OBJ, OFF, STL, PLY, FOLD, glTF)
     file: PathBuf,
-    /// Write the repaired mesh to this OBJ file
+    /// Write the repaired mesh to this file, in the format of its extension
     #[arg(long, value_name = "FILE2")]
     fix: Option<PathBuf>,
 }
@@ -69,18 +69,20 @@ impl Check {
             0 => String::new(),
             n => format!("{n} polygons cut into triangles, "),
         };
-        let repaired = repair.and_then(|repair| match mesh.into_sheet() {
-            Ok(sheet) => Ok((sheet, repair.to_string())),
+        let repaired = repair.and_then(|repair| match mesh.clone().into_sheet() {
+            Ok(sheet) => Ok((mesh, sheet, repair.to_string())),
             Err(error) => Err(format!("{error}\n(after the repair: {repair})")),
         });
         // Where parts of a valid sheet touch, merging their vertices may join more than two faces.
-        let (sheet, done) = match (repaired, given.into_sheet()) {
+        let (mesh, sheet, done) = match (repaired, given.clone().into_sheet()) {
             (Ok(repaired), _) => repaired,
-            (Err(_), Ok(sheet)) => (sheet, "valid as it was; parts that touch stay apart".into()),
+            (Err(_), Ok(sheet)) => {
+                let done = "valid as it was; parts that touch stay apart";
+                (given, sheet, done.to_owned())
+            }
             (Err(message), Err(_)) => return Err(Failure::new(Code::Input, message)),
         };
-        write_obj(fixed, sheet.topology(), sheet.positions())
-            .map_err(|e| Failure::new(Code::Output, e))?;
+        write_mesh(fixed, &mesh).map_err(|e| Failure::new(Code::Output, e))?;
         to_stdout(&format!(
             "{}: a sheet of {} ({polygons}{done})\n",
             fixed.display(),
@@ -90,7 +92,7 @@ impl Check {
 }
 
 /// What a repair would do to a mesh that is a sheet already.
-fn what_merging_does(mut mesh: ObjMesh) -> String {
+fn what_merging_does(mut mesh: MeshFile) -> String {
     match mesh.repair() {
         Ok(repair) if !repair.is_nothing() => {
             format!("note: `--fix FILE2` would join parts that touch: {repair}\n")
@@ -99,10 +101,14 @@ fn what_merging_does(mut mesh: ObjMesh) -> String {
     }
 }
 
-fn read(path: &Path, polygons: Polygons) -> Result<ObjMesh, Failure> {
-    read_obj(path, &ObjOptions { polygons }).map_err(|error| {
+fn read(path: &Path, polygons: Polygons) -> Result<MeshFile, Failure> {
+    let options = MeshOptions {
+        polygons,
+        ..MeshOptions::default()
+    };
+    read_mesh_with(path, &options).map_err(|error| {
         let remedy = match error.problem {
-            ObjProblem::Polygon { .. } => {
+            MeshFileProblem::Polygon { .. } => {
                 "\nhelp: `--fix FILE2` cuts polygons into triangles: their new edges are lines along which \
                  the sheet can fold"
             }
@@ -112,7 +118,7 @@ fn read(path: &Path, polygons: Polygons) -> Result<ObjMesh, Failure> {
     })
 }
 
-fn what_repair_does(mut mesh: ObjMesh, path: &Path) -> String {
+fn what_repair_does(mut mesh: MeshFile, path: &Path) -> String {
     let repair = match mesh.repair() {
         Ok(repair) => repair,
         Err(error) => return format!("help: this cannot be repaired automatically: {error}"),

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// Print counts, degrees of freedom, boundary loops and sizes
 #[derive(Debug, Args)]
 pub(crate) struct Info {
-    /// A scene (.toml) or a mesh (Wavefront OBJ)
+    /// A scene (.toml) or a mesh (OBJ, OFF, STL, PLY, FOLD, glTF)
     file: PathBuf,
 }
 

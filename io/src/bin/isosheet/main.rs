@@ -1,6 +1,7 @@
 //! The command `isosheet`: simulates scenes, checks and repairs what they are made of.
 
 mod check;
+mod convert;
 mod exit;
 mod info;
 mod interrupt;
@@ -32,6 +33,8 @@ enum Command {
     Check(check::Check),
     /// Print counts, degrees of freedom, boundary loops and sizes of the sheet of a scene or a mesh file
     Info(info::Info),
+    /// Convert a mesh file to another format, or a run to files of other programs
+    Convert(convert::Convert),
     /// Write a commented scene to start from
     New(start::New),
     /// Print the completion script of a shell
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
         Command::Resume(resume) => resume.run(),
         Command::Check(check) => check.run(),
         Command::Info(info) => info.run(),
+        Command::Convert(convert) => convert.run(),
         Command::New(new) => new.run(),
         Command::Completions { shell } => {
             let mut script = Vec::new();

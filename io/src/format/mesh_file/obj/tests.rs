@@ -1,21 +1,40 @@
 use isosheet_mesh::{MeshError, TopologyError, generate};
 use proptest::prelude::*;
 
-use super::*;
-use crate::{ObjWriteError, frame_path, write_obj, write_obj_to};
+use crate::{
+    MeshFile, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, ObjWriteError, Place,
+    Polygons, frame_path, parse_mesh, read_sheet, write_obj, write_obj_to,
+};
+use std::path::Path;
 
-fn parse(text: &str) -> Result<ObjMesh, ObjError> {
-    parse_obj(
-        text.as_bytes(),
+fn options(polygons: Polygons) -> MeshOptions {
+    MeshOptions {
+        polygons,
+        ..MeshOptions::default()
+    }
+}
+
+fn parse_obj(bytes: &[u8], polygons: Polygons) -> Result<MeshFile, MeshFileError> {
+    parse_mesh(
+        bytes,
+        MeshFormat::Obj,
         Path::new("test.obj"),
-        &ObjOptions::default(),
+        &options(polygons),
     )
 }
 
-fn problem(text: &str) -> (Option<usize>, ObjProblem) {
+fn parse(text: &str) -> Result<MeshFile, MeshFileError> {
+    parse_obj(text.as_bytes(), Polygons::Refuse)
+}
+
+fn problem(text: &str) -> (Option<usize>, MeshFileProblem) {
     let e = parse(text).unwrap_err();
     assert!(e.to_string().starts_with("test.obj"), "{e}");
-    (e.line, e.problem)
+    let line = e.place.map(|p| match p {
+        Place::Line(line) => line,
+        other => panic!("{other}"),
+    });
+    (line, e.problem)
 }
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -37,7 +56,7 @@ fn reads_what_the_format_allows() {
     // Bytes that are not UTF-8 in a name.
     let mut bytes = b"o \xff\xfe\n".to_vec();
     bytes.extend(format!("{SQUARE}f 1 2 3\n").into_bytes());
-    assert!(parse_obj(&bytes, Path::new("x"), &ObjOptions::default()).is_ok());
+    assert!(parse_obj(&bytes, Polygons::Refuse).is_ok());
     // A continued last line.
     assert_eq!(
         parse(&format!("{SQUARE}f 1 2 3\\")).unwrap().faces,
@@ -47,21 +66,24 @@ fn reads_what_the_format_allows() {
 
 #[test]
 fn every_defect_names_its_line() {
-    assert!(matches!(problem(""), (None, ObjProblem::Empty)));
-    assert!(matches!(problem("# only\n\n"), (None, ObjProblem::Empty)));
+    assert!(matches!(problem(""), (None, MeshFileProblem::Empty)));
+    assert!(matches!(
+        problem("# only\n\n"),
+        (None, MeshFileProblem::Empty)
+    ));
     assert!(
-        matches!(problem("\nsolid thing\nfacet\n"), (Some(2), ObjProblem::NotObj { word }) if word == "solid")
+        matches!(problem("\nsolid thing\nfacet\n"), (Some(2), MeshFileProblem::NotObj { word }) if word == "solid")
     );
     assert!(matches!(
         problem("f 1 2 3\n"),
-        (None, ObjProblem::NoVertices { faces: 1 })
+        (None, MeshFileProblem::NoVertices { faces: 1 })
     ));
     let points = format!("{SQUARE}p 1 2\nl 1 2\nl 2 3\n");
     assert!(matches!(
         problem(&points),
         (
             None,
-            ObjProblem::NoFaces {
+            MeshFileProblem::NoFaces {
                 vertices: 4,
                 lines: 2,
                 points: 1
@@ -70,17 +92,17 @@ fn every_defect_names_its_line() {
     ));
     assert!(matches!(
         problem("v 0 0\n"),
-        (Some(1), ObjProblem::BadVertex { .. })
+        (Some(1), MeshFileProblem::BadVertex { .. })
     ));
     assert!(matches!(
         problem("v 0 0 x\n"),
-        (Some(1), ObjProblem::BadVertex { .. })
+        (Some(1), MeshFileProblem::BadVertex { .. })
     ));
     assert!(matches!(
         problem("v 0 0 0\nv 0 nan 0\n"),
         (
             Some(2),
-            ObjProblem::NonFinite {
+            MeshFileProblem::NonFinite {
                 vertex: 2,
                 axis: 1,
                 ..
@@ -89,69 +111,77 @@ fn every_defect_names_its_line() {
     ));
     assert!(matches!(
         problem("v 0 0 1e999\n"),
-        (Some(1), ObjProblem::NonFinite { axis: 2, .. })
+        (Some(1), MeshFileProblem::NonFinite { axis: 2, .. })
     ));
     assert!(matches!(
         problem("v 0 0 0 0.5\n"),
-        (Some(1), ObjProblem::Weight { vertex: 1, .. })
+        (Some(1), MeshFileProblem::Weight { vertex: 1, .. })
     ));
     let face = |f: &str| problem(&format!("{SQUARE}f {f}\n"));
     assert!(matches!(
         face("1 2 5"),
-        (Some(5), ObjProblem::IndexOutOfRange { index: 5, count: 4 })
+        (
+            Some(5),
+            MeshFileProblem::IndexOutOfRange {
+                index: 5,
+                count: 4,
+                first: 1
+            }
+        )
     ));
     assert!(matches!(
         face("1 2 -5"),
         (
             Some(5),
-            ObjProblem::IndexOutOfRange {
+            MeshFileProblem::IndexOutOfRange {
                 index: -5,
-                count: 4
+                count: 4,
+                first: 1
             }
         )
     ));
     assert!(matches!(
         face("0 1 2"),
-        (Some(5), ObjProblem::IndexOutOfRange { index: 0, .. })
+        (Some(5), MeshFileProblem::IndexOutOfRange { index: 0, .. })
     ));
     assert!(matches!(
         face("1 2 9999999999"),
-        (Some(5), ObjProblem::IndexOutOfRange { .. })
+        (Some(5), MeshFileProblem::IndexOutOfRange { .. })
     ));
     assert!(matches!(
         face("1 2 -9223372036854775808"),
-        (Some(5), ObjProblem::IndexOutOfRange { .. })
+        (Some(5), MeshFileProblem::IndexOutOfRange { .. })
     ));
     assert!(matches!(
         face("1 2 9223372036854775807"),
-        (Some(5), ObjProblem::IndexOutOfRange { .. })
+        (Some(5), MeshFileProblem::IndexOutOfRange { .. })
     ));
     assert!(matches!(
         face("1 b 3"),
-        (Some(5), ObjProblem::BadIndex { .. })
+        (Some(5), MeshFileProblem::BadIndex { .. })
     ));
     assert!(matches!(
         face("1 2.5 3"),
-        (Some(5), ObjProblem::BadIndex { .. })
+        (Some(5), MeshFileProblem::BadIndex { .. })
     ));
     assert!(matches!(
         face("/1 2 3"),
-        (Some(5), ObjProblem::BadIndex { .. })
+        (Some(5), MeshFileProblem::BadIndex { .. })
     ));
     assert!(matches!(
         face("1 2"),
-        (Some(5), ObjProblem::TooFewCorners { corners: 2 })
+        (Some(5), MeshFileProblem::TooFewCorners { corners: 2 })
     ));
     assert!(matches!(
         face(""),
-        (Some(5), ObjProblem::TooFewCorners { corners: 0 })
+        (Some(5), MeshFileProblem::TooFewCorners { corners: 0 })
     ));
     assert!(matches!(
         face("1 2 3 4"),
-        (Some(5), ObjProblem::Polygon { corners: 4 })
+        (Some(5), MeshFileProblem::Polygon { corners: 4 })
     ));
     let missing = read_sheet(Path::new("/no/such/file.obj")).unwrap_err();
-    assert!(matches!(missing.problem, ObjProblem::Read(_)));
+    assert!(matches!(missing.problem, MeshFileProblem::Read(_)));
     assert!(
         missing.to_string().contains("/no/such/file.obj"),
         "{missing}"
@@ -160,18 +190,15 @@ fn every_defect_names_its_line() {
 
 #[test]
 fn polygons_are_cut_on_request() {
-    let options = ObjOptions {
-        polygons: Polygons::Triangulate,
-    };
     let text = format!("{SQUARE}v 2 0.5 0\nf 1 2 3 4\nf 2 5 3\n");
-    let m = parse_obj(text.as_bytes(), Path::new("q"), &options).unwrap();
+    let m = parse_obj(text.as_bytes(), Polygons::Triangulate).unwrap();
     assert_eq!((m.faces.len(), m.polygons), (3, 1));
     assert!((m.into_sheet().unwrap().area() - 1.5).abs() < 1e-15);
     let flat = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n";
-    let e = parse_obj(flat.as_bytes(), Path::new("q"), &options).unwrap_err();
+    let e = parse_obj(flat.as_bytes(), Polygons::Triangulate).unwrap_err();
     assert!(matches!(
         e.problem,
-        ObjProblem::ConcavePolygon { corners: 4 }
+        MeshFileProblem::ConcavePolygon { corners: 4 }
     ));
 }
 
@@ -182,7 +209,7 @@ fn unused_vertices_are_refused_or_dropped() {
     let error = m.clone().into_sheet().unwrap_err();
     assert!(matches!(
         error.problem,
-        ObjProblem::Mesh(MeshError::Topology(
+        MeshFileProblem::Mesh(MeshError::Topology(
             TopologyError::UnreferencedVertex { .. }
         ))
     ));
@@ -226,7 +253,7 @@ fn agrees_with_another_reader() {
     let sheet = generate::octagon_244(0.5).unwrap();
     let mut text = Vec::new();
     write_obj_to(&mut text, sheet.topology(), sheet.positions()).unwrap();
-    let ours = parse_obj(&text, Path::new("x"), &ObjOptions::default()).unwrap();
+    let ours = parse_obj(&text, Polygons::Refuse).unwrap();
     let no_materials = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
     let (models, _) =
         tobj::load_obj_buf(&mut &text[..], &tobj::LoadOptions::default(), no_materials).unwrap();
@@ -261,14 +288,14 @@ proptest! {
         let t = isosheet_mesh::Topology::from_faces(3, &[[0, 1, 2]]).unwrap();
         let mut text = Vec::new();
         write_obj_to(&mut text, &t, &x).unwrap();
-        prop_assert_eq!(parse_obj(&text, Path::new("x"), &ObjOptions::default()).unwrap().positions, x);
+        prop_assert_eq!(parse_obj(&text, Polygons::Refuse).unwrap().positions, x);
     }
 
     /// Whatever is in a file, it is read or refused, never a panic.
     #[test]
     fn no_text_makes_it_panic(text in "([vflpg#]|vt|usemtl| |/|-?[0-9]{1,3}|nan|1e[0-9]|\\\\|\n){0,60}") {
         for polygons in [Polygons::Refuse, Polygons::Triangulate] {
-            if let Ok(m) = parse_obj(text.as_bytes(), Path::new("x"), &ObjOptions { polygons }) {
+            if let Ok(m) = parse_obj(text.as_bytes(), polygons) {
                 let _ = m.into_sheet();
             }
         }
@@ -276,6 +303,6 @@ proptest! {
 
     #[test]
     fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        let _ = parse_obj(&bytes, Path::new("x"), &ObjOptions::default());
+        let _ = parse_obj(&bytes, Polygons::Refuse);
     }
 }

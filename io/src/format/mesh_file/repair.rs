@@ -1,6 +1,6 @@
 //! Repair of mesh files on request.
 
-use super::obj::ObjMesh;
+use super::MeshFile;
 use isosheet_mesh::{Sheet, TopologyError, orient_consistently};
 use std::collections::{HashMap, HashSet};
 use std::fmt;
@@ -48,7 +48,7 @@ impl fmt::Display for Repair {
     }
 }
 
-impl ObjMesh {
+impl MeshFile {
     /// Repairs what can be repaired without a decision: merges vertices at exactly the same place, removes
     /// faces without area, faces that are there twice and vertices that no face uses, and reverses faces so
     /// that neighbours agree. The order of what stays is kept.
@@ -81,12 +81,9 @@ impl ObjMesh {
             .map(|(p, v)| *first.entry(p.map(|c| (c + 0.0).to_bits())).or_insert(v))
             .collect();
         let mut merged = HashSet::new();
-        for v in self.faces.iter_mut().flatten() {
-            if label[*v as usize] != *v {
-                merged.insert(*v);
-                *v = label[*v as usize];
-            }
-        }
+        let moved = |v: &&u32| label[**v as usize] != **v;
+        merged.extend(self.faces.iter().flatten().filter(moved).copied());
+        self.relabel(&label);
         merged.len()
     }
 
@@ -115,12 +112,18 @@ impl ObjMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ObjOptions, parse_obj};
+    use crate::{MeshFormat, MeshOptions, parse_mesh};
     use std::path::Path;
 
-    fn mesh(text: &str) -> ObjMesh {
-        let options = ObjOptions::default();
-        parse_obj(text.as_bytes(), Path::new("test.obj"), &options).unwrap()
+    fn mesh(text: &str) -> MeshFile {
+        let options = MeshOptions::default();
+        parse_mesh(
+            text.as_bytes(),
+            MeshFormat::Obj,
+            Path::new("test.obj"),
+            &options,
+        )
+        .unwrap()
     }
 
     #[test]

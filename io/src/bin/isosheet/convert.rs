@@ -1,0 +1,155 @@
+//! `isosheet convert`.
+
+use crate::Done;
+use crate::exit::{Code, Failure};
+use crate::write::to_stdout;
+use clap::Args;
+use isosheet_io::run::Recording;
+use isosheet_io::{
+    ExportError, Exported, MOST_KEY_FRAMES, MeshFile, MeshOptions, Series, SeriesOptions,
+    Trajectory, read_mesh_with, write_mesh, write_series,
+};
+use std::path::{Path, PathBuf};
+
+/// What is read and written, as `--help` shows it.
+const FORMATS: &str = "\
+Mesh files that are read:
+  .obj .off .stl .ply .fold .gltf .glb
+Mesh files that are written, also of one frame of a run (--frame K):
+  .obj .off .ply .fold    all digits; .fold with edges, assignments and fold angles
+  .stl .glb .usda         32-bit floats
+Runs that are read: the folder of a run, or a trajectory (.npz)
+Files that are written of a run:
+  .fold   one frame for each frame, with times and fold angles
+  .glb    morph targets, at most 120 frames, evenly chosen (all glTF viewers)
+  .usda   time samples (Blender: the best choice)
+  .pc2    point cache, with the mesh as .obj beside it (Blender: Mesh Cache modifier)
+  .pvd    VTK, one .vtp for each frame in a folder, with strain and fold angle (ParaView)
+  .obj    one file for each frame in a folder of that name
+  .csv    a line for each vertex of each frame
+docs/formats.md says more.";
+
+/// Convert a mesh file to another format, or a run to files of other programs
+#[derive(Debug, Args)]
+#[command(after_help = FORMATS)]
+pub(crate) struct Convert {
+    /// A mesh file, the folder of a run, or a trajectory (.npz)
+    input: PathBuf,
+    /// The file to write; its extension says the format
+    output: PathBuf,
+    /// Of a run, write frame K alone, as a mesh; of a FOLD file, read frame K (from 0)
+    #[arg(long, value_name = "K")]
+    frame: Option<usize>,
+    /// Of a run, write every Nth frame, beginning with the first
+    #[arg(long, value_name = "N", conflicts_with = "frame", value_parser = clap::value_parser!(u64).range(1..))]
+    every: Option<u64>,
+    /// Of a mesh file, make vertices one that are at most T apart, in the unit of the file [default: 0 for
+    /// STL and glTF, no welding for others]
+    #[arg(long, value_name = "T")]
+    weld: Option<f64>,
+}
+
+impl Convert {
+    pub(crate) fn run(&self) -> Done {
+        if self.input.is_dir() {
+            let recording = Recording::read(&self.input).map_err(Failure::from)?;
+            let assignments = recording.scene.fold_assignments()?;
+            let series = self.series(&recording.trajectory)?;
+            let series = match assignments {
+                Some(assignments) => series.with_assignments(assignments).map_err(input)?,
+                None => series,
+            };
+            return self.write_run(&series);
+        }
+        if self
+            .input
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("npz"))
+        {
+            let trajectory = Trajectory::read(&self.input).map_err(input)?;
+            return self.write_run(&self.series(&trajectory)?);
+        }
+        if self.every.is_some() {
+            return Err(input(
+                "--every chooses frames of a run; a mesh file has none",
+            ));
+        }
+        let options = MeshOptions {
+            weld: self.weld,
+            frame: self.frame,
+            ..MeshOptions::default()
+        };
+        let mesh = read_mesh_with(&self.input, &options).map_err(input)?;
+        self.write_mesh(&mesh)
+    }
+
+    fn series<'a>(&self, trajectory: &'a Trajectory) -> Result<Series<'a>, Failure> {
+        if self.weld.is_some() {
+            return Err(input("--weld is for mesh files; a run has shared vertices"));
+        }
+        let every = self
+            .every
+            .map_or(1, |n| usize::try_from(n).unwrap_or(usize::MAX));
+        Series::new(trajectory, &SeriesOptions { every }).map_err(input)
+    }
+
+    fn write_run(&self, series: &Series<'_>) -> Done {
+        if let Some(frame) = self.frame {
+            return self.write_mesh(&series.mesh(frame).map_err(input)?);
+        }
+        let Exported { files, frames } = write_series(&self.output, series).map_err(|error| {
+            let remedy = match error {
+                ExportError::Extension { .. } => "\nhelp: mesh formats take one frame: `--frame K`",
+                _ => "",
+            };
+            output(format!("{error}{remedy}"))
+        })?;
+        let more = match files.len() {
+            1 => String::new(),
+            n => format!(" and {} more files", n - 1),
+        };
+        let chosen = match series.frames().len() {
+            all if all > frames.len() => {
+                format!(" of {all} (this format takes {MOST_KEY_FRAMES} at most)")
+            }
+            _ => String::new(),
+        };
+        let name = last(&files).display();
+        to_stdout(&format!("{name}{more}: {} frames{chosen}\n", frames.len()))
+    }
+
+    fn write_mesh(&self, mesh: &MeshFile) -> Done {
+        write_mesh(&self.output, mesh).map_err(output)?;
+        let changes = mesh.changes;
+        let notes = [
+            (mesh.polygons, "polygons cut into triangles"),
+            (changes.welded_vertices, "vertices welded"),
+            (changes.collapsed_faces, "faces without area removed"),
+            (changes.reversed_faces, "clockwise faces reversed"),
+            (changes.vertices_at_cuts, "vertices added at cuts"),
+        ];
+        let notes = notes.iter().filter(|(count, _)| *count > 0);
+        let notes: String = notes
+            .map(|(count, what)| format!(", {count} {what}"))
+            .collect();
+        to_stdout(&format!(
+            "{}: {} vertices and {} faces{notes}\n",
+            self.output.display(),
+            mesh.vertex_count(),
+            mesh.faces.len()
+        ))
+    }
+}
+
+/// The file that was asked for.
+fn last(files: &[PathBuf]) -> &Path {
+    files.last().map_or(Path::new(""), PathBuf::as_path)
+}
+
+fn input(error: impl ToString) -> Failure {
+    Failure::new(Code::Input, error)
+}
+
+fn output(error: impl ToString) -> Failure {
+    Failure::new(Code::Output, error)
+}

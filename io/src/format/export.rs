@@ -1,0 +1,199 @@
+//! Writing meshes and moving sheets for other programs.
+
+mod csv;
+mod error;
+mod fold;
+mod gltf;
+mod obj;
+mod off;
+mod pc2;
+mod ply;
+mod series;
+mod stl;
+#[cfg(test)]
+mod tests;
+mod usda;
+mod vtk;
+
+pub use error::ExportError;
+pub use gltf::MOST_KEY_FRAMES;
+pub use series::{FieldSupport, Series, SeriesField, SeriesOptions};
+
+use super::mesh_file::MeshFile;
+use std::path::{Path, PathBuf};
+
+/// A format in which one mesh is written, as the extension of a file says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ExportMeshFormat {
+    /// Wavefront OBJ, `.obj`: all digits.
+    Obj,
+    /// Object File Format, `.off`: all digits.
+    Off,
+    /// Binary stereolithography, `.stl`: 32-bit floats, no shared vertices.
+    Stl,
+    /// Binary little-endian Polygon File Format, `.ply`: all digits.
+    Ply,
+    /// FOLD 1.2, `.fold`: all digits, with edges, assignments and fold angles.
+    Fold,
+    /// Binary glTF 2.0, `.glb`: 32-bit floats, y upwards.
+    Glb,
+    /// Universal Scene Description as text, `.usda`: 32-bit floats, z upwards.
+    Usda,
+}
+
+impl ExportMeshFormat {
+    /// All formats.
+    pub const ALL: [Self; 7] = [
+        Self::Obj,
+        Self::Off,
+        Self::Stl,
+        Self::Ply,
+        Self::Fold,
+        Self::Glb,
+        Self::Usda,
+    ];
+
+    /// The extension, without a dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Off => "off",
+            Self::Stl => "stl",
+            Self::Ply => "ply",
+            Self::Fold => "fold",
+            Self::Glb => "glb",
+            Self::Usda => "usda",
+        }
+    }
+}
+
+/// A format in which the frames of a moving sheet are written, as the extension of a file says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SeriesFormat {
+    /// One OBJ file for each frame in a folder: for `run.obj`, `run/frame_00000.obj` and so on, numbered
+    /// as in the trajectory. All digits; no times.
+    Obj,
+    /// One FOLD 1.2 file with a frame for each frame, `.fold`: all digits, times, fold angles of all edges.
+    Fold,
+    /// Binary glTF 2.0, `.glb`: morph targets with an animation of their weights, 32-bit floats, y
+    /// upwards; at most [`MOST_KEY_FRAMES`] frames, chosen evenly.
+    Glb,
+    /// Universal Scene Description as text with time samples, `.usda`: 32-bit floats, 24 time codes a second.
+    Usda,
+    /// A point cache with the mesh of the first frame beside it, `.pc2` and `.obj`: 32-bit floats, no times.
+    Pc2,
+    /// A collection of VTK files, one for each frame: for `run.pvd`, `run/frame_00000.vtp` and so on. All
+    /// digits, times, strain and fold angle of the edges and the fields of the series.
+    Pvd,
+    /// A table with a line for each vertex of each frame, `.csv`: frame, time, vertex, x, y, z with all
+    /// digits.
+    Csv,
+}
+
+impl SeriesFormat {
+    /// All formats.
+    pub const ALL: [Self; 7] = [
+        Self::Obj,
+        Self::Fold,
+        Self::Glb,
+        Self::Usda,
+        Self::Pc2,
+        Self::Pvd,
+        Self::Csv,
+    ];
+
+    /// The extension, without a dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Fold => "fold",
+            Self::Glb => "glb",
+            Self::Usda => "usda",
+            Self::Pc2 => "pc2",
+            Self::Pvd => "pvd",
+            Self::Csv => "csv",
+        }
+    }
+}
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Exported {
+    /// The files, the one that was asked for last.
+    pub files: Vec<PathBuf>,
+    /// The frames of the trajectory that they have.
+    pub frames: Vec<usize>,
+}
+
+/// Writes one mesh, atomically, in the format that the extension names ([`ExportMeshFormat`]).
+///
+/// # Errors
+/// [`ExportError`]; nothing is written then.
+pub fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
+    let format = by_extension(path, &ExportMeshFormat::ALL, ExportMeshFormat::extension)?;
+    let (x, faces) = (&mesh.positions[..], &mesh.faces[..]);
+    error::check_mesh(x, faces)?;
+    match format {
+        ExportMeshFormat::Obj => obj::write(path, faces, x),
+        ExportMeshFormat::Off => off::write(path, faces, x),
+        ExportMeshFormat::Stl => stl::write(path, faces, x),
+        ExportMeshFormat::Ply => ply::write(path, faces, x),
+        ExportMeshFormat::Fold => fold::write_mesh(path, mesh),
+        ExportMeshFormat::Glb => gltf::write(path, faces, &[(0.0, x)]),
+        ExportMeshFormat::Usda => usda::write(path, faces, &[(0.0, x)]),
+    }
+}
+
+/// Writes the frames of a moving sheet in the format that the extension names ([`SeriesFormat`]). Each
+/// file is written atomically, the one of that name last.
+///
+/// # Errors
+/// [`ExportError`]; other files of a format with several files may have been written then.
+pub fn write_series(path: &Path, series: &Series<'_>) -> Result<Exported, ExportError> {
+    let mut frames = series.frames().to_vec();
+    let files = match by_extension(path, &SeriesFormat::ALL, SeriesFormat::extension)? {
+        SeriesFormat::Obj => obj::write_series(path, series)?,
+        SeriesFormat::Fold => fold::write_series(path, series)?,
+        SeriesFormat::Glb => {
+            frames = gltf::key_frames(series);
+            let states: Vec<_> = frames.iter().map(|&f| series.state(f)).collect();
+            gltf::write(path, series.faces(), &states)?;
+            vec![path.to_owned()]
+        }
+        SeriesFormat::Usda => {
+            let states: Vec<_> = frames.iter().map(|&f| series.state(f)).collect();
+            usda::write(path, series.faces(), &states)?;
+            vec![path.to_owned()]
+        }
+        SeriesFormat::Pc2 => pc2::write_series(path, series)?,
+        SeriesFormat::Pvd => vtk::write_series(path, series)?,
+        SeriesFormat::Csv => csv::write_series(path, series)?,
+    };
+    Ok(Exported { files, frames })
+}
+
+/// The format that the extension of a file names, in capital or small letters.
+fn by_extension<T: Copy>(
+    path: &Path,
+    known: &[T],
+    extension: fn(T) -> &'static str,
+) -> Result<T, ExportError> {
+    let found = path.extension().unwrap_or_default();
+    let format = known
+        .iter()
+        .find(|f| found.eq_ignore_ascii_case(extension(**f)));
+    format.copied().ok_or_else(|| ExportError::Extension {
+        extension: found.to_string_lossy().into_owned(),
+        known: known
+            .iter()
+            .map(|&f| format!(".{}", extension(f)))
+            .collect(),
+    })
+}
+
+/// The path without its extension: the folder of the files of single frames.
+fn folder_of(path: &Path) -> PathBuf {
+    path.with_extension("")
+}

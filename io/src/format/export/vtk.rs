@@ -1,0 +1,189 @@
+//! VTK: one `.vtp` file for each frame and a `.pvd` file that lists them.
+
+use super::{ExportError, FieldSupport, Series, folder_of};
+use crate::format::atomic::write_atomically;
+use isosheet_mesh::EdgeId;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Writes the frames and, last, the list.
+pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathBuf>, ExportError> {
+    let folder = folder_of(path);
+    let folder_name = folder
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let mut list = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n",
+    );
+    let mut files = Vec::new();
+    for &frame in series.frames() {
+        let name = format!("frame_{frame:05}.vtp");
+        let file = folder.join(&name);
+        let bytes = frame_file(series, frame);
+        write_atomically(&file, |w| w.write_all(&bytes))?;
+        files.push(file);
+        let (t, folder) = (series.state(frame).0, escaped(&folder_name));
+        list += &format!("<DataSet timestep=\"{t}\" part=\"0\" file=\"{folder}/{name}\"/>\n");
+    }
+    list += "</Collection>\n</VTKFile>\n";
+    write_atomically(path, |w| w.write_all(list.as_bytes()))?;
+    files.push(path.to_owned());
+    Ok(files)
+}
+
+/// The cells of a frame: one line for each edge, then one triangle for each face. Fields of vertices are
+/// point data; all others are cell data. A triangle has the value of that of its edges whose value is
+/// largest in size, a line the mean of the values of its faces.
+fn frame_file(series: &Series<'_>, frame: usize) -> Vec<u8> {
+    let t = series.topology();
+    let (time, x) = series.state(frame);
+    let mut file = Appended::new();
+    let (points, lines, faces) = (t.vertex_count(), t.edge_count(), t.face_count());
+    file.xml += "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" \
+        byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n";
+    file.floats("TimeValue", "NumberOfTuples=\"1\"", &[time]);
+    file.xml += "</FieldData>\n";
+    file.line(&format!(
+        "<Piece NumberOfPoints=\"{points}\" NumberOfVerts=\"0\" NumberOfLines=\"{lines}\" \
+         NumberOfStrips=\"0\" NumberOfPolys=\"{faces}\">\n<PointData>"
+    ));
+    for (field, values) in series.fields(frame) {
+        if field.support == FieldSupport::Vertices {
+            file.floats(&field.name, "", values);
+        }
+    }
+    file.line("</PointData>\n<CellData>");
+    let degrees: Vec<f64> = series
+        .fold_angles(frame)
+        .iter()
+        .map(|a| a.to_degrees())
+        .collect();
+    file.floats("strain", "", &of_edges(series, &series.edge_strains(frame)));
+    file.floats("fold_angle", "", &of_edges(series, &degrees));
+    for (field, values) in series.fields(frame) {
+        match field.support {
+            FieldSupport::Vertices => {}
+            FieldSupport::Edges => file.floats(&field.name, "", &of_edges(series, values)),
+            FieldSupport::Faces => file.floats(&field.name, "", &of_faces(series, values)),
+        }
+    }
+    file.line("</CellData>\n<Points>");
+    file.floats("Points", "NumberOfComponents=\"3\"", x);
+    file.line("</Points>\n<Lines>");
+    let edges: Vec<u32> = t.edges().iter().flatten().map(|v| v.0).collect();
+    file.cells(&edges, 2);
+    file.line("</Lines>\n<Polys>");
+    file.cells(series.faces().as_flattened(), 3);
+    file.line("</Polys>\n</Piece>\n</PolyData>");
+    file.finish()
+}
+
+/// Values of edges on lines and triangles.
+fn of_edges(series: &Series<'_>, values: &[f64]) -> Vec<f64> {
+    let t = series.topology();
+    let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+    let of_face = |f| {
+        let edges = t.face_edges(f).map(|e| values[e.index()]);
+        edges.into_iter().fold(0.0, larger)
+    };
+    values
+        .iter()
+        .copied()
+        .chain(t.face_ids().map(of_face))
+        .collect()
+}
+
+/// Values of faces on lines and triangles.
+fn of_faces(series: &Series<'_>, values: &[f64]) -> Vec<f64> {
+    let t = series.topology();
+    let of_edge = |e: EdgeId| {
+        let faces = t.edge_faces(e).into_iter().flatten();
+        let (sum, count) = faces.fold((0.0, 0.0), |(sum, n), f| (sum + values[f.index()], n + 1.0));
+        sum / f64::max(count, 1.0)
+    };
+    t.edge_ids()
+        .map(of_edge)
+        .chain(values.iter().copied())
+        .collect()
+}
+
+/// An XML file with arrays as raw bytes after its end: each begins with its length in bytes.
+struct Appended {
+    xml: String,
+    data: Vec<u8>,
+}
+
+impl Appended {
+    fn new() -> Self {
+        Self {
+            xml: String::new(),
+            data: Vec::new(),
+        }
+    }
+
+    fn line(&mut self, text: &str) {
+        self.xml += text;
+        self.xml.push('\n');
+    }
+
+    fn floats(&mut self, name: &str, attributes: &str, values: &[f64]) {
+        let bytes = values.iter().flat_map(|v| v.to_le_bytes());
+        self.array("Float64", name, attributes, 8 * values.len(), bytes);
+    }
+
+    /// The corners of cells of `size` corners, and where each cell ends.
+    fn cells(&mut self, corners: &[u32], size: usize) {
+        let integers = |v: i64| v.to_le_bytes();
+        let bytes = corners.iter().map(|&v| i64::from(v)).flat_map(integers);
+        self.array("Int64", "connectivity", "", 8 * corners.len(), bytes);
+        let count = corners.len() / size;
+        let ends = (1..=count).map(|k| (size * k) as i64).flat_map(integers);
+        self.array("Int64", "offsets", "", 8 * count, ends);
+    }
+
+    fn array(
+        &mut self,
+        kind: &str,
+        name: &str,
+        attributes: &str,
+        length: usize,
+        bytes: impl Iterator<Item = u8>,
+    ) {
+        let (name, offset) = (escaped(name), self.data.len());
+        let written = writeln!(
+            self.xml,
+            "<DataArray type=\"{kind}\" Name=\"{name}\" {attributes} format=\"appended\" offset=\"{offset}\"/>"
+        );
+        written.expect("a string takes any text");
+        self.data.extend((length as u64).to_le_bytes());
+        self.data.extend(bytes);
+    }
+
+    fn finish(self) -> Vec<u8> {
+        let mut file = self.xml.into_bytes();
+        file.extend(b"<AppendedData encoding=\"raw\">\n_");
+        file.extend(self.data);
+        file.extend(b"\n</AppendedData>\n</VTKFile>\n");
+        file
+    }
+}
+
+/// Text for an attribute of XML.
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => out += "&amp;",
+            '<' => out += "&lt;",
+            '>' => out += "&gt;",
+            '"' => out += "&quot;",
+            // XML has no other control characters, not even escaped.
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}

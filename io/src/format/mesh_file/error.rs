@@ -1,0 +1,238 @@
+//! What can be wrong with a mesh file.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use isosheet_mesh::MeshError;
+use thiserror::Error;
+
+use super::MeshFormat;
+use super::fold::FoldProblem;
+use super::gltf::GltfProblem;
+
+/// Where in a file something is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Place {
+    /// A line of a text file, counted from 1.
+    Line(usize),
+    /// A byte of a binary file, counted from 0.
+    Byte(usize),
+    /// A face, counted from 0 in the order of the file.
+    Face(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Byte(byte) => write!(f, "byte {byte}"),
+            Self::Face(face) => write!(f, "face {face}, counted from 0"),
+        }
+    }
+}
+
+/// What is wrong, with its place where there is one.
+pub(super) type Located = (Option<Place>, MeshFileProblem);
+
+/// A mesh file that cannot be read, with the place.
+#[derive(Debug, Error)]
+#[error("{}{}: {problem}", path.display(), place.map(|p| format!(", {p}")).unwrap_or_default())]
+pub struct MeshFileError {
+    /// The file.
+    pub path: PathBuf,
+    /// The place, where there is one to blame.
+    pub place: Option<Place>,
+    /// What is wrong.
+    #[source]
+    pub problem: MeshFileProblem,
+}
+
+/// What is wrong with a mesh file.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum MeshFileProblem {
+    /// The extension is not that of a format that is read.
+    #[error(
+        "{} is no known format of meshes; known are {}: convert the file to one of these",
+        if extension.is_empty() { "a name without extension".to_owned() } else { format!(".{extension}") },
+        known_extensions()
+    )]
+    Extension {
+        /// The extension found, without a dot.
+        extension: String,
+    },
+    /// The option `weld` is not a length.
+    #[error(
+        "the tolerance for welding vertices is {tolerance}; give a length of 0 or more in the unit of the file"
+    )]
+    WeldTolerance {
+        /// The value.
+        tolerance: f64,
+    },
+    /// The file could not be opened or read.
+    #[error("cannot read the file: {0}; check the path")]
+    Read(std::io::Error),
+    /// There is nothing in it but comments.
+    #[error("the file has no vertices and no faces; it is empty, or was cut short")]
+    Empty,
+    /// Other lines, no vertices.
+    #[error(
+        "the file has no vertices; its first unknown word is {word:?}, so it may not be an OBJ file"
+    )]
+    NotObj {
+        /// The first word that no OBJ line starts with.
+        word: String,
+    },
+    /// Vertices, no faces.
+    #[error(
+        "the file has {vertices} vertices, {lines} line elements and {points} point elements, but no faces; export it with its faces"
+    )]
+    NoFaces {
+        /// The number of vertices.
+        vertices: usize,
+        /// The number of line elements.
+        lines: usize,
+        /// The number of point elements.
+        points: usize,
+    },
+    /// Faces, no vertices.
+    #[error("the file has {faces} faces but no vertices; export it with its vertices")]
+    NoVertices {
+        /// The number of faces.
+        faces: usize,
+    },
+    /// A vertex line of an OBJ file does not hold three or more numbers.
+    #[error("a vertex needs three numbers, found {found:?}; write `v x y z`")]
+    BadVertex {
+        /// The rest of the line.
+        found: String,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("coordinate {} of vertex {vertex} is {value}; every coordinate must be finite", ["x", "y", "z"][*axis])]
+    NonFinite {
+        /// The vertex, counted as the file does: from 1 in OBJ, from 0 in all others.
+        vertex: usize,
+        /// 0, 1, 2 for x, y, z.
+        axis: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A weight other than 1.
+    #[error(
+        "vertex {vertex} has the weight {weight}; weights belong to curves and are not supported: write the point itself"
+    )]
+    Weight {
+        /// The vertex, counted from 1.
+        vertex: usize,
+        /// The weight.
+        weight: f64,
+    },
+    /// A corner of a face of an OBJ file is not an index.
+    #[error("{found:?} is not a vertex index; write `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`")]
+    BadIndex {
+        /// The text found.
+        found: String,
+    },
+    /// A corner of a face refers to a vertex that does not exist.
+    #[error(
+        "a face refers to vertex {index}, but there are {count} vertices, counted from {first}; the file is damaged or incomplete"
+    )]
+    IndexOutOfRange {
+        /// The index as written.
+        index: i64,
+        /// How many vertices there are.
+        count: usize,
+        /// The number of the first vertex: 1 in OBJ, 0 in all others.
+        first: i64,
+    },
+    /// A face with fewer than three corners.
+    #[error("a face has {corners} corners; it needs at least three: remove it or complete it")]
+    TooFewCorners {
+        /// How many.
+        corners: usize,
+    },
+    /// A face with more than three corners.
+    #[error(
+        "a face has {corners} corners; a rigid sheet is made of triangles, and a diagonal is a new crease: triangulate the file, or ask for `Polygons::Triangulate`"
+    )]
+    Polygon {
+        /// How many.
+        corners: usize,
+    },
+    /// A polygon that cannot be cut into triangles from one corner.
+    #[error(
+        "a face of {corners} corners cannot be cut into triangles from any one of its corners (it is too concave, or repeats a point); triangulate the file first"
+    )]
+    ConcavePolygon {
+        /// How many.
+        corners: usize,
+    },
+    /// More vertices than 32-bit numbers can count.
+    #[error("the file has {vertices} vertices, more than 32-bit numbers can count; split it")]
+    TooManyVertices {
+        /// How many.
+        vertices: usize,
+    },
+    /// A word of a text file is not what the format has there.
+    #[error("expected {expected}, found {found:?}; correct the file or export it again")]
+    Syntax {
+        /// What the format has there.
+        expected: String,
+        /// The text found.
+        found: String,
+    },
+    /// The file ends too early.
+    #[error("the file ends before {missing}; it was cut short: copy or export it again")]
+    Truncated {
+        /// What is missing.
+        missing: String,
+    },
+    /// The header announces more than the file can hold.
+    #[error(
+        "the header announces {count} {what}, which need {needed} bytes, but {available} bytes follow; the file is damaged or was cut short"
+    )]
+    Announced {
+        /// What is announced.
+        what: String,
+        /// How many.
+        count: u64,
+        /// The least number of bytes that they need.
+        needed: u64,
+        /// The number of bytes that follow the header.
+        available: u64,
+    },
+    /// A PLY file that breaks the rules of its format.
+    #[error("{0}; correct the file or export it again")]
+    Ply(String),
+    /// A facet of an STL file that breaks the rules of the format.
+    #[error("facet {facet} (from 0): {problem}; correct the file or export it again")]
+    Stl {
+        /// The facet.
+        facet: usize,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A FOLD file is no JSON, or its arrays are not what the format has.
+    #[error("{0}; correct the file or export it again")]
+    Json(serde_json::Error),
+    /// What a FOLD file says does not fit together.
+    #[error(transparent)]
+    Fold(#[from] FoldProblem),
+    /// A glTF file that cannot be used.
+    #[error(transparent)]
+    Gltf(#[from] GltfProblem),
+    /// The vertices and faces are not a sheet.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
+fn known_extensions() -> String {
+    let names = MeshFormat::ALL.map(|f| format!(".{}", f.extension()));
+    names.join(", ")
+}
+
+/// The first characters of a text, for an error.
+pub(super) fn excerpt(text: &str) -> String {
+    text.chars().take(30).collect()
+}

@@ -1,0 +1,144 @@
+//! Reading FOLD files (Flexible Origami List Datastructure, versions 1.0 to 1.2,
+//! <https://github.com/edemaine/fold>).
+
+mod cuts;
+mod frames;
+mod pattern;
+mod problem;
+#[cfg(test)]
+mod tests;
+
+pub use problem::FoldProblem;
+
+use super::error::{Located, MeshFileProblem, Place};
+use super::faces::Polyhedron;
+use super::{EdgeAssignment, FileCrease, MeshFile, MeshOptions};
+use frames::Frame;
+
+/// Reads a frame of a FOLD file.
+///
+/// - Vertices have two or three coordinates; two mean z = 0. A `frame_unit` that is a length is converted to
+///   metres.
+/// - Without `faces_vertices` the faces are those of the flat crease pattern.
+/// - The faces of a flat frame that is no folded form are made counter-clockwise, as the format demands.
+/// - Edges with the assignment `C` separate the sheet: vertices there are doubled.
+/// - Fold angles are degrees in the file.
+pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Located> {
+    let plain = |problem| (None, problem);
+    let frame = frames::read(bytes, options.frame).map_err(plain)?;
+    let mut polyhedron = Polyhedron::default();
+    add_vertices(&frame, &mut polyhedron).map_err(plain)?;
+    let vertices = polyhedron.positions.len() / 3;
+    let edges = read_edges(&frame, vertices).map_err(|e| plain(e.into()))?;
+    let points = polyhedron.positions.as_chunks::<3>().0;
+    let is_flat = points.iter().all(|p| p[2] == 0.0);
+    let mut faces = match &frame.faces_vertices {
+        Some(faces) if !faces.is_empty() => faces.clone(),
+        _ if edges.is_empty() => Vec::new(),
+        _ if !is_flat => return Err(plain(FoldProblem::NoFacesInSpace.into())),
+        _ => pattern::faces(points, &edges).map_err(|e| plain(e.into()))?,
+    };
+    let is_folded = frame.has_class("foldedForm");
+    let mut reversed_faces = 0;
+    if is_flat && !is_folded {
+        for face in faces.iter_mut().filter(|f| is_clockwise(points, f)) {
+            face.reverse();
+            reversed_faces += 1;
+        }
+    }
+    for (k, face) in faces.into_iter().enumerate() {
+        polyhedron.push_face(face, Place::Face(k));
+    }
+    polyhedron.lines = edges.len();
+    let mut mesh = polyhedron.assemble(options)?;
+    let diagonal = |&ends: &[u32; 2]| FileCrease {
+        ends,
+        assignment: EdgeAssignment::Flat,
+        angle: Some(0.0),
+    };
+    mesh.creases = edges;
+    mesh.creases.extend(mesh.diagonals.iter().map(diagonal));
+    mesh.changes.reversed_faces = reversed_faces;
+    mesh.separate_cuts();
+    Ok(mesh)
+}
+
+fn add_vertices(frame: &Frame, polyhedron: &mut Polyhedron) -> Result<(), MeshFileProblem> {
+    let unit = frame.metres()?;
+    for (vertex, p) in frame.vertices_coords.iter().flatten().enumerate() {
+        let [x, y, rest @ ..] = &p[..] else {
+            let count = p.len();
+            return Err(FoldProblem::Coordinates { vertex, count }.into());
+        };
+        let (z, more) = rest.split_first().unwrap_or((&0.0, &[]));
+        if more.iter().any(|&c| c != 0.0) {
+            return Err(FoldProblem::Dimension { vertex }.into());
+        }
+        polyhedron.push_vertex([x, y, z].map(|c| unit * c))?;
+    }
+    Ok(())
+}
+
+/// The edges with their assignments and angles.
+fn read_edges(frame: &Frame, vertices: usize) -> Result<Vec<FileCrease>, FoldProblem> {
+    let Some(ends) = &frame.edges_vertices else {
+        return Ok(Vec::new());
+    };
+    let same_length = |array, got: Option<usize>| match got {
+        Some(got) if got != ends.len() => Err(FoldProblem::Length {
+            array,
+            got,
+            edges: ends.len(),
+        }),
+        _ => Ok(()),
+    };
+    let (assignments, angles) = (&frame.edges_assignment, &frame.fold_angles);
+    same_length("edges_assignment", assignments.as_ref().map(Vec::len))?;
+    same_length("edges_foldAngle", angles.as_ref().map(Vec::len))?;
+    let crease = |(edge, &ends): (usize, &[u32; 2])| {
+        if let Some(&vertex) = ends.iter().find(|&&v| v as usize >= vertices) {
+            let count = vertices;
+            return Err(FoldProblem::EdgeVertex {
+                edge,
+                vertex,
+                count,
+            });
+        }
+        let text = assignments.as_ref().and_then(|a| a[edge].as_deref());
+        let angle = angles.as_ref().and_then(|a| a[edge]);
+        if let Some(degrees) = angle.filter(|a| !(-180.0..=180.0).contains(a)) {
+            return Err(FoldProblem::Angle { edge, degrees });
+        }
+        Ok(FileCrease {
+            ends,
+            assignment: assignment(edge, text)?,
+            angle: angle.map(f64::to_radians),
+        })
+    };
+    ends.iter().enumerate().map(crease).collect()
+}
+
+fn assignment(edge: usize, text: Option<&str>) -> Result<EdgeAssignment, FoldProblem> {
+    Ok(match text {
+        Some("B" | "b") => EdgeAssignment::Boundary,
+        Some("M" | "m") => EdgeAssignment::Mountain,
+        Some("V" | "v") => EdgeAssignment::Valley,
+        Some("F" | "f") => EdgeAssignment::Flat,
+        Some("U" | "u") | None => EdgeAssignment::Unassigned,
+        Some("C" | "c") => EdgeAssignment::Cut,
+        Some("J" | "j") => EdgeAssignment::Join,
+        Some(text) => {
+            let found = super::error::excerpt(text);
+            return Err(FoldProblem::Assignment { edge, found });
+        }
+    })
+}
+
+/// Whether a polygon in the plane z = 0 has a negative area; not if it refers to vertices that do not exist.
+fn is_clockwise(points: &[[f64; 3]], face: &[i64]) -> bool {
+    let corner = |&v: &i64| usize::try_from(v).ok().and_then(|v| points.get(v));
+    let Some(corners) = face.iter().map(corner).collect::<Option<Vec<_>>>() else {
+        return false;
+    };
+    pattern::twice_area(corners.into_iter()) < 0.0
+}

@@ -1,0 +1,125 @@
+//! Frames of FOLD files and what they inherit.
+
+use super::FoldProblem;
+use crate::format::mesh_file::MeshFileProblem;
+use crate::format::mesh_file::error::excerpt;
+use serde::Deserialize;
+
+/// What is used of a frame. All keys of the format are optional.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Frame {
+    frame_parent: Option<usize>,
+    frame_inherit: Option<bool>,
+    frame_classes: Option<Vec<String>>,
+    frame_unit: Option<String>,
+    pub(super) vertices_coords: Option<Vec<Vec<f64>>>,
+    pub(super) edges_vertices: Option<Vec<[u32; 2]>>,
+    pub(super) edges_assignment: Option<Vec<Option<String>>>,
+    /// In degrees. Version 1.0 has the plural.
+    #[serde(rename = "edges_foldAngle", alias = "edges_foldAngles")]
+    pub(super) fold_angles: Option<Vec<Option<f64>>>,
+    pub(super) faces_vertices: Option<Vec<Vec<i64>>>,
+}
+
+/// The frames besides the key frame, whose keys are those of the file itself.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct File {
+    file_frames: Option<Vec<Frame>>,
+}
+
+/// Reads one frame with what it inherits; without a number the first that has vertices.
+pub(super) fn read(bytes: &[u8], wanted: Option<usize>) -> Result<Frame, MeshFileProblem> {
+    if bytes.trim_ascii().is_empty() {
+        return Err(MeshFileProblem::Empty);
+    }
+    let key: Frame = serde_json::from_slice(bytes).map_err(MeshFileProblem::Json)?;
+    let file: File = serde_json::from_slice(bytes).map_err(MeshFileProblem::Json)?;
+    let frames = [vec![key], file.file_frames.unwrap_or_default()].concat();
+    if let Some(frame) = wanted {
+        let last = frames.len() - 1;
+        if frame > last {
+            return Err(FoldProblem::NoFrame { frame, last }.into());
+        }
+        return Ok(inherited(&frames, frame)?);
+    }
+    for k in 0..frames.len() {
+        let chain = ancestry(&frames, k)?;
+        let mut coordinates = chain
+            .iter()
+            .filter_map(|&a| frames[a].vertices_coords.as_ref());
+        if coordinates.next().is_some_and(|c| !c.is_empty()) {
+            return Ok(inherited(&frames, k)?);
+        }
+    }
+    Err(FoldProblem::NoCoordinates.into())
+}
+
+/// More ancestors of a frame are refused: a circle has no end.
+const MOST_ANCESTORS: usize = 1000;
+
+/// A frame and those that it inherits from, the nearest first. A frame that inherits and names no parent
+/// inherits from the key frame.
+fn ancestry(frames: &[Frame], number: usize) -> Result<Vec<usize>, FoldProblem> {
+    let mut chain = vec![number];
+    let mut at = number;
+    while at != 0 && frames[at].frame_inherit == Some(true) {
+        let parent = frames[at].frame_parent.unwrap_or(0);
+        if parent >= frames.len() || chain.len() > MOST_ANCESTORS {
+            return Err(FoldProblem::Parent { frame: at, parent });
+        }
+        chain.push(parent);
+        at = parent;
+    }
+    Ok(chain)
+}
+
+/// A frame with the keys of its ancestors that it does not have itself.
+fn inherited(frames: &[Frame], number: usize) -> Result<Frame, FoldProblem> {
+    let chain = ancestry(frames, number)?;
+    let merge = |frame: Frame, &ancestor: &usize| {
+        let from = &frames[ancestor];
+        Frame {
+            frame_parent: None,
+            frame_inherit: None,
+            frame_classes: frame.frame_classes.or_else(|| from.frame_classes.clone()),
+            frame_unit: frame.frame_unit.or_else(|| from.frame_unit.clone()),
+            vertices_coords: frame
+                .vertices_coords
+                .or_else(|| from.vertices_coords.clone()),
+            edges_vertices: frame.edges_vertices.or_else(|| from.edges_vertices.clone()),
+            edges_assignment: frame
+                .edges_assignment
+                .or_else(|| from.edges_assignment.clone()),
+            fold_angles: frame.fold_angles.or_else(|| from.fold_angles.clone()),
+            faces_vertices: frame.faces_vertices.or_else(|| from.faces_vertices.clone()),
+        }
+    };
+    Ok(chain.iter().fold(Frame::default(), merge))
+}
+
+impl Frame {
+    /// Whether the frame says that it is of a class such as `creasePattern` or `foldedForm`.
+    pub(super) fn has_class(&self, class: &str) -> bool {
+        self.frame_classes.iter().flatten().any(|c| c == class)
+    }
+
+    /// The unit of the frame in metres; 1 if it has none.
+    pub(super) fn metres(&self) -> Result<f64, FoldProblem> {
+        Ok(match self.frame_unit.as_deref() {
+            None | Some("unit" | "m") => 1.0,
+            Some("in") => 0.0254,
+            // A typographic point is the 72nd part of an inch.
+            Some("pt") => 0.0254 / 72.0,
+            Some("cm") => 1e-2,
+            Some("mm") => 1e-3,
+            Some("um") => 1e-6,
+            Some("nm") => 1e-9,
+            Some(found) => {
+                let found = excerpt(found);
+                return Err(FoldProblem::Unit { found });
+            }
+        })
+    }
+}

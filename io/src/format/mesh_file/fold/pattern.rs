@@ -1,0 +1,209 @@
+//! Faces of a flat crease pattern that has vertices and edges alone.
+
+use super::FoldProblem;
+use crate::format::mesh_file::{EdgeAssignment, FileCrease};
+use std::collections::HashSet;
+
+type Point = [f64; 3];
+
+/// More edges are refused: pairs of edges are compared, which takes a second or two for so many edges that
+/// all overlap in one direction.
+const MOST_EDGES: usize = 50_000;
+
+/// An edge meets another one if an end of it is so near, as a part of the size of the pattern: above the
+/// round-off of coordinates of seven digits, below any distance in a drawing.
+const NEAR: f64 = 1e-7;
+
+/// The faces, counter-clockwise, as corners from 0.
+///
+/// Each edge has two sides; at its end, a side is followed by that of the next edge clockwise. The
+/// circuits of positive area are the faces, the one of negative area is the outside. A face is a hole of
+/// the sheet if all of its edges are boundary and have another face on their other side.
+pub(super) fn faces(points: &[Point], edges: &[FileCrease]) -> Result<Vec<Vec<i64>>, FoldProblem> {
+    check(points, edges)?;
+    let out = outgoing(points, edges);
+    let mut face_of = vec![usize::MAX; 2 * edges.len()];
+    let mut circuits: Vec<Vec<usize>> = Vec::new();
+    for start in 0..face_of.len() {
+        if face_of[start] != usize::MAX {
+            continue;
+        }
+        let mut circuit = Vec::new();
+        let mut side = start;
+        while face_of[side] == usize::MAX {
+            face_of[side] = circuits.len();
+            circuit.push(side);
+            side = next(&out, edges, side);
+        }
+        circuits.push(circuit);
+    }
+    let corner = |&side: &usize| tail(edges, side);
+    let area = |circuit: &[usize]| twice_area(circuit.iter().map(|s| &points[corner(s)]));
+    let is_face: Vec<bool> = circuits.iter().map(|c| area(c) > 0.0).collect();
+    let is_hole = |circuit: &[usize]| {
+        circuit.iter().all(|&side| {
+            edges[side / 2].assignment == EdgeAssignment::Boundary && is_face[face_of[side ^ 1]]
+        })
+    };
+    let kept = circuits
+        .iter()
+        .enumerate()
+        .filter(|(k, c)| is_face[*k] && !is_hole(c));
+    Ok(kept
+        .map(|(_, c)| c.iter().map(|s| corner(s) as i64).collect())
+        .collect())
+}
+
+/// Twice the signed area of a polygon in the plane z = 0.
+pub(super) fn twice_area<'a>(mut corners: impl Iterator<Item = &'a Point>) -> f64 {
+    let Some(first) = corners.next() else {
+        return 0.0;
+    };
+    let from_first = |p: &Point| [p[0] - first[0], p[1] - first[1]];
+    let (sum, _) = corners.fold((0.0, [0.0; 2]), |(sum, a), p| {
+        let b = from_first(p);
+        (sum + a[0] * b[1] - a[1] * b[0], b)
+    });
+    sum
+}
+
+/// Where a side begins. Side `2 e` runs along edge `e`, side `2 e + 1` against it.
+fn tail(edges: &[FileCrease], side: usize) -> usize {
+    edges[side / 2].ends[side % 2] as usize
+}
+
+/// The sides that begin at each vertex, counter-clockwise.
+fn outgoing(points: &[Point], edges: &[FileCrease]) -> Vec<Vec<usize>> {
+    let mut out = vec![Vec::new(); points.len()];
+    for side in 0..2 * edges.len() {
+        out[tail(edges, side)].push(side);
+    }
+    let angle = |side: usize| {
+        let (a, b) = (points[tail(edges, side)], points[tail(edges, side ^ 1)]);
+        (b[1] - a[1]).atan2(b[0] - a[0])
+    };
+    for sides in &mut out {
+        sides.sort_by(|&s, &t| angle(s).total_cmp(&angle(t)));
+    }
+    out
+}
+
+/// The side that follows on the circuit to the left.
+fn next(out: &[Vec<usize>], edges: &[FileCrease], side: usize) -> usize {
+    let back = side ^ 1;
+    let sides = &out[tail(edges, back)];
+    let at = sides.iter().position(|&s| s == back).unwrap_or(0);
+    sides[(at + sides.len() - 1) % sides.len()]
+}
+
+/// Checks that the edges are a connected drawing without crossings and loose ends.
+fn check(points: &[Point], edges: &[FileCrease]) -> Result<(), FoldProblem> {
+    if edges.len() > MOST_EDGES {
+        return Err(FoldProblem::TooManyEdges {
+            edges: edges.len(),
+            limit: MOST_EDGES,
+        });
+    }
+    let mut seen = HashSet::new();
+    let mut degree = vec![0_usize; points.len()];
+    let mut piece: Vec<usize> = (0..points.len()).collect();
+    for (edge, crease) in edges.iter().enumerate() {
+        let [a, b] = crease.ends.map(|v| v as usize);
+        if points[a] == points[b] || !seen.insert([a.min(b), a.max(b)]) {
+            return Err(FoldProblem::UselessEdge { edge });
+        }
+        degree[a] += 1;
+        degree[b] += 1;
+        let (a, b) = (root(&mut piece, a), root(&mut piece, b));
+        piece[a] = b;
+    }
+    check_crossings(points, edges)?;
+    if let Some(vertex) = degree.iter().position(|&d| d == 1) {
+        return Err(FoldProblem::LooseEnd { vertex });
+    }
+    let pieces = (0..points.len())
+        .filter(|&v| degree[v] > 0 && piece[v] == v)
+        .count();
+    if pieces == 1 {
+        Ok(())
+    } else {
+        Err(FoldProblem::Pieces { pieces })
+    }
+}
+
+/// The representative of a set, with the path to it halved.
+fn root(parent: &mut [usize], mut v: usize) -> usize {
+    while parent[v] != v {
+        parent[v] = parent[parent[v]];
+        v = parent[v];
+    }
+    v
+}
+
+/// Compares all pairs of edges that overlap along x.
+fn check_crossings(points: &[Point], edges: &[FileCrease]) -> Result<(), FoldProblem> {
+    let ends = |e: usize| edges[e].ends.map(|v| points[v as usize]);
+    let extent = |k: usize| {
+        let [low, high] = bounds(
+            edges
+                .iter()
+                .flat_map(|e| e.ends)
+                .map(|v| points[v as usize][k]),
+        );
+        high - low
+    };
+    let near = NEAR * extent(0).max(extent(1));
+    let mut order: Vec<(usize, [f64; 2], [f64; 2])> = (0..edges.len())
+        .map(|e| {
+            let range = |k: usize| bounds(ends(e).iter().map(|p| p[k]));
+            (e, range(0), range(1))
+        })
+        .collect();
+    order.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
+    for (k, &(e, x, y)) in order.iter().enumerate() {
+        for &(f, _, v) in order[k + 1..].iter().take_while(|o| o.1[0] <= x[1] + near) {
+            let apart = v[0] > y[1] + near || y[0] > v[1] + near;
+            if !apart && meet(edges[e].ends, edges[f].ends, points, near) {
+                let (first, second) = (e.min(f), e.max(f));
+                return Err(FoldProblem::Crossing { first, second });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Smallest and largest number.
+fn bounds(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], c| {
+        [low.min(c), high.max(c)]
+    })
+}
+
+/// Whether two edges meet elsewhere than at a vertex that both have.
+fn meet(e: [u32; 2], f: [u32; 2], points: &[Point], near: f64) -> bool {
+    let at = |v: u32| points[v as usize];
+    let ends_near = |e: [u32; 2], f: [u32; 2]| {
+        let apart = |v: &&u32| !f.contains(v);
+        e.iter()
+            .filter(apart)
+            .any(|&v| distance(at(v), f.map(at)) <= near)
+    };
+    if ends_near(e, f) || ends_near(f, e) {
+        return true;
+    }
+    if e.iter().any(|v| f.contains(v)) {
+        return false;
+    }
+    let ([a, b], [c, d]) = (e.map(at), f.map(at));
+    let side = |p: Point, q: Point, r: Point| twice_area([p, q, r].iter());
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+}
+
+/// The distance of a point from a segment in the plane.
+fn distance(p: Point, [a, b]: [Point; 2]) -> f64 {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let from = [p[0] - a[0], p[1] - a[1]];
+    let squared = along[0] * along[0] + along[1] * along[1];
+    let part = ((along[0] * from[0] + along[1] * from[1]) / squared).clamp(0.0, 1.0);
+    (from[0] - part * along[0]).hypot(from[1] - part * along[1])
+}

@@ -1,0 +1,253 @@
+//! Defects, frames, faces of drawings, cuts and angles.
+
+use super::FoldProblem;
+use crate::format::mesh_file::tests::{FOLD, cross, parse, problem};
+use crate::format::mesh_file::{
+    EdgeAssignment, MeshFileProblem, MeshFormat, MeshOptions, Place, parse_mesh,
+};
+use isosheet_mesh::generate::FoldAssignment;
+use isosheet_mesh::{EdgeId, VertexId, fold_angle};
+use std::path::Path;
+
+#[test]
+fn defects_of_fold_files_are_typed() {
+    use FoldProblem as F;
+    let fold_problem = |text: String| match problem(MeshFormat::Fold, text.as_bytes()).1 {
+        MeshFileProblem::Fold(problem) => problem,
+        other => panic!("{other}"),
+    };
+    let change = |from: &str, to: &str| fold_problem(FOLD.replace(from, to));
+    assert!(matches!(change("\"cm\"", "\"mile\""), F::Unit { .. }));
+    assert_eq!(
+        change("[200, 0, 50]", "[200]"),
+        F::Coordinates {
+            vertex: 1,
+            count: 1
+        }
+    );
+    assert_eq!(
+        change("[200, 0, 50]", "[200, 0, 50, 1]"),
+        F::Dimension { vertex: 1 }
+    );
+    assert!(matches!(
+        change("\"M\"]", "\"M\", \"M\"]"),
+        F::Length {
+            got: 6,
+            edges: 5,
+            ..
+        }
+    ));
+    assert!(matches!(
+        change("[2, 3], [3, 0]", "[2, 9], [3, 0]"),
+        F::EdgeVertex { edge: 2, .. }
+    ));
+    assert!(matches!(
+        change("\"M\"", "\"mountain\""),
+        F::Assignment { edge: 4, .. }
+    ));
+    assert_eq!(
+        change("-90", "-190"),
+        F::Angle {
+            edge: 4,
+            degrees: -190.0
+        }
+    );
+    assert_eq!(change("faces_vertices", "x:faces"), F::NoFacesInSpace);
+    assert!(matches!(
+        fold_problem("{\"vertices_coords\": []}".into()),
+        F::NoCoordinates
+    ));
+    let (_, json) = problem(MeshFormat::Fold, &FOLD.as_bytes()[..100]);
+    assert!(matches!(json, MeshFileProblem::Json(_)));
+    let (place, index) = problem(
+        MeshFormat::Fold,
+        FOLD.replace("[0, 2, 3]", "[0, 2, -3]").as_bytes(),
+    );
+    assert!(matches!(
+        index,
+        MeshFileProblem::IndexOutOfRange { index: -3, .. }
+    ));
+    assert_eq!(place, Some(Place::Face(1)));
+}
+
+#[test]
+fn frames_inherit_from_their_parents() {
+    let text = r#"{"frame_unit": "mm", "faces_vertices": [[0, 1, 2]], "file_frames": [
+        {"frame_inherit": true, "vertices_coords": [[0, 0], [1, 0], [0, 1]]},
+        {"frame_inherit": true, "frame_parent": 1, "faces_vertices": [[0, 2, 1]],
+         "frame_classes": ["foldedForm"]},
+        {"frame_inherit": true, "frame_parent": 4},
+        {"frame_inherit": true, "frame_parent": 3}]}"#;
+    let frame = |frame| {
+        let options = MeshOptions {
+            frame,
+            ..MeshOptions::default()
+        };
+        parse_mesh(
+            text.as_bytes(),
+            MeshFormat::Fold,
+            Path::new("x.fold"),
+            &options,
+        )
+    };
+    let first = frame(None).unwrap();
+    assert_eq!((first.positions[3], first.faces[0]), (1e-3, [0, 1, 2]));
+    assert_eq!(frame(Some(1)).unwrap(), first);
+    let second = frame(Some(2)).unwrap();
+    assert_eq!(
+        (&second.positions, second.faces[0]),
+        (&first.positions, [0, 2, 1])
+    );
+    let refused = |n| frame(Some(n)).unwrap_err().problem;
+    assert!(matches!(refused(0), MeshFileProblem::NoVertices { .. }));
+    assert!(matches!(
+        refused(3),
+        MeshFileProblem::Fold(FoldProblem::Parent { .. })
+    ));
+    let missing = FoldProblem::NoFrame { frame: 5, last: 4 };
+    assert!(matches!(refused(5), MeshFileProblem::Fold(p) if p == missing));
+}
+
+#[test]
+fn faces_of_a_crease_pattern_are_found() {
+    let mesh = parse(MeshFormat::Fold, cross("").as_bytes()).unwrap();
+    let sheet = mesh.clone().into_sheet().unwrap();
+    assert_eq!(
+        (mesh.polygons, sheet.topology().face_count(), sheet.area()),
+        (4, 8, 4.0)
+    );
+    let given = ", \"faces_vertices\": [[0,1,8,7],[1,2,3,8],[8,3,4,5],[7,8,5,6]]";
+    let given = parse(MeshFormat::Fold, cross(given).as_bytes()).unwrap();
+    assert_eq!(given.into_sheet().unwrap().area(), 4.0);
+    let assignments = mesh.fold_assignments(sheet.topology()).unwrap();
+    let count = |a| assignments.iter().filter(|b| **b == Some(a)).count();
+    assert_eq!(count(FoldAssignment::Boundary), 8);
+    assert_eq!(count(FoldAssignment::Mountain), 1);
+    assert_eq!(count(FoldAssignment::Valley), 3);
+    assert_eq!(count(FoldAssignment::Flat), 4, "the diagonals");
+
+    // A square in a square, connected at its corners: the inner one is a hole if its edges are boundary.
+    let frame = |inner: &str| {
+        format!(
+            r#"{{"vertices_coords": [[0,0],[3,0],[3,3],[0,3],[1,1],[2,1],[2,2],[1,2]],
+            "edges_vertices": [[0,1],[1,2],[2,3],[3,0],[4,5],[5,6],[6,7],[7,4],[0,4],[1,5],[2,6],[3,7]],
+            "edges_assignment": ["B","B","B","B",{inner},{inner},{inner},{inner},"M","V","M","V"]}}"#
+        )
+    };
+    let area = |text: &str| {
+        let mesh = parse(MeshFormat::Fold, text.as_bytes()).unwrap();
+        mesh.into_sheet().unwrap().area()
+    };
+    assert!((area(&frame("\"M\"")) - 9.0).abs() < 1e-14);
+    assert!((area(&frame("\"B\"")) - 8.0).abs() < 1e-14);
+}
+
+#[test]
+fn patterns_without_faces_that_are_no_drawing_are_refused() {
+    let refused = |coords: &str, edges: &str| {
+        let text = format!(r#"{{"vertices_coords": [{coords}], "edges_vertices": [{edges}]}}"#);
+        match problem(MeshFormat::Fold, text.as_bytes()).1 {
+            MeshFileProblem::Fold(problem) => problem,
+            other => panic!("{other}"),
+        }
+    };
+    let square = "[0,0],[1,0],[1,1],[0,1]";
+    let sides = "[0,1],[1,2],[2,3],[3,0]";
+    let with = |more: &str| format!("{sides},{more}");
+    assert_eq!(
+        refused(square, &with("[0,2],[3,1]")),
+        FoldProblem::Crossing {
+            first: 4,
+            second: 5
+        }
+    );
+    assert_eq!(
+        refused(square, &with("[0,2],[2,0]")),
+        FoldProblem::UselessEdge { edge: 5 }
+    );
+    let inner = format!("{square},[0.5,0.4]");
+    assert_eq!(
+        refused(&inner, &with("[0,4]")),
+        FoldProblem::LooseEnd { vertex: 4 }
+    );
+    let on_side = format!("{square},[0.5,0]");
+    assert!(matches!(
+        refused(&on_side, &with("[2,4],[3,4]")),
+        FoldProblem::Crossing { .. }
+    ));
+    let two = format!("{square},[0.4,0.4],[0.6,0.4],[0.5,0.6]");
+    assert_eq!(
+        refused(&two, &with("[4,5],[5,6],[6,4]")),
+        FoldProblem::Pieces { pieces: 2 }
+    );
+}
+
+#[test]
+fn clockwise_faces_of_flat_patterns_are_turned_over() {
+    let clockwise = ", \"faces_vertices\": [[7,8,1,0],[8,3,2,1],[8,3,4,5],[7,8,5,6]]";
+    let mesh = parse(MeshFormat::Fold, cross(clockwise).as_bytes()).unwrap();
+    assert_eq!(mesh.changes.reversed_faces, 2);
+    assert_eq!(mesh.into_sheet().unwrap().area(), 4.0);
+    let folded = format!("{clockwise}, \"frame_classes\": [\"foldedForm\"]");
+    let mesh = parse(MeshFormat::Fold, cross(&folded).as_bytes()).unwrap();
+    assert_eq!(mesh.changes.reversed_faces, 0);
+}
+
+#[test]
+fn cuts_separate_the_sheet() {
+    // A slit from the boundary to the middle opens there and ends at the middle.
+    let slit = cross("").replace("\"M\"", "\"C\"");
+    let mesh = parse(MeshFormat::Fold, slit.as_bytes()).unwrap();
+    assert_eq!(
+        (mesh.vertex_count(), mesh.changes.vertices_at_cuts),
+        (10, 1)
+    );
+    let sheet = mesh.clone().into_sheet().unwrap();
+    let t = sheet.topology();
+    assert_eq!(
+        (
+            t.component_count(),
+            t.euler_characteristic(),
+            t.boundary_edge_count()
+        ),
+        (1, 1, 10)
+    );
+    assert_eq!(
+        mesh.creases
+            .iter()
+            .filter(|c| c.assignment == EdgeAssignment::Cut)
+            .count(),
+        2
+    );
+    assert_eq!(sheet.area(), 4.0);
+    // Two cuts in line separate two halves.
+    let halves = slit.replace("\"V\",\"V\",\"V\"", "\"V\",\"C\",\"V\"");
+    let mesh = parse(MeshFormat::Fold, halves.as_bytes()).unwrap();
+    let sheet = mesh.clone().into_sheet().unwrap();
+    assert_eq!(
+        (sheet.topology().component_count(), mesh.vertex_count()),
+        (2, 12)
+    );
+    for crease in mesh.creases {
+        let [a, b] = crease.ends.map(VertexId);
+        assert!(sheet.topology().find_edge(a, b).is_some(), "{crease:?}");
+    }
+}
+
+/// The sign of the angles: a valley of 60 degrees in a folded frame has that fold angle.
+#[test]
+fn angles_have_the_sign_of_the_mesh() {
+    let (s, c) = (60_f64.to_radians().sin(), 60_f64.to_radians().cos());
+    let text = format!(
+        r#"{{"frame_classes": ["foldedForm"], "vertices_coords": [[0,0,0],[0,1,0],[-1,0,0],[{c},0,{s}]],
+        "edges_vertices": [[0,1]], "edges_assignment": ["V"], "edges_foldAngle": [60],
+        "faces_vertices": [[0,1,2],[1,0,3]]}}"#
+    );
+    let mesh = parse(MeshFormat::Fold, text.as_bytes()).unwrap();
+    let angle = mesh.creases[0].angle.unwrap();
+    let sheet = mesh.into_sheet().unwrap();
+    let t = sheet.topology();
+    let edge: EdgeId = t.find_edge(VertexId(0), VertexId(1)).unwrap();
+    let measured = fold_angle(t, sheet.positions(), edge).unwrap();
+    assert!((angle - measured).abs() < 1e-15, "{angle} {measured}");
+}

@@ -1,0 +1,328 @@
+//! Reading glTF 2.0 files, as text or binary.
+
+use super::error::{Located, MeshFileProblem, Place};
+use super::faces::Polyhedron;
+use super::{MeshOptions, SeparateBuffers};
+use base64::Engine;
+use gltf::accessor::{DataType, Dimensions};
+use gltf::mesh::Mode;
+use gltf::{Accessor, Document, Gltf, Mesh, Semantic};
+use std::path::Path;
+use thiserror::Error;
+
+/// A glTF file that cannot be used.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum GltfProblem {
+    /// The file breaks the rules of the format.
+    #[error("{0}; the Khronos glTF validator says more: export the file again")]
+    Format(String),
+    /// The file needs an extension that is not supported, such as compressed meshes.
+    #[error("the file needs the extension {name}, which is not supported; export it without")]
+    Extension {
+        /// The extension.
+        name: String,
+    },
+    /// There is no mesh, or none of that name.
+    #[error("there is no mesh {}; the meshes of the file are {names:?}", wanted.as_deref().unwrap_or("at all"))]
+    NoMesh {
+        /// The name that was asked for.
+        wanted: Option<String>,
+        /// The names of the meshes in the file; a mesh without a name has an empty one.
+        names: Vec<String>,
+    },
+    /// A part of the mesh is no list of triangles.
+    #[error("part {primitive} of the mesh is made of {mode}; export it as a list of triangles")]
+    Mode {
+        /// The part, from 0.
+        primitive: usize,
+        /// What it is made of.
+        mode: String,
+    },
+    /// An array of numbers is missing or of another type.
+    #[error("part {primitive} of the mesh: {array} {problem}; export the file again")]
+    Array {
+        /// The part, from 0.
+        primitive: usize,
+        /// "positions" or "indices".
+        array: &'static str,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A buffer is a file of its own, where this is refused.
+    #[error("buffer {buffer} is the file {file:?}; export the mesh as one file, as .glb")]
+    Separate {
+        /// The buffer, from 0.
+        buffer: usize,
+        /// The file.
+        file: String,
+    },
+    /// A buffer cannot be read.
+    #[error("buffer {buffer}: {problem}; keep the file and its buffers together, or use .glb")]
+    Buffer {
+        /// The buffer, from 0.
+        buffer: usize,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+/// Bytes of the header of a binary file.
+const GLB_HEADER: usize = 12;
+
+/// Reads the triangles of one mesh, as it is placed by the first node of the scene that shows it.
+///
+/// Coordinates are metres and have y upwards by definition of the format; they are turned to z upwards,
+/// `(x, y, z) -> (x, -z, y)`. Materials, skins and morph targets are skipped.
+pub(super) fn parse(
+    bytes: &[u8],
+    path: &Path,
+    options: &MeshOptions,
+) -> Result<Polyhedron, Located> {
+    if bytes.is_empty() {
+        return Ok(Polyhedron::default());
+    }
+    if bytes.starts_with(b"glTF") && (bytes.len() < GLB_HEADER || glb_length(bytes) < GLB_HEADER) {
+        let missing = "the header of a binary glTF file".to_owned();
+        let problem = MeshFileProblem::Truncated { missing };
+        return Err((Some(Place::Byte(bytes.len().min(8))), problem));
+    }
+    read(bytes, path, options).map_err(|problem| (None, problem))
+}
+
+/// The length that the header of a binary file states.
+fn glb_length(bytes: &[u8]) -> usize {
+    u32::from_le_bytes([bytes[8], bytes[9], bytes[10], bytes[11]]) as usize
+}
+
+fn read(bytes: &[u8], path: &Path, options: &MeshOptions) -> Result<Polyhedron, MeshFileProblem> {
+    let name = options.mesh.as_deref();
+    let (document, blob) = open(bytes)?;
+    if let Some(name) = document.extensions_required().find(|e| !is_harmless(e)) {
+        let name = name.to_owned();
+        return Err(GltfProblem::Extension { name }.into());
+    }
+    let wanted = |m: &Mesh<'_>| name.is_none() || m.name() == name;
+    let mesh = document.meshes().find(wanted).ok_or_else(|| {
+        let names = document
+            .meshes()
+            .map(|m| m.name().unwrap_or_default().to_owned());
+        GltfProblem::NoMesh {
+            wanted: name.map(str::to_owned),
+            names: names.collect(),
+        }
+    })?;
+    let buffers = read_buffers(&document, blob, path, options.buffers)?;
+    let placed = placement(&document, mesh.index());
+    let mirrored = determinant(&placed) < 0.0;
+    let mut polyhedron = Polyhedron::default();
+    let mut face = 0;
+    for (k, primitive) in mesh.primitives().enumerate() {
+        if primitive.mode() != Mode::Triangles {
+            let mode = format!("{:?}", primitive.mode());
+            return Err(GltfProblem::Mode { primitive: k, mode }.into());
+        }
+        let array = |array, problem: String| GltfProblem::Array {
+            primitive: k,
+            array,
+            problem,
+        };
+        let first = (polyhedron.positions.len() / 3) as i64;
+        let positions = primitive.get(&Semantic::Positions);
+        let positions = positions.ok_or_else(|| array("positions", "are missing".to_owned()))?;
+        let points = vectors(&positions, &buffers).map_err(|e| array("positions", e))?;
+        let count = points.len() as i64;
+        for p in points {
+            let [x, y, z] = apply(&placed, p);
+            polyhedron.push_vertex([x, -z, y])?;
+        }
+        let corners: Vec<i64> = match primitive.indices() {
+            Some(indices) => scalars(&indices, &buffers).map_err(|e| array("indices", e))?,
+            None => (0..count).collect(),
+        };
+        if let Some(v) = corners.iter().find(|&&v| v >= count) {
+            let problem = format!("refer to vertex {v} of {count}");
+            return Err(array("indices", problem).into());
+        }
+        for t in corners.as_chunks::<3>().0 {
+            let [a, b, c] = t.map(|v| first + v);
+            let corners = if mirrored { [a, c, b] } else { [a, b, c] };
+            polyhedron.push_face(corners, Place::Face(face));
+            face += 1;
+        }
+    }
+    Ok(polyhedron)
+}
+
+/// The valid document and the binary part of a file.
+fn open(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), GltfProblem> {
+    let format = |e: gltf::Error| GltfProblem::Format(e.to_string().chars().take(300).collect());
+    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(format)?;
+    let json = document.into_json();
+    // The validation of the library relies on these indices.
+    let primitives = json.meshes.iter().flat_map(|m| &m.primitives);
+    let mut accessors = primitives.flat_map(|p| p.attributes.values());
+    if let Some(index) = accessors.find(|a| a.value() >= json.accessors.len()) {
+        let (index, count) = (index.value(), json.accessors.len());
+        return Err(GltfProblem::Format(format!(
+            "a mesh refers to accessor {index} of {count}"
+        )));
+    }
+    Ok((Document::from_json(json).map_err(format)?, blob))
+}
+
+/// Whether an extension changes neither positions nor triangles.
+fn is_harmless(extension: &str) -> bool {
+    ["KHR_materials", "KHR_texture", "KHR_lights"]
+        .iter()
+        .any(|prefix| extension.starts_with(prefix))
+}
+
+fn read_buffers(
+    document: &Document,
+    mut blob: Option<Vec<u8>>,
+    path: &Path,
+    separate: SeparateBuffers,
+) -> Result<Vec<Vec<u8>>, MeshFileProblem> {
+    let problem = |buffer: usize, problem: String| GltfProblem::Buffer { buffer, problem };
+    let mut buffers = Vec::new();
+    for buffer in document.buffers() {
+        let k = buffer.index();
+        let bytes = match buffer.source() {
+            gltf::buffer::Source::Bin => blob
+                .take()
+                .ok_or_else(|| problem(k, "the file has no binary part for it".to_owned()))?,
+            gltf::buffer::Source::Uri(uri) => match uri.strip_prefix("data:") {
+                Some(data) => {
+                    let text = data.split_once(";base64,").map(|(_, text)| text);
+                    let text = text.ok_or_else(|| problem(k, "is no base64 data".to_owned()))?;
+                    base64::engine::general_purpose::STANDARD
+                        .decode(text)
+                        .map_err(|e| problem(k, e.to_string()))?
+                }
+                None if separate == SeparateBuffers::Refuse => {
+                    let file = uri.chars().take(100).collect();
+                    return Err(GltfProblem::Separate { buffer: k, file }.into());
+                }
+                None => {
+                    let folder = path.parent().unwrap_or(Path::new(""));
+                    let file = folder.join(uri.replace("%20", " "));
+                    std::fs::read(&file)
+                        .map_err(|e| problem(k, format!("cannot read {}: {e}", file.display())))?
+                }
+            },
+        };
+        buffers.push(bytes);
+    }
+    Ok(buffers)
+}
+
+/// The bytes of each element of an accessor, `size` bytes long each.
+fn elements<'a>(
+    accessor: &Accessor<'_>,
+    buffers: &'a [Vec<u8>],
+    size: usize,
+) -> Result<Vec<&'a [u8]>, String> {
+    if accessor.sparse().is_some() {
+        return Err("are stored sparsely, which is not supported".to_owned());
+    }
+    let view = accessor.view().ok_or("have no data")?;
+    let (start, length) = (view.offset(), view.length());
+    let bytes = buffers.get(view.buffer().index());
+    let bytes = bytes.and_then(|b| b.get(start..start.checked_add(length)?));
+    let bytes = bytes.ok_or("lie outside of their buffer")?;
+    let stride = view.stride().unwrap_or(size);
+    let element = |k: usize| {
+        let at = k.checked_mul(stride)?.checked_add(accessor.offset())?;
+        bytes.get(at..at.checked_add(size)?)
+    };
+    if accessor.count() > bytes.len() {
+        return Err("lie outside of their buffer".to_owned());
+    }
+    let all: Option<Vec<&[u8]>> = (0..accessor.count()).map(element).collect();
+    all.ok_or_else(|| "lie outside of their buffer".to_owned())
+}
+
+fn vectors(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<[f64; 3]>, String> {
+    if (accessor.dimensions(), accessor.data_type()) != (Dimensions::Vec3, DataType::F32) {
+        return Err("are not vectors of three 32-bit floats".to_owned());
+    }
+    let number = |b: &[u8; 4]| f64::from(f32::from_le_bytes(*b));
+    let point = |bytes: &[u8]| {
+        let [x, y, z] = bytes.as_chunks::<4>().0 else {
+            return [0.0; 3];
+        };
+        [number(x), number(y), number(z)]
+    };
+    Ok(elements(accessor, buffers, 12)?
+        .into_iter()
+        .map(point)
+        .collect())
+}
+
+fn scalars(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<i64>, String> {
+    let size = match (accessor.dimensions(), accessor.data_type()) {
+        (Dimensions::Scalar, DataType::U8) => 1,
+        (Dimensions::Scalar, DataType::U16) => 2,
+        (Dimensions::Scalar, DataType::U32) => 4,
+        _ => return Err("are not unsigned integers".to_owned()),
+    };
+    // Little-endian.
+    let number = |b: &[u8]| b.iter().rev().fold(0, |n, &byte| n << 8 | i64::from(byte));
+    Ok(elements(accessor, buffers, size)?
+        .into_iter()
+        .map(number)
+        .collect())
+}
+
+/// A matrix by columns, as glTF has them.
+type Matrix = [[f64; 4]; 4];
+
+const IDENTITY: Matrix = [
+    [1.0, 0.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0, 0.0],
+    [0.0, 0.0, 1.0, 0.0],
+    [0.0, 0.0, 0.0, 1.0],
+];
+
+/// The matrix of the first node that shows a mesh; the identity if none does.
+fn placement(document: &Document, mesh: usize) -> Matrix {
+    let scene = document
+        .default_scene()
+        .or_else(|| document.scenes().next());
+    let mut seen = vec![false; document.nodes().len()];
+    let roots = scene
+        .into_iter()
+        .flat_map(|s| s.nodes().collect::<Vec<_>>());
+    let mut pending: Vec<_> = roots.map(|node| (node, IDENTITY)).collect();
+    pending.reverse();
+    while let Some((node, parent)) = pending.pop() {
+        // The nodes of a valid file are trees; a circle ends here.
+        if std::mem::replace(&mut seen[node.index()], true) {
+            continue;
+        }
+        let own = node
+            .transform()
+            .matrix()
+            .map(|column| column.map(f64::from));
+        let matrix: Matrix = own.map(|column| {
+            std::array::from_fn(|row| (0..4).map(|k| parent[k][row] * column[k]).sum())
+        });
+        if node.mesh().is_some_and(|m| m.index() == mesh) {
+            return matrix;
+        }
+        let children: Vec<_> = node.children().collect();
+        pending.extend(children.into_iter().rev().map(|child| (child, matrix)));
+    }
+    IDENTITY
+}
+
+fn apply(m: &Matrix, p: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|row| m[0][row] * p[0] + m[1][row] * p[1] + m[2][row] * p[2] + m[3][row])
+}
+
+/// The determinant of the linear part.
+fn determinant(m: &Matrix) -> f64 {
+    let minor = |a: usize, b: usize| m[1][a] * m[2][b] - m[1][b] * m[2][a];
+    m[0][0] * minor(1, 2) - m[0][1] * minor(0, 2) + m[0][2] * minor(0, 1)
+}

@@ -1,0 +1,157 @@
+//! Reading PLY files (Polygon File Format).
+
+use super::error::{Located, MeshFileProblem, Place};
+use super::faces::Polyhedron;
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType,
+    ScalarType,
+};
+
+/// Reads the vertices and faces of a PLY file, text or binary of either byte order: the properties `x`, `y`
+/// and `z` of the element `vertex` and the list `vertex_indices` or `vertex_index` of the element `face`.
+/// Everything else is skipped.
+pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
+    let mut mesh = Polyhedron::default();
+    if bytes.is_empty() {
+        return Ok(mesh);
+    }
+    let parser = Parser::<Row>::new();
+    let mut reader = Reader::new(bytes);
+    let header = parser
+        .read_header(&mut reader)
+        .map_err(|e| located(&e, true))?;
+    let text = header.encoding == Encoding::Ascii;
+    check(&header, reader.get_ref().len() as u64)?;
+    for (name, element) in &header.elements {
+        let rows = parser
+            .read_payload_for_element(&mut reader, element, &header)
+            .map_err(|e| located(&e, text))?;
+        match name.as_str() {
+            "vertex" => {
+                for row in rows {
+                    mesh.push_vertex(row.place)
+                        .map_err(|problem| (None, problem))?;
+                }
+            }
+            "face" => {
+                for (k, row) in rows.into_iter().enumerate() {
+                    mesh.push_face(row.corners, Place::Face(k));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(mesh)
+}
+
+/// A vertex, a face or another element.
+struct Row {
+    place: [f64; 3],
+    corners: Vec<i64>,
+}
+
+impl PropertyAccess for Row {
+    fn new() -> Self {
+        Self {
+            place: [0.0; 3],
+            corners: Vec::new(),
+        }
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        match name {
+            "x" => self.set(0, &property),
+            "y" => self.set(1, &property),
+            "z" => self.set(2, &property),
+            "vertex_indices" | "vertex_index" => {
+                self.corners = match property {
+                    Property::ListChar(list) => list.into_iter().map(i64::from).collect(),
+                    Property::ListUChar(list) => list.into_iter().map(i64::from).collect(),
+                    Property::ListShort(list) => list.into_iter().map(i64::from).collect(),
+                    Property::ListUShort(list) => list.into_iter().map(i64::from).collect(),
+                    Property::ListInt(list) => list.into_iter().map(i64::from).collect(),
+                    Property::ListUInt(list) => list.into_iter().map(i64::from).collect(),
+                    _ => return PropertyAccessResult::UnsupportedType,
+                };
+                PropertyAccessResult::Set
+            }
+            _ => PropertyAccessResult::Ignored,
+        }
+    }
+}
+
+impl Row {
+    fn set(&mut self, axis: usize, property: &Property) -> PropertyAccessResult {
+        self.place[axis] = match *property {
+            Property::Char(v) => v.into(),
+            Property::UChar(v) => v.into(),
+            Property::Short(v) => v.into(),
+            Property::UShort(v) => v.into(),
+            Property::Int(v) => v.into(),
+            Property::UInt(v) => v.into(),
+            Property::Float(v) => v.into(),
+            Property::Double(v) => v,
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+/// Checks that the elements have the properties of a mesh, and that the rest of the file can hold as many as
+/// the header announces.
+fn check(header: &Header, available: u64) -> Result<(), Located> {
+    let problem = |text: String| Err((None, MeshFileProblem::Ply(text)));
+    let has = |element: &ElementDef, name: &str| element.properties.iter().any(|(k, _)| k == name);
+    for (name, element) in &header.elements {
+        let (count, text) = (element.count as u64, header.encoding == Encoding::Ascii);
+        if count > 0 && element.properties.is_empty() {
+            return problem(format!("the element {name:?} has no properties"));
+        }
+        let sizes = element.properties.iter().map(|(_, p)| match &p.data_type {
+            // A digit and a separator.
+            _ if text => 2,
+            PropertyType::Scalar(scalar) | PropertyType::List(scalar, _) => size(scalar),
+        });
+        // The last separator may be missing.
+        let needed = count
+            .saturating_mul(sizes.sum())
+            .saturating_sub(u64::from(text));
+        if needed > available {
+            let problem = MeshFileProblem::Announced {
+                what: format!("elements {name:?}"),
+                count,
+                needed,
+                available,
+            };
+            return Err((None, problem));
+        }
+        if name == "vertex"
+            && let Some(missing) = ["x", "y", "z"].iter().find(|c| !has(element, c))
+        {
+            return problem(format!("the vertices have no property {missing:?}"));
+        }
+        if name == "face" && !has(element, "vertex_indices") && !has(element, "vertex_index") {
+            return problem("the faces have no property \"vertex_indices\"".to_owned());
+        }
+    }
+    Ok(())
+}
+
+/// Bytes of a number.
+fn size(scalar: &ScalarType) -> u64 {
+    match scalar {
+        ScalarType::Char | ScalarType::UChar => 1,
+        ScalarType::Short | ScalarType::UShort => 2,
+        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
+        ScalarType::Double => 8,
+    }
+}
+
+/// The error of the parser, which may quote a line of any length.
+fn located(error: &ParseError, is_text: bool) -> Located {
+    let message = error.to_string().replace(['\n', '\t'], " ");
+    let short: String = message.chars().take(200).collect();
+    let line = error.line().filter(|_| is_text).map(Place::Line);
+    (line, MeshFileProblem::Ply(short))
+}

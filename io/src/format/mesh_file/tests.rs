@@ -1,0 +1,494 @@
+//! All formats: what is read, what is refused and where, and that nothing makes a reader panic.
+
+use super::*;
+use MeshFileProblem as P;
+use proptest::prelude::*;
+
+pub(super) fn parse(format: MeshFormat, bytes: &[u8]) -> Result<MeshFile, MeshFileError> {
+    let path = format!("test.{}", format.extension());
+    parse_mesh(bytes, format, Path::new(&path), &MeshOptions::default())
+}
+
+pub(super) fn problem(format: MeshFormat, bytes: &[u8]) -> (Option<Place>, MeshFileProblem) {
+    let error = parse(format, bytes).expect_err("should be refused");
+    let text = error.to_string();
+    assert!(text.starts_with("test.") && text.len() > 40, "{text}");
+    (error.place, error.problem)
+}
+
+/// The unit square of two triangles with its corners at x = 1 to 2.
+const POINTS: [[f64; 3]; 4] = [
+    [1.0, 0.0, 0.5],
+    [2.0, 0.0, 0.5],
+    [2.0, 1.0, 0.5],
+    [1.0, 1.0, 0.5],
+];
+
+fn is_the_square(mesh: &MeshFile) {
+    assert_eq!(mesh.positions.as_chunks::<3>().0, POINTS);
+    assert_eq!(mesh.faces, [[0, 1, 2], [0, 2, 3]]);
+}
+
+/// A binary STL file of the square.
+fn binary_stl() -> Vec<u8> {
+    let mut bytes = vec![b' '; 80];
+    bytes[..5].copy_from_slice(b"solid");
+    bytes.extend(2_u32.to_le_bytes());
+    for face in [[0, 1, 2], [0, 2, 3]] {
+        let numbers = [
+            [0.0, 0.0, 1.0],
+            POINTS[face[0]],
+            POINTS[face[1]],
+            POINTS[face[2]],
+        ];
+        bytes.extend(
+            numbers
+                .as_flattened()
+                .iter()
+                .flat_map(|&c| (c as f32).to_le_bytes()),
+        );
+        bytes.extend([0, 0]);
+    }
+    bytes
+}
+
+/// The facets of the square as text.
+fn text_facet(face: [usize; 3]) -> String {
+    let corners = face.map(|v| {
+        let [x, y, z] = POINTS[v];
+        format!("vertex {x} {y} {z}\n")
+    });
+    format!(
+        "facet normal 0 0 1\nouter loop\n{}endloop\nendfacet\n",
+        corners.concat()
+    )
+}
+
+/// A binary PLY file of the square with a colour for each vertex.
+fn binary_ply() -> Vec<u8> {
+    let mut bytes = b"ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty double x\n\
+        property uchar red\nproperty double y\nproperty double z\nelement face 1\n\
+        property list uchar int vertex_indices\nend_header\n"
+        .to_vec();
+    for [x, y, z] in POINTS {
+        bytes.extend(x.to_le_bytes());
+        bytes.push(200);
+        bytes.extend([y, z].iter().flat_map(|c| c.to_le_bytes()));
+    }
+    bytes.push(4);
+    bytes.extend((0..4_i32).flat_map(i32::to_le_bytes));
+    bytes
+}
+
+const TEXT_PLY: &str = "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\n\
+    property float y\nproperty float z\nelement face 2\nproperty list uchar uint vertex_index\n\
+    end_header\n1 0 0.5\n2 0 0.5\n2 1 0.5\n1 1 0.5\n3 0 1 2\n3 0 2 3\n";
+
+/// The square in glTF, y upwards, shown by a child that its parent shifts by 1 along x and scales by `scale`.
+fn gltf(scale: f64) -> String {
+    let data: Vec<u8> = POINTS
+        .iter()
+        .flat_map(|[x, y, z]| [x - 1.0, *z, -y])
+        .flat_map(|c| ((c / scale) as f32).to_le_bytes())
+        .chain(
+            [0_u16, 1, 2, 0, 2, 3]
+                .into_iter()
+                .flat_map(u16::to_le_bytes),
+        )
+        .collect();
+    let data = base64::Engine::encode(&base64::engine::general_purpose::STANDARD, data);
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],
+        "nodes":[{{"translation":[1,0,0],"children":[1]}},{{"mesh":0,"scale":[{scale},{scale},{scale}]}}],
+        "meshes":[{{"name":"sheet","primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]}},
+        {{"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":48}},{{"buffer":0,"byteOffset":48,"byteLength":12}}],
+        "buffers":[{{"byteLength":60,"uri":"data:application/octet-stream;base64,{data}"}}]}}"#
+    )
+}
+
+/// The square as a FOLD file, in centimetres, with a mountain along the diagonal.
+pub(super) const FOLD: &str = r#"{"file_spec": 1.2, "frame_unit": "cm", "frame_classes": ["creasePattern"],
+    "vertices_coords": [[100, 0, 50], [200, 0, 50], [200, 100, 50], [100, 100, 50]],
+    "edges_vertices": [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2]], "edges_assignment": ["B", "B", "B", "B", "M"],
+    "edges_foldAngle": [0, 0, 0, null, -90], "faces_vertices": [[0, 1, 2], [0, 2, 3]]}"#;
+
+#[test]
+fn every_format_has_the_same_square() {
+    let vertices = "1 0 .5 0.1 0.2\n2 0 .5\n\n2 1 5e-1 # corner\n1 1 .5\n";
+    for head in [
+        "OFF 4 2 0\n",
+        "OFF\n4 2 5\n",
+        "4 2 0\n",
+        "  OFF4 2 0\n",
+        "STCNOFF # x\n4 2\n",
+    ] {
+        let off = format!("{head}{vertices}3 0 1 2 1.0 0.5 0.1\n3 0 2 3\n");
+        is_the_square(&parse(MeshFormat::Off, off.as_bytes()).unwrap());
+    }
+    let quad = format!("OFF 4 1 0\n{vertices}4 0 1 2 3\n");
+    let quad = parse(MeshFormat::Off, quad.as_bytes()).unwrap();
+    is_the_square(&quad);
+    assert_eq!((quad.polygons, &quad.diagonals[..]), (1, &[[0, 2]][..]));
+
+    let stl = parse(MeshFormat::Stl, &binary_stl()).unwrap();
+    is_the_square(&stl);
+    assert_eq!(stl.changes.welded_vertices, 2);
+    // Two solids, the second one in capital letters and without a name.
+    let (a, b) = (text_facet([0, 1, 2]), text_facet([0, 2, 3]).to_uppercase());
+    let text = format!("solid one\n{a}endsolid one\n\nSOLID\n{b}ENDSOLID\n");
+    is_the_square(&parse(MeshFormat::Stl, text.as_bytes()).unwrap());
+
+    is_the_square(&parse(MeshFormat::Ply, &binary_ply()).unwrap());
+    is_the_square(&parse(MeshFormat::Ply, TEXT_PLY.as_bytes()).unwrap());
+
+    is_the_square(&parse(MeshFormat::Gltf, gltf(1.0).as_bytes()).unwrap());
+    is_the_square(&parse(MeshFormat::Gltf, gltf(2.0).as_bytes()).unwrap());
+    // A mirrored node turns the faces over in its own frame, and they are turned back.
+    let mirrored = parse(MeshFormat::Gltf, gltf(-1.0).as_bytes()).unwrap();
+    assert_eq!(mirrored.positions.as_chunks::<3>().0, POINTS);
+    assert_eq!(mirrored.faces, [[0, 2, 1], [0, 3, 2]]);
+
+    let fold = parse(MeshFormat::Fold, FOLD.as_bytes()).unwrap();
+    is_the_square(&fold);
+    assert_eq!(fold.creases.len(), 5);
+    let mountain = fold.creases[4];
+    assert_eq!(mountain.assignment, EdgeAssignment::Mountain);
+    assert_eq!(mountain.angle, Some(-std::f64::consts::FRAC_PI_2));
+    assert_eq!(
+        (fold.creases[0].angle, fold.creases[3].angle),
+        (Some(0.0), None)
+    );
+}
+
+#[test]
+fn formats_are_known_by_their_extension() {
+    assert_eq!(MeshFormat::of(Path::new("a/b.STL")), Some(MeshFormat::Stl));
+    for name in ["a.step", "a", "folder.obj/a"] {
+        let error = read_mesh(Path::new(name)).unwrap_err();
+        let text = error.to_string();
+        assert!(matches!(error.problem, MeshFileProblem::Extension { .. }));
+        assert!(
+            text.contains(".obj, .off, .stl, .ply, .fold, .gltf, .glb"),
+            "{text}"
+        );
+    }
+    let error = read_mesh(Path::new("/no/such.fold")).unwrap_err();
+    assert!(matches!(error.problem, MeshFileProblem::Read(_)));
+    let options = MeshOptions {
+        weld: Some(-1.0),
+        ..MeshOptions::default()
+    };
+    let error = parse_mesh(b"", MeshFormat::Off, Path::new("x"), &options).unwrap_err();
+    assert!(matches!(
+        error.problem,
+        MeshFileProblem::WeldTolerance { .. }
+    ));
+}
+
+#[test]
+fn defects_of_off_files_name_their_line() {
+    let off = |text: &str| problem(MeshFormat::Off, text.as_bytes());
+    assert!(matches!(off(""), (None, P::Truncated { .. })));
+    assert!(matches!(off("OFF 0 0 0"), (None, P::Empty)));
+    assert!(matches!(
+        off("OFF 1 0 0\n0 0 0"),
+        (None, P::NoFaces { vertices: 1, .. })
+    ));
+    assert!(matches!(
+        off("COFF\nx"),
+        (Some(Place::Line(2)), P::Syntax { .. })
+    ));
+    assert!(matches!(
+        off("OFF 2 0\n0 0 0\n0 0\n"),
+        (Some(Place::Line(3)), P::Syntax { .. })
+    ));
+    assert!(matches!(
+        off("OFF 99999999999 1\n0 0 0\n"),
+        (None, P::Truncated { .. })
+    ));
+    let nan = off("OFF 2 1\n0 0 0\n0 inf 0\n3 0 0 0\n");
+    assert!(matches!(
+        nan,
+        (
+            Some(Place::Line(3)),
+            P::NonFinite {
+                vertex: 1,
+                axis: 1,
+                ..
+            }
+        )
+    ));
+    let index = off("OFF 3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n");
+    let expected = matches!(
+        index.1,
+        P::IndexOutOfRange {
+            index: 3,
+            count: 3,
+            first: 0
+        }
+    );
+    assert!(expected && index.0 == Some(Place::Line(5)));
+    let huge = off("OFF 3 1\n0 0 0\n1 0 0\n0 1 0\n99999999999 0 1 2\n");
+    assert!(matches!(huge, (Some(Place::Line(5)), P::Syntax { .. })));
+}
+
+#[test]
+fn defects_of_stl_files_name_their_byte_or_facet() {
+    let stl = |bytes: &[u8]| problem(MeshFormat::Stl, bytes);
+    assert!(matches!(stl(b""), (None, P::Empty)));
+    assert!(matches!(
+        stl(b"some bytes"),
+        (Some(Place::Byte(10)), P::Truncated { .. })
+    ));
+    let mut short = binary_stl();
+    short[0] = b'x';
+    short.truncate(150);
+    let announced = stl(&short);
+    assert!(matches!(
+        announced,
+        (Some(Place::Byte(80)), P::Announced { count: 2, .. })
+    ));
+    let mut nan = binary_stl();
+    nan[84 + 50 + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    assert!(matches!(
+        stl(&nan),
+        (
+            Some(Place::Byte(134)),
+            P::NonFinite {
+                vertex: 3,
+                axis: 0,
+                ..
+            }
+        )
+    ));
+    let text = format!("solid\n{}facet normal 0 0 x\n", text_facet([0, 1, 2]));
+    assert!(matches!(
+        stl(text.as_bytes()),
+        (None, P::Stl { facet: 1, .. })
+    ));
+}
+
+#[test]
+fn defects_of_ply_files_name_their_place() {
+    let ply = |text: &str| problem(MeshFormat::Ply, text.as_bytes());
+    assert!(matches!(ply("plx\n"), (Some(Place::Line(1)), P::Ply(_))));
+    let many = TEXT_PLY.replace("vertex 4", "vertex 4000000000");
+    assert!(matches!(
+        ply(&many),
+        (
+            None,
+            P::Announced {
+                count: 4_000_000_000,
+                ..
+            }
+        )
+    ));
+    let empty = TEXT_PLY.replace("element face", "element nothing 99999999999\nelement face");
+    assert!(matches!(ply(&empty), (None, P::Ply(_))));
+    let word = TEXT_PLY.replace("2 1 0.5", "2 one 0.5");
+    assert!(matches!(ply(&word), (Some(Place::Line(13)), P::Ply(_))));
+    let index = TEXT_PLY.replace("3 0 2 3", "3 0 2 4");
+    assert!(matches!(
+        ply(&index),
+        (Some(Place::Face(1)), P::IndexOutOfRange { index: 4, .. })
+    ));
+    let flat = TEXT_PLY.replace("float z", "float w");
+    assert!(matches!(ply(&flat), (None, P::Ply(_))));
+}
+
+#[test]
+fn defects_of_gltf_are_typed() {
+    use GltfProblem as G;
+    let gltf_problem = |text: String| match problem(MeshFormat::Gltf, text.as_bytes()).1 {
+        MeshFileProblem::Gltf(problem) => problem,
+        other => panic!("{other}"),
+    };
+    let change = |from: &str, to: &str| gltf_problem(gltf(1.0).replace(from, to));
+    assert!(matches!(gltf_problem("{}".into()), G::Format(_)));
+    assert!(matches!(
+        change("\"POSITION\":0", "\"POSITION\":7"),
+        G::Format(_)
+    ));
+    assert!(matches!(
+        change("\"indices\":1", "\"indices\":7"),
+        G::Format(_)
+    ));
+    assert!(matches!(
+        change("\"count\":4", "\"count\":5"),
+        G::Array {
+            array: "positions",
+            ..
+        }
+    ));
+    assert!(matches!(
+        change("\"count\":6", "\"count\":7"),
+        G::Array {
+            array: "indices",
+            ..
+        }
+    ));
+    let huge = change("\"count\":6", "\"count\":99999999999999");
+    assert!(matches!(
+        huge,
+        G::Array {
+            array: "indices",
+            ..
+        }
+    ));
+    let far = change("\"byteOffset\":48", "\"byteOffset\":18446744073709551615");
+    assert!(matches!(far, G::Array { .. }));
+    assert!(matches!(
+        change("\"indices\":1", "\"indices\":1,\"mode\":1"),
+        G::Mode { .. }
+    ));
+    assert!(matches!(change(";base64,", ";base32,"), G::Buffer { .. }));
+    assert!(matches!(
+        change("data:application", "none"),
+        G::Buffer { .. }
+    ));
+    let draco = change(
+        "\"scene\":0",
+        "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"scene\":0",
+    );
+    assert!(
+        matches!(draco, G::Extension { .. } | G::Format(_)),
+        "{draco}"
+    );
+    // A child that is its own parent.
+    let circle = gltf(1.0).replace("\"mesh\":0,", "\"children\":[0],");
+    assert!(parse(MeshFormat::Gltf, circle.as_bytes()).is_ok());
+    let named = MeshOptions {
+        mesh: Some("other".into()),
+        ..MeshOptions::default()
+    };
+    let error = parse_mesh(
+        gltf(1.0).as_bytes(),
+        MeshFormat::Gltf,
+        Path::new("x"),
+        &named,
+    );
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("\"sheet\""), "{error}");
+    // A buffer that is a file is read from the folder of the file, or refused.
+    let folder = tempfile::tempdir().unwrap();
+    let text = gltf(1.0);
+    let (head, rest) = text
+        .split_once("data:application/octet-stream;base64,")
+        .unwrap();
+    let (data, tail) = rest.split_once('"').unwrap();
+    let engine = base64::engine::general_purpose::STANDARD;
+    let data = base64::Engine::decode(&engine, data).unwrap();
+    std::fs::write(folder.path().join("my data.bin"), data).unwrap();
+    let path = folder.path().join("a.gltf");
+    std::fs::write(&path, format!("{head}my%20data.bin\"{tail}")).unwrap();
+    is_the_square(&read_mesh(&path).unwrap());
+    let refuse = MeshOptions {
+        buffers: SeparateBuffers::Refuse,
+        ..MeshOptions::default()
+    };
+    let error = read_mesh_with(&path, &refuse).unwrap_err();
+    assert!(
+        matches!(error.problem, P::Gltf(G::Separate { .. })),
+        "{error}"
+    );
+    for length in 0..12 {
+        let bytes = [&b"glTF\x02\0\0\0\x05\0\0\0"[..length], b""].concat();
+        assert!(parse(MeshFormat::Glb, &bytes).is_err());
+    }
+}
+
+/// A pattern of four panels about a vertex, with or without a hole in the middle instead.
+pub(super) fn cross(faces: &str) -> String {
+    format!(
+        r#"{{"vertices_coords": [[0,0],[1,0],[2,0],[2,1],[2,2],[1,2],[0,2],[0,1],[1,1]],
+        "edges_vertices": [[0,1],[1,2],[2,3],[3,4],[4,5],[5,6],[6,7],[7,0],[1,8],[3,8],[5,8],[7,8]],
+        "edges_assignment": ["B","B","B","B","B","B","B","B","M","V","V","V"]{faces}}}"#
+    )
+}
+
+/// Valid files of all formats, to be damaged.
+fn valid() -> Vec<(MeshFormat, Vec<u8>)> {
+    let text = format!("solid s\n{}endsolid\n", text_facet([0, 1, 2]));
+    vec![
+        (
+            MeshFormat::Off,
+            b"OFF 4 1 0\n1 0 0\n2 0 0\n2 1 0\n1 1 0\n4 0 1 2 3\n".to_vec(),
+        ),
+        (MeshFormat::Stl, binary_stl()),
+        (MeshFormat::Stl, text.into_bytes()),
+        (MeshFormat::Ply, binary_ply()),
+        (MeshFormat::Ply, TEXT_PLY.as_bytes().to_vec()),
+        (MeshFormat::Gltf, gltf(1.0).into_bytes()),
+        (MeshFormat::Glb, glb()),
+        (MeshFormat::Fold, FOLD.as_bytes().to_vec()),
+        (MeshFormat::Fold, cross("").into_bytes()),
+        (
+            MeshFormat::Fold,
+            cross("").replace("\"M\"", "\"C\"").into_bytes(),
+        ),
+    ]
+}
+
+/// A binary glTF file.
+fn glb() -> Vec<u8> {
+    let mut json = gltf(1.0).into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut bytes = b"glTF".to_vec();
+    for number in [2, 20 + json.len() as u32, json.len() as u32] {
+        bytes.extend(number.to_le_bytes());
+    }
+    bytes.extend(b"JSON");
+    bytes.extend(json);
+    bytes
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn no_bytes_make_a_reader_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        for format in MeshFormat::ALL {
+            let _ = parse(format, &bytes);
+        }
+    }
+
+    /// Valid files with some bytes replaced, removed and repeated, and numbers replaced by others.
+    #[test]
+    fn no_damage_makes_a_reader_panic(
+        which in 0..10_usize,
+        places in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4_u8), 1..6),
+    ) {
+        let (format, mut bytes) = valid().swap_remove(which);
+        is_read(&parse(format, &bytes));
+        for (place, byte, kind) in places {
+            let at = place.index(bytes.len());
+            match kind {
+                0 => bytes[at] = byte,
+                1 => { bytes.remove(at); }
+                2 => bytes[at] = b"0123456789-.e,]}[{ \n"[byte as usize % 20],
+                _ => { let tail = bytes[at..].to_vec(); bytes.extend(tail); }
+            }
+            if bytes.is_empty() || bytes.len() > 100_000 {
+                break;
+            }
+        }
+        if let Ok(mesh) = parse(format, &bytes) {
+            let count = mesh.vertex_count();
+            prop_assert!(mesh.positions.iter().all(|c| c.is_finite()));
+            let creases = mesh.creases.iter().flat_map(|c| c.ends);
+            let used = mesh.faces.iter().flatten().copied().chain(creases);
+            prop_assert!(used.into_iter().all(|v| (v as usize) < count));
+            let mut repaired = mesh.clone();
+            let _ = repaired.repair();
+            if let Ok(sheet) = mesh.clone().into_sheet() {
+                let _ = mesh.fold_assignments(sheet.topology());
+            }
+        }
+    }
+}
+
+fn is_read(result: &Result<MeshFile, MeshFileError>) {
+    assert!(result.is_ok(), "{result:?}");
+}

@@ -1,0 +1,172 @@
+//! Programs of others read what is written: the validator of Khronos for glTF, USD, VTK and numpy.
+//!
+//! They are not part of the repository. `ISOSHEET_PYTHON` names a Python that has the packages numpy,
+//! usd-core and vtk (otherwise `python3` is tried), and `NODE_PATH` the folder that has the package
+//! gltf-validator. What is missing is skipped, with a word about it.
+
+use isosheet_io::mesh::Sheet;
+use isosheet_io::mesh::generate::{self, Diagonals};
+use isosheet_io::{
+    FieldSupport, MeshFile, Series, SeriesField, SeriesOptions, Trajectory, read_mesh, write_mesh,
+    write_series,
+};
+use std::io::Write;
+use std::path::Path;
+use std::process::Command;
+
+/// Runs a script with arguments; false if the packages it needs are missing.
+fn python(packages: &str, script: &str, arguments: &[&Path]) -> bool {
+    let name = std::env::var_os("ISOSHEET_PYTHON").unwrap_or_else(|| "python3".into());
+    let probe = Command::new(&name)
+        .args(["-c", &format!("import {packages}")])
+        .output();
+    if !probe.is_ok_and(|o| o.status.success()) {
+        return skipped(packages);
+    }
+    let output = Command::new(&name)
+        .args(["-c", script])
+        .args(arguments)
+        .output();
+    succeeded(output.expect("Python starts"))
+}
+
+fn skipped(what: &str) -> bool {
+    // The test harness keeps what `println!` and `eprintln!` write to itself.
+    let text = format!("skipped, as there is no {what}: a test of io/tests/readback\n");
+    let _ = std::io::stderr().write_all(text.as_bytes());
+    false
+}
+
+fn succeeded(output: std::process::Output) -> bool {
+    let [out, err] =
+        [output.stdout, output.stderr].map(|t| String::from_utf8_lossy(&t).into_owned());
+    assert!(output.status.success(), "{out}{err}");
+    true
+}
+
+/// A strip that is rolled up and stretched by a hundredth at the end, in frames at uneven times.
+fn run() -> (Sheet, Trajectory) {
+    let sheet = generate::grid(8, 3, 1.0, 0.4, Diagonals::UnionJack).expect("a grid");
+    let mut trajectory = Trajectory::new(&sheet);
+    for k in 0..12 {
+        let (t, curvature) = (0.01 * f64::from(k * k), 0.4 * f64::from(k));
+        let stretch = if k == 11 { 1.01 } else { 1.0 };
+        let place = |p: &[f64; 3]| {
+            let p = p.map(|c| stretch * c);
+            match curvature {
+                0.0 => p,
+                c => [(c * p[0]).sin() / c, p[1], (1.0 - (c * p[0]).cos()) / c],
+            }
+        };
+        let points = sheet.positions().as_chunks::<3>().0;
+        let x: Vec<f64> = points.iter().flat_map(place).collect();
+        trajectory.push(t, &x).expect("a frame");
+    }
+    (sheet, trajectory)
+}
+
+/// A mesh file in memory, by way of a file.
+fn mesh_of(sheet: &Sheet, folder: &Path) -> MeshFile {
+    let path = folder.join("sheet.obj");
+    isosheet_io::write_obj(&path, sheet.topology(), sheet.positions()).expect("written");
+    read_mesh(&path).expect("read")
+}
+
+#[test]
+fn khronos_accepts_the_gltf_files() {
+    let probe = Command::new("node")
+        .args(["-e", "require('gltf-validator')"])
+        .output();
+    if !probe.is_ok_and(|o| o.status.success()) {
+        skipped("gltf-validator");
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let (sheet, trajectory) = run();
+    let series = Series::new(&trajectory, &SeriesOptions::default()).expect("frames");
+    let [moving, still] = ["run.glb", "mesh.glb"].map(|name| folder.path().join(name));
+    write_series(&moving, &series).expect("written");
+    write_mesh(&still, &mesh_of(&sheet, folder.path())).expect("written");
+    for (path, targets) in [(&moving, 11), (&still, 0)] {
+        let output = Command::new("node")
+            .args(["-e", include_str!("gltf.js")])
+            .args([path.as_os_str(), targets.to_string().as_ref()])
+            .output();
+        succeeded(output.expect("node starts"));
+    }
+}
+
+#[test]
+fn openusd_finds_the_time_samples() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (sheet, trajectory) = run();
+    let series = Series::new(&trajectory, &SeriesOptions::default()).expect("frames");
+    let path = |name| folder.path().join(name);
+    write_series(&path("run.usda"), &series).expect("written");
+    write_mesh(&path("mesh.usda"), &mesh_of(&sheet, folder.path())).expect("written");
+    trajectory.write(&path("run.npz")).expect("written");
+    let files = [&*path("run.usda"), &*path("mesh.usda"), &*path("run.npz")];
+    python("numpy, pxr", include_str!("usd.py"), &files);
+}
+
+#[test]
+fn vtk_finds_positions_times_strains_angles_and_fields() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (sheet, trajectory) = run();
+    let t = sheet.topology();
+    let field = |name: &str, support, n: usize| SeriesField {
+        name: name.to_owned(),
+        support,
+        values: (0..trajectory.len() * n).map(|k| 0.5 * k as f64).collect(),
+    };
+    let series = Series::new(&trajectory, &SeriesOptions { every: 2 })
+        .and_then(|s| {
+            s.with_field(field(
+                "height <m>",
+                FieldSupport::Vertices,
+                t.vertex_count(),
+            ))
+        })
+        .and_then(|s| s.with_field(field("energy", FieldSupport::Faces, t.face_count())))
+        .and_then(|s| s.with_field(field("force & load", FieldSupport::Edges, t.edge_count())))
+        .expect("fields that fit");
+    let path = |name| folder.path().join(name);
+    write_series(&path("the run.pvd"), &series).expect("written");
+    write_series(&path("run.fold"), &series).expect("written");
+    trajectory.write(&path("run.npz")).expect("written");
+    let files = [&*path("the run.pvd"), &*path("run.fold"), &*path("run.npz")];
+    python("numpy, vtk", include_str!("vtk.py"), &files);
+}
+
+/// The readers of VTK find the mesh in the formats that it has; all but OBJ are binary.
+#[test]
+fn vtk_finds_the_mesh() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (sheet, trajectory) = run();
+    let mesh = mesh_of(&sheet, folder.path());
+    let path = |name| folder.path().join(name);
+    for name in ["mesh.obj", "mesh.ply", "mesh.stl"] {
+        write_mesh(&path(name), &mesh).expect("written");
+    }
+    trajectory.write(&path("run.npz")).expect("written");
+    let files = [
+        &*path("mesh.obj"),
+        &*path("mesh.ply"),
+        &*path("mesh.stl"),
+        &*path("run.npz"),
+    ];
+    python("numpy, vtk", include_str!("meshes.py"), &files);
+}
+
+#[test]
+fn numpy_finds_the_point_cache_and_the_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, trajectory) = run();
+    let series = Series::new(&trajectory, &SeriesOptions::default()).expect("frames");
+    let path = |name| folder.path().join(name);
+    write_series(&path("run.pc2"), &series).expect("written");
+    write_series(&path("run.csv"), &series).expect("written");
+    trajectory.write(&path("run.npz")).expect("written");
+    let files = [&*path("run.pc2"), &*path("run.csv"), &*path("run.npz")];
+    python("numpy", include_str!("tables.py"), &files);
+}

@@ -1,0 +1,166 @@
+//! `isosheet convert`.
+
+use crate::{code, run, stderr};
+use isosheet_io::run::Recording;
+use isosheet_io::scene::StartingPoint;
+use isosheet_io::{
+    EdgeAssignment, ExportMeshFormat, MeshFormat, MeshOptions, SeriesFormat, read_mesh,
+    read_mesh_with,
+};
+use std::fs;
+use std::path::Path;
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert_eq!(code(&output), Some(0), "{arguments:?}: {}", stderr(&output));
+    text(&output.stdout)
+}
+
+fn refused(folder: &Path, arguments: &[&str], exit: i32) -> String {
+    let output = run(folder, arguments);
+    assert_eq!(
+        code(&output),
+        Some(exit),
+        "{arguments:?}: {}",
+        stderr(&output)
+    );
+    assert!(output.stdout.is_empty());
+    stderr(&output)
+}
+
+#[test]
+fn mesh_files_are_converted() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let off = "OFF 5 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 1.001 0\n4 0 1 2 3\n3 3 4 0\n";
+    fs::write(dir.join("a.off"), off).unwrap();
+    let said = done(dir, &["convert", "a.off", "b.ply"]);
+    assert_eq!(
+        said,
+        "b.ply: 5 vertices and 3 faces, 1 polygons cut into triangles\n"
+    );
+    let read = |name: &str| read_mesh(&dir.join(name)).unwrap();
+    assert_eq!(read("b.ply").positions, read("a.off").positions);
+    let said = done(dir, &["convert", "b.ply", "c.fold", "--weld", "0.002"]);
+    assert_eq!(said, "c.fold: 4 vertices and 3 faces, 1 vertices welded\n");
+    for (from, to) in [("c.fold", "d.stl"), ("d.stl", "e.glb"), ("e.glb", "F.OBJ")] {
+        done(dir, &["convert", from, to]);
+        assert_eq!(read(to).faces.len(), 3, "{to}");
+    }
+    let said = refused(dir, &["convert", "a.off", "b.step"], 6);
+    assert!(said.contains(".step is no format"), "{said}");
+    let said = refused(dir, &["convert", "a.xyz", "b.ply"], 3);
+    assert!(said.contains(".fold, .gltf, .glb"), "{said}");
+    refused(dir, &["convert", "a.off", "g.ply", "--every", "2"], 3);
+    refused(dir, &["convert", "a.off", "g.ply", "--weld=-1"], 3);
+    refused(dir, &["convert", "a.off", "g.ply", "--every", "0"], 2);
+    assert!(!dir.join("g.ply").exists());
+}
+
+#[test]
+fn runs_are_converted() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::write(dir.join("fold.toml"), StartingPoint::Fold.text()).unwrap();
+    done(
+        dir,
+        &[
+            "simulate",
+            "fold.toml",
+            "--out",
+            "r",
+            "--set",
+            "stop.time=0.2",
+        ],
+    );
+    let recording = Recording::read(&dir.join("r")).unwrap();
+    let trajectory = &recording.trajectory;
+    let frames = trajectory.len();
+    assert!(frames >= 3, "{frames} frames");
+
+    for format in SeriesFormat::ALL {
+        let name = format!("out.{}", format.extension());
+        let said = done(dir, &["convert", "r", &name]);
+        assert!(said.contains(&format!(": {frames} frames")), "{said}");
+    }
+    let last = MeshOptions {
+        frame: Some(frames - 1),
+        ..MeshOptions::default()
+    };
+    let mesh = read_mesh_with(&dir.join("out.fold"), &last).unwrap();
+    assert_eq!(mesh.positions, trajectory.frame(frames - 1).unwrap());
+    // 4 x 4 panels: three lines of four creases each way, and a diagonal in each panel.
+    let count = |a| mesh.creases.iter().filter(|c| c.assignment == a).count();
+    let creases = count(EdgeAssignment::Mountain) + count(EdgeAssignment::Valley);
+    assert_eq!((creases, count(EdgeAssignment::Flat)), (24, 16));
+    for crease in &mesh.creases {
+        let angle = crease.angle.unwrap();
+        match crease.assignment {
+            EdgeAssignment::Mountain => assert!(angle < -1e-3, "{angle}"),
+            EdgeAssignment::Valley => assert!(angle > 1e-3, "{angle}"),
+            _ => {}
+        }
+    }
+    let said = done(
+        dir,
+        &["convert", "r/trajectory.npz", "every.csv", "--every", "2"],
+    );
+    assert!(
+        said.contains(&format!(": {} frames", frames.div_ceil(2))),
+        "{said}"
+    );
+
+    for format in ExportMeshFormat::ALL {
+        let name = format!("one.{}", format.extension());
+        done(dir, &["convert", "r", &name, "--frame", "1"]);
+    }
+    let one = read_mesh(&dir.join("one.fold")).unwrap();
+    assert_eq!(one.positions, trajectory.frame(1).unwrap());
+    assert_eq!(one.creases.len(), mesh.creases.len());
+
+    let said = refused(dir, &["convert", "r", "one.ply"], 6);
+    assert!(said.contains("--frame K"), "{said}");
+    refused(dir, &["convert", "r", "x.ply", "--frame", "99999"], 3);
+    refused(
+        dir,
+        &["convert", "r", "x.ply", "--frame", "1", "--every", "2"],
+        2,
+    );
+    refused(dir, &["convert", "r", "x.csv", "--weld", "1"], 3);
+    refused(dir, &["convert", ".", "x.csv"], 3);
+    fs::write(dir.join("no.npz"), "nothing").unwrap();
+    refused(dir, &["convert", "no.npz", "x.csv"], 3);
+}
+
+#[test]
+fn the_help_lists_all_formats() {
+    let dir = tempfile::tempdir().unwrap();
+    let help = done(dir.path(), &["convert", "--help"]);
+    let parts: Vec<&str> = help.split("Files that are written of a run:").collect();
+    let (read, written) = parts[0].split_once("Mesh files that are written").unwrap();
+    let has = |part: &str, extension: &str| {
+        part.split_whitespace()
+            .any(|w| w == format!(".{extension}"))
+    };
+    assert!(
+        MeshFormat::ALL.iter().all(|f| has(read, f.extension())),
+        "{read}"
+    );
+    assert!(
+        ExportMeshFormat::ALL
+            .iter()
+            .all(|f| has(written, f.extension())),
+        "{written}"
+    );
+    assert!(
+        SeriesFormat::ALL
+            .iter()
+            .all(|f| has(parts[1], f.extension())),
+        "{}",
+        parts[1]
+    );
+}

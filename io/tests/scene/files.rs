@@ -1,0 +1,95 @@
+//! Scenes with mesh files of several formats.
+
+use isosheet_io::dynamics::Simulation;
+use isosheet_io::mesh::generate;
+use isosheet_io::scene::SceneFile;
+use isosheet_io::{read_mesh, write_mesh, write_obj};
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+/// The simulation of a scene in a folder.
+fn simulation(folder: &Path, text: &str) -> Simulation {
+    let scene = SceneFile::parse(text.into(), &folder.join("scene.toml"), &[]);
+    let scene = scene.unwrap_or_else(|e| panic!("{e}"));
+    let simulation = scene.build().and_then(|s| s.start());
+    simulation.unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The same bits after some steps.
+fn agree(mut a: Simulation, mut b: Simulation) {
+    let start = a.state().x.clone();
+    for _ in 0..10 {
+        assert_eq!(a.step(0.01).unwrap(), b.step(0.01).unwrap());
+    }
+    assert_eq!(a.state(), b.state());
+    assert_ne!(a.state().x, start, "something moves");
+}
+
+/// The valley of a FOLD file is the crease that is named by its ends, and the file is in millimetres.
+#[test]
+fn creases_come_from_fold_files() {
+    let dir = tempfile::tempdir().unwrap();
+    let sheet = generate::grid(1, 1, 0.125, 0.125, generate::Diagonals::Rising).unwrap();
+    let t = sheet.topology();
+    let mut fold =
+        String::from("{\"file_spec\": 1.2, \"frame_unit\": \"mm\", \"vertices_coords\": [");
+    for (k, p) in sheet.positions().as_chunks::<3>().0.iter().enumerate() {
+        let comma = if k == 0 { "" } else { ", " };
+        write!(fold, "{comma}[{}, {}]", 1e3 * p[0], 1e3 * p[1]).unwrap();
+    }
+    let diagonal = t.edge_ids().find(|&e| !t.is_boundary_edge(e)).unwrap();
+    let [a, b] = t.edges()[diagonal.index()].map(|v| v.0);
+    let faces = sheet.face_indices();
+    write!(
+        fold,
+        "], \"edges_vertices\": [[{a}, {b}]], \"edges_assignment\": [\"V\"], \"faces_vertices\": {faces:?}}}"
+    )
+    .unwrap();
+    fs::write(dir.path().join("valley.fold"), fold).unwrap();
+    let scene = |mesh: &str, at: &str| {
+        let text = format!(
+            "version = 1
+            [sheet]
+            mesh = {{ {mesh} }}
+            [[crease]]
+            at = {{ {at} }}
+            stiffness = 0.01
+            angle = {{ ramp = {{ to = 70.0, end = 0.1 }} }}"
+        );
+        simulation(dir.path(), &text)
+    };
+    let rectangle = "rectangle = { width = 0.125, height = 0.125, columns = 1, rows = 1, diagonals = \"rising\" }";
+    let ends = format!("ends = [[{a}, {b}]]");
+    agree(
+        scene("file = { path = \"valley.fold\" }", "pattern = \"valleys\""),
+        scene(rectangle, &ends),
+    );
+}
+
+/// A body from an STL file, which shares no vertices, is that of the OBJ file it was made of.
+#[test]
+fn bodies_come_from_stl_files() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name| dir.path().join(name);
+    let disk = generate::grid(2, 2, 1.0, 1.0, generate::Diagonals::Rising).unwrap();
+    write_obj(&path("floor.obj"), disk.topology(), disk.positions()).unwrap();
+    write_mesh(&path("floor.stl"), &read_mesh(&path("floor.obj")).unwrap()).unwrap();
+    // Vertices have the order in which facets use them.
+    write_mesh(&path("same.off"), &read_mesh(&path("floor.stl")).unwrap()).unwrap();
+    let scene = |name: &str| {
+        let text = format!(
+            "version = 1
+            [sheet]
+            mesh = {{ rectangle = {{ width = 0.2, height = 0.2, columns = 2, rows = 2 }} }}
+            thickness = 0.001
+            placement = {{ position = [0.4, 0.4, 0.01] }}
+            [[obstacle]]
+            shape = {{ file = {{ path = \"{name}\" }} }}
+            [forces]
+            gravity = [0, 0, -9.81]"
+        );
+        simulation(dir.path(), &text)
+    };
+    agree(scene("floor.stl"), scene("same.off"));
+}
