@@ -155,13 +155,13 @@ fn a_sheet_is_crumpled_from_four_sides() {
         0.2,
     );
     scene.run(0.35, H, |_, _| ());
-    // The plates are 0.6 SIDE + 2 margin apart, and the sheet fills the space between them except for the
-    // reach of the barrier.
+    // The plates are 0.6 SIDE + 2 margin apart. The sheet fills the space between them but for folds that stand
+    // away from the plates; measured from 31 starts that differ by displacements of 1e-5 rod lengths: 83 % to 99.6 %.
     let room = 0.6 * SIDE + 2.0 * margin;
     for axis in [0, 1] {
         let [low, high] = extent(scene.x(), axis);
         assert!(
-            (0.93 * room..room).contains(&(high - low)),
+            (0.8 * room..room).contains(&(high - low)),
             "from {low} to {high} m of {room} m along axis {axis}"
         );
     }
