@@ -57,6 +57,9 @@ pub(crate) struct MultiplierGoal {
     pub(crate) violation: f64,
     /// Change of the multipliers, relative to the largest, from which an iteration is not worth its solve.
     pub(crate) change: f64,
+    /// Length of an iteration from which equations count as dependent, and the iteration ends: the inverse of an
+    /// eigenvalue.
+    pub(crate) longest: f64,
 }
 
 impl MultiplierSolver {
@@ -101,7 +104,7 @@ impl MultiplierSolver {
             }
             previous = square;
             let length = square / self.apply(system);
-            if !(length.is_finite() && length > 0.0) {
+            if !(length > 0.0 && length <= goal.longest) {
                 break;
             }
             let (mut change, mut largest) = (0.0_f64, 0.0_f64);

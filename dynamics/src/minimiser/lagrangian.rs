@@ -43,6 +43,8 @@ pub(crate) struct Lagrangian {
     pub(super) iterate: Iterate,
     pub(super) matrix: PrimalMatrix,
     pub(super) multipliers: Vec<f64>,
+    /// Multipliers before a linear system was solved.
+    kept: Vec<f64>,
     solver: MultiplierSolver,
     pub(super) vertex_rows: VertexRows,
     /// Penalties `r_e` of equations as stiff as the masses.
@@ -116,6 +118,7 @@ impl Lagrangian {
             iterate: Iterate::new(n),
             matrix: PrimalMatrix::new(model)?,
             multipliers: vec![0.0; m],
+            kept: vec![0.0; m],
             solver: MultiplierSolver::new(model),
             vertex_rows: VertexRows::new(model.constraints(), vertices, 1.0),
             unit_penalty: penalties(model, 1.0),
@@ -385,6 +388,16 @@ impl Lagrangian {
     pub(super) fn solve(&mut self, model: &SheetModel) -> f64 {
         self.matrix.solve(model, &self.gradient, &mut self.dx);
         self.slope()
+    }
+
+    /// Keeps the multipliers of the isometry, for [`Lagrangian::restore_multipliers`].
+    pub(super) fn keep_multipliers(&mut self) {
+        self.kept.copy_from_slice(&self.multipliers);
+    }
+
+    /// Takes back what has changed the multipliers of the isometry since they were kept.
+    pub(super) fn restore_multipliers(&mut self) {
+        self.multipliers.copy_from_slice(&self.kept);
     }
 
     /// Improves the multipliers of the isometry and the step `-dx` that was solved for with them; the violation

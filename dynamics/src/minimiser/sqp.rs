@@ -8,12 +8,16 @@ use crate::constraint::rows::HessianPart;
 use crate::multipliers::MultiplierGoal;
 use crate::report::SolverEffort;
 
-/// Stiffness of the rods in the linear systems, in units of that of the masses. The systems are regularised
+/// Stiffnesses of the rods in the linear systems, in units of that of the masses. The systems are regularised
 /// saddle-point systems `[H G^T; G -1/r]` with penalties `r`, solved by elimination of the multipliers;
-/// [`MultiplierSolver`](crate::multipliers::MultiplierSolver) takes the regularisation out again. With 1e10, 1e11
-/// and 1e12 hanging sheets of 128 to 2048 triangles need the same numbers of factorisations within a tenth (the
-/// largest 5 to 25 % more with 1e12). With 1e10 steps keep the momentum to round-off, with 1e11 no longer.
-const STIFFNESS: f64 = 1e10;
+/// [`MultiplierSolver`](crate::multipliers::MultiplierSolver) takes the regularisation out again. With the first
+/// stiffness steps keep momentum and symmetries to round-off, with 1e11 no longer. Where the multipliers do not converge, the
+/// second is used for the rest of the minimisation: beyond it the masses drown in the round-off of the penalty.
+const STIFFNESS: [f64; 2] = [1e10, 1e13];
+/// Length of an iteration for the multipliers beyond which rods count as dependent: the inverse of the smallest
+/// eigenvalue that is not taken to be zero. Multipliers of nearly dependent rods may grow without bound. Without
+/// this bound strips of rods that stand on edge take 400 to 1400 factorisations a step at rest, with it 10 to 50.
+const LONGEST_ITERATION: f64 = 3.0;
 /// Conjugate gradient iterations for the multipliers of a step: nearly dependent rods, as in a sheet that lies
 /// flat, have a few eigenvalues each of which takes an iteration. With none, clamped strips of nearly dependent
 /// rods need three to ten times the factorisations; 6 and 16 differ by less than a tenth.
@@ -88,6 +92,8 @@ pub(super) struct Sqp<'a, 'b> {
     is_perturbed: bool,
     /// The part of the Hessian that is tried first: all of it until that turns out to be indefinite.
     hessian: HessianPart,
+    /// The stiffness of the rods in the linear systems.
+    stiffness: f64,
 }
 
 /// What depends on whether there is contact.
@@ -136,6 +142,9 @@ impl<'a, 'b> Sqp<'a, 'b> {
                 merit_stiffness: minimiser.options.stiffness,
             }
         };
+        // Contact is not kept to round-off, and the equations of the weak form have large condition numbers.
+        let has_soft_start = problem.model.isometry() == Isometry::Rods && !problem.has_contact();
+        let stiffness = STIFFNESS[usize::from(!has_soft_start)];
         Self {
             minimiser,
             problem,
@@ -145,6 +154,7 @@ impl<'a, 'b> Sqp<'a, 'b> {
             friction_updates: 0,
             is_perturbed: false,
             hessian: HessianPart::Full,
+            stiffness,
         }
     }
 
@@ -224,37 +234,11 @@ impl<'a, 'b> Sqp<'a, 'b> {
 
     /// Solves for the step `-dx` at the iterate and for the multipliers; nothing if there is no step.
     fn direction(&mut self) -> Option<Direction> {
-        let (model, merit_stiffness) = (self.problem.model, self.limits.merit_stiffness);
-        let constraint_stiffness = self.minimiser.options.stiffness;
-        let goal = self.multiplier_goal();
+        let hessian = self.solve()?;
+        let stiffness = self.minimiser.options.stiffness;
         let lagrangian = &mut self.minimiser.lagrangian;
-        self.effort.iterations += 1;
-        // Vertex constraints stay as soft as in the merit function: their curvature goes by the multiplier
-        // estimates, which a large penalty would make those of length errors.
-        lagrangian.set_stiffness(STIFFNESS, constraint_stiffness);
-        let hessian = lagrangian
-            .factorize(
-                self.problem,
-                RodLoad::Multipliers,
-                self.hessian,
-                self.effort,
-            )
-            .ok()?;
-        // What makes the Hessian indefinite rarely ends within a step.
-        if hessian == Definiteness::Modified {
-            self.hessian = HessianPart::PositiveSemidefinite;
-        }
-        for _ in 0..CONSTRAINT_PASSES {
-            lagrangian.set_gradient(self.problem);
-            lagrangian.solve(model);
-            lagrangian.improve_multipliers(model, goal);
-            let [change, largest] = lagrangian.vertex_rows.update_after(&lagrangian.dx);
-            if change <= MULTIPLIERS_SETTLED * largest {
-                break;
-            }
-        }
         // The merit function has the new multipliers.
-        lagrangian.set_stiffness(merit_stiffness, constraint_stiffness);
+        lagrangian.set_stiffness(self.limits.merit_stiffness, stiffness);
         lagrangian.set_gradient(self.problem);
         let before = lagrangian.merit(self.problem);
         let slope = lagrangian.slope();
@@ -265,9 +249,48 @@ impl<'a, 'b> Sqp<'a, 'b> {
         })
     }
 
+    /// Sets the step `-dx` and the multipliers.
+    fn solve(&mut self) -> Option<Definiteness> {
+        let model = self.problem.model;
+        let constraint_stiffness = self.minimiser.options.stiffness;
+        let goal = self.multiplier_goal();
+        let lagrangian = &mut self.minimiser.lagrangian;
+        self.effort.iterations += 1;
+        loop {
+            // Vertex constraints stay as soft as in the merit function: their curvature goes by the multiplier
+            // estimates, which a large penalty would make those of length errors.
+            lagrangian.set_stiffness(self.stiffness, constraint_stiffness);
+            let (load, part) = (RodLoad::Multipliers, self.hessian);
+            let hessian = lagrangian
+                .factorize(self.problem, load, part, self.effort)
+                .ok()?;
+            // What makes the Hessian indefinite rarely ends within a step.
+            if hessian == Definiteness::Modified {
+                self.hessian = HessianPart::PositiveSemidefinite;
+            }
+            lagrangian.keep_multipliers();
+            let mut violation = 0.0;
+            for _ in 0..CONSTRAINT_PASSES {
+                lagrangian.set_gradient(self.problem);
+                lagrangian.solve(model);
+                violation = lagrangian.improve_multipliers(model, goal);
+                let [change, largest] = lagrangian.vertex_rows.update_after(&lagrangian.dx);
+                if change <= MULTIPLIERS_SETTLED * largest {
+                    break;
+                }
+            }
+            if violation <= goal.violation || self.stiffness == STIFFNESS[1] {
+                return Some(hessian);
+            }
+            self.stiffness = STIFFNESS[1];
+            lagrangian.restore_multipliers();
+        }
+    }
+
     /// When the multipliers of a step are good enough: once the linearised lengths are within the tolerance.
     fn multiplier_goal(&self) -> MultiplierGoal {
-        let (max_iterations, change) = match self.problem.model.isometry() {
+        let model = self.problem.model;
+        let (max_iterations, change) = match model.isometry() {
             Isometry::Weak => (WEAK_MULTIPLIER_ITERATIONS, WEAK_MULTIPLIERS_SETTLED),
             Isometry::Rods | Isometry::Elastic => (MULTIPLIER_ITERATIONS, MULTIPLIERS_SETTLED),
         };
@@ -275,6 +298,11 @@ impl<'a, 'b> Sqp<'a, 'b> {
             max_iterations,
             violation: self.minimiser.strain_tolerance(self.problem),
             change,
+            longest: if model.isometry() == Isometry::Weak {
+                f64::INFINITY
+            } else {
+                LONGEST_ITERATION
+            },
         }
     }
 

@@ -59,6 +59,7 @@ fn solve(
         max_iterations,
         violation: 1e-14,
         change: 0.0,
+        longest: f64::INFINITY,
     };
     let mut solver = MultiplierSolver::new(model);
     let violation = solver.improve(&mut system, &mut multipliers, &mut dx, goal);
