@@ -216,6 +216,8 @@ impl Recorder<'_> {
             t: state.t,
             h: report.map_or(0.0, |r| r.h),
             iterations: report.map_or(0, |r| r.iterations),
+            factorisations: report.map_or(0, |r| r.factorisations),
+            rejected: report.map_or(0, |r| r.rejected),
             kinetic,
             potential,
             total: kinetic + potential,
