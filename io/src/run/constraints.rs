@@ -194,3 +194,104 @@ fn tube(points: &[Vector3<f64>], radius: f64, sides: usize) -> BodyShape {
         vertices,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Distances of the corners of a tube from the nearest of the points.
+    fn corners(shape: &BodyShape) -> Vec<Vector3<f64>> {
+        let BodyShape::Mesh { vertices, faces } = shape else {
+            panic!("a tube is a mesh")
+        };
+        let count = vertices.len() / 3;
+        assert!(faces.as_flattened().iter().all(|&v| (v as usize) < count));
+        vertices
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .map(|p| Vector3::from(*p))
+            .collect()
+    }
+
+    const SPACE: Space = Space {
+        centre: Vector3::new(0.3, 0.2, 0.1),
+        radius: 2.0,
+    };
+
+    #[test]
+    fn tubes_lie_around_their_curves() {
+        let around =
+            |curve: &Curve, closest: &dyn Fn(&Vector3<f64>) -> Vector3<f64>, error: f64| {
+                let points = points(curve, &SPACE);
+                assert!(points.len() >= 2);
+                for corner in corners(&tube(&points, 0.01, 8)) {
+                    let distance = (corner - closest(&corner)).norm();
+                    assert!((distance - 0.01).abs() < error, "{distance} in {curve:?}");
+                }
+                points
+            };
+        let line = Curve::Line {
+            point: [1.0, 0.0, 0.0],
+            direction: [0.0, 0.0, -3.0],
+        };
+        let ends = around(&line, &|p| Vector3::new(1.0, 0.0, p.z), 1e-15);
+        // As far as the sheet comes, about its middle.
+        assert!((ends[0].z - 3.1).abs() < 1e-14 && (ends[1].z + 2.9).abs() < 1e-14);
+
+        let circle = Curve::Circle {
+            centre: [0.0, 1.0, 0.0],
+            normal: [2.0, 0.0, 0.0],
+            radius: 0.5,
+        };
+        let on_circle = |p: &Vector3<f64>| {
+            let middle = Vector3::new(0.0, 1.0, 0.0);
+            middle + 0.5 * (Vector3::new(0.0, p.y, p.z) - middle).normalize()
+        };
+        // At the ends the direction of the chord differs from the tangent.
+        let points = around(&circle, &on_circle, 1e-5);
+        assert!((points[0] - points[points.len() - 1]).norm() < 1e-15);
+
+        let through = vec![[0.0; 3], [1.0, 0.5, 0.0], [1.0, 1.0, 1.0], [0.0, 0.5, 1.0]];
+        let open = Spline::open(&through).unwrap();
+        let closest = |p: &Vector3<f64>| constraint::Curve::closest(&open, p).position;
+        let found = around(
+            &Curve::Spline {
+                points: through.clone(),
+            },
+            &closest,
+            1e-4,
+        );
+        assert!((found[0] - Vector3::zeros()).norm() < 1e-12);
+        let closed = Spline::closed(&through).unwrap();
+        let closest = |p: &Vector3<f64>| constraint::Curve::closest(&closed, p).position;
+        let found = around(&Curve::ClosedSpline { points: through }, &closest, 1e-4);
+        assert!((found[0] - found[found.len() - 1]).norm() < 1e-12);
+    }
+
+    #[test]
+    fn surfaces_are_where_they_hold_vertices() {
+        let (pose, shape) = surface(
+            &Surface::Plane {
+                point: [1.0, 2.0, 3.0],
+                normal: [0.0, 0.0, -2.0],
+            },
+            &SPACE,
+        );
+        assert_eq!(shape, BodyShape::HalfSpace);
+        assert!((pose * Vector3::z() + Vector3::z()).norm() < 1e-15);
+        assert_eq!(pose.translation.vector, Vector3::new(1.0, 2.0, 3.0));
+        let axis = Vector3::new(1.0, 1.0, 0.0).normalize();
+        let cylinder = Surface::Cylinder {
+            point: [0.0, 0.0, 1.0],
+            axis: [2.0, 2.0, 0.0],
+            radius: 0.7,
+        };
+        let (pose, shape) = surface(&cylinder, &SPACE);
+        assert_eq!(pose, Isometry3::identity());
+        for corner in corners(&shape) {
+            let d = corner - Vector3::z();
+            assert!(((d - axis * d.dot(&axis)).norm() - 0.7).abs() < 1e-14);
+        }
+    }
+}
