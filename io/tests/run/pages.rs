@@ -230,3 +230,70 @@ fn bodies_curves_and_surfaces_are_on_the_page() {
     }
     assert_eq!(result["exceptions"], serde_json::json!([]));
 }
+
+/// The scene of the README with other people's meshes: a sheet that falls on a ball.
+#[test]
+fn meshes_of_other_people_become_a_page_in_one_command() {
+    let Some(data) = std::env::var_os("ISOSHEET_DATA") else {
+        eprintln!("skipped: ISOSHEET_DATA is not set");
+        return;
+    };
+    let readme = include_str!("../../../README.md");
+    let (_, scene) = readme.split_once("```toml\n").unwrap();
+    let (scene, _) = scene.split_once("```").unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let meshes = [
+        ("planar/square_delaunay_102v.obj", "cloth.obj"),
+        ("tools/sphere_1k.obj", "table.obj"),
+    ];
+    for (from, to) in meshes {
+        fs::copy(Path::new(&data).join(from), dir.join(to)).unwrap();
+    }
+    fs::write(dir.join("cloth.toml"), scene).unwrap();
+    let edits = [
+        "sheet.mesh.file.scale=1.0",
+        "sheet.placement.position=[0.0, -0.5, 0.51]",
+    ];
+    let done = run(
+        dir,
+        &[
+            "simulate",
+            "cloth.toml",
+            "--set",
+            edits[0],
+            "--set",
+            edits[1],
+        ],
+    );
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    assert!(stderr(&done).contains("page: cloth-run/index.html"));
+    let kinds = kinds_of_bodies(&dir.join("cloth-run/index.html"));
+    assert_eq!(kinds, ["mesh"]);
+    let sheet = replay(&dir.join("cloth-run"));
+    // It has fallen on the ball: nothing is inside, and the hem hangs below the top of the ball by a third of
+    // the radius at least.
+    let last = sheet.positions.last().unwrap();
+    let lowest = last
+        .iter()
+        .skip(2)
+        .step_by(3)
+        .copied()
+        .fold(f64::INFINITY, f64::min);
+    assert!(lowest < 0.5 - 0.5 / 3.0, "{lowest}");
+    let inside = last
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .filter(|p| p.iter().map(|c| c * c).sum::<f64>().sqrt() < 0.49);
+    assert_eq!(inside.count(), 0);
+}
+
+/// The kinds of the bodies on a page.
+fn kinds_of_bodies(page: &Path) -> Vec<String> {
+    let data = data(page);
+    let bodies = data["bodies"].as_array().unwrap().iter();
+    bodies
+        .map(|b| b["shape"]["kind"].as_str().unwrap().to_owned())
+        .collect()
+}
