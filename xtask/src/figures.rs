@@ -65,6 +65,8 @@ pub(crate) struct PageRef {
     /// Paths relative to the output folder.
     pub(crate) path: String,
     pub(crate) thumbnail: String,
+    /// Choices in the address of the page, empty or from `#` on.
+    pub(crate) choices: String,
     pub(crate) label: String,
 }
 

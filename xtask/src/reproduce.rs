@@ -110,6 +110,7 @@ fn keep(store: &Store, figure: u8, options: &serde_json::Value, made: Made) -> R
         pages.push(PageRef {
             path: play.file.clone(),
             thumbnail,
+            choices: play.choices.to_owned(),
             label: play.label.clone(),
         });
     }

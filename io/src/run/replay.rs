@@ -152,14 +152,13 @@ impl Field {
 }
 
 impl Series {
-    /// The columns of a history over time: energies, largest strain, smallest gap where there is one, change
-    /// of the total energy, length of the step, and the iterations, factorisations and rejected sub-steps of
-    /// each step.
+    /// The columns of a history over time: energies, largest strain, smallest gap (in runs that have one; 0,
+    /// which plots leave out, while nothing is within reach), change of the total energy, length of the step,
+    /// and the iterations, factorisations and rejected sub-steps of each step.
     pub fn of_history(rows: &[HistoryRow]) -> Vec<Self> {
         // The row of the start is no step.
         let steps: Vec<&HistoryRow> = rows.iter().filter(|row| row.h > 0.0).collect();
         let all: Vec<&HistoryRow> = rows.iter().collect();
-        let close: Vec<&HistoryRow> = rows.iter().filter(|row| row.gap.is_some()).collect();
         let one = |name: &str, unit: &str, scale, rows: &[&HistoryRow], of: Column| Self {
             name: name.into(),
             unit: unit.into(),
@@ -174,8 +173,8 @@ impl Series {
             one("total energy", "J", linear, &all, |row| row.total),
             one("largest strain", "", logarithmic, &all, |row| row.strain),
         ];
-        if !close.is_empty() {
-            series.push(one("smallest gap", "m", logarithmic, &close, |row| {
+        if rows.iter().any(|row| row.gap.is_some()) {
+            series.push(one("smallest gap", "m", logarithmic, &all, |row| {
                 row.gap.unwrap_or_default()
             }));
         }

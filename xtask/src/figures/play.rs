@@ -12,6 +12,8 @@ pub(crate) struct Play {
     /// Names of page and picture without folder.
     pub(crate) file: String,
     pub(crate) thumbnail_file: String,
+    /// Choices in the address of the page, empty or from `#` on.
+    pub(crate) choices: &'static str,
     /// What tells it from the other pages of the figure.
     pub(crate) label: String,
     pub(crate) page: String,
@@ -36,18 +38,25 @@ pub(super) fn play(
         RenderEffort::Full => "",
         RenderEffort::Quick => " --quick",
     };
+    let bodies = scene.bodies()?;
     let replay = Replay {
         title: format!("Figure {figure}: {label}"),
         pins: pins.iter().map(|v| v.0).collect(),
         summary: rows(&summary),
         scene: serde_json::to_string_pretty(&summary.scene)?,
         reproduce: format!("cargo xtask reproduce-figures --figures {figure}{quick}"),
-        ..Replay::of_motion(&sheet, &scene.bodies()?, &trajectory, &history)?
+        ..Replay::of_motion(&sheet, &bodies, &trajectory, &history)?
     };
     let name = format!("fig{figure:02}-{}", scene.name());
     Ok(Play {
         file: format!("{name}.html"),
         thumbnail_file: format!("{name}-end.png"),
+        // Where the figure leaves bodies out, they would hide the sheet.
+        choices: if view.bodies.len() < bodies.len() {
+            "#bodies=glass"
+        } else {
+            ""
+        },
         label: label.to_owned(),
         page: replay.to_html()?,
         thumbnail: thumbnail(scene, &trajectory, view)?,

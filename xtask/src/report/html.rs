@@ -101,11 +101,12 @@ fn plays(
     for PageRef {
         path,
         thumbnail,
+        choices,
         label,
     } in &record.pages
     {
         // Writing to a string cannot fail.
-        let _ = write!(out, "<a href=\"{}\">", escape(path));
+        let _ = write!(out, "<a href=\"{}{}\">", escape(path), escape(choices));
         let picture = PictureRef {
             path: thumbnail.clone(),
             alt: format!("Figure {}, {label}, at the end", record.figure),
@@ -207,6 +208,7 @@ mod tests {
             pages: vec![PageRef {
                 path: "fig10-a.html".into(),
                 thumbnail: "figures/fig10-a-end.png".into(),
+                choices: "#bodies=glass".into(),
                 label: "M<2>".into(),
             }],
             tables: vec![Table {
@@ -229,7 +231,7 @@ mod tests {
             "<figure><svg width=\"130.00pt\" height=\"65.00pt\"></svg></figure>",
             "alt=\"b &quot;quoted&quot;\" src=\"data:image/png;base64,AQID\"",
             "<td>&lt;1&gt;</td>",
-            "<a href=\"fig10-a.html\"><img alt=\"Figure 10, M&lt;2&gt;, at the end\" \
+            "<a href=\"fig10-a.html#bodies=glass\"><img alt=\"Figure 10, M&lt;2&gt;, at the end\" \
              src=\"data:image/png;base64,AQID\">M&lt;2&gt;</a>",
         ] {
             assert!(html.contains(part), "{part} is missing in {html}");
