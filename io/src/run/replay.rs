@@ -120,8 +120,8 @@ impl Body {
 
 impl Field {
     /// The distance of each vertex from the nearest obstacle, metres, on a logarithmic scale: times (seconds)
-    /// and positions (length 3V) of the frames. The thickness of the sheet is not subtracted, and a face or an
-    /// edge may be nearer to an obstacle than its vertices are; the series "smallest gap" has both.
+    /// and positions (length 3V) of the frames. The thickness of the sheet is not subtracted, and a face or
+    /// an edge may be nearer to an obstacle than its vertices are; the series "smallest gap" has both.
     pub fn obstacle_distance(
         obstacles: &[Obstacle],
         times: &[f64],
