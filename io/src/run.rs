@@ -8,6 +8,7 @@
 //! | `history.csv` | one row for each step ([`HistoryRow`](crate::HistoryRow)) |
 //! | `trajectory.npz` | the frames ([`Trajectory`](crate::Trajectory)), at the end |
 //! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
+//! | `index.html` | the 3D page of the run ([`view`](crate::view)), unless the scene says `page = false` |
 //! | `summary.json` | what came of it ([`Summary`]), last: a folder that has it is complete |
 //! | `frames.bin`, `checkpoint.bin` | what is needed to go on; the trajectory replaces the frames |
 //! | `run.lock` | locked while a process works in the folder |
@@ -18,24 +19,31 @@
 //! lost ([`Output::checkpoint_interval`](crate::scene::Output::checkpoint_interval)).
 
 mod checkpoint;
+mod constraints;
 mod error;
 mod folder;
 mod frames;
+mod page;
 mod recording;
+mod replay;
 mod stepping;
 mod summary;
 
 pub use error::RunError;
 pub use folder::SceneHash;
+pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Summary};
 
 use crate::format::{HistoryWriter, frame_path, read_json, write_json, write_obj};
 use crate::scene::{SceneFile, Setup};
+use crate::view::PageOptions;
 use checkpoint::Progress;
 use folder::{Contents, Material, RunFolder};
 use frames::{FrameFile, read_frames};
+use page::write_page_of;
 use recording::{open_scene, trajectory_of};
+use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -312,10 +320,31 @@ fn finish(
         rejected: progress.rejected,
         ending,
     };
+    if output.page {
+        write_page_before(folder, &summary)?;
+    }
     write_json(&folder.path(RunFolder::SUMMARY), &summary)?;
     if output.trajectory {
         // The run is complete; a frame file that stays does no harm.
         let _ = std::fs::remove_file(path);
     }
     Ok(Outcome::Complete(Box::new(summary)))
+}
+
+/// Writes the page of a run whose summary is not in the folder yet. A run that no page can show is complete
+/// all the same: [`write_page`] says why there is none.
+fn write_page_before(folder: &RunFolder, summary: &Summary) -> Result<(), RunError> {
+    let mut recording = Recording::read(folder.root())?;
+    recording.summary = Some(summary.clone());
+    let path = folder.path(RunFolder::PAGE);
+    match write_page_of(&recording, &path, &PageOptions::default()) {
+        Err(RunError::Page(_)) => match std::fs::remove_file(&path) {
+            Err(source) if source.kind() != ErrorKind::NotFound => Err(RunError::Unwritable {
+                folder: folder.root().to_owned(),
+                source,
+            }),
+            _ => Ok(()),
+        },
+        other => other.map(drop),
+    }
 }

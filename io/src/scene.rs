@@ -47,6 +47,9 @@ pub use starting_point::StartingPoint;
 pub use stop::{Rest, Stop};
 pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
 
+#[cfg(feature = "run")]
+pub(crate) use supports::frame_motion;
+
 use problem::Checks;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

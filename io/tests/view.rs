@@ -1,5 +1,8 @@
 //! The page of a run: what is in it, read by a decoder of its own, and what a browser makes of it.
 
+#[path = "shared/headless.rs"]
+mod headless;
+
 mod view {
     mod browser;
     mod decoder;

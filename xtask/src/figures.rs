@@ -17,11 +17,13 @@ mod jam;
 mod marks;
 mod origami;
 mod performance;
+mod play;
 mod sequence;
 mod softness;
 mod stamping;
 
 pub(crate) use performance::{machine, rounded};
+pub(crate) use play::Play;
 
 use crate::draw::{Anchor, Colour, Drawing, Stroke, Vertical, palette};
 use crate::store::Store;
@@ -57,6 +59,17 @@ pub(crate) struct PictureRef {
     pub(crate) alt: String,
 }
 
+/// A page that plays a run, as the record of a figure keeps it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct PageRef {
+    /// Paths relative to the output folder.
+    pub(crate) path: String,
+    pub(crate) thumbnail: String,
+    /// Choices in the address of the page, empty or from `#` on.
+    pub(crate) choices: String,
+    pub(crate) label: String,
+}
+
 /// A table below a figure.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Table {
@@ -75,6 +88,9 @@ pub(crate) struct Record {
     /// What is measured here.
     pub(crate) measured: String,
     pub(crate) pictures: Vec<PictureRef>,
+    /// Pages that play its runs; in records of earlier versions there are none.
+    #[serde(default)]
+    pub(crate) pages: Vec<PageRef>,
     pub(crate) tables: Vec<Table>,
     /// The numbers, for programs.
     pub(crate) facts: Value,
@@ -87,6 +103,8 @@ pub(crate) struct Made {
     pub(crate) paper: &'static str,
     pub(crate) measured: String,
     pub(crate) pictures: Vec<Picture>,
+    /// Pages that play its runs.
+    pub(crate) pages: Vec<Play>,
     pub(crate) tables: Vec<Table>,
     pub(crate) facts: Value,
 }

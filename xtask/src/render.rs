@@ -11,7 +11,7 @@ mod sheet;
 mod solid;
 
 pub(crate) use camera::Camera;
-pub(crate) use canvas::png;
+pub(crate) use canvas::{Image, png};
 pub(crate) use montage::{Labelled, montage};
 pub(crate) use sheet::{Look, SheetPicture, render};
 pub(crate) use solid::Solid;

@@ -37,7 +37,8 @@ pub(crate) fn write(store: &Store, effort: RenderEffort) -> Result<()> {
         .map(|(r, effort)| {
             json!({
                 "figure": r.figure, "title": r.title, "effort": effort, "paper": r.paper, "measured": r.measured,
-                "pictures": r.pictures.iter().map(|p| &p.path).collect::<Vec<_>>(), "facts": r.facts,
+                "pictures": r.pictures.iter().map(|p| &p.path).collect::<Vec<_>>(),
+                "pages": r.pages.iter().map(|p| &p.path).collect::<Vec<_>>(), "facts": r.facts,
             })
         })
         .collect();

@@ -1,7 +1,7 @@
 //! `reproduce-figures`: makes what is asked for and not up to date, then writes the report.
 
 use crate::cli::ReproduceArgs;
-use crate::figures::{self, Context, Made, PictureRef, Record, RenderEffort};
+use crate::figures::{self, Context, Made, PageRef, PictureRef, Record, RenderEffort};
 use crate::interrupt::Interrupted;
 use crate::progress;
 use crate::store::{Extent, Store};
@@ -102,12 +102,25 @@ fn keep(store: &Store, figure: u8, options: &serde_json::Value, made: Made) -> R
             alt: picture.alt.clone(),
         });
     }
+    let mut pages = Vec::new();
+    for play in &made.pages {
+        let thumbnail = format!("figures/{}", play.thumbnail_file);
+        draft.write(&play.file, play.page.as_bytes())?;
+        draft.write(&thumbnail, &play.thumbnail)?;
+        pages.push(PageRef {
+            path: play.file.clone(),
+            thumbnail,
+            choices: play.choices.to_owned(),
+            label: play.label.clone(),
+        });
+    }
     let record = Record {
         figure,
         title: made.title.to_owned(),
         paper: made.paper.to_owned(),
         measured: made.measured,
         pictures,
+        pages,
         tables: made.tables,
         facts: made.facts,
     };

@@ -20,7 +20,7 @@ pub(crate) use fall::{fall, free_fall, plate_fall};
 pub(crate) use feed::Feed;
 pub(crate) use fold::{Alike, Creases, Fold};
 pub(crate) use guide::{Guide, Outlet};
-pub(crate) use record::{RunSummary, ensure, forces, supports, trajectory};
+pub(crate) use record::{RunSummary, ensure, forces, history, summary, supports, trajectory};
 pub(crate) use scene::{PAPER_FRICTION, Scene, SelfContact};
 pub(crate) use shape::{LIMIT, PLATE, Shape};
 pub(crate) use staged::Staged;

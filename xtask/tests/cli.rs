@@ -133,6 +133,23 @@ fn a_quick_run_of_everything_writes_readable_runs() {
     let page = fs::read_to_string(out.join("index.html")).unwrap();
     assert!(page.contains("data:image/png;base64,") && page.contains("33.33"));
     assert!(page.contains("made with <code>--quick</code>"));
+    // Every run has a page of its own beside the report, which has all that it needs.
+    let played = [
+        "fig10-crumple-m1",
+        "fig10-stamping-free",
+        "fig10-drape-octagon-free",
+        "fig11-crumple-m1-contact",
+        "fig12-crumple-m2-contact",
+    ];
+    for name in played {
+        let file = format!("{name}.html");
+        assert!(page.contains(&format!("<a href=\"{file}")), "{file}");
+        let replay = fs::read_to_string(out.join(&file)).unwrap();
+        assert!(replay.len() < 8_000_000, "{file} exceeds the budget");
+        assert!(!replay.contains("<script src") && !replay.contains("<link rel=\"style"));
+    }
+    let replay = fs::read_to_string(out.join("fig11-crumple-m1-contact.html")).unwrap();
+    assert!(replay.contains("\"frames\":13,") && replay.contains("\"pins\":[20]"));
 }
 
 #[test]
@@ -206,6 +223,7 @@ fn quick_and_full_results_do_not_mix() {
     let (code, text) = reproduce(&out, "1", &[]);
     assert_eq!(code, Some(0), "{text}");
     assert!(!out.join("runs/crumple-m1").exists() && !out.join("figures/fig11.png").exists());
+    assert!(!out.join("fig11-crumple-m1-contact.html").exists());
     let page = fs::read_to_string(out.join("index.html")).unwrap();
     assert!(page.matches("<section").count() == 1 && !page.contains("quick"));
     let (code, text) = reproduce(&out, "2", &["--quick"]);

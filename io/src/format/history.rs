@@ -18,6 +18,10 @@ pub struct HistoryRow {
     pub h: f64,
     /// Iterations that the step took.
     pub iterations: usize,
+    /// Matrix factorisations that the step took.
+    pub factorisations: usize,
+    /// Sub-steps that were tried and rejected.
+    pub rejected: usize,
     /// Kinetic energy, in joules.
     pub kinetic: f64,
     /// Potential energy, in joules.
@@ -36,10 +40,12 @@ pub struct HistoryRow {
 }
 
 /// The column names, in order.
-const COLUMNS: [&str; 9] = [
+const COLUMNS: [&str; 11] = [
     "t",
     "h",
     "iterations",
+    "factorisations",
+    "rejected",
     "kinetic",
     "potential",
     "H",
@@ -289,6 +295,8 @@ mod tests {
             t: 0.1 * k as f64,
             h: 0.1,
             iterations: 3 * k,
+            factorisations: 5 * k,
+            rejected: k % 3,
             kinetic: s * 1e-12,
             potential: -s * 1e9,
             total: 1.0 / 3.0,
@@ -313,7 +321,9 @@ mod tests {
         }
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(
-            text.starts_with("t,h,iterations,kinetic,potential,H,dH,strain,gap\n"),
+            text.starts_with(
+                "t,h,iterations,factorisations,rejected,kinetic,potential,H,dH,strain,gap\n"
+            ),
             "{text}"
         );
     }

@@ -2,6 +2,7 @@
 
 use crate::format::{HistoryError, JsonError, ObjWriteError, TrajectoryError, WriteError};
 use crate::scene::{SceneError, SceneFileError};
+use crate::view::ViewError;
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -104,6 +105,9 @@ pub enum RunError {
     /// The summary cannot be written or read.
     #[error(transparent)]
     Json(#[from] JsonError),
+    /// The run cannot be shown as a page.
+    #[error("no page of the run can be made: {0}")]
+    Page(#[from] ViewError),
     /// An OBJ file cannot be written.
     #[error(transparent)]
     Obj(#[from] ObjWriteError),

@@ -110,6 +110,7 @@ impl RunFolder {
     pub(crate) const FRAMES: &'static str = "frames.bin";
     pub(crate) const HISTORY: &'static str = "history.csv";
     pub(crate) const TRAJECTORY: &'static str = "trajectory.npz";
+    pub(crate) const PAGE: &'static str = "index.html";
     pub(crate) const OBJ: &'static str = "obj";
 
     /// Whether the folder holds a complete run of the scene. A complete run is not touched: its folder may be

@@ -1,28 +1,36 @@
 //! What a run recorded, complete or not.
 
-use super::RunError;
 use super::folder::RunFolder;
 use super::frames::{Frame, read_frames};
-use crate::format::{HistoryRow, Trajectory, read_history};
+use super::{RunError, Summary};
+use crate::format::{HistoryRow, Trajectory, read_history, read_json};
 use crate::scene::SceneFile;
 use isosheet_collide::Obstacle;
-use isosheet_mesh::Sheet;
+use isosheet_mesh::{Sheet, VertexId};
 use nalgebra::Isometry3;
 use std::path::Path;
 
 /// What a run recorded: everything that a page or a film of it needs.
 #[derive(Debug)]
 pub struct Recording {
+    /// The name of the folder, without `-run` at its end.
+    pub name: String,
     /// The scene as it was run.
     pub scene: SceneFile,
     /// The sheet in its rest shape, placed in space.
     pub sheet: Sheet,
+    /// What is modelled, in words.
+    pub modelled: Vec<String>,
+    /// Vertices that are pinned, at rest or in motion.
+    pub pins: Vec<VertexId>,
     /// The bodies, in the order of the scene.
     pub obstacles: Vec<Obstacle>,
     /// The frames with the mesh.
     pub trajectory: Trajectory,
     /// One row for each step, that of the start first.
     pub history: Vec<HistoryRow>,
+    /// What came of the run, if it is complete.
+    pub summary: Option<Summary>,
 }
 
 impl Recording {
@@ -43,12 +51,18 @@ impl Recording {
             let frames = frames.map_err(|source| RunError::Read { path, source })?;
             trajectory_of(&setup.sheet, &frames)?
         };
+        let summary = folder.join(RunFolder::SUMMARY);
+        let summary = summary.is_file().then(|| read_json(&summary)).transpose()?;
         Ok(Self {
+            name: name_of(folder),
+            pins: setup.model.pins(),
+            modelled: setup.modelled,
             sheet: setup.sheet,
             obstacles: setup.obstacles,
             trajectory,
             history: read_history(&folder.join(RunFolder::HISTORY))?,
             scene,
+            summary,
         })
     }
 
@@ -57,6 +71,13 @@ impl Recording {
         let bodies = self.obstacles.iter();
         bodies.map(|body| body.motion().pose(t)).collect()
     }
+}
+
+/// The name of a run: that of its folder without `-run`.
+fn name_of(folder: &Path) -> String {
+    let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let name = whole.file_name().unwrap_or_default().to_string_lossy();
+    name.strip_suffix("-run").unwrap_or(&name).to_owned()
 }
 
 /// The scene of a folder.

@@ -111,6 +111,8 @@ impl Stepping<'_> {
             t: report.t,
             h: report.h,
             iterations: report.iterations,
+            factorisations: report.factorisations,
+            rejected: report.rejected,
             kinetic: report.kinetic,
             potential: report.potential,
             total,

@@ -18,6 +18,8 @@ pub struct Output {
     pub trajectory: bool,
     /// Whether the frames are written as OBJ files in the folder `obj`.
     pub obj: bool,
+    /// Whether the 3D page of the run is written as `index.html`.
+    pub page: bool,
 }
 
 impl Default for Output {
@@ -27,6 +29,7 @@ impl Default for Output {
             checkpoint_interval: 10.0,
             trajectory: true,
             obj: false,
+            page: true,
         }
     }
 }

@@ -4,6 +4,9 @@ mod continuing;
 mod convert;
 mod ends;
 mod folders;
+#[path = "../shared/headless.rs"]
+mod headless;
+mod pages;
 mod tools;
 
 use isosheet_io::read_json;
@@ -82,8 +85,24 @@ fn assert_same(one: &Path, other: &Path) {
         simulation_bytes(one) == simulation_bytes(other),
         "checkpoint"
     );
+    let [a, b] = [one, other].map(page_without_name);
+    assert!(a == b, "the page of {} differs", other.display());
     let mut changed = summary(other);
     changed.wall_time = summary(one).wall_time;
     assert_eq!(changed, summary(one));
     assert!(!other.join("frames.bin").exists());
+}
+
+/// The page of a run without the two things that differ between two folders: their name and the wall time.
+fn page_without_name(folder: &Path) -> String {
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    let name = folder.file_name().unwrap().to_string_lossy();
+    let name = name.trim_end_matches("-run");
+    let page = page.replace(&format!("<title>{name}</title>"), "");
+    let page = page.replace(&format!("\"title\":\"{name}\""), "");
+    let (before, rest) = page
+        .split_once("[\"wall time\",")
+        .expect("the page has the wall time");
+    let (_, after) = rest.split_once(']').unwrap();
+    format!("{before}{after}")
 }

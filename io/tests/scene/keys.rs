@@ -92,7 +92,8 @@ const ALL_KEYS: [&str; 3] = [
     frames_per_second = 25
     checkpoint_interval = 1
     trajectory = false
-    obj = true"#,
+    obj = true
+    page = false"#,
     r#"version = 1
     [sheet]
     mesh = { rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = "union_jack" } }

@@ -4,88 +4,10 @@
 
 use super::decoder::{checksum, document, field, positions, rows};
 use super::scenes::{every_body, waving};
+use crate::headless::self_test;
 use isosheet_io::view::{BodyShape, PageOptions, Replay};
 use isosheet_mesh::{Topology, fold_angle};
 use serde_json::Value;
-use std::fs::File;
-use std::path::Path;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
-
-const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
-/// How long a browser may take: some seconds suffice on an idle machine.
-const PATIENCE: Duration = Duration::from_secs(180);
-
-fn browser() -> Option<&'static str> {
-    let runs = |name: &&str| {
-        let mut command = Command::new(name);
-        command
-            .arg("--version")
-            .stdout(Stdio::null())
-            .stderr(Stdio::null());
-        command.status().is_ok_and(|status| status.success())
-    };
-    BROWSERS.into_iter().find(runs)
-}
-
-/// What the page's test of itself says in a window of the given size, or `None` without a browser.
-fn self_test(page: &str, window: &str) -> Option<Value> {
-    let Some(browser) = browser() else {
-        eprintln!("skipped: none of {BROWSERS:?} is installed");
-        return None;
-    };
-    let folder = tempfile::tempdir().unwrap();
-    let (html, dump) = (
-        folder.path().join("page.html"),
-        folder.path().join("dump.html"),
-    );
-    std::fs::write(&html, page).unwrap();
-    run(browser, &html, &dump, folder.path(), window);
-    let dump = std::fs::read_to_string(&dump).unwrap();
-    let body = &dump[dump.find("<body").expect("the browser wrote a page")..];
-    let attribute = |name: &str| {
-        let (_, rest) = body[..body.find('>').unwrap()].split_once(&format!("{name}=\""))?;
-        let (text, _) = rest.split_once('"')?;
-        Some(
-            text.replace("&quot;", "\"")
-                .replace("&lt;", "<")
-                .replace("&gt;", ">")
-                .replace("&amp;", "&"),
-        )
-    };
-    assert_eq!(attribute("data-failure"), None);
-    let result = attribute("data-selftest").expect("the page tested itself");
-    Some(serde_json::from_str(&result).unwrap())
-}
-
-fn run(browser: &str, html: &Path, dump: &Path, folder: &Path, window: &str) {
-    let mut child = Command::new(browser)
-        .args([
-            "--headless",
-            "--no-sandbox",
-            "--use-angle=swiftshader",
-            "--enable-unsafe-swiftshader",
-        ])
-        .args(["--virtual-time-budget=20000", "--dump-dom"])
-        .arg(format!("--window-size={window}"))
-        .arg(format!(
-            "--user-data-dir={}",
-            folder.join("profile").display()
-        ))
-        .arg(format!("file://{}#selftest=1", html.display()))
-        .stdout(File::create(dump).unwrap())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let start = Instant::now();
-    while child.try_wait().unwrap().is_none() {
-        if start.elapsed() > PATIENCE {
-            child.kill().unwrap();
-            panic!("{browser} did not end within {PATIENCE:?}");
-        }
-        std::thread::sleep(Duration::from_millis(50));
-    }
-}
 
 fn number(value: &Value) -> f64 {
     value
@@ -185,6 +107,7 @@ fn every_body_is_drawn_and_moves() {
     for body in bodies {
         assert_eq!(body["shows"], true, "{body}");
     }
+    assert_eq!(number(&result["looks"]), 3.0, "solid, see-through, hidden");
     assert_eq!(number(&result["pictures"]["frames"]), 5.0);
     let played = serde_json::json!({ "starts": true, "middle": 2, "end": 4, "ends": true });
     assert_eq!(result["played"], played);

@@ -39,7 +39,7 @@ export function makeBody(body) {
       side: DoubleSide,
       flatShading: body.shape.kind === "mesh",
       polygonOffset: true,
-      polygonOffsetFactor: 6,
+      polygonOffsetFactor: 2,
       polygonOffsetUnits: 6,
     });
     const geometry = geometryOf(body.shape),
@@ -120,7 +120,7 @@ export function addPatch(group, centre, reach) {
   const plane = new PlaneGeometry(2 * half, 2 * half).translate(x0, y0, 0);
   const surface = new MeshBasicMaterial({
     polygonOffset: true,
-    polygonOffsetFactor: 9,
+    polygonOffsetFactor: 2,
     polygonOffsetUnits: 9,
   });
   const points = [];

@@ -10,7 +10,7 @@ import { Player } from "./player.js";
 import { Plots } from "./plots.js";
 import { Replay } from "./replay.js";
 import { selfTest, watchErrors } from "./selftest.js";
-import { Stage } from "./stage.js";
+import { LOOKS, Stage } from "./stage.js";
 import { showTexts } from "./texts.js";
 import { onThemeChange } from "./theme.js";
 
@@ -69,6 +69,8 @@ class Page {
     });
     $("colour").append(...replay.quantities.map((q) => new Option(q.label, q.key)));
     $("colour").addEventListener("change", () => this.colourBy($("colour").value));
+    $("bodies-label").hidden = replay.data.bodies.length === 0;
+    $("bodies").addEventListener("change", () => this.showBodies($("bodies").value));
     $("reset").addEventListener("click", () => stage.resetCamera());
     $("fit").addEventListener("click", () => stage.frameSheet());
     const boxes = {
@@ -96,6 +98,12 @@ class Page {
     showLegend(quantity);
   }
 
+  showBodies(look) {
+    $("bodies").value = LOOKS.includes(look) ? look : LOOKS[0];
+    this.stage.showBodies($("bodies").value);
+    this.hover.update();
+  }
+
   key(event) {
     // Controls have keys of their own: arrows change a choice, space presses a button.
     const taken = event.target.closest(event.key === " " ? "select, button, summary, input" : "select");
@@ -120,6 +128,7 @@ class Page {
   /** The choices that the address names, as in `index.html#frame=20&colour=fold`. */
   choose(choices) {
     if (choices.has("colour")) this.colourBy(choices.get("colour"));
+    if (choices.has("bodies")) this.showBodies(choices.get("bodies"));
     if (choices.has("frame")) this.player.seek(Number(choices.get("frame")) || 0);
     for (const id of ["edges", "wireframe", "rest"]) {
       if (choices.has(id) && $(id).checked !== (choices.get(id) === "1")) $(id).click();

@@ -154,7 +154,8 @@ class Plot {
     this.line.hidden = left < 0 || left > this.plot.over.clientWidth;
     const k = nearest(times, time);
     this.group.forEach((series, i) => {
-      this.labels[i].textContent = number(series.values[k]);
+      const leftOut = this.values[i][k] === null;
+      this.labels[i].textContent = leftOut ? "\u2013" : number(series.values[k]);
     });
   }
 

@@ -3,6 +3,7 @@
 
 import { checksum } from "./decode.js";
 import { describe } from "./hover.js";
+import { LOOKS } from "./stage.js";
 
 /** Collects what goes wrong from now on. */
 export function watchErrors() {
@@ -132,6 +133,12 @@ export async function selfTest(page, exceptions) {
   const styles = distinct(stage, [() => page.colourBy("plain"), ...toggles], log);
   for (const act of toggles) act();
   const bodies = bodiesShow(stage);
+  const looks = distinct(
+    stage,
+    LOOKS.map((look) => () => page.showBodies(look)),
+    log,
+  );
+  page.showBodies(LOOKS[0]);
   const hover = hoverSomewhere(page);
   page.hover.hide();
   const keys = {
@@ -155,6 +162,7 @@ export async function selfTest(page, exceptions) {
     glErrors: log.map((p) => p.error).filter((error) => error !== 0),
     modes,
     bodies,
+    looks,
     hover,
     keys,
     clicked,

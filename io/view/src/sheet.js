@@ -57,14 +57,14 @@ export class SheetObjects {
           flatShading: true,
           roughness: 0.85,
           polygonOffset: true,
-          polygonOffsetFactor: 3,
-          polygonOffsetUnits: 3,
+          polygonOffsetFactor: 2,
+          polygonOffsetUnits: 2,
         }),
     );
     this.surfaces = this.materials.map((material) => new Surface(geometry, material));
     this.lines = makeLines(mesh.edgeCount, 1);
     // Of what is in the same place, bars are in front of edges, edges in front of faces, faces in front of
-    // bodies.
+    // bodies. Bodies have the slope factor of faces, so that a sheet close behind a wall stays hidden.
     Object.assign(this.lines.material, {
       polygonOffset: true,
       polygonOffsetFactor: 1,

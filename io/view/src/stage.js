@@ -34,6 +34,11 @@ const NEAREST = 0.05;
 /** Where the camera looks from, in axes (right, depth, up). */
 const DIRECTION = [0.55, -1, 0.5];
 
+/** How bodies can be shown. */
+export const LOOKS = ["solid", "glass", "hidden"];
+/** What a see-through body covers of what is behind it. */
+const GLASS = 0.25;
+
 export class Stage {
   constructor(container, replay) {
     this.container = container;
@@ -48,6 +53,7 @@ export class Stage {
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.request());
     this.colours = themeColours();
+    this.look = LOOKS[0];
     this.addLights();
     this.addBodies();
     this.chooseUnits();
@@ -140,6 +146,19 @@ export class Stage {
     this.update();
   }
 
+  /** Shows the bodies solid, see-through or not at all. */
+  showBodies(look) {
+    this.look = look;
+    this.bodies.visible = look !== "hidden";
+    this.bodies.traverse(({ material }) => {
+      if (!material) return;
+      const glass = look === "glass";
+      Object.assign(material, { transparent: glass, opacity: glass ? GLASS : 1, depthWrite: !glass });
+      material.needsUpdate = true;
+    });
+    this.request();
+  }
+
   /** The camera at its start: rest shape, first frame and bodies fill the view. */
   resetCamera() {
     const [right, depth, up] = DIRECTION;
@@ -202,8 +221,8 @@ export class Stage {
   }
 
   /**
-   * What is at a place of the view (pixels from its upper left corner): `{ body }`, or the face, its nearest
-   * vertex and its nearest edge, or null.
+   * What is at a place of the view (pixels from its upper left corner): `{ body }` of a solid one, or the face,
+   * its nearest vertex and its nearest edge, or null.
    */
   pick(left, top) {
     const { clientWidth, clientHeight } = this.container;
@@ -211,7 +230,8 @@ export class Stage {
     this.raycaster.setFromCamera(place, this.camera);
     const sheet = this.raycaster.intersectObjects(this.sheet.surfaces, false)[0];
     const surfaces = this.bodyGroups.map((group) => group.children[0]);
-    const body = this.raycaster.intersectObjects(surfaces, false)[0];
+    const solid = this.look === "solid" ? surfaces : [];
+    const body = this.raycaster.intersectObjects(solid, false)[0];
     if (body && !(sheet?.distance < body.distance)) return { body: body.object.parent.name };
     return sheet ? this.nearest(sheet.faceIndex, sheet.point) : null;
   }

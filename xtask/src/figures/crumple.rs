@@ -1,10 +1,12 @@
 //! Figs. 11 and 12: a sheet of paper held at a corner falls and crumples.
 
 use super::marks::{self, Marks};
+use super::play::play;
 use super::sequence::{View, choose, sequence};
-use super::{Context, Made, Picture, RenderEffort};
-use crate::runs::{self, RunSummary, Scene, Shape, Staged};
+use super::{Context, Made, Picture, Play, RenderEffort};
+use crate::runs::{self, RunSummary, Scene, SelfContact, Shape, Staged};
 use anyhow::{Context as _, Result};
+use isosheet_mesh::VertexId;
 use serde_json::json;
 
 /// Times of the pictures, seconds. The fall takes the first third of a second; then the sheet swings,
@@ -30,6 +32,7 @@ pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made
     let free = runs::ensure(context.store, &without_contact(level, context.effort))?;
     let file = format!("fig{figure:02}.png");
     let mut pictures = vec![picture(file, &scene, context)?];
+    let mut pages = vec![page(figure, &scene, context)?];
     let mut measured = describe(&scene, &summary, &free, context)?;
     let (mut tables, mut facts) = (
         Vec::new(),
@@ -40,6 +43,7 @@ pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made
             let finer = self::scene(3, context.effort);
             runs::ensure(context.store, &finer)?;
             pictures.push(picture("fig12-m3.png".into(), &finer, context)?);
+            pages.push(page(figure, &finer, context)?);
             measured += " Below it the same with M³, which the paper does not show, and what softer means in numbers.";
         }
         let part = super::softness::make(context)?;
@@ -73,6 +77,7 @@ pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made
         },
         measured,
         pictures,
+        pages,
         tables,
         facts,
     })
@@ -137,25 +142,46 @@ fn describe(
     ))
 }
 
-/// The sequence of a run that has been made.
-fn picture(file: String, scene: &Scene, context: &Context<'_>) -> Result<Picture> {
-    let trajectory = runs::trajectory(context.store, scene)?;
-    let frames = choose(&trajectory, &TIMES);
-    let view = View {
+/// How a run is shown.
+fn view<'a>(scene: &Scene, pins: &'a [VertexId]) -> View<'a> {
+    View {
         azimuth: -62.0,
         elevation: 17.0,
         distance: 6.0 * scene.side,
         columns: 5,
-        pins: &[scene.pin()],
+        pins,
         bodies: &[],
         depth: 0.0,
+    }
+}
+
+/// The page that plays a run.
+pub(super) fn page(figure: u8, scene: &Scene, context: &Context<'_>) -> Result<Play> {
+    let contact = match scene.contact {
+        SelfContact::None => ", passing through itself",
+        SelfContact::Friction(_) => "",
     };
+    let level = ["M⁰", "M¹", "M²", "M³"][scene.level as usize];
+    let label = format!("crumpled paper, {level}{contact}");
+    play(figure, &label, scene, &view(scene, &[scene.pin()]), context)
+}
+
+/// The sequence of a run that has been made.
+fn picture(file: String, scene: &Scene, context: &Context<'_>) -> Result<Picture> {
+    let trajectory = runs::trajectory(context.store, scene)?;
+    let frames = choose(&trajectory, &TIMES);
     Ok(Picture {
         file,
         alt: format!(
             "A sheet of paper held at its left-upper corner falls from flat and crumples, mesh M{}",
             scene.level
         ),
-        bytes: sequence(scene, &trajectory, &frames, &view, context.effort)?,
+        bytes: sequence(
+            scene,
+            &trajectory,
+            &frames,
+            &view(scene, &[scene.pin()]),
+            context.effort,
+        )?,
     })
 }

@@ -2,8 +2,9 @@
 //! on towards the round.
 
 use super::folds::{Folds, Hem};
+use super::play::play;
 use super::sequence::{View, choose, sequence};
-use super::{Context, Made, Picture, RenderEffort, Table};
+use super::{Context, Made, Picture, Play, RenderEffort, Table};
 use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
 use crate::runs::{self, Cloth, Drape, Outline, RunSummary, SelfContact, Staged};
 use anyhow::{Context as _, Result};
@@ -155,22 +156,13 @@ impl Draped {
     fn picture(&self, file: &str, context: &Context<'_>) -> Result<Picture> {
         let trajectory = runs::trajectory(context.store, &self.scene)?;
         let frames = choose(&trajectory, &TIMES);
-        let view = View {
-            azimuth: -62.0,
-            elevation: 24.0,
-            distance: 6.0,
-            columns: 3,
-            pins: &[],
-            bodies: &[0],
-            depth: 0.4,
-        };
         Ok(Picture {
             file: file.into(),
             alt: format!(
                 "{}: it is let go flat above a table, falls and drapes",
                 self.label
             ),
-            bytes: sequence(&self.scene, &trajectory, &frames, &view, context.effort)?,
+            bytes: sequence(&self.scene, &trajectory, &frames, &VIEW, context.effort)?,
         })
     }
 
@@ -179,6 +171,44 @@ impl Draped {
             "folds": self.hem.folds, "spacing_spread": self.hem.spacing_spread, "size_spread": self.hem.size_spread, "wave": self.hem.wave,
         } })
     }
+}
+
+/// How a cloth is shown.
+const VIEW: View<'static> = View {
+    azimuth: -62.0,
+    elevation: 24.0,
+    distance: 6.0,
+    columns: 3,
+    pins: &[],
+    bodies: &[0],
+    depth: 0.4,
+};
+
+/// The page that plays the run of a cloth.
+pub(super) fn page(figure: u8, label: &str, scene: &Drape, context: &Context<'_>) -> Result<Play> {
+    let free = match scene.contact {
+        SelfContact::None => ", passing through itself",
+        SelfContact::Friction(_) => "",
+    };
+    let label = format!("draped cloth, {}{free}", label.replace('~', ""));
+    play(figure, &label, scene, &VIEW, context)
+}
+
+/// The pages of some cloths; one that is there twice has a single page.
+fn pages<'a>(
+    figure: u8,
+    all: impl Iterator<Item = &'a Draped>,
+    context: &Context<'_>,
+) -> Result<Vec<Play>> {
+    let mut pages: Vec<Play> = Vec::new();
+    let mut played: Vec<&str> = Vec::new();
+    for d in all {
+        if !played.contains(&d.scene.name()) {
+            played.push(d.scene.name());
+            pages.push(page(figure, &d.label, &d.scene, context)?);
+        }
+    }
+    Ok(pages)
 }
 
 fn percent(v: f64) -> String {
@@ -367,6 +397,7 @@ pub(super) fn fig14(context: &Context<'_>) -> Result<Made> {
                 bytes: profiles(&all).draw().to_svg(alt)?.into_bytes(),
             },
         ],
+        pages: pages(14, all.iter(), context)?,
         tables: vec![fold_table(&all)],
         facts: json!(all.iter().map(Draped::facts).collect::<Vec<_>>()),
     })
@@ -457,6 +488,7 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
                 bytes: hem.to_svg(alt)?.into_bytes(),
             },
         ],
+        pages: pages(15, octagons.iter().chain(&polygons), context)?,
         tables: vec![fold_table(&octagons), hem_table(&polygons)],
         facts: json!({
             "octagons": octagons.iter().map(Draped::facts).collect::<Vec<_>>(),

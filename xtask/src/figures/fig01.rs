@@ -53,6 +53,7 @@ pub(super) fn make() -> Result<Made> {
                    DOF 7, 11, 19, 35 with 4, 8, 16, 32 boundary edges, as Lemma 1 says at each step."
             .into(),
         pictures: svg(1, &all, "A square of two triangles and three successive 1-4 splits of it")?,
+        pages: Vec::new(),
         tables: Vec::new(),
         facts: json!({ "levels": facts }),
     })

@@ -72,6 +72,7 @@ pub(super) fn make() -> Result<Made> {
                    internal coordinate changes from flat to 51.6°."
             .into(),
         pictures: svg(2, &all, "One triangle, and two triangles folding about their common edge")?,
+        pages: Vec::new(),
         tables: Vec::new(),
         facts: json!({ "triangle": facts[0], "pair": facts[1], "fold": FOLD }),
     })

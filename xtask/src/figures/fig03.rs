@@ -60,6 +60,7 @@ pub(super) fn make() -> Result<Made> {
             &all,
             "Crease lines of the one-way grid and of the union-jack grid with their directions",
         )?,
+        pages: Vec::new(),
         tables: Vec::new(),
         facts: json!({ "one_way": facts[0], "union_jack": facts[1] }),
     })

@@ -66,6 +66,7 @@ pub(super) fn make() -> Result<Made> {
                    Counted: DOF 11, 19, 35, 67, which is twice the one before less three, and 4 edges − 8 faces + 3 of the rectangles."
             .into(),
         pictures: svg(4, &all, "Four levels of the isotropic square, as rectangles and as triangles")?,
+        pages: Vec::new(),
         tables: Vec::new(),
         facts: json!({ "levels": facts }),
     })

@@ -114,6 +114,7 @@ pub(super) fn make() -> Result<Made> {
             &all,
             "A pair of triangles at rest and folded, with the angles alpha, beta and gamma at both ends",
         )?,
+        pages: Vec::new(),
         tables: vec![Table {
             caption: "Measured angles of the folded pair".into(),
             head,

@@ -47,6 +47,7 @@ pub(super) fn make() -> Result<Made> {
             &all,
             "The placement functions h, g and f: one, two and three known neighbours",
         )?,
+        pages: Vec::new(),
         tables: Vec::new(),
         facts: json!({ "f_error": error }),
     })

@@ -124,6 +124,7 @@ pub(super) fn make() -> Result<Made> {
             &all,
             "Three known vertices on a bent and on a straight line and the places of a fourth vertex",
         )?,
+        pages: Vec::new(),
         tables: Vec::new(),
         facts: json!({ "sine": sine, "limit": COLLINEAR, "middle_rod_error": worst }),
     })

@@ -75,6 +75,7 @@ pub(super) fn make() -> Result<Made> {
             &all,
             "Fronts, rules and order of the assignment of system coordinates on M1",
         )?,
+        pages: Vec::new(),
         tables: Vec::new(),
         facts: json!({
             "dof": dof, "fronts": assignment.front_count(), "h": count('h'), "g": count('g'), "f": count('f'),

@@ -131,6 +131,7 @@ pub(super) fn make() -> Result<Made> {
             &d,
             "A triangle at rest, aligned with the known edge, and turned about it",
         )?,
+        pages: Vec::new(),
         tables: Vec::new(),
         facts: json!({ "theta": theta, "q": Q, "difference": error }),
     })

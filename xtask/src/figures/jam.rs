@@ -1,7 +1,8 @@
 //! Beyond the paper: a strip of paper is fed into a bent guide, and passes or jams.
 
+use super::play::play;
 use super::sequence::{View, choose, sequence};
-use super::{Context, Made, Picture, RenderEffort, Table};
+use super::{Context, Made, Picture, Play, RenderEffort, Table};
 use crate::draw::{
     Anchor, Axis, Colour, Drawing, Legend, Line, Plot, Series, Stroke, TEXT, Vertical, column,
     palette, row,
@@ -310,6 +311,28 @@ fn table(all: &[Fed]) -> Table {
     }
 }
 
+/// How a run is shown: without the outer wall, which would hide the strip.
+fn view(scene: &Feed) -> View<'static> {
+    View {
+        azimuth: -72.0,
+        elevation: 12.0,
+        distance: 0.8,
+        columns: 2,
+        pins: &[],
+        bodies: match scene.guide.outlet {
+            Outlet::Open => &[0],
+            Outlet::Blocked => &[0, 2],
+        },
+        depth: 0.08,
+    }
+}
+
+/// The page that plays a run.
+fn page(fed: &Fed, context: &Context<'_>) -> Result<Play> {
+    let label = format!("strip in a bend of {}", fed.label());
+    play(16, &label, &fed.scene, &view(&fed.scene), context)
+}
+
 /// Parts of the run at which the jam is shown: the fold-up happens at its end.
 const SHOWN: [f64; 6] = [0.0, 0.5, 0.84, 0.91, 0.95, 1.0];
 
@@ -323,15 +346,6 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let passing = 2.0 * all[OPEN].peak()[1];
     let trajectory = runs::trajectory(context.store, &jam.scene)?;
     let times = SHOWN.map(|s| s * jam.run.time);
-    let view = View {
-        azimuth: -72.0,
-        elevation: 12.0,
-        distance: 0.8,
-        columns: 2,
-        pins: &[],
-        bodies: &[0, 2],
-        depth: 0.08,
-    };
     let alt_force = "Force of the nip over its displacement in four guides";
     let alt_side = "The strip from the side at five times in each of the four guides";
     let s = &jam.scene;
@@ -376,7 +390,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
                     &jam.scene,
                     &trajectory,
                     &choose(&trajectory, &times),
-                    &view,
+                    &view(&jam.scene),
                     effort,
                 )?,
             },
@@ -393,6 +407,10 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
                     .into_bytes(),
             },
         ],
+        pages: all
+            .iter()
+            .map(|f| page(f, context))
+            .collect::<Result<_>>()?,
         tables: vec![table(&all)],
         facts: json!(all.iter().map(|f| f.facts(passing)).collect::<Vec<_>>()),
     })

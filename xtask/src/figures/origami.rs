@@ -1,5 +1,6 @@
 //! Beyond the paper: crease patterns folded by driven angles.
 
+use super::play::play;
 use super::sequence::{View, choose, sequence};
 use super::{Context, Made, Picture, RenderEffort, degrees};
 use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
@@ -174,6 +175,17 @@ fn marks(name: &str, points: Vec<[f64; 2]>, colour: crate::draw::Colour, marker:
     }
 }
 
+/// How the runs are shown.
+const VIEW: View<'static> = View {
+    azimuth: -62.0,
+    elevation: 38.0,
+    distance: 1.2,
+    columns: 3,
+    pins: &[],
+    bodies: &[],
+    depth: 0.0,
+};
+
 /// Every so many frames are marked in plots.
 const EVERY: usize = 6;
 
@@ -244,6 +256,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
         legend: Legend::Right,
     };
 
+    let mut pages = vec![play(17, "Miura's pattern", &scene, &VIEW, context)?];
     let mut series = Vec::new();
     let mut vertices = Vec::new();
     let vertex_exact = DegreeFour { sectors: SECTORS };
@@ -258,6 +271,8 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     ] {
         let scene = vertex(mode, effort);
         let run = runs::ensure(context.store, &scene)?;
+        let label = format!("vertex of degree four, creases {name}");
+        pages.push(play(17, &label, &scene, &VIEW, context)?);
         let found = vertex_angles(&scene, context)?;
         let error = found
             .iter()
@@ -300,15 +315,6 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
             best.map_or(0.0, |(k, _)| trajectory.times()[*k])
         })
         .collect();
-    let view = View {
-        azimuth: -62.0,
-        elevation: 38.0,
-        distance: 1.2,
-        columns: 3,
-        pins: &[],
-        bodies: &[],
-        depth: 0.0,
-    };
     let alt_folds = "Fold of the straight creases, and size of the sheet, over the fold of the zigzags: simulated and exact";
     let alt_vertex = "Fold of the second crease of a vertex over that of the first in its two modes: simulated and exact";
     let describe = |r: &RunSummary| {
@@ -350,7 +356,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
                     &scene,
                     &trajectory,
                     &choose(&trajectory, &times),
-                    &view,
+                    &VIEW,
                     effort,
                 )?,
             },
@@ -367,6 +373,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
                 bytes: branches.draw().to_svg(alt_vertex)?.into_bytes(),
             },
         ],
+        pages,
         tables: Vec::new(),
         facts: json!({
             "run": run,

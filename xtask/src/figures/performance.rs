@@ -1,7 +1,7 @@
 //! Fig. 10: the paper's table of performance, with ours beside it.
 
-use super::{Context, Made, Picture, RenderEffort, Table, crumple, drape, stamping};
-use crate::runs::{self, ChartScene, ChartScheme, ChartSummary, Fate, RunSummary, Scene};
+use super::{Context, Made, Picture, Play, RenderEffort, Table, crumple, drape, stamping};
+use crate::runs::{self, ChartScene, ChartScheme, ChartSummary, Drape, Fate, RunSummary, Scene};
 use anyhow::Result;
 use isosheet_coords::condition_table;
 use serde_json::{Value, json};
@@ -84,6 +84,19 @@ fn runs_of(figure: u8, context: &Context<'_>) -> Result<[RunSummary; 2]> {
             ]
         }
     })
+}
+
+/// The pages of the runs without contact of the sheet with itself; Figs. 11 to 15 have those of the others.
+fn pages(context: &Context<'_>) -> Result<Vec<Play>> {
+    let effort = context.effort;
+    let cloth = |label, scene: Drape| drape::page(10, label, &scene, context);
+    Ok(vec![
+        crumple::page(10, &crumple::without_contact(1, effort), context)?,
+        crumple::page(10, &crumple::without_contact(2, effort), context)?,
+        stamping::page(10, &stamping::scene(effort).without_self_contact(), context)?,
+        cloth("M²", drape::rectangle(2, effort).without_self_contact())?,
+        cloth("244/440", drape::octagon(effort).without_self_contact())?,
+    ])
 }
 
 /// The paper's scheme on a mesh, with ever more help.
@@ -186,6 +199,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
              beyond 1/ε nothing is left of a dense solve, whichever method is used."
         ),
         pictures: vec![condition(context.effort)?],
+        pages: pages(context)?,
         tables: vec![
             Table {
                 caption: "Fig. 10: the paper's columns beside ours".into(),

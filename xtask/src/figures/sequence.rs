@@ -2,7 +2,7 @@
 
 use super::RenderEffort;
 use crate::interrupt;
-use crate::render::{Camera, Labelled, Look, SheetPicture, Solid, montage, render};
+use crate::render::{Camera, Image, Labelled, Look, SheetPicture, Solid, montage, render};
 use crate::runs::Staged;
 use anyhow::{Context as _, Result};
 use isosheet_io::Trajectory;
@@ -51,12 +51,46 @@ pub(super) fn sequence(
     view: &View<'_>,
     effort: RenderEffort,
 ) -> Result<Vec<u8>> {
-    let sheet = scene.sheet()?;
-    let bodies = scene.bodies()?;
     let height = match effort {
         RenderEffort::Full => 470,
         RenderEffort::Quick => 170,
     };
+    let images = pictures(scene, trajectory, frames, view, height)?;
+    let labelled: Vec<Labelled> = images
+        .into_iter()
+        .zip(frames)
+        .map(|(image, k)| Labelled {
+            image,
+            label: format!("{:.2} s", trajectory.times()[*k]),
+        })
+        .collect();
+    montage(&labelled, view.columns).to_png()
+}
+
+/// Height of a thumbnail, pixels.
+const THUMBNAIL: usize = 130;
+
+/// The last frame as a small PNG file.
+pub(super) fn thumbnail(
+    scene: &impl Staged,
+    trajectory: &Trajectory,
+    view: &View<'_>,
+) -> Result<Vec<u8>> {
+    let last = trajectory.len() - 1;
+    let images = pictures(scene, trajectory, &[last], view, THUMBNAIL)?;
+    images.first().context("a picture")?.to_png()
+}
+
+/// The chosen frames, seen by one camera that holds them all.
+fn pictures(
+    scene: &impl Staged,
+    trajectory: &Trajectory,
+    frames: &[usize],
+    view: &View<'_>,
+    height: usize,
+) -> Result<Vec<Image>> {
+    let sheet = scene.sheet()?;
+    let bodies = scene.bodies()?;
     let states: Vec<&[f64]> = frames
         .iter()
         .map(|k| trajectory.frame(*k).context("frame"))
@@ -83,8 +117,8 @@ pub(super) fn sequence(
         size: [(height as f64 * aspect).round().max(1.0) as usize, height],
         ..Look::default()
     };
-    let mut labelled = Vec::new();
-    for ((k, x), solids) in frames.iter().zip(&states).zip(&solids) {
+    let mut images = Vec::new();
+    for (x, solids) in states.iter().zip(&solids) {
         interrupt::check()?;
         let picture = SheetPicture {
             topology: sheet.topology(),
@@ -92,10 +126,7 @@ pub(super) fn sequence(
             pins: view.pins,
             solids,
         };
-        labelled.push(Labelled {
-            image: render(&picture, &camera, &look),
-            label: format!("{:.2} s", trajectory.times()[*k]),
-        });
+        images.push(render(&picture, &camera, &look));
     }
-    montage(&labelled, view.columns).to_png()
+    Ok(images)
 }

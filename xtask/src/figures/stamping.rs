@@ -1,7 +1,8 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
+use super::play::play;
 use super::sequence::{View, choose, sequence};
-use super::{Context, Made, Picture, RenderEffort};
+use super::{Context, Made, Picture, Play, RenderEffort};
 use crate::draw::{Axis, Legend, Line, Plot, Series, palette};
 use crate::runs::{self, SelfContact, Stamping};
 use anyhow::Result;
@@ -33,6 +34,26 @@ pub(super) fn scene(effort: RenderEffort) -> Stamping {
 /// Strokes of the pictures as parts of the whole.
 const STROKES: [f64; 6] = [0.0, 0.3, 0.5, 0.7, 0.85, 1.0];
 
+/// How the run is shown. The holders would hide the sheet.
+const VIEW: View<'static> = View {
+    azimuth: -58.0,
+    elevation: 30.0,
+    distance: 3.0,
+    columns: 3,
+    pins: &[],
+    bodies: &[runs::DIE, runs::DIE + 1],
+    depth: 0.03,
+};
+
+/// The page that plays a run.
+pub(super) fn page(figure: u8, scene: &Stamping, context: &Context<'_>) -> Result<Play> {
+    let label = match scene.contact {
+        SelfContact::None => "stamping, the sheet passing through itself",
+        SelfContact::Friction(_) => "stamping",
+    };
+    play(figure, label, scene, &VIEW, context)
+}
+
 pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let scene = scene(context.effort);
     let run = runs::ensure(context.store, &scene)?;
@@ -48,23 +69,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let peak = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
     let weight = 9.8 * scene.weight * scene.side * scene.side;
     let frames = choose(&trajectory, &STROKES.map(|s| s * full));
-    let view = |bodies: &'static [usize]| View {
-        azimuth: -58.0,
-        elevation: 30.0,
-        distance: 3.0,
-        columns: 3,
-        pins: &[],
-        bodies,
-        depth: 0.03,
-    };
-    // The holders would hide the sheet.
-    let image = sequence(
-        &scene,
-        &trajectory,
-        &frames,
-        &view(&[runs::DIE, runs::DIE + 1]),
-        context.effort,
-    )?;
+    let image = sequence(&scene, &trajectory, &frames, &VIEW, context.effort)?;
     let alt = "Force of the sheet on the die over its stroke";
     Ok(Made {
         title: "Sheet metal stamping",
@@ -105,6 +110,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
                 bytes: plot(&curve, weight, 1e3 * scene.stroke, peak).draw().to_svg(alt)?.into_bytes(),
             },
         ],
+        pages: vec![page(13, &scene, context)?],
         tables: Vec::new(),
         facts: json!({ "run": run, "peak_force": peak, "weight": weight, "stroke_mm_and_force_n": curve }),
     })

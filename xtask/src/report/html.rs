@@ -1,6 +1,6 @@
 //! The page: one file, pictures inside. Its parts serve other reports as well.
 
-use crate::figures::{PictureRef, Record, RenderEffort, Table};
+use crate::figures::{PageRef, PictureRef, Record, RenderEffort, Table};
 use crate::selection::PAPER;
 use crate::store::StoreError;
 use base64::Engine;
@@ -16,7 +16,9 @@ display:block;margin:auto}.texts{display:grid;grid-template-columns:1fr 1fr;gap:
 .texts b{display:block;font-weight:600;font-size:.85rem;color:#666}.note{background:#fdf3d8;padding:.5rem .8rem}\
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.88rem;margin:.8rem 0}caption{text-align:left;color:#666;\
 padding-bottom:.3rem}th,td{border-bottom:1px solid #ddd;padding:.25rem .8rem .25rem 0;text-align:left;vertical-align:top}\
-th{font-weight:600}@media(max-width:44rem){.texts{grid-template-columns:1fr}}";
+.play{display:flex;flex-wrap:wrap;gap:.6rem 1rem;margin:0 0 1rem}\
+.play a{text-align:center;color:#0b57a4;font-size:.85rem;text-decoration:none}.play a:hover{text-decoration:underline}\
+.play img{display:block;height:6rem;margin:auto}th{font-weight:600}@media(max-width:44rem){.texts{grid-template-columns:1fr}}";
 
 /// The page for the given figures; `read` gives the bytes of a picture.
 pub(super) fn page(
@@ -73,6 +75,9 @@ fn section(
         image(out, picture, &read(&picture.path)?);
         out.push_str("</figure>");
     }
+    if !record.pages.is_empty() {
+        plays(out, record, read)?;
+    }
     let _ = write!(
         out,
         "<div class=\"texts\"><p><b>The paper</b>{}</p><p><b>Here</b>{}</p></div>",
@@ -83,6 +88,33 @@ fn section(
         table(out, t);
     }
     out.push_str("</section>\n");
+    Ok(())
+}
+
+/// Links to the pages that play the runs of a figure.
+fn plays(
+    out: &mut String,
+    record: &Record,
+    read: &mut dyn FnMut(&str) -> Result<Vec<u8>, StoreError>,
+) -> Result<(), StoreError> {
+    out.push_str("<p><b>Turn it round and play it:</b></p><div class=\"play\">");
+    for PageRef {
+        path,
+        thumbnail,
+        choices,
+        label,
+    } in &record.pages
+    {
+        // Writing to a string cannot fail.
+        let _ = write!(out, "<a href=\"{}{}\">", escape(path), escape(choices));
+        let picture = PictureRef {
+            path: thumbnail.clone(),
+            alt: format!("Figure {}, {label}, at the end", record.figure),
+        };
+        image(out, &picture, &read(thumbnail)?);
+        let _ = write!(out, "{}</a>", escape(label));
+    }
+    out.push_str("</div>");
     Ok(())
 }
 
@@ -173,6 +205,12 @@ mod tests {
                     alt: "b \"quoted\"".into(),
                 },
             ],
+            pages: vec![PageRef {
+                path: "fig10-a.html".into(),
+                thumbnail: "figures/fig10-a-end.png".into(),
+                choices: "#bodies=glass".into(),
+                label: "M<2>".into(),
+            }],
             tables: vec![Table {
                 caption: "t".into(),
                 head: vec!["x".into()],
@@ -193,6 +231,8 @@ mod tests {
             "<figure><svg width=\"130.00pt\" height=\"65.00pt\"></svg></figure>",
             "alt=\"b &quot;quoted&quot;\" src=\"data:image/png;base64,AQID\"",
             "<td>&lt;1&gt;</td>",
+            "<a href=\"fig10-a.html#bodies=glass\"><img alt=\"Figure 10, M&lt;2&gt;, at the end\" \
+             src=\"data:image/png;base64,AQID\">M&lt;2&gt;</a>",
         ] {
             assert!(html.contains(part), "{part} is missing in {html}");
         }

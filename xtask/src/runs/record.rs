@@ -7,7 +7,8 @@ use crate::store::{Draft, Extent, Store};
 use anyhow::{Context, Result, ensure};
 use isosheet_dynamics::{RunEnd, Simulation, StepOutcome, StepReport};
 use isosheet_io::{
-    HistoryRow, HistoryWriter, Trajectory, frame_path, write_atomically, write_json, write_obj,
+    HistoryRow, HistoryWriter, Trajectory, frame_path, read_history, read_json, write_atomically,
+    write_json, write_obj,
 };
 use isosheet_mesh::Sheet;
 use nalgebra::Vector3;
@@ -132,6 +133,18 @@ pub(crate) fn trajectory(store: &Store, scene: &impl Staged) -> Result<Trajector
     Ok(Trajectory::read(&path)?)
 }
 
+/// The summary of a run that [`ensure()`] has made.
+pub(crate) fn summary(store: &Store, scene: &impl Staged) -> Result<RunSummary> {
+    let path = store.root().join(folder(scene)).join("summary.json");
+    Ok(read_json(&path)?)
+}
+
+/// The history of a run that [`ensure()`] has made: a row for the start and for each frame.
+pub(crate) fn history(store: &Store, scene: &impl Staged) -> Result<Vec<HistoryRow>> {
+    let path = store.root().join(folder(scene)).join("history.csv");
+    Ok(read_history(&path)?)
+}
+
 /// Columns of loads.csv: time (s), body, force (N) and torque about the body's origin (N m) of the sheet on
 /// the body.
 const LOADS: &str = "t,body,fx,fy,fz,mx,my,mz";
@@ -216,6 +229,8 @@ impl Recorder<'_> {
             t: state.t,
             h: report.map_or(0.0, |r| r.h),
             iterations: report.map_or(0, |r| r.iterations),
+            factorisations: report.map_or(0, |r| r.factorisations),
+            rejected: report.map_or(0, |r| r.rejected),
             kinetic,
             potential,
             total: kinetic + potential,
@@ -404,9 +419,7 @@ mod tests {
                 )
                 .unwrap();
             assert_eq!(trajectory(&store, &scene).unwrap().len(), stopped_after + 1);
-            let rows =
-                isosheet_io::read_history(&folder.path().join("runs/crumple-m0/history.csv"))
-                    .unwrap();
+            let rows = read_history(&folder.path().join("runs/crumple-m0/history.csv")).unwrap();
             assert_eq!(rows.len(), stopped_after + 1);
         }
         let whole = ensure(&store, &scene).unwrap();

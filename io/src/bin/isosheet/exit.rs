@@ -111,6 +111,7 @@ impl From<RunError> for Failure {
             | RunError::SceneFile(_)
             | RunError::NoRun { .. }
             | RunError::Damaged { .. }
+            | RunError::Page(_)
             | RunError::Read { .. } => Code::Input,
             _ => Code::Output,
         };

@@ -5,6 +5,7 @@ mod convert;
 mod exit;
 mod info;
 mod interrupt;
+mod page;
 mod progress;
 mod simulate;
 mod start;
@@ -29,6 +30,8 @@ enum Command {
     Simulate(simulate::Simulate),
     /// Continue the run in a folder, with the scene that is stored there
     Resume(simulate::Resume),
+    /// Make the 3D page of a run, complete or not
+    Page(page::Page),
     /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
     Check(check::Check),
     /// Print counts, degrees of freedom, boundary loops and sizes of the sheet of a scene or a mesh file
@@ -54,6 +57,7 @@ fn main() -> ExitCode {
     let done = match cli.command {
         Command::Simulate(simulate) => simulate.run(),
         Command::Resume(resume) => resume.run(),
+        Command::Page(page) => page.run(),
         Command::Check(check) => check.run(),
         Command::Info(info) => info.run(),
         Command::Convert(convert) => convert.run(),

@@ -84,12 +84,24 @@ impl How {
             }
         };
         if self.json {
-            event(&json!({ "event": event_name, "folder": folder, "summary": summary }));
+            let page = page(folder);
+            event(
+                &json!({ "event": event_name, "folder": folder, "page": page, "summary": summary }),
+            );
         } else {
             eprintln!("{}", sentence(event_name, folder, &summary));
+            if let Some(page) = page(folder) {
+                eprintln!("page: {}", page.display());
+            }
         }
         Ok(())
     }
+}
+
+/// The page of a run, where there is one.
+fn page(folder: &Path) -> Option<PathBuf> {
+    let page = folder.join("index.html");
+    page.is_file().then_some(page)
 }
 
 fn sentence(what: &str, folder: &Path, summary: &Summary) -> String {

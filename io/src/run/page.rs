@@ -1,0 +1,144 @@
+//! The page of a run.
+
+use super::recording::Recording;
+use super::{EndReason, RunError, Summary, constraints};
+use crate::format::write_atomically;
+use crate::view::{PageOptions, Replay, ViewError};
+use std::io::Write;
+use std::path::Path;
+
+impl Recording {
+    /// What the page of the run shows: [`Replay::of_motion`] with the pins, the curves and surfaces that hold
+    /// vertices, a summary, the scene and how to make the run again.
+    ///
+    /// # Errors
+    /// [`ViewError::NoFrames`] of a run without a frame yet.
+    pub fn replay(&self) -> Result<Replay, ViewError> {
+        let mut replay = Replay::of_motion(
+            &self.sheet,
+            &self.obstacles,
+            &self.trajectory,
+            &self.history,
+        )?;
+        let held = constraints::bodies(self.scene.scene(), &self.trajectory);
+        replay.bodies.extend(held);
+        Ok(Replay {
+            title: self.name.clone(),
+            pins: self.pins.iter().map(|v| v.0).collect(),
+            summary: self.rows(),
+            scene: self.scene.text().text.clone(),
+            reproduce: self.reproduce(),
+            ..replay
+        })
+    }
+
+    /// The table of the page.
+    fn rows(&self) -> Vec<(String, String)> {
+        let mut rows = Rows(Vec::new());
+        rows.add("modelled", self.modelled.join(", "));
+        match &self.summary {
+            Some(summary) => rows.of_summary(summary),
+            None => {
+                let t = self.history.last().map_or(0.0, |row| row.t);
+                rows.add("state", format!("not complete: up to {t:.4} s"));
+            }
+        }
+        rows.add(
+            "not recorded",
+            "forces in the rods, gaps of the sheet to itself by vertex".into(),
+        );
+        rows.0
+    }
+
+    fn reproduce(&self) -> String {
+        let files = if self.scene.scene().files().is_empty() {
+            "Save the scene above as scene.toml."
+        } else {
+            "The scene above and the mesh files that it names are in the folder of the run."
+        };
+        let program = match &self.summary {
+            None => String::new(),
+            Some(summary) => {
+                let commit = summary.commit.as_ref();
+                let commit = commit.map_or(String::new(), |c| format!(", commit {c}"));
+                format!("\n# {} {}{commit}", summary.program, summary.version)
+            }
+        };
+        format!("# {files}{program}\nisosheet simulate scene.toml --out again")
+    }
+}
+
+/// Names and values.
+struct Rows(Vec<(String, String)>);
+
+impl Rows {
+    fn add(&mut self, name: &str, value: String) {
+        self.0.push((name.into(), value));
+    }
+
+    fn of_summary(&mut self, summary: &Summary) {
+        let ending = &summary.ending;
+        let reason = match ending.reason {
+            EndReason::Time => "the whole time has passed",
+            EndReason::Rest => "the sheet is at rest",
+            EndReason::SupportForce => "the force at a support is reached",
+            EndReason::Taut => "the supports ask for more than the lengths allow",
+        };
+        self.add("ended", format!("at {:.4} s: {reason}", ending.t));
+        self.add(
+            "steps",
+            format!("{}, {} rejected", summary.steps, summary.rejected),
+        );
+        let solves = (summary.iterations, summary.factorisations);
+        self.add(
+            "solver",
+            format!("{} iterations, {} factorisations", solves.0, solves.1),
+        );
+        self.add("wall time", format!("{:.2} s", summary.wall_time));
+        self.add("largest strain", format!("{:.1e}", summary.largest_strain));
+        if let Some(gap) = summary.smallest_gap {
+            self.add("smallest gap", format!("{gap:.2e} m"));
+        }
+        self.add(
+            "error of the energy balance",
+            format!("{:.2e} J", ending.energy_drift),
+        );
+        self.add(
+            "largest speed at the end",
+            format!("{:.2e} m/s", ending.largest_speed),
+        );
+        for (k, force) in ending.supports.iter().enumerate() {
+            let name = format!("force of support[{k}] on the sheet at the end");
+            self.add(&name, vector(force));
+        }
+        for (k, force) in ending.obstacles.iter().enumerate() {
+            let name = format!("force of the sheet on obstacle[{k}] at the end");
+            self.add(&name, vector(force));
+        }
+    }
+}
+
+/// A force in words.
+fn vector([x, y, z]: &[f64; 3]) -> String {
+    format!("({x:.3e}, {y:.3e}, {z:.3e}) N")
+}
+
+/// Writes the page of the run in a folder, complete or not, to a file. Returns the size of the page, bytes.
+///
+/// # Errors
+/// [`RunError::NoRun`] if the folder is not that of a run, [`RunError::Page`] if the run cannot be shown,
+/// [`RunError`] if a file cannot be read or written.
+pub fn write_page(folder: &Path, file: &Path, options: &PageOptions) -> Result<usize, RunError> {
+    write_page_of(&Recording::read(folder)?, file, options)
+}
+
+/// The same for what was read already.
+pub(crate) fn write_page_of(
+    recording: &Recording,
+    file: &Path,
+    options: &PageOptions,
+) -> Result<usize, RunError> {
+    let page = recording.replay()?.to_html_with(options)?;
+    write_atomically(file, |w| w.write_all(page.as_bytes()))?;
+    Ok(page.len())
+}
