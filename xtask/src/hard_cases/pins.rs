@@ -145,10 +145,8 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
                 STRAIN,
             );
             check.ended(&c);
-            // Measured: 0.134 s. (The minimisers of the other methods pass.)
-            if let Some(why) = limitation
-                && name == "projection"
-            {
+            // Measured: BDF2 0.140 s, implicit Euler 0.181 s, projection 0.134 s.
+            if let Some(why) = limitation {
                 check.limited(why, Shortfall::stops([0.08, 0.4], "no step of at least"));
             }
             if room.is_finite() {
