@@ -6,9 +6,9 @@ use crate::primal::{PrimalMatrix, dot};
 
 /// Improves the multipliers of a linearised step.
 ///
-/// With the penalties `R` of the equations and the factorised matrix `K = H + G^T R G` a step `-dx` for given
-/// multipliers `L` is `K dx = g + G^T (L + R c)`, and leaves the violation `c - G dx`. It vanishes for `L + dL`
-/// with
+/// With the penalties `R` of the equations and the factorised matrix `K = H + G^T R G` a step `-dx` for
+/// given multipliers `L` is `K dx = g + G^T (L + R c)`, and leaves the violation `c - G dx`. It vanishes
+/// for `L + dL` with
 ///
 /// ```text
 /// S dL = c - G dx,   S = G K^-1 G^T.
@@ -57,8 +57,8 @@ pub(crate) struct MultiplierGoal {
     pub(crate) violation: f64,
     /// Change of the multipliers, relative to the largest, from which an iteration is not worth its solve.
     pub(crate) change: f64,
-    /// Length of an iteration from which equations count as dependent, and the iteration ends: the inverse of an
-    /// eigenvalue.
+    /// Length of an iteration from which equations count as dependent, and the iteration ends: the inverse
+    /// of an eigenvalue.
     pub(crate) longest: f64,
 }
 
@@ -75,8 +75,8 @@ impl MultiplierSolver {
         }
     }
 
-    /// Improves multipliers and the step `-dx` that was solved for with them. The step becomes stationary with
-    /// the multipliers. Returns the violation that the step leaves, as a strain.
+    /// Improves multipliers and the step `-dx` that was solved for with them. The step becomes stationary
+    /// with the multipliers. Returns the violation that the step leaves, as a strain.
     pub(crate) fn improve(
         &mut self,
         system: &mut LinearisedRows<'_>,

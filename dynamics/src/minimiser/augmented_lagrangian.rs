@@ -167,8 +167,8 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
             }
             let lagrangian = &mut self.minimiser.lagrangian;
             if hessian == Definiteness::Modified && self.outcome != StepOutcome::BranchSeeded {
-                // No slope left, but the curvature is negative somewhere: a saddle, where the sheet could fold
-                // either way.
+                // No slope left, but the curvature is negative somewhere: a saddle, where the sheet could
+                // fold either way.
                 self.outcome = StepOutcome::BranchSeeded;
                 lagrangian.perturb(self.problem, options.seed);
             } else if friction_updates < options.max_friction_updates

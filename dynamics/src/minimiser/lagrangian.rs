@@ -299,9 +299,10 @@ impl Lagrangian {
         }
     }
 
-    /// Factorises the Hessian at the iterate; where it is indefinite, or `part` asks for no more, a positive
-    /// definite part: the rods' geometric stiffness and the curvature of vertex constraints projected onto the
-    /// semidefinite matrices, and if that does not help, without the curvature of the potentials.
+    /// Factorises the Hessian at the iterate; where it is indefinite, or `part` asks for no more, a
+    /// positive definite part: the rods' geometric stiffness and the curvature of vertex constraints
+    /// projected onto the semidefinite matrices, and if that does not help, without the curvature of the
+    /// potentials.
     ///
     /// # Errors
     /// [`LinalgError`] if even that cannot be factorised, which takes a coefficient that is not a number.
@@ -400,8 +401,8 @@ impl Lagrangian {
         self.multipliers.copy_from_slice(&self.kept);
     }
 
-    /// Improves the multipliers of the isometry and the step `-dx` that was solved for with them; the violation
-    /// of the linearised equations that is left, as a strain.
+    /// Improves the multipliers of the isometry and the step `-dx` that was solved for with them; the
+    /// violation of the linearised equations that is left, as a strain.
     pub(super) fn improve_multipliers(&mut self, model: &SheetModel, goal: MultiplierGoal) -> f64 {
         let mut system = LinearisedRows {
             model,

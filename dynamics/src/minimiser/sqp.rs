@@ -8,26 +8,28 @@ use crate::constraint::rows::HessianPart;
 use crate::multipliers::MultiplierGoal;
 use crate::report::SolverEffort;
 
-/// Stiffnesses of the rods in the linear systems, in units of that of the masses. The systems are regularised
-/// saddle-point systems `[H G^T; G -1/r]` with penalties `r`, solved by elimination of the multipliers;
-/// [`MultiplierSolver`](crate::multipliers::MultiplierSolver) takes the regularisation out again. With the first
-/// stiffness steps keep momentum and symmetries to round-off, with 1e11 no longer. Where the multipliers do not converge, the
-/// second is used for the rest of the minimisation: beyond it the masses drown in the round-off of the penalty.
+/// Stiffnesses of the rods in the linear systems, in units of that of the masses. The systems are
+/// regularised saddle-point systems `[H G^T; G -1/r]` with penalties `r`, solved by elimination of the
+/// multipliers; [`MultiplierSolver`](crate::multipliers::MultiplierSolver) takes the regularisation out
+/// again. With the first stiffness steps keep momentum and symmetries to round-off, with 1e11 no longer.
+/// Where the multipliers do not converge, the second is used for the rest of the minimisation: beyond it
+/// the masses drown in the round-off of the penalty.
 const STIFFNESS: [f64; 2] = [1e10, 1e13];
-/// Length of an iteration for the multipliers beyond which rods count as dependent: the inverse of the smallest
-/// eigenvalue that is not taken to be zero. Multipliers of nearly dependent rods may grow without bound. Without
-/// this bound strips of rods that stand on edge take 400 to 1400 factorisations a step at rest, with it 10 to 50.
+/// Length of an iteration for the multipliers beyond which rods count as dependent: the inverse of the
+/// smallest eigenvalue that is not taken to be zero. Multipliers of nearly dependent rods may grow without
+/// bound. Strips of rods that stand on edge take 1000 to 1400 factorisations a step at rest without this
+/// bound, and 170 to 410 with it (10 to 50 where all systems have the second stiffness).
 const LONGEST_ITERATION: f64 = 3.0;
-/// Conjugate gradient iterations for the multipliers of a step: nearly dependent rods, as in a sheet that lies
-/// flat, have a few eigenvalues each of which takes an iteration. With none, clamped strips of nearly dependent
-/// rods need three to ten times the factorisations; 6 and 16 differ by less than a tenth.
+/// Conjugate gradient iterations for the multipliers of a step: nearly dependent rods, as in a sheet that
+/// lies flat, have a few eigenvalues each of which takes an iteration. With none, clamped strips of nearly
+/// dependent rods need three to ten times the factorisations; 6 and 16 differ by less than a tenth.
 const MULTIPLIER_ITERATIONS: usize = 8;
 /// The same for isometry in weak form. Its equations are independent, but condition numbers are those of an
-/// elastic plate in its plane: a strip of 4 x 64 squares needs 2 to 4 factorisations a step, and with 8
+/// elastic plate in its plane: a strip of 4 x 64 squares needs 2 to 10 factorisations a step, and with 8
 /// iterations up to 50.
 const WEAK_MULTIPLIER_ITERATIONS: usize = 30;
-/// Change of the multipliers, relative to the largest, from which an iteration is not worth its solve. With 1e-3 a
-/// sheet at rest on a table needs three times as many steps.
+/// Change of the multipliers, relative to the largest, from which an iteration is not worth its solve. With
+/// 1e-3 a sheet at rest on a table needs three times as many steps.
 const MULTIPLIERS_SETTLED: f64 = 1e-4;
 /// The same for isometry in weak form.
 const WEAK_MULTIPLIERS_SETTLED: f64 = 1e-8;
@@ -53,8 +55,8 @@ const MAX_RESTORATION: usize = 12;
 const MAX_LAST_RESTORATION: usize = 20;
 /// Edge strain from which the last restoration is a small displacement.
 const SMALL_STRAIN: f64 = 1e-5;
-/// Largest number of step halvings in contact; after these the augmented Lagrangian is used. Two, four and six
-/// make 13 000, 10 500 and 10 600 factorisations of eight tablecloths.
+/// Largest number of step halvings in contact; after these the augmented Lagrangian is used. Two, four and
+/// six make 13 000, 10 500 and 10 600 factorisations of eight tablecloths.
 const MAX_HALVINGS_IN_CONTACT: usize = 4;
 /// Largest number of step halvings without contact, where the augmented Lagrangian takes longer. With two, a
 /// third of the steps of a hanging sheet of 2000 triangles uses it; with 30, a thousand steps a second need
@@ -257,8 +259,8 @@ impl<'a, 'b> Sqp<'a, 'b> {
         let lagrangian = &mut self.minimiser.lagrangian;
         self.effort.iterations += 1;
         loop {
-            // Vertex constraints stay as soft as in the merit function: their curvature goes by the multiplier
-            // estimates, which a large penalty would make those of length errors.
+            // Vertex constraints stay as soft as in the merit function: their curvature goes by the
+            // multiplier estimates, which a large penalty would make those of length errors.
             lagrangian.set_stiffness(self.stiffness, constraint_stiffness);
             let (load, part) = (RodLoad::Multipliers, self.hessian);
             let hessian = lagrangian
@@ -289,19 +291,19 @@ impl<'a, 'b> Sqp<'a, 'b> {
 
     /// When the multipliers of a step are good enough: once the linearised lengths are within the tolerance.
     fn multiplier_goal(&self) -> MultiplierGoal {
-        let model = self.problem.model;
-        let (max_iterations, change) = match model.isometry() {
-            Isometry::Weak => (WEAK_MULTIPLIER_ITERATIONS, WEAK_MULTIPLIERS_SETTLED),
-            Isometry::Rods | Isometry::Elastic => (MULTIPLIER_ITERATIONS, MULTIPLIERS_SETTLED),
-        };
-        MultiplierGoal {
-            max_iterations,
-            violation: self.minimiser.strain_tolerance(self.problem),
-            change,
-            longest: if model.isometry() == Isometry::Weak {
-                f64::INFINITY
-            } else {
-                LONGEST_ITERATION
+        let violation = self.minimiser.strain_tolerance(self.problem);
+        match self.problem.model.isometry() {
+            Isometry::Weak => MultiplierGoal {
+                max_iterations: WEAK_MULTIPLIER_ITERATIONS,
+                violation,
+                change: WEAK_MULTIPLIERS_SETTLED,
+                longest: f64::INFINITY,
+            },
+            Isometry::Rods | Isometry::Elastic => MultiplierGoal {
+                max_iterations: MULTIPLIER_ITERATIONS,
+                violation,
+                change: MULTIPLIERS_SETTLED,
+                longest: LONGEST_ITERATION,
             },
         }
     }

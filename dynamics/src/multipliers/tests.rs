@@ -5,7 +5,8 @@ use crate::SheetModel;
 use crate::primal::{PrimalMatrix, penalties};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 
-/// A square of 25 vertices, pinned at a corner, and crumpled by random displacements of a given size (metres).
+/// A square of 25 vertices, pinned at a corner, and crumpled by random displacements of a given size
+/// (metres).
 fn model(crumple: f64) -> (SheetModel, Vec<f64>) {
     let flat = generate::isotropic_square(1, 1.0).unwrap();
     let mut x = flat.positions().to_vec();
@@ -70,8 +71,8 @@ fn solve(
     }
 }
 
-/// Largest entries of `M dx - G^T L - f` and of `G dx - c`, relative to those of `f` and `c`: both vanish for the
-/// solution of the saddle-point system and for nothing else.
+/// Largest entries of `M dx - G^T L - f` and of `G dx - c`, relative to those of `f` and `c`: both vanish
+/// for the solution of the saddle-point system and for nothing else.
 fn residuals(
     model: &SheetModel,
     x: &[f64],
