@@ -17,6 +17,9 @@ pub(crate) struct History {
     /// Pairs of vertices beyond the edges of the mesh that the matrix has room for. The elimination order of
     /// the sparse factorisation, and with it the round-off of a step, depends on these pairs.
     pub(crate) couplings: Vec<[u32; 2]>,
+    /// Stiffness of the rods in the linear systems at the end of the last step, in units of that of the
+    /// masses; zero for methods without such systems and before the first step.
+    pub(crate) rod_stiffness: f64,
 }
 
 impl History {
@@ -30,6 +33,7 @@ impl History {
         self.set_previous(other.previous.as_ref());
         self.multipliers.copy_from(&other.multipliers);
         self.couplings.clone_from(&other.couplings);
+        self.rod_stiffness = other.rod_stiffness;
     }
 
     /// Sets the state before the present one, in place.

@@ -179,6 +179,11 @@ impl<'a> Attempt<'a> {
         &self.history.couplings
     }
 
+    /// Stiffness of the rods in the linear systems of the step before; zero if there were none.
+    pub(crate) fn rod_stiffness(&self) -> f64 {
+        self.history.rod_stiffness
+    }
+
     /// Impulses of the step before and their factor in this one, the ratio of the steps: zero if there are
     /// none.
     pub(crate) fn scaled_multipliers(&self) -> (f64, &'a Multipliers) {

@@ -12,13 +12,13 @@ use crate::report::SolverEffort;
 /// regularised saddle-point systems `[H G^T; G -1/r]` with penalties `r`, solved by elimination of the
 /// multipliers; [`MultiplierSolver`](crate::multipliers::MultiplierSolver) takes the regularisation out
 /// again. With the first stiffness steps keep momentum and symmetries to round-off, with 1e11 no longer.
-/// Where the multipliers do not converge, the second is used for the rest of the minimisation: beyond it
-/// the masses drown in the round-off of the penalty.
+/// Where the multipliers do not converge, the second is used from then on, in later steps, too: beyond it
+/// the masses drown in the round-off of the penalty. (Strips of rods on edge, at rest: 10 to 16 factorisations
+/// a step, and 16 to 280 where every step begins with the first.)
 const STIFFNESS: [f64; 2] = [1e10, 1e13];
 /// Length of an iteration for the multipliers beyond which rods count as dependent: the inverse of the
 /// smallest eigenvalue that is not taken to be zero. Multipliers of nearly dependent rods may grow without
-/// bound. Strips of rods that stand on edge take 1000 to 1400 factorisations a step at rest without this
-/// bound, and 170 to 410 with it (10 to 50 where all systems have the second stiffness).
+/// bound. Strips of rods that stand on edge take five times the factorisations at rest without this bound.
 const LONGEST_ITERATION: f64 = 3.0;
 /// Conjugate gradient iterations for the multipliers of a step: nearly dependent rods, as in a sheet that
 /// lies flat, have a few eigenvalues each of which takes an iteration. With none, clamped strips of nearly
@@ -47,6 +47,11 @@ const ITERATE_STRAIN: f64 = 1e-2;
 /// solutions: a hanging sheet of 2000 triangles needs 5.9 factorisations for each step of 1/60 s, and with
 /// 1e-2 6.6.
 const WEAK_ITERATE_STRAIN: f64 = 1e-1;
+/// Part of the energy that the tolerance of the lengths leaves open, `tolerance * sum |L| l^2`, from which a
+/// decrease is noise: length errors of different rods have different signs. Strips on edge at rest need 15
+/// to 90 factorisations a step with none, 7 to 35 with a tenth and 6 to 35 with all of it; sheets in motion
+/// do not come near it.
+const LENGTH_NOISE: f64 = 0.1;
 /// Largest number of iterations of a restoration of an iterate: more are a sign that the step is not a small
 /// one.
 const MAX_RESTORATION: usize = 12;
@@ -94,8 +99,6 @@ pub(super) struct Sqp<'a, 'b> {
     is_perturbed: bool,
     /// The part of the Hessian that is tried first: all of it until that turns out to be indefinite.
     hessian: HessianPart,
-    /// The stiffness of the rods in the linear systems.
-    stiffness: f64,
 }
 
 /// What depends on whether there is contact.
@@ -146,7 +149,8 @@ impl<'a, 'b> Sqp<'a, 'b> {
         };
         // Contact is not kept to round-off, and the equations of the weak form have large condition numbers.
         let has_soft_start = problem.model.isometry() == Isometry::Rods && !problem.has_contact();
-        let stiffness = STIFFNESS[usize::from(!has_soft_start)];
+        let first = STIFFNESS[usize::from(!has_soft_start)];
+        minimiser.rod_stiffness = minimiser.rod_stiffness.max(first);
         Self {
             minimiser,
             problem,
@@ -156,7 +160,6 @@ impl<'a, 'b> Sqp<'a, 'b> {
             friction_updates: 0,
             is_perturbed: false,
             hessian: HessianPart::Full,
-            stiffness,
         }
     }
 
@@ -177,7 +180,8 @@ impl<'a, 'b> Sqp<'a, 'b> {
                 continue;
             }
             let Direction { before, slope, .. } = direction;
-            let is_round_off = slope.abs() <= before.round_off;
+            let noise = LENGTH_NOISE * self.minimiser.options.strain_tolerance * before.rod_scale;
+            let is_round_off = slope.abs() <= before.round_off + noise;
             let residual = if is_round_off {
                 0.0
             } else {
@@ -256,12 +260,16 @@ impl<'a, 'b> Sqp<'a, 'b> {
         let model = self.problem.model;
         let constraint_stiffness = self.minimiser.options.stiffness;
         let goal = self.multiplier_goal();
-        let lagrangian = &mut self.minimiser.lagrangian;
+        let Minimiser {
+            lagrangian,
+            rod_stiffness,
+            ..
+        } = &mut *self.minimiser;
         self.effort.iterations += 1;
         loop {
             // Vertex constraints stay as soft as in the merit function: their curvature goes by the
             // multiplier estimates, which a large penalty would make those of length errors.
-            lagrangian.set_stiffness(self.stiffness, constraint_stiffness);
+            lagrangian.set_stiffness(*rod_stiffness, constraint_stiffness);
             let (load, part) = (RodLoad::Multipliers, self.hessian);
             let hessian = lagrangian
                 .factorize(self.problem, load, part, self.effort)
@@ -281,10 +289,10 @@ impl<'a, 'b> Sqp<'a, 'b> {
                     break;
                 }
             }
-            if violation <= goal.violation || self.stiffness == STIFFNESS[1] {
+            if violation <= goal.violation || *rod_stiffness == STIFFNESS[1] {
                 return Some(hessian);
             }
-            self.stiffness = STIFFNESS[1];
+            *rod_stiffness = STIFFNESS[1];
             lagrangian.restore_multipliers();
         }
     }
