@@ -121,17 +121,6 @@ enum Strategy {
     FromStart,
 }
 
-/// How the result of a strategy compares with the start of the step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Comparison {
-    /// It is not above the start.
-    Lower,
-    /// It is no better than the start, and so small a motion that the sheet may as well be at rest there.
-    Rest,
-    /// It is above the start, and would create energy.
-    Higher,
-}
-
 impl Strategy {
     /// In the order in which they are tried.
     fn list(problem: &StepProblem<'_>, faces: Faces) -> &'static [Self] {
@@ -238,24 +227,16 @@ impl Minimiser {
             if rank > 0 {
                 self.lagrangian.begin(problem);
             }
-            let found = self.apply(*strategy, problem, effort).and_then(|minimum| {
-                match self.compare(bound.as_ref(), *strategy, problem) {
-                    Comparison::Lower => {}
-                    Comparison::Rest => {
-                        self.lagrangian.begin(problem);
-                        self.set_balance(problem);
-                    }
-                    Comparison::Higher => {
-                        let strain = problem.model.constrained_strain(self.x());
-                        return Err(not_converged(problem, effort, minimum.residual, strain));
-                    }
-                }
-                Ok(minimum)
-            });
-            let is_minimum = found.is_ok();
+            let found = self.apply(*strategy, problem, effort);
+            let is_minimum = found.is_ok() && self.is_below(bound.as_ref(), *strategy, problem);
             outcome = Some(found);
             if is_minimum {
                 break;
+            }
+            if let Some(Ok(minimum)) = outcome {
+                let strain = problem.model.constrained_strain(self.x());
+                let residual = minimum.residual;
+                outcome = Some(Err(not_converged(problem, effort, residual, strain)));
             }
         }
         let minimum = outcome.expect("there is always a strategy")?;
@@ -394,35 +375,26 @@ impl Minimiser {
         self.balance.leave(model, x, &rows.active);
     }
 
-    /// Compares the incremental potential at the iterate with `bound`, that at the start.
-    ///
-    /// Beside round-off there is what the tolerance of the lengths leaves open. The augmented Lagrangian may
-    /// end above the start by as much. Sequential quadratic programming may not: at rest its multipliers are
-    /// those of round-off, and to correct round-off in the lengths of a nearly flat sheet would set it in
-    /// motion. If the motion that it would end is as small as that, the start itself is the minimum.
-    fn compare(
+    /// Whether the incremental potential at the iterate is not above `bound`, but for what the tolerance of
+    /// the lengths and round-off allow. (Of sequential quadratic programming no allowance is made for the
+    /// lengths: at rest its multipliers are those of round-off, and to correct round-off in the lengths of a
+    /// nearly flat sheet would set it in motion.)
+    fn is_below(
         &mut self,
         bound: Option<&Merit>,
         strategy: Strategy,
         problem: &StepProblem<'_>,
-    ) -> Comparison {
-        let Some(bound) = bound else {
-            return Comparison::Lower;
-        };
+    ) -> bool {
+        let Some(bound) = bound else { return true };
         let now = self.lagrangian.merit(problem);
+        let rod_scale = match strategy {
+            Strategy::Sqp => 0.0,
+            Strategy::FromPrediction | Strategy::FromStart => now.rod_scale.max(bound.rod_scale),
+        };
         let slack = problem.h * problem.h * self.length_slack(problem)
-            + COMPARISON_SLACK * (now.round_off + bound.round_off);
-        let length_slack =
-            COMPARISON_SLACK * self.options.strain_tolerance * now.rod_scale.max(bound.rod_scale);
-        let excess = now.potential - bound.potential - slack;
-        let is_sqp = strategy == Strategy::Sqp;
-        if excess <= 0.0 || !is_sqp && excess <= length_slack {
-            Comparison::Lower
-        } else if is_sqp && excess <= length_slack && bound.inertia <= length_slack {
-            Comparison::Rest
-        } else {
-            Comparison::Higher
-        }
+            + COMPARISON_SLACK * (now.round_off + bound.round_off)
+            + COMPARISON_SLACK * self.options.strain_tolerance * rod_scale;
+        now.potential <= bound.potential + slack
     }
 
     /// Energy that the tolerance of the lengths leaves open, joules.

@@ -47,10 +47,13 @@ const ITERATE_STRAIN: f64 = 1e-2;
 /// solutions: a hanging sheet of 2000 triangles needs 5.9 factorisations for each step of 1/60 s, and with
 /// 1e-2 6.6.
 const WEAK_ITERATE_STRAIN: f64 = 1e-1;
-/// Part of the energy that the tolerance of the lengths leaves open, `tolerance * sum |L| l^2`, from which a
-/// decrease is noise: length errors of different rods have different signs. Strips on edge at rest need 15
-/// to 90 factorisations a step with none, 7 to 35 with a tenth and 6 to 35 with all of it; sheets in motion
-/// do not come near it.
+/// Number of iterations after which decreases of the size of length errors are noise. Where there are finite
+/// multipliers, Newton's method has converged by then, and small motions of taut sheets are below that size.
+/// Where there are none, the last decreases only fall as the inverse of the number of iterations.
+const NOISE_PATIENCE: usize = 10;
+/// Part of the energy that the tolerance of the lengths leaves open, `tolerance * sum |L| l^2`, that counts as
+/// noise then: length errors of different rods have different signs. Strips on edge at rest need 15 to 930
+/// factorisations a step without this rule, and 11 to 100 with it.
 const LENGTH_NOISE: f64 = 0.1;
 /// Largest number of iterations of a restoration of an iterate: more are a sign that the step is not a small
 /// one.
@@ -180,8 +183,7 @@ impl<'a, 'b> Sqp<'a, 'b> {
                 continue;
             }
             let Direction { before, slope, .. } = direction;
-            let noise = LENGTH_NOISE * self.minimiser.options.strain_tolerance * before.rod_scale;
-            let is_round_off = slope.abs() <= before.round_off + noise;
+            let is_round_off = slope.abs() <= before.round_off + self.noise(&before);
             let residual = if is_round_off {
                 0.0
             } else {
@@ -338,6 +340,14 @@ impl<'a, 'b> Sqp<'a, 'b> {
             self.minimiser.lagrangian.return_to_start(self.problem);
         }
         None
+    }
+
+    /// Size of decreases that are noise of the lengths, besides round-off.
+    fn noise(&self, merit: &Merit) -> f64 {
+        if self.limits.steps - self.steps_left <= NOISE_PATIENCE {
+            return 0.0;
+        }
+        LENGTH_NOISE * self.minimiser.options.strain_tolerance * merit.rod_scale
     }
 
     /// Whether the last restoration will be a small displacement. (In contact the lengths of iterates are
