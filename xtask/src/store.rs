@@ -8,6 +8,10 @@
 //! The lock file in `.stamps` also marks a folder as the program's own: a folder that has other files and not
 //! this one is refused, and only what lies in `.stamps` is ever cleaned up.
 
+use crate::interrupt;
+use crate::progress;
+use anyhow::{Context, Result};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs::{self, File};
@@ -77,6 +81,17 @@ pub(crate) struct Stamp {
     pub(crate) entries: Vec<String>,
     /// What it found.
     pub(crate) facts: Value,
+}
+
+/// A piece of work that is kept once it is complete.
+#[derive(Clone, Debug)]
+pub(crate) struct Unit {
+    /// Name of its stamp.
+    pub(crate) name: String,
+    /// Its name for people.
+    pub(crate) title: String,
+    /// What it depends on besides the program: with other options it is made again.
+    pub(crate) options: Value,
 }
 
 /// The output folder, locked against other processes.
@@ -150,6 +165,42 @@ impl Store {
                 && s.version == env!("CARGO_PKG_VERSION")
                 && s.entries.iter().all(|e| self.root.join(e).exists())
         })
+    }
+
+    /// What a unit found: as it was kept if it is up to date, or made now by `work`, which writes its files
+    /// into the draft, and kept.
+    ///
+    /// # Errors
+    /// Those of `work`, with the title; [`Interrupted`](interrupt::Interrupted) before it begins; those of the
+    /// folder.
+    pub(crate) fn keep<T: Serialize + DeserializeOwned>(
+        &self,
+        unit: &Unit,
+        work: impl FnOnce(&mut Draft) -> Result<T>,
+    ) -> Result<T> {
+        if let Some(found) = self.kept(unit) {
+            progress::note(&unit.title, "up to date");
+            return Ok(found);
+        }
+        interrupt::check()?;
+        let mut draft = self.draft()?;
+        let found = work(&mut draft).with_context(|| unit.title.clone())?;
+        let facts = serde_json::to_value(&found)?;
+        self.commit(draft, &unit.name, &unit.options, Extent::Complete, facts)?;
+        Ok(found)
+    }
+
+    /// What an up-to-date unit found; `None` where there is none, or none in the present layout.
+    pub(crate) fn kept<T: DeserializeOwned>(&self, unit: &Unit) -> Option<T> {
+        let stamp = self.current(&unit.name, &unit.options)?;
+        serde_json::from_value(stamp.facts).ok()
+    }
+
+    /// What a complete unit found that was made with the same options, by whichever program.
+    pub(crate) fn earlier<T: DeserializeOwned>(&self, unit: &Unit) -> Option<T> {
+        let stamp = self.stamp(&unit.name)?;
+        let is_whole = stamp.extent == Extent::Complete && stamp.options == unit.options;
+        is_whole.then(|| serde_json::from_value(stamp.facts).ok())?
     }
 
     /// Forgets all units whose names start with `prefix`, so that they are made again.
@@ -475,6 +526,32 @@ mod tests {
         assert!(store.stamp("one").is_none());
         assert_eq!(names(&folder.path().join("runs")), ["notes.txt"]);
         assert!(names(&folder.path().join("figures")).is_empty());
+    }
+
+    /// What was finished is not made again, unless its options are others.
+    #[test]
+    fn units_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let unit = |options| Unit {
+            name: "one".into(),
+            title: "first".into(),
+            options: json!(options),
+        };
+        let make = |options, value: f64| {
+            store.keep(&unit(options), |draft| {
+                draft.write("tables/one.csv", b"a")?;
+                Ok(value)
+            })
+        };
+        assert_eq!(make(1, 0.5).unwrap(), 0.5);
+        assert_eq!(make(1, 0.7).unwrap(), 0.5);
+        assert_eq!(store.kept::<Vec<f64>>(&unit(1)), None, "another layout");
+        assert_eq!(make(2, 0.7).unwrap(), 0.7);
+        assert_eq!(store.earlier::<f64>(&unit(1)), None);
+        let failed = store.keep(&unit(3), |_| Err::<f64, _>(anyhow::anyhow!("lost")));
+        assert_eq!(format!("{:#}", failed.unwrap_err()), "first: lost");
+        assert_eq!(store.earlier::<f64>(&unit(2)), Some(0.7));
     }
 
     #[test]

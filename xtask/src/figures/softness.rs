@@ -213,22 +213,18 @@ fn table(all: &[Level]) -> Table {
             largest(v)
         )
     };
-    let rows = all
-        .iter()
-        .map(|l| {
-            vec![
-                format!("M{}", ["⁰", "¹", "²", "³"][l.level as usize % 4]),
-                format!("{}/{}", l.vertices, l.faces),
-                l.internal.to_string(),
-                format!("{:.0} %", 100.0 * l.early()),
-                range(&l.values(|m| m.mean_bending), 2),
-                range(&l.values(|m| m.shape.extent), 2),
-                range(&l.values(|m| m.shape.centre_depth), 3),
-            ]
-        })
-        .collect();
-    Table {
-        caption: format!(
+    let rows = all.iter().map(|l| {
+        vec![
+            format!("M{}", ["⁰", "¹", "²", "³"][l.level as usize % 4]),
+            format!("{}/{}", l.vertices, l.faces),
+            l.internal.to_string(),
+            format!("{:.0} %", 100.0 * l.early()),
+            range(&l.values(|m| m.mean_bending), 2),
+            range(&l.values(|m| m.shape.extent), 2),
+            range(&l.values(|m| m.shape.centre_depth), 3),
+        ]
+    });
+    Table::new(format!(
             "Softness by mesh. Freedom of the fall, {EARLY} s after the sheet was let go from exactly flat: how far its centre of mass \
              has sunk, between the same masses welded to a rigid plate (0 %) and free fall (100 %). The other columns: mean (range) of \
              {} falls from flat up to a random {:.1} % of an edge. Total bending, averaged over the run: sum of edge length (in \
@@ -239,8 +235,7 @@ fn table(all: &[Level]) -> Table {
             100.0 * BUMP,
             runs::PLATE,
             runs::LIMIT,
-        ),
-        head: [
+        ), &[
             "mesh",
             "V/F",
             "internal DOF",
@@ -248,9 +243,5 @@ fn table(all: &[Level]) -> Table {
             "total bending",
             "width",
             "depth of the centre",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows,
-    }
+        ]).with_texts(rows)
 }

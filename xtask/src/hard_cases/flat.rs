@@ -1,14 +1,13 @@
 //! Exactly flat starts, and passing through states where the rods are dependent.
 
 use super::naive::{TEXTBOOK, textbook, textbook_step};
-use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, bumped, conservative, corner, course, damped, methods, pinned,
-};
+use super::scenes::{FRAME, STRAIN, apart, at_rest, conservative, course, damped, methods, pinned};
 use super::{Case, Effort, Findings, plot};
 use crate::draw::Series;
-use crate::figures::Picture;
 use crate::interrupt;
 use crate::render::{Camera, Labelled, Look, SheetPicture, montage, render};
+use crate::report::Picture;
+use crate::timing::{bumped, corner};
 use anyhow::Result;
 use isosheet_coords::{AssignmentOptions, CartesianChart, Choice, FrontChart, RodSystem};
 use isosheet_dynamics::chart::{ChartOptions, Rebase};

@@ -1,13 +1,12 @@
 //! Time reversal, renumbering, turning the frame, and the number of threads.
 
-use super::case::number;
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel_step, textbook_step};
-use super::scenes::{
-    apart, at_rest, bumped, conservative, corner, course, damped, energy_momentum, hanging, pinned,
-};
+use super::scenes::{apart, at_rest, conservative, course, damped, energy_momentum, pinned};
 use super::{Case, Effort, Findings, plot};
 use crate::draw::Series;
 use crate::interrupt;
+use crate::report::number;
+use crate::timing::{bumped, corner, hanging};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State, project_positions};

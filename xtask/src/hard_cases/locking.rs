@@ -1,11 +1,11 @@
 //! The same drape on different triangulations.
 
-use super::case::number;
 use super::scenes::{FRAME, STRAIN, at_rest, course};
 use super::{Case, Effort, Findings};
-use crate::figures::Picture;
 use crate::locking::meshes::nearest;
 use crate::render::{Camera, Labelled, Look, SheetPicture, Solid, montage, render};
+use crate::report::Picture;
+use crate::report::number;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Method, SheetModel};

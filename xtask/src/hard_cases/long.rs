@@ -1,14 +1,14 @@
 //! Long runs: rest stays rest, and energy over a million steps.
 
-use super::case::number;
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook, textbook_step};
 use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, bumped, course, energy_momentum, hanging, methods, pinned,
-    upright,
+    FRAME, STRAIN, apart, at_rest, course, energy_momentum, methods, pinned, upright,
 };
 use super::{Case, Effort, Findings, Shortfall, plot};
 use crate::draw::Series;
 use crate::interrupt;
+use crate::report::number;
+use crate::timing::{bumped, hanging};
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, VertexId, generate};

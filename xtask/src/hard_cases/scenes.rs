@@ -3,8 +3,7 @@
 use crate::interrupt::{self, Interrupted};
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepError, StepReport};
-use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
-use std::f64::consts::PI;
+use isosheet_mesh::{MassKind, Sheet, VertexId};
 use std::ops::ControlFlow;
 
 /// The length of a step wherever a case does not say otherwise, seconds.
@@ -26,30 +25,11 @@ pub(super) fn strain_bound(sheet: &Sheet) -> f64 {
     STRAIN.max(4.0 * f64::EPSILON * (2.0 * size / shortest + 1.0))
 }
 
-/// The union-jack square `M^level` of side 1 m with a sine bump of the given height, metres.
-pub(super) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
-    let flat = generate::isotropic_square(level, 1.0)?;
-    Ok(flat.map_positions(|[x, y, _]| [x, y, bump * (PI * x).sin() * (PI * y).sin()])?)
-}
-
-/// The corner (0, 1) of `M^level`.
-pub(super) fn corner(level: u32) -> VertexId {
-    let n = (2 << level) + 1;
-    VertexId(n * (n - 1))
-}
-
 /// A sheet of 0.1 kg under gravity, pinned at the given vertices.
 pub(super) fn pinned(sheet: &Sheet, pins: &[VertexId]) -> Result<SheetModel> {
     Ok(SheetModel::new(sheet, 0.1, MassKind::Lumped)?
         .with_gravity()
         .with_pins(pins)?)
-}
-
-/// `M^level` with a bump, pinned at a corner, at rest.
-pub(super) fn hanging(level: u32, bump: f64, method: Method) -> Result<Simulation> {
-    let sheet = bumped(level, bump)?;
-    let model = pinned(&sheet, &[corner(level)])?;
-    at_rest(model, sheet.positions(), method)
 }
 
 /// A simulation from rest.

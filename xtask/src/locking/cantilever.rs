@@ -6,11 +6,11 @@ use super::elastica::Elastica;
 use super::findings::Findings;
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
-use super::plot::{Dot, Figure, Joined, Panel, Scale, order, slope};
+use super::plot::{Dot, Figure, Joined, Panel, measured, order};
 use super::records::Records;
-use super::table::{Results, number};
 use super::targets::{Target, at_most, kept};
-use crate::draw::Drawing;
+use crate::draw::{Axis, Drawing};
+use crate::report::{Table, number, order_line};
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel};
 use isosheet_mesh::Sheet;
@@ -173,10 +173,8 @@ pub(super) fn exact_drop(rigidity: f64) -> f64 {
     .drop()
 }
 
-fn table(all: &[Hung], plan: &Plan) -> Results {
-    let mut table = Results::new(
-        "cantilever",
-        format!(
+fn table(all: &[Hung], plan: &Plan) -> Table {
+    let mut table = Table::new(format!(
             "Heavy strips: implicit Euler, steps of {STEP} s, until no vertex is faster than {REST} m/s or {} s are simulated; at most {} s of wall \
              time. A negative error is a strip that is too stiff; a positive one comes from the springs along the clamp, which are as soft as those between two \
              free rows of triangles and bend over half the length",
@@ -199,7 +197,7 @@ fn table(all: &[Hung], plan: &Plan) -> Results {
             "error",
             "message",
         ],
-    );
+    ).named("cantilever");
     for h in all {
         table.push(vec![
             h.pattern.to_string().into(),
@@ -210,7 +208,7 @@ fn table(all: &[Hung], plan: &Plan) -> Results {
             h.isometry.to_string().into(),
             h.course.ending.name().into(),
             h.course.t.into(),
-            h.course.factorisations.into(),
+            h.course.effort.factorisations.into(),
             h.course.speed.into(),
             h.drop.into(),
             h.exact.into(),
@@ -236,9 +234,8 @@ fn points(
         .collect()
 }
 
-fn orders(all: &[Hung], directions: &[f64]) -> Results {
-    let mut table = Results::new(
-        "cantilever-orders",
+fn orders(all: &[Hung], directions: &[f64]) -> Table {
+    let mut table = Table::new(
         "Fitted powers of h of the error of the drop, of the runs that reached their end",
         &[
             "mesh",
@@ -248,7 +245,8 @@ fn orders(all: &[Hung], directions: &[f64]) -> Results {
             "runs",
             "power",
         ],
-    );
+    )
+    .named("cantilever-orders");
     for isometry in Isometry::ALL {
         for rigidity in RIGIDITIES {
             for pattern in Pattern::ALL {
@@ -312,14 +310,14 @@ fn plot(all: &[Hung], directions: &[f64], sizes: &[usize]) -> Drawing {
                 .collect();
             Panel {
                 title: format!("mesh turned by {degrees}°"),
-                guides: vec![slope(&dots, 2.0)],
+                guides: vec![order_line(&measured(&dots), 2.0)],
                 dots,
             }
         };
         let errors = all.iter().filter_map(Hung::error).map(f64::abs);
         let label = format!("error of the drop, ~D~ = {rigidity} N m");
         (
-            Scale::decades(&label, errors),
+            Axis::holding(&label, errors),
             directions.iter().map(panel).collect(),
         )
     });
@@ -328,7 +326,7 @@ fn plot(all: &[Hung], directions: &[f64], sizes: &[usize]) -> Drawing {
         (h, format!("{}", 1e3 * h))
     };
     Figure {
-        x: Scale::ticks("~h~, mm", sizes.iter().map(tick).collect()),
+        x: Axis::at("~h~, mm", sizes.iter().map(tick).collect()),
         rows: rows.to_vec(),
         meshes: Pattern::ALL.map(|p| p.to_string()).to_vec(),
         guide: "~h~^{2}".into(),

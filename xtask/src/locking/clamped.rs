@@ -4,11 +4,11 @@ use super::course::{Course, Plan, Scene};
 use super::effort::LockingEffort;
 use super::findings::Findings;
 use super::isometry::{Isometry, Material};
-use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
-use super::table::Results;
 use super::targets::{Target, at_least, at_most, kept};
 use crate::draw::{Axis, Drawing};
+use crate::report::Table;
 use anyhow::Result;
 use isosheet_dynamics::Method;
 use isosheet_mesh::generate::{self, Diagonals};
@@ -213,9 +213,8 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     ))
 }
 
-fn runs(all: &[Fallen], plan: &Plan) -> Results {
-    let mut runs = Results::new(
-        "clamped-runs",
+fn runs(all: &[Fallen], plan: &Plan) -> Table {
+    let mut runs = Table::new(
         format!(
             "Every clamped sheet: steps of 1/60 s, {} s simulated, at most {} s of wall time",
             plan.duration,
@@ -236,7 +235,8 @@ fn runs(all: &[Fallen], plan: &Plan) -> Results {
             "wall time, s",
             "message",
         ],
-    );
+    )
+    .named("clamped-runs");
     for f in all {
         runs.push(vec![
             f.number.into(),
@@ -247,10 +247,10 @@ fn runs(all: &[Fallen], plan: &Plan) -> Results {
             f.rigidity.into(),
             f.course.ending.name().into(),
             f.course.t.into(),
-            f.course.factorisations_per_step().into(),
+            f.course.effort.factorisations_per_step().into(),
             f.course.worst.into(),
             f.drop.into(),
-            f.course.wall.into(),
+            f.course.effort.wall.into(),
             f.course.ending.message().into(),
         ]);
     }
@@ -268,10 +268,8 @@ fn ended(fallen: &[&Fallen]) -> usize {
 }
 
 /// The sheets by model, method and kind.
-fn summary(all: &[Fallen]) -> Results {
-    let mut table = Results::new(
-        "clamped",
-        "Clamped sheets by kind. Factorisations belong to the steps that were completed, the drop to the runs that reached their end",
+fn summary(all: &[Fallen]) -> Table {
+    let mut table = Table::new("Clamped sheets by kind. Factorisations belong to the steps that were completed, the drop to the runs that reached their end",
         &[
             "kind",
             "model",
@@ -286,7 +284,7 @@ fn summary(all: &[Fallen]) -> Results {
             "most in a step",
             "mean drop, m",
         ],
-    );
+    ).named("clamped");
     let mut groups: BTreeMap<(Isometry, By, usize), Vec<&Fallen>> = BTreeMap::new();
     for f in all {
         groups
@@ -327,8 +325,8 @@ fn summary(all: &[Fallen]) -> Results {
 
 /// Mean number of factorisations in the steps that were completed; nothing where none was.
 fn factorisations(fallen: &[&Fallen]) -> Option<f64> {
-    let steps: usize = fallen.iter().map(|f| f.course.steps).sum();
-    let factorisations: usize = fallen.iter().map(|f| f.course.factorisations).sum();
+    let steps: usize = fallen.iter().map(|f| f.course.effort.steps).sum();
+    let factorisations: usize = fallen.iter().map(|f| f.course.effort.factorisations).sum();
     (steps > 0).then(|| factorisations as f64 / steps as f64)
 }
 
@@ -404,6 +402,7 @@ fn plot(all: &[Fallen]) -> Drawing {
                 mesh: 0,
                 x: f.vertices as f64,
                 y: f.course
+                    .effort
                     .factorisations_per_step()
                     .filter(|_| f.course.ending.is_good()),
             })
@@ -411,11 +410,11 @@ fn plot(all: &[Fallen]) -> Drawing {
         guides: Vec::new(),
     };
     let costs = all.iter().filter(|f| f.course.ending.is_good());
-    let costs = costs.filter_map(|f| f.course.factorisations_per_step());
+    let costs = costs.filter_map(|f| f.course.effort.factorisations_per_step());
     Figure {
-        x: Scale::Linear(Axis::round("vertices ~V~", [15.0, 135.0], 4)),
+        x: Axis::round("vertices ~V~", [15.0, 135.0], 4),
         rows: vec![(
-            Scale::decades("factorisations a step", costs),
+            Axis::holding("factorisations a step", costs),
             (0..KINDS.len()).map(panel).collect(),
         )],
         meshes: vec!["one sheet".into()],

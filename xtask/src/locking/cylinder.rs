@@ -4,11 +4,11 @@ use super::course::{Course, Plan, Scene};
 use super::findings::Findings;
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::{Pattern, vertices, with_line};
-use super::plot::{Dot, Figure, Joined, Panel, Scale, order, slope};
+use super::plot::{Dot, Figure, Joined, Panel, measured, order};
 use super::records::Records;
-use super::table::{Results, number};
 use super::targets::{Target, at_least, at_most, kept};
-use crate::draw::Drawing;
+use crate::draw::{Axis, Drawing};
+use crate::report::{Table, number, order_line};
 use anyhow::Result;
 use isosheet_dynamics::{Method, Profile, SheetModel, Support};
 use isosheet_mesh::{Sheet, VertexId};
@@ -230,10 +230,8 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     ))
 }
 
-fn table(all: &[Bent], plan: &Plan) -> Results {
-    let mut table = Results::new(
-        "cylinder",
-        format!(
+fn table(all: &[Bent], plan: &Plan) -> Table {
+    let mut table = Table::new(format!(
             "Squares bent by clamps: implicit Euler, steps of {STEP} s, until no vertex is faster than {REST} m/s or {} s are simulated; at most \
              {} s of wall time. Energies are over D κ² / 2 times the area, the moment is over D κ times the width",
             plan.duration,
@@ -255,7 +253,7 @@ fn table(all: &[Bent], plan: &Plan) -> Results {
             "speed left, m/s",
             "message",
         ],
-    );
+    ).named("cylinder");
     for b in all {
         table.push(vec![
             b.mesh.0.to_string().into(),
@@ -265,7 +263,7 @@ fn table(all: &[Bent], plan: &Plan) -> Results {
             b.isometry.to_string().into(),
             b.course.ending.name().into(),
             b.course.t.into(),
-            b.course.factorisations_per_step().into(),
+            b.course.effort.factorisations_per_step().into(),
             b.energy.into(),
             b.bending.into(),
             b.moment.into(),
@@ -291,12 +289,10 @@ fn fitted(
     order(&points?, FLOOR)
 }
 
-fn orders(all: &[Bent], directions: &[f64]) -> Results {
-    let mut table = Results::new(
-        "cylinder-orders",
-        "Fitted powers of h of the errors of energy and moment where all runs came to rest; values below 1e-5 are left out",
+fn orders(all: &[Bent], directions: &[f64]) -> Table {
+    let mut table = Table::new("Fitted powers of h of the errors of energy and moment where all runs came to rest; values below 1e-5 are left out",
         &["mesh", "axis, degrees", "model", "energy", "moment"],
-    );
+    ).named("cylinder-orders");
     for isometry in Isometry::ALL {
         for pattern in Pattern::ALL {
             for &degrees in directions {
@@ -384,13 +380,13 @@ fn plot(all: &[Bent], directions: &[f64], sizes: &[usize]) -> Drawing {
                 .collect();
             Panel {
                 title: format!("axis at {degrees}°"),
-                guides: vec![slope(&dots, 2.0)],
+                guides: vec![order_line(&measured(&dots), 2.0)],
                 dots,
             }
         };
         let values = all.iter().filter_map(measure).filter(|e| *e > FLOOR);
         (
-            Scale::decades(name, values),
+            Axis::holding(name, values),
             directions.iter().map(panel).collect(),
         )
     });
@@ -405,7 +401,7 @@ fn plot(all: &[Bent], directions: &[f64], sizes: &[usize]) -> Drawing {
         )
     };
     Figure {
-        x: Scale::ticks("~h~, mm", sizes.iter().map(tick).collect()),
+        x: Axis::at("~h~, mm", sizes.iter().map(tick).collect()),
         rows: rows.to_vec(),
         meshes: Pattern::ALL.map(|p| p.to_string()).to_vec(),
         guide: "~h~^{2}".into(),

@@ -5,12 +5,12 @@ use super::course::{Course, Plan, Scene};
 use super::disk::{DISK, Mesh};
 use super::findings::Findings;
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
-use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
 use super::rim::{Rim, analyse};
-use super::table::Results;
 use super::targets::{Target, at_least, kept, strain};
 use crate::draw::{Axis, Drawing};
+use crate::report::Table;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Gravity, ImplicitOptions, Method};
@@ -276,9 +276,9 @@ fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
     let folds = (0..=most).step_by(if most > 12 { 2 } else { 1 });
     let folds = folds.map(|n| (n as f64, n.to_string())).collect();
     Figure {
-        x: Scale::Linear(Axis::linear("mesh", range, ticks.collect())),
+        x: Axis::linear("mesh", range, ticks.collect()),
         rows: vec![(
-            Scale::Linear(Axis::linear("folds", [0.0, most as f64 + 0.5], folds)),
+            Axis::linear("folds", [0.0, most as f64 + 0.5], folds),
             frictions.iter().map(panel).collect(),
         )],
         meshes: Mesh::ALL.map(|m| m.name().to_owned()).to_vec(),
@@ -289,9 +289,8 @@ fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
     .draw()
 }
 
-fn runs(all: &[Drape]) -> Results {
-    let mut table = Results::new(
-        "drape-runs",
+fn runs(all: &[Drape]) -> Table {
+    let mut table = Table::new(
         "Every drape",
         &[
             "mesh",
@@ -312,7 +311,8 @@ fn runs(all: &[Drape]) -> Results {
             "speed left, m/s",
             "message",
         ],
-    );
+    )
+    .named("drape-runs");
     for d in all {
         table.push(vec![
             d.mesh.name().into(),
@@ -322,7 +322,7 @@ fn runs(all: &[Drape]) -> Results {
             d.isometry.to_string().into(),
             d.course.ending.name().into(),
             d.course.t.into(),
-            d.course.factorisations_per_step().into(),
+            d.course.effort.factorisations_per_step().into(),
             d.rim.map(|r| r.folds as f64).into(),
             d.rim.map(|r| r.wave as f64).into(),
             d.rim.map(|r| r.share).into(),
@@ -337,10 +337,8 @@ fn runs(all: &[Drape]) -> Results {
     table
 }
 
-fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Results {
-    let mut table = Results::new(
-        "drape",
-        format!(
+fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Table {
+    let mut table = Table::new(format!(
             "Disks on a round table: default method, steps of 1/60 s, {} s simulated, at most {} s of wall time. Numbers of folds with how often \
              they occur, of the disks that are still on the table, medians and ranges (largest minus smallest) are of the runs that reached their end",
             plan.duration,
@@ -361,7 +359,7 @@ fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Re
             "speed left, m/s",
             "centre off by, m",
         ],
-    );
+    ).named("drape");
     for isometry in Isometry::ALL {
         for &mesh in meshes {
             for &friction in frictions {

@@ -2,7 +2,7 @@
 
 use super::course::{Course, Kept};
 use super::isometry::Isometry;
-use super::table::Results;
+use crate::report::Table;
 use serde::{Deserialize, Serialize};
 
 /// On which side of its bound a measured number has to be.
@@ -108,10 +108,8 @@ pub(super) fn kept(model: Isometry, runs: impl Iterator<Item = Kept>) -> Vec<Tar
 }
 
 /// All requirements as a table.
-pub(super) fn table<'a>(targets: impl Iterator<Item = (&'a str, &'a Target)>) -> Results {
-    let mut table = Results::new(
-        "targets",
-        "Measured against target. A number is the worst of all runs that the requirement names; where it is missing, one of these runs did not end",
+pub(super) fn table<'a>(targets: impl Iterator<Item = (&'a str, &'a Target)>) -> Table {
+    let mut table = Table::new("Measured against target. A number is the worst of all runs that the requirement names; where it is missing, one of these runs did not end",
         &[
             "yardstick",
             "quantity",
@@ -121,7 +119,7 @@ pub(super) fn table<'a>(targets: impl Iterator<Item = (&'a str, &'a Target)>) ->
             "measured",
             "met",
         ],
-    );
+    ).named("targets");
     for (yardstick, t) in targets {
         table.push(vec![
             yardstick.into(),
@@ -159,7 +157,8 @@ mod tests {
         assert_eq!(met(&[]), (false, false));
         let worst = at_most(model, "q", 2.0, &[Some(1.0), Some(5.0)]);
         assert_eq!(worst.measured, Some(5.0));
-        let text = table([("y", &worst)].into_iter()).csv();
+        let csv = table([("y", &worst)].into_iter()).csv().unwrap();
+        let text = String::from_utf8(csv).unwrap();
         assert!(text.ends_with("y,q,rods,at most,2,5,no\n"), "{text}");
     }
 

@@ -3,7 +3,7 @@
 use super::measure::{STEP, peak_memory};
 use super::timed::Timed;
 use crate::interrupt;
-use crate::speed_vs_error::bumped;
+use crate::timing::bumped;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Method, RunEnd, SheetModel, Simulation, State, StepReport};

@@ -1,18 +1,13 @@
 //! The plots of the scaling study.
 
+use super::drape::DrapeRow;
 use super::findings::points;
 use super::measure::Row;
+use super::results::Results;
 use super::tables::factor_bytes;
-use super::whole::{Damped, Scene};
-use super::{DrapeRow, Results};
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, column, palette};
-
-/// A decade axis that holds all values.
-fn decades(label: &str, values: impl Iterator<Item = f64> + Clone) -> Axis {
-    let low = values.clone().fold(f64::INFINITY, f64::min).log10().floor() as i32;
-    let high = values.fold(0.0, f64::max).log10().ceil() as i32;
-    Axis::decades(label, low, high.max(low + 1), 1)
-}
+use super::whole::{Damped, SCENES, name};
+use crate::draw::{Axis, Colour, Drawing, Line, Marker, Series, column, palette};
+use crate::report::Chart;
 
 /// A law through the last point of a series.
 fn law(name: &str, of: &[[f64; 2]], f: impl Fn(f64) -> f64) -> Series {
@@ -41,18 +36,12 @@ fn series(name: &str, points: Vec<[f64; 2]>, colour: Colour, marker: Option<Mark
 
 fn panel(label: &str, series: Vec<Series>) -> Drawing {
     let all = |k: usize| {
-        series
-            .iter()
-            .flat_map(move |s| s.points.iter().map(move |p| p[k]))
+        let of = move |s: &Series| s.points.iter().map(move |p| p[k]).collect::<Vec<_>>();
+        series.iter().flat_map(of)
     };
-    Plot {
-        x: decades("vertices", all(0)),
-        y: decades(label, all(1)),
-        size: [230.0, 130.0],
-        legend: Legend::Right,
-        series: series.clone(),
-    }
-    .draw()
+    let x = Axis::holding("vertices", all(0));
+    let y = Axis::holding(label, all(1));
+    Chart::new(x, y, [230.0, 130.0], series).draw()
 }
 
 /// Time, time with contact, memory and operations against the number of vertices.
@@ -159,22 +148,17 @@ pub(super) fn plot(results: &Results) -> Drawing {
 fn whole(results: &Results) -> Option<Drawing> {
     let of = |scene| -> Vec<[f64; 2]> {
         let mut runs = results.whole_of(scene);
-        runs.retain(|r| r.ended() && r.method == Damped::Bdf2 && r.start == 1);
+        runs.retain(|r| r.measured.run.ended() && r.method == Damped::Bdf2 && r.start == 1);
         runs.iter()
-            .filter_map(|r| Some([r.vertices as f64, r.rate()?]))
+            .filter_map(|r| Some([r.vertices as f64, r.measured.run.rate()?]))
             .collect()
     };
-    let [hanging, tablecloth] = [of(Scene::Hanging), of(Scene::Tablecloth)];
+    let [hanging, tablecloth] = SCENES.map(of);
     let law = law("~V~^{1.5}", &hanging, |v| v.powf(1.5));
     let all: Vec<Series> = [
+        series(name(SCENES[0]), hanging, palette::BLUE, Some(Marker::Disc)),
         series(
-            Scene::Hanging.name(),
-            hanging,
-            palette::BLUE,
-            Some(Marker::Disc),
-        ),
-        series(
-            Scene::Tablecloth.name(),
+            name(SCENES[1]),
             tablecloth,
             palette::VERMILION,
             Some(Marker::Square),

@@ -1,11 +1,11 @@
 //! The default against the published scheme at equal wall time.
 
-use super::analysis::{first_clause, short};
+use super::analysis::first_clause;
 use super::measure::{Errors, Point};
 use super::problem::Problem;
 use super::scheme::{DEFAULT, is_paper};
 use super::study::Study;
-use crate::figures::rounded;
+use crate::report::{rounded, short};
 
 /// A run of the published scheme and the best that the default does in no more time.
 struct Match<'a> {
