@@ -20,7 +20,6 @@ mod hard_cases;
 mod interrupt;
 mod locking;
 mod progress;
-mod render;
 mod report;
 mod reproduce;
 mod runs;
