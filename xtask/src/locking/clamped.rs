@@ -214,47 +214,32 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
 }
 
 fn runs(all: &[Fallen], plan: &Plan) -> Table {
-    let mut runs = Table::new(
+    Table::of(
         format!(
             "Every clamped sheet: steps of 1/60 s, {} s simulated, at most {} s of wall time",
             plan.duration,
             plan.patience.as_secs_f64()
         ),
+        all,
         &[
-            "number",
-            "kind",
-            "V",
-            "model",
-            "method",
-            "D, N m",
-            "ending",
-            "t at the end, s",
-            "factorisations per step",
-            "most in a step",
-            "drop, m",
-            "wall time, s",
-            "message",
+            ("number", &|f| f.number.into()),
+            ("kind", &|f| KINDS[f.kind()].into()),
+            ("V", &|f| f.vertices.into()),
+            ("model", &|f| f.isometry.to_string().into()),
+            ("method", &|f| f.by.name().into()),
+            ("D, N m", &|f| f.rigidity.into()),
+            ("ending", &|f| f.course.ending.name().into()),
+            ("t at the end, s", &|f| f.course.t.into()),
+            ("factorisations per step", &|f| {
+                f.course.effort.factorisations_per_step().into()
+            }),
+            ("most in a step", &|f| f.course.worst.into()),
+            ("drop, m", &|f| f.drop.into()),
+            ("wall time, s", &|f| f.course.effort.wall.into()),
+            ("message", &|f| f.course.ending.message().into()),
         ],
     )
-    .named("clamped-runs");
-    for f in all {
-        runs.push(vec![
-            f.number.into(),
-            KINDS[f.kind()].into(),
-            f.vertices.into(),
-            f.isometry.to_string().into(),
-            f.by.name().into(),
-            f.rigidity.into(),
-            f.course.ending.name().into(),
-            f.course.t.into(),
-            f.course.effort.factorisations_per_step().into(),
-            f.course.worst.into(),
-            f.drop.into(),
-            f.course.effort.wall.into(),
-            f.course.ending.message().into(),
-        ]);
-    }
-    runs
+    .named("clamped-runs")
 }
 
 /// The sheets of a model and a method.

@@ -235,29 +235,21 @@ fn points(all: &[Run], problem: Problem) -> Vec<[f64; 2]> {
 }
 
 fn table(all: &[Run]) -> Table {
-    let mut table = Table::new(
+    Table::of(
         "Every run",
+        all,
         &[
-            "problem",
-            "stiffness, N/m",
-            "ending",
-            "factorisations per step",
-            "error",
-            "message",
+            ("problem", &|r| r.problem.name().into()),
+            ("stiffness, N/m", &|r| r.stiffness.into()),
+            ("ending", &|r| r.course.ending.name().into()),
+            ("factorisations per step", &|r| {
+                r.course.effort.factorisations_per_step().into()
+            }),
+            ("error", &|r| r.error.into()),
+            ("message", &|r| r.course.ending.message().into()),
         ],
     )
-    .named("compliance-runs");
-    for r in all {
-        table.push(vec![
-            r.problem.name().into(),
-            r.stiffness.into(),
-            r.course.ending.name().into(),
-            r.course.effort.factorisations_per_step().into(),
-            r.error.into(),
-            r.course.ending.message().into(),
-        ]);
-    }
-    table
+    .named("compliance-runs")
 }
 
 fn orders(all: &[Run], problems: &[Problem]) -> Table {

@@ -290,51 +290,32 @@ fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
 }
 
 fn runs(all: &[Drape]) -> Table {
-    let mut table = Table::new(
+    Table::of(
         "Every drape",
+        all,
         &[
-            "mesh",
-            "friction",
-            "seed",
-            "V",
-            "model",
-            "ending",
-            "t at the end, s",
-            "factorisations per step",
-            "folds",
-            "largest wave",
-            "its share",
-            "rim, m",
-            "energy, J",
-            "strain",
-            "centre off by, m",
-            "speed left, m/s",
-            "message",
+            ("mesh", &|d| d.mesh.name().into()),
+            ("friction", &|d| d.friction.into()),
+            ("seed", &|d| (d.seed as usize).into()),
+            ("V", &|d| d.vertices.into()),
+            ("model", &|d| d.isometry.to_string().into()),
+            ("ending", &|d| d.course.ending.name().into()),
+            ("t at the end, s", &|d| d.course.t.into()),
+            ("factorisations per step", &|d| {
+                d.course.effort.factorisations_per_step().into()
+            }),
+            ("folds", &|d| d.rim.map(|r| r.folds as f64).into()),
+            ("largest wave", &|d| d.rim.map(|r| r.wave as f64).into()),
+            ("its share", &|d| d.rim.map(|r| r.share).into()),
+            ("rim, m", &|d| d.rim.map(|r| r.mean).into()),
+            ("energy, J", &|d| d.energy.into()),
+            ("strain", &|d| d.course.strain.into()),
+            ("centre off by, m", &|d| d.aside.into()),
+            ("speed left, m/s", &|d| d.course.speed.into()),
+            ("message", &|d| d.course.ending.message().into()),
         ],
     )
-    .named("drape-runs");
-    for d in all {
-        table.push(vec![
-            d.mesh.name().into(),
-            d.friction.into(),
-            (d.seed as usize).into(),
-            d.vertices.into(),
-            d.isometry.to_string().into(),
-            d.course.ending.name().into(),
-            d.course.t.into(),
-            d.course.effort.factorisations_per_step().into(),
-            d.rim.map(|r| r.folds as f64).into(),
-            d.rim.map(|r| r.wave as f64).into(),
-            d.rim.map(|r| r.share).into(),
-            d.rim.map(|r| r.mean).into(),
-            d.energy.into(),
-            d.course.strain.into(),
-            d.aside.into(),
-            d.course.speed.into(),
-            d.course.ending.message().into(),
-        ]);
-    }
-    table
+    .named("drape-runs")
 }
 
 fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Table {

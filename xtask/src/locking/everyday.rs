@@ -253,45 +253,30 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
 }
 
 fn table(all: &[Day], plan: &Plan) -> Table {
-    let mut table = Table::new(format!(
+    Table::of(
+        format!(
             "Everyday scenes: {} s simulated, at most {} s of wall time. The energy of bending is that at the end",
             plan.duration,
             plan.patience.as_secs_f64()
         ),
+        all,
         &[
-            "scene",
-            "V",
-            "model",
-            "ending",
-            "t at the end, s",
-            "factorisations per step",
-            "most in a step",
-            "lowest vertex, m",
-            "highest vertex, m",
-            "energy of bending, J",
-            "strain",
-            "wall time, s",
-            "message",
+            ("scene", &|d| d.scene.to_string().into()),
+            ("V", &|d| d.vertices.into()),
+            ("model", &|d| d.isometry.to_string().into()),
+            ("ending", &|d| d.course.ending.name().into()),
+            ("t at the end, s", &|d| d.course.t.into()),
+            ("factorisations per step", &|d| d.course.effort.factorisations_per_step().into()),
+            ("most in a step", &|d| d.course.worst.into()),
+            ("lowest vertex, m", &|d| d.heights[0].into()),
+            ("highest vertex, m", &|d| d.heights[1].into()),
+            ("energy of bending, J", &|d| d.bending.into()),
+            ("strain", &|d| d.course.strain.into()),
+            ("wall time, s", &|d| d.course.effort.wall.into()),
+            ("message", &|d| d.course.ending.message().into()),
         ],
-    ).named("everyday");
-    for d in all {
-        table.push(vec![
-            d.scene.to_string().into(),
-            d.vertices.into(),
-            d.isometry.to_string().into(),
-            d.course.ending.name().into(),
-            d.course.t.into(),
-            d.course.effort.factorisations_per_step().into(),
-            d.course.worst.into(),
-            d.heights[0].into(),
-            d.heights[1].into(),
-            d.bending.into(),
-            d.course.strain.into(),
-            d.course.effort.wall.into(),
-            d.course.ending.message().into(),
-        ]);
-    }
-    table
+    )
+    .named("everyday")
 }
 
 /// Factorisations a step of every scene.

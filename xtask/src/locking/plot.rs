@@ -1,8 +1,9 @@
 //! Figures of measured numbers (colour: model, symbol: mesh), and the orders fitted to them.
 
 use super::isometry::Isometry;
+use super::meshes::Pattern;
 use crate::draw::{Axis, Drawing, Legend, Line, Marker, Series, column, palette, row};
-use crate::report::{Chart, Missing, exponent};
+use crate::report::{Chart, Missing, exponent, number, order_line};
 
 /// Symbols of the meshes of a figure, in order.
 const MARKERS: [Marker; 4] = [
@@ -56,7 +57,31 @@ pub(super) struct Figure {
     pub(super) size: [f64; 2],
 }
 
+impl Panel {
+    /// Errors against the spacing, with a line of the second order.
+    pub(super) fn of_second_order(title: String, dots: Vec<Dot>) -> Self {
+        Self {
+            title,
+            guides: vec![order_line(&measured(&dots), 2.0)],
+            dots,
+        }
+    }
+}
+
 impl Figure {
+    /// Errors against the spacings (metres) of meshes by all patterns.
+    pub(super) fn of_spacings(spacings: &[f64], rows: Vec<(Axis, Vec<Panel>)>) -> Self {
+        let ticks = spacings.iter().map(|h| (*h, number(1e3 * h)));
+        Self {
+            x: Axis::at("~h~, mm", ticks.collect()),
+            rows,
+            meshes: Pattern::ALL.map(|p| p.to_string()).to_vec(),
+            guide: "~h~^{2}".into(),
+            joined: Joined::Yes,
+            size: [96.0, 130.0],
+        }
+    }
+
     /// The figure; the names of models, meshes and lines are to the right of the first row.
     pub(super) fn draw(&self) -> Drawing {
         let rows: Vec<Drawing> = self
@@ -167,7 +192,7 @@ impl Figure {
 }
 
 /// The points of the runs that ended.
-pub(super) fn measured(dots: &[Dot]) -> Vec<[f64; 2]> {
+fn measured(dots: &[Dot]) -> Vec<[f64; 2]> {
     dots.iter().filter_map(|d| Some([d.x, d.y?])).collect()
 }
 

@@ -134,31 +134,22 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
 }
 
 fn table(all: &[Slide], halvings: usize) -> Table {
-    let mut table = Table::new(format!(
+    Table::of(
+        format!(
             "Critical tangent of the tilt over the coefficient of friction, 1 by Coulomb's law: {halvings} halvings"
         ),
+        all,
         &[
-            "mesh",
-            "V",
-            "model",
-            "friction",
-            "stays at",
-            "slides at",
-            "not decided",
+            ("mesh", &|s| s.pattern.to_string().into()),
+            ("V", &|s| s.vertices.into()),
+            ("model", &|s| s.isometry.to_string().into()),
+            ("friction", &|s| s.mu.into()),
+            ("stays at", &|s| s.found.below.into()),
+            ("slides at", &|s| s.found.above.into()),
+            ("not decided", &|s| s.found.undecided.as_str().into()),
         ],
-    ).named("sliding");
-    for s in all {
-        table.push(vec![
-            s.pattern.to_string().into(),
-            s.vertices.into(),
-            s.isometry.to_string().into(),
-            s.mu.into(),
-            s.found.below.into(),
-            s.found.above.into(),
-            s.found.undecided.as_str().into(),
-        ]);
-    }
-    table
+    )
+    .named("sliding")
 }
 
 fn targets(isometry: Isometry, all: &[Slide]) -> Vec<Target> {

@@ -14,6 +14,17 @@ pub(super) enum Bound {
     Above,
 }
 
+impl Bound {
+    /// For people.
+    fn words(self) -> &'static str {
+        match self {
+            Self::AtMost => "at most",
+            Self::AtLeast => "at least",
+            Self::Above => "above",
+        }
+    }
+}
+
 /// A requirement, and what a model reaches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Target {
@@ -109,34 +120,20 @@ pub(super) fn kept(model: Isometry, runs: impl Iterator<Item = Kept>) -> Vec<Tar
 
 /// All requirements as a table.
 pub(super) fn table<'a>(targets: impl Iterator<Item = (&'a str, &'a Target)>) -> Table {
-    let mut table = Table::new("Measured against target. A number is the worst of all runs that the requirement names; where it is missing, one of these runs did not end",
+    Table::of(
+        "Measured against target. A number is the worst of all runs that the requirement names; where it is missing, one of these runs did not end",
+        targets,
         &[
-            "yardstick",
-            "quantity",
-            "model",
-            "required",
-            "bound",
-            "measured",
-            "met",
+            ("yardstick", &|(yardstick, _)| (*yardstick).into()),
+            ("quantity", &|(_, t)| t.quantity.as_str().into()),
+            ("model", &|(_, t)| t.model.to_string().into()),
+            ("required", &|(_, t)| t.side.words().into()),
+            ("bound", &|(_, t)| t.bound.into()),
+            ("measured", &|(_, t)| t.measured.into()),
+            ("met", &|(_, t)| if t.is_met() { "yes" } else { "no" }.into()),
         ],
-    ).named("targets");
-    for (yardstick, t) in targets {
-        table.push(vec![
-            yardstick.into(),
-            t.quantity.as_str().into(),
-            t.model.to_string().into(),
-            match t.side {
-                Bound::AtMost => "at most",
-                Bound::AtLeast => "at least",
-                Bound::Above => "above",
-            }
-            .into(),
-            t.bound.into(),
-            t.measured.into(),
-            if t.is_met() { "yes" } else { "no" }.into(),
-        ]);
-    }
-    table
+    )
+    .named("targets")
 }
 
 #[cfg(test)]

@@ -167,6 +167,7 @@ pub(crate) fn first_clause(message: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Effort;
 
     fn point(scheme: &str, step: f64, wall: f64, position: f64) -> Point {
         Point {
@@ -176,9 +177,7 @@ mod tests {
             uniform: true,
             wall,
             repetitions: 1,
-            steps: 1,
-            rejected: 0,
-            factorisations: 0,
+            effort: Effort::default(),
             errors: Some(Errors {
                 position,
                 energy: position,
