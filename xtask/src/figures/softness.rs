@@ -1,6 +1,6 @@
 //! How soft a sheet is, by mesh level: what the paper says of Figs. 11 and 12 by eye.
 
-use super::{Context, Picture, RenderEffort, Table, crumple};
+use super::{Context, Picture, RenderEffort, Table};
 use crate::draw::{Axis, Colour, Legend, Line, Marker, Plot, Series, palette, row};
 use crate::runs::{self, Member, Scene, Staged};
 use anyhow::Result;
@@ -87,14 +87,18 @@ fn smallest(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-pub(super) fn make(context: &Context<'_>) -> Result<Softness> {
+/// Measures the falls of the scenes that `fall` gives for each level.
+pub(super) fn make(
+    context: &Context<'_>,
+    fall: fn(u32, RenderEffort) -> Scene,
+) -> Result<Softness> {
     let (levels, members) = match context.effort {
         RenderEffort::Full => (0..4, MEMBERS),
         RenderEffort::Quick => (0..2, 2),
     };
     let mut all = Vec::new();
     for level in levels {
-        let scene = crumple::without_contact(level, context.effort);
+        let scene = fall(level, context.effort);
         let sheet = scene.sheet()?;
         let t = sheet.topology();
         all.push(Level {
