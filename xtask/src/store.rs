@@ -8,6 +8,12 @@
 //! The lock file in `.stamps` also marks a folder as the program's own: a folder that has other files and not
 //! this one is refused, and only what lies in `.stamps` is ever cleaned up.
 
+mod draft;
+mod error;
+
+pub(crate) use draft::Draft;
+pub(crate) use error::StoreError;
+
 use crate::interrupt;
 use crate::progress;
 use anyhow::{Context, Result};
@@ -17,7 +23,6 @@ use serde_json::Value;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use tempfile::TempDir;
 
 /// Folder of the program's own records and of its unfinished work.
 const RECORDS: &str = ".stamps";
@@ -27,32 +32,6 @@ const MARKER: &str = "isosheet-xtask.lock";
 
 /// Prefix of unfinished work in [`RECORDS`]; whatever a killed process left is removed at the next start.
 const PARTIAL: &str = "partial-";
-
-/// Why the output folder cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum StoreError {
-    #[error("cannot write to the folder {}: {source}; choose another with --out", folder.display())]
-    Unwritable {
-        folder: PathBuf,
-        source: std::io::Error,
-    },
-    #[error(
-        "{} holds files that are not results of this program; choose an empty or a new folder with --out", folder.display()
-    )]
-    Foreign { folder: PathBuf },
-    #[error("another process is writing to {}; wait for it or choose another folder with --out", folder.display())]
-    Busy { folder: PathBuf },
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
-    },
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
-}
 
 /// Whether a unit was finished.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -366,41 +345,6 @@ fn share(path: &Path) -> std::io::Result<()> {
 #[cfg(not(unix))]
 fn share(_path: &Path) -> std::io::Result<()> {
     Ok(())
-}
-
-/// A unit in the making: dropped without [`Store::commit`] it leaves no trace.
-#[derive(Debug)]
-pub(crate) struct Draft {
-    folder: TempDir,
-    entries: Vec<String>,
-}
-
-impl Draft {
-    /// Adds a file, given relative to the output folder.
-    pub(crate) fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), StoreError> {
-        let target = self.folder.path().join(path);
-        let failed = |source| StoreError::Write {
-            path: target.clone(),
-            source,
-        };
-        if let Some(parent) = target.parent() {
-            fs::create_dir_all(parent).map_err(failed)?;
-        }
-        fs::write(&target, bytes).map_err(failed)?;
-        self.entries.push(path.to_owned());
-        Ok(())
-    }
-
-    /// Adds a folder, given relative to the output folder, and returns where to fill it.
-    pub(crate) fn folder(&mut self, path: &str) -> Result<PathBuf, StoreError> {
-        let target = self.folder.path().join(path);
-        fs::create_dir_all(&target).map_err(|source| StoreError::Write {
-            path: target.clone(),
-            source,
-        })?;
-        self.entries.push(path.to_owned());
-        Ok(target)
-    }
 }
 
 /// 64-bit FNV-1a over the program file: figures made by an earlier build are not taken for current ones.

@@ -26,8 +26,8 @@ pub(super) struct Projected {
 
 impl Camera {
     /// A camera that looks at `target` (metres) from `distance` metres, in the direction of the given azimuth
-    /// (degrees, counter-clockwise from the x axis) and elevation (degrees above the horizon); the picture shows
-    /// `height` metres at the target.
+    /// (degrees, counter-clockwise from the x axis) and elevation (degrees above the horizon); the picture
+    /// shows `height` metres at the target.
     pub fn new(target: [f64; 3], azimuth: f64, elevation: f64, height: f64, distance: f64) -> Self {
         let (sa, ca) = azimuth.to_radians().sin_cos();
         let (se, ce) = elevation.to_radians().sin_cos();

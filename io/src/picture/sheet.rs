@@ -63,8 +63,8 @@ impl SheetPicture<'_> {
 pub struct Look {
     /// Size of the picture, pixels; 480 x 480 by default.
     pub size: [usize; 2],
-    /// sRGB colours of the upper and the lower side of the sheet as it lies flat. The default is paper white with
-    /// a warm tint above, and below a blue that stays apart from it under any colour vision.
+    /// sRGB colours of the upper and the lower side of the sheet as it lies flat. The default is paper white
+    /// with a warm tint above, and below a blue that stays apart from it under any colour vision.
     pub sides: [[u8; 3]; 2],
     /// sRGB colour of bodies; a light grey by default.
     pub body: [u8; 3],
@@ -87,7 +87,8 @@ impl Look {
     /// Whether the values make sense.
     ///
     /// # Errors
-    /// [`PictureError::Size`] without pixels, [`PictureError::Wire`] for a width that is negative or not finite.
+    /// [`PictureError::Size`] without pixels, [`PictureError::Wire`] for a width that is negative or not
+    /// finite.
     pub fn validate(&self) -> Result<(), PictureError> {
         let [width, height] = self.size;
         if width == 0 || height == 0 {

@@ -6,8 +6,8 @@ use resvg::{tiny_skia, usvg};
 
 /// An SVG document as a PNG file on white, `scale` pixels for a pixel of the document.
 ///
-/// No fonts of the system are used: all text is in one built-in font, so that equal documents give equal files
-/// everywhere.
+/// No fonts of the system are used: all text is in one built-in font, so that equal documents give equal
+/// files everywhere.
 ///
 /// # Errors
 /// [`PictureError::Svg`] if the document cannot be read, [`PictureError::Size`] if it is empty or too large.

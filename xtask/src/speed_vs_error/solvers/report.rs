@@ -105,51 +105,11 @@ pub(crate) fn conclusions(rows: &[SolverRow]) -> Vec<String> {
         "Time of a factorisation at the largest sizes: {}. The order of the sparse matrices grows as n^2.",
         growths.join("; ")
     ));
-    let mut sizes: Vec<usize> = rows.iter().map(|r| r.n).collect();
-    sizes.sort_unstable();
-    sizes.dedup();
-    let mut winners: Vec<(String, [usize; 2])> = Vec::new();
-    for n in sizes {
-        let best = rows
-            .iter()
-            .filter(|r| r.n == n && r.failure.is_none())
-            .min_by(|a, b| a.step().total_cmp(&b.step()));
-        if let Some(best) = best {
-            match winners.last_mut() {
-                Some((name, range)) if *name == best.solver => range[1] = n,
-                _ => winners.push((best.solver.clone(), [n, n])),
-            }
-        }
-    }
-    let fastest: Vec<String> = winners
-        .iter()
-        .map(|(s, [a, b])| {
-            if a == b {
-                format!("{s} at n = {a}")
-            } else {
-                format!("{s} from n = {a} to {b}")
-            }
-        })
-        .collect();
     all.push(format!(
         "Fastest at forming, factorising and solving once: {}.",
-        fastest.join("; ")
+        fastest(rows).join("; ")
     ));
-    let crossings: Vec<String> = [
-        (MINORS, CHOLESKY),
-        (CRAMER, CHOLESKY),
-        (CHOLESKY, SPARSE_LU),
-        (CHOLESKY, LDLT),
-        (CHOLESKY, SCHUR),
-        (SPARSE_LU, LDLT),
-        (LDLT, SCHUR),
-    ]
-    .into_iter()
-    .filter_map(|(a, b)| {
-        let n = crossing(rows, a, b)?;
-        Some(format!("{b} passes {a} at n = {n:.0}"))
-    })
-    .collect();
+    let crossings = crossings(rows);
     if !crossings.is_empty() {
         all.push(format!("Cross-over points: {}.", crossings.join("; ")));
     }
@@ -164,17 +124,9 @@ pub(crate) fn conclusions(rows: &[SolverRow]) -> Vec<String> {
         "A first factorisation, analysis included, takes so many times a later one, at the largest size of each: {}.",
         analysis.join("; ")
     ));
-    let worst: Vec<String> = SOLVERS
-        .iter()
-        .filter_map(|s| {
-            let of = |f: fn(&SolverRow) -> Option<f64>| of(rows, s).filter_map(f).reduce(f64::max);
-            let velocity = of(|r| r.velocity).map_or("–".into(), |v| format!("{v:.0e}"));
-            Some(format!("{s} {:.0e} / {velocity}", of(|r| r.backward)?))
-        })
-        .collect();
     all.push(format!(
         "Largest backward error / error of the velocities: {}.",
-        worst.join("; ")
+        worst_errors(rows).join("; ")
     ));
     let two: Vec<String> = SOLVERS[4..]
         .iter()
@@ -203,6 +155,67 @@ pub(crate) fn conclusions(rows: &[SolverRow]) -> Vec<String> {
         all.push(format!("Failed: {}.", failed.join("; ")));
     }
     all
+}
+
+/// Which solver is the fastest at which sizes.
+fn fastest(rows: &[SolverRow]) -> Vec<String> {
+    let mut sizes: Vec<usize> = rows.iter().map(|r| r.n).collect();
+    sizes.sort_unstable();
+    sizes.dedup();
+    let mut winners: Vec<(String, [usize; 2])> = Vec::new();
+    for n in sizes {
+        let best = rows
+            .iter()
+            .filter(|r| r.n == n && r.failure.is_none())
+            .min_by(|a, b| a.step().total_cmp(&b.step()));
+        if let Some(best) = best {
+            match winners.last_mut() {
+                Some((name, range)) if *name == best.solver => range[1] = n,
+                _ => winners.push((best.solver.clone(), [n, n])),
+            }
+        }
+    }
+    winners
+        .iter()
+        .map(|(s, [a, b])| {
+            if a == b {
+                format!("{s} at n = {a}")
+            } else {
+                format!("{s} from n = {a} to {b}")
+            }
+        })
+        .collect()
+}
+
+/// The sizes from which on one solver passes another.
+fn crossings(rows: &[SolverRow]) -> Vec<String> {
+    [
+        (MINORS, CHOLESKY),
+        (CRAMER, CHOLESKY),
+        (CHOLESKY, SPARSE_LU),
+        (CHOLESKY, LDLT),
+        (CHOLESKY, SCHUR),
+        (SPARSE_LU, LDLT),
+        (LDLT, SCHUR),
+    ]
+    .into_iter()
+    .filter_map(|(a, b)| {
+        let n = crossing(rows, a, b)?;
+        Some(format!("{b} passes {a} at n = {n:.0}"))
+    })
+    .collect()
+}
+
+/// The largest errors of each solver.
+fn worst_errors(rows: &[SolverRow]) -> Vec<String> {
+    SOLVERS
+        .iter()
+        .filter_map(|s| {
+            let of = |f: fn(&SolverRow) -> Option<f64>| of(rows, s).filter_map(f).reduce(f64::max);
+            let velocity = of(|r| r.velocity).map_or("–".into(), |v| format!("{v:.0e}"));
+            Some(format!("{s} {:.0e} / {velocity}", of(|r| r.backward)?))
+        })
+        .collect()
 }
 
 /// Time of a step's solve and backward error against n.
