@@ -2,7 +2,8 @@
 //!
 //! Without features the crate has the formats of files and needs the mesh alone. The feature `scene` adds
 //! scene files, `run` runs that survive being killed, and `cli` the command `isosheet`; each implies the ones
-//! before it. With them the crate re-exports all others, so that a program needs to name this one alone.
+//! before it. With them the crate re-exports all others, so that a program needs to name this one alone. The
+//! feature `picture`, which implies `scene`, draws shaded pictures.
 //!
 //! # Formats
 //!
@@ -15,6 +16,7 @@
 //! | Matrix Market, coordinate format | | [`write_matrix_market`] |
 //! | summary JSON | [`read_json`] | [`write_json`] |
 //! | 3D page of a run (feature `view`) | | `view::Replay` |
+//! | shaded PNG pictures (feature `picture`) | | `picture::render` |
 //!
 //! Two rules hold for everything that is written: no number that is not finite gets into a file (a typed
 //! error says which one it was), and a file appears under its name only when it is complete
@@ -31,6 +33,9 @@ pub mod scene;
 
 #[cfg(feature = "scene")]
 pub use {isosheet_collide as collide, isosheet_coords as coords, isosheet_dynamics as dynamics};
+
+#[cfg(feature = "picture")]
+pub mod picture;
 
 #[cfg(feature = "run")]
 pub mod run;

@@ -2,15 +2,25 @@
 //!
 //! The built files are part of the repository, so that nobody needs npm who does not change the page.
 
-use crate::Outcome;
-use crate::cli::BundleViewArgs;
+use crate::interrupt::Outcome;
 use anyhow::{Context, bail, ensure};
+use clap::Args;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// The files that are built.
 const FILES: [&str; 3] = ["view.js", "view.css", "LICENSES.txt"];
+
+/// Arguments of `bundle-view`.
+#[derive(Debug, Args)]
+pub(crate) struct BundleViewArgs {
+    /// Change nothing; fail if io/view/dist is not what the sources and the lock file make
+    ///
+    /// Says so and succeeds where npm is missing or the registry does not answer.
+    #[arg(long)]
+    pub(crate) check: bool,
+}
 
 /// Builds the files anew, or checks that they are what the sources and the lock file make.
 pub(crate) fn run(args: &BundleViewArgs) -> anyhow::Result<Outcome> {

@@ -1,16 +1,14 @@
 //! `condition-table`: condition numbers of the mass matrix in three charts, by mesh level.
 
-use crate::cli::ConditionArgs;
-use crate::draw::Anchor;
-use crate::draw::{
-    Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, TEXT, Vertical, palette, row,
-};
+use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
+use crate::interrupt::{self, Outcome};
 use crate::progress::Progress;
+use crate::report::{Cell, Chart, Table};
 use crate::store::Store;
-use crate::{Outcome, interrupt};
 use anyhow::Result;
+use clap::Args;
 use isosheet_coords::{BentState, ConditionRow, TableChart, condition_table};
-use std::fmt::Write;
+use std::path::PathBuf;
 
 const STATES: [(BentState, &str); 2] = [
     (BentState::Noise, "noise"),
@@ -41,6 +39,18 @@ const CHARTS: [(TableChart, &str, &str, Colour, Marker); 3] = [
     ),
 ];
 
+/// Arguments of `condition-table`.
+#[derive(Debug, Args)]
+pub(crate) struct ConditionArgs {
+    /// Finest mesh, M^LEVEL
+    #[arg(long, value_name = "LEVEL", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=5))]
+    pub(crate) level: u32,
+
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
+    #[arg(long, value_name = "DIR", default_value = "out/condition-table")]
+    pub(crate) out: PathBuf,
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &ConditionArgs) -> Result<Outcome> {
     let store = Store::open(&args.out)?;
@@ -54,10 +64,10 @@ pub(crate) fn run(args: &ConditionArgs) -> Result<Outcome> {
         bar.step();
     }
     bar.finish("computed");
-    store.write("condition.csv", csv(&rows).as_bytes())?;
+    store.write("condition.csv", &data(&rows).csv()?)?;
     let title = "Condition number of the mass matrix against the mesh level in three charts";
     store.write("condition.svg", plot(&rows).to_svg(title)?.as_bytes())?;
-    print!("{}", text(&rows));
+    print!("{}", table(&rows).text());
     println!("{}", store.root().join("condition.csv").display());
     println!("{}", store.root().join("condition.svg").display());
     Ok(Outcome::Complete)
@@ -72,71 +82,58 @@ fn of(
         .filter(move |r| r.state == state && r.chart == chart)
 }
 
-fn csv(rows: &[ConditionRow]) -> String {
-    let mut out = String::from("level,vertices,faces,state,chart,condition\n");
-    for (state, state_name) in STATES {
-        for (chart, chart_name, ..) in CHARTS {
-            for r in of(rows, state, chart) {
-                // Writing to a string cannot fail.
-                let _ = writeln!(
-                    out,
-                    "{},{},{},{state_name},{chart_name},{:e}",
-                    r.level, r.vertices, r.faces, r.condition
-                );
-            }
-        }
-    }
-    out
+/// All numbers, for programs.
+fn data(rows: &[ConditionRow]) -> Table {
+    let all = STATES.iter().flat_map(|(state, name)| {
+        let of_chart = |(chart, file, ..): &(TableChart, &'static str, &str, Colour, Marker)| {
+            let row = |r| (r, *name, *file);
+            of(rows, *state, *chart).map(row).collect::<Vec<_>>()
+        };
+        CHARTS.iter().flat_map(of_chart).collect::<Vec<_>>()
+    });
+    Table::of(
+        "",
+        all,
+        &[
+            ("level", &|(r, ..)| r.level.into()),
+            ("vertices", &|(r, ..)| r.vertices.into()),
+            ("faces", &|(r, ..)| r.faces.into()),
+            ("state", &|(_, state, _)| (*state).into()),
+            ("chart", &|(.., chart)| (*chart).into()),
+            ("condition", &|(r, ..)| r.condition.into()),
+        ],
+    )
 }
 
 /// The table for people: noise / cylinder in each cell.
-fn text(rows: &[ConditionRow]) -> String {
-    let mut out = String::from("cond(C) for a bent sheet (out-of-plane noise / cylinder)\n");
-    let _ = write!(out, "{:<14}", "mesh");
-    for (_, _, name, ..) in CHARTS {
-        let _ = write!(out, "{name:<22}");
-    }
-    out.push('\n');
-    let mut levels: Vec<u32> = rows.iter().map(|r| r.level).collect();
-    levels.dedup();
-    for level in levels {
-        let at = |state, chart| of(rows, state, chart).find(|r| r.level == level);
-        let Some(first) = at(BentState::Noise, TableChart::Cartesian) else {
-            continue;
-        };
-        let _ = write!(
-            out,
-            "{:<14}",
-            format!("M^{level} {}/{}", first.vertices, first.faces)
-        );
-        for (chart, ..) in CHARTS {
-            let cell = STATES.map(|(state, _)| {
-                at(state, chart).map_or(String::new(), |r| format!("{:.0e}", r.condition))
-            });
-            let _ = write!(out, "{:<22}", cell.join(" / "));
-        }
-        out.push('\n');
-    }
-    out
-}
-
-/// Last decade of the axis and decades between ticks.
-fn decades(rows: &[ConditionRow]) -> (i32, usize) {
-    let largest = rows.iter().map(|r| r.condition).fold(1.0, f64::max).log10();
-    let step = [2, 5, 10, 20, 50]
-        .into_iter()
-        .find(|s| largest <= 6.0 * f64::from(*s))
-        .unwrap_or(100);
-    (
-        step * (largest / f64::from(step)).ceil().max(1.0) as i32,
-        step as usize,
+fn table(rows: &[ConditionRow]) -> Table {
+    let at = |level, state, chart| of(rows, state, chart).find(|r| r.level == level);
+    let cell = |level: u32, chart| {
+        let conditions = STATES.map(|(state, _)| {
+            let row = at(level, state, chart);
+            row.map_or(String::new(), |r| format!("{:.0e}", r.condition))
+        });
+        Cell::from(conditions.join(" / "))
+    };
+    let meshes = of(rows, BentState::Noise, TableChart::Cartesian);
+    Table::of(
+        "cond(C) for a bent sheet (out-of-plane noise / cylinder)",
+        meshes,
+        &[
+            ("mesh", &|r| {
+                format!("M^{} {}/{}", r.level, r.vertices, r.faces).into()
+            }),
+            (CHARTS[0].2, &|r| cell(r.level, CHARTS[0].0)),
+            (CHARTS[1].2, &|r| cell(r.level, CHARTS[1].0)),
+            (CHARTS[2].2, &|r| cell(r.level, CHARTS[2].0)),
+        ],
     )
 }
 
 /// The table as a plot, one panel for each state.
 pub(crate) fn plot(rows: &[ConditionRow]) -> Drawing {
     let last = rows.iter().map(|r| r.level).max().unwrap_or(0);
-    let (top, every) = decades(rows);
+    let all = || rows.iter().map(|r| r.condition).chain([1.0]);
     let panels: Vec<Drawing> = STATES
         .iter()
         .enumerate()
@@ -153,41 +150,27 @@ pub(crate) fn plot(rows: &[ConditionRow]) -> Drawing {
                     line: Line::Solid,
                 })
                 .collect();
-            series.push(Series {
-                name: "1/ε of f64".into(),
-                points: vec![
-                    [-0.2, 1.0 / f64::EPSILON],
-                    [f64::from(last) + 0.2, 1.0 / f64::EPSILON],
-                ],
-                colour: palette::GREY,
-                marker: None,
-                line: Line::Dashed,
-            });
+            let ends = [-0.2, f64::from(last) + 0.2];
+            let limit = ends.map(|x| [x, 1.0 / f64::EPSILON]).to_vec();
+            series.push(Series::guide("1/ε of f64", limit));
             let ticks = (0..=last)
                 .map(|k| (f64::from(k), format!("~M~^{{{k}}}")))
                 .collect();
-            let plot = Plot {
-                x: Axis::linear("mesh", [-0.2, f64::from(last) + 0.2], ticks),
-                y: Axis::decades("condition number of ~C~", 0, top, every),
-                size: [170.0, 150.0],
-                series,
+            Chart {
+                title: ["out-of-plane noise", "bent to a cylinder"][k].to_owned(),
                 legend: if k + 1 == STATES.len() {
                     Legend::Right
                 } else {
                     Legend::None
                 },
-            };
-            let mut d = plot.draw();
-            let title = ["out-of-plane noise", "bent to a cylinder"][k];
-            d.text(
-                [85.0, 158.0],
-                title,
-                TEXT,
-                Anchor::Middle,
-                Vertical::Above,
-                palette::INK,
-            );
-            d
+                ..Chart::new(
+                    Axis::linear("mesh", [-0.2, f64::from(last) + 0.2], ticks),
+                    Axis::holding("condition number of ~C~", all()),
+                    [170.0, 150.0],
+                    series,
+                )
+            }
+            .draw()
         })
         .collect();
     row(&panels, 24.0)
@@ -206,10 +189,10 @@ mod tests {
                 .map_or(f64::NAN, |r| r.condition)
         };
         assert!(value(TableChart::FrontCorner) > 100.0 * value(TableChart::Cartesian));
-        let csv = csv(&rows);
+        let csv = String::from_utf8(data(&rows).csv().unwrap()).unwrap();
         assert_eq!(csv.lines().count(), 1 + 2 * 3 * 2);
         assert!(csv.contains("1,25,32,cylinder,cartesian,"));
-        assert!(text(&rows).contains("M^1 25/32"));
+        assert!(table(&rows).text().contains("M^1 25/32"));
         assert!(plot(&rows).to_svg("t").unwrap().contains("front, corner"));
     }
 }

@@ -16,9 +16,4 @@ pub(crate) use drawing::{Anchor, Drawing, Stroke, Vertical};
 pub(crate) use layout::{column, row};
 pub(crate) use sheet::{flat_edges, flat_faces, plan};
 pub(crate) use spatial::View;
-
-/// Size of ordinary text in drawings, points.
-pub(crate) const TEXT: f64 = 9.0;
-
-/// Size of text inside crowded drawings, points.
-pub(crate) const SMALL: f64 = 7.5;
+pub(crate) use text::{SMALL, TEXT};

@@ -1,5 +1,6 @@
 //! The figures, one module each, and what is kept about them.
 
+pub(crate) mod all;
 mod crescent;
 mod crumple;
 mod drape;
@@ -21,11 +22,10 @@ mod play;
 mod sequence;
 mod softness;
 mod stamping;
+mod style;
 
-pub(crate) use performance::{machine, rounded};
-pub(crate) use play::Play;
-
-use crate::draw::{Anchor, Colour, Drawing, Stroke, Vertical, palette};
+use crate::draw::{Anchor, Drawing, Vertical, palette};
+use crate::report::{Picture, PictureRef, Table};
 use crate::store::Store;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
@@ -41,24 +41,6 @@ pub(crate) enum RenderEffort {
     Quick,
 }
 
-/// A picture of a figure.
-#[derive(Clone, Debug)]
-pub(crate) struct Picture {
-    /// File name without folder.
-    pub(crate) file: String,
-    /// What it shows, in words.
-    pub(crate) alt: String,
-    pub(crate) bytes: Vec<u8>,
-}
-
-/// A picture as the record of a figure keeps it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct PictureRef {
-    /// Path relative to the output folder.
-    pub(crate) path: String,
-    pub(crate) alt: String,
-}
-
 /// A page that plays a run, as the record of a figure keeps it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct PageRef {
@@ -68,14 +50,6 @@ pub(crate) struct PageRef {
     /// Choices in the address of the page, empty or from `#` on.
     pub(crate) choices: String,
     pub(crate) label: String,
-}
-
-/// A table below a figure.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Table {
-    pub(crate) caption: String,
-    pub(crate) head: Vec<String>,
-    pub(crate) rows: Vec<Vec<String>>,
 }
 
 /// What is known about a figure.
@@ -94,6 +68,21 @@ pub(crate) struct Record {
     pub(crate) tables: Vec<Table>,
     /// The numbers, for programs.
     pub(crate) facts: Value,
+}
+
+/// A page that plays a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Play {
+    /// Names of page and picture without folder.
+    pub(crate) file: String,
+    pub(crate) thumbnail_file: String,
+    /// Choices in the address of the page, empty or from `#` on.
+    pub(crate) choices: &'static str,
+    /// What tells it from the other pages of the figure.
+    pub(crate) label: String,
+    pub(crate) page: String,
+    /// The last frame as a PNG file.
+    pub(crate) thumbnail: Vec<u8>,
 }
 
 /// A figure that has been made.
@@ -117,50 +106,13 @@ pub(crate) struct Context<'a> {
     pub(crate) effort: RenderEffort,
 }
 
-/// Makes a figure.
-///
-/// # Errors
-/// [`Interrupted`](crate::interrupt::Interrupted) after Ctrl-C.
-pub(crate) fn make(figure: u8, context: &Context<'_>) -> Result<Made> {
-    match figure {
-        1 => fig01::make(),
-        2 => fig02::make(),
-        3 => fig03::make(),
-        4 => fig04::make(),
-        5 => fig05::make(),
-        6 => fig06::make(),
-        7 => fig07::make(),
-        8 => fig08::make(),
-        9 => fig09::make(),
-        10 => performance::make(context),
-        11 => crumple::make(11, 1, context),
-        12 => crumple::make(12, 2, context),
-        13 => stamping::make(context),
-        14 => drape::fig14(context),
-        15 => drape::fig15(context),
-        16 => jam::make(context),
-        17 => origami::make(context),
-        _ => anyhow::bail!("figure {figure} cannot be made"),
-    }
-}
-
 /// A drawing as the picture `figNN.svg`.
 fn svg(figure: u8, drawing: &Drawing, alt: &str) -> Result<Vec<Picture>> {
-    Ok(vec![Picture {
-        file: format!("fig{figure:02}.svg"),
-        alt: alt.to_owned(),
-        bytes: drawing.to_svg(alt)?.into_bytes(),
-    }])
-}
-
-/// Line styles that several figures share.
-mod style {
-    use super::{Colour, Stroke, palette};
-
-    pub(super) const EDGE: Stroke = Stroke::new(palette::INK, 0.7);
-    pub(super) const GHOST: Stroke = Stroke::new(palette::GREY, 0.5);
-    /// Paper white with a hint of warmth, so that faces differ from the background.
-    pub(super) const FACE: Colour = Colour::new(246, 243, 236);
+    Ok(vec![Picture::svg(
+        &format!("fig{figure:02}"),
+        drawing,
+        alt,
+    )?])
 }
 
 /// Centred lines of text below each other, the first hanging from `at`.

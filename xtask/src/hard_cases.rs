@@ -22,17 +22,16 @@ mod scenes;
 mod spin;
 mod steps;
 
-pub(crate) use case::{Bound, Case, Check, Effort, Findings, Record, Shortfall, Verdict};
+pub(crate) use case::{Case, Effort, Findings, Record, Shortfall};
 
-use crate::cli::HardCasesArgs;
-use crate::figures::PictureRef;
-use crate::interrupt::Interrupted;
+use crate::interrupt::{self, Outcome};
 use crate::progress;
-use crate::store::{Extent, Store};
-use crate::{Outcome, interrupt};
-use anyhow::{Context, Result, bail};
+use crate::store::{Draft, Store, Unit};
+use anyhow::{Result, bail};
+use clap::Args;
 use rayon::prelude::*;
 use serde_json::json;
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// The cases in the order of the report.
@@ -69,6 +68,30 @@ pub(crate) fn parse(name: &str) -> Result<&'static Case, String> {
     })
 }
 
+/// Arguments of `hard-cases`.
+#[derive(Debug, Args)]
+pub(crate) struct HardCasesArgs {
+    /// Cases to run, such as flat-start,slivers; all when left out
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse)]
+    pub(crate) cases: Vec<&'static Case>,
+
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
+    #[arg(long, value_name = "DIR", default_value = "out/hard-cases")]
+    pub(crate) out: PathBuf,
+
+    /// Short runs on small meshes: checks in seconds that everything works
+    #[arg(long, conflicts_with = "full")]
+    pub(crate) quick: bool,
+
+    /// Longer runs and finer meshes than fit into a few minutes
+    #[arg(long)]
+    pub(crate) full: bool,
+
+    /// Run everything that is asked for again, also what is up to date
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &HardCasesArgs) -> Result<Outcome> {
     let store = Store::open(&args.out)?;
@@ -83,21 +106,20 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<Outcome> {
         .par_iter()
         .with_max_len(1)
         .filter(|case| wanted(case))
-        .map(|case| make(&store, case, effort, args.force))
+        .map(|case| {
+            let unit = unit(case, effort);
+            if args.force {
+                store.forget(&unit.name)?;
+            }
+            store.keep(&unit, |draft| make(case, effort, draft))?;
+            Ok(())
+        })
         .collect();
-    let mut outcome = Outcome::Complete;
-    for result in results {
-        match result {
-            Err(error) if error.is::<Interrupted>() => outcome = Outcome::Interrupted,
-            other => other?,
-        }
-    }
-    let records: Vec<Record> = CASES
-        .iter()
-        .filter_map(|case| stored(&store, case, effort))
-        .collect();
+    let outcome = interrupt::each(results, |result| result)?;
+    let kept = |case: &&Case| store.kept(&unit(case, effort));
+    let records: Vec<Record> = CASES.iter().filter_map(kept).collect();
     page::write(&store, &records, effort)?;
-    print!("{}", page::table(&records));
+    print!("{}", page::text(&records));
     println!("{}", store.root().join("index.html").display());
     let failed: Vec<&str> = records
         .iter()
@@ -113,35 +135,20 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<Outcome> {
     Ok(outcome)
 }
 
-fn unit(case: &Case) -> String {
-    format!("case-{}", case.name)
-}
-
-/// The record of a case that is up to date.
-fn stored(store: &Store, case: &Case, effort: Effort) -> Option<Record> {
-    let stamp = store.current(&unit(case), &json!({ "effort": effort }))?;
-    serde_json::from_value(stamp.facts).ok()
-}
-
-/// Runs a case unless it is up to date, and keeps what it found.
-fn make(store: &Store, case: &Case, effort: Effort, force: bool) -> Result<()> {
-    interrupt::check()?;
-    if !force && stored(store, case, effort).is_some() {
-        progress::note(case.name, "up to date");
-        return Ok(());
+fn unit(case: &Case, effort: Effort) -> Unit {
+    Unit {
+        name: format!("case-{}", case.name),
+        title: case.name.to_owned(),
+        options: json!({ "effort": effort }),
     }
+}
+
+/// Runs a case.
+fn make(case: &Case, effort: Effort, draft: &mut Draft) -> Result<Record> {
     let started = Instant::now();
-    let findings = (case.run)(effort).with_context(|| format!("case {}", case.name))?;
-    let mut draft = store.draft()?;
-    let mut pictures = Vec::new();
-    for picture in &findings.pictures {
-        let path = format!("figures/{}", picture.file);
-        draft.write(&path, &picture.bytes)?;
-        pictures.push(PictureRef {
-            path,
-            alt: picture.alt.clone(),
-        });
-    }
+    let findings = (case.run)(effort)?;
+    let pictures = findings.pictures.iter().map(|p| p.keep(draft));
+    let pictures = pictures.collect::<Result<_>>()?;
     let record = Record {
         name: case.name.to_owned(),
         title: case.title.to_owned(),
@@ -157,8 +164,5 @@ fn make(store: &Store, case: &Case, effort: Effort, force: bool) -> Result<()> {
         case.name,
         &format!("{} ({:.1} s)", record.verdict().text(), record.wall),
     );
-    let facts = serde_json::to_value(&record)?;
-    let options = json!({ "effort": effort });
-    store.commit(draft, &unit(case), &options, Extent::Complete, facts)?;
-    Ok(())
+    Ok(record)
 }

@@ -5,6 +5,15 @@ use isosheet_dynamics::{Simulation, StepReport};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// How a command ended when it did not fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// Everything asked for is there.
+    Complete,
+    /// Stopped with Ctrl-C; what was finished has been kept.
+    Interrupted,
+}
+
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// Takes over Ctrl-C.
@@ -43,4 +52,22 @@ pub(crate) fn observe(_simulation: &Simulation, _report: &StepReport) -> Control
     } else {
         ControlFlow::Continue(())
     }
+}
+
+/// Does pieces of work one after the other until all are done or Ctrl-C ends one of them with [`Interrupted`].
+pub(crate) fn each<T>(
+    items: impl IntoIterator<Item = T>,
+    mut work: impl FnMut(T) -> anyhow::Result<()>,
+) -> anyhow::Result<Outcome> {
+    for item in items {
+        match check()
+            .map_err(anyhow::Error::from)
+            .and_then(|()| work(item))
+        {
+            Ok(()) => {}
+            Err(error) if error.is::<Interrupted>() => return Ok(Outcome::Interrupted),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(Outcome::Complete)
 }

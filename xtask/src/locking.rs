@@ -26,20 +26,21 @@ mod plot;
 mod records;
 mod rim;
 mod sliding;
-mod table;
 mod targets;
 
-use crate::cli::LockingArgs;
 use crate::draw::Drawing;
-use crate::interrupt::Interrupted;
-use crate::store::{Extent, Store};
-use crate::{Outcome, interrupt, progress};
+use crate::interrupt::{self, Outcome};
+use crate::report::plot_files;
+use crate::store::{Store, Unit};
 use anyhow::Result;
+use clap::Args;
 use effort::LockingEffort;
 use findings::Findings;
+use page::Section;
 use records::Records;
 use serde_json::json;
 use std::fmt;
+use std::path::PathBuf;
 use std::str::FromStr;
 
 /// A yardstick.
@@ -123,6 +124,16 @@ impl Part {
     }
 }
 
+impl Part {
+    fn unit(self, effort: LockingEffort) -> Unit {
+        Unit {
+            name: format!("locking-{self}"),
+            title: self.to_string(),
+            options: json!({ "effort": effort }),
+        }
+    }
+}
+
 impl fmt::Display for Part {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -153,6 +164,22 @@ impl FromStr for Part {
     }
 }
 
+/// Arguments of `locking`.
+#[derive(Debug, Args)]
+pub(crate) struct LockingArgs {
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
+    #[arg(long, value_name = "DIR", default_value = "out/locking")]
+    pub(crate) out: PathBuf,
+
+    /// Seconds instead of a quarter of an hour: checks that everything works, and shows no result
+    #[arg(long)]
+    pub(crate) quick: bool,
+
+    /// Yardsticks to apply, separated by commas, such as clamped; all when left out
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub(crate) yardsticks: Vec<Part>,
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &LockingArgs) -> Result<Outcome> {
     let effort = if args.quick {
@@ -166,93 +193,39 @@ pub(crate) fn run(args: &LockingArgs) -> Result<Outcome> {
     } else {
         args.yardsticks.clone()
     };
-    let mut outcome = Outcome::Complete;
-    for part in parts {
-        if interrupt::requested() {
-            outcome = Outcome::Interrupted;
-            break;
-        }
-        if let Some(stamp) = store.current(&unit(part), &options(effort)) {
-            progress::note(&part.to_string(), "up to date");
-            print(&serde_json::from_value(stamp.facts)?);
-            continue;
-        }
-        let records = Records {
-            store: &store,
-            part,
-            effort,
-        };
-        match part.make(&records) {
-            Ok((found, drawing)) => {
-                keep(&store, part, effort, &found, drawing)?;
-                print(&found);
+    let outcome = interrupt::each(parts, |part| {
+        let found = store.keep(&part.unit(effort), |draft| {
+            let (found, drawing) = part.make(&Records {
+                store: &store,
+                part: part.to_string(),
+                effort,
+            })?;
+            for table in found.tables.iter().chain(&found.files) {
+                draft.write(&format!("tables/{}", table.file()), &table.csv()?)?;
             }
-            Err(error) if error.is::<Interrupted>() => {
-                outcome = Outcome::Interrupted;
-                break;
+            if let Some(drawing) = drawing {
+                plot_files(draft, &part.to_string(), &drawing, part.title())?;
             }
-            Err(error) => return Err(error.context(part.to_string())),
+            Ok(found)
+        })?;
+        for table in &found.tables {
+            println!("{}", table.text());
         }
-    }
-    page::write(&store, effort)?;
+        found.remarks.iter().for_each(|remark| println!("{remark}"));
+        Ok(())
+    })?;
+    let section = |part: Part| {
+        Some(Section {
+            name: part.to_string(),
+            title: part.title(),
+            about: part.about(),
+            found: store.earlier(&part.unit(effort))?,
+        })
+    };
+    let sections: Vec<Section> = Part::ALL.into_iter().filter_map(section).collect();
+    page::write(&store, &sections, effort)?;
     println!("{}", store.root().join("index.html").display());
     Ok(outcome)
-}
-
-fn unit(part: Part) -> String {
-    format!("locking-{part}")
-}
-
-fn options(effort: LockingEffort) -> serde_json::Value {
-    json!({ "effort": effort })
-}
-
-/// What a part found with this effort; `None` if it was not made yet.
-fn findings(store: &Store, part: Part, effort: LockingEffort) -> Option<Findings> {
-    let stamp = store.stamp(&unit(part))?;
-    if stamp.extent != Extent::Complete || stamp.options != options(effort) {
-        return None;
-    }
-    serde_json::from_value(stamp.facts).ok()
-}
-
-fn print(found: &Findings) {
-    for table in &found.tables {
-        println!("{}", table.text());
-    }
-    for remark in &found.remarks {
-        println!("{remark}");
-    }
-}
-
-fn keep(
-    store: &Store,
-    part: Part,
-    effort: LockingEffort,
-    found: &Findings,
-    drawing: Option<Drawing>,
-) -> Result<()> {
-    let mut draft = store.draft()?;
-    for table in found.tables.iter().chain(&found.files) {
-        draft.write(
-            &format!("tables/{}.csv", table.name),
-            table.csv().as_bytes(),
-        )?;
-    }
-    if let Some(drawing) = drawing {
-        let title = part.title();
-        let svg = drawing.to_svg(title)?;
-        draft.write(&format!("plots/{part}.svg"), svg.as_bytes())?;
-        draft.write(&format!("plots/{part}.png"), &drawing.to_png(title)?)?;
-    }
-    store.commit(
-        draft,
-        &unit(part),
-        &options(effort),
-        Extent::Complete,
-        serde_json::to_value(found)?,
-    )?;
-    Ok(())
 }
 
 #[cfg(test)]

@@ -20,7 +20,6 @@ mod hard_cases;
 mod interrupt;
 mod locking;
 mod progress;
-mod render;
 mod report;
 mod reproduce;
 mod runs;
@@ -28,30 +27,15 @@ mod scale;
 mod selection;
 mod speed_vs_error;
 mod store;
+mod timing;
 
 use clap::Parser;
+use interrupt::Outcome;
 use std::process::ExitCode;
-
-/// How a command ended when it did not fail.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Outcome {
-    /// Everything asked for is there.
-    Complete,
-    /// Stopped with Ctrl-C; what was finished has been kept.
-    Interrupted,
-}
 
 fn main() -> ExitCode {
     let cli = cli::Cli::parse();
-    let result = interrupt::install().and_then(|()| match cli.command {
-        cli::Command::ReproduceFigures(args) => reproduce::run(&args),
-        cli::Command::ConditionTable(args) => condition::run(&args),
-        cli::Command::SpeedVsError(args) => speed_vs_error::run(&args),
-        cli::Command::Scale(args) => scale::run(&args),
-        cli::Command::Locking(args) => locking::run(&args),
-        cli::Command::HardCases(args) => hard_cases::run(&args),
-        cli::Command::BundleView(args) => bundle_view::run(&args),
-    });
+    let result = interrupt::install().and_then(|()| cli.command.run());
     match result {
         Ok(Outcome::Complete) => ExitCode::SUCCESS,
         Ok(Outcome::Interrupted) => {

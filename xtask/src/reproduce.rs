@@ -1,14 +1,39 @@
 //! `reproduce-figures`: makes what is asked for and not up to date, then writes the report.
 
-use crate::cli::ReproduceArgs;
-use crate::figures::{self, Context, Made, PageRef, PictureRef, Record, RenderEffort};
-use crate::interrupt::Interrupted;
+mod page;
+
+use crate::figures::{Context, Made, PageRef, Record, RenderEffort, all};
+use crate::interrupt::{self, Outcome};
 use crate::progress;
-use crate::store::{Extent, Store};
-use crate::{Outcome, interrupt, report};
+use crate::selection::Selection;
+use crate::store::{Draft, Store, Unit};
 use anyhow::{Result, bail};
+use clap::Args;
 use serde_json::json;
+use std::path::PathBuf;
 use std::time::Instant;
+
+/// Arguments of `reproduce-figures`.
+#[derive(Debug, Args)]
+pub(crate) struct ReproduceArgs {
+    /// Figures to make, such as 3 or 1-9,11; all when left out
+    #[arg(long, value_name = "LIST", default_value_t = Selection::all())]
+    pub(crate) figures: Selection,
+
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
+    #[arg(long, value_name = "DIR", default_value = "out/reproduce-figures")]
+    pub(crate) out: PathBuf,
+
+    /// Short runs and small pictures: checks that everything works in seconds, and shows no result
+    ///
+    /// Not for a folder that has full results. A full run removes quick results.
+    #[arg(long)]
+    pub(crate) quick: bool,
+
+    /// Make everything that is asked for again, also what is up to date
+    #[arg(long)]
+    pub(crate) force: bool,
+}
 
 /// Runs the command.
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
@@ -26,33 +51,22 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
     if args.force && args.figures.iter().any(|f| f >= 10) {
         store.forget("run-")?;
     }
-    let mut outcome = Outcome::Complete;
-    for figure in args.figures.iter() {
-        if interrupt::requested() {
-            outcome = Outcome::Interrupted;
-            break;
+    let outcome = interrupt::each(args.figures.iter(), |figure| {
+        let unit = unit(figure, effort);
+        if args.force {
+            store.forget(&unit.name)?;
         }
-        let unit = unit(figure);
-        let options = json!({ "figure": figure, "effort": effort });
-        if !args.force && store.current(&unit, &options).is_some() {
-            progress::note(&format!("figure {figure}"), "up to date");
-            continue;
-        }
-        let started = Instant::now();
-        match figures::make(figure, &context) {
-            Ok(made) => keep(&store, figure, &options, made)?,
-            Err(error) if error.is::<Interrupted>() => {
-                outcome = Outcome::Interrupted;
-                break;
-            }
-            Err(error) => return Err(error.context(format!("figure {figure}"))),
-        }
-        progress::note(
-            &format!("figure {figure}"),
-            &format!("made ({:.1} s)", started.elapsed().as_secs_f64()),
-        );
-    }
-    report::write(&store, effort)?;
+        let title = unit.title.clone();
+        store.keep(&unit, |draft| {
+            let started = Instant::now();
+            let record = record(figure, all::make(figure, &context)?, draft)?;
+            let wall = started.elapsed().as_secs_f64();
+            progress::note(&title, &format!("made ({wall:.1} s)"));
+            Ok(record)
+        })?;
+        Ok(())
+    })?;
+    page::write(&store, effort, &records(&store)?)?;
     progress::note(
         "report",
         &store.root().join("index.html").display().to_string(),
@@ -85,23 +99,30 @@ fn claim(store: &Store, effort: RenderEffort) -> Result<()> {
     Ok(())
 }
 
-/// Name of the unit of a figure.
-pub(crate) fn unit(figure: u8) -> String {
-    format!("fig{figure:02}")
+/// What is kept of a figure.
+fn unit(figure: u8, effort: RenderEffort) -> Unit {
+    Unit {
+        name: format!("fig{figure:02}"),
+        title: format!("figure {figure}"),
+        options: json!({ "figure": figure, "effort": effort }),
+    }
 }
 
-/// Moves a figure into place.
-fn keep(store: &Store, figure: u8, options: &serde_json::Value, made: Made) -> Result<()> {
-    let mut draft = store.draft()?;
-    let mut pictures = Vec::new();
-    for picture in &made.pictures {
-        let path = format!("figures/{}", picture.file);
-        draft.write(&path, &picture.bytes)?;
-        pictures.push(PictureRef {
-            path,
-            alt: picture.alt.clone(),
-        });
-    }
+/// All figures made so far, with the effort of each.
+fn records(store: &Store) -> Result<Vec<(Record, RenderEffort)>> {
+    let of = |figure| {
+        let made = |effort| Some((store.earlier(&unit(figure, effort))?, effort));
+        [RenderEffort::Quick, RenderEffort::Full]
+            .into_iter()
+            .find_map(made)
+    };
+    Ok(Selection::all().iter().filter_map(of).collect())
+}
+
+/// What is kept about a figure, whose files go into the draft.
+fn record(figure: u8, made: Made, draft: &mut Draft) -> Result<Record> {
+    let pictures = made.pictures.iter().map(|p| p.keep(draft));
+    let pictures = pictures.collect::<Result<_>>()?;
     let mut pages = Vec::new();
     for play in &made.pages {
         let thumbnail = format!("figures/{}", play.thumbnail_file);
@@ -114,7 +135,7 @@ fn keep(store: &Store, figure: u8, options: &serde_json::Value, made: Made) -> R
             label: play.label.clone(),
         });
     }
-    let record = Record {
+    Ok(Record {
         figure,
         title: made.title.to_owned(),
         paper: made.paper.to_owned(),
@@ -123,13 +144,5 @@ fn keep(store: &Store, figure: u8, options: &serde_json::Value, made: Made) -> R
         pages,
         tables: made.tables,
         facts: made.facts,
-    };
-    store.commit(
-        draft,
-        &unit(figure),
-        options,
-        Extent::Complete,
-        serde_json::to_value(record)?,
-    )?;
-    Ok(())
+    })
 }

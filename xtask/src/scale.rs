@@ -5,22 +5,22 @@ mod findings;
 mod measure;
 mod plot;
 mod report;
+mod results;
 mod tables;
 mod timed;
 mod whole;
 mod whole_report;
 
-use crate::cli::ScaleArgs;
+use crate::interrupt::{self, Outcome};
 use crate::progress::Progress;
 use crate::store::Store;
-use crate::{Outcome, interrupt};
 use anyhow::Result;
+use clap::Args;
 use measure::measure;
+use results::Results;
 use std::ops::RangeInclusive;
-use whole::{Scene, WholeRun};
-
-pub(crate) use drape::DrapeRow;
-pub(crate) use measure::{Row, exponent, factorisation_time};
+use std::path::PathBuf;
+use whole::SCENES;
 
 /// What is measured.
 struct Extent {
@@ -51,6 +51,26 @@ impl Extent {
     }
 }
 
+/// Arguments of `scale`.
+#[derive(Debug, Args)]
+pub(crate) struct ScaleArgs {
+    /// Finest mesh, M^LEVEL
+    #[arg(long, value_name = "LEVEL", default_value_t = 7, value_parser = clap::value_parser!(u32).range(3..=8))]
+    pub(crate) level: u32,
+
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
+    #[arg(long, value_name = "DIR", default_value = "out/scale")]
+    pub(crate) out: PathBuf,
+
+    /// Small meshes only: checks that everything works in seconds, and shows no result
+    #[arg(long, conflicts_with = "full")]
+    pub(crate) quick: bool,
+
+    /// Whole runs up to M^5 instead of M^3, with ten minutes of wall time for each: about an hour
+    #[arg(long)]
+    pub(crate) full: bool,
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &ScaleArgs) -> Result<Outcome> {
     let store = Store::open(&args.out)?;
@@ -59,31 +79,15 @@ pub(crate) fn run(args: &ScaleArgs) -> Result<Outcome> {
     };
     let mut names = Vec::new();
     for (name, bytes) in report::files(&results)? {
-        store.write(&name, &bytes)?;
+        store.write(name, &bytes)?;
         names.push(name);
     }
-    store.write("scale.html", report::page(&results)?.as_bytes())?;
+    store.write("scale.html", report::page(&results)?.to_html().as_bytes())?;
     print!("{}", report::text(&results));
-    for name in names.iter().map(String::as_str).chain(["scale.html"]) {
+    for name in names.into_iter().chain(["scale.html"]) {
         println!("{}", store.root().join(name).display());
     }
     Ok(Outcome::Complete)
-}
-
-/// Everything measured.
-pub(crate) struct Results {
-    pub(crate) hanging: Vec<Row>,
-    pub(crate) draping: Vec<DrapeRow>,
-    /// Whole runs, and the limit of wall time of each, seconds.
-    pub(crate) whole: Vec<WholeRun>,
-    pub(crate) limit: f64,
-}
-
-impl Results {
-    /// The whole runs of a scene.
-    fn whole_of(&self, scene: Scene) -> Vec<&WholeRun> {
-        self.whole.iter().filter(|r| r.scene == scene).collect()
-    }
 }
 
 /// Single steps first, coarse to fine, so that the peak of the memory is that of the level; then whole runs.
@@ -106,8 +110,8 @@ fn measured(extent: &Extent) -> Result<Option<Results>> {
         bar.finish("hanging and draping measured");
     }
     for level in extent.runs.clone() {
-        let bar = Progress::start(format!("whole runs of M^{level}"), Scene::ALL.len());
-        for scene in Scene::ALL {
+        let bar = Progress::start(format!("whole runs of M^{level}"), SCENES.len());
+        for scene in SCENES {
             if interrupt::requested() {
                 return Ok(None);
             }
@@ -122,7 +126,7 @@ fn measured(extent: &Extent) -> Result<Option<Results>> {
 }
 
 /// The fastest of some runs, or of one where that takes long.
-fn draping(level: u32) -> Result<DrapeRow> {
+fn draping(level: u32) -> Result<drape::DrapeRow> {
     let mut best = drape::measure(level, STEPS, PATIENCE)?;
     for _ in 1..REPETITIONS {
         if best.per_step * best.steps as f64 > LONG {

@@ -6,9 +6,8 @@
 
 mod analysis;
 mod barrier;
-pub(crate) mod comparison;
 mod effort;
-pub(crate) mod hanging;
+mod hanging;
 mod matrices;
 mod measure;
 mod page;
@@ -17,24 +16,21 @@ mod reference;
 mod scheme;
 mod solvers;
 mod study;
-pub(crate) mod tablecloth;
+mod tablecloth;
 mod verdict;
 
-use crate::cli::SpeedArgs;
-use crate::draw::Drawing;
-use crate::interrupt::Interrupted;
-use crate::store::{Extent, Stamp, Store};
-use crate::{Outcome, interrupt, progress};
+use crate::interrupt::{self, Outcome};
+use crate::report::plot_files;
+use crate::store::{Store, Unit};
 use anyhow::Result;
+use clap::Args;
 use effort::StudyEffort;
+use page::Results;
 use problem::Problem;
-use serde::Serialize;
 use serde_json::json;
 use std::fmt;
+use std::path::PathBuf;
 use std::str::FromStr;
-
-pub(crate) use analysis::short;
-pub(crate) use problem::{bumped, corner};
 
 /// A part of the report that can be made alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,6 +86,31 @@ impl FromStr for Part {
     }
 }
 
+/// Arguments of `speed-vs-error`.
+#[derive(Debug, Args)]
+pub(crate) struct SpeedArgs {
+    /// Folder to write to: a new or empty one, or one of an earlier run of this program
+    #[arg(long, value_name = "DIR", default_value = "out/speed-vs-error")]
+    pub(crate) out: PathBuf,
+
+    /// Seconds instead of ten minutes: checks that everything works, and shows no result
+    #[arg(long, conflicts_with = "full")]
+    pub(crate) quick: bool,
+
+    /// Longer runs, smaller steps, larger matrices: about an hour
+    #[arg(long)]
+    pub(crate) full: bool,
+
+    /// What to measure, separated by commas: problems (pendulum, triangle, strip-2, ..., sheet-3, cloth-2),
+    /// hanging, tablecloth, solvers; all when left out
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub(crate) problems: Vec<Part>,
+
+    /// Write the matrices of the solver study to this folder as Matrix Market files, and measure nothing
+    #[arg(long, value_name = "DIR", conflicts_with = "problems")]
+    pub(crate) matrices: Option<PathBuf>,
+}
+
 /// Runs the command.
 pub(crate) fn run(args: &SpeedArgs) -> Result<Outcome> {
     let effort = if args.quick {
@@ -108,111 +129,74 @@ pub(crate) fn run(args: &SpeedArgs) -> Result<Outcome> {
     } else {
         args.problems.clone()
     };
-    let mut outcome = Outcome::Complete;
-    for part in parts {
-        if interrupt::requested() {
-            outcome = Outcome::Interrupted;
-            break;
-        }
-        if store.current(&unit(part), &options(effort)).is_some() {
-            progress::note(&part.to_string(), "up to date");
-            continue;
-        }
-        match make(&store, part, effort) {
-            Ok(()) => {}
-            Err(error) if error.is::<Interrupted>() => {
-                outcome = Outcome::Interrupted;
-                break;
-            }
-            Err(error) => return Err(error.context(part.to_string())),
-        }
-    }
-    page::write(&store, effort)?;
+    let outcome = interrupt::each(parts, |part| make(&store, part, effort))?;
+    let problems = Problem::ALL.into_iter().map(Part::Problem);
+    let results = Results {
+        studies: problems
+            .filter_map(|part| store.earlier(&part.unit(effort)))
+            .collect(),
+        hanging: store.earlier(&Part::Hanging.unit(effort)),
+        tablecloth: store.earlier(&Part::Tablecloth.unit(effort)),
+        solvers: store.earlier(&Part::Solvers.unit(effort)),
+    };
+    page::write(&store, &results, effort)?;
     println!("{}", store.root().join("index.html").display());
     Ok(outcome)
 }
 
-fn unit(part: Part) -> String {
-    format!("speed-{part}")
-}
-
-/// Layout of what is kept of a part; raised with each change of it, so that results in an older layout are
-/// made again and not read.
-const LAYOUT: u32 = 2;
-
-fn options(effort: StudyEffort) -> serde_json::Value {
-    json!({ "effort": effort, "layout": LAYOUT })
-}
-
-/// What is known about a part, whatever its effort.
-fn stamp(store: &Store, part: Part) -> Option<Stamp> {
-    store
-        .stamp(&unit(part))
-        .filter(|s| s.extent == Extent::Complete)
-}
-
-fn make(store: &Store, part: Part, effort: StudyEffort) -> Result<()> {
-    match part {
-        Part::Problem(problem) => {
-            let study = study::make(problem, effort)?;
-            let plots = vec![(problem.to_string(), study.plot(), plot_title(problem))];
-            keep(store, part, effort, &study.csv(), &plots, &study)
-        }
-        Part::Hanging => {
-            let rows = hanging::make(effort)?;
-            keep(store, part, effort, &hanging::csv(&rows), &[], &rows)
-        }
-        Part::Tablecloth => {
-            let rows = tablecloth::make(effort)?;
-            keep(store, part, effort, &tablecloth::csv(&rows), &[], &rows)
-        }
-        Part::Solvers => {
-            let rows = solvers::make(effort)?;
-            let plots = vec![(
-                "solvers".to_owned(),
-                solvers::plot(&rows),
-                SOLVERS.to_owned(),
-            )];
-            keep(store, part, effort, &solvers::csv(&rows), &plots, &rows)
+impl Part {
+    fn unit(self, effort: StudyEffort) -> Unit {
+        Unit {
+            name: format!("speed-{self}"),
+            title: self.to_string(),
+            options: json!({ "effort": effort }),
         }
     }
+}
+
+/// Makes a part with its files, unless it is up to date.
+fn make(store: &Store, part: Part, effort: StudyEffort) -> Result<()> {
+    let unit = part.unit(effort);
+    let csv = format!("tables/{part}.csv");
+    match part {
+        Part::Problem(problem) => {
+            store.keep(&unit, |draft| {
+                let study = study::make(problem, effort)?;
+                draft.write(&csv, &study.data().csv()?)?;
+                let alt = format!("{}: errors against wall time, by method", problem.title());
+                plot_files(draft, &problem.to_string(), &study.plot(), &alt)?;
+                Ok(study)
+            })?;
+        }
+        Part::Hanging => {
+            store.keep(&unit, |draft| {
+                let rows = hanging::make(effort)?;
+                draft.write(&csv, &hanging::data(&rows).csv()?)?;
+                Ok(rows)
+            })?;
+        }
+        Part::Tablecloth => {
+            store.keep(&unit, |draft| {
+                let rows = tablecloth::make(effort)?;
+                draft.write(&csv, &tablecloth::data(&rows).csv()?)?;
+                Ok(rows)
+            })?;
+        }
+        Part::Solvers => {
+            store.keep(&unit, |draft| {
+                let rows = solvers::make(effort)?;
+                draft.write(&csv, &solvers::data(&rows).csv()?)?;
+                plot_files(draft, "solvers", &solvers::plot(&rows), SOLVERS)?;
+                Ok(rows)
+            })?;
+        }
+    }
+    Ok(())
 }
 
 /// What the plot of the solvers shows, for those who do not see it.
 const SOLVERS: &str =
     "Time and backward error of the linear solvers against the number of degrees of freedom";
-
-/// What the plot of a problem shows, for those who do not see it.
-fn plot_title(problem: Problem) -> String {
-    format!("{}: errors against wall time, by method", problem.title())
-}
-
-fn keep(
-    store: &Store,
-    part: Part,
-    effort: StudyEffort,
-    csv: &str,
-    plots: &[(String, Drawing, String)],
-    facts: &impl Serialize,
-) -> Result<()> {
-    let mut draft = store.draft()?;
-    draft.write(&format!("tables/{part}.csv"), csv.as_bytes())?;
-    for (name, drawing, title) in plots {
-        draft.write(
-            &format!("plots/{name}.svg"),
-            drawing.to_svg(title)?.as_bytes(),
-        )?;
-        draft.write(&format!("plots/{name}.png"), &drawing.to_png(title)?)?;
-    }
-    store.commit(
-        draft,
-        &unit(part),
-        &options(effort),
-        Extent::Complete,
-        serde_json::to_value(facts)?,
-    )?;
-    Ok(())
-}
 
 #[cfg(test)]
 mod tests {

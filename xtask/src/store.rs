@@ -8,12 +8,21 @@
 //! The lock file in `.stamps` also marks a folder as the program's own: a folder that has other files and not
 //! this one is refused, and only what lies in `.stamps` is ever cleaned up.
 
+mod draft;
+mod error;
+
+pub(crate) use draft::Draft;
+pub(crate) use error::StoreError;
+
+use crate::interrupt;
+use crate::progress;
+use anyhow::{Context, Result};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use tempfile::TempDir;
 
 /// Folder of the program's own records and of its unfinished work.
 const RECORDS: &str = ".stamps";
@@ -23,32 +32,6 @@ const MARKER: &str = "isosheet-xtask.lock";
 
 /// Prefix of unfinished work in [`RECORDS`]; whatever a killed process left is removed at the next start.
 const PARTIAL: &str = "partial-";
-
-/// Why the output folder cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum StoreError {
-    #[error("cannot write to the folder {}: {source}; choose another with --out", folder.display())]
-    Unwritable {
-        folder: PathBuf,
-        source: std::io::Error,
-    },
-    #[error(
-        "{} holds files that are not results of this program; choose an empty or a new folder with --out", folder.display()
-    )]
-    Foreign { folder: PathBuf },
-    #[error("another process is writing to {}; wait for it or choose another folder with --out", folder.display())]
-    Busy { folder: PathBuf },
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
-    },
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
-}
 
 /// Whether a unit was finished.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -77,6 +60,17 @@ pub(crate) struct Stamp {
     pub(crate) entries: Vec<String>,
     /// What it found.
     pub(crate) facts: Value,
+}
+
+/// A piece of work that is kept once it is complete.
+#[derive(Clone, Debug)]
+pub(crate) struct Unit {
+    /// Name of its stamp.
+    pub(crate) name: String,
+    /// Its name for people.
+    pub(crate) title: String,
+    /// What it depends on besides the program: with other options it is made again.
+    pub(crate) options: Value,
 }
 
 /// The output folder, locked against other processes.
@@ -150,6 +144,42 @@ impl Store {
                 && s.version == env!("CARGO_PKG_VERSION")
                 && s.entries.iter().all(|e| self.root.join(e).exists())
         })
+    }
+
+    /// What a unit found: as it was kept if it is up to date, or made now by `work`, which writes its files
+    /// into the draft, and kept.
+    ///
+    /// # Errors
+    /// Those of `work`, with the title; [`Interrupted`](interrupt::Interrupted) before it begins; those of the
+    /// folder.
+    pub(crate) fn keep<T: Serialize + DeserializeOwned>(
+        &self,
+        unit: &Unit,
+        work: impl FnOnce(&mut Draft) -> Result<T>,
+    ) -> Result<T> {
+        if let Some(found) = self.kept(unit) {
+            progress::note(&unit.title, "up to date");
+            return Ok(found);
+        }
+        interrupt::check()?;
+        let mut draft = self.draft()?;
+        let found = work(&mut draft).with_context(|| unit.title.clone())?;
+        let facts = serde_json::to_value(&found)?;
+        self.commit(draft, &unit.name, &unit.options, Extent::Complete, facts)?;
+        Ok(found)
+    }
+
+    /// What an up-to-date unit found; `None` where there is none, or none in the present layout.
+    pub(crate) fn kept<T: DeserializeOwned>(&self, unit: &Unit) -> Option<T> {
+        let stamp = self.current(&unit.name, &unit.options)?;
+        serde_json::from_value(stamp.facts).ok()
+    }
+
+    /// What a complete unit found that was made with the same options, by whichever program.
+    pub(crate) fn earlier<T: DeserializeOwned>(&self, unit: &Unit) -> Option<T> {
+        let stamp = self.stamp(&unit.name)?;
+        let is_whole = stamp.extent == Extent::Complete && stamp.options == unit.options;
+        is_whole.then(|| serde_json::from_value(stamp.facts).ok())?
     }
 
     /// Forgets all units whose names start with `prefix`, so that they are made again.
@@ -317,41 +347,6 @@ fn share(_path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// A unit in the making: dropped without [`Store::commit`] it leaves no trace.
-#[derive(Debug)]
-pub(crate) struct Draft {
-    folder: TempDir,
-    entries: Vec<String>,
-}
-
-impl Draft {
-    /// Adds a file, given relative to the output folder.
-    pub(crate) fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), StoreError> {
-        let target = self.folder.path().join(path);
-        let failed = |source| StoreError::Write {
-            path: target.clone(),
-            source,
-        };
-        if let Some(parent) = target.parent() {
-            fs::create_dir_all(parent).map_err(failed)?;
-        }
-        fs::write(&target, bytes).map_err(failed)?;
-        self.entries.push(path.to_owned());
-        Ok(())
-    }
-
-    /// Adds a folder, given relative to the output folder, and returns where to fill it.
-    pub(crate) fn folder(&mut self, path: &str) -> Result<PathBuf, StoreError> {
-        let target = self.folder.path().join(path);
-        fs::create_dir_all(&target).map_err(|source| StoreError::Write {
-            path: target.clone(),
-            source,
-        })?;
-        self.entries.push(path.to_owned());
-        Ok(target)
-    }
-}
-
 /// 64-bit FNV-1a over the program file: figures made by an earlier build are not taken for current ones.
 fn program_fingerprint() -> String {
     let bytes = std::env::current_exe()
@@ -475,6 +470,32 @@ mod tests {
         assert!(store.stamp("one").is_none());
         assert_eq!(names(&folder.path().join("runs")), ["notes.txt"]);
         assert!(names(&folder.path().join("figures")).is_empty());
+    }
+
+    /// What was finished is not made again, unless its options are others.
+    #[test]
+    fn units_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let unit = |options| Unit {
+            name: "one".into(),
+            title: "first".into(),
+            options: json!(options),
+        };
+        let make = |options, value: f64| {
+            store.keep(&unit(options), |draft| {
+                draft.write("tables/one.csv", b"a")?;
+                Ok(value)
+            })
+        };
+        assert_eq!(make(1, 0.5).unwrap(), 0.5);
+        assert_eq!(make(1, 0.7).unwrap(), 0.5);
+        assert_eq!(store.kept::<Vec<f64>>(&unit(1)), None, "another layout");
+        assert_eq!(make(2, 0.7).unwrap(), 0.7);
+        assert_eq!(store.earlier::<f64>(&unit(1)), None);
+        let failed = store.keep(&unit(3), |_| Err::<f64, _>(anyhow::anyhow!("lost")));
+        assert_eq!(format!("{:#}", failed.unwrap_err()), "first: lost");
+        assert_eq!(store.earlier::<f64>(&unit(2)), Some(0.7));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::colour::{Colour, palette};
 use super::drawing::{Anchor, Drawing, Stroke, Vertical};
-use super::{SMALL, TEXT};
+use super::text::{SMALL, TEXT, width};
 
 /// One axis of a plot.
 #[derive(Clone, Debug)]
@@ -68,12 +68,45 @@ impl Axis {
         }
     }
 
-    fn part(&self, value: f64) -> f64 {
+    /// A logarithmic axis over the whole decades that hold all positive values, with at most seven ticks.
+    pub(crate) fn holding(label: &str, values: impl IntoIterator<Item = f64>) -> Self {
+        let (mut low, mut high) = (i32::MAX, i32::MIN);
+        for v in values.into_iter().filter(|v| v.is_finite() && *v > 0.0) {
+            low = low.min((v.log10() + 1e-9).floor() as i32);
+            high = high.max((v.log10() - 1e-9).ceil() as i32);
+        }
+        if low > high {
+            (low, high) = (0, 1);
+        }
+        let high = high.max(low + 1);
+        let every = (high - low).unsigned_abs().div_ceil(6) as usize;
+        Self::decades(label, low, high, every)
+    }
+
+    /// A logarithmic axis with a tick at every one of some values, and room beside the first and the last.
+    pub(crate) fn at(label: &str, ticks: Vec<(f64, String)>) -> Self {
+        let low = ticks.iter().map(|t| t.0).fold(f64::INFINITY, f64::min);
+        let high = ticks.iter().map(|t| t.0).fold(0.0, f64::max);
+        Self {
+            label: label.to_owned(),
+            range: [low / 1.5, high * 1.5],
+            ticks,
+            logarithmic: Scale::Logarithmic,
+        }
+    }
+
+    /// Where on the axis a value is: 0 and 1 are the ends.
+    pub(crate) fn part(&self, value: f64) -> f64 {
         let f = |v: f64| match self.logarithmic {
             Scale::Linear => v,
             Scale::Logarithmic => v.log10(),
         };
         (f(value) - f(self.range[0])) / (f(self.range[1]) - f(self.range[0]))
+    }
+
+    /// Whether a value is on the axis.
+    pub(crate) fn holds(&self, value: f64) -> bool {
+        (-1e-9..=1.0 + 1e-9).contains(&self.part(value))
     }
 }
 
@@ -214,7 +247,7 @@ impl Plot {
             d.line(&[[0.0, y], [w, y]], grid);
             d.line(&[[0.0, y], [-3.0, y]], frame);
             d.text([-5.0, y], text, SMALL, Anchor::End, Vertical::Centre, ink);
-            widest = widest.max(super::text::width(text, SMALL));
+            widest = widest.max(width(text, SMALL));
         }
         d.line(&[[0.0, h], [0.0, 0.0], [w, 0.0]], frame);
         d.text(
@@ -288,5 +321,11 @@ mod tests {
         let log = Axis::decades("cond", 0, 6, 3);
         assert_eq!(log.ticks.len(), 3);
         assert!((log.part(1e3) - 0.5).abs() < 1e-15);
+        let log = Axis::holding("e", [0.02, 3.0, 0.0, f64::NAN]);
+        assert!((log.part(0.1) - 1.0 / 3.0).abs() < 1e-12 && log.holds(10.0) && !log.holds(11.0));
+        assert!(!log.holds(0.0) && !log.holds(f64::NAN));
+        assert_eq!(Axis::holding("e", []).range, [1.0, 10.0]);
+        let at = Axis::at("h", vec![(1.0, "1".into()), (4.0, "4".into())]);
+        assert!((at.part(2.0) - 0.5).abs() < 1e-12);
     }
 }

@@ -1,48 +1,19 @@
 //! Writing a drawing as PNG: its SVG file, rasterised with a font that comes with the program.
 
 use super::drawing::Drawing;
-use anyhow::{Context, Result};
-use resvg::{tiny_skia, usvg};
+use anyhow::Result;
+use isosheet_io::picture::svg_to_png;
 
-/// Pixels for a point: 216 to the inch, enough for print in a column.
-const SCALE: f32 = 3.0;
+/// Pixels for a pixel of the SVG file, of which there are 96 to the inch: 216 to the inch, enough for print in
+/// a column.
+const SCALE: f32 = 216.0 / 96.0;
 
 impl Drawing {
     /// The drawing as a PNG file; `title` as for [`Drawing::to_svg`].
     ///
     /// No fonts of the system are used, so that equal drawings give equal files everywhere.
     pub(crate) fn to_png(&self, title: &str) -> Result<Vec<u8>> {
-        let mut options = usvg::Options::default();
-        let fonts = options.fontdb_mut();
-        fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
-        let family = fonts
-            .faces()
-            .next()
-            .and_then(|f| f.families.first())
-            .map(|(name, _)| name.clone())
-            .context("the built-in font cannot be read")?;
-        fonts.set_sans_serif_family(family);
-        let tree = usvg::Tree::from_str(&self.to_svg(title)?, &options)
-            .context("cannot read the drawing back")?;
-        // Sizes in the file are points of 96 / 72 pixels.
-        let scale = SCALE * 72.0 / 96.0;
-        let size = tree.size();
-        let [width, height] = [size.width(), size.height()].map(|s| (s * scale).ceil() as u32);
-        let mut pixels = tiny_skia::Pixmap::new(width, height)
-            .with_context(|| format!("no memory for {width} x {height} pixels"))?;
-        // The last row and column may be covered in part only.
-        pixels.fill(tiny_skia::Color::WHITE);
-        resvg::render(
-            &tree,
-            tiny_skia::Transform::from_scale(scale, scale),
-            &mut pixels.as_mut(),
-        );
-        let data: Vec<u8> = pixels
-            .data()
-            .chunks_exact(4)
-            .flat_map(|p| [p[0], p[1], p[2]])
-            .collect();
-        crate::render::png(width, height, &data)
+        Ok(svg_to_png(&self.to_svg(title)?, SCALE)?)
     }
 }
 

@@ -3,6 +3,12 @@
 //! `_{..}` lowers, `^{..}` raises, `~..~` slants. The SVG backend knows none of these, so they travel through
 //! it as private characters ([`encode`]) and become `<tspan>` elements in the file ([`decode`]).
 
+/// Size of ordinary text in drawings, points.
+pub(crate) const TEXT: f64 = 9.0;
+
+/// Size of text inside crowded drawings, points.
+pub(crate) const SMALL: f64 = 7.5;
+
 /// Size of subscripts and superscripts relative to the text.
 const SCRIPT: f64 = 0.72;
 

@@ -46,7 +46,7 @@ pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made
             pages.push(page(figure, &finer, context)?);
             measured += " Below it the same with M³, which the paper does not show, and what softer means in numbers.";
         }
-        let part = super::softness::make(context)?;
+        let part = super::softness::make(context, without_contact)?;
         pictures.push(part.picture);
         tables.push(part.table);
         let all = concentration(context)?;

@@ -230,18 +230,11 @@ fn fold_table(all: &[Draped]) -> Table {
             percent(d.drop),
         ]
     });
-    Table {
-        caption: "Principal folds at rest, in the part of the cloth that hangs beyond the first row of cells at the table's edge. Bending is edge length \
+    Table::new("Principal folds at rest, in the part of the cloth that hangs beyond the first row of cells at the table's edge. Bending is edge length \
                   times size of the fold angle. At the corners: within one mean edge of a line from a table corner to its cloth \
                   corner. Strongest edges: the fewest that carry half of the bending. Angle with the nearest of these \
                   lines: weighted by bending (in brackets: of all edges, what the mesh alone gives). Drop: how far the hem hangs below the table, of its distance \
-                  from the table in the flat cloth."
-            .into(),
-        head: ["cloth", "V/F", "bending at the corners", "edges there", "density, all = 1", "strongest edges there", "angle", "internal DOF", "drop"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-    }
+                  from the table in the flat cloth.", &["cloth", "V/F", "bending at the corners", "edges there", "density, all = 1", "strongest edges there", "angle", "internal DOF", "drop"]).with_texts(rows)
 }
 
 /// Bending at the corner lines that is this many times as dense as on the mean of the overhang makes
@@ -568,14 +561,7 @@ fn hem_table(all: &[Draped]) -> Table {
                 .map_or("–".into(), |t| format!("{t:.1} s")),
         ]
     });
-    Table {
-        caption: "Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are standard deviations over means, of \
+    Table::new("Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are standard deviations over means, of \
                   the angles between neighbouring folds and of how far the folds stand out: both are 0 for a uniform pattern. Wave: the wave number with the \
-                  largest part of the variance of the hem's relative distance from the axis, and that part."
-            .into(),
-        head: ["cloth", "V/F", "folds", "spread of spacing", "spread of size", "wave", "internal DOF", "drop", "at rest from"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-    }
+                  largest part of the variance of the hem's relative distance from the axis, and that part.", &["cloth", "V/F", "folds", "spread of spacing", "spread of size", "wave", "internal DOF", "drop", "at rest from"]).with_texts(rows)
 }

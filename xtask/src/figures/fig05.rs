@@ -83,7 +83,7 @@ pub(super) fn make() -> Result<Made> {
                 .to_owned(),
             ]
         })
-        .collect();
+        .collect::<Vec<_>>();
     let head = [
         "end of the edge",
         "α",
@@ -92,9 +92,7 @@ pub(super) fn make() -> Result<Made> {
         "γ⁰",
         "γᵗ",
         "γᵗ ≤ α + β",
-    ]
-    .map(str::to_owned)
-    .to_vec();
+    ];
     let [one, two] = triples[1];
     Ok(Made {
         title: "Angle triples and the compatibility condition",
@@ -115,11 +113,7 @@ pub(super) fn make() -> Result<Made> {
             "A pair of triangles at rest and folded, with the angles alpha, beta and gamma at both ends",
         )?,
         pages: Vec::new(),
-        tables: vec![Table {
-            caption: "Measured angles of the folded pair".into(),
-            head,
-            rows,
-        }],
+        tables: vec![Table::new("Measured angles of the folded pair", &head).with_texts(rows)],
         facts: json!({
             "fold_degrees": fold.to_degrees(),
             "ends": triples[1].map(|t| json!({

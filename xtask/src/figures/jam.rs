@@ -296,19 +296,16 @@ fn table(all: &[Fed]) -> Table {
             format!("{:.1} s", f.run.wall),
         ]
     });
-    Table {
-        caption: "Energies at the end in millijoules. Stored: in bending, weight and contact. Missing: what the balance lacks; negative is taken out by the \
+    Table::new(
+        "Energies at the end in millijoules. Stored: in bending, weight and contact. Missing: what the balance lacks; negative is taken out by the \
                   integrator, which damps what it does not resolve; positive is the error of the work of the nip, by the trapezoidal rule \
-                  between forces that jump."
-            .into(),
-        head: [
+                  between forces that jump.",
+        &[
             "bend", "displacement", "largest force", "work of the nip", "stored", "friction", "damping", "missing", "strain", "gap",
             "rejected", "wall time",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    }
+        ],
+    )
+    .with_texts(rows)
 }
 
 /// How a run is shown: without the outer wall, which would hide the strip.

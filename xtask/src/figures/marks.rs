@@ -194,8 +194,7 @@ pub(super) fn table(all: &[Marks]) -> Table {
             shape(|c| percent(c.straightness)),
         ]
     });
-    Table {
-        caption: format!(
+    Table::new(format!(
             "Marks: the part of the sum of all sizes of fold angles that the sharpest {:.0} % of the inner edges carry ({:.0} % if all \
              folds were equal, {:.0} % if they were normally distributed), and how many of the edges that are sharpest at the end are among \
              the sharpest earlier (to 1 %, as symmetric folds are equal). Late: mean over the second half of the run. The largest connected mark at the end is compared, in the flat \
@@ -204,8 +203,7 @@ pub(super) fn table(all: &[Marks]) -> Table {
             100.0 * SHARPEST,
             100.0 * SHARPEST,
             100.0 * NORMAL
-        ),
-        head: [
+        ), &[
             "mesh",
             "edges",
             "share at 0.2 s",
@@ -216,11 +214,7 @@ pub(super) fn table(all: &[Marks]) -> Table {
             "edges of the largest mark",
             "opening",
             "left by the arc",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-    }
+        ]).with_texts(rows)
 }
 
 #[cfg(test)]

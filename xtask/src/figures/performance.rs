@@ -1,6 +1,7 @@
 //! Fig. 10: the paper's table of performance, with ours beside it.
 
 use super::{Context, Made, Picture, Play, RenderEffort, Table, crumple, drape, stamping};
+use crate::report::{machine, rounded};
 use crate::runs::{self, ChartScene, ChartScheme, ChartSummary, Drape, Fate, RunSummary, Scene};
 use anyhow::Result;
 use isosheet_coords::condition_table;
@@ -201,20 +202,18 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
         pictures: vec![condition(context.effort)?],
         pages: pages(context)?,
         tables: vec![
-            Table {
-                caption: "Fig. 10: the paper's columns beside ours".into(),
-                head: [
+            Table::new(
+                "Fig. 10: the paper's columns beside ours",
+                &[
                     "Fig.",
                     "V/F",
                     "scheme",
                     "frames/s",
                     "step min/max (ms)",
                     "outcome",
-                ]
-                .map(str::to_owned)
-                .to_vec(),
-                rows,
-            },
+                ],
+            )
+            .with_texts(rows),
             contact_table(contact),
         ],
         facts: json!({ "machine": machine, "rows": facts }),
@@ -301,13 +300,10 @@ fn contact_row(figure: u8, mesh: &str, s: &RunSummary, free: &RunSummary) -> Vec
 }
 
 fn contact_table(rows: Vec<Vec<String>>) -> Table {
-    Table {
-        caption: "What the paper did not report. Slowness: seconds of wall time per simulated second, on one core, with and without contact of the sheet with \
+    Table::new("What the paper did not report. Slowness: seconds of wall time per simulated second, on one core, with and without contact of the sheet with \
                   itself (two different motions where it touches itself), and their ratio; a frame is 1/60 s; solves are Newton steps, each with a factorisation. \
                   Energies (J) at the end: potential energy released, work of the die, losses to damping and friction, and what the balance lacks: what \
-                  the implicit steps take out of fast motion."
-            .into(),
-        head: [
+                  the implicit steps take out of fast motion.", &[
             "Fig.",
             "V/F",
             "slowness",
@@ -322,33 +318,7 @@ fn contact_table(rows: Vec<Vec<String>>) -> Table {
             "damping",
             "friction",
             "drift",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows,
-    }
-}
-
-/// A message with its long numbers rounded to three digits.
-pub(crate) fn rounded(text: &str) -> String {
-    let word = |w: &str| {
-        let number = w
-            .trim_start_matches('(')
-            .trim_end_matches([',', ':', ';', ')']);
-        match number.parse::<f64>() {
-            Ok(value) if number.len() > 7 => {
-                let short = if (1e-3..1e6).contains(&value.abs()) {
-                    let digits = (2 - value.abs().log10().floor() as i32).max(0) as usize;
-                    format!("{value:.digits$}")
-                } else {
-                    format!("{value:.2e}")
-                };
-                w.replace(number, &short)
-            }
-            _ => w.to_owned(),
-        }
-    };
-    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+        ]).with_texts(rows)
 }
 
 fn chart_row(mesh: &str, name: &str, s: &ChartSummary) -> Vec<String> {
@@ -381,36 +351,9 @@ fn chart_row(mesh: &str, name: &str, s: &ChartSummary) -> Vec<String> {
     ]
 }
 
-/// The processor, as the system names it.
-pub(crate) fn machine() -> String {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let field = |name: &str| {
-        info.lines()
-            .find(|l| l.starts_with(name))
-            .and_then(|l| l.split_once(':'))
-            .map(|(_, value)| value.trim().to_owned())
-    };
-    let name = field("model name").unwrap_or_else(|| std::env::consts::ARCH.to_owned());
-    let clock = field("cpu MHz")
-        .map(|mhz| format!(", {mhz} MHz"))
-        .unwrap_or_default();
-    format!("{name}{clock}, {cores} cores")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn long_numbers_in_messages_are_rounded() {
-        assert_eq!(
-            rounded(
-                "at t = 0.010229167034529732 s no step above 1e-6 s (it is 3.636331564792661e-6 J): 25/32, 1234.56789"
-            ),
-            "at t = 0.0102 s no step above 1e-6 s (it is 3.64e-6 J): 25/32, 1235"
-        );
-    }
 
     #[test]
     fn steps_in_milliseconds() {

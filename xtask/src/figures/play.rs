@@ -1,25 +1,10 @@
 //! Pages that play the runs of a figure in 3D.
 
 use super::sequence::{View, thumbnail};
-use super::{Context, RenderEffort};
+use super::{Context, Play, RenderEffort};
 use crate::runs::{self, RunSummary, Staged};
 use anyhow::Result;
 use isosheet_io::view::Replay;
-
-/// A page that plays a run.
-#[derive(Clone, Debug)]
-pub(crate) struct Play {
-    /// Names of page and picture without folder.
-    pub(crate) file: String,
-    pub(crate) thumbnail_file: String,
-    /// Choices in the address of the page, empty or from `#` on.
-    pub(crate) choices: &'static str,
-    /// What tells it from the other pages of the figure.
-    pub(crate) label: String,
-    pub(crate) page: String,
-    /// The last frame as a PNG file.
-    pub(crate) thumbnail: Vec<u8>,
-}
 
 /// The page of a run that has been made, with what tells it from the other runs of the figure.
 pub(super) fn play(

@@ -2,10 +2,10 @@
 
 use super::RenderEffort;
 use crate::interrupt;
-use crate::render::{Camera, Image, Labelled, Look, SheetPicture, Solid, montage, render};
 use crate::runs::Staged;
 use anyhow::{Context as _, Result};
 use isosheet_io::Trajectory;
+use isosheet_io::picture::{Camera, Image, Labelled, Look, SheetPicture, Solid, montage, render};
 use isosheet_mesh::VertexId;
 
 /// How a run is shown.
@@ -64,7 +64,7 @@ pub(super) fn sequence(
             label: format!("{:.2} s", trajectory.times()[*k]),
         })
         .collect();
-    montage(&labelled, view.columns).to_png()
+    Ok(montage(&labelled, view.columns)?.to_png()?)
 }
 
 /// Height of a thumbnail, pixels.
@@ -78,7 +78,7 @@ pub(super) fn thumbnail(
 ) -> Result<Vec<u8>> {
     let last = trajectory.len() - 1;
     let images = pictures(scene, trajectory, &[last], view, THUMBNAIL)?;
-    images.first().context("a picture")?.to_png()
+    Ok(images.first().context("a picture")?.to_png()?)
 }
 
 /// The chosen frames, seen by one camera that holds them all.
@@ -99,7 +99,7 @@ fn pictures(
     for k in frames {
         let t = trajectory.times()[*k];
         let shown = view.bodies.iter().map(|b| Solid::of(&bodies[*b], t));
-        solids.push(shown.collect::<Result<Vec<_>>>()?);
+        solids.push(shown.collect::<Result<Vec<_>, _>>()?);
     }
     let of_sheet = states
         .iter()
@@ -126,7 +126,7 @@ fn pictures(
             pins: view.pins,
             solids,
         };
-        images.push(render(&picture, &camera, &look));
+        images.push(render(&picture, &camera, &look)?);
     }
     Ok(images)
 }

@@ -1,6 +1,6 @@
 //! How soft a sheet is, by mesh level: what the paper says of Figs. 11 and 12 by eye.
 
-use super::{Context, Picture, RenderEffort, Table, crumple};
+use super::{Context, Picture, RenderEffort, Table};
 use crate::draw::{Axis, Colour, Legend, Line, Marker, Plot, Series, palette, row};
 use crate::runs::{self, Member, Scene, Staged};
 use anyhow::Result;
@@ -87,14 +87,18 @@ fn smallest(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-pub(super) fn make(context: &Context<'_>) -> Result<Softness> {
+/// Measures the falls of the scenes that `fall` gives for each level.
+pub(super) fn make(
+    context: &Context<'_>,
+    fall: fn(u32, RenderEffort) -> Scene,
+) -> Result<Softness> {
     let (levels, members) = match context.effort {
         RenderEffort::Full => (0..4, MEMBERS),
         RenderEffort::Quick => (0..2, 2),
     };
     let mut all = Vec::new();
     for level in levels {
-        let scene = crumple::without_contact(level, context.effort);
+        let scene = fall(level, context.effort);
         let sheet = scene.sheet()?;
         let t = sheet.topology();
         all.push(Level {
@@ -213,22 +217,18 @@ fn table(all: &[Level]) -> Table {
             largest(v)
         )
     };
-    let rows = all
-        .iter()
-        .map(|l| {
-            vec![
-                format!("M{}", ["⁰", "¹", "²", "³"][l.level as usize % 4]),
-                format!("{}/{}", l.vertices, l.faces),
-                l.internal.to_string(),
-                format!("{:.0} %", 100.0 * l.early()),
-                range(&l.values(|m| m.mean_bending), 2),
-                range(&l.values(|m| m.shape.extent), 2),
-                range(&l.values(|m| m.shape.centre_depth), 3),
-            ]
-        })
-        .collect();
-    Table {
-        caption: format!(
+    let rows = all.iter().map(|l| {
+        vec![
+            format!("M{}", ["⁰", "¹", "²", "³"][l.level as usize % 4]),
+            format!("{}/{}", l.vertices, l.faces),
+            l.internal.to_string(),
+            format!("{:.0} %", 100.0 * l.early()),
+            range(&l.values(|m| m.mean_bending), 2),
+            range(&l.values(|m| m.shape.extent), 2),
+            range(&l.values(|m| m.shape.centre_depth), 3),
+        ]
+    });
+    Table::new(format!(
             "Softness by mesh. Freedom of the fall, {EARLY} s after the sheet was let go from exactly flat: how far its centre of mass \
              has sunk, between the same masses welded to a rigid plate (0 %) and free fall (100 %). The other columns: mean (range) of \
              {} falls from flat up to a random {:.1} % of an edge. Total bending, averaged over the run: sum of edge length (in \
@@ -239,8 +239,7 @@ fn table(all: &[Level]) -> Table {
             100.0 * BUMP,
             runs::PLATE,
             runs::LIMIT,
-        ),
-        head: [
+        ), &[
             "mesh",
             "V/F",
             "internal DOF",
@@ -248,9 +247,5 @@ fn table(all: &[Level]) -> Table {
             "total bending",
             "width",
             "depth of the centre",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows,
-    }
+        ]).with_texts(rows)
 }

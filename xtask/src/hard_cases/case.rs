@@ -2,7 +2,7 @@
 
 use super::scenes::Course;
 use crate::draw::Drawing;
-use crate::figures::{Picture, PictureRef, Table};
+use crate::report::{Picture, PictureRef, Table, number};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 
@@ -272,21 +272,13 @@ impl Findings {
 
     /// A drawing.
     pub(super) fn drawing(&mut self, file: &str, drawing: &Drawing, alt: &str) -> Result<()> {
-        self.pictures.push(Picture {
-            file: format!("{file}.svg"),
-            alt: alt.to_owned(),
-            bytes: drawing.to_svg(alt)?.into_bytes(),
-        });
+        self.pictures.push(Picture::svg(file, drawing, alt)?);
         Ok(())
     }
 
     /// A table.
     pub(super) fn table(&mut self, caption: &str, head: &[&str], rows: Vec<Vec<String>>) {
-        self.tables.push(Table {
-            caption: caption.to_owned(),
-            head: head.iter().map(|h| (*h).to_owned()).collect(),
-            rows,
-        });
+        self.tables.push(Table::new(caption, head).with_texts(rows));
     }
 }
 
@@ -345,38 +337,17 @@ impl Record {
     }
 }
 
-/// A number for people, with two or three digits.
-pub(super) fn number(v: f64) -> String {
-    if v == 0.0 {
-        "0".into()
-    } else if (0.01..10_000.0).contains(&v.abs()) {
-        let digits = (2 - v.abs().log10().floor() as i32).clamp(0, 4) as usize;
-        let text = format!("{v:.digits$}");
-        if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        }
-    } else {
-        format!("{v:.1e}")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use isosheet_dynamics::StepError;
 
     #[test]
-    fn verdicts_and_numbers() {
+    fn verdicts() {
         let mut f = Findings::default();
         assert_eq!(f.at_most("a", 1.0, 2.0).verdict(), Verdict::Passed);
         assert_eq!(f.at_most("b", f64::NAN, 2.0).verdict(), Verdict::Failed);
         assert_eq!(f.at_least("c", 1.0, 2.0).verdict(), Verdict::Failed);
-        assert_eq!(
-            [0.0, 12.0, 0.25, 1e-12, 123456.0].map(number),
-            ["0", "12", "0.25", "1.0e-12", "1.2e5"]
-        );
     }
 
     #[test]

@@ -1,12 +1,13 @@
 //! The paper's coordinates and its scheme: condition, an error that does not vanish with the step, the
 //! degenerate placement of Fig. 7.
 
-use super::case::number;
-use super::scenes::{STRAIN, apart, bumped, corner, course, hanging, methods, pinned};
+use super::scenes::{STRAIN, apart, course, methods, pinned};
 use super::{Case, Effort, Findings, plot};
 use crate::condition;
 use crate::draw::Series;
 use crate::interrupt;
+use crate::report::number;
+use crate::timing::{bumped, corner, hanging};
 use anyhow::Result;
 use isosheet_coords::assignment::Degenerate;
 use isosheet_coords::placement::{place_f, place_on_line};

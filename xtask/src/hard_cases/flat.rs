@@ -1,18 +1,17 @@
 //! Exactly flat starts, and passing through states where the rods are dependent.
 
 use super::naive::{TEXTBOOK, textbook, textbook_step};
-use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, bumped, conservative, corner, course, damped, methods, pinned,
-};
+use super::scenes::{FRAME, STRAIN, apart, at_rest, conservative, course, damped, methods, pinned};
 use super::{Case, Effort, Findings, plot};
 use crate::draw::Series;
-use crate::figures::Picture;
 use crate::interrupt;
-use crate::render::{Camera, Labelled, Look, SheetPicture, montage, render};
+use crate::report::Picture;
+use crate::timing::{bumped, corner};
 use anyhow::Result;
 use isosheet_coords::{AssignmentOptions, CartesianChart, Choice, FrontChart, RodSystem};
 use isosheet_dynamics::chart::{ChartOptions, Rebase};
 use isosheet_dynamics::{Frames, Method, SheetModel, Simulation, State, rod_rank};
+use isosheet_io::picture::{Camera, Labelled, Look, SheetPicture, montage, render};
 use isosheet_mesh::{MassMatrix, Sheet};
 use isosheet_tests::{Flap, orders};
 use std::f64::consts::FRAC_PI_2;
@@ -122,28 +121,25 @@ fn fall() -> Result<Picture> {
         size: [(400.0 * aspect).round() as usize, 400],
         ..Look::default()
     };
-    let frames: Vec<Labelled> = states
-        .iter()
-        .map(|State { t, x, .. }| Labelled {
-            image: render(
-                &SheetPicture {
-                    topology: sheet.topology(),
-                    positions: x,
-                    pins: &[corner(2)],
-                    solids: &[],
-                },
-                &camera,
-                &look,
-            ),
+    let mut frames = Vec::new();
+    for State { t, x, .. } in states {
+        let picture = SheetPicture {
+            topology: sheet.topology(),
+            positions: x,
+            pins: &[corner(2)],
+            solids: &[],
+        };
+        frames.push(Labelled {
+            image: render(&picture, &camera, &look)?,
             label: format!("{t:.2} s"),
-        })
-        .collect();
+        });
+    }
     Ok(Picture {
         file: "flat-start.png".into(),
         alt: "M^2 released from exactly flat and horizontal, held at a corner (BDF2, 1/60 s). Warm: the upper side at the start; blue: \
               the lower one."
             .into(),
-        bytes: montage(&frames, 6).to_png()?,
+        bytes: montage(&frames, 6)?.to_png()?,
     })
 }
 

@@ -1,13 +1,14 @@
 //! Time reversal, renumbering, turning the frame, and the number of threads.
 
-use super::case::number;
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel_step, textbook_step};
 use super::scenes::{
-    apart, at_rest, bumped, conservative, corner, course, damped, energy_momentum, hanging, pinned,
+    apart, at_rest, conservative, course, damped, energy_momentum, pinned, tumbling,
 };
 use super::{Case, Effort, Findings, plot};
 use crate::draw::Series;
 use crate::interrupt;
+use crate::report::number;
+use crate::timing::{bumped, corner, hanging};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Method, SheetModel, Simulation, State, project_positions};
@@ -25,38 +26,10 @@ pub(crate) const REVERSAL: Case = Case {
     run: reversal,
 };
 
-fn tumbling_model() -> Result<SheetModel> {
-    Ok(SheetModel::new(&bumped(1, 0.1)?, 0.1, MassKind::Lumped)?)
-}
-
-/// A folded sheet flying and tumbling, with velocities that keep the lengths.
-fn tumbling() -> Result<State> {
-    let x = bumped(1, 0.1)?.positions().to_vec();
-    let v = x
-        .chunks(3)
-        .flat_map(|p| {
-            [
-                0.3 - 2.0 * p[1] + p[2],
-                0.1 + 2.0 * p[0],
-                1.0 - p[0] + 0.8 * (p[0] - 0.5) * (p[1] - 0.3),
-            ]
-        })
-        .collect();
-    let mut settle = Simulation::new(
-        tumbling_model()?,
-        State::moving(x, v),
-        Method::Projection(Default::default()),
-    )?;
-    settle.step(1e-6)?;
-    let State { x, v, .. } = settle.state().clone();
-    Ok(State::moving(x, v))
-}
-
 fn reversal(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
-    let start = tumbling()?;
+    let (model, start) = tumbling(0.1)?;
     let h = 4e-3;
-    let model = tumbling_model()?;
     let (mut x, mut v) = (start.x.clone(), start.v.clone());
     let mut ended = None;
     for k in 0..200 {
@@ -96,11 +69,11 @@ fn reversal(effort: Effort) -> Result<Findings> {
         let mut points = Vec::new();
         let mut early = (f64::NAN, None);
         for &n in counts {
-            let mut run = Simulation::new(tumbling_model()?, start.clone(), method.clone())?;
+            let mut run = Simulation::new(tumbling(0.1)?.0, start.clone(), method.clone())?;
             let there = course(&mut run, h, n, |_, _| {})?;
             let State { x, v, .. } = run.state().clone();
             let back = State::moving(x, v.iter().map(|v| -v).collect());
-            let mut run = Simulation::new(tumbling_model()?, back, method.clone())?;
+            let mut run = Simulation::new(tumbling(0.1)?.0, back, method.clone())?;
             let c = course(&mut run, h, n, |_, _| {})?;
             let error = there.if_finished(c.if_finished(apart(&run.state().x, &start.x)));
             points.push([n as f64 * h, error]);

@@ -1,14 +1,14 @@
 //! The same drape on different triangulations.
 
-use super::case::number;
 use super::scenes::{FRAME, STRAIN, at_rest, course};
 use super::{Case, Effort, Findings};
-use crate::figures::Picture;
 use crate::locking::meshes::nearest;
-use crate::render::{Camera, Labelled, Look, SheetPicture, Solid, montage, render};
+use crate::report::Picture;
+use crate::report::number;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Method, SheetModel};
+use isosheet_io::picture::{Camera, Labelled, Look, SheetPicture, Solid, montage, render};
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{CreasePattern, MassKind, Sheet, VertexId};
 use nalgebra::Isometry3;
@@ -224,7 +224,7 @@ fn picture(how: &str, meshes: &[(&str, Sheet)], ends: &[End]) -> Result<Picture>
     let mut frames = Vec::new();
     for ((_, sheet), end) in meshes.iter().zip(ends) {
         let solids = end.body.iter().map(|b| Solid::of(b, 0.0));
-        let solids = solids.collect::<Result<Vec<_>>>()?;
+        let solids = solids.collect::<Result<Vec<_>, _>>()?;
         let picture = SheetPicture {
             topology: sheet.topology(),
             positions: &end.x,
@@ -232,13 +232,13 @@ fn picture(how: &str, meshes: &[(&str, Sheet)], ends: &[End]) -> Result<Picture>
             solids: &solids,
         };
         frames.push(Labelled {
-            image: render(&picture, &camera, &look),
+            image: render(&picture, &camera, &look)?,
             label: String::new(),
         });
     }
     Ok(Picture {
         file: format!("locking-{}.png", how.replace(' ', "-")),
         alt: format!("At rest, {how}: union jack, one-way grid, irregular mesh."),
-        bytes: montage(&frames, 3).to_png()?,
+        bytes: montage(&frames, 3)?.to_png()?,
     })
 }

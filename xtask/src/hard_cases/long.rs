@@ -1,17 +1,17 @@
 //! Long runs: rest stays rest, and energy over a million steps.
 
-use super::case::number;
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook, textbook_step};
 use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, bumped, course, energy_momentum, hanging, methods, pinned,
-    upright,
+    FRAME, STRAIN, apart, at_rest, course, energy_momentum, methods, pinned, tumbling, upright,
 };
 use super::{Case, Effort, Findings, Shortfall, plot};
 use crate::draw::Series;
 use crate::interrupt;
+use crate::report::number;
+use crate::timing::{bumped, hanging};
 use anyhow::Result;
-use isosheet_dynamics::{Method, SheetModel, Simulation, State};
-use isosheet_mesh::{MassKind, VertexId, generate};
+use isosheet_dynamics::{Simulation, State};
+use isosheet_mesh::{VertexId, generate};
 
 pub(crate) const REST: Case = Case {
     name: "rest",
@@ -105,36 +105,15 @@ const SINGULAR: &str = "Held at a corner the crumpled sheet comes, sooner or lat
 
 /// `M^1` with a bump of 0.2 m, tumbling freely.
 fn free() -> Result<Simulation> {
-    let sheet = bumped(1, 0.2)?;
-    let model = || SheetModel::new(&sheet, 0.1, MassKind::Lumped);
-    let x = sheet.positions().to_vec();
-    let v = x
-        .chunks(3)
-        .flat_map(|p| {
-            [
-                0.3 - 2.0 * p[1] + p[2],
-                0.1 + 2.0 * p[0],
-                1.0 - p[0] + 0.8 * (p[0] - 0.5) * (p[1] - 0.3),
-            ]
-        })
-        .collect();
-    let mut settle = Simulation::new(
-        model()?,
-        State::moving(x, v),
-        Method::Projection(Default::default()),
-    )?;
-    settle.step(1e-6)?;
+    let (model, start) = tumbling(0.2)?;
     // At rest as a whole, so that coordinates and their rounding do not grow with time.
-    let State { x, mut v, .. } = settle.state().clone();
-    let mean = settle
-        .model()
-        .linear_momentum(&v)
-        .map(|p| p / settle.model().mass().total());
-    v.iter_mut()
-        .enumerate()
-        .for_each(|(i, v)| *v -= mean[i % 3]);
+    let State { x, mut v, .. } = start;
+    let momentum = model.linear_momentum(&v);
+    let mean = momentum.map(|p| p / model.mass().total());
+    let own = v.iter_mut().enumerate();
+    own.for_each(|(i, v)| *v -= mean[i % 3]);
     Ok(Simulation::new(
-        model()?,
+        model,
         State::moving(x, v),
         energy_momentum(),
     )?)

@@ -1,9 +1,9 @@
 //! Large degrees, long chains, irregular meshes, holes and several components.
 
-use super::case::number;
 use super::naive::{GAUSS_SEIDEL, gauss_seidel};
 use super::scenes::{FRAME, STRAIN, at_rest, conservative, course, damped, pinned};
 use super::{Case, Effort, Findings};
+use crate::report::number;
 use anyhow::Result;
 use isosheet_coords::{Start, sys_coord_assnmt_single};
 use isosheet_dynamics::{Method, Simulation, leave_flat};

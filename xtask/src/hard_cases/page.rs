@@ -1,10 +1,10 @@
 //! The report: DIR/index.html, DIR/verdicts.csv, DIR/verdicts.json and the table on the terminal.
 
-use super::case::number;
-use super::{Bound, Check, Effort, Record, Verdict};
-use crate::report::html::{STYLE, escape, image, table as html_table};
+use super::case::{Bound, Check, Effort, Record, Verdict};
+use crate::report::{Page, Table, number};
 use crate::store::Store;
 use anyhow::Result;
+use maud::{Markup, html};
 use serde_json::json;
 use std::fmt::Write;
 
@@ -16,8 +16,9 @@ section p{margin:.1rem 0 .4rem}ul{margin:.1rem 0 .4rem;padding-left:1.1rem}td.nu
 
 /// Writes the three files.
 pub(super) fn write(store: &Store, records: &[Record], effort: Effort) -> Result<()> {
-    store.write("index.html", page(store, records, effort)?.as_bytes())?;
-    store.write("verdicts.csv", csv(records).as_bytes())?;
+    let page = page(store, records, effort)?;
+    store.write("index.html", page.to_html().as_bytes())?;
+    store.write("verdicts.csv", &checks(records).csv()?)?;
     let cases: Vec<_> = records
         .iter()
         .map(|r| {
@@ -50,67 +51,55 @@ fn measured(check: &Check) -> String {
     }
 }
 
-fn badge(verdict: Verdict) -> String {
+fn badge(verdict: Verdict) -> Markup {
     let class = match verdict {
         Verdict::Passed => "good",
         Verdict::Limitation => "open",
         Verdict::Cured | Verdict::Improved | Verdict::Failed => "bad",
     };
-    format!("<span class=\"verdict {class}\">{}</span>", verdict.text())
+    html! { span class={ "verdict " (class) } { (verdict.text()) } }
 }
 
-fn page(store: &Store, records: &[Record], effort: Effort) -> Result<String> {
-    let mut out = String::from(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>Hard cases</title><style>",
-    );
-    out.push_str(STYLE);
-    out.push_str(MORE_STYLE);
-    out.push_str(
-        "</style></head><body><h1>Hard cases</h1><p>Situations that break solvers for sheets of rigid rods. Each says what should \
-         happen, shows a naive method at it, and measures isosheet against a bound. Every number is computed by the run that made this page. \
-         Unless stated otherwise: a square of side 1 m and 0.1 kg, lumped masses, gravity 9.8 m/s² along −z, steps of 1/60 s.</p>",
-    );
-    if effort == Effort::Quick {
-        out.push_str(
-            "<p class=\"note\">Made with <code>--quick</code>: short runs on small meshes.</p>",
-        );
-    }
-    summary(&mut out, records);
-    for record in records {
-        section(&mut out, store, record)?;
-    }
-    out.push_str("</body></html>\n");
-    Ok(out)
+fn page(store: &Store, records: &[Record], effort: Effort) -> Result<Page> {
+    let sections = records.iter().map(|r| section(store, r));
+    let sections = sections.collect::<Result<Vec<Markup>>>()?;
+    let body = html! {
+        p {
+            "Situations that break solvers for sheets of rigid rods. Each says what should "
+            "happen, shows a naive method at it, and measures isosheet against a bound. Every number is computed by the run that made this page. "
+            "Unless stated otherwise: a square of side 1 m and 0.1 kg, lumped masses, gravity 9.8 m/s² along −z, steps of 1/60 s."
+        }
+        @if effort == Effort::Quick {
+            p.note { "Made with " code { "--quick" } ": short runs on small meshes." }
+        }
+        (summary(records))
+        @for section in &sections { (section) }
+    };
+    Ok(Page {
+        style: MORE_STYLE,
+        ..Page::new("Hard cases", body)
+    })
 }
 
-// Writing to a string cannot fail, so the results of `write!` are dropped below.
-
-fn summary(out: &mut String, records: &[Record]) {
+fn summary(records: &[Record]) -> Markup {
     let checks = || records.iter().flat_map(|r| &r.checks);
     let count = |v: Verdict| checks().filter(|c| c.verdict() == v).count();
-    let _ = write!(
-        out,
-        "<p>{} cases, {} checks: {} passed, {} open limitations, {} failed.</p>\
-         <div class=\"scroll\"><table><thead><tr><th>Case</th><th>Checks</th><th>Naive method</th><th>isosheet</th></tr></thead><tbody>",
-        records.len(),
-        checks().count(),
-        count(Verdict::Passed),
-        count(Verdict::Limitation),
-        checks().filter(|c| c.verdict().is_failure()).count(),
-    );
-    for r in records {
-        let _ = write!(
-            out,
-            "<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td>{}</td><td>{}</td></tr>",
-            r.name,
-            escape(&r.title),
-            r.checks.len(),
-            naive_word(r),
-            badge(r.verdict())
-        );
+    let failed = checks().filter(|c| c.verdict().is_failure()).count();
+    html! {
+        p {
+            (records.len()) " cases, " (checks().count()) " checks: " (count(Verdict::Passed)) " passed, "
+            (count(Verdict::Limitation)) " open limitations, " (failed) " failed."
+        }
+        div.scroll { table {
+            thead { tr { th { "Case" } th { "Checks" } th { "Naive method" } th { "isosheet" } } }
+            tbody { @for r in records { tr {
+                td { a href={ "#" (r.name) } { (r.title) } }
+                td { (r.checks.len()) }
+                td { (naive_word(r)) }
+                td { (badge(r.verdict())) }
+            } } }
+        } }
     }
-    out.push_str("</tbody></table></div>");
 }
 
 fn naive_word(r: &Record) -> &'static str {
@@ -123,98 +112,85 @@ fn naive_word(r: &Record) -> &'static str {
     }
 }
 
-fn section(out: &mut String, store: &Store, r: &Record) -> Result<()> {
-    let _ = write!(
-        out,
-        "<section id=\"{}\"><h2>{}{}</h2><h3>What should happen</h3><p>{}</p>",
-        r.name,
-        escape(&r.title),
-        badge(r.verdict()),
-        escape(&r.expected)
-    );
-    if !r.naive.is_empty() {
-        out.push_str("<h3>What a naive method does</h3><ul>");
-        for n in &r.naive {
-            let word = if n.failed { "fails" } else { "copes" };
-            let _ = write!(
-                out,
-                "<li>{}: <b>{word}</b>. {}</li>",
-                escape(&n.method),
-                escape(&n.outcome)
-            );
-        }
-        out.push_str("</ul>");
-    }
-    let _ = write!(out, "<h3>What isosheet does</h3><p>{}</p>", escape(&r.here));
-    out.push_str("<div class=\"scroll\"><table><thead><tr><th>Check</th><th>Measured</th><th>Bound</th><th>Verdict</th></tr></thead><tbody>");
-    for c in &r.checks {
-        let mut what = escape(&c.what);
-        let declared = c
-            .limitation
-            .as_ref()
-            .map(|l| format!("{} Declared: {}.", l.why, l.shortfall.text()));
-        for text in [&declared, &c.remark].into_iter().flatten() {
-            let _ = write!(what, "<br><small>{}</small>", escape(text));
-        }
-        let _ = write!(
-            out,
-            "<tr><td>{what}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>",
-            measured(c),
-            c.bound.text(),
-            badge(c.verdict())
-        );
-    }
-    out.push_str("</tbody></table></div>");
+fn section(store: &Store, r: &Record) -> Result<Markup> {
+    let mut pictures = Vec::new();
     for picture in &r.pictures {
-        out.push_str("<figure>");
-        image(out, picture, &store.read(&picture.path)?);
-        let _ = write!(
-            out,
-            "<figcaption>{}</figcaption></figure>",
-            escape(&picture.alt)
-        );
+        let inside = picture.inside(&store.read(&picture.path)?);
+        pictures.push(html! { figure { (inside) figcaption { (picture.alt) } } });
     }
-    for t in &r.tables {
-        html_table(out, t);
-    }
-    out.push_str("</section>\n");
-    Ok(())
+    Ok(html! {
+        section id=(r.name) {
+            h2 { (r.title) (badge(r.verdict())) }
+            h3 { "What should happen" }
+            p { (r.expected) }
+            @if !r.naive.is_empty() {
+                h3 { "What a naive method does" }
+                ul { @for n in &r.naive {
+                    li { (n.method) ": " b { @if n.failed { "fails" } @else { "copes" } } ". " (n.outcome) }
+                } }
+            }
+            h3 { "What isosheet does" }
+            p { (r.here) }
+            div.scroll { table {
+                thead { tr { th { "Check" } th { "Measured" } th { "Bound" } th { "Verdict" } } }
+                tbody { @for check in &r.checks { (check_row(check)) } }
+            } }
+            @for picture in &pictures { (picture) }
+            @for table in &r.tables { (table) }
+        }
+    })
 }
 
-fn csv(records: &[Record]) -> String {
-    let quote = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
-    let mut out = String::from(
-        "case,check,value,bound_kind,bound,verdict,limitation,declared,stopped_s,remark\n",
-    );
-    for r in records {
-        for c in &r.checks {
-            let (kind, bound) = match c.bound {
-                Bound::AtMost(b) => ("at_most", b),
-                Bound::AtLeast(b) => ("at_least", b),
-            };
-            let _ = writeln!(
-                out,
-                "{},{},{},{kind},{bound:e},{},{},{},{},{}",
-                r.name,
-                quote(&c.what),
-                c.value.map_or(String::new(), |v| format!("{v:e}")),
-                c.verdict().text(),
-                quote(c.limitation.as_ref().map_or("", |l| &l.why)),
-                quote(
-                    &c.limitation
-                        .as_ref()
-                        .map_or(String::new(), |l| l.shortfall.text())
-                ),
-                c.stopped.map_or(String::new(), |t| format!("{t:e}")),
-                quote(c.remark.as_deref().unwrap_or_default()),
-            );
+fn check_row(check: &Check) -> Markup {
+    let limitation = check.limitation.as_ref();
+    let declared = limitation.map(|l| format!("{} Declared: {}.", l.why, l.shortfall.text()));
+    html! {
+        tr {
+            td {
+                (check.what)
+                @for text in [&declared, &check.remark].into_iter().flatten() { br; small { (text) } }
+            }
+            td.number { (measured(check)) }
+            td.number { (check.bound.text()) }
+            td { (badge(check.verdict())) }
         }
     }
-    out
+}
+
+/// Every check, for programs.
+fn checks(records: &[Record]) -> Table {
+    let bound = |c: &Check| match c.bound {
+        Bound::AtMost(b) => ("at_most", b),
+        Bound::AtLeast(b) => ("at_least", b),
+    };
+    let limitation = |c: &Check| {
+        c.limitation
+            .as_ref()
+            .map(|l| (l.why.clone(), l.shortfall.text()))
+    };
+    let all = records
+        .iter()
+        .flat_map(|r| r.checks.iter().map(move |c| (r, c)));
+    Table::of(
+        "",
+        all,
+        &[
+            ("case", &|(r, _)| r.name.as_str().into()),
+            ("check", &|(_, c)| c.what.as_str().into()),
+            ("value", &|(_, c)| c.value.into()),
+            ("bound_kind", &|(_, c)| bound(c).0.into()),
+            ("bound", &|(_, c)| bound(c).1.into()),
+            ("verdict", &|(_, c)| c.verdict().text().into()),
+            ("limitation", &|(_, c)| limitation(c).map(|l| l.0).into()),
+            ("declared", &|(_, c)| limitation(c).map(|l| l.1).into()),
+            ("stopped_s", &|(_, c)| c.stopped.into()),
+            ("remark", &|(_, c)| c.remark.clone().into()),
+        ],
+    )
 }
 
 /// The table on the terminal: every case, and every check that did not simply pass.
-pub(super) fn table(records: &[Record]) -> String {
+pub(super) fn text(records: &[Record]) -> String {
     let mut out = String::new();
     let _ = writeln!(
         out,

@@ -1,11 +1,10 @@
 //! Too many pins, and sheets pulled taut.
 
-use super::case::number;
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook};
-use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, bumped, course, damped, methods, pinned, upright,
-};
+use super::scenes::{FRAME, STRAIN, apart, at_rest, course, damped, methods, pinned, upright};
 use super::{Case, Effort, Findings, Shortfall};
+use crate::report::number;
+use crate::timing::bumped;
 use anyhow::Result;
 use isosheet_dynamics::{Potential, PotentialShape, SheetModel, Simulation};
 use isosheet_mesh::{VertexId, generate};

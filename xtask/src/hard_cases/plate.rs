@@ -1,12 +1,12 @@
 //! The inertia of plates: lumped and consistent mass.
 
-use super::case::number;
 use super::rigid::tetrahedron;
 use super::scenes::{STRAIN, apart, conservative, course};
 use super::spin::{SPIN, carried, inertia, spinning, turned};
 use super::{Case, Effort, Findings, plot};
 use crate::draw::Series;
 use crate::draw::{Axis, Legend, Plot};
+use crate::report::number;
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId};

@@ -1,11 +1,11 @@
 //! Meshes that cannot bend.
 
-use super::case::number;
 use super::naive::{TEXTBOOK, textbook_step};
 use super::scenes::{apart, course, methods};
 use super::spin::{SPIN, carried, inertia, spinning, turned};
 use super::{Case, Effort, Findings, Shortfall};
 use crate::interrupt;
+use crate::report::number;
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State};
 use isosheet_mesh::{Dof, MassMatrix, Sheet, fold_angle};

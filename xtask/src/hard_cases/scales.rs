@@ -1,12 +1,13 @@
 //! Extreme shapes, masses and sizes.
 
-use super::case::number;
 use super::naive::{GAUSS_SEIDEL, gauss_seidel};
 use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, bumped, conservative, corner, course, damped, energy_momentum,
-    methods, pinned, strain_bound,
+    FRAME, STRAIN, apart, at_rest, conservative, course, damped, energy_momentum, methods, pinned,
+    strain_bound,
 };
 use super::{Case, Effort, Findings, Shortfall};
+use crate::report::number;
+use crate::timing::{bumped, corner};
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId, generate};

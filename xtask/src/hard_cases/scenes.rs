@@ -1,10 +1,10 @@
 //! Sheets, methods and ways to run them that several cases share.
 
 use crate::interrupt::{self, Interrupted};
+use crate::timing::bumped;
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepError, StepReport};
-use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
-use std::f64::consts::PI;
+use isosheet_mesh::{MassKind, Sheet, VertexId};
 use std::ops::ControlFlow;
 
 /// The length of a step wherever a case does not say otherwise, seconds.
@@ -26,18 +26,6 @@ pub(super) fn strain_bound(sheet: &Sheet) -> f64 {
     STRAIN.max(4.0 * f64::EPSILON * (2.0 * size / shortest + 1.0))
 }
 
-/// The union-jack square `M^level` of side 1 m with a sine bump of the given height, metres.
-pub(super) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
-    let flat = generate::isotropic_square(level, 1.0)?;
-    Ok(flat.map_positions(|[x, y, _]| [x, y, bump * (PI * x).sin() * (PI * y).sin()])?)
-}
-
-/// The corner (0, 1) of `M^level`.
-pub(super) fn corner(level: u32) -> VertexId {
-    let n = (2 << level) + 1;
-    VertexId(n * (n - 1))
-}
-
 /// A sheet of 0.1 kg under gravity, pinned at the given vertices.
 pub(super) fn pinned(sheet: &Sheet, pins: &[VertexId]) -> Result<SheetModel> {
     Ok(SheetModel::new(sheet, 0.1, MassKind::Lumped)?
@@ -45,11 +33,26 @@ pub(super) fn pinned(sheet: &Sheet, pins: &[VertexId]) -> Result<SheetModel> {
         .with_pins(pins)?)
 }
 
-/// `M^level` with a bump, pinned at a corner, at rest.
-pub(super) fn hanging(level: u32, bump: f64, method: Method) -> Result<Simulation> {
-    let sheet = bumped(level, bump)?;
-    let model = pinned(&sheet, &[corner(level)])?;
-    at_rest(model, sheet.positions(), method)
+/// `M^1` with a bump (metres), flying and tumbling, with velocities that keep the lengths.
+pub(super) fn tumbling(bump: f64) -> Result<(SheetModel, State)> {
+    let sheet = bumped(1, bump)?;
+    let model = || SheetModel::new(&sheet, 0.1, MassKind::Lumped);
+    let x = sheet.positions().to_vec();
+    let v = x
+        .chunks(3)
+        .flat_map(|p| {
+            [
+                0.3 - 2.0 * p[1] + p[2],
+                0.1 + 2.0 * p[0],
+                1.0 - p[0] + 0.8 * (p[0] - 0.5) * (p[1] - 0.3),
+            ]
+        })
+        .collect();
+    let projection = Method::Projection(Default::default());
+    let mut settle = Simulation::new(model()?, State::moving(x, v), projection)?;
+    settle.step(1e-6)?;
+    let State { x, v, .. } = settle.state().clone();
+    Ok((model()?, State::moving(x, v)))
 }
 
 /// A simulation from rest.

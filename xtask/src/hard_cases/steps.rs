@@ -1,10 +1,11 @@
 //! Step sizes, and free fall.
 
-use super::case::number;
 use super::naive::{TEXTBOOK, textbook, textbook_step};
-use super::scenes::{STRAIN, apart, bumped, course, damped, hanging, methods};
+use super::scenes::{STRAIN, apart, course, damped, methods};
 use super::{Case, Effort, Findings, Shortfall, plot};
 use crate::draw::Series;
+use crate::report::number;
+use crate::timing::{bumped, hanging};
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State, StepOutcome, leave_flat};
 use isosheet_mesh::MassKind;

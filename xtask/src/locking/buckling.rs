@@ -6,11 +6,11 @@ use super::effort::LockingEffort;
 use super::findings::Findings;
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
-use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
-use super::table::Results;
 use super::targets::{Target, at_most, kept};
 use crate::draw::{Axis, Drawing};
+use crate::report::Table;
 use anyhow::Result;
 use isosheet_dynamics::Method;
 use isosheet_mesh::Sheet;
@@ -186,10 +186,8 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     ))
 }
 
-fn table(all: &[Buckled], plan: &Plan, halvings: usize) -> Results {
-    let mut table = Results::new(
-        "buckling",
-        format!(
+fn table(all: &[Buckled], plan: &Plan, halvings: usize) -> Table {
+    let mut table = Table::new(format!(
             "Critical load q L³ / (D w), between the largest load that leaves the strip upright and the smallest that moves its tip aside by more than \
              {BUCKLED} of its length: at most {halvings} halvings of the ratio of the loads. Every run ends at rest, after {} s, or after {} s of wall time; the \
              search ends where a run neither moves aside nor reaches its end",
@@ -208,7 +206,7 @@ fn table(all: &[Buckled], plan: &Plan, halvings: usize) -> Results {
             "upper bound",
             "not decided",
         ],
-    );
+    ).named("buckling");
     let bounds = bounds();
     for b in all {
         let (pattern, degrees, across) = b.mesh;
@@ -288,9 +286,9 @@ fn plot(all: &[Buckled], patterns: &[(Pattern, f64)]) -> Drawing {
     let loads = vec![15.0, 20.0, 25.0, 30.0, 40.0, 60.0];
     let loads = loads.into_iter().map(|l| (l, format!("{l}"))).collect();
     Figure {
-        x: Scale::Linear(Axis::linear("mesh", ends, ticks.collect())),
+        x: Axis::linear("mesh", ends, ticks.collect()),
         rows: vec![(
-            Scale::ticks("critical load ~qL~^{3} / (~Dw~)", loads),
+            Axis::at("critical load ~qL~^{3} / (~Dw~)", loads),
             vec![Panel {
                 title: "Lateral buckling".into(),
                 dots: dots.collect(),

@@ -6,11 +6,11 @@ use super::elastica::Elastica;
 use super::findings::Findings;
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
-use super::plot::{Dot, Figure, Joined, Panel, Scale, order, slope};
+use super::plot::{Dot, Figure, Panel, order};
 use super::records::Records;
-use super::table::{Results, number};
 use super::targets::{Target, at_most, kept};
-use crate::draw::Drawing;
+use crate::draw::{Axis, Drawing};
+use crate::report::{Table, number};
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel};
 use isosheet_mesh::Sheet;
@@ -173,9 +173,8 @@ pub(super) fn exact_drop(rigidity: f64) -> f64 {
     .drop()
 }
 
-fn table(all: &[Hung], plan: &Plan) -> Results {
-    let mut table = Results::new(
-        "cantilever",
+fn table(all: &[Hung], plan: &Plan) -> Table {
+    Table::of(
         format!(
             "Heavy strips: implicit Euler, steps of {STEP} s, until no vertex is faster than {REST} m/s or {} s are simulated; at most {} s of wall \
              time. A negative error is a strip that is too stiff; a positive one comes from the springs along the clamp, which are as soft as those between two \
@@ -183,42 +182,25 @@ fn table(all: &[Hung], plan: &Plan) -> Results {
             plan.duration,
             plan.patience.as_secs_f64()
         ),
+        all,
         &[
-            "mesh",
-            "turned by, degrees",
-            "squares across",
-            "D, N m",
-            "V",
-            "model",
-            "ending",
-            "t at the end, s",
-            "factorisations",
-            "speed left, m/s",
-            "drop, m",
-            "exact, m",
-            "error",
-            "message",
+            ("mesh", &|h| h.pattern.to_string().into()),
+            ("turned by, degrees", &|h| h.degrees.into()),
+            ("squares across", &|h| h.across.into()),
+            ("D, N m", &|h| h.rigidity.into()),
+            ("V", &|h| h.vertices.into()),
+            ("model", &|h| h.isometry.to_string().into()),
+            ("ending", &|h| h.course.ending.name().into()),
+            ("t at the end, s", &|h| h.course.t.into()),
+            ("factorisations", &|h| h.course.effort.factorisations.into()),
+            ("speed left, m/s", &|h| h.course.speed.into()),
+            ("drop, m", &|h| h.drop.into()),
+            ("exact, m", &|h| h.exact.into()),
+            ("error", &|h| h.error().into()),
+            ("message", &|h| h.course.ending.message().into()),
         ],
-    );
-    for h in all {
-        table.push(vec![
-            h.pattern.to_string().into(),
-            h.degrees.into(),
-            h.across.into(),
-            h.rigidity.into(),
-            h.vertices.into(),
-            h.isometry.to_string().into(),
-            h.course.ending.name().into(),
-            h.course.t.into(),
-            h.course.factorisations.into(),
-            h.course.speed.into(),
-            h.drop.into(),
-            h.exact.into(),
-            h.error().into(),
-            h.course.ending.message().into(),
-        ]);
-    }
-    table
+    )
+    .named("cantilever")
 }
 
 /// Errors against the spacing, of the runs that reached their end.
@@ -236,9 +218,8 @@ fn points(
         .collect()
 }
 
-fn orders(all: &[Hung], directions: &[f64]) -> Results {
-    let mut table = Results::new(
-        "cantilever-orders",
+fn orders(all: &[Hung], directions: &[f64]) -> Table {
+    let mut table = Table::new(
         "Fitted powers of h of the error of the drop, of the runs that reached their end",
         &[
             "mesh",
@@ -248,7 +229,8 @@ fn orders(all: &[Hung], directions: &[f64]) -> Results {
             "runs",
             "power",
         ],
-    );
+    )
+    .named("cantilever-orders");
     for isometry in Isometry::ALL {
         for rigidity in RIGIDITIES {
             for pattern in Pattern::ALL {
@@ -310,32 +292,17 @@ fn plot(all: &[Hung], directions: &[f64], sizes: &[usize]) -> Drawing {
                     y: h.error().map(f64::abs),
                 })
                 .collect();
-            Panel {
-                title: format!("mesh turned by {degrees}°"),
-                guides: vec![slope(&dots, 2.0)],
-                dots,
-            }
+            Panel::of_second_order(format!("mesh turned by {degrees}°"), dots)
         };
         let errors = all.iter().filter_map(Hung::error).map(f64::abs);
         let label = format!("error of the drop, ~D~ = {rigidity} N m");
         (
-            Scale::decades(&label, errors),
+            Axis::holding(&label, errors),
             directions.iter().map(panel).collect(),
         )
     });
-    let tick = |&across: &usize| {
-        let h = STRIP.width / across as f64;
-        (h, format!("{}", 1e3 * h))
-    };
-    Figure {
-        x: Scale::ticks("~h~, mm", sizes.iter().map(tick).collect()),
-        rows: rows.to_vec(),
-        meshes: Pattern::ALL.map(|p| p.to_string()).to_vec(),
-        guide: "~h~^{2}".into(),
-        joined: Joined::Yes,
-        size: [96.0, 130.0],
-    }
-    .draw()
+    let spacings: Vec<f64> = sizes.iter().map(|&n| STRIP.width / n as f64).collect();
+    Figure::of_spacings(&spacings, rows.to_vec()).draw()
 }
 
 #[cfg(test)]

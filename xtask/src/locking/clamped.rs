@@ -4,11 +4,11 @@ use super::course::{Course, Plan, Scene};
 use super::effort::LockingEffort;
 use super::findings::Findings;
 use super::isometry::{Isometry, Material};
-use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
-use super::table::Results;
 use super::targets::{Target, at_least, at_most, kept};
 use crate::draw::{Axis, Drawing};
+use crate::report::Table;
 use anyhow::Result;
 use isosheet_dynamics::Method;
 use isosheet_mesh::generate::{self, Diagonals};
@@ -213,48 +213,33 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     ))
 }
 
-fn runs(all: &[Fallen], plan: &Plan) -> Results {
-    let mut runs = Results::new(
-        "clamped-runs",
+fn runs(all: &[Fallen], plan: &Plan) -> Table {
+    Table::of(
         format!(
             "Every clamped sheet: steps of 1/60 s, {} s simulated, at most {} s of wall time",
             plan.duration,
             plan.patience.as_secs_f64()
         ),
+        all,
         &[
-            "number",
-            "kind",
-            "V",
-            "model",
-            "method",
-            "D, N m",
-            "ending",
-            "t at the end, s",
-            "factorisations per step",
-            "most in a step",
-            "drop, m",
-            "wall time, s",
-            "message",
+            ("number", &|f| f.number.into()),
+            ("kind", &|f| KINDS[f.kind()].into()),
+            ("V", &|f| f.vertices.into()),
+            ("model", &|f| f.isometry.to_string().into()),
+            ("method", &|f| f.by.name().into()),
+            ("D, N m", &|f| f.rigidity.into()),
+            ("ending", &|f| f.course.ending.name().into()),
+            ("t at the end, s", &|f| f.course.t.into()),
+            ("factorisations per step", &|f| {
+                f.course.effort.factorisations_per_step().into()
+            }),
+            ("most in a step", &|f| f.course.worst.into()),
+            ("drop, m", &|f| f.drop.into()),
+            ("wall time, s", &|f| f.course.effort.wall.into()),
+            ("message", &|f| f.course.ending.message().into()),
         ],
-    );
-    for f in all {
-        runs.push(vec![
-            f.number.into(),
-            KINDS[f.kind()].into(),
-            f.vertices.into(),
-            f.isometry.to_string().into(),
-            f.by.name().into(),
-            f.rigidity.into(),
-            f.course.ending.name().into(),
-            f.course.t.into(),
-            f.course.factorisations_per_step().into(),
-            f.course.worst.into(),
-            f.drop.into(),
-            f.course.wall.into(),
-            f.course.ending.message().into(),
-        ]);
-    }
-    runs
+    )
+    .named("clamped-runs")
 }
 
 /// The sheets of a model and a method.
@@ -268,10 +253,8 @@ fn ended(fallen: &[&Fallen]) -> usize {
 }
 
 /// The sheets by model, method and kind.
-fn summary(all: &[Fallen]) -> Results {
-    let mut table = Results::new(
-        "clamped",
-        "Clamped sheets by kind. Factorisations belong to the steps that were completed, the drop to the runs that reached their end",
+fn summary(all: &[Fallen]) -> Table {
+    let mut table = Table::new("Clamped sheets by kind. Factorisations belong to the steps that were completed, the drop to the runs that reached their end",
         &[
             "kind",
             "model",
@@ -286,7 +269,7 @@ fn summary(all: &[Fallen]) -> Results {
             "most in a step",
             "mean drop, m",
         ],
-    );
+    ).named("clamped");
     let mut groups: BTreeMap<(Isometry, By, usize), Vec<&Fallen>> = BTreeMap::new();
     for f in all {
         groups
@@ -327,8 +310,8 @@ fn summary(all: &[Fallen]) -> Results {
 
 /// Mean number of factorisations in the steps that were completed; nothing where none was.
 fn factorisations(fallen: &[&Fallen]) -> Option<f64> {
-    let steps: usize = fallen.iter().map(|f| f.course.steps).sum();
-    let factorisations: usize = fallen.iter().map(|f| f.course.factorisations).sum();
+    let steps: usize = fallen.iter().map(|f| f.course.effort.steps).sum();
+    let factorisations: usize = fallen.iter().map(|f| f.course.effort.factorisations).sum();
     (steps > 0).then(|| factorisations as f64 / steps as f64)
 }
 
@@ -404,6 +387,7 @@ fn plot(all: &[Fallen]) -> Drawing {
                 mesh: 0,
                 x: f.vertices as f64,
                 y: f.course
+                    .effort
                     .factorisations_per_step()
                     .filter(|_| f.course.ending.is_good()),
             })
@@ -411,11 +395,11 @@ fn plot(all: &[Fallen]) -> Drawing {
         guides: Vec::new(),
     };
     let costs = all.iter().filter(|f| f.course.ending.is_good());
-    let costs = costs.filter_map(|f| f.course.factorisations_per_step());
+    let costs = costs.filter_map(|f| f.course.effort.factorisations_per_step());
     Figure {
-        x: Scale::Linear(Axis::round("vertices ~V~", [15.0, 135.0], 4)),
+        x: Axis::round("vertices ~V~", [15.0, 135.0], 4),
         rows: vec![(
-            Scale::decades("factorisations a step", costs),
+            Axis::holding("factorisations a step", costs),
             (0..KINDS.len()).map(panel).collect(),
         )],
         meshes: vec!["one sheet".into()],

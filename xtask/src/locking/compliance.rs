@@ -6,12 +6,10 @@ use super::course::{Course, Plan, Scene};
 use super::findings::Findings;
 use super::isometry::{Material, PAPER, PAPER_RIGIDITY, elastic, rods, weak};
 use super::meshes::Pattern;
-use super::plot::{Scale, TITLE, not_ended_line, order};
+use super::plot::order;
 use super::records::Records;
-use super::table::Results;
-use crate::draw::{
-    Anchor, Drawing, Legend, Plot, Series, Stroke, TEXT, Vertical, column, palette, row,
-};
+use crate::draw::{Axis, Drawing, Legend, Marker, Series, column, row};
+use crate::report::{Chart, Missing, Table};
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method};
 use isosheet_mesh::{Sheet, VertexId, generate};
@@ -236,36 +234,26 @@ fn points(all: &[Run], problem: Problem) -> Vec<[f64; 2]> {
         .collect()
 }
 
-fn table(all: &[Run]) -> Results {
-    let mut table = Results::new(
-        "compliance-runs",
+fn table(all: &[Run]) -> Table {
+    Table::of(
         "Every run",
+        all,
         &[
-            "problem",
-            "stiffness, N/m",
-            "ending",
-            "factorisations per step",
-            "error",
-            "message",
+            ("problem", &|r| r.problem.name().into()),
+            ("stiffness, N/m", &|r| r.stiffness.into()),
+            ("ending", &|r| r.course.ending.name().into()),
+            ("factorisations per step", &|r| {
+                r.course.effort.factorisations_per_step().into()
+            }),
+            ("error", &|r| r.error.into()),
+            ("message", &|r| r.course.ending.message().into()),
         ],
-    );
-    for r in all {
-        table.push(vec![
-            r.problem.name().into(),
-            r.stiffness.into(),
-            r.course.ending.name().into(),
-            r.course.factorisations_per_step().into(),
-            r.error.into(),
-            r.course.ending.message().into(),
-        ]);
-    }
-    table
+    )
+    .named("compliance-runs")
 }
 
-fn orders(all: &[Run], problems: &[Problem]) -> Results {
-    let mut table = Results::new(
-        "compliance",
-        "Errors (metres for ladders, relative for the elastica) and their fitted power of the compliance: 1 where the stretch decides, 0 where the mesh \
+fn orders(all: &[Run], problems: &[Problem]) -> Table {
+    let mut table = Table::new("Errors (metres for ladders, relative for the elastica) and their fitted power of the compliance: 1 where the stretch decides, 0 where the mesh \
          does, negative where the sheet locks",
         &[
             "problem",
@@ -275,7 +263,7 @@ fn orders(all: &[Run], problems: &[Problem]) -> Results {
             "error at the stiffest",
             "power",
         ],
-    );
+    ).named("compliance");
     for &problem in problems {
         let points = points(all, problem);
         let error = |p: &[f64; 2]| p[1];
@@ -298,12 +286,12 @@ fn plot(all: &[Run], sizes: &[usize]) -> Drawing {
     let is_ladder = |r: &&Run| matches!(r.problem, Problem::Ladder(_));
     let ladder_errors = all.iter().filter(is_ladder).filter_map(|r| r.error);
     let errors = all.iter().filter(|r| !is_ladder(r)).filter_map(|r| r.error);
-    let y = Scale::decades("relative error of the drop", errors);
+    let y = Axis::holding("relative error of the drop", errors);
     let of = LADDERS.map(|n| (Problem::Ladder(n), format!("ladder, {n} squares")));
     let mut elastic = vec![panel(
         (all, &of, 0),
         "Ladders",
-        Scale::decades("distance from rods, m", ladder_errors),
+        Axis::holding("distance from rods, m", ladder_errors),
         Legend::Right,
     )];
     let panels = |form: Form, name: &str, last: Legend| {
@@ -336,47 +324,41 @@ fn plot(all: &[Run], sizes: &[usize]) -> Drawing {
 fn panel(
     (all, problems, style): (&[Run], &[(Problem, String)], usize),
     title: &str,
-    y: Scale,
+    y: Axis,
     legend: Legend,
 ) -> Drawing {
-    let size = [120.0, 140.0];
-    let x = Scale::decades("compliance 1 / (~Eh~), m/N", [1e-7, 1e-3].into_iter());
     let styled = |(k, (problem, name)): (usize, &(Problem, String))| {
         Series::styled(style + k, name, points(all, *problem))
     };
     let mut series: Vec<Series> = problems.iter().enumerate().map(styled).collect();
-    let marks: Vec<(f64, Series)> = problems
-        .iter()
-        .zip(&series)
-        .flat_map(|((problem, _), series)| {
-            let of = all
-                .iter()
-                .filter(|r| r.problem == *problem && r.error.is_none());
-            of.map(|r| (size[0] * x.part(1.0 / r.stiffness), series.clone()))
-        })
-        .collect();
+    let not_ended = |((problem, _), series): (&(Problem, String), &Series)| {
+        let of = all.iter().filter(|r| r.problem == *problem);
+        let (colour, marker) = (series.colour, series.marker.unwrap_or(Marker::Disc));
+        let mark = |r: &Run| Missing {
+            x: 1.0 / r.stiffness,
+            beside: 0.0,
+            colour,
+            marker,
+        };
+        of.filter(|r| r.error.is_none())
+            .map(mark)
+            .collect::<Vec<_>>()
+    };
+    let missing = problems.iter().zip(&series).flat_map(not_ended).collect();
     if let (Problem::Ladder(_), [a, .., b]) = (problems[0].0, series[0].points.as_slice()) {
         let guide = vec![*a, [b[0], a[1] * b[0] / a[0]]];
         series.push(Series::guide("1 / (~Eh~)", guide));
     }
-    let mut drawing = Plot {
-        x: x.axis().clone(),
-        y: y.axis().clone(),
-        size,
+    Chart {
+        title: title.to_owned(),
+        x: Axis::holding("compliance 1 / (~Eh~), m/N", [1e-7, 1e-3]),
+        y,
+        size: [120.0, 140.0],
         series,
+        missing: Some(missing),
         legend,
     }
-    .draw();
-    let above = not_ended_line(&mut drawing, size);
-    let rim = Stroke::new(palette::WHITE, 0.4);
-    for (x, series) in marks {
-        if let Some(marker) = series.marker {
-            marker.draw(&mut drawing, [x, above], 1.8, series.colour, rim);
-        }
-    }
-    let (at, ink) = ([0.5 * size[0], size[1] + TITLE], palette::INK);
-    drawing.text(at, title, TEXT, Anchor::Middle, Vertical::Above, ink);
-    drawing
+    .draw()
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::limit::{GivenUp, Guard, unless_given_up};
 use crate::interrupt::Interrupted;
+use crate::report::Effort;
 use anyhow::Result;
 use isosheet_collide::Contacts;
 use isosheet_dynamics::{
@@ -96,10 +97,8 @@ pub(super) struct Course {
     pub(super) reactions: Vec<Reaction>,
     /// Time at the end, seconds.
     pub(super) t: f64,
-    /// Steps that were completed; the counts below belong to these.
-    pub(super) steps: usize,
-    pub(super) iterations: usize,
-    pub(super) factorisations: usize,
+    /// What the completed steps cost; wall time of the whole run.
+    pub(super) effort: Effort,
     /// Most factorisations in one step.
     pub(super) worst: usize,
     /// Kinetic energy after the last complete step, joules.
@@ -109,8 +108,6 @@ pub(super) struct Course {
     /// Largest relative error of an edge length.
     pub(super) strain: f64,
     pub(super) kept: Kept,
-    /// Wall time, seconds.
-    pub(super) wall: f64,
 }
 
 impl Course {
@@ -120,22 +117,17 @@ impl Course {
             x: start.to_vec(),
             reactions: Vec::new(),
             t: 0.0,
-            steps: 0,
-            iterations: 0,
-            factorisations: 0,
+            effort: Effort::default(),
             worst: 0,
             kinetic: 0.0,
             speed: 0.0,
             strain: 0.0,
             kept: Kept::default(),
-            wall: 0.0,
         }
     }
 
     fn add(&mut self, state: &State, report: &StepReport) {
-        self.steps += 1;
-        self.iterations += report.iterations;
-        self.factorisations += report.factorisations;
+        self.effort.add(report);
         self.worst = self.worst.max(report.factorisations);
         self.kinetic = report.kinetic;
         self.strain = self.strain.max(report.strain);
@@ -146,16 +138,6 @@ impl Course {
         let square = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>();
         let fastest = state.v.as_chunks::<3>().0.iter().map(square);
         self.speed = fastest.fold(0.0, f64::max).sqrt();
-    }
-
-    /// Factorisations in each complete step; nothing where no step was completed.
-    pub(super) fn factorisations_per_step(&self) -> Option<f64> {
-        (self.steps > 0).then(|| self.factorisations as f64 / self.steps as f64)
-    }
-
-    /// Iterations in each complete step; nothing where no step was completed.
-    pub(super) fn iterations_per_step(&self) -> Option<f64> {
-        (self.steps > 0).then(|| self.iterations as f64 / self.steps as f64)
     }
 
     /// Height of the lowest vertex at the end, metres.
@@ -234,7 +216,7 @@ impl Scene {
         }
         course.x.copy_from_slice(&simulation.state().x);
         course.t = simulation.state().t;
-        course.wall = clock.elapsed().as_secs_f64();
+        course.effort.wall = clock.elapsed().as_secs_f64();
         Ok(course)
     }
 }
@@ -297,7 +279,7 @@ mod tests {
     fn runs_end_complete_at_rest_out_of_time_or_with_an_error() {
         let course = falling().run(&PLAN).unwrap();
         assert_eq!(
-            (course.ending.clone(), course.steps),
+            (course.ending.clone(), course.effort.steps),
             (Ending::Complete, 10)
         );
         // Damped methods of first and second order fall by g t^2 / 2 to within the order of a step.
@@ -311,13 +293,19 @@ mod tests {
             ..PLAN
         };
         let course = falling().run(&fast).unwrap();
-        assert_eq!((course.ending.clone(), course.steps), (Ending::Rest, QUIET));
+        assert_eq!(
+            (course.ending.clone(), course.effort.steps),
+            (Ending::Rest, QUIET)
+        );
         let hurried = Plan {
             patience: Duration::ZERO,
             ..PLAN
         };
         let course = falling().run(&hurried).unwrap();
-        assert_eq!((course.ending.name(), course.steps), ("wall time over", 0));
+        assert_eq!(
+            (course.ending.name(), course.effort.steps),
+            ("wall time over", 0)
+        );
         let mut broken = falling();
         broken.start[0] += 0.1;
         let course = broken.run(&PLAN).unwrap();

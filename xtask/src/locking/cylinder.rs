@@ -4,11 +4,11 @@ use super::course::{Course, Plan, Scene};
 use super::findings::Findings;
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::{Pattern, vertices, with_line};
-use super::plot::{Dot, Figure, Joined, Panel, Scale, order, slope};
+use super::plot::{Dot, Figure, Panel, order};
 use super::records::Records;
-use super::table::{Results, number};
 use super::targets::{Target, at_least, at_most, kept};
-use crate::draw::Drawing;
+use crate::draw::{Axis, Drawing};
+use crate::report::{Table, number};
 use anyhow::Result;
 use isosheet_dynamics::{Method, Profile, SheetModel, Support};
 use isosheet_mesh::{Sheet, VertexId};
@@ -230,51 +230,33 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     ))
 }
 
-fn table(all: &[Bent], plan: &Plan) -> Results {
-    let mut table = Results::new(
-        "cylinder",
+fn table(all: &[Bent], plan: &Plan) -> Table {
+    Table::of(
         format!(
             "Squares bent by clamps: implicit Euler, steps of {STEP} s, until no vertex is faster than {REST} m/s or {} s are simulated; at most \
              {} s of wall time. Energies are over D κ² / 2 times the area, the moment is over D κ times the width",
             plan.duration,
             plan.patience.as_secs_f64()
         ),
+        all,
         &[
-            "mesh",
-            "axis, degrees",
-            "h, m",
-            "V",
-            "model",
-            "ending",
-            "t at the end, s",
-            "factorisations per step",
-            "energy",
-            "bending energy",
-            "moment",
-            "distance, m",
-            "speed left, m/s",
-            "message",
+            ("mesh", &|b| b.mesh.0.to_string().into()),
+            ("axis, degrees", &|b| b.mesh.2.into()),
+            ("h, m", &|b| b.spacing().into()),
+            ("V", &|b| b.vertices.into()),
+            ("model", &|b| b.isometry.to_string().into()),
+            ("ending", &|b| b.course.ending.name().into()),
+            ("t at the end, s", &|b| b.course.t.into()),
+            ("factorisations per step", &|b| b.course.effort.factorisations_per_step().into()),
+            ("energy", &|b| b.energy.into()),
+            ("bending energy", &|b| b.bending.into()),
+            ("moment", &|b| b.moment.into()),
+            ("distance, m", &|b| b.distance.into()),
+            ("speed left, m/s", &|b| b.course.speed.into()),
+            ("message", &|b| b.course.ending.message().into()),
         ],
-    );
-    for b in all {
-        table.push(vec![
-            b.mesh.0.to_string().into(),
-            b.mesh.2.into(),
-            b.spacing().into(),
-            b.vertices.into(),
-            b.isometry.to_string().into(),
-            b.course.ending.name().into(),
-            b.course.t.into(),
-            b.course.factorisations_per_step().into(),
-            b.energy.into(),
-            b.bending.into(),
-            b.moment.into(),
-            b.distance.into(),
-            b.course.speed.into(),
-            b.course.ending.message().into(),
-        ]);
-    }
-    table
+    )
+    .named("cylinder")
 }
 
 type Measure = fn(&Bent) -> Option<f64>;
@@ -291,12 +273,10 @@ fn fitted(
     order(&points?, FLOOR)
 }
 
-fn orders(all: &[Bent], directions: &[f64]) -> Results {
-    let mut table = Results::new(
-        "cylinder-orders",
-        "Fitted powers of h of the errors of energy and moment where all runs came to rest; values below 1e-5 are left out",
+fn orders(all: &[Bent], directions: &[f64]) -> Table {
+    let mut table = Table::new("Fitted powers of h of the errors of energy and moment where all runs came to rest; values below 1e-5 are left out",
         &["mesh", "axis, degrees", "model", "energy", "moment"],
-    );
+    ).named("cylinder-orders");
     for isometry in Isometry::ALL {
         for pattern in Pattern::ALL {
             for &degrees in directions {
@@ -382,37 +362,16 @@ fn plot(all: &[Bent], directions: &[f64], sizes: &[usize]) -> Drawing {
                     y: measure(b),
                 })
                 .collect();
-            Panel {
-                title: format!("axis at {degrees}°"),
-                guides: vec![slope(&dots, 2.0)],
-                dots,
-            }
+            Panel::of_second_order(format!("axis at {degrees}°"), dots)
         };
         let values = all.iter().filter_map(measure).filter(|e| *e > FLOOR);
         (
-            Scale::decades(name, values),
+            Axis::holding(name, values),
             directions.iter().map(panel).collect(),
         )
     });
-    let tick = |&cells: &usize| {
-        let h = SIDE / cells as f64;
-        (
-            h,
-            format!("{:.3}", 1e3 * h)
-                .trim_end_matches('0')
-                .trim_end_matches('.')
-                .to_owned(),
-        )
-    };
-    Figure {
-        x: Scale::ticks("~h~, mm", sizes.iter().map(tick).collect()),
-        rows: rows.to_vec(),
-        meshes: Pattern::ALL.map(|p| p.to_string()).to_vec(),
-        guide: "~h~^{2}".into(),
-        joined: Joined::Yes,
-        size: [96.0, 130.0],
-    }
-    .draw()
+    let spacings: Vec<f64> = sizes.iter().map(|&n| SIDE / n as f64).collect();
+    Figure::of_spacings(&spacings, rows.to_vec()).draw()
 }
 
 #[cfg(test)]

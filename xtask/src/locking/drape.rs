@@ -5,12 +5,12 @@ use super::course::{Course, Plan, Scene};
 use super::disk::{DISK, Mesh};
 use super::findings::Findings;
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
-use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
 use super::rim::{Rim, analyse};
-use super::table::Results;
 use super::targets::{Target, at_least, kept, strain};
 use crate::draw::{Axis, Drawing};
+use crate::report::Table;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Gravity, ImplicitOptions, Method};
@@ -276,9 +276,9 @@ fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
     let folds = (0..=most).step_by(if most > 12 { 2 } else { 1 });
     let folds = folds.map(|n| (n as f64, n.to_string())).collect();
     Figure {
-        x: Scale::Linear(Axis::linear("mesh", range, ticks.collect())),
+        x: Axis::linear("mesh", range, ticks.collect()),
         rows: vec![(
-            Scale::Linear(Axis::linear("folds", [0.0, most as f64 + 0.5], folds)),
+            Axis::linear("folds", [0.0, most as f64 + 0.5], folds),
             frictions.iter().map(panel).collect(),
         )],
         meshes: Mesh::ALL.map(|m| m.name().to_owned()).to_vec(),
@@ -289,58 +289,37 @@ fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
     .draw()
 }
 
-fn runs(all: &[Drape]) -> Results {
-    let mut table = Results::new(
-        "drape-runs",
+fn runs(all: &[Drape]) -> Table {
+    Table::of(
         "Every drape",
+        all,
         &[
-            "mesh",
-            "friction",
-            "seed",
-            "V",
-            "model",
-            "ending",
-            "t at the end, s",
-            "factorisations per step",
-            "folds",
-            "largest wave",
-            "its share",
-            "rim, m",
-            "energy, J",
-            "strain",
-            "centre off by, m",
-            "speed left, m/s",
-            "message",
+            ("mesh", &|d| d.mesh.name().into()),
+            ("friction", &|d| d.friction.into()),
+            ("seed", &|d| (d.seed as usize).into()),
+            ("V", &|d| d.vertices.into()),
+            ("model", &|d| d.isometry.to_string().into()),
+            ("ending", &|d| d.course.ending.name().into()),
+            ("t at the end, s", &|d| d.course.t.into()),
+            ("factorisations per step", &|d| {
+                d.course.effort.factorisations_per_step().into()
+            }),
+            ("folds", &|d| d.rim.map(|r| r.folds as f64).into()),
+            ("largest wave", &|d| d.rim.map(|r| r.wave as f64).into()),
+            ("its share", &|d| d.rim.map(|r| r.share).into()),
+            ("rim, m", &|d| d.rim.map(|r| r.mean).into()),
+            ("energy, J", &|d| d.energy.into()),
+            ("strain", &|d| d.course.strain.into()),
+            ("centre off by, m", &|d| d.aside.into()),
+            ("speed left, m/s", &|d| d.course.speed.into()),
+            ("message", &|d| d.course.ending.message().into()),
         ],
-    );
-    for d in all {
-        table.push(vec![
-            d.mesh.name().into(),
-            d.friction.into(),
-            (d.seed as usize).into(),
-            d.vertices.into(),
-            d.isometry.to_string().into(),
-            d.course.ending.name().into(),
-            d.course.t.into(),
-            d.course.factorisations_per_step().into(),
-            d.rim.map(|r| r.folds as f64).into(),
-            d.rim.map(|r| r.wave as f64).into(),
-            d.rim.map(|r| r.share).into(),
-            d.rim.map(|r| r.mean).into(),
-            d.energy.into(),
-            d.course.strain.into(),
-            d.aside.into(),
-            d.course.speed.into(),
-            d.course.ending.message().into(),
-        ]);
-    }
-    table
+    )
+    .named("drape-runs")
 }
 
-fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Results {
-    let mut table = Results::new(
-        "drape",
-        format!(
+fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Table {
+    let mut table = Table::new(format!(
             "Disks on a round table: default method, steps of 1/60 s, {} s simulated, at most {} s of wall time. Numbers of folds with how often \
              they occur, of the disks that are still on the table, medians and ranges (largest minus smallest) are of the runs that reached their end",
             plan.duration,
@@ -361,7 +340,7 @@ fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Re
             "speed left, m/s",
             "centre off by, m",
         ],
-    );
+    ).named("drape");
     for isometry in Isometry::ALL {
         for &mesh in meshes {
             for &friction in frictions {

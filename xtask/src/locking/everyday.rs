@@ -5,11 +5,11 @@ use super::effort::LockingEffort;
 use super::findings::Findings;
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::vertices;
-use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
-use super::table::Results;
 use super::targets::{at_least, kept, strain};
 use crate::draw::{Axis, Drawing};
+use crate::report::Table;
 use anyhow::Result;
 use isosheet_dynamics::{Method, PointProfile, Profile, SheetModel};
 use isosheet_mesh::generate::{self, Diagonals};
@@ -252,48 +252,31 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     ))
 }
 
-fn table(all: &[Day], plan: &Plan) -> Results {
-    let mut table = Results::new(
-        "everyday",
+fn table(all: &[Day], plan: &Plan) -> Table {
+    Table::of(
         format!(
             "Everyday scenes: {} s simulated, at most {} s of wall time. The energy of bending is that at the end",
             plan.duration,
             plan.patience.as_secs_f64()
         ),
+        all,
         &[
-            "scene",
-            "V",
-            "model",
-            "ending",
-            "t at the end, s",
-            "factorisations per step",
-            "most in a step",
-            "lowest vertex, m",
-            "highest vertex, m",
-            "energy of bending, J",
-            "strain",
-            "wall time, s",
-            "message",
+            ("scene", &|d| d.scene.to_string().into()),
+            ("V", &|d| d.vertices.into()),
+            ("model", &|d| d.isometry.to_string().into()),
+            ("ending", &|d| d.course.ending.name().into()),
+            ("t at the end, s", &|d| d.course.t.into()),
+            ("factorisations per step", &|d| d.course.effort.factorisations_per_step().into()),
+            ("most in a step", &|d| d.course.worst.into()),
+            ("lowest vertex, m", &|d| d.heights[0].into()),
+            ("highest vertex, m", &|d| d.heights[1].into()),
+            ("energy of bending, J", &|d| d.bending.into()),
+            ("strain", &|d| d.course.strain.into()),
+            ("wall time, s", &|d| d.course.effort.wall.into()),
+            ("message", &|d| d.course.ending.message().into()),
         ],
-    );
-    for d in all {
-        table.push(vec![
-            d.scene.to_string().into(),
-            d.vertices.into(),
-            d.isometry.to_string().into(),
-            d.course.ending.name().into(),
-            d.course.t.into(),
-            d.course.factorisations_per_step().into(),
-            d.course.worst.into(),
-            d.heights[0].into(),
-            d.heights[1].into(),
-            d.bending.into(),
-            d.course.strain.into(),
-            d.course.wall.into(),
-            d.course.ending.message().into(),
-        ]);
-    }
-    table
+    )
+    .named("everyday")
 }
 
 /// Factorisations a step of every scene.
@@ -310,6 +293,7 @@ fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
         .filter_map(|d| {
             let cost = d
                 .course
+                .effort
                 .factorisations_per_step()
                 .filter(|_| d.course.ending.is_good());
             Some(Dot {
@@ -331,11 +315,11 @@ fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
     let x = Axis::linear("squares across, or mesh", range, ticks.collect());
     let cost = all
         .iter()
-        .filter_map(|d| d.course.factorisations_per_step());
+        .filter_map(|d| d.course.effort.factorisations_per_step());
     Figure {
-        x: Scale::Linear(x),
+        x: (x),
         rows: vec![(
-            Scale::decades("factorisations a step", cost),
+            Axis::holding("factorisations a step", cost),
             vec![Panel {
                 title: "Everyday scenes".into(),
                 dots,

@@ -4,11 +4,11 @@ use super::course::{Course, Plan, Scene};
 use super::findings::Findings;
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::nearest;
-use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
-use super::table::Results;
 use super::targets::{Target, at_most, kept, strain};
-use crate::draw::Drawing;
+use crate::draw::{Axis, Drawing};
+use crate::report::Table;
 use anyhow::Result;
 use isosheet_dynamics::{Method, project_positions};
 use isosheet_mesh::{Sheet, VertexId, generate};
@@ -61,7 +61,7 @@ impl Hanging {
 
     /// Factorisations a step of a run that reached its end.
     fn cost(&self) -> Option<f64> {
-        let cost = self.course.factorisations_per_step();
+        let cost = self.course.effort.factorisations_per_step();
         cost.filter(|_| self.course.ending.is_good())
     }
 }
@@ -100,10 +100,8 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     ))
 }
 
-fn table(all: &[Hanging], plan: &Plan) -> Results {
-    let mut table = Results::new(
-        "iterations",
-        format!(
+fn table(all: &[Hanging], plan: &Plan) -> Table {
+    let mut table = Table::new(format!(
             "The hanging sheet: {} s simulated, at most {} s of wall time. Counts belong to the steps that were completed, \
              the wall time per step includes the time of one that was not",
             plan.duration,
@@ -123,19 +121,20 @@ fn table(all: &[Hanging], plan: &Plan) -> Results {
             "strain",
             "message",
         ],
-    );
+    ).named("iterations");
     for h in all {
         let course = &h.course;
-        let per_step = (course.steps > 0).then(|| course.wall / course.steps as f64);
+        let per_step =
+            (course.effort.steps > 0).then(|| course.effort.wall / course.effort.steps as f64);
         table.push(vec![
             format!("M^{}", h.level).into(),
             h.vertices.into(),
             h.rigidity.unwrap_or(0.0).into(),
             h.isometry.to_string().into(),
             course.ending.name().into(),
-            course.steps.into(),
-            course.iterations_per_step().into(),
-            course.factorisations_per_step().into(),
+            course.effort.steps.into(),
+            course.effort.iterations_per_step().into(),
+            course.effort.factorisations_per_step().into(),
             course.worst.into(),
             per_step.into(),
             course.strain.into(),
@@ -188,9 +187,9 @@ fn plot(all: &[Hanging], levels: &[u32]) -> Drawing {
     let tick = |level: &u32| (f64::from(1_u32 << (level + 1)), format!("M^{{{level}}}"));
     let costs = all.iter().filter_map(Hanging::cost);
     Figure {
-        x: Scale::ticks("mesh", levels.iter().map(tick).collect()),
+        x: Axis::at("mesh", levels.iter().map(tick).collect()),
         rows: vec![(
-            Scale::decades("factorisations a step", costs),
+            Axis::holding("factorisations a step", costs),
             RIGIDITIES.map(panel).to_vec(),
         )],
         meshes: vec!["union jack".into()],
@@ -241,8 +240,11 @@ mod tests {
         let scene = scene(Isometry::Rods, &sheet, VertexId(20), Some(5e-4)).unwrap();
         assert_eq!(scene.model.pins(), [VertexId(20)]);
         let course = scene.run(&plan).unwrap();
-        assert!(course.ending.is_good() && course.steps == 6, "{course:?}");
-        assert!(course.factorisations >= 6 && course.iterations >= 6);
+        assert!(
+            course.ending.is_good() && course.effort.steps == 6,
+            "{course:?}"
+        );
+        assert!(course.effort.factorisations >= 6 && course.effort.iterations >= 6);
         assert!(course.lowest() < -0.01 && course.strain < 1e-11);
     }
 }

@@ -1,11 +1,9 @@
 //! Figures of measured numbers (colour: model, symbol: mesh), and the orders fitted to them.
 
 use super::isometry::Isometry;
-use crate::draw::{
-    Anchor, Axis, Drawing, Legend, Line, Marker, Plot, Series, Stroke, TEXT, Vertical, column,
-    palette, row,
-};
-use crate::scale::exponent;
+use super::meshes::Pattern;
+use crate::draw::{Axis, Drawing, Legend, Line, Marker, Series, column, palette, row};
+use crate::report::{Chart, Missing, exponent, number, order_line};
 
 /// Symbols of the meshes of a figure, in order.
 const MARKERS: [Marker; 4] = [
@@ -14,10 +12,6 @@ const MARKERS: [Marker; 4] = [
     Marker::Triangle,
     Marker::Diamond,
 ];
-
-/// Heights above the axes of the line of runs that did not end and of the title, points.
-const NOT_ENDED: f64 = 13.0;
-pub(super) const TITLE: f64 = 22.0;
 
 /// Distance of the symbols of two models or meshes on that line, points.
 const BESIDE: f64 = 3.0;
@@ -52,8 +46,8 @@ pub(super) struct Panel {
 /// A figure: panels in rows.
 #[derive(Clone, Debug)]
 pub(super) struct Figure {
-    pub(super) x: Scale,
-    pub(super) rows: Vec<(Scale, Vec<Panel>)>,
+    pub(super) x: Axis,
+    pub(super) rows: Vec<(Axis, Vec<Panel>)>,
     /// Names of the meshes: of each symbol.
     pub(super) meshes: Vec<String>,
     /// Name of the lines for comparison.
@@ -63,61 +57,31 @@ pub(super) struct Figure {
     pub(super) size: [f64; 2],
 }
 
-/// An axis, and whether it is one of logarithms.
-#[derive(Clone, Debug)]
-pub(super) enum Scale {
-    Linear(Axis),
-    Logarithmic(Axis),
-}
-
-impl Scale {
-    /// A logarithmic axis over whole decades that hold all values.
-    pub(super) fn decades(label: &str, values: impl Iterator<Item = f64>) -> Self {
-        let (mut low, mut high) = (i32::MAX, i32::MIN);
-        for v in values.filter(|v| v.is_finite() && *v > 0.0) {
-            low = low.min((v.log10() + 1e-9).floor() as i32);
-            high = high.max((v.log10() - 1e-9).ceil() as i32);
+impl Panel {
+    /// Errors against the spacing, with a line of the second order.
+    pub(super) fn of_second_order(title: String, dots: Vec<Dot>) -> Self {
+        Self {
+            title,
+            guides: vec![order_line(&measured(&dots), 2.0)],
+            dots,
         }
-        if low > high {
-            (low, high) = (0, 1);
-        }
-        let high = high.max(low + 1);
-        let every = if high - low > 7 { 2 } else { 1 };
-        Self::Logarithmic(Axis::decades(label, low, high, every))
-    }
-
-    /// A logarithmic axis with a tick at every one of some values, and room beside the first and the last.
-    pub(super) fn ticks(label: &str, ticks: Vec<(f64, String)>) -> Self {
-        let mut axis = Axis::decades(label, 0, 1, 1);
-        let low = ticks.iter().map(|t| t.0).fold(f64::INFINITY, f64::min);
-        let high = ticks.iter().map(|t| t.0).fold(0.0, f64::max);
-        axis.range = [low / 1.5, high * 1.5];
-        axis.ticks = ticks;
-        Self::Logarithmic(axis)
-    }
-
-    pub(super) fn axis(&self) -> &Axis {
-        match self {
-            Self::Linear(axis) | Self::Logarithmic(axis) => axis,
-        }
-    }
-
-    /// Where on the axis a value is: 0 and 1 are the ends.
-    pub(super) fn part(&self, value: f64) -> f64 {
-        let [low, high] = self.axis().range;
-        match self {
-            Self::Linear(_) => (value - low) / (high - low),
-            Self::Logarithmic(_) => (value / low).ln() / (high / low).ln(),
-        }
-    }
-
-    /// Whether a value is on the axis.
-    fn holds(&self, value: f64) -> bool {
-        (-1e-9..=1.0 + 1e-9).contains(&self.part(value))
     }
 }
 
 impl Figure {
+    /// Errors against the spacings (metres) of meshes by all patterns.
+    pub(super) fn of_spacings(spacings: &[f64], rows: Vec<(Axis, Vec<Panel>)>) -> Self {
+        let ticks = spacings.iter().map(|h| (*h, number(1e3 * h)));
+        Self {
+            x: Axis::at("~h~, mm", ticks.collect()),
+            rows,
+            meshes: Pattern::ALL.map(|p| p.to_string()).to_vec(),
+            guide: "~h~^{2}".into(),
+            joined: Joined::Yes,
+            size: [96.0, 130.0],
+        }
+    }
+
     /// The figure; the names of models, meshes and lines are to the right of the first row.
     pub(super) fn draw(&self) -> Drawing {
         let rows: Vec<Drawing> = self
@@ -145,42 +109,34 @@ impl Figure {
         column(&rows, 14.0)
     }
 
-    fn panel(&self, panel: &Panel, y: &Scale, legend: Vec<Series>) -> Drawing {
-        let mut series: Vec<Series> = panel
-            .guides
-            .iter()
-            .map(|points| Series::guide("", clipped(points, y)))
-            .collect();
+    fn panel(&self, panel: &Panel, y: &Axis, legend: Vec<Series>) -> Drawing {
+        let guide = |points: &Vec<[f64; 2]>| Series::guide("", points.clone());
+        let mut series: Vec<Series> = panel.guides.iter().map(guide).collect();
         for isometry in Isometry::ALL {
             for mesh in 0..self.meshes.len() {
-                series.push(self.series(panel, y, isometry, mesh));
+                series.push(self.series(panel, isometry, mesh));
             }
         }
         series.extend(legend);
-        let mut drawing = Plot {
-            x: self.x.axis().clone(),
-            y: y.axis().clone(),
+        Chart {
+            title: panel.title.clone(),
+            x: self.x.clone(),
+            y: y.clone(),
             size: self.size,
             series,
+            missing: Some(self.missing(panel)),
             legend: Legend::Right,
         }
-        .draw();
-        self.not_ended(&mut drawing, panel);
-        let [w, h] = self.size;
-        let at = [0.5 * w, h + TITLE];
-        let (anchor, ink) = (Anchor::Middle, palette::INK);
-        drawing.text(at, &panel.title, TEXT, anchor, Vertical::Above, ink);
-        drawing
+        .draw()
     }
 
     /// The runs of a model on a mesh that ended.
-    fn series(&self, panel: &Panel, y: &Scale, isometry: Isometry, mesh: usize) -> Series {
+    fn series(&self, panel: &Panel, isometry: Isometry, mesh: usize) -> Series {
         let of = panel.dots.iter();
         let of = of.filter(|d| d.isometry == isometry && d.mesh == mesh);
-        let points = of.filter_map(|d| Some([d.x, d.y?]));
         Series {
             name: String::new(),
-            points: points.filter(|p| y.holds(p[1])).collect(),
+            points: of.filter_map(|d| Some([d.x, d.y?])).collect(),
             colour: isometry.colour(),
             marker: Some(MARKERS[mesh % MARKERS.len()]),
             line: match self.joined {
@@ -190,32 +146,26 @@ impl Figure {
         }
     }
 
-    /// The line above the axes with the runs that did not end.
-    fn not_ended(&self, drawing: &mut Drawing, panel: &Panel) {
-        let y = not_ended_line(drawing, self.size);
-        let rim = Stroke::new(palette::WHITE, 0.4);
-        for (x, dot) in self.marks(panel) {
-            let marker = MARKERS[dot.mesh % MARKERS.len()];
-            marker.draw(drawing, [x, y], 1.8, dot.isometry.colour(), rim);
-        }
-    }
-
-    /// The runs that did not end with their horizontal places, points: models and meshes beside one another.
-    fn marks(&self, panel: &Panel) -> Vec<(f64, Dot)> {
+    /// The runs that did not end: models and meshes beside one another.
+    fn missing(&self, panel: &Panel) -> Vec<Missing> {
         // Where lines join the meshes of a model, all of them are at the same places.
         let meshes = match self.joined {
             Joined::Yes => self.meshes.len(),
             Joined::No => 1,
         };
         let count = Isometry::ALL.len() * meshes;
-        let place = |dot: &Dot| {
+        let mark = |dot: &Dot| {
             let model = Isometry::ALL.iter().position(|m| *m == dot.isometry);
             let place = model.unwrap_or(0) * meshes + dot.mesh % meshes;
-            let beside = BESIDE * (place as f64 - 0.5 * (count as f64 - 1.0));
-            (self.size[0] * self.x.part(dot.x) + beside, *dot)
+            Missing {
+                x: dot.x,
+                beside: BESIDE * (place as f64 - 0.5 * (count as f64 - 1.0)),
+                colour: dot.isometry.colour(),
+                marker: MARKERS[dot.mesh % MARKERS.len()],
+            }
         };
         let not_ended = panel.dots.iter().filter(|d| d.y.is_none());
-        not_ended.map(place).collect()
+        not_ended.map(mark).collect()
     }
 
     /// Series without points for the names of models, meshes and lines.
@@ -241,44 +191,9 @@ impl Figure {
     }
 }
 
-/// Draws the line of runs that did not end above axes of a size (points), and returns its height.
-pub(super) fn not_ended_line(drawing: &mut Drawing, [width, height]: [f64; 2]) -> f64 {
-    let (y, grey) = (height + NOT_ENDED, palette::GREY);
-    drawing.line(&[[0.0, y], [width, y]], Stroke::new(grey, 0.5).dashed());
-    let at = [-4.0, y];
-    drawing.text(at, "did not end", 6.0, Anchor::End, Vertical::Centre, grey);
-    y
-}
-
-/// The points of a line that are on the axis.
-fn clipped(points: &[[f64; 2]], y: &Scale) -> Vec<[f64; 2]> {
-    let points = points.iter().copied();
-    points.filter(|p| y.holds(p[1])).collect()
-}
-
-/// A line `y ~ x^power` over the range of `x` of some dots, through the geometric mean of their values at the
-/// largest `x`; nothing where there are none.
-pub(super) fn slope(dots: &[Dot], power: f64) -> Vec<[f64; 2]> {
-    let ended = || {
-        dots.iter()
-            .filter_map(|d| Some([d.x, d.y.filter(|y| *y > 0.0)?]))
-    };
-    let high = ended().map(|p| p[0]).fold(0.0, f64::max);
-    let low = ended().map(|p| p[0]).fold(f64::INFINITY, f64::min);
-    let last: Vec<f64> = ended()
-        .filter(|p| p[0] > 0.999 * high)
-        .map(|p| p[1].ln())
-        .collect();
-    if last.is_empty() || low >= high {
-        return Vec::new();
-    }
-    let mean = (last.iter().sum::<f64>() / last.len() as f64).exp();
-    // Many points, so that what leaves the axes can be left out.
-    let point = |k: i32| {
-        let x = high * (low / high).powf(f64::from(k) / 32.0);
-        [x, mean * (x / high).powf(power)]
-    };
-    (0..=32).map(point).collect()
+/// The points of the runs that ended.
+fn measured(dots: &[Dot]) -> Vec<[f64; 2]> {
+    dots.iter().filter_map(|d| Some([d.x, d.y?])).collect()
 }
 
 /// Fitted power of the errors above `floor`, the level of round-off and of the solver's tolerances, below
@@ -305,27 +220,6 @@ mod tests {
         assert_eq!(order(&points[1..], 0.0), None);
     }
 
-    #[test]
-    fn guides_have_their_slope_and_pass_through_the_mean() {
-        let dot = |x: f64, y: Option<f64>| Dot {
-            isometry: Isometry::Rods,
-            mesh: 0,
-            x,
-            y,
-        };
-        let dots = [
-            dot(1.0, Some(1e-3)),
-            dot(4.0, Some(0.1)),
-            dot(4.0, Some(0.4)),
-            dot(8.0, None),
-        ];
-        let line = slope(&dots, 2.0);
-        assert!((order(&line, 0.0).unwrap() - 2.0).abs() < 1e-12);
-        assert!((line[0][0] - 4.0).abs() < 1e-12 && (line[0][1] - 0.2).abs() < 1e-12);
-        assert!((line[32][0] - 1.0).abs() < 1e-12);
-        assert!(slope(&dots[3..], 2.0).is_empty());
-    }
-
     /// Marks of runs that did not end are near their place, and those of two models or meshes apart.
     #[test]
     fn marks_of_runs_that_did_not_end_are_apart() {
@@ -340,31 +234,23 @@ mod tests {
             dots.extend([0, 1].map(|mesh| dot(isometry, mesh, None)));
         }
         let figure = Figure {
-            x: Scale::ticks("h", vec![(1.0, "1".into()), (4.0, "4".into())]),
+            x: Axis::at("h", vec![(1.0, "1".into()), (4.0, "4".into())]),
             rows: Vec::new(),
             meshes: vec!["a".into(), "b".into()],
             guide: String::new(),
             joined: Joined::Yes,
             size: [100.0, 80.0],
         };
-        let marks = figure.marks(&Panel {
+        let marks = figure.missing(&Panel {
             title: String::new(),
             dots,
             guides: Vec::new(),
         });
         assert_eq!(marks.len(), 2 * Isometry::ALL.len());
-        let mean = marks.iter().map(|m| m.0).sum::<f64>() / marks.len() as f64;
-        assert!((mean - 50.0).abs() < 1e-9, "{mean}");
+        let mean = marks.iter().map(|m| m.beside).sum::<f64>() / marks.len() as f64;
+        assert!(mean.abs() < 1e-9, "{mean}");
         for pair in marks.windows(2) {
-            assert!((pair[1].0 - pair[0].0 - BESIDE).abs() < 1e-9);
+            assert!((pair[1].beside - pair[0].beside - BESIDE).abs() < 1e-9);
         }
-    }
-
-    #[test]
-    fn places_on_axes() {
-        let log = Scale::decades("e", [0.02, 3.0].into_iter());
-        assert!((log.part(0.1) - 1.0 / 3.0).abs() < 1e-12 && log.holds(10.0) && !log.holds(11.0));
-        let ticks = Scale::ticks("h", vec![(1.0, "1".into()), (4.0, "4".into())]);
-        assert!((ticks.part(2.0) - 0.5).abs() < 1e-12);
     }
 }

@@ -1,11 +1,10 @@
 //! Runs that are computed on all cores and kept in the output folder, so that an interrupted report
 //! continues where it stopped.
 
-use super::Part;
 use super::effort::LockingEffort;
 use super::isometry::Isometry;
-use crate::progress::{Progress, note};
-use crate::store::{Extent, Store};
+use crate::progress::Progress;
+use crate::store::{Store, Unit};
 use anyhow::Result;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -16,7 +15,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// The runs of one yardstick.
 pub(super) struct Records<'a> {
     pub(super) store: &'a Store,
-    pub(super) part: Part,
+    /// Its name.
+    pub(super) part: String,
     pub(super) effort: LockingEffort,
 }
 
@@ -51,25 +51,21 @@ impl Records<'_> {
     ) -> Result<Vec<T>> {
         let title = format!("{}, {name}", self.part);
         let word = name.replace(|c: char| !c.is_alphanumeric(), "");
-        let unit = format!("locking-{}-{word}", self.part);
-        let options = json!({ "effort": self.effort });
-        let kept = self.store.current(&unit, &options);
-        if let Some(runs) = kept.and_then(|s| serde_json::from_value(s.facts).ok()) {
-            note(&title, "kept");
-            return Ok(runs);
-        }
-        let bar = Progress::start(title, jobs.len());
-        let runs = each(jobs, |job| {
-            let result = run(job);
-            bar.step();
-            result
-        })?;
-        bar.finish("measured");
-        let facts = serde_json::to_value(&runs)?;
-        let draft = self.store.draft()?;
-        let extent = Extent::Complete;
-        self.store.commit(draft, &unit, &options, extent, facts)?;
-        Ok(runs)
+        let unit = Unit {
+            name: format!("locking-{}-{word}", self.part),
+            title: title.clone(),
+            options: json!({ "effort": self.effort }),
+        };
+        self.store.keep(&unit, |_| {
+            let bar = Progress::start(title, jobs.len());
+            let runs = each(jobs, |job| {
+                let result = run(job);
+                bar.step();
+                result
+            })?;
+            bar.finish("measured");
+            Ok(runs)
+        })
     }
 }
 
@@ -113,7 +109,7 @@ mod tests {
         let store = Store::open(&folder.path().join("out")).unwrap();
         let records = Records {
             store: &store,
-            part: Part::Sliding,
+            part: "sliding".into(),
             effort: LockingEffort::Quick,
         };
         let count = AtomicUsize::new(0);

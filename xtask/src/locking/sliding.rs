@@ -5,11 +5,11 @@ use super::course::{Kept, Plan, Scene};
 use super::findings::Findings;
 use super::isometry::{Isometry, Material};
 use super::meshes::Pattern;
-use super::plot::{Dot, Figure, Joined, Panel, Scale};
+use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
-use super::table::Results;
 use super::targets::{Target, at_most, kept};
 use crate::draw::{Axis, Drawing};
+use crate::report::Table;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::Method;
@@ -133,34 +133,23 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     ))
 }
 
-fn table(all: &[Slide], halvings: usize) -> Results {
-    let mut table = Results::new(
-        "sliding",
+fn table(all: &[Slide], halvings: usize) -> Table {
+    Table::of(
         format!(
             "Critical tangent of the tilt over the coefficient of friction, 1 by Coulomb's law: {halvings} halvings"
         ),
+        all,
         &[
-            "mesh",
-            "V",
-            "model",
-            "friction",
-            "stays at",
-            "slides at",
-            "not decided",
+            ("mesh", &|s| s.pattern.to_string().into()),
+            ("V", &|s| s.vertices.into()),
+            ("model", &|s| s.isometry.to_string().into()),
+            ("friction", &|s| s.mu.into()),
+            ("stays at", &|s| s.found.below.into()),
+            ("slides at", &|s| s.found.above.into()),
+            ("not decided", &|s| s.found.undecided.as_str().into()),
         ],
-    );
-    for s in all {
-        table.push(vec![
-            s.pattern.to_string().into(),
-            s.vertices.into(),
-            s.isometry.to_string().into(),
-            s.mu.into(),
-            s.found.below.into(),
-            s.found.above.into(),
-            s.found.undecided.as_str().into(),
-        ]);
-    }
-    table
+    )
+    .named("sliding")
 }
 
 fn targets(isometry: Isometry, all: &[Slide]) -> Vec<Target> {
@@ -189,13 +178,9 @@ fn plot(all: &[Slide], coefficients: &[f64]) -> Drawing {
     ];
     let ticks = coefficients.iter().map(|mu| (*mu, mu.to_string()));
     Figure {
-        x: Scale::ticks("coefficient of friction ~μ~", ticks.collect()),
+        x: Axis::at("coefficient of friction ~μ~", ticks.collect()),
         rows: vec![(
-            Scale::Linear(Axis::round(
-                "critical tangent of the tilt / ~μ~",
-                [0.98, 1.02],
-                4,
-            )),
+            Axis::round("critical tangent of the tilt / ~μ~", [0.98, 1.02], 4),
             vec![Panel {
                 title: "Beginning of sliding".into(),
                 dots: dots.collect(),

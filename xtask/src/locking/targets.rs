@@ -2,7 +2,7 @@
 
 use super::course::{Course, Kept};
 use super::isometry::Isometry;
-use super::table::Results;
+use crate::report::Table;
 use serde::{Deserialize, Serialize};
 
 /// On which side of its bound a measured number has to be.
@@ -12,6 +12,17 @@ pub(super) enum Bound {
     AtMost,
     AtLeast,
     Above,
+}
+
+impl Bound {
+    /// For people.
+    fn words(self) -> &'static str {
+        match self {
+            Self::AtMost => "at most",
+            Self::AtLeast => "at least",
+            Self::Above => "above",
+        }
+    }
 }
 
 /// A requirement, and what a model reaches.
@@ -108,37 +119,21 @@ pub(super) fn kept(model: Isometry, runs: impl Iterator<Item = Kept>) -> Vec<Tar
 }
 
 /// All requirements as a table.
-pub(super) fn table<'a>(targets: impl Iterator<Item = (&'a str, &'a Target)>) -> Results {
-    let mut table = Results::new(
-        "targets",
+pub(super) fn table<'a>(targets: impl Iterator<Item = (&'a str, &'a Target)>) -> Table {
+    Table::of(
         "Measured against target. A number is the worst of all runs that the requirement names; where it is missing, one of these runs did not end",
+        targets,
         &[
-            "yardstick",
-            "quantity",
-            "model",
-            "required",
-            "bound",
-            "measured",
-            "met",
+            ("yardstick", &|(yardstick, _)| (*yardstick).into()),
+            ("quantity", &|(_, t)| t.quantity.as_str().into()),
+            ("model", &|(_, t)| t.model.to_string().into()),
+            ("required", &|(_, t)| t.side.words().into()),
+            ("bound", &|(_, t)| t.bound.into()),
+            ("measured", &|(_, t)| t.measured.into()),
+            ("met", &|(_, t)| if t.is_met() { "yes" } else { "no" }.into()),
         ],
-    );
-    for (yardstick, t) in targets {
-        table.push(vec![
-            yardstick.into(),
-            t.quantity.as_str().into(),
-            t.model.to_string().into(),
-            match t.side {
-                Bound::AtMost => "at most",
-                Bound::AtLeast => "at least",
-                Bound::Above => "above",
-            }
-            .into(),
-            t.bound.into(),
-            t.measured.into(),
-            if t.is_met() { "yes" } else { "no" }.into(),
-        ]);
-    }
-    table
+    )
+    .named("targets")
 }
 
 #[cfg(test)]
@@ -159,7 +154,8 @@ mod tests {
         assert_eq!(met(&[]), (false, false));
         let worst = at_most(model, "q", 2.0, &[Some(1.0), Some(5.0)]);
         assert_eq!(worst.measured, Some(5.0));
-        let text = table([("y", &worst)].into_iter()).csv();
+        let csv = table([("y", &worst)].into_iter()).csv().unwrap();
+        let text = String::from_utf8(csv).unwrap();
         assert!(text.ends_with("y,q,rods,at most,2,5,no\n"), "{text}");
     }
 

@@ -3,7 +3,8 @@
 use super::measure::{STEP, peak_memory};
 use super::timed::Timed;
 use crate::interrupt;
-use crate::speed_vs_error::bumped;
+use crate::report::Effort;
+use crate::timing::bumped;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Method, RunEnd, SheetModel, Simulation, State, StepReport};
@@ -86,14 +87,11 @@ pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRo
         peak: None,
         stopped: None,
     };
-    let (mut iterations, mut factorisations) = (0, 0);
+    let mut effort = Effort::default();
     let first = run.step(STEP);
     let (clock, before) = (Instant::now(), watch.read());
     let mut observe = |_: &Simulation, report: &StepReport| {
-        row.steps += 1;
-        iterations += report.iterations;
-        factorisations += report.factorisations;
-        row.rejected += report.rejected;
+        effort.add(report);
         row.strain = row.strain.max(report.strain);
         row.gap = row.gap.min(report.gap.unwrap_or(f64::INFINITY));
         if clock.elapsed().as_secs_f64() > patience {
@@ -111,13 +109,14 @@ pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRo
         Ok(RunEnd::Complete | RunEnd::Taut) => None,
         Err(error) => Some(error.to_string()),
     };
+    (row.steps, row.rejected) = (effort.steps, effort.rejected);
     let n = row.steps.max(1) as f64;
     let spent = watch.read().since(before);
     row.per_step = clock.elapsed().as_secs_f64() / n;
     row.detection = spent.detection / n;
     row.evaluation = spent.evaluation / n;
-    row.iterations = iterations as f64 / n;
-    row.factorisations = factorisations as f64 / n;
+    row.iterations = effort.iterations_per_step().unwrap_or(0.0);
+    row.factorisations = effort.factorisations_per_step().unwrap_or(0.0);
     row.peak = peak_memory();
     if let Some(active) = run.contacts() {
         row.contacts = active.list().len();

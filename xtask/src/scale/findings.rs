@@ -1,7 +1,10 @@
 //! What the measurements of single steps say, in words.
 
-use super::measure::{OrderRow, Row, exponent};
-use super::{DrapeRow, Results};
+use super::drape::DrapeRow;
+use super::measure::Row;
+use super::results::Results;
+use crate::report::exponent;
+use crate::timing::OrderRow;
 use std::fmt::Write;
 
 /// Points of a plot.
@@ -173,11 +176,12 @@ pub(super) fn draping_conclusion(results: &Results) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scale::measure::measure;
 
     #[test]
     fn growth_as_v_log_v_is_told_from_powers() {
         let rows = |entries: fn(f64) -> f64| {
-            let row = super::super::measure(1, 1).expect("a small sheet moves");
+            let row = measure(1, 1).expect("a small sheet moves");
             let of = |level: i32| {
                 let mut row = row.clone();
                 row.vertices = (2_usize.pow(level as u32 + 1) + 1).pow(2);
@@ -198,7 +202,7 @@ mod tests {
 
     #[test]
     fn steps_are_compared_with_one_factorisation() {
-        let mut row = super::super::measure(1, 1).expect("a small sheet moves");
+        let mut row = measure(1, 1).expect("a small sheet moves");
         row.per_step = 3.0 * row.best().numeric;
         let mut other = row.clone();
         other.per_step = 7.0 * other.best().numeric;
@@ -211,7 +215,7 @@ mod tests {
 
     #[test]
     fn words_follow_the_numbers() {
-        let mut row = super::super::measure(1, 1).expect("a small sheet moves");
+        let mut row = measure(1, 1).expect("a small sheet moves");
         for o in &mut row.orders {
             o.two_threads = 2.0 * o.numeric;
         }

@@ -1,12 +1,11 @@
 //! What is measured at one mesh size.
 
 use crate::interrupt;
-use crate::speed_vs_error::{bumped, corner};
+use crate::timing::{OrderRow, bumped, corner, order};
 use anyhow::{Context, Result};
-use isosheet_coords::linalg::{Fill, Ordering, Pattern, SparseLlt, elimination_order};
+use isosheet_coords::linalg::Ordering;
 use isosheet_dynamics::{History, Method, SheetModel, Simulation, State, StepReport};
-use isosheet_mesh::{MassKind, Sheet};
-use std::num::NonZeroUsize;
+use isosheet_mesh::MassKind;
 use std::time::Instant;
 
 /// Length of a step, seconds. The finer the mesh, the sooner a sheet that starts all but flat comes to states
@@ -14,28 +13,6 @@ use std::time::Instant;
 /// vertices after 3 ms, with 4225 after 15 ms. Steps this short stay before them at every size, so that what
 /// is measured is the price of the size.
 pub(crate) const STEP: f64 = 2.5e-4;
-
-/// Stiffness of the rods relative to the masses in the matrices that the orders are compared on.
-const STIFFNESS: f64 = 1e4;
-
-const TWO: NonZeroUsize = NonZeroUsize::new(2).expect("two");
-
-/// One elimination order of the matrix of a step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct OrderRow {
-    pub(crate) ordering: Ordering,
-    pub(crate) fill: Fill,
-    /// Entries of the factor as stored, with the zeros that supernodes pad in.
-    pub(crate) stored: usize,
-    /// Seconds to find the order, for the symbolic analysis, for a numeric factorisation and for a solve.
-    pub(crate) order: f64,
-    pub(crate) symbolic: f64,
-    pub(crate) numeric: f64,
-    pub(crate) solve: f64,
-    /// Seconds for a numeric factorisation on two threads, and whether it gives the same bits.
-    pub(crate) two_threads: f64,
-    pub(crate) same_bits: bool,
-}
 
 /// A few steps of the hanging sheet at one mesh size.
 #[derive(Clone, Debug)]
@@ -133,92 +110,6 @@ pub(crate) fn measure(level: u32, steps: usize) -> Result<Row> {
     })
 }
 
-/// Measures an elimination order on the matrix `M + r G^T G` of the whole sheet.
-fn order(sheet: &Sheet, ordering: Ordering) -> Result<OrderRow> {
-    let (pattern, values) = stiff_sheet(sheet)?;
-    let clock = Instant::now();
-    let order = elimination_order(&pattern, 3, ordering);
-    let found = clock.elapsed().as_secs_f64();
-    let fill = Fill::new(&pattern, 3, &order);
-    let clock = Instant::now();
-    let mut llt = SparseLlt::with_ordering(pattern, Some(&order))?;
-    let symbolic = clock.elapsed().as_secs_f64();
-    llt.values_mut().copy_from_slice(&values);
-    let mut rhs = vec![1.0; llt.order()];
-    let (mut numeric, mut solve) = (f64::INFINITY, f64::INFINITY);
-    for _ in 0..3 {
-        let clock = Instant::now();
-        llt.factorize()?;
-        numeric = numeric.min(clock.elapsed().as_secs_f64());
-        rhs.fill(1.0);
-        let clock = Instant::now();
-        llt.solve(&mut rhs);
-        solve = solve.min(clock.elapsed().as_secs_f64());
-    }
-    let one = llt.factor().to_vec();
-    let (mut two_threads, mut same_bits) = (f64::INFINITY, true);
-    for _ in 0..3 {
-        let clock = Instant::now();
-        llt.factorize_on(TWO)?;
-        two_threads = two_threads.min(clock.elapsed().as_secs_f64());
-        let mut pairs = llt.factor().iter().zip(&one);
-        same_bits &= pairs.all(|(a, b)| a.to_bits() == b.to_bits());
-    }
-    Ok(OrderRow {
-        ordering,
-        fill,
-        stored: llt.factor_len(),
-        order: found,
-        symbolic,
-        numeric,
-        solve,
-        two_threads,
-        same_bits,
-    })
-}
-
-/// Seconds for one numeric factorisation of `M + r G^T G` of the whole sheet, by the better of the orders.
-pub(crate) fn factorisation_time(sheet: &Sheet) -> Result<f64> {
-    let degree = order(sheet, Ordering::MinimumDegree)?;
-    let dissection = order(sheet, Ordering::NestedDissection)?;
-    Ok(degree.numeric.min(dissection.numeric))
-}
-
-/// Pattern and values of `M + r G^T G`, lower triangle.
-fn stiff_sheet(sheet: &Sheet) -> Result<(Pattern, Vec<f64>)> {
-    let model = SheetModel::new(sheet, 0.1, MassKind::Lumped)?;
-    let x = sheet.positions();
-    let (mut entries, mut terms) = (Vec::new(), Vec::new());
-    for (v, m) in model.mass().vertex.iter().enumerate() {
-        for r in 0..3 {
-            for c in 0..=r {
-                entries.push((3 * v as u32 + r, 3 * v as u32 + c));
-                terms.push(if r == c { *m } else { 0.0 });
-            }
-        }
-    }
-    for (&[a, b], l) in model.rods().edges().iter().zip(model.rods().lengths()) {
-        let mass = &model.mass().vertex;
-        let stiffness = STIFFNESS / ((1.0 / mass[a] + 1.0 / mass[b]) * l * l);
-        let d: [f64; 3] = std::array::from_fn(|k| x[3 * a + k] - x[3 * b + k]);
-        for (i, j, sign) in [(a, a, 1.0), (b, b, 1.0), (a.max(b), a.min(b), -1.0)] {
-            for r in 0..3 {
-                for c in 0..(if i == j { r + 1 } else { 3 }) {
-                    entries.push(((3 * i + r) as u32, (3 * j + c) as u32));
-                    terms.push(sign * stiffness * d[r] * d[c]);
-                }
-            }
-        }
-    }
-    let n = x.len();
-    let (pattern, slots) = Pattern::from_entries(n, n, &entries);
-    let mut values = vec![0.0; pattern.len()];
-    for (slot, term) in slots.iter().zip(terms) {
-        values[*slot as usize] += term;
-    }
-    Ok((pattern, values))
-}
-
 /// Most resident memory of this process so far, bytes; `None` where the system does not tell.
 pub(super) fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
@@ -227,31 +118,9 @@ pub(super) fn peak_memory() -> Option<f64> {
     Some(1024.0 * kibibytes)
 }
 
-/// Exponent `p` of the least-squares fit `y ~ x^p`; `None` from fewer than two sizes.
-pub(crate) fn exponent(points: &[[f64; 2]]) -> Option<f64> {
-    let n = points.len() as f64;
-    let mean = |k: usize| points.iter().map(|p| p[k].ln()).sum::<f64>() / n;
-    let (x, y) = (mean(0), mean(1));
-    let (mut above, mut below) = (0.0, 0.0);
-    for p in points {
-        above += (p[0].ln() - x) * (p[1].ln() - y);
-        below += (p[0].ln() - x).powi(2);
-    }
-    (below > 0.0).then(|| above / below)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn exponents_of_powers() {
-        let points: Vec<[f64; 2]> = [1.0, 3.0, 10.0, 40.0]
-            .map(|x: f64| [x, 7.0 * x.powf(1.5)])
-            .to_vec();
-        assert!((exponent(&points).expect("four sizes") - 1.5).abs() < 1e-12);
-        assert_eq!(exponent(&points[..1]), None);
-    }
 
     #[test]
     fn a_small_sheet_is_measured() {

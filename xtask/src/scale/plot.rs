@@ -1,188 +1,142 @@
 //! The plots of the scaling study.
 
+use super::drape::DrapeRow;
 use super::findings::points;
 use super::measure::Row;
+use super::results::Results;
 use super::tables::factor_bytes;
-use super::whole::{Damped, Scene};
-use super::{DrapeRow, Results};
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, column, palette};
-
-/// A decade axis that holds all values.
-fn decades(label: &str, values: impl Iterator<Item = f64> + Clone) -> Axis {
-    let low = values.clone().fold(f64::INFINITY, f64::min).log10().floor() as i32;
-    let high = values.fold(0.0, f64::max).log10().ceil() as i32;
-    Axis::decades(label, low, high.max(low + 1), 1)
-}
+use super::whole::{Damped, SCENES, name};
+use crate::draw::{Axis, Colour, Drawing, Line, Marker, Series, column, palette};
+use crate::report::Chart;
 
 /// A law through the last point of a series.
-fn law(name: &str, of: &[[f64; 2]], f: impl Fn(f64) -> f64) -> Series {
+fn law(name: &str, of: &[[f64; 2]], f: fn(f64) -> f64) -> Series {
     let scale = of.last().map_or(1.0, |p| p[1] / f(p[0]));
-    series(
-        name,
-        of.iter().map(|p| [p[0], scale * f(p[0])]).collect(),
-        palette::GREY,
-        None,
-    )
+    Series::guide(name, of.iter().map(|p| [p[0], scale * f(p[0])]).collect())
 }
 
-fn series(name: &str, points: Vec<[f64; 2]>, colour: Colour, marker: Option<Marker>) -> Series {
+/// The power of V that planar sheets are expected to follow.
+fn power_law(of: &[[f64; 2]]) -> Series {
+    law("~V~^{1.5}", of, |v| v.powf(1.5))
+}
+
+/// Colour and symbol of a quantity.
+type Look = (Colour, Marker);
+
+const STEP: Look = (palette::BLUE, Marker::Disc);
+const DEGREE: Look = (palette::ORANGE, Marker::Square);
+const DISSECTION: Look = (palette::GREEN, Marker::Triangle);
+const ORDER: Look = (palette::PURPLE, Marker::Diamond);
+const DETECTION: Look = (palette::VERMILION, Marker::Square);
+
+fn series(name: &str, points: &[[f64; 2]], (colour, marker): Look) -> Series {
     Series {
         name: name.into(),
-        points,
+        points: points.to_vec(),
         colour,
-        marker,
-        line: if marker.is_some() {
-            Line::Solid
-        } else {
-            Line::Dashed
-        },
+        marker: Some(marker),
+        line: Line::Solid,
     }
 }
 
 fn panel(label: &str, series: Vec<Series>) -> Drawing {
     let all = |k: usize| {
-        series
-            .iter()
-            .flat_map(move |s| s.points.iter().map(move |p| p[k]))
+        let of = move |s: &Series| s.points.iter().map(move |p| p[k]).collect::<Vec<_>>();
+        series.iter().flat_map(of)
     };
-    Plot {
-        x: decades("vertices", all(0)),
-        y: decades(label, all(1)),
-        size: [230.0, 130.0],
-        legend: Legend::Right,
-        series: series.clone(),
-    }
-    .draw()
+    let x = Axis::holding("vertices", all(0));
+    let y = Axis::holding(label, all(1));
+    Chart::new(x, y, [230.0, 130.0], series).draw()
 }
 
 /// Time, time with contact, memory and operations against the number of vertices.
 pub(super) fn plot(results: &Results) -> Drawing {
-    let rows = &results.hanging;
-    let of = |f: fn(&Row) -> f64| points(rows, |r| [r.vertices as f64, f(r)]);
-    let step = of(|r| r.per_step);
-    let stored = of(|r| factor_bytes(r.best()) / 1e6);
-    let dissection = of(|r| r.orders[1].fill.operations);
-    let time = panel(
-        "seconds",
-        vec![
-            series("step", step.clone(), palette::BLUE, Some(Marker::Disc)),
-            series(
-                "factor, min. degree",
-                of(|r| r.orders[0].numeric),
-                palette::ORANGE,
-                Some(Marker::Square),
-            ),
-            series(
-                "factor, dissection",
-                of(|r| r.orders[1].numeric),
-                palette::GREEN,
-                Some(Marker::Triangle),
-            ),
-            series(
-                "order, dissection",
-                of(|r| r.orders[1].order),
-                palette::PURPLE,
-                Some(Marker::Diamond),
-            ),
-            law("~V~^{1.5}", &step, |v| v.powf(1.5)),
-        ],
-    );
-    let memory = panel(
-        "megabytes",
-        vec![
-            series(
-                "process, peak",
-                rows.iter()
-                    .filter_map(|r| Some([r.vertices as f64, r.peak? / 1e6]))
-                    .collect(),
-                palette::BLUE,
-                Some(Marker::Disc),
-            ),
-            series(
-                "Cholesky factor",
-                stored.clone(),
-                palette::GREEN,
-                Some(Marker::Triangle),
-            ),
-            law("~V~ log ~V~", &stored, |v| v * v.ln()),
-        ],
-    );
-    let operations = panel(
-        "operations",
-        vec![
-            series(
-                "minimum degree",
-                of(|r| r.orders[0].fill.operations),
-                palette::ORANGE,
-                Some(Marker::Square),
-            ),
-            series(
-                "nested dissection",
-                dissection.clone(),
-                palette::GREEN,
-                Some(Marker::Triangle),
-            ),
-            law("~V~^{1.5}", &dissection, |v| v.powf(1.5)),
-        ],
-    );
-    let drape = |f: fn(&DrapeRow) -> f64| points(&results.draping, |r| [r.vertices as f64, f(r)]);
-    let contact = panel(
-        "seconds, with contact",
-        vec![
-            series(
-                "step",
-                drape(|r| r.per_step),
-                palette::BLUE,
-                Some(Marker::Disc),
-            ),
-            series(
-                "contact, detection",
-                drape(|r| r.detection),
-                palette::VERMILION,
-                Some(Marker::Square),
-            ),
-            series(
-                "contact, distances",
-                drape(|r| r.evaluation),
-                palette::PURPLE,
-                Some(Marker::Diamond),
-            ),
-            law("~V~^{1.5}", &drape(|r| r.per_step), |v| v.powf(1.5)),
-        ],
-    );
-    let mut panels = vec![time, contact, memory, operations];
+    let mut panels = vec![
+        time(&results.hanging),
+        contact(&results.draping),
+        memory(&results.hanging),
+        operations(&results.hanging),
+    ];
     panels.extend(whole(results));
     column(&panels, 26.0)
+}
+
+/// A quantity of the hanging sheet against the number of vertices.
+fn of(rows: &[Row], value: fn(&Row) -> f64) -> Vec<[f64; 2]> {
+    points(rows, |r| [r.vertices as f64, value(r)])
+}
+
+fn time(rows: &[Row]) -> Drawing {
+    let step = of(rows, |r| r.per_step);
+    let all = vec![
+        series("step", &step, STEP),
+        series(
+            "factor, min. degree",
+            &of(rows, |r| r.orders[0].numeric),
+            DEGREE,
+        ),
+        series(
+            "factor, dissection",
+            &of(rows, |r| r.orders[1].numeric),
+            DISSECTION,
+        ),
+        series("order, dissection", &of(rows, |r| r.orders[1].order), ORDER),
+        power_law(&step),
+    ];
+    panel("seconds", all)
+}
+
+fn contact(rows: &[DrapeRow]) -> Drawing {
+    let of = |value: fn(&DrapeRow) -> f64| points(rows, |r| [r.vertices as f64, value(r)]);
+    let step = of(|r| r.per_step);
+    let all = vec![
+        series("step", &step, STEP),
+        series("contact, detection", &of(|r| r.detection), DETECTION),
+        series("contact, distances", &of(|r| r.evaluation), ORDER),
+        power_law(&step),
+    ];
+    panel("seconds, with contact", all)
+}
+
+fn memory(rows: &[Row]) -> Drawing {
+    let peak = rows
+        .iter()
+        .filter_map(|r| Some([r.vertices as f64, r.peak? / 1e6]));
+    let stored = of(rows, |r| factor_bytes(r.best()) / 1e6);
+    let all = vec![
+        series("process, peak", &peak.collect::<Vec<_>>(), STEP),
+        series("Cholesky factor", &stored, DISSECTION),
+        law("~V~ log ~V~", &stored, |v| v * v.ln()),
+    ];
+    panel("megabytes", all)
+}
+
+fn operations(rows: &[Row]) -> Drawing {
+    let dissection = of(rows, |r| r.orders[1].fill.operations);
+    let degree = of(rows, |r| r.orders[0].fill.operations);
+    let all = vec![
+        series("minimum degree", &degree, DEGREE),
+        series("nested dissection", &dissection, DISSECTION),
+        power_law(&dissection),
+    ];
+    panel("operations", all)
 }
 
 /// Whole runs by the default method from the first start, of meshes on which they came to the end.
 fn whole(results: &Results) -> Option<Drawing> {
     let of = |scene| -> Vec<[f64; 2]> {
         let mut runs = results.whole_of(scene);
-        runs.retain(|r| r.ended() && r.method == Damped::Bdf2 && r.start == 1);
+        runs.retain(|r| r.measured.run.ended() && r.method == Damped::Bdf2 && r.start == 1);
         runs.iter()
-            .filter_map(|r| Some([r.vertices as f64, r.rate()?]))
+            .filter_map(|r| Some([r.vertices as f64, r.measured.run.rate()?]))
             .collect()
     };
-    let [hanging, tablecloth] = [of(Scene::Hanging), of(Scene::Tablecloth)];
-    let law = law("~V~^{1.5}", &hanging, |v| v.powf(1.5));
-    let all: Vec<Series> = [
-        series(
-            Scene::Hanging.name(),
-            hanging,
-            palette::BLUE,
-            Some(Marker::Disc),
-        ),
-        series(
-            Scene::Tablecloth.name(),
-            tablecloth,
-            palette::VERMILION,
-            Some(Marker::Square),
-        ),
-        law,
-    ]
-    .into_iter()
-    .filter(|s| !s.points.is_empty())
-    .collect();
+    let [hanging, tablecloth] = SCENES.map(of);
+    let mut all = vec![
+        series(name(SCENES[0]), &hanging, STEP),
+        series(name(SCENES[1]), &tablecloth, DETECTION),
+        power_law(&hanging),
+    ];
+    all.retain(|s| !s.points.is_empty());
     (!all.is_empty()).then(|| panel("seconds per simulated second", all))
 }

@@ -1,125 +1,112 @@
-//! Tables of the scaling study, for people and as CSV.
+//! Tables of the scaling study, for people and for programs.
 
-use super::DrapeRow;
-use super::measure::{OrderRow, Row, STEP};
-use crate::figures::Table;
-use std::fmt::Write;
+use super::drape::DrapeRow;
+use super::measure::{Row, STEP};
+use crate::report::{Cell, Table};
+use crate::timing::OrderRow;
 
-pub(super) fn head(names: &[&str]) -> Vec<String> {
-    names.iter().map(|n| (*n).to_owned()).collect()
+fn megabytes(bytes: Option<f64>) -> Cell {
+    bytes
+        .map_or("unknown".into(), |b| format!("{:.0}", b / 1e6))
+        .into()
 }
 
-pub(super) fn megabytes(bytes: Option<f64>) -> String {
-    bytes.map_or("unknown".into(), |b| format!("{:.0}", b / 1e6))
+fn percent(part: f64, whole: f64) -> Cell {
+    format!("{:.0} %", 100.0 * part / whole).into()
 }
 
-pub(super) fn percent(part: f64, whole: f64) -> String {
-    format!("{:.0} %", 100.0 * part / whole)
+fn milliseconds(seconds: f64) -> Cell {
+    format!("{:.2}", 1e3 * seconds).into()
+}
+
+fn tenths(value: f64) -> Cell {
+    format!("{value:.1}").into()
+}
+
+fn power(value: f64) -> Cell {
+    format!("{value:.0e}").into()
 }
 
 pub(super) fn steps(rows: &[Row]) -> Table {
-    Table {
-        caption: "Per step of the hanging sheet. Factorisations, solves: their numbers times what one takes alone, parts of the step; the rest is \
-                  assembly, gradients and vectors. The energy error is relative to the potential energy released, the memory is that of the \
-                  Cholesky factor and the peak of the process."
-            .into(),
-        head: head(&[
-            "mesh", "V/F", "set-up, s", "step, s", "iterations", "factorisations", "factorising", "solving", "rest", "strain", "energy error",
-            "factor, MB", "peak, MB",
-        ]),
-        rows: rows
-            .iter()
-            .map(|r| {
-                let [factor, solve] = r.linear();
-                vec![
-                    format!("M^{}", r.level),
-                    format!("{}/{}", r.vertices, r.faces),
-                    format!("{:.3}", r.setup),
-                    format!("{:.2e}", r.per_step),
-                    format!("{:.1}", r.iterations),
-                    format!("{:.1}", r.factorisations),
-                    percent(factor, r.per_step),
-                    percent(solve, r.per_step),
-                    percent(r.per_step - factor - solve, r.per_step),
-                    format!("{:.0e}", r.strain),
-                    format!("{:.0e}", r.balance),
-                    format!("{:.1}", factor_bytes(r.best()) / 1e6),
-                    megabytes(r.peak),
-                ]
-            })
-            .collect(),
-    }
+    Table::of(
+        "Per step of the hanging sheet. Factorisations, solves: their numbers times what one takes alone, parts of the step; the rest is \
+         assembly, gradients and vectors. The energy error is relative to the potential energy released, the memory is that of the \
+         Cholesky factor and the peak of the process.",
+        rows,
+        &[
+            ("mesh", &|r| format!("M^{}", r.level).into()),
+            ("V/F", &|r| format!("{}/{}", r.vertices, r.faces).into()),
+            ("set-up, s", &|r| format!("{:.3}", r.setup).into()),
+            ("step, s", &|r| format!("{:.2e}", r.per_step).into()),
+            ("iterations", &|r| tenths(r.iterations)),
+            ("factorisations", &|r| tenths(r.factorisations)),
+            ("factorising", &|r| percent(r.linear()[0], r.per_step)),
+            ("solving", &|r| percent(r.linear()[1], r.per_step)),
+            ("rest", &|r| {
+                percent(r.per_step - r.linear()[0] - r.linear()[1], r.per_step)
+            }),
+            ("strain", &|r| power(r.strain)),
+            ("energy error", &|r| power(r.balance)),
+            ("factor, MB", &|r| tenths(factor_bytes(r.best()) / 1e6)),
+            ("peak, MB", &|r| megabytes(r.peak)),
+        ],
+    )
+}
+
+/// Every order of every mesh.
+fn all_orders(rows: &[Row]) -> impl Iterator<Item = (&Row, &OrderRow)> {
+    rows.iter()
+        .flat_map(|r| r.orders.iter().map(move |o| (r, o)))
 }
 
 pub(super) fn orders(rows: &[Row]) -> Table {
-    Table {
-        caption: "Elimination orders of the matrix of a step.".into(),
-        head: head(&[
-            "mesh",
-            "order",
-            "found in, ms",
-            "symbolic, ms",
-            "numeric, ms",
-            "on two threads, ms",
-            "solve, ms",
-            "entries of L",
-            "stored",
-            "operations",
-        ]),
-        rows: rows
-            .iter()
-            .flat_map(|r| {
-                r.orders.iter().map(|o| {
-                    vec![
-                        format!("M^{}", r.level),
-                        name(o).into(),
-                        format!("{:.2}", 1e3 * o.order),
-                        format!("{:.2}", 1e3 * o.symbolic),
-                        format!("{:.2}", 1e3 * o.numeric),
-                        format!("{:.2}", 1e3 * o.two_threads),
-                        format!("{:.2}", 1e3 * o.solve),
-                        format!("{:.3e}", o.fill.entries),
-                        format!("{:.3e}", o.stored as f64),
-                        format!("{:.3e}", o.fill.operations),
-                    ]
-                })
-            })
-            .collect(),
-    }
+    Table::of(
+        "Elimination orders of the matrix of a step.",
+        all_orders(rows),
+        &[
+            ("mesh", &|(r, _)| format!("M^{}", r.level).into()),
+            ("order", &|(_, o)| name(o).into()),
+            ("found in, ms", &|(_, o)| milliseconds(o.order)),
+            ("symbolic, ms", &|(_, o)| milliseconds(o.symbolic)),
+            ("numeric, ms", &|(_, o)| milliseconds(o.numeric)),
+            ("on two threads, ms", &|(_, o)| milliseconds(o.two_threads)),
+            ("solve, ms", &|(_, o)| milliseconds(o.solve)),
+            ("entries of L", &|(_, o)| {
+                format!("{:.3e}", o.fill.entries).into()
+            }),
+            ("stored", &|(_, o)| {
+                format!("{:.3e}", o.stored as f64).into()
+            }),
+            ("operations", &|(_, o)| {
+                format!("{:.3e}", o.fill.operations).into()
+            }),
+        ],
+    )
 }
 
 pub(super) fn draping(rows: &[DrapeRow]) -> Table {
-    Table {
-        caption: "Per step of the draping sheet. Detection: pairs within reach and the safe part of every motion; distances: distances, normals \
-                  and weights of the pairs. Couplings: pairs of vertices that contact adds to the pattern of the matrix."
-            .into(),
-        head: head(&[
-            "mesh", "V", "steps", "step, s", "iterations", "factorisations", "rejected", "detection", "distances", "contacts", "couplings",
-            "strain", "gap, µm", "peak, MB", "remark",
-        ]),
-        rows: rows
-            .iter()
-            .map(|r| {
-                vec![
-                    format!("M^{}", r.level),
-                    r.vertices.to_string(),
-                    r.steps.to_string(),
-                    format!("{:.2e}", r.per_step),
-                    format!("{:.1}", r.iterations),
-                    format!("{:.1}", r.factorisations),
-                    r.rejected.to_string(),
-                    percent(r.detection, r.per_step),
-                    percent(r.evaluation, r.per_step),
-                    r.contacts.to_string(),
-                    r.couplings.to_string(),
-                    format!("{:.0e}", r.strain),
-                    format!("{:.1}", 1e6 * r.gap),
-                    megabytes(r.peak),
-                    r.stopped.clone().unwrap_or_default(),
-                ]
-            })
-            .collect(),
-    }
+    Table::of(
+        "Per step of the draping sheet. Detection: pairs within reach and the safe part of every motion; distances: distances, normals \
+         and weights of the pairs. Couplings: pairs of vertices that contact adds to the pattern of the matrix.",
+        rows,
+        &[
+            ("mesh", &|r| format!("M^{}", r.level).into()),
+            ("V", &|r| r.vertices.into()),
+            ("steps", &|r| r.steps.into()),
+            ("step, s", &|r| format!("{:.2e}", r.per_step).into()),
+            ("iterations", &|r| tenths(r.iterations)),
+            ("factorisations", &|r| tenths(r.factorisations)),
+            ("rejected", &|r| r.rejected.into()),
+            ("detection", &|r| percent(r.detection, r.per_step)),
+            ("distances", &|r| percent(r.evaluation, r.per_step)),
+            ("contacts", &|r| r.contacts.into()),
+            ("couplings", &|r| r.couplings.into()),
+            ("strain", &|r| power(r.strain)),
+            ("gap, µm", &|r| tenths(1e6 * r.gap)),
+            ("peak, MB", &|r| megabytes(r.peak)),
+            ("remark", &|r| r.stopped.clone().unwrap_or_default().into()),
+        ],
+    )
 }
 
 pub(super) fn name(o: &OrderRow) -> &'static str {
@@ -135,68 +122,60 @@ pub(super) fn factor_bytes(o: &OrderRow) -> f64 {
     8.0 * o.stored as f64
 }
 
-pub(super) fn csv(rows: &[Row]) -> String {
-    let mut out = String::from(
-        "level,vertices,faces,step_size_s,steps,setup_s,step_s,iterations,factorisations,strain,energy_error,peak_bytes,\
-         ordering,order_s,symbolic_s,numeric_s,two_threads_s,same_bits,solve_s,factor_entries,factor_stored,factor_operations\n",
-    );
-    for r in rows {
-        for o in &r.orders {
-            let peak = r.peak.map_or(String::new(), |p| format!("{p:.0}"));
-            let _ = writeln!(
-                out,
-                "{},{},{},{STEP},{},{:e},{:e},{},{},{:e},{:e},{peak},{},{:e},{:e},{:e},{:e},{},{:e},{},{},{}",
-                r.level,
-                r.vertices,
-                r.faces,
-                r.steps,
-                r.setup,
-                r.per_step,
-                r.iterations,
-                r.factorisations,
-                r.strain,
-                r.balance,
-                name(o).replace(' ', "_"),
-                o.order,
-                o.symbolic,
-                o.numeric,
-                o.two_threads,
-                o.same_bits,
-                o.solve,
-                o.fill.entries,
-                o.stored,
-                o.fill.operations
-            );
-        }
-    }
-    out
+/// The hanging sheet, for programs.
+pub(super) fn steps_data(rows: &[Row]) -> Table {
+    Table::of(
+        "",
+        all_orders(rows),
+        &[
+            ("level", &|(r, _)| r.level.into()),
+            ("vertices", &|(r, _)| r.vertices.into()),
+            ("faces", &|(r, _)| r.faces.into()),
+            ("step_size_s", &|_| STEP.into()),
+            ("steps", &|(r, _)| r.steps.into()),
+            ("setup_s", &|(r, _)| r.setup.into()),
+            ("step_s", &|(r, _)| r.per_step.into()),
+            ("iterations", &|(r, _)| r.iterations.into()),
+            ("factorisations", &|(r, _)| r.factorisations.into()),
+            ("strain", &|(r, _)| r.strain.into()),
+            ("energy_error", &|(r, _)| r.balance.into()),
+            ("peak_bytes", &|(r, _)| r.peak.into()),
+            ("ordering", &|(_, o)| name(o).replace(' ', "_").into()),
+            ("order_s", &|(_, o)| o.order.into()),
+            ("symbolic_s", &|(_, o)| o.symbolic.into()),
+            ("numeric_s", &|(_, o)| o.numeric.into()),
+            ("two_threads_s", &|(_, o)| o.two_threads.into()),
+            ("same_bits", &|(_, o)| o.same_bits.to_string().into()),
+            ("solve_s", &|(_, o)| o.solve.into()),
+            ("factor_entries", &|(_, o)| o.fill.entries.into()),
+            ("factor_stored", &|(_, o)| o.stored.into()),
+            ("factor_operations", &|(_, o)| o.fill.operations.into()),
+        ],
+    )
 }
 
-pub(super) fn draping_csv(rows: &[DrapeRow]) -> String {
-    let mut out = String::from(
-        "level,vertices,step_size_s,steps,step_s,detection_s,distances_s,iterations,factorisations,rejected,contacts,couplings,strain,gap_m,\
-         peak_bytes,stopped\n",
-    );
-    for r in rows {
-        let peak = r.peak.map_or(String::new(), |p| format!("{p:.0}"));
-        let _ = writeln!(
-            out,
-            "{},{},{STEP},{},{:e},{:e},{:e},{},{},{},{},{},{:e},{:e},{peak},\"{}\"",
-            r.level,
-            r.vertices,
-            r.steps,
-            r.per_step,
-            r.detection,
-            r.evaluation,
-            r.iterations,
-            r.factorisations,
-            r.rejected,
-            r.contacts,
-            r.couplings,
-            r.strain,
-            r.gap,
-            r.stopped.as_deref().unwrap_or("").replace('"', "'")
-        );
-    }
-    out
+/// The draping sheet, for programs.
+pub(super) fn draping_data(rows: &[DrapeRow]) -> Table {
+    Table::of(
+        "",
+        rows,
+        &[
+            ("level", &|r| r.level.into()),
+            ("vertices", &|r| r.vertices.into()),
+            ("step_size_s", &|_| STEP.into()),
+            ("steps", &|r| r.steps.into()),
+            ("step_s", &|r| r.per_step.into()),
+            ("detection_s", &|r| r.detection.into()),
+            ("distances_s", &|r| r.evaluation.into()),
+            ("iterations", &|r| r.iterations.into()),
+            ("factorisations", &|r| r.factorisations.into()),
+            ("rejected", &|r| r.rejected.into()),
+            ("contacts", &|r| r.contacts.into()),
+            ("couplings", &|r| r.couplings.into()),
+            ("strain", &|r| r.strain.into()),
+            ("gap_m", &|r| r.gap.into()),
+            ("peak_bytes", &|r| r.peak.into()),
+            ("stopped", &|r| r.stopped.clone().into()),
+        ],
+    )
 }

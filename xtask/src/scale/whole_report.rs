@@ -1,11 +1,9 @@
 //! Tables and words on whole runs.
 
-use super::Results;
 use super::findings::power;
-use super::whole::{Damped, NEIGHBOUR, STEP, Scene, WholeRun};
-use crate::figures::{Table, rounded};
-use crate::speed_vs_error::comparison::{self, COLUMNS, Entry};
-use crate::speed_vs_error::short;
+use super::whole::{Damped, NEIGHBOUR, WholeRun, methods, name};
+use crate::report::{Cell, Table, short};
+use crate::timing::{self, COLUMNS, Entry, STEP, Timed, Work};
 use std::fmt::Write;
 
 /// What the runs are.
@@ -30,21 +28,26 @@ pub(super) fn findings(runs: &[&WholeRun]) -> Vec<String> {
     let Some(first) = runs.first() else {
         return Vec::new();
     };
-    let mut all: Vec<String> = first
-        .scene
-        .methods()
+    let mut all: Vec<String> = methods(first.scene)
         .iter()
         .map(|method| powers(runs, *method))
         .collect();
     all.extend(apart(runs));
     for level in levels(runs) {
         let entries = entries(runs, level);
-        all.push(comparison::words(&format!("M^{level}"), &entries));
+        all.push(timing::words(&format!("M^{level}"), &entries));
     }
-    let strain = runs.iter().map(|r| r.strain).fold(0.0, f64::max);
+    let strain = runs
+        .iter()
+        .map(|r| r.measured.run.strain)
+        .fold(0.0, f64::max);
     let mut extremes =
         format!("The largest strain of an edge in any of these runs is {strain:.0e}");
-    if let Some(gap) = runs.iter().filter_map(|r| r.gap).reduce(f64::min) {
+    if let Some(gap) = runs
+        .iter()
+        .filter_map(|r| r.measured.run.gap)
+        .reduce(f64::min)
+    {
         let _ = write!(extremes, ", the smallest gap {} µm", short(1e6 * gap));
     }
     all.push(extremes + ".");
@@ -59,12 +62,12 @@ pub(super) fn findings(runs: &[&WholeRun]) -> Vec<String> {
 fn powers(runs: &[&WholeRun], method: Damped) -> String {
     let ended: Vec<&&WholeRun> = runs
         .iter()
-        .filter(|r| r.method == method && r.ended())
+        .filter(|r| r.method == method && r.measured.run.ended())
         .collect();
-    let fit = |value: &dyn Fn(&WholeRun) -> Option<f64>| {
+    let fit = |value: &dyn Fn(&Timed) -> Option<f64>| {
         let points: Vec<[f64; 2]> = ended
             .iter()
-            .filter_map(|r| Some([r.vertices as f64, value(r)?]))
+            .filter_map(|r| Some([r.vertices as f64, value(&r.measured.run)?]))
             .collect();
         power(&points)
     };
@@ -73,11 +76,13 @@ fn powers(runs: &[&WholeRun], method: Damped) -> String {
          iterations per step {}.",
         method.name(),
         ended.len(),
-        ended.chunk_by(|a, b| a.level == b.level).count(),
-        fit(&WholeRun::rate),
-        fit(&WholeRun::per_factorisation),
-        fit(&|r| r.per_step(r.factorisations)),
-        fit(&|r| r.per_step(r.iterations)),
+        ended
+            .chunk_by(|a, b| a.measured.level == b.measured.level)
+            .count(),
+        fit(&Timed::rate),
+        fit(&|run| run.effort.wall_per_factorisation()),
+        fit(&|run| run.effort.factorisations_per_step()),
+        fit(&|run| run.effort.iterations_per_step()),
     )
 }
 
@@ -87,8 +92,10 @@ fn apart(runs: &[&WholeRun]) -> Option<String> {
     let mut parts = Vec::new();
     for level in levels(runs) {
         let largest = runs
-            .chunk_by(|a, b| (a.level, a.method) == (b.level, b.method))
-            .filter(|pair| pair[0].level == level && pair.iter().all(|r| r.ended()))
+            .chunk_by(|a, b| a.is_neighbour(b))
+            .filter(|pair| {
+                pair[0].measured.level == level && pair.iter().all(|r| r.measured.run.ended())
+            })
             .filter_map(difference)
             .reduce(f64::max);
         if let Some(part) = largest {
@@ -105,7 +112,9 @@ fn apart(runs: &[&WholeRun]) -> Option<String> {
 
 /// The larger number of factorisations over the smaller one, less 1.
 fn difference(pair: &[&WholeRun]) -> Option<f64> {
-    let counts = pair.iter().map(|r| r.factorisations as f64);
+    let counts = pair
+        .iter()
+        .map(|r| r.measured.run.effort.factorisations as f64);
     let [low, high] = counts
         .map(|n| [n; 2])
         .reduce(|[l, h], [a, b]| [l.min(a), h.max(b)])?;
@@ -113,20 +122,23 @@ fn difference(pair: &[&WholeRun]) -> Option<f64> {
 }
 
 fn levels(runs: &[&WholeRun]) -> Vec<u32> {
-    let mut levels: Vec<u32> = runs.iter().map(|r| r.level).collect();
+    let mut levels: Vec<u32> = runs.iter().map(|r| r.measured.level).collect();
     levels.dedup();
     levels
 }
 
 /// The methods on one mesh: means over the starts, of methods that came to the end from all of them.
 fn entries(runs: &[&WholeRun], level: u32) -> Vec<Entry> {
-    runs.chunk_by(|a, b| (a.level, a.method) == (b.level, b.method))
-        .filter(|starts| starts[0].level == level)
+    runs.chunk_by(|a, b| a.is_neighbour(b))
+        .filter(|starts| starts[0].measured.level == level)
         .map(|starts| {
             let walls: Option<Vec<f64>> = starts.iter().map(|r| r.entry().wall).collect();
             Entry {
                 wall: walls.map(|w| w.iter().sum::<f64>() / w.len() as f64),
-                strain: starts.iter().map(|r| r.strain).fold(0.0, f64::max),
+                strain: starts
+                    .iter()
+                    .map(|r| r.measured.run.strain)
+                    .fold(0.0, f64::max),
                 ..starts[0].entry()
             }
         })
@@ -135,174 +147,124 @@ fn entries(runs: &[&WholeRun], level: u32) -> Vec<Entry> {
 
 /// How far a run came that did not come to the end.
 fn unfinished(r: &WholeRun) -> Option<String> {
-    r.failure.as_ref().map(|failure| {
-        format!(
-            "M^{}, {}, start {}: reached {} s ({})",
-            r.level,
-            r.method.name(),
-            r.start,
-            short(r.reached),
-            rounded(failure)
-        )
-    })
+    let (mesh, method, remark) = (r.measured.mesh(), r.method.name(), r.measured.remark());
+    (!r.measured.run.ended()).then(|| format!("{mesh}, {method}, start {}: {remark}", r.start))
 }
 
-fn cell(value: Option<f64>) -> String {
-    value.map_or("–".into(), short)
+fn cell(value: Option<f64>) -> Cell {
+    value.map_or("–".into(), short).into()
 }
 
 /// The runs of one scene.
-pub(super) fn table(scene: Scene, runs: &[&WholeRun]) -> Table {
-    let head = [
-        "mesh",
-        "V",
-        "method",
-        "start",
-        "s/s",
-        "iterations per step",
-        "factorisations per step",
-        "ms per factorisation",
-    ];
-    let tail = ["rejected", "strain", "smallest gap, µm", "remark"];
-    Table {
-        caption: format!(
+pub(super) fn table(scene: Work, runs: &[&WholeRun]) -> Table {
+    let with = |r: &&WholeRun| {
+        (
+            (*r).clone(),
+            r.entry().cells(&entries(runs, r.measured.level)),
+        )
+    };
+    let run = |r: &(WholeRun, [String; 2])| r.0.measured.run.clone();
+    Table::of(
+        format!(
             "Whole runs of the {}: wall seconds for a simulated second, set-up left out, of runs that did not end up to the time they reached; \
              the time as a multiple of that of the fastest method on the mesh that keeps lengths, and of the time of one factorisation a step.",
-            scene.name()
+            name(scene)
         ),
-        head: head
-            .iter()
-            .chain(&COLUMNS)
-            .chain(&tail)
-            .map(|h| (*h).to_owned())
-            .collect(),
-        rows: runs
-            .iter()
-            .map(|r| row(r, &entries(runs, r.level)))
-            .collect(),
-    }
+        runs.iter().map(with),
+        &[
+            ("mesh", &|(r, _)| r.measured.mesh().into()),
+            ("V", &|(r, _)| r.vertices.into()),
+            ("method", &|(r, _)| r.method.name().into()),
+            ("start", &|(r, _)| r.start.into()),
+            ("s/s", &|r| cell(run(r).rate())),
+            ("iterations per step", &|r| {
+                cell(run(r).effort.iterations_per_step())
+            }),
+            ("factorisations per step", &|r| {
+                cell(run(r).effort.factorisations_per_step())
+            }),
+            ("ms per factorisation", &|r| {
+                cell(run(r).effort.wall_per_factorisation().map(|s| 1e3 * s))
+            }),
+            (COLUMNS[0], &|(_, c)| c[0].as_str().into()),
+            (COLUMNS[1], &|(_, c)| c[1].as_str().into()),
+            ("rejected", &|r| run(r).effort.rejected.into()),
+            ("strain", &|r| format!("{:.0e}", run(r).strain).into()),
+            ("smallest gap, µm", &|r| {
+                cell(run(r).gap.map(|gap| 1e6 * gap))
+            }),
+            ("remark", &|(r, _)| r.measured.remark().into()),
+        ],
+    )
 }
 
-fn row(r: &WholeRun, entries: &[Entry]) -> Vec<String> {
-    let mut cells = vec![
-        format!("M^{}", r.level),
-        r.vertices.to_string(),
-        r.method.name().into(),
-        r.start.to_string(),
-        cell(r.rate()),
-        cell(r.per_step(r.iterations)),
-        cell(r.per_step(r.factorisations)),
-        cell(r.per_factorisation().map(|s| 1e3 * s)),
-    ];
-    cells.extend(r.entry().cells(entries));
-    cells.extend([
-        r.rejected.to_string(),
-        format!("{:.0e}", r.strain),
-        cell(r.gap.map(|gap| 1e6 * gap)),
-        r.failure.as_ref().map_or(String::new(), |failure| {
-            format!(
-                "not ended, reached {} s: {}",
-                short(r.reached),
-                rounded(failure)
-            )
-        }),
-    ]);
-    cells
-}
-
-/// All runs for a terminal.
-pub(super) fn text(results: &Results) -> String {
-    let mut out = format!(
-        "whole runs, at most {} s of wall time each\n",
-        results.limit
-    );
-    for scene in Scene::ALL {
-        let runs = results.whole_of(scene);
-        let _ = writeln!(
-            out,
-            "{}\nmesh  vertices  method          start       s/s  iterations  factorisations  strain   gap, µm",
-            scene.name()
-        );
-        for r in &runs {
-            let _ = writeln!(
-                out,
-                "M^{:<3} {:>8}  {:<14} {:>6} {:>9} {:>11} {:>15} {:>7.0e} {:>9}{}",
-                r.level,
-                r.vertices,
-                r.method.name(),
-                r.start,
-                cell(r.rate()),
-                cell(r.per_step(r.iterations)),
-                cell(r.per_step(r.factorisations)),
-                r.strain,
-                cell(r.gap.map(|gap| 1e6 * gap)),
-                if r.ended() { "" } else { "  not ended" }
-            );
-        }
-        for words in findings(&runs) {
-            let _ = writeln!(out, "{words}");
-        }
-    }
-    out
-}
-
-/// All runs as CSV.
-pub(super) fn csv(runs: &[WholeRun]) -> String {
-    let mut out = String::from(
-        "scene,level,vertices,method,start,step_s,wall_s,repetitions,reached_s,steps,rejected,iterations,factorisations,factorisation_s,\
-         strain,gap_m,not_ended\n",
-    );
-    for r in runs {
-        let gap = r.gap.map_or(String::new(), |gap| format!("{gap:e}"));
-        let _ = writeln!(
-            out,
-            "{},{},{},{},{},{STEP:e},{:e},{},{},{},{},{},{},{:e},{:e},{gap},\"{}\"",
-            r.scene.name(),
-            r.level,
-            r.vertices,
-            r.method.name(),
-            r.start,
-            r.wall,
-            r.repetitions,
-            r.reached,
-            r.steps,
-            r.rejected,
-            r.iterations,
-            r.factorisations,
-            r.factorisation,
-            r.strain,
-            r.failure.as_deref().unwrap_or("").replace('"', "'")
-        );
-    }
-    out
+/// All runs, for programs.
+pub(super) fn data(runs: &[WholeRun]) -> Table {
+    let of = |r: &WholeRun| (r.clone(), r.measured.run.clone());
+    Table::of(
+        "",
+        runs.iter().map(of),
+        &[
+            ("scene", &|(r, _)| name(r.scene).into()),
+            ("level", &|(r, _)| r.measured.level.into()),
+            ("vertices", &|(r, _)| r.vertices.into()),
+            ("method", &|(r, _)| r.method.name().into()),
+            ("start", &|(r, _)| r.start.into()),
+            ("step_s", &|_| STEP.into()),
+            ("wall_s", &|(_, run)| run.effort.wall.into()),
+            ("repetitions", &|(_, run)| run.repetitions.into()),
+            ("reached_s", &|(_, run)| run.reached.into()),
+            ("steps", &|(_, run)| run.effort.steps.into()),
+            ("rejected", &|(_, run)| run.effort.rejected.into()),
+            ("iterations", &|(_, run)| run.effort.iterations.into()),
+            ("factorisations", &|(_, run)| {
+                run.effort.factorisations.into()
+            }),
+            ("factorisation_s", &|(r, _)| r.measured.factorisation.into()),
+            ("strain", &|(_, run)| run.strain.into()),
+            ("gap_m", &|(_, run)| run.gap.into()),
+            ("not_ended", &|(_, run)| run.failure.clone().into()),
+        ],
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Effort;
+    use crate::timing::Measured;
 
     /// A run of the hanging sheet with made-up numbers: `cost` times `V^2` seconds, `V^1.5` of them for each
     /// factorisation.
     fn made_up(level: u32, method: Damped, start: usize, cost: f64) -> WholeRun {
         let vertices = (2_usize.pow(level + 1) + 1).pow(2);
         let v = vertices as f64;
-        WholeRun {
-            scene: Scene::Hanging,
-            level,
-            vertices,
-            method,
-            start,
-            wall: cost * v * v,
-            repetitions: 1,
-            reached: 1.0,
+        let effort = Effort {
             steps: 60,
+            substeps: 60,
             rejected: 0,
             iterations: 240,
             factorisations: (1e6 * cost * v.sqrt()) as usize,
-            strain: 1e-12,
-            gap: None,
-            factorisation: 1e-6 * v * v * STEP,
-            failure: None,
+            wall: cost * v * v,
+        };
+        WholeRun {
+            scene: Work::Hanging,
+            vertices,
+            method,
+            start,
+            measured: Measured {
+                level,
+                method: String::new(),
+                step: STEP,
+                factorisation: 1e-6 * v * v * STEP,
+                run: Timed {
+                    effort,
+                    strain: 1e-12,
+                    reached: 1.0,
+                    repetitions: 1,
+                    ..Timed::default()
+                },
+            },
         }
     }
 
@@ -355,9 +317,10 @@ mod tests {
         let mut runs = made_up_runs();
         let lost = runs
             .iter_mut()
-            .find(|r| r.level == 3)
+            .find(|r| r.measured.level == 3)
+            .map(|r| &mut r.measured.run)
             .expect("a run of M^3");
-        (lost.wall, lost.reached) = (1e9, 0.25);
+        (lost.effort.wall, lost.reached) = (1e9, 0.25);
         lost.failure = Some("600 s of wall time were over".into());
         let all: Vec<&WholeRun> = runs.iter().collect();
         let text = findings(&all).join("\n");
@@ -366,26 +329,24 @@ mod tests {
             "{text}"
         );
         assert!(
-            text.contains("Not ended: M^3, BDF2 (default), start 1: reached 0.25 s (600 s"),
+            text.contains("Not ended: M^3, BDF2 (default), start 1: stopped at 0.25 s: 600 s"),
             "{text}"
         );
         assert!(
             text.contains("BDF2 (default) did not come to the end"),
             "{text}"
         );
-        let table = table(Scene::Hanging, &all);
-        assert!(table.rows.iter().all(|r| r.len() == table.head.len()));
-        let marked = table.rows.iter().filter(|r| {
-            r.last()
-                .is_some_and(|c| c.starts_with("not ended, reached 0.25 s"))
-        });
+        let table = table(Work::Hanging, &all);
+        let says = |c: &Cell| matches!(c, Cell::Text(t) if t.starts_with("stopped at 0.25 s"));
+        let marked = table.rows.iter().filter(|r| r.last().is_some_and(says));
         assert_eq!(marked.count(), 1);
     }
 
     #[test]
     fn neighbouring_starts_are_compared_by_their_factorisations() {
         let mut runs = made_up_runs();
-        runs[1].factorisations = runs[0].factorisations * 4 / 3;
+        let first = runs[0].measured.run.effort.factorisations;
+        runs[1].measured.run.effort.factorisations = first * 4 / 3;
         let all: Vec<&WholeRun> = runs.iter().collect();
         let text = apart(&all).expect("pairs of runs");
         assert!(text.contains("M^1 33 %, M^2 0 %"), "{text}");

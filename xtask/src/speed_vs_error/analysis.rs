@@ -1,6 +1,7 @@
 //! What the points of a study say: orders, Pareto fronts, in numbers and words.
 
 use super::measure::{Errors, Point};
+use crate::report::{exponent, short};
 use std::fmt::Write;
 
 /// Which error.
@@ -46,18 +47,6 @@ impl Measure {
             Self::Energy | Self::Strain => "",
         }
     }
-}
-
-/// Slope of the least-squares line through (log x, log y); `None` with fewer than two different x.
-pub(crate) fn exponent(points: &[[f64; 2]]) -> Option<f64> {
-    let n = points.len() as f64;
-    let logs: Vec<[f64; 2]> = points.iter().map(|p| p.map(f64::ln)).collect();
-    let mean = |k: usize| logs.iter().map(|p| p[k]).sum::<f64>() / n;
-    let [mx, my] = [mean(0), mean(1)];
-    let sxx: f64 = logs.iter().map(|p| (p[0] - mx).powi(2)).sum();
-    let sxy: f64 = logs.iter().map(|p| (p[0] - mx) * (p[1] - my)).sum();
-    let slope = sxy / sxx;
-    (points.len() > 1 && slope.is_finite()).then_some(slope)
 }
 
 /// Points that a fitted order rests on: the finest ones, before floors are reached.
@@ -175,27 +164,10 @@ pub(crate) fn first_clause(message: &str) -> &str {
     &message[..end.unwrap_or(message.len())]
 }
 
-/// A number with two digits.
-pub(crate) fn short(value: f64) -> String {
-    if value < 0.0 {
-        format!("−{}", short(-value))
-    } else if !value.is_finite() {
-        "–".into()
-    } else if (0.01..100.0).contains(&value) {
-        let digits = (1 - value.log10().floor() as i32).max(0) as usize;
-        format!("{value:.digits$}")
-    } else if (100.0..9999.5).contains(&value) {
-        format!("{value:.0}")
-    } else if value == 0.0 {
-        "0".into()
-    } else {
-        format!("{value:.1e}")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Effort;
 
     fn point(scheme: &str, step: f64, wall: f64, position: f64) -> Point {
         Point {
@@ -205,9 +177,7 @@ mod tests {
             uniform: true,
             wall,
             repetitions: 1,
-            steps: 1,
-            rejected: 0,
-            factorisations: 0,
+            effort: Effort::default(),
             errors: Some(Errors {
                 position,
                 energy: position,
@@ -237,8 +207,6 @@ mod tests {
         assert!((o("one", 1e-12).unwrap() - 1.0).abs() < 1e-12);
         assert!((o("four", 1e-12).unwrap() - 4.0).abs() < 1e-12);
         assert_eq!(o("four", 1e-5), None, "too few points are left");
-        assert_eq!(exponent(&[[1.0, 2.0]]), None);
-        assert_eq!(exponent(&[[1.0, 2.0], [1.0, 3.0]]), None);
     }
 
     #[test]
@@ -262,17 +230,6 @@ mod tests {
             "{words}"
         );
         assert_eq!(advice(&[], Measure::Energy), "no method reaches 1e-1");
-    }
-
-    #[test]
-    fn numbers_are_short() {
-        assert_eq!(short(0.012_34), "0.012");
-        assert_eq!(short(1.26), "1.3");
-        assert_eq!(short(55.0), "55");
-        assert_eq!(short(1234.0), "1234");
-        assert_eq!(short(12_345.0), "1.2e4");
-        assert_eq!(short(f64::INFINITY), "–");
-        assert_eq!(short(-1.26), "−1.3");
     }
 
     #[test]

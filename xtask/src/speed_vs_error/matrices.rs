@@ -1,7 +1,8 @@
 //! The matrices of the solver study, and their Matrix Market files.
 
 use super::effort::StudyEffort;
-use crate::{Outcome, interrupt, progress};
+use crate::interrupt::{self, Outcome};
+use crate::progress;
 use anyhow::Result;
 use isosheet_coords::linalg::Pattern;
 use isosheet_coords::{BentState, RodSystem, bent_square};

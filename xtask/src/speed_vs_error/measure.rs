@@ -4,6 +4,7 @@ use super::problem::Problem;
 use super::reference::Reference;
 use super::scheme::{Fineness, Scheme};
 use crate::interrupt;
+use crate::report::Effort;
 use anyhow::Result;
 use isosheet_dynamics::{Observer, Simulation, StepReport};
 use isosheet_tests::max_difference;
@@ -26,9 +27,9 @@ pub(crate) struct Point {
     /// Wall time in seconds for a simulated second, the minimum over the repetitions.
     pub(crate) wall: f64,
     pub(crate) repetitions: usize,
-    pub(crate) steps: usize,
-    pub(crate) rejected: usize,
-    pub(crate) factorisations: usize,
+    /// What the run cost; up to the last checkpoint where it did not come to the end, but for counts other than
+    /// those of sub-steps.
+    pub(crate) effort: Effort,
     /// Errors, of runs that came to the end.
     pub(crate) errors: Option<Errors>,
     /// Errors up to the last checkpoint that was reached, of runs that did not come to the end.
@@ -53,10 +54,7 @@ pub(crate) struct Errors {
 
 /// One pass over the checkpoints.
 struct Pass {
-    wall: f64,
-    steps: usize,
-    rejected: usize,
-    factorisations: usize,
+    effort: Effort,
     errors: Errors,
     failure: Option<String>,
     reached: f64,
@@ -93,7 +91,10 @@ pub(crate) fn point(
         let pass = run(&mut simulation, reference, pieces, patience)?;
         repetitions += 1;
         let stop = pass.failure.is_some();
-        if best.as_ref().is_none_or(|b| pass.wall < b.wall) {
+        if best
+            .as_ref()
+            .is_none_or(|b| pass.effort.wall < b.effort.wall)
+        {
             best = Some(pass);
         }
         if stop || clock.elapsed().as_secs_f64() > 0.1 * patience {
@@ -117,9 +118,7 @@ fn refused(scheme: &Scheme, fineness: f64, failure: String) -> Point {
         uniform: false,
         wall: 0.0,
         repetitions: 0,
-        steps: 0,
-        rejected: 0,
-        factorisations: 0,
+        effort: Effort::default(),
         errors: None,
         partial: None,
         reached: 0.0,
@@ -144,7 +143,7 @@ fn of_pass(
     let finished = pass.failure.is_none();
     let expected = match asked {
         Asked::Steps(n) => n * reference.usable(),
-        Asked::Tolerance(_) => pass.steps,
+        Asked::Tolerance(_) => pass.effort.substeps,
     };
     // Round-off may leave a rest of a step at every checkpoint.
     let rests = if scheme.steps_itself() {
@@ -152,25 +151,24 @@ fn of_pass(
     } else {
         0
     };
-    let as_asked = (expected..=expected + rests).contains(&pass.steps) && pass.rejected == 0;
+    let as_asked =
+        (expected..=expected + rests).contains(&pass.effort.substeps) && pass.effort.rejected == 0;
     let partial = !finished && pass.checkpoints > 0 && energy <= BLOWN_UP;
     Point {
         scheme: scheme.name.clone(),
         fineness: asked.value(reference),
         step: match asked.fineness(reference) {
             Fineness::Step(h) if rests > 0 => h,
-            _ => pass.reached / pass.steps.max(1) as f64,
+            _ => pass.reached / pass.effort.substeps.max(1) as f64,
         },
         uniform: finished && as_asked,
         wall: if pass.reached > 0.0 {
-            pass.wall / pass.reached
+            pass.effort.wall / pass.reached
         } else {
             0.0
         },
         repetitions,
-        steps: pass.steps,
-        rejected: pass.rejected,
-        factorisations: pass.factorisations,
+        effort: pass.effort,
         errors: finished.then_some(pass.errors),
         partial: partial.then_some(pass.errors),
         reached: pass.reached,
@@ -212,10 +210,7 @@ fn run(
     patience: f64,
 ) -> Result<Pass> {
     let mut pass = Pass {
-        wall: 0.0,
-        steps: 0,
-        rejected: 0,
-        factorisations: 0,
+        effort: Effort::default(),
         errors: Errors {
             position: 0.0,
             energy: 0.0,
@@ -231,9 +226,7 @@ fn run(
     let mut at_last_checkpoint = None;
     for want in reference.positions() {
         let mut watch = |_: &Simulation, report: &StepReport| {
-            pass.steps += report.substeps;
-            pass.rejected += report.rejected;
-            pass.factorisations += report.factorisations;
+            pass.effort.add(report);
             let e = &mut pass.errors;
             e.energy = e.energy.max(report.energy_drift.abs() / reference.energy);
             e.strain = e.strain.max(report.strain);
@@ -256,14 +249,14 @@ fn run(
         pass.errors.position = pass.errors.position.max(error);
         pass.checkpoints += 1;
         let wall = clock.elapsed().as_secs_f64() - comparing;
-        at_last_checkpoint = Some((wall, simulation.state().t, pass.steps));
+        at_last_checkpoint = Some((wall, simulation.state().t, pass.effort.substeps));
         comparing += before.elapsed().as_secs_f64();
     }
-    pass.wall = clock.elapsed().as_secs_f64() - comparing;
+    pass.effort.wall = clock.elapsed().as_secs_f64() - comparing;
     pass.reached = simulation.state().t;
     // What a run spent on its way from the last checkpoint to its failure is not counted.
     if let (Some(_), Some(before)) = (&pass.failure, at_last_checkpoint) {
-        (pass.wall, pass.reached, pass.steps) = before;
+        (pass.effort.wall, pass.reached, pass.effort.substeps) = before;
     }
     Ok(pass)
 }
@@ -306,7 +299,7 @@ pub(crate) fn sweep(
         } else {
             failures + 1
         };
-        let refused = point.steps == 0;
+        let refused = point.effort.substeps == 0;
         // Below the doubt of the reference nothing is learnt.
         let settled = point
             .errors

@@ -2,122 +2,92 @@
 
 use super::analysis::Measure;
 use super::effort::StudyEffort;
-use super::hanging::{self, Hanging};
-use super::problem::Problem;
 use super::scheme::DEFAULT;
 use super::solvers::{self, SolverRow};
 use super::study::Study;
 use super::tablecloth::{self, Tablecloth};
-use super::{Part, options, stamp, verdict};
-use crate::figures::machine;
-use crate::report::html::{STYLE, escape, inline_svg, table};
-use crate::store::Store;
+use super::{hanging, verdict};
+use crate::report::{Page, drawing, list, machine};
+use crate::store::{Store, StoreError};
+use crate::timing::Measured;
 use anyhow::Result;
+use maud::{Markup, html};
 use std::fmt::Write;
 
 /// Page of the repository on what other programs took for the same scenes.
 const ELSEWHERE: &str = "docs/measured-elsewhere.md";
 
-fn elsewhere() -> String {
-    format!(
-        "What other programs took for this scene was measured elsewhere, and not by this command: see {ELSEWHERE} in the repository."
-    )
+fn elsewhere() -> Markup {
+    html! {
+        p {
+            "What other programs took for this scene was measured elsewhere, and not by this command: see "
+            (ELSEWHERE) " in the repository."
+        }
+    }
 }
 
 /// What has been made so far with one effort.
-struct Results {
-    studies: Vec<Study>,
-    hanging: Option<Vec<Hanging>>,
-    tablecloth: Option<Vec<Tablecloth>>,
-    solvers: Option<Vec<SolverRow>>,
+#[derive(Debug, Default)]
+pub(super) struct Results {
+    pub(super) studies: Vec<Study>,
+    pub(super) hanging: Option<Vec<Measured>>,
+    pub(super) tablecloth: Option<Vec<Tablecloth>>,
+    pub(super) solvers: Option<Vec<SolverRow>>,
 }
 
-/// Writes the page from all parts that were made with this effort.
-pub(crate) fn write(store: &Store, effort: StudyEffort) -> Result<()> {
-    let results = read(store, effort)?;
-    let mut pictures = |name: &str| -> Result<String> {
-        let bytes = store.read(&format!("plots/{name}.svg"))?;
-        Ok(inline_svg(&String::from_utf8_lossy(&bytes)))
+/// Writes the page.
+pub(super) fn write(store: &Store, results: &Results, effort: StudyEffort) -> Result<()> {
+    let studies = results.studies.iter().map(|s| problem(store, s));
+    let studies = studies.collect::<Result<Vec<Markup>, _>>()?;
+    let solvers = match &results.solvers {
+        Some(rows) => solver_study(store, rows)?,
+        None => html! {},
     };
-    let page = page(&results, effort, &mut pictures)?;
-    store.write("index.html", page.as_bytes())?;
+    let body = html! {
+        p { (intro()) }
+        @if effort == StudyEffort::Quick {
+            p.note {
+                "Made with " code { "--quick" } ": the runs are far too short to conclude anything from them. They show "
+                "that the command works."
+            }
+        }
+        section { h2 { "Conclusions" } (list(&conclusions(results))) }
+        @for study in &studies { (study) }
+        @if let Some(rows) = &results.hanging {
+            section #hanging {
+                h2 { "The hanging sheet" }
+                p { (hanging::ABOUT) }
+                (list(&hanging::conclusions(rows)))
+                (hanging::table(rows))
+                (elsewhere())
+            }
+        }
+        @if let Some(rows) = &results.tablecloth {
+            section #tablecloth {
+                h2 { "The tablecloth" }
+                p { (tablecloth::ABOUT) }
+                (tablecloth::table(rows))
+                (elsewhere())
+            }
+        }
+        (solvers)
+    };
+    let page = Page::new("Speed against error", body);
+    store.write("index.html", page.to_html().as_bytes())?;
     Ok(())
 }
 
-fn read(store: &Store, effort: StudyEffort) -> Result<Results> {
-    let facts = |part| {
-        stamp(store, part)
-            .filter(|s| s.options == options(effort))
-            .map(|s| s.facts)
-    };
-    let mut studies = Vec::new();
-    for problem in Problem::ALL {
-        if let Some(facts) = facts(Part::Problem(problem)) {
-            studies.push(serde_json::from_value(facts)?);
+fn solver_study(store: &Store, rows: &[SolverRow]) -> Result<Markup, StoreError> {
+    let plot = store.read("plots/solvers.svg")?;
+    Ok(html! {
+        section #solvers {
+            h2 { "Linear solvers" }
+            p { (solvers::ABOUT) }
+            figure { (drawing(&plot)) }
+            (list(&solvers::conclusions(rows)))
+            (solvers::table(rows))
         }
-    }
-    Ok(Results {
-        studies,
-        hanging: facts(Part::Hanging)
-            .map(serde_json::from_value)
-            .transpose()?,
-        tablecloth: facts(Part::Tablecloth)
-            .map(serde_json::from_value)
-            .transpose()?,
-        solvers: facts(Part::Solvers)
-            .map(serde_json::from_value)
-            .transpose()?,
     })
-}
-
-fn page(
-    results: &Results,
-    effort: StudyEffort,
-    picture: &mut dyn FnMut(&str) -> Result<String>,
-) -> Result<String> {
-    let mut out = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>Speed against error</title>\
-         <style>{STYLE}</style></head><body><h1>Speed against error</h1>"
-    );
-    paragraph(&mut out, &intro());
-    if effort == StudyEffort::Quick {
-        out.push_str(
-            "<p class=\"note\">Made with <code>--quick</code>: the runs are far too short to conclude anything from them. They show \
-             that the command works.</p>",
-        );
-    }
-    out.push_str("<section><h2>Conclusions</h2>");
-    list(&mut out, &conclusions(results));
-    out.push_str("</section>");
-    for study in &results.studies {
-        problem(&mut out, study, picture)?;
-    }
-    if let Some(rows) = &results.hanging {
-        out.push_str("<section id=\"hanging\"><h2>The hanging sheet</h2>");
-        paragraph(&mut out, hanging::ABOUT);
-        list(&mut out, &hanging::conclusions(rows));
-        table(&mut out, &hanging::table(rows));
-        paragraph(&mut out, &elsewhere());
-        out.push_str("</section>");
-    }
-    if let Some(rows) = &results.tablecloth {
-        out.push_str("<section id=\"tablecloth\"><h2>The tablecloth</h2>");
-        paragraph(&mut out, tablecloth::ABOUT);
-        table(&mut out, &tablecloth::table(rows));
-        paragraph(&mut out, &elsewhere());
-        out.push_str("</section>");
-    }
-    if let Some(rows) = &results.solvers {
-        out.push_str("<section id=\"solvers\"><h2>Linear solvers</h2>");
-        paragraph(&mut out, solvers::ABOUT);
-        let _ = write!(out, "<figure>{}</figure>", picture("solvers")?);
-        list(&mut out, &solvers::conclusions(rows));
-        table(&mut out, &solvers::table(rows));
-        out.push_str("</section>");
-    }
-    out.push_str("</body></html>\n");
-    Ok(out)
 }
 
 fn intro() -> String {
@@ -179,42 +149,22 @@ fn conclusions(results: &Results) -> Vec<String> {
     all
 }
 
-fn problem(
-    out: &mut String,
-    study: &Study,
-    picture: &mut dyn FnMut(&str) -> Result<String>,
-) -> Result<()> {
-    let _ = write!(
-        out,
-        "<section id=\"{0}\"><h2>{1}</h2>",
-        study.problem,
-        escape(&study.problem.title())
-    );
-    paragraph(out, &study.problem.about());
-    paragraph(out, &study.reference_words());
-    let _ = write!(
-        out,
-        "<figure>{}</figure>",
-        picture(&study.problem.to_string())?
-    );
-    list(out, &study.conclusions());
-    out.push_str("<details><summary>All methods</summary>");
-    table(out, &study.table());
-    table(out, &study.solver_table());
-    out.push_str("</details></section>\n");
-    Ok(())
-}
-
-fn paragraph(out: &mut String, text: &str) {
-    let _ = write!(out, "<p>{}</p>", escape(text));
-}
-
-fn list(out: &mut String, items: &[String]) {
-    out.push_str("<ul>");
-    for item in items {
-        let _ = write!(out, "<li>{}</li>", escape(item));
-    }
-    out.push_str("</ul>");
+fn problem(store: &Store, study: &Study) -> Result<Markup, StoreError> {
+    let plot = store.read(&format!("plots/{}.svg", study.problem))?;
+    Ok(html! {
+        section id=(study.problem) {
+            h2 { (study.problem.title()) }
+            p { (study.problem.about()) }
+            p { (study.reference_words()) }
+            figure { (drawing(&plot)) }
+            (list(&study.conclusions()))
+            details {
+                summary { "All methods" }
+                (study.table())
+                (study.solver_table())
+            }
+        }
+    })
 }
 
 #[cfg(test)]

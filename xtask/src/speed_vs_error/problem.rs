@@ -1,16 +1,15 @@
 //! The problems of the study.
 
 use super::barrier::Barrier;
+use crate::timing::{bumped, corner};
 use anyhow::{Result, bail};
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::contact::ContactError;
 use isosheet_dynamics::{Method, SheetModel, Simulation, SimulationError, State};
-use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId};
 use isosheet_tests::{FreeTriangle, Pendulum};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::PI;
 use std::fmt;
 use std::str::FromStr;
 
@@ -229,22 +228,6 @@ fn strip(links: u32) -> Result<Sheet> {
         })
         .collect();
     Ok(Sheet::new(positions, &faces)?)
-}
-
-/// The union-jack square `M^level` of side 1 m with `z = bump sin(pi x) sin(pi y)`.
-pub(crate) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
-    let flat = isotropic_square(level, 1.0)?;
-    let mut x = flat.positions().to_vec();
-    for p in x.as_chunks_mut::<3>().0 {
-        p[2] = bump * (PI * p[0]).sin() * (PI * p[1]).sin();
-    }
-    Ok(Sheet::new(x, &flat.face_indices())?)
-}
-
-/// The corner (0, 1) of `M^level`.
-pub(crate) fn corner(level: u32) -> VertexId {
-    let n = (1 << (level + 1)) + 1;
-    VertexId(n * (n - 1))
 }
 
 /// Positions of the free triangle: the attitude R follows from the exact spin w in body axes by `R' = R [w]`.

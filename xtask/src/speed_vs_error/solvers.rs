@@ -2,8 +2,10 @@
 
 mod elimination;
 mod report;
+mod row;
 
-pub(crate) use report::{conclusions, csv, plot, table};
+pub(crate) use report::{conclusions, data, plot, table};
+pub(crate) use row::SolverRow;
 
 use super::effort::StudyEffort;
 use super::matrices::{Body, STIFFNESS, Sparse};
@@ -15,7 +17,7 @@ use isosheet_coords::linalg::{LinalgError, SparseLdlt, SparseLlt, SparseLu, norm
 use isosheet_coords::{CartesianChart, Chart, Choice, Linearised, mass_matrix};
 use isosheet_io::MatrixSymmetry;
 use nalgebra::{DMatrix, DVector};
-use serde::{Deserialize, Serialize};
+use row::{CRAMER, DENSE_LU, LDLT, MINORS, SCHUR, SOLVERS, SPARSE_LU};
 use std::time::Instant;
 
 /// What is measured, in words.
@@ -27,48 +29,6 @@ pub(crate) const ABOUT: &str = "Free, bent sheets: two triangles (n = 7), then t
     damped methods, which correct its solution as they iterate: it solves the saddle-point system only in the limit, and its errors show what four \
     steps of the method of multipliers leave. Each time is the minimum over repetitions. \
     Two at once: how much more is done when two cores factorise one matrix each.";
-
-/// One solver on one matrix. Times in seconds.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct SolverRow {
-    pub(crate) solver: String,
-    pub(crate) mesh: String,
-    /// Degrees of freedom.
-    pub(crate) n: usize,
-    /// Order of the matrix that is factorised.
-    pub(crate) order: usize,
-    /// Forming C, for the dense solvers.
-    pub(crate) form: f64,
-    pub(crate) first: f64,
-    pub(crate) again: f64,
-    pub(crate) solve: f64,
-    /// `None` when the solver failed.
-    pub(crate) backward: Option<f64>,
-    pub(crate) velocity: Option<f64>,
-    /// Throughput of two cores with one factorisation each, relative to one core.
-    pub(crate) two: Option<f64>,
-    pub(crate) failure: Option<String>,
-}
-
-impl SolverRow {
-    /// What a step pays: forming, factorising again, solving.
-    fn step(&self) -> f64 {
-        self.form + self.again + self.solve
-    }
-}
-
-/// Names of the solvers, dense ones first.
-const SOLVERS: [&str; 8] = [
-    MINORS, CRAMER, DENSE_LU, CHOLESKY, SPARSE_LU, LDLT, SCHUR, PRIMAL,
-];
-const MINORS: &str = "Cramer, minors as published";
-const CRAMER: &str = "Cramer's rule";
-const DENSE_LU: &str = "dense LU";
-const CHOLESKY: &str = "dense Cholesky";
-const SPARSE_LU: &str = "sparse LU, saddle point";
-const LDLT: &str = "sparse LDL^T, saddle point";
-const SCHUR: &str = "sparse Cholesky, Schur complement";
-const PRIMAL: &str = "sparse Cholesky, primal";
 
 /// Runs all solvers on all sizes.
 pub(crate) fn make(effort: StudyEffort) -> Result<Vec<SolverRow>> {
@@ -419,6 +379,7 @@ fn shortest(limit: f64, mut work: impl FnMut()) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::row::PRIMAL;
     use super::*;
 
     /// All solvers give the same velocities, whatever system they solve.
@@ -439,6 +400,7 @@ mod tests {
         assert_eq!(rows[0].n, 7);
         assert!(conclusions(&rows).len() >= 5);
         assert!(plot(&rows).to_svg("t").unwrap().contains("dense Cholesky"));
-        assert!(!csv(&rows).contains("inf"));
+        let csv = String::from_utf8(data(&rows).csv().unwrap()).unwrap();
+        assert!(!csv.contains("inf"));
     }
 }

@@ -1,14 +1,14 @@
 //! The study of one problem: all methods, all steps; its table, its plot, its words.
 
-use super::analysis::{Measure, advice, cheapest, first_clause, on_front, order, short};
+use super::analysis::{Measure, advice, cheapest, first_clause, on_front, order};
 use super::effort::StudyEffort;
 use super::measure::{Point, sweep};
 use super::problem::{CHECKPOINTS, Problem};
 use super::reference::{self, Reference};
 use super::scheme::{DEFAULT, ROBUST, Scheme, is_paper};
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, palette, row};
-use crate::figures::Table;
+use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
 use crate::progress::Progress;
+use crate::report::{Cell, Chart, Table, rounded, short};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
@@ -49,37 +49,28 @@ pub(crate) fn make(problem: Problem, effort: StudyEffort) -> Result<Study> {
 const ENERGY_FLOOR: f64 = 1e-13;
 
 impl Study {
-    /// All points as CSV.
-    pub(crate) fn csv(&self) -> String {
-        let mut out = String::from(
-            "problem,method,step_or_tolerance,mean_step_s,wall_s_per_simulated_s,position_error_m,relative_energy_error,strain,\
-             steps,rejected,factorisations,repetitions,failure\n",
-        );
-        for p in &self.points {
-            let error = |m: Measure| {
-                p.errors
-                    .map_or(String::new(), |e| format!("{:e}", m.of(&e)))
-            };
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                out,
-                "{},\"{}\",{:e},{:e},{:e},{},{},{},{},{},{},{},\"{}\"",
-                self.problem,
-                p.scheme,
-                p.fineness,
-                p.step,
-                p.wall,
-                error(Measure::Position),
-                error(Measure::Energy),
-                error(Measure::Strain),
-                p.steps,
-                p.rejected,
-                p.factorisations,
-                p.repetitions,
-                p.failure.as_deref().unwrap_or("").replace('"', "'"),
-            );
-        }
-        out
+    /// All points, for programs.
+    pub(crate) fn data(&self) -> Table {
+        let error = |p: &Point, m: Measure| Cell::from(p.errors.map(|e| m.of(&e)));
+        Table::of(
+            "",
+            &self.points,
+            &[
+                ("problem", &|_| self.problem.to_string().into()),
+                ("method", &|p| p.scheme.as_str().into()),
+                ("step_or_tolerance", &|p| p.fineness.into()),
+                ("mean_step_s", &|p| p.step.into()),
+                ("wall_s_per_simulated_s", &|p| p.wall.into()),
+                ("position_error_m", &|p| error(p, Measure::Position)),
+                ("relative_energy_error", &|p| error(p, Measure::Energy)),
+                ("strain", &|p| error(p, Measure::Strain)),
+                ("steps", &|p| p.effort.substeps.into()),
+                ("rejected", &|p| p.effort.rejected.into()),
+                ("factorisations", &|p| p.effort.factorisations.into()),
+                ("repetitions", &|p| p.repetitions.into()),
+                ("failure", &|p| p.failure.clone().into()),
+            ],
+        )
     }
 
     fn of<'a>(&'a self, scheme: &'a str) -> impl Iterator<Item = &'a Point> {
@@ -209,55 +200,46 @@ impl Study {
 
     /// Methods, their fitted orders and the time they take for given errors.
     pub(crate) fn table(&self) -> Table {
-        let levels = [1e-2, 1e-4, 1e-6, 1e-8];
-        let mut head: Vec<String> = ["method", "order, position", "order, energy"]
-            .map(str::to_owned)
-            .to_vec();
-        head.extend(levels.map(|l| format!("s/s for {l:.0e} m")));
-        head.extend(
-            [
-                "best position error (m)",
-                "best energy error",
-                "largest strain",
-                "remark",
-            ]
-            .map(str::to_owned),
-        );
-        let rows = self
-            .names()
-            .iter()
-            .map(|name| {
-                let order = |measure, floor| {
-                    order(&self.points, name, measure, floor)
-                        .map_or("–".to_owned(), |o| format!("{o:.1}"))
-                };
-                let mut row = vec![
-                    (*name).to_owned(),
-                    order(Measure::Position, self.reference.doubt()),
-                    order(Measure::Energy, ENERGY_FLOOR),
-                ];
-                row.extend(levels.map(|l| {
-                    cheapest(self.of(name), Measure::Position, l)
-                        .map_or("–".to_owned(), |p| short(p.wall))
-                }));
-                let extreme = |measure: Measure, f: fn(f64, f64) -> f64| {
-                    self.of(name)
-                        .filter_map(|p| p.errors.map(|e| measure.of(&e)))
-                        .reduce(f)
-                        .map_or("–".to_owned(), |e| format!("{e:.0e}"))
-                };
-                row.push(extreme(Measure::Position, f64::min));
-                row.push(extreme(Measure::Energy, f64::min));
-                row.push(extreme(Measure::Strain, f64::max));
-                row.push(self.remark(name));
-                row
-            })
-            .collect();
-        Table {
-            caption: "Orders fitted to the finest steps; wall seconds for a simulated second to get below a position error".into(),
-            head,
-            rows,
-        }
+        let order = |name: &str, measure, floor| {
+            let order = order(&self.points, name, measure, floor);
+            Cell::from(order.map(|o| format!("{o:.1}")))
+        };
+        let cost = |name: &str, level: f64| {
+            let point = cheapest(self.of(name), Measure::Position, level);
+            Cell::from(point.map(|p| short(p.wall)))
+        };
+        let extreme = |name: &str, measure: Measure, f: fn(f64, f64) -> f64| {
+            let errors = self.of(name).filter_map(|p| p.errors);
+            let extreme = errors.map(|e| measure.of(&e)).reduce(f);
+            Cell::from(extreme.map(|e| format!("{e:.0e}")))
+        };
+        Table::of(
+            "Orders fitted to the finest steps; wall seconds for a simulated second to get below a position error",
+            self.names(),
+            &[
+                ("method", &|name| (*name).into()),
+                ("order, position", &|name| {
+                    order(name, Measure::Position, self.reference.doubt())
+                }),
+                ("order, energy", &|name| {
+                    order(name, Measure::Energy, ENERGY_FLOOR)
+                }),
+                ("s/s for 1e-2 m", &|name| cost(name, 1e-2)),
+                ("s/s for 1e-4 m", &|name| cost(name, 1e-4)),
+                ("s/s for 1e-6 m", &|name| cost(name, 1e-6)),
+                ("s/s for 1e-8 m", &|name| cost(name, 1e-8)),
+                ("best position error (m)", &|name| {
+                    extreme(name, Measure::Position, f64::min)
+                }),
+                ("best energy error", &|name| {
+                    extreme(name, Measure::Energy, f64::min)
+                }),
+                ("largest strain", &|name| {
+                    extreme(name, Measure::Strain, f64::max)
+                }),
+                ("remark", &|name| self.remark(name).into()),
+            ],
+        )
     }
 
     /// What kept a method from finishing, if it did.
@@ -273,7 +255,7 @@ impl Study {
                 format!(
                     "{} of {runs} runs not finished, the last: {}",
                     failed.len(),
-                    crate::figures::rounded(reason)
+                    rounded(reason)
                 )
             }
         }
@@ -282,52 +264,40 @@ impl Study {
     /// Three log-log panels: time against each error.
     pub(crate) fn plot(&self) -> Drawing {
         let drawn = self.drawn();
-        let finished = |p: &&Point| p.errors.is_some();
-        let walls = decades(self.points.iter().filter(finished).map(|p| p.wall));
-        let panels: Vec<Drawing> = Measure::ALL
-            .into_iter()
-            .map(|measure| {
-                let clip = |e: f64| e.max(CLIP);
-                let errors = decades(drawn.iter().flat_map(|(name, ..)| {
-                    self.of(name)
-                        .filter_map(move |p| p.errors.map(|e| clip(measure.of(&e)).min(10.0)))
-                }));
-                let series = drawn
-                    .iter()
-                    .map(|(name, colour, marker, line)| Series {
-                        name: (*name).to_owned(),
-                        points: self
-                            .of(name)
-                            .filter_map(|p| {
-                                let e = clip(measure.of(&p.errors?));
-                                (e <= 10f64.powi(errors[1])).then_some([p.wall, e])
-                            })
-                            .collect(),
-                        colour: *colour,
-                        marker: *marker,
-                        line: *line,
-                    })
-                    .collect();
-                let label = match measure {
-                    Measure::Position => "position error (m)",
-                    Measure::Energy => "energy error / largest kinetic energy",
-                    Measure::Strain => "largest edge strain",
-                };
-                Plot {
-                    x: axis("wall time / simulated time", walls),
-                    y: axis(label, errors),
-                    size: [150.0, 160.0],
-                    series,
-                    legend: if measure == Measure::Strain {
-                        Legend::Right
-                    } else {
-                        Legend::None
-                    },
-                }
-                .draw()
-            })
-            .collect();
-        row(&panels, 18.0)
+        let finished = || self.points.iter().filter(|p| p.errors.is_some());
+        let error = |measure: Measure, p: &Point| Some(measure.of(&p.errors?).max(CLIP));
+        let panel = |measure: Measure| {
+            let errors = drawn
+                .iter()
+                .flat_map(|(name, ..)| self.of(name))
+                .filter_map(|p| Some(error(measure, p)?.min(LARGEST)));
+            let series = drawn.iter().map(|(name, colour, marker, line)| Series {
+                name: (*name).to_owned(),
+                points: self
+                    .of(name)
+                    .filter_map(|p| Some([p.wall, error(measure, p)?]))
+                    .collect(),
+                colour: *colour,
+                marker: *marker,
+                line: *line,
+            });
+            let (label, legend) = match measure {
+                Measure::Position => ("position error (m)", Legend::None),
+                Measure::Energy => ("energy error / largest kinetic energy", Legend::None),
+                Measure::Strain => ("largest edge strain", Legend::Right),
+            };
+            Chart {
+                legend,
+                ..Chart::new(
+                    Axis::holding("wall time / simulated time", finished().map(|p| p.wall)),
+                    Axis::holding(label, errors),
+                    [150.0, 160.0],
+                    series.collect(),
+                )
+            }
+            .draw()
+        };
+        row(&Measure::ALL.map(panel), 18.0)
     }
 
     /// The methods that are drawn, and how: those in charts in one chart with one solver only.
@@ -373,58 +343,35 @@ impl Study {
 
     /// Time of a step in a chart by solver: rows of methods and charts.
     pub(crate) fn solver_table(&self) -> Table {
-        let solvers = ["saddle", "Cholesky", "dense LU", "Cramer"];
-        let mut stems: Vec<&str> = self
-            .names()
-            .into_iter()
-            .filter_map(|n| n.strip_suffix(", saddle"))
-            .collect();
+        let names = self.names();
+        let stems = names.iter().filter_map(|n| n.strip_suffix(", saddle"));
+        let mut stems: Vec<&str> = stems.collect();
         stems.dedup();
-        let rows = stems
-            .iter()
-            .map(|stem| {
-                let mut row = vec![(*stem).to_owned()];
-                row.extend(solvers.map(|solver| {
-                    let name = format!("{stem}, {solver}");
-                    let steps = self.of(&name).filter(|p| p.errors.is_some());
-                    let time = steps.map(|p| 1e6 * p.wall * p.step).reduce(f64::min);
-                    time.map_or("–".to_owned(), short)
-                }));
-                row
-            })
-            .collect();
-        let mut head = vec!["method, chart".to_owned()];
-        head.extend(solvers.map(|s| format!("{s} (µs)")));
-        Table {
-            caption:
-                "Time of one step in a chart by mass-matrix solver, the best over the step sizes"
-                    .into(),
-            head,
-            rows,
-        }
+        let time = |stem: &str, solver: &str| {
+            let name = format!("{stem}, {solver}");
+            let steps = self.of(&name).filter(|p| p.errors.is_some());
+            let time = steps.map(|p| 1e6 * p.wall * p.step).reduce(f64::min);
+            Cell::from(time.map(short))
+        };
+        Table::of(
+            "Time of one step in a chart by mass-matrix solver, the best over the step sizes",
+            stems,
+            &[
+                ("method, chart", &|stem| (*stem).into()),
+                ("saddle (µs)", &|stem| time(stem, "saddle")),
+                ("Cholesky (µs)", &|stem| time(stem, "Cholesky")),
+                ("dense LU (µs)", &|stem| time(stem, "dense LU")),
+                ("Cramer (µs)", &|stem| time(stem, "Cramer")),
+            ],
+        )
     }
 }
 
 /// Errors below this are drawn as this: round-off, and zero has no logarithm.
 const CLIP: f64 = 1e-17;
 
-/// The whole decades that hold some values.
-pub(super) fn decades(values: impl Iterator<Item = f64>) -> [i32; 2] {
-    let (low, high) = values
-        .filter(|v| v.is_finite() && *v > 0.0)
-        .fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(v), h.max(v)));
-    if low > high {
-        return [-1, 0];
-    }
-    let first = low.log10().floor() as i32;
-    [first, (high.log10().ceil() as i32).max(first + 1)]
-}
-
-/// A logarithmic axis over whole decades with at most six or so ticks.
-pub(super) fn axis(label: &str, [first, last]: [i32; 2]) -> Axis {
-    let every = ((last - first) as usize).div_ceil(6).max(1);
-    Axis::decades(label, first, last, every)
-}
+/// Errors above this are left out of the plots.
+const LARGEST: f64 = 10.0;
 
 /// When a doubt grows to the size of the sheet, 1 m; `None` when it does not.
 fn horizon(rate: f64, doubt: f64) -> Option<String> {
@@ -439,9 +386,9 @@ mod tests {
     #[test]
     fn a_quick_study_of_the_pendulum_holds_together() {
         let study = make(Problem::Pendulum, StudyEffort::Quick).unwrap();
-        let csv = study.csv();
+        let csv = String::from_utf8(study.data().csv().unwrap()).unwrap();
         assert_eq!(csv.lines().count(), 1 + study.points.len());
-        assert!(csv.contains("pendulum,\"BDF2 (default)\","), "{csv}");
+        assert!(csv.contains("pendulum,BDF2 (default),"), "{csv}");
         assert!(!csv.contains(",NaN") && !csv.contains(",inf"), "{csv}");
         let svg = study.plot().to_svg("t").unwrap();
         assert!(svg.contains("RATTLE composition"));
@@ -463,12 +410,5 @@ mod tests {
                 .fold(0.0, f64::max)
         };
         assert!(strain(DEFAULT) < 1e-11 && strain("published scheme") > 1e-4);
-    }
-
-    #[test]
-    fn decades_hold_the_values() {
-        assert_eq!(decades([2e-3, 0.5].into_iter()), [-3, 0]);
-        assert_eq!(decades([1.0].into_iter()), [0, 1]);
-        assert_eq!(decades(std::iter::empty()), [-1, 0]);
     }
 }

@@ -1,11 +1,11 @@
 //! The default against the published scheme at equal wall time.
 
-use super::analysis::{first_clause, short};
+use super::analysis::first_clause;
 use super::measure::{Errors, Point};
 use super::problem::Problem;
 use super::scheme::{DEFAULT, is_paper};
 use super::study::Study;
-use crate::figures::rounded;
+use crate::report::{rounded, short};
 
 /// A run of the published scheme and the best that the default does in no more time.
 struct Match<'a> {
@@ -24,7 +24,7 @@ fn matches(study: &Study) -> Vec<Match<'_>> {
             let theirs = paper
                 .errors
                 .or(paper.partial)
-                .filter(|_| paper.steps >= FEWEST)?;
+                .filter(|_| paper.effort.substeps >= FEWEST)?;
             let ours = study
                 .points
                 .iter()
@@ -154,7 +154,7 @@ mod tests {
         let mut at = |scheme: &str, wall, energy, strain| {
             one.scheme = scheme.into();
             one.wall = wall;
-            one.steps = 100;
+            one.effort.substeps = 100;
             one.errors = Some(Errors {
                 position: 1.0,
                 energy,

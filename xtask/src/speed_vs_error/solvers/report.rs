@@ -1,92 +1,63 @@
 //! What the rows of the solver study say: tables, plot, words.
 
-use super::super::analysis::{exponent, short};
-use super::super::study::{axis, decades};
-use super::{CHOLESKY, CRAMER, LDLT, MINORS, SCHUR, SOLVERS, SPARSE_LU, SolverRow};
-use crate::draw::{Colour, Drawing, Legend, Line, Marker, Plot, Series, palette, row};
-use crate::figures::Table;
-use std::fmt::Write;
+use super::row::{CHOLESKY, CRAMER, LDLT, MINORS, SCHUR, SOLVERS, SPARSE_LU, SolverRow};
+use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
+use crate::report::{Cell, Chart, Table, exponent, short};
 
-/// All rows as CSV.
-pub(crate) fn csv(rows: &[SolverRow]) -> String {
-    let mut out = String::from(
-        "solver,mesh,degrees_of_freedom,order,form_s,first_s,again_s,solve_s,backward_error,velocity_error,two_cores,failure\n",
-    );
-    let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:e}"));
-    for r in rows {
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            out,
-            "\"{}\",{},{},{},{:e},{:e},{:e},{:e},{},{},{},\"{}\"",
-            r.solver,
-            r.mesh,
-            r.n,
-            r.order,
-            r.form,
-            r.first,
-            r.again,
-            r.solve,
-            number(r.backward),
-            number(r.velocity),
-            number(r.two),
-            r.failure.as_deref().unwrap_or("").replace('"', "'")
-        );
-    }
-    out
+/// All rows, for programs.
+pub(crate) fn data(rows: &[SolverRow]) -> Table {
+    Table::of(
+        "",
+        rows,
+        &[
+            ("solver", &|r| r.solver.as_str().into()),
+            ("mesh", &|r| r.mesh.as_str().into()),
+            ("degrees_of_freedom", &|r| r.n.into()),
+            ("order", &|r| r.order.into()),
+            ("form_s", &|r| r.form.into()),
+            ("first_s", &|r| r.first.into()),
+            ("again_s", &|r| r.again.into()),
+            ("solve_s", &|r| r.solve.into()),
+            ("backward_error", &|r| r.backward.into()),
+            ("velocity_error", &|r| r.velocity.into()),
+            ("two_cores", &|r| r.two.into()),
+            ("failure", &|r| r.failure.clone().into()),
+        ],
+    )
 }
 
 /// Time in microseconds or milliseconds.
-fn time(seconds: f64) -> String {
+fn time(seconds: f64) -> Cell {
     match seconds {
-        0.0 => "–".into(),
-        s if s < 1e-3 => format!("{} µs", short(1e6 * s)),
-        s if s < 1.0 => format!("{} ms", short(1e3 * s)),
-        s => format!("{} s", short(s)),
+        0.0 => Cell::Missing,
+        s if s < 1e-3 => format!("{} µs", short(1e6 * s)).into(),
+        s if s < 1.0 => format!("{} ms", short(1e3 * s)).into(),
+        s => format!("{} s", short(s)).into(),
     }
 }
 
 /// The table for people.
 pub(crate) fn table(rows: &[SolverRow]) -> Table {
-    let number = |v: Option<f64>| v.map_or("–".into(), |v| format!("{v:.0e}"));
-    Table {
-        caption: "Linear solvers by size".into(),
-        head: [
-            "solver",
-            "mesh",
-            "n",
-            "order",
-            "forming C",
-            "first",
-            "again",
-            "solve",
-            "backward error",
-            "velocity error",
-            "two at once",
-            "remark",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: SOLVERS
-            .iter()
-            .flat_map(|s| rows.iter().filter(move |r| r.solver == *s))
-            .map(|r| {
-                vec![
-                    r.solver.clone(),
-                    r.mesh.clone(),
-                    r.n.to_string(),
-                    r.order.to_string(),
-                    time(r.form),
-                    time(r.first),
-                    time(r.again),
-                    time(r.solve),
-                    number(r.backward),
-                    number(r.velocity),
-                    r.two.map_or("–".into(), |t| format!("{t:.1}×")),
-                    r.failure.clone().unwrap_or_default(),
-                ]
-            })
-            .collect(),
-    }
+    let error = |v: Option<f64>| Cell::from(v.map(|v| format!("{v:.0e}")));
+    let of = |solver: &'static str| rows.iter().filter(move |r| r.solver == solver);
+    Table::of(
+        "Linear solvers by size",
+        SOLVERS.into_iter().flat_map(of),
+        &[
+            ("solver", &|r| r.solver.as_str().into()),
+            ("mesh", &|r| r.mesh.as_str().into()),
+            ("n", &|r| r.n.into()),
+            ("order", &|r| r.order.into()),
+            ("forming C", &|r| time(r.form)),
+            ("first", &|r| time(r.first)),
+            ("again", &|r| time(r.again)),
+            ("solve", &|r| time(r.solve)),
+            ("backward error", &|r| error(r.backward)),
+            ("velocity error", &|r| error(r.velocity)),
+            ("two at once", &|r| r.two.map(|t| format!("{t:.1}×")).into()),
+            ("remark", &|r| r.failure.clone().unwrap_or_default().into()),
+        ],
+    )
 }
 
 /// Measurements that an exponent rests on: the largest sizes.
@@ -134,51 +105,11 @@ pub(crate) fn conclusions(rows: &[SolverRow]) -> Vec<String> {
         "Time of a factorisation at the largest sizes: {}. The order of the sparse matrices grows as n^2.",
         growths.join("; ")
     ));
-    let mut sizes: Vec<usize> = rows.iter().map(|r| r.n).collect();
-    sizes.sort_unstable();
-    sizes.dedup();
-    let mut winners: Vec<(String, [usize; 2])> = Vec::new();
-    for n in sizes {
-        let best = rows
-            .iter()
-            .filter(|r| r.n == n && r.failure.is_none())
-            .min_by(|a, b| a.step().total_cmp(&b.step()));
-        if let Some(best) = best {
-            match winners.last_mut() {
-                Some((name, range)) if *name == best.solver => range[1] = n,
-                _ => winners.push((best.solver.clone(), [n, n])),
-            }
-        }
-    }
-    let fastest: Vec<String> = winners
-        .iter()
-        .map(|(s, [a, b])| {
-            if a == b {
-                format!("{s} at n = {a}")
-            } else {
-                format!("{s} from n = {a} to {b}")
-            }
-        })
-        .collect();
     all.push(format!(
         "Fastest at forming, factorising and solving once: {}.",
-        fastest.join("; ")
+        fastest(rows).join("; ")
     ));
-    let crossings: Vec<String> = [
-        (MINORS, CHOLESKY),
-        (CRAMER, CHOLESKY),
-        (CHOLESKY, SPARSE_LU),
-        (CHOLESKY, LDLT),
-        (CHOLESKY, SCHUR),
-        (SPARSE_LU, LDLT),
-        (LDLT, SCHUR),
-    ]
-    .into_iter()
-    .filter_map(|(a, b)| {
-        let n = crossing(rows, a, b)?;
-        Some(format!("{b} passes {a} at n = {n:.0}"))
-    })
-    .collect();
+    let crossings = crossings(rows);
     if !crossings.is_empty() {
         all.push(format!("Cross-over points: {}.", crossings.join("; ")));
     }
@@ -193,17 +124,9 @@ pub(crate) fn conclusions(rows: &[SolverRow]) -> Vec<String> {
         "A first factorisation, analysis included, takes so many times a later one, at the largest size of each: {}.",
         analysis.join("; ")
     ));
-    let worst: Vec<String> = SOLVERS
-        .iter()
-        .filter_map(|s| {
-            let of = |f: fn(&SolverRow) -> Option<f64>| of(rows, s).filter_map(f).reduce(f64::max);
-            let velocity = of(|r| r.velocity).map_or("–".into(), |v| format!("{v:.0e}"));
-            Some(format!("{s} {:.0e} / {velocity}", of(|r| r.backward)?))
-        })
-        .collect();
     all.push(format!(
         "Largest backward error / error of the velocities: {}.",
-        worst.join("; ")
+        worst_errors(rows).join("; ")
     ));
     let two: Vec<String> = SOLVERS[4..]
         .iter()
@@ -234,6 +157,67 @@ pub(crate) fn conclusions(rows: &[SolverRow]) -> Vec<String> {
     all
 }
 
+/// Which solver is the fastest at which sizes.
+fn fastest(rows: &[SolverRow]) -> Vec<String> {
+    let mut sizes: Vec<usize> = rows.iter().map(|r| r.n).collect();
+    sizes.sort_unstable();
+    sizes.dedup();
+    let mut winners: Vec<(String, [usize; 2])> = Vec::new();
+    for n in sizes {
+        let best = rows
+            .iter()
+            .filter(|r| r.n == n && r.failure.is_none())
+            .min_by(|a, b| a.step().total_cmp(&b.step()));
+        if let Some(best) = best {
+            match winners.last_mut() {
+                Some((name, range)) if *name == best.solver => range[1] = n,
+                _ => winners.push((best.solver.clone(), [n, n])),
+            }
+        }
+    }
+    winners
+        .iter()
+        .map(|(s, [a, b])| {
+            if a == b {
+                format!("{s} at n = {a}")
+            } else {
+                format!("{s} from n = {a} to {b}")
+            }
+        })
+        .collect()
+}
+
+/// The sizes from which on one solver passes another.
+fn crossings(rows: &[SolverRow]) -> Vec<String> {
+    [
+        (MINORS, CHOLESKY),
+        (CRAMER, CHOLESKY),
+        (CHOLESKY, SPARSE_LU),
+        (CHOLESKY, LDLT),
+        (CHOLESKY, SCHUR),
+        (SPARSE_LU, LDLT),
+        (LDLT, SCHUR),
+    ]
+    .into_iter()
+    .filter_map(|(a, b)| {
+        let n = crossing(rows, a, b)?;
+        Some(format!("{b} passes {a} at n = {n:.0}"))
+    })
+    .collect()
+}
+
+/// The largest errors of each solver.
+fn worst_errors(rows: &[SolverRow]) -> Vec<String> {
+    SOLVERS
+        .iter()
+        .filter_map(|s| {
+            let of = |f: fn(&SolverRow) -> Option<f64>| of(rows, s).filter_map(f).reduce(f64::max);
+            let velocity = of(|r| r.velocity).map_or("–".into(), |v| format!("{v:.0e}"));
+            Some(format!("{s} {:.0e} / {velocity}", of(|r| r.backward)?))
+        })
+        .collect()
+}
+
 /// Time of a step's solve and backward error against n.
 pub(crate) fn plot(rows: &[SolverRow]) -> Drawing {
     let looks: [(Colour, Marker, Line); 8] = [
@@ -246,7 +230,6 @@ pub(crate) fn plot(rows: &[SolverRow]) -> Drawing {
         (palette::BLUE, Marker::Disc, Line::Solid),
         (palette::GREEN, Marker::Square, Line::Solid),
     ];
-    let sizes = decades(rows.iter().map(|r| r.n as f64));
     let panel = |label: &str, value: fn(&SolverRow) -> Option<f64>, legend| {
         let good = || rows.iter().filter(|r| r.failure.is_none());
         let series = SOLVERS
@@ -262,12 +245,14 @@ pub(crate) fn plot(rows: &[SolverRow]) -> Drawing {
                 line,
             })
             .collect();
-        Plot {
-            x: axis("degrees of freedom ~n~", sizes),
-            y: axis(label, decades(good().filter_map(value))),
-            size: [150.0, 160.0],
-            series,
+        Chart {
             legend,
+            ..Chart::new(
+                Axis::holding("degrees of freedom ~n~", rows.iter().map(|r| r.n as f64)),
+                Axis::holding(label, good().filter_map(value)),
+                [150.0, 160.0],
+                series,
+            )
         }
         .draw()
     };

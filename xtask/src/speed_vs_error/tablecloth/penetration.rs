@@ -1,6 +1,6 @@
 //! Whether the cloth penetrates the table or itself, apart from the contact code.
 
-use super::{CLEARANCE, Pairs, TABLE};
+use crate::timing::{CLEARANCE, Pairs, TABLE};
 use anyhow::Result;
 use isosheet_collide::{ContactMesh, crossings, crossings_between};
 use isosheet_mesh::Sheet;
@@ -65,8 +65,8 @@ impl Checker {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{BUMP, bumped};
     use super::*;
+    use crate::timing::{BUMP, bumped};
 
     /// A sheet pushed into the table is found by both checks.
     #[test]

@@ -1,16 +1,19 @@
 //! Bodies in pictures of sheets.
 
-use crate::draw::spatial::{cross, dot, sub, unit};
-use anyhow::{Result, bail};
+use super::camera::normal;
+use super::error::PictureError;
+use super::vector::dot;
 use isosheet_collide::Obstacle;
 
 /// A body as it is drawn: flat faces and the edges between them.
 #[derive(Clone, Debug)]
-pub(crate) struct Solid {
-    pub(crate) points: Vec<[f64; 3]>,
-    pub(crate) faces: Vec<[usize; 3]>,
+pub struct Solid {
+    /// Corners, metres.
+    pub points: Vec<[f64; 3]>,
+    /// Triangles: numbers of corners.
+    pub faces: Vec<[usize; 3]>,
     /// Edges where two faces meet at an angle.
-    pub(crate) edges: Vec<[usize; 2]>,
+    pub edges: Vec<[usize; 2]>,
 }
 
 /// Sides of round bodies in pictures.
@@ -23,13 +26,13 @@ impl Solid {
     /// A body in its place at time `t`, seconds.
     ///
     /// # Errors
-    /// Bodies without faces: half-spaces, balls, capsules.
-    pub(crate) fn of(body: &Obstacle, t: f64) -> Result<Self> {
+    /// [`PictureError::NoFaces`] for half-spaces, balls and capsules.
+    pub fn of(body: &Obstacle, t: f64) -> Result<Self, PictureError> {
         let Some(geometry) = body.shape().contact_geometry(SEGMENTS)? else {
-            bail!("a half-space has no faces to draw");
+            return Err(PictureError::NoFaces("half-space"));
         };
         if geometry.radius > 0.0 {
-            bail!("a ball or capsule has no faces to draw");
+            return Err(PictureError::NoFaces("ball or capsule"));
         }
         let mut x = vec![0.0; geometry.positions.len()];
         body.place(t, &geometry.positions, &mut x);
@@ -40,10 +43,7 @@ impl Solid {
             .iter()
             .map(|f| f.map(|v| v as usize))
             .collect();
-        let normal = |f: &[usize; 3]| {
-            let [a, b, c] = f.map(|v| points[v]);
-            unit(&cross(&sub(&b, &a), &sub(&c, &a)))
-        };
+        let normal = |f: &[usize; 3]| normal(&f.map(|v| points[v]));
         let ends = geometry.mesh.edges().iter().map(|e| e.map(|v| v as usize));
         let edges = ends
             .filter(|e| {

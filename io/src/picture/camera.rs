@@ -1,10 +1,10 @@
 //! Where the viewer is.
 
-use crate::draw::spatial::{cross, dot, sub, unit};
+use super::vector::{cross, dot, sub, unit};
 
 /// A camera that looks at a target from a distance; z of the scene points upwards in the picture.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Camera {
+pub struct Camera {
     target: [f64; 3],
     right: [f64; 3],
     up: [f64; 3],
@@ -18,22 +18,17 @@ pub(crate) struct Camera {
 /// A point of the picture: x and y from -1 to 1 (y upwards, x in units of half the height), and a depth that
 /// is linear in the picture, larger for what is nearer.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Projected {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    pub(crate) nearness: f64,
+pub(super) struct Projected {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) nearness: f64,
 }
 
 impl Camera {
-    /// A camera in the direction of the given azimuth and elevation (degrees) from the target; the picture
+    /// A camera that looks at `target` (metres) from `distance` metres, in the direction of the given azimuth
+    /// (degrees, counter-clockwise from the x axis) and elevation (degrees above the horizon); the picture
     /// shows `height` metres at the target.
-    pub(crate) fn new(
-        target: [f64; 3],
-        azimuth: f64,
-        elevation: f64,
-        height: f64,
-        distance: f64,
-    ) -> Self {
+    pub fn new(target: [f64; 3], azimuth: f64, elevation: f64, height: f64, distance: f64) -> Self {
         let (sa, ca) = azimuth.to_radians().sin_cos();
         let (se, ce) = elevation.to_radians().sin_cos();
         Self {
@@ -47,7 +42,7 @@ impl Camera {
     }
 
     /// Width over height of what is seen of the points, from a third to three.
-    pub(crate) fn aspect(&self, points: impl Iterator<Item = [f64; 3]> + Clone) -> f64 {
+    pub fn aspect(&self, points: impl Iterator<Item = [f64; 3]> + Clone) -> f64 {
         let mut size = [0.0; 2];
         let framed = self.framing(points.clone(), 1.0, 0.0);
         for p in points {
@@ -59,7 +54,7 @@ impl Camera {
 
     /// The same camera, framed so that all points are inside the picture with a margin (part of its height),
     /// which has the given width over height.
-    pub(crate) fn framing(
+    pub fn framing(
         &self,
         points: impl Iterator<Item = [f64; 3]> + Clone,
         aspect: f64,
@@ -92,7 +87,7 @@ impl Camera {
     }
 
     /// Places a point in the picture.
-    pub(crate) fn project(&self, p: &[f64; 3]) -> Projected {
+    pub(super) fn project(&self, p: &[f64; 3]) -> Projected {
         let d = sub(p, &self.target);
         let (x, y, z) = (
             dot(&d, &self.right),
@@ -110,19 +105,19 @@ impl Camera {
     }
 
     /// The direction from a point to the viewer.
-    pub(crate) fn viewer(&self, p: &[f64; 3]) -> [f64; 3] {
+    pub(super) fn viewer(&self, p: &[f64; 3]) -> [f64; 3] {
         let eye = [0, 1, 2].map(|k| self.target[k] + self.distance * self.toward[k]);
         unit(&sub(&eye, p))
     }
 
     /// A direction given in the picture: rightwards, upwards and towards the viewer.
-    pub(crate) fn direction(&self, d: [f64; 3]) -> [f64; 3] {
+    pub(super) fn direction(&self, d: [f64; 3]) -> [f64; 3] {
         unit(&[0, 1, 2].map(|k| d[0] * self.right[k] + d[1] * self.up[k] + d[2] * self.toward[k]))
     }
 }
 
 /// Unit normal of a triangle.
-pub(crate) fn normal(corners: &[[f64; 3]; 3]) -> [f64; 3] {
+pub(super) fn normal(corners: &[[f64; 3]; 3]) -> [f64; 3] {
     unit(&cross(
         &sub(&corners[1], &corners[0]),
         &sub(&corners[2], &corners[0]),

@@ -1,7 +1,7 @@
 //! How the time of a run compares: with the fastest exact run of the same scene and mesh, and with the time
 //! of one factorisation a step, the least that an implicit method can do.
 
-use super::analysis::short;
+use crate::report::short;
 use std::fmt::Write;
 
 /// Largest relative edge length error of a run that counts as exact: the loosest tolerance that the runs of

@@ -1,12 +1,12 @@
 //! Pictures in linear light, and their PNG files.
 
-use anyhow::{Context, Result};
+use super::error::PictureError;
 
 /// A linear RGB colour, 0 to 1.
-pub(crate) type Light = [f32; 3];
+pub(super) type Light = [f32; 3];
 
 /// The linear light of an sRGB colour.
-pub(crate) fn light(rgb: [u8; 3]) -> Light {
+pub(super) fn light(rgb: [u8; 3]) -> Light {
     rgb.map(|c| {
         let c = f32::from(c) / 255.0;
         if c <= 0.040_45 {
@@ -27,27 +27,30 @@ fn srgb(c: f32) -> u8 {
     (255.0 * s).round() as u8
 }
 
-/// A picture in linear light with a depth for each pixel.
+/// A picture in linear light.
 #[derive(Clone, Debug)]
-pub(crate) struct Image {
-    pub(crate) width: usize,
-    pub(crate) height: usize,
-    pub(crate) pixels: Vec<Light>,
+pub struct Image {
+    /// Width, pixels.
+    pub(super) width: usize,
+    /// Height, pixels.
+    pub(super) height: usize,
+    /// Row by row from above.
+    pub(super) pixels: Vec<Light>,
 }
 
 /// A corner of something drawn: pixel coordinates (y downwards) and nearness.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Corner {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    pub(crate) nearness: f64,
+pub(super) struct Corner {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) nearness: f64,
     /// Factor on the colour.
-    pub(crate) shade: f64,
+    pub(super) shade: f64,
 }
 
 impl Image {
     /// A white picture.
-    pub(crate) fn white(width: usize, height: usize) -> Self {
+    pub(super) fn white(width: usize, height: usize) -> Self {
         Self {
             width,
             height,
@@ -56,7 +59,7 @@ impl Image {
     }
 
     /// The picture made smaller by averaging squares of `n` x `n` pixels.
-    pub(crate) fn reduced(&self, n: usize) -> Self {
+    pub(super) fn reduced(&self, n: usize) -> Self {
         let mut out = Self::white(self.width / n, self.height / n);
         let weight = 1.0 / (n * n) as f32;
         for y in 0..out.height {
@@ -77,7 +80,7 @@ impl Image {
     }
 
     /// Copies another picture in, its upper left corner at (x, y).
-    pub(crate) fn paste(&mut self, other: &Self, x: usize, y: usize) {
+    pub(super) fn paste(&mut self, other: &Self, x: usize, y: usize) {
         for row in 0..other.height.min(self.height.saturating_sub(y)) {
             let width = other.width.min(self.width.saturating_sub(x));
             let to = (y + row) * self.width + x;
@@ -86,61 +89,45 @@ impl Image {
         }
     }
 
-    /// Fills a capsule: all pixels within `radius` of the segment from a to b (pixels).
-    pub(crate) fn capsule(&mut self, a: [f64; 2], b: [f64; 2], radius: f64, colour: Light) {
-        let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-        let square = (dx * dx + dy * dy).max(1e-12);
-        let range = |low: f64, high: f64, limit: usize| {
-            let first = (low - radius).floor().max(0.0) as usize;
-            let last = ((high + radius).ceil().max(0.0) as usize).min(limit);
-            first.min(last)..last
-        };
-        for y in range(a[1].min(b[1]), a[1].max(b[1]), self.height) {
-            for x in range(a[0].min(b[0]), a[0].max(b[0]), self.width) {
-                let p = [x as f64 + 0.5 - a[0], y as f64 + 0.5 - a[1]];
-                let s = ((p[0] * dx + p[1] * dy) / square).clamp(0.0, 1.0);
-                if (p[0] - s * dx).hypot(p[1] - s * dy) <= radius {
-                    self.pixels[y * self.width + x] = colour;
-                }
-            }
-        }
+    /// Width and height, pixels.
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
     }
 
     /// The picture as a PNG file, sRGB, eight bits.
-    pub(crate) fn to_png(&self) -> Result<Vec<u8>> {
+    ///
+    /// # Errors
+    /// [`PictureError::Png`] for more pixels than a PNG file may have.
+    pub fn to_png(&self) -> Result<Vec<u8>, PictureError> {
         let data: Vec<u8> = self.pixels.iter().flat_map(|p| p.map(srgb)).collect();
         png(self.width as u32, self.height as u32, &data)
     }
 }
 
 /// The PNG file of a picture given as rows of three sRGB bytes a pixel.
-pub(crate) fn png(width: u32, height: u32, data: &[u8]) -> Result<Vec<u8>> {
+pub(super) fn png(width: u32, height: u32, data: &[u8]) -> Result<Vec<u8>, PictureError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::High);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    let mut writer = encoder
-        .write_header()
-        .context("cannot write the PNG header")?;
-    writer
-        .write_image_data(data)
-        .context("cannot write the PNG data")?;
-    writer.finish().context("cannot finish the PNG file")?;
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(data)?;
+    writer.finish()?;
     Ok(bytes)
 }
 
 /// A picture with depth: what is nearer hides what is farther.
 #[derive(Clone, Debug)]
-pub(crate) struct Depth {
-    pub(crate) image: Image,
+pub(super) struct Depth {
+    pub(super) image: Image,
     nearness: Vec<f64>,
 }
 
 impl Depth {
     /// An empty white scene.
-    pub(crate) fn new(width: usize, height: usize) -> Self {
+    pub(super) fn new(width: usize, height: usize) -> Self {
         Self {
             image: Image::white(width, height),
             nearness: vec![f64::NEG_INFINITY; width * height],
@@ -148,7 +135,7 @@ impl Depth {
     }
 
     /// A triangle whose shade is interpolated between its corners.
-    pub(crate) fn triangle(&mut self, c: &[Corner; 3], colour: Light) {
+    pub(super) fn triangle(&mut self, c: &[Corner; 3], colour: Light) {
         let area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
         if area.abs() < 1e-9 {
             return;
@@ -184,7 +171,7 @@ impl Depth {
     }
 
     /// A line of the given width (pixels), mixed with what is behind it by `cover`.
-    pub(crate) fn line(&mut self, a: &Corner, b: &Corner, width: f64, colour: Light, cover: f32) {
+    pub(super) fn line(&mut self, a: &Corner, b: &Corner, width: f64, colour: Light, cover: f32) {
         let (dx, dy) = (b.x - a.x, b.y - a.y);
         let square = (dx * dx + dy * dy).max(1e-12);
         let radius = 0.5 * width;

@@ -1,6 +1,6 @@
 //! Faces cut into pieces that are small enough for shading from corner to corner.
 
-use crate::draw::spatial::{dot, sub};
+use super::vector::{dot, sub};
 use std::collections::BTreeMap;
 
 /// A face or a part of it.
@@ -55,8 +55,8 @@ fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::vector::cross;
     use super::*;
-    use crate::draw::spatial::cross;
 
     #[test]
     fn pieces_are_small_and_fit_together() {

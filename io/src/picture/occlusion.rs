@@ -2,7 +2,13 @@
 
 use super::camera::normal;
 use super::pieces::Piece;
-use crate::draw::spatial::{axpy, cross, dot, sub, unit};
+use super::vector::{axpy, cross, sub, unit};
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
+use parry3d_f64::query::Ray;
+use parry3d_f64::query::details::local_ray_intersection_with_triangle;
+use rayon::prelude::*;
 
 /// Rays sent from every point, on a fixed spiral: pictures are the same at every run.
 const RAYS: usize = 40;
@@ -15,28 +21,20 @@ const INSET: f64 = 0.25;
 /// face or a part of one.
 ///
 /// Rays are distributed by the cosine law; a face hides what is behind it out to `reach`, less and less with
-/// distance.
+/// distance. The results do not depend on the number of threads: every ray is followed by itself, and the
+/// nearest face is the same in whatever order the faces are looked at.
 pub(super) fn openness(
     pieces: &[Piece],
     faces: &[[usize; 3]],
     x: &[[f64; 3]],
     reach: f64,
 ) -> Vec<[f64; 3]> {
-    let faces: Vec<[[f64; 3]; 3]> = faces.iter().map(|f| f.map(|v| x[v])).collect();
-    let boxes: Vec<[[f64; 2]; 3]> = faces.iter().map(bounds).collect();
+    let faces: Vec<[Vector; 3]> = faces.iter().map(|f| f.map(|v| x[v].into())).collect();
+    let boxes: Vec<Aabb> = faces.iter().map(|f| Aabb::from_points(*f)).collect();
+    let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
     let directions = spiral();
     let one = |piece: &Piece| {
         let c = piece.corners.map(|v| x[v]);
-        // No ray from the piece gets farther than this.
-        let around = bounds(&c).map(|[low, high]| [low - reach, high + reach]);
-        let near: Vec<&[[f64; 3]; 3]> = (0..faces.len())
-            .filter(|k| *k != piece.face)
-            .filter(|k| {
-                let mut axes = boxes[*k].iter().zip(&around);
-                axes.all(|(a, b)| a[0] <= b[1] && b[0] <= a[1])
-            })
-            .map(|k| &faces[k])
-            .collect();
         let side = if piece.back { -1.0 } else { 1.0 };
         let up = normal(&c).map(|k| side * k);
         let right = unit(&cross(&up, &sub(&c[1], &c[0])));
@@ -44,29 +42,23 @@ pub(super) fn openness(
         let centroid = [0, 1, 2].map(|k| (c[0][k] + c[1][k] + c[2][k]) / 3.0);
         c.map(|corner| {
             let from = axpy(&corner, INSET, &sub(&centroid, &corner));
-            let mut seen = 0.0;
-            for d in &directions {
-                let ray = [0, 1, 2].map(|k| d[0] * right[k] + d[1] * ahead[k] + d[2] * up[k]);
-                let mut nearest = reach;
-                for other in &near {
-                    if let Some(t) = hit(&from, &ray, other) {
-                        nearest = nearest.min(t);
-                    }
-                }
-                seen += (nearest / reach).sqrt();
-            }
-            seen / RAYS as f64
+            let seen = directions.iter().map(|d| {
+                let along = [0, 1, 2].map(|k| d[0] * right[k] + d[1] * ahead[k] + d[2] * up[k]);
+                let ray = Ray::new(from.into(), along.into());
+                let nearest = tree.cast_ray(&ray, reach, |face, _| {
+                    // A ray does not meet the face that it starts from.
+                    let [a, b, c] = faces[face as usize];
+                    let hit = (face as usize != piece.face)
+                        .then(|| local_ray_intersection_with_triangle(a, b, c, &ray));
+                    let t = hit.flatten()?.0.time_of_impact;
+                    (t > 0.0).then_some(t)
+                });
+                nearest.map_or(1.0, |(_, t)| (t.min(reach) / reach).sqrt())
+            });
+            seen.sum::<f64>() / RAYS as f64
         })
     };
-    pieces.iter().map(one).collect()
-}
-
-/// The smallest and largest coordinates of a face.
-fn bounds(face: &[[f64; 3]; 3]) -> [[f64; 2]; 3] {
-    [0, 1, 2].map(|axis| {
-        let [a, b, c] = face.map(|p| p[axis]);
-        [a.min(b).min(c), a.max(b).max(c)]
-    })
+    pieces.par_iter().map(one).collect()
 }
 
 /// Directions of the upper half space by the cosine law.
@@ -80,28 +72,6 @@ fn spiral() -> Vec<[f64; 3]> {
             [r * c, r * s, (1.0 - square).sqrt()]
         })
         .collect()
-}
-
-/// Distance along the unit ray to a triangle (Möller and Trumbore 1997).
-fn hit(from: &[f64; 3], ray: &[f64; 3], c: &[[f64; 3]; 3]) -> Option<f64> {
-    let (e1, e2) = (sub(&c[1], &c[0]), sub(&c[2], &c[0]));
-    let p = cross(ray, &e2);
-    let det = dot(&e1, &p);
-    if det == 0.0 {
-        return None;
-    }
-    let s = sub(from, &c[0]);
-    let u = dot(&s, &p) / det;
-    if !(0.0..=1.0).contains(&u) {
-        return None;
-    }
-    let q = cross(&s, &e1);
-    let v = dot(ray, &q) / det;
-    if v < 0.0 || u + v > 1.0 {
-        return None;
-    }
-    let t = dot(&e2, &q) / det;
-    (t > 0.0).then_some(t)
 }
 
 #[cfg(test)]
@@ -134,5 +104,31 @@ mod tests {
         let above = seen(&both, &x, false)[0];
         assert!(above.iter().all(|o| (0.5..0.75).contains(o)), "{above:?}");
         assert!(open(&seen(&both, &x, true)[0]));
+    }
+
+    /// Every ray is followed by itself, so that threads change no bit.
+    #[test]
+    fn threads_change_nothing() {
+        let x: Vec<[f64; 3]> = (0..300)
+            .map(|k| {
+                let k = f64::from(k);
+                [(1.3 * k).sin(), (2.1 * k).cos(), (0.7 * k).sin()]
+            })
+            .collect();
+        let faces: Vec<[usize; 3]> = (0..100).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let piece = |(face, corners): (usize, &[usize; 3])| Piece {
+            corners: *corners,
+            face,
+            back: face % 2 == 0,
+        };
+        let pieces: Vec<Piece> = faces.iter().enumerate().map(piece).collect();
+        let on = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let pool = pool.build().unwrap();
+            pool.install(|| openness(&pieces, &faces, &x, 2.0))
+        };
+        let one = on(1);
+        assert!(one.iter().flatten().any(|o| *o < 0.9));
+        assert_eq!(one, on(4));
     }
 }

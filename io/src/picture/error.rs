@@ -1,0 +1,60 @@
+//! Why a picture cannot be made.
+
+use isosheet_collide::ObstacleError;
+use isosheet_mesh::VertexId;
+
+/// Why a picture cannot be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PictureError {
+    /// The picture has no pixels.
+    #[error("the picture has {width} x {height} pixels; give at least one each way")]
+    Size {
+        /// Width, pixels.
+        width: usize,
+        /// Height, pixels.
+        height: usize,
+    },
+    /// The wires have no width.
+    #[error("wires have the width {width}; give a finite one of at least 0 pixels")]
+    Wire {
+        /// The width given, pixels.
+        width: f64,
+    },
+    /// The positions do not belong to the sheet.
+    #[error("{count} coordinates for {vertices} vertices; give three for each vertex")]
+    Coordinates {
+        /// Coordinates given.
+        count: usize,
+        /// Vertices of the sheet.
+        vertices: usize,
+    },
+    /// A coordinate is not finite.
+    #[error("{vertex} is at {value}; draw finite positions")]
+    NotFinite {
+        /// The vertex.
+        vertex: VertexId,
+        /// The coordinate, metres.
+        value: f64,
+    },
+    /// A pin is no vertex of the sheet.
+    #[error("the pin {vertex} is none of the {vertices} vertices of the sheet; name one of them")]
+    Pin {
+        /// The vertex given.
+        vertex: VertexId,
+        /// Vertices of the sheet.
+        vertices: usize,
+    },
+    /// A body has no faces.
+    #[error("a {0} has no faces to draw; leave it out or draw a triangle surface instead")]
+    NoFaces(&'static str),
+    /// A body has no geometry.
+    #[error(transparent)]
+    Body(#[from] ObstacleError),
+    /// A vector drawing cannot be read.
+    #[error("cannot read the vector drawing: {0}; give an SVG document")]
+    Svg(#[from] resvg::usvg::Error),
+    /// A PNG file cannot be made.
+    #[error("cannot write the PNG file: {0}")]
+    Png(#[from] png::EncodingError),
+}

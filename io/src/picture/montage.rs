@@ -1,0 +1,67 @@
+//! Pictures in a grid, with labels.
+
+use super::canvas::Image;
+use super::error::PictureError;
+use super::vector_drawing;
+
+/// A picture and the label below it.
+#[derive(Clone, Debug)]
+pub struct Labelled {
+    /// The picture.
+    pub image: Image,
+    /// The label; none when empty.
+    pub label: String,
+}
+
+/// Size of the labels, pixels: digits are 0.69 times as high in the built-in font.
+const LABEL: f64 = 39.0;
+
+/// Height of the strip below each picture that holds its label, pixels.
+const STRIP: usize = 84;
+
+/// Puts pictures of one size into rows of `columns`.
+///
+/// # Errors
+/// [`PictureError::Size`] for pictures without pixels.
+pub fn montage(frames: &[Labelled], columns: usize) -> Result<Image, PictureError> {
+    let [width, height] = frames.first().map_or([1, 1], |f| f.image.size());
+    let columns = columns.clamp(1, frames.len().max(1));
+    let rows = frames.len().div_ceil(columns).max(1);
+    let mut all = Image::white(width * columns, (height + STRIP) * rows);
+    for (k, frame) in frames.iter().enumerate() {
+        let (x, y) = (width * (k % columns), (height + STRIP) * (k / columns));
+        all.paste(&frame.image, x, y);
+        if !frame.label.is_empty() {
+            all.paste(&label(&frame.label, width)?, x, y + height);
+        }
+    }
+    Ok(all)
+}
+
+/// The strip below a picture.
+fn label(text: &str, width: usize) -> Result<Image, PictureError> {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;");
+    vector_drawing::image(&format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{STRIP}\"><text x=\"{}\" y=\"{}\" \
+         font-size=\"{LABEL}\" text-anchor=\"middle\" font-family=\"sans-serif\" fill=\"#222222\">{text}</text></svg>",
+        0.5 * width as f64,
+        0.43 * STRIP as f64
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_fill_rows() {
+        let frame = Labelled {
+            image: Image::white(60, 40),
+            label: "0 < s".into(),
+        };
+        let all = montage(&vec![frame; 5], 3).unwrap();
+        assert_eq!((all.width, all.height), (180, 2 * (40 + STRIP)));
+        let dark = all.pixels.iter().filter(|p| p[0] < 0.5).count();
+        assert!(dark > 5 * 20, "the labels are written: {dark} dark pixels");
+    }
+}

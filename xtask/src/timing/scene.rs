@@ -1,0 +1,97 @@
+//! The scenes: a sheet that hangs by a corner, and a tablecloth.
+
+use anyhow::Result;
+use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_dynamics::{Method, SheetModel, Simulation, State};
+use isosheet_mesh::generate::isotropic_square;
+use isosheet_mesh::{MassKind, Sheet, VertexId};
+use nalgebra::Isometry3;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// Height of the bump, metres: nearly flat, so that the length constraints are nearly dependent.
+pub(crate) const BUMP: f64 = 1e-3;
+
+/// Step, seconds.
+pub(crate) const STEP: f64 = 1.0 / 60.0;
+
+/// Height of the sheet's rim above the table, metres.
+pub(crate) const CLEARANCE: f64 = 1e-3;
+
+/// Half of the table's side, half of its thickness, metres.
+pub(crate) const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
+
+/// Mass of the sheet, kilograms.
+const MASS: f64 = 0.1;
+
+/// The union-jack square `M^level` of side 1 m with `z = bump sin(pi x) sin(pi y)`.
+pub(crate) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
+    let flat = isotropic_square(level, 1.0)?;
+    Ok(flat.map_positions(|[x, y, _]| [x, y, bump * (PI * x).sin() * (PI * y).sin()])?)
+}
+
+/// The corner (0, 1) of `M^level`.
+pub(crate) fn corner(level: u32) -> VertexId {
+    let n = (2 << level) + 1;
+    VertexId(n * (n - 1))
+}
+
+/// Which pairs repel each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Pairs {
+    /// Sheet and table.
+    Table,
+    /// Sheet and table, and the sheet with itself.
+    TableAndItself,
+}
+
+/// A scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Work {
+    /// A nearly flat sheet held at a corner, one second.
+    Hanging,
+    /// The same sheet, free, above a table, 1.5 seconds.
+    Tablecloth(Pairs),
+}
+
+impl Work {
+    /// Simulated time, seconds.
+    pub(crate) fn duration(self) -> f64 {
+        match self {
+            Self::Hanging => 1.0,
+            Self::Tablecloth(_) => 1.5,
+        }
+    }
+
+    /// The sheet `M^level` with a bump of the given height (metres) at the start of the scene.
+    pub(crate) fn start(self, level: u32, bump: f64, method: Method) -> Result<Simulation> {
+        match self {
+            Self::Hanging => hanging(level, bump, method),
+            Self::Tablecloth(pairs) => tablecloth(&bumped(level, bump)?, pairs, method),
+        }
+    }
+}
+
+/// The sheet `M^level` with a bump of the given height (metres), held at its corner.
+pub(crate) fn hanging(level: u32, bump: f64, method: Method) -> Result<Simulation> {
+    let sheet = bumped(level, bump)?;
+    let model = SheetModel::new(&sheet, MASS, MassKind::Lumped)?
+        .with_gravity()
+        .with_pins(&[corner(level)])?;
+    let start = State::at_rest(sheet.positions().to_vec());
+    Ok(Simulation::new(model, start, method)?)
+}
+
+/// The sheet above the table.
+fn tablecloth(sheet: &Sheet, pairs: Pairs, method: Method) -> Result<Simulation> {
+    let model = SheetModel::new(sheet, MASS, MassKind::Lumped)?.with_gravity();
+    let pose = Isometry3::translation(0.5, 0.5, -TABLE[2] - CLEARANCE);
+    let table = Obstacle::fixed(Shape::Cuboid { half: TABLE }, pose)?;
+    let mut contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?
+        .with_body(table, Coefficients::FRICTIONLESS)?;
+    if pairs == Pairs::TableAndItself {
+        contacts = contacts.with_self_contact(Coefficients::FRICTIONLESS)?;
+    }
+    let start = State::at_rest(sheet.positions().to_vec());
+    Ok(Simulation::new(model, start, method)?.with_contact(contacts)?)
+}
