@@ -39,6 +39,12 @@ impl Displacements {
         let along = |k: usize| larger(self.high[k] - others.low[k], others.high[k] - self.low[k]);
         (0..3).map(along).fold(0.0, larger)
     }
+
+    /// Bound on the displacement of a point relative to another one, metres: the diagonal of the range.
+    pub(super) fn spread(&self) -> f64 {
+        let squares = (0..3).map(|k| (self.high[k] - self.low[k]).powi(2));
+        squares.sum::<f64>().sqrt()
+    }
 }
 
 #[cfg(test)]
@@ -54,6 +60,14 @@ mod tests {
         let rest = Displacements::since(&reference, &reference, &reference);
         assert_eq!(range.relative_to(&rest), 0.5);
         assert_eq!(rest.relative_to(&range), 0.5);
+    }
+
+    #[test]
+    fn no_point_moves_further_from_another_than_the_spread() {
+        let reference = [0.0; 9];
+        let moved = [3.0, 0.0, 0.0, 0.0, 4.0, 0.0, 1.0, 1.0, 12.0];
+        let range = Displacements::since(&reference, &moved, &moved);
+        assert_eq!(range.spread(), 13.0);
     }
 
     #[test]

@@ -3,8 +3,9 @@
 use super::body::Body;
 use super::displacements::Displacements;
 use super::path::PartOfStep;
-use super::sheet::SheetMotion;
-use crate::narrow_phase::larger;
+use super::sheet::{self, SheetMotion};
+use crate::distance::{edge_edge, point_triangle};
+use crate::narrow_phase::{gather, larger};
 use crate::{BroadPhase, Candidates, CrossCandidates};
 
 /// Skin of the lists, in mean edge lengths.
@@ -36,7 +37,8 @@ pub(super) enum Scope {
 /// The lists are made of the boxes at one set of positions, enlarged by a skin, and hold all pairs that come
 /// within reach on motions that displace primitives by no more than the skin relative to each other (Verlet,
 /// Phys. Rev. 159, 1967). Whoever asks for pairs looks at the boxes of the motion at hand too, and so finds the
-/// same pairs whatever was asked for before. A motion longer than the skin is searched for pairs on its own.
+/// same pairs whatever was asked for before. Of the sheet with itself only pairs are looked at whose distance at
+/// these positions and whose displacements since then allow a contact. A motion longer than the skin is searched for pairs on its own.
 #[derive(Debug)]
 pub(super) struct Neighbours {
     /// Boxes of the sheet during the motion that was asked for last. The tree is that of the lists.
@@ -49,7 +51,13 @@ pub(super) struct Neighbours {
     /// Positions at the end of the motion.
     end: Vec<f64>,
     scope: Scope,
-    own: Candidates,
+    /// Pairs of the sheet with itself, as the broad phase finds them.
+    candidates: Candidates,
+    vertex_face: ByDistance,
+    edge_edge: ByDistance,
+    /// Distance at the reference from which pairs of the sheet with itself stay out of reach on the motion,
+    /// metres.
+    far: f64,
     /// Of each body.
     cross: Vec<CrossCandidates>,
 }
@@ -70,7 +78,10 @@ impl Neighbours {
             reference: sheet.x.to_vec(),
             end: sheet.x.to_vec(),
             scope: Scope::OneMotion,
-            own: Candidates::default(),
+            candidates: Candidates::default(),
+            vertex_face: ByDistance::default(),
+            edge_edge: ByDistance::default(),
+            far: f64::INFINITY,
             cross: vec![CrossCandidates::default(); bodies],
         }
     }
@@ -80,9 +91,14 @@ impl Neighbours {
         &self.boxes
     }
 
-    /// Pairs of the sheet with itself; more than those whose boxes overlap.
-    pub(super) fn own(&self) -> &Candidates {
-        &self.own
+    /// Pairs of a vertex and a face of the sheet that may come within reach.
+    pub(super) fn vertex_face(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.vertex_face.below(self.far)
+    }
+
+    /// Pairs of two edges of the sheet that may come within reach.
+    pub(super) fn edge_edge(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.edge_edge.below(self.far)
     }
 
     /// Pairs of the sheet with a body; more than those whose boxes overlap.
@@ -115,11 +131,17 @@ impl Neighbours {
             }
         }
         if self.scope == Scope::OneMotion || !self.is_within_skin(x, bodies) {
-            self.list(x, reach, bodies);
+            self.list(sheet, bodies);
         }
         // (Lists for one motion are made of its boxes.)
+        self.far = f64::INFINITY;
         if self.scope == Scope::Skin {
             self.boxes.update_boxes(x, &self.end, 0.5 * reach);
+            let before = Displacements::since(&self.reference, x, x).spread();
+            let now = Displacements::since(x, &self.end, &self.end).spread();
+            // Points come nearer by the first; by what `sheet::approach` bounds, once for each primitive, which
+            // is the displacement relative to the mean of four points, by no more than twice 3/4 of the second.
+            self.far = reach + before + 1.5 * now + (1.0 - USED) * self.skin;
         }
     }
 
@@ -136,8 +158,9 @@ impl Neighbours {
         displacements.fold(itself, larger) <= USED * self.skin
     }
 
-    /// Makes the lists for motions like that from `x` to the end.
-    fn list(&mut self, x: &[f64], reach: f64, bodies: &mut [Body]) {
+    /// Makes the lists for motions like that of the sheet.
+    fn list(&mut self, sheet: SheetMotion<'_>, bodies: &mut [Body]) {
+        let SheetMotion { mesh, x, reach, .. } = sheet;
         for (r, (x, end)) in self.reference.iter_mut().zip(x.iter().zip(&self.end)) {
             *r = 0.5 * (x + end);
         }
@@ -153,7 +176,18 @@ impl Neighbours {
             self.boxes.update(x, &self.end, 0.5 * reach);
         }
         if self.own_pairs == SelfPairs::Listed {
-            self.boxes.self_candidates(&mut self.own);
+            self.boxes.self_candidates(&mut self.candidates);
+            let Candidates {
+                vertex_face,
+                edge_edge: two_edges,
+            } = &self.candidates;
+            let at = &self.reference;
+            self.vertex_face.set(vertex_face, |pair| {
+                point_triangle(&gather(at, sheet::vertex_face(mesh, pair))).distance()
+            });
+            self.edge_edge.set(two_edges, |pair| {
+                edge_edge(&gather(at, sheet::two_edges(mesh, pair))).distance()
+            });
         }
         for (body, pairs) in bodies.iter_mut().zip(&mut self.cross) {
             if let Some(features) = body.features_mut() {
@@ -162,5 +196,29 @@ impl Neighbours {
                 features.return_to_motion();
             }
         }
+    }
+}
+
+/// Pairs in the order of their distances at the reference, metres.
+#[derive(Debug, Default)]
+struct ByDistance(Vec<(f64, [u32; 2])>);
+
+impl ByDistance {
+    /// Takes over other pairs.
+    fn set(&mut self, pairs: &[[u32; 2]], distance: impl Fn([u32; 2]) -> f64) {
+        self.0.clear();
+        // (What is not a number is taken to be no distance.)
+        let entries = pairs.iter().map(|&pair| (distance(pair).max(0.0), pair));
+        self.0.extend(entries);
+        self.0.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    }
+
+    /// The pairs whose distance is not above `far`.
+    fn below(&self, far: f64) -> impl Iterator<Item = [u32; 2]> {
+        let pairs = self
+            .0
+            .iter()
+            .take_while(move |(distance, _)| *distance <= far);
+        pairs.map(|&(_, pair)| pair)
     }
 }

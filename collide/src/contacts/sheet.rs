@@ -54,7 +54,7 @@ pub(super) fn query(
     limit: f64,
     pairs: &mut Vec<ContactKey>,
 ) -> f64 {
-    let (candidates, boxes) = (neighbours.own(), neighbours.boxes());
+    let boxes = neighbours.boxes();
     let SheetMotion {
         mesh,
         x,
@@ -64,7 +64,7 @@ pub(super) fn query(
     } = sheet;
     let trigger_distance = sheet.trigger_distance();
     let mut limit = limit;
-    for &pair in &candidates.vertex_face {
+    for pair in neighbours.vertex_face() {
         if !boxes.vertex_meets_face(boxes, pair) {
             continue;
         }
@@ -84,7 +84,7 @@ pub(super) fn query(
             pairs.push(key(ContactKind::VertexFace, pair));
         }
     }
-    for &pair in &candidates.edge_edge {
+    for pair in neighbours.edge_edge() {
         if !boxes.edge_meets_edge(boxes, pair) {
             continue;
         }
