@@ -8,7 +8,7 @@ use crate::runs::{self, Alike, Creases, Fold, RunSummary, Staged};
 use anyhow::{Context as _, Result};
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{VertexId, fold_angle};
-use isosheet_tests::DegreeFour;
+use isosheet_mesh::origami::DegreeFour;
 use serde_json::json;
 
 /// Rest angle of the driven creases in the end, radians: 150 degrees.

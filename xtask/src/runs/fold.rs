@@ -7,7 +7,7 @@ use isosheet_dynamics::{
 };
 use isosheet_mesh::generate::{FoldAssignment, FoldPattern, degree_four, miura};
 use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
-use isosheet_tests::{DegreeFour, FoldingMode, Miura};
+use isosheet_mesh::origami::{DegreeFour, FoldingMode, Miura};
 use serde::{Deserialize, Serialize};
 
 /// A crease pattern and which of its creases are driven.
