@@ -105,7 +105,11 @@ mod tests {
         for sides in [3, 4, 8, 13] {
             let corners = regular_outline(sides, 2.0).unwrap();
             assert_eq!(corners.len(), sides);
-            assert!(corners.iter().all(|c| (c[0].hypot(c[1]) - 2.0).abs() < 1e-15));
+            assert!(
+                corners
+                    .iter()
+                    .all(|c| (c[0].hypot(c[1]) - 2.0).abs() < 1e-15)
+            );
             let (first, last) = (corners[0], corners[sides - 1]);
             assert!((first[0] - last[0]).abs() < 1e-14 && (first[1] + last[1]).abs() < 1e-14);
         }
@@ -127,9 +131,8 @@ mod tests {
             corners.any(|c| (p[0] * c[1] - p[1] * c[0]).abs() < 1e-12)
         };
         let lines = t.edges().iter().map(|e| e.map(|v| sheet.position(v)));
-        let radial = lines.filter(|[p, q]| {
-            along(*p) && along(*q) && (p[0] * q[1] - p[1] * q[0]).abs() < 1e-12
-        });
+        let radial = lines
+            .filter(|[p, q]| along(*p) && along(*q) && (p[0] * q[1] - p[1] * q[0]).abs() < 1e-12);
         assert_eq!(radial.count(), 40);
     }
 
@@ -165,7 +168,10 @@ mod tests {
         let unknown = [[1.0, 0.0], [0.0, f64::NAN], [-1.0, -1.0]];
         for outline in [&clockwise[..], &aside, &twice, &unknown, &clockwise[..2]] {
             let refused = polygon_rings(outline, 2);
-            assert!(matches!(refused, Err(GenerateError::Outline { .. })), "{outline:?}");
+            assert!(
+                matches!(refused, Err(GenerateError::Outline { .. })),
+                "{outline:?}"
+            );
         }
     }
 }

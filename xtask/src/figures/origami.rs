@@ -7,8 +7,8 @@ use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
 use crate::runs::{self, Alike, Creases, Fold, RunSummary, Staged};
 use anyhow::{Context as _, Result};
 use isosheet_mesh::generate::FoldAssignment;
-use isosheet_mesh::{VertexId, fold_angle};
 use isosheet_mesh::origami::DegreeFour;
+use isosheet_mesh::{VertexId, fold_angle};
 use serde_json::json;
 
 /// Rest angle of the driven creases in the end, radians: 150 degrees.

@@ -6,8 +6,8 @@ use isosheet_dynamics::{
     CreaseSpring, CreaseSprings, Interpolation, Method, Profile, SheetModel, Simulation, State,
 };
 use isosheet_mesh::generate::{FoldAssignment, FoldPattern, degree_four, miura};
-use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
 use isosheet_mesh::origami::{DegreeFour, FoldingMode, Miura};
+use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
 use serde::{Deserialize, Serialize};
 
 /// A crease pattern and which of its creases are driven.
