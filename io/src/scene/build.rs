@@ -134,7 +134,7 @@ impl<'a> Builder<'a> {
     fn new(scene: &'a Scene, folder: &Path) -> Result<Self, SceneError> {
         let key = Key::root().name("sheet");
         let mesh_key = key.name("mesh");
-        let RestMesh { sheet, assignments } = scene.sheet.mesh.build(&mesh_key, folder)?;
+        let RestMesh { sheet, roles } = scene.sheet.mesh.build(&mesh_key, folder)?;
         let pose = &scene.sheet.placement;
         let placed = sheet
             .map_positions(|p| place(pose, p))
@@ -165,7 +165,7 @@ impl<'a> Builder<'a> {
             scene,
             rest: RestMesh {
                 sheet: placed,
-                assignments,
+                roles,
             },
             unplaced: sheet,
             x,
@@ -349,8 +349,8 @@ impl<'a> Builder<'a> {
     fn add_creases(&mut self) -> Result<(), SceneError> {
         for (k, crease) in self.scene.crease.iter().enumerate() {
             let key = Key::root().name("crease").entry(k);
-            let assignments = self.rest.assignments.as_deref();
-            let springs = crease.springs(&key, &self.unplaced, assignments)?;
+            let roles = self.rest.roles.as_ref();
+            let springs = crease.springs(&key, &self.unplaced, roles)?;
             let springs = CreaseSprings::new(self.rest.sheet.topology(), springs);
             let springs = springs.map_err(at(&key))?;
             self.change(

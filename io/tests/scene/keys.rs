@@ -57,6 +57,12 @@ const ALL_KEYS: [&str; 3] = [
     [[obstacle]]
     shape = { capsule = { radius = 1, length = 1 } }
     [[obstacle]]
+    shape = { prism = { outline = { regular = { sides = 6, radius = 1 } }, height = 1 } }
+    [[obstacle]]
+    shape = { frame = { outer = 2, opening = 1, height = 0.1 } }
+    [[obstacle]]
+    shape = { wall = { line = [[0, 0], [1, 0], [1, 1]], corner_radius = 0.1, width = 1 } }
+    [[obstacle]]
     shape = { file = { path = "b.obj" } }
     [[obstacle]]
     shape = "half_space"
@@ -111,6 +117,9 @@ const ALL_KEYS: [&str; 3] = [
     stiffness = 1
     [[crease]]
     at = { pattern = "flat" }
+    stiffness = 1
+    [[crease]]
+    at = { pattern = "zigzags" }
     stiffness = 1
     [[support]]
     at = "all"
@@ -199,6 +208,10 @@ fn every_key_of_the_reference_is_accepted() {
         "{ disk = { radius = 1, rings = 2 } }",
         "{ annulus = { inner = 1, outer = 2, segments = 5, rings = 1 } }",
         "{ polygon = { outline = [[0, 0], [1, 0], [0, 1]], spacing = 0.2, seed = 1 } }",
+        "{ polygon_rings = { outline = [[1, 0], [0, 1], [-1, -1]], rings = 2 } }",
+        "{ octagon = { radius = 1 } }",
+        "{ degree_four = { sectors = [60, 80], radius = 0.1, alike = \"odd\" } }",
+        "{ degree_four = { sectors = [60, 80], radius = 0.1, alike = \"even\" } }",
         "{ miura = { columns = 2, rows = 2, straight = 1, zigzag = 1, angle = 60 } }",
         "{ rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = \"falling\" } }",
         "{ rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = \"rising\" } }",
