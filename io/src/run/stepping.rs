@@ -128,11 +128,8 @@ impl Stepping<'_> {
         if report.taut.is_some() {
             return Some(EndReason::Taut);
         }
-        if let Some(limit) = scene.stop.support_force {
-            let forces = self.support_forces();
-            if forces.iter().any(|f| Vector3::from(*f).norm() > limit) {
-                return Some(EndReason::SupportForce);
-            }
+        if scene.stop.is_force_reached(&self.support_forces()) {
+            return Some(EndReason::SupportForce);
         }
         if let Some(rest) = &scene.stop.rest {
             if self.largest_speed() > rest.speed {
@@ -155,15 +152,8 @@ impl Stepping<'_> {
 
     /// Force of each support of the scene on the sheet, newtons.
     fn support_forces(&self) -> Vec<[f64; 3]> {
-        let mut forces = vec![[0.0; 3]; self.file.scene().support.len()];
-        for reaction in self.simulation.reactions() {
-            if let Some(number) = self.origins.support(reaction.support) {
-                for k in 0..3 {
-                    forces[number][k] += reaction.force[k];
-                }
-            }
-        }
-        forces
+        let count = self.file.scene().support.len();
+        self.origins.support_forces(&self.simulation, count)
     }
 
     fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {

@@ -2,7 +2,7 @@
 
 use super::problem::{Key, Problem};
 use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
-use isosheet_dynamics::{Excess, SimulationError, StepError, Support};
+use isosheet_dynamics::{Excess, Simulation, SimulationError, StepError, Support};
 use isosheet_mesh::VertexId;
 use std::collections::HashMap;
 
@@ -23,6 +23,21 @@ impl Origins {
             Support::Pin(vertex) => self.pins.get(&vertex).copied(),
             Support::Constraint { index, .. } => self.constraints.get(index).copied(),
         }
+    }
+
+    /// Force of each of the first `count` supports of the scene on the sheet, newtons: the sums over the
+    /// vertices that they hold. Before the first step they are zero.
+    pub fn support_forces(&self, simulation: &Simulation, count: usize) -> Vec<[f64; 3]> {
+        let mut forces = vec![[0.0; 3]; count];
+        for reaction in simulation.reactions() {
+            let number = self.support(reaction.support).filter(|&k| k < count);
+            if let Some(number) = number {
+                for k in 0..3 {
+                    forces[number][k] += reaction.force[k];
+                }
+            }
+        }
+        forces
     }
 
     fn support_key(&self, support: Support) -> Key {

@@ -1,7 +1,8 @@
 //! The paper's own scheme on the same sheet: forward Euler in system coordinates, with the published step
 //! control.
 
-use super::{Scene, Staged};
+use super::hanging::gravity;
+use super::{FigureScene, Hanging};
 use crate::interrupt;
 use crate::progress::Progress;
 use anyhow::Result;
@@ -13,17 +14,15 @@ use isosheet_dynamics::chart::{
     ChartDynamicsError, ChartMethod, ChartOptions, ChartSimulation, ChartStepControl, Equations,
     MassSolverKind, PositionUpdate, Rebase,
 };
-use isosheet_dynamics::leave_flat;
-use isosheet_mesh::Sheet;
-use serde::{Deserialize, Serialize};
+use isosheet_io::scene::Setup;
+use serde::Serialize;
 use std::time::Instant;
 
 /// A run of the paper's scheme.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ChartScene {
-    pub(crate) scene: Scene,
-    /// Random displacement at the start, mean edge lengths; 0 is exactly flat.
-    pub(crate) bump: f64,
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct ChartTrial {
+    /// The sheet, how it is held and how it starts; the method of the scene is not used.
+    pub(crate) scene: FigureScene,
     /// Bound on the change of the Hamiltonian in a step, as part of the energy that the fall of half a side
     /// releases.
     pub(crate) tolerance: f64,
@@ -35,7 +34,7 @@ pub(crate) struct ChartScene {
 }
 
 /// The paper's scheme, with ever more help.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum ChartScheme {
     /// As published: coordinates of `sys_coord_assnmt_single`, momenta carried over, positions to first
@@ -52,7 +51,7 @@ pub(crate) enum ChartScheme {
 }
 
 /// How a run ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub(crate) enum Fate {
     /// It reached the end.
@@ -66,9 +65,9 @@ pub(crate) enum Fate {
 }
 
 /// What a run of the paper's scheme did.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct ChartSummary {
-    pub(crate) run: ChartScene,
+    pub(crate) run: ChartTrial,
     pub(crate) fate: Fate,
     pub(crate) steps: u64,
     /// Shortest and longest step, seconds; `None` without a step.
@@ -87,9 +86,9 @@ const CRAMER: usize = 16;
 ///
 /// # Errors
 /// Ctrl-C, and what has nothing to do with the scheme.
-pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
+pub(crate) fn chart_run(name: &str, run: &ChartTrial) -> Result<ChartSummary> {
     let scene = &run.scene;
-    let duration = scene.frame * scene.frames as f64;
+    let (frame, duration) = (scene.frame(), scene.scene().stop.time);
     let mut summary = ChartSummary {
         run: run.clone(),
         fate: Fate::Finished,
@@ -100,7 +99,7 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
         frames_per_second: 0.0,
         max_strain: 0.0,
     };
-    let bar = Progress::start(name, scene.frames);
+    let bar = Progress::start(name, scene.frames());
     let mut simulation = match start(run)? {
         Ok(simulation) => simulation,
         Err(error) => {
@@ -112,7 +111,7 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
         }
     };
     let clock = Instant::now();
-    let mut frame = 0;
+    let mut frames = 0;
     // The scheme chooses the lengths of its steps, so that their number is not known beforehand.
     while simulation.time() < duration {
         interrupt::check()?;
@@ -126,8 +125,8 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
                 break;
             }
         }
-        while simulation.time() >= (frame + 1) as f64 * scene.frame {
-            frame += 1;
+        while simulation.time() >= (frames + 1) as f64 * frame {
+            frames += 1;
             bar.step();
         }
         if clock.elapsed().as_secs_f64() > run.patience {
@@ -139,7 +138,7 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
     }
     summary.wall = clock.elapsed().as_secs_f64();
     summary.time = simulation.time();
-    summary.frames_per_second = summary.time / scene.frame / summary.wall.max(1e-9);
+    summary.frames_per_second = summary.time / frame / summary.wall.max(1e-9);
     let range = simulation.step_range();
     summary.steps = range.steps;
     summary.step_range = (range.steps > 0).then_some([range.min, range.max]);
@@ -151,19 +150,14 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
 }
 
 /// Sets the scheme up; the inner error is that of the scheme.
-fn start(run: &ChartScene) -> Result<Result<ChartSimulation, ChartDynamicsError>> {
-    let scene = &run.scene;
-    let sheet = scene.sheet()?;
-    let model = scene.model(&sheet)?;
-    let mut x = sheet.positions().to_vec();
-    if run.bump > 0.0 {
-        leave_flat(&model, &mut x, run.bump, 1)?;
-    }
-    let chart = match chart(run, &sheet, &x) {
+fn start(run: &ChartTrial) -> Result<Result<ChartSimulation, ChartDynamicsError>> {
+    let setup = run.scene.setup()?;
+    let chart = match chart(run, &setup) {
         Ok(chart) => chart,
         Err(error) => return Ok(Err(error.into())),
     };
-    let released = scene.mass() * 9.8 * 0.5 * scene.side;
+    let mass = run.scene.scene().sheet.density * setup.sheet.area();
+    let released = mass * gravity(run.scene.scene()) * 0.5 * Hanging::of(&run.scene)?.side;
     let [min, max] = run.steps;
     let projected = run.scheme == ChartScheme::Projected;
     let options = ChartOptions {
@@ -195,16 +189,16 @@ fn start(run: &ChartScene) -> Result<Result<ChartSimulation, ChartDynamicsError>
         ..ChartOptions::default()
     };
     Ok(ChartSimulation::new(
-        model,
+        setup.model,
         chart,
         options,
-        &x,
-        &vec![0.0; x.len()],
+        &setup.start.x,
+        &setup.start.v,
     ))
 }
 
-fn chart(run: &ChartScene, sheet: &Sheet, x: &[f64]) -> Result<Box<dyn Chart>, ChartError> {
-    let pins = vec![run.scene.pin()];
+fn chart(run: &ChartTrial, setup: &Setup) -> Result<Box<dyn Chart>, ChartError> {
+    let (sheet, pins, x) = (&setup.sheet, setup.model.pins(), &setup.start.x);
     let degenerate = match run.scheme {
         ChartScheme::Projected => {
             let system = RodSystem::new(sheet, &pins)?;
