@@ -4,6 +4,7 @@
 //! times in seconds, masses in kilograms, **angles in degrees**. `docs/scene.md` lists all keys.
 
 mod build;
+mod chart;
 mod contact;
 mod creases;
 mod edit;
@@ -21,13 +22,17 @@ mod problem;
 mod profile;
 mod reference;
 mod selection;
+mod setup;
 mod sheet;
 mod source;
 mod starting_point;
 mod stop;
 mod supports;
 
-pub use build::Setup;
+pub use chart::{
+    Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,
+    Substep,
+};
 pub use contact::Contact;
 pub use creases::{Crease, CreaseEdges, PatternEdges};
 pub use edit::EditError;
@@ -45,6 +50,7 @@ pub use problem::{Key, KeyPart, Problem};
 pub use profile::{Change, Course, Interpolation, Profile};
 pub use reference::{reference_page, schema};
 pub use selection::Selection;
+pub use setup::{Integration, Setup};
 pub use sheet::{Bending, Isometry, Sheet, Start};
 pub use source::{SceneFile, SceneFileError};
 pub use starting_point::StartingPoint;
@@ -157,14 +163,14 @@ impl Scene {
         SceneError::of(checks.problems)
     }
 
-    /// Contact and sheets without rods need a method whose steps are minima.
+    /// Sheets without rods need a method whose steps are minima, contact such a method or a chart.
     fn check_method_fits(&self, checks: &mut Checks) {
         if self.method.integrator.is_minimising() {
             return;
         }
         let key = Key::root().name("method.integrator");
         let remedy = "choose `bdf2` or `implicit_euler`";
-        if self.has_contact() {
+        if self.has_contact() && self.method.integrator != Integrator::Chart {
             checks.report(
                 key.clone(),
                 "this integrator has no place for contact",

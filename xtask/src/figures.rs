@@ -1,8 +1,10 @@
 //! The figures, one module each, and what is kept about them.
 
+mod cloths;
 mod crescent;
 mod crumple;
 mod drape;
+mod feed;
 mod fig01;
 mod fig02;
 mod fig03;

@@ -8,7 +8,7 @@ mod record;
 mod scene;
 mod shape;
 
-pub(crate) use chart_run::{ChartScheme, ChartSummary, ChartTrial, Fate, chart_run};
+pub(crate) use chart_run::{ChartSummary, Fate, chart_run};
 pub(crate) use ensemble::{Member, ensemble};
 pub(crate) use fall::{fall, free_fall, plate_fall};
 pub(crate) use hanging::Hanging;

@@ -109,6 +109,7 @@ impl Origins {
             }
             SimulationError::Elastic => Problem::from_error(root.name("sheet.isometry"), error),
             SimulationError::Options(_) => Problem::from_error(root.name("method"), error),
+            SimulationError::Chart(_) => Problem::from_error(root.name("method.chart"), error),
             _ => Problem::from_error(root, error),
         }
     }

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 3] = [
+const ALL_KEYS: [&str; 4] = [
     r#"version = 1
     [sheet]
     mesh = { square = { side = 0.2, level = 1 } }
@@ -144,6 +144,19 @@ const ALL_KEYS: [&str; 3] = [
     bending = "none"
     [method]
     integrator = "rattle""#,
+    r#"version = 1
+    [sheet]
+    mesh = { square = { side = 1, level = 1 } }
+    [method]
+    integrator = "chart"
+    [method.chart]
+    coordinates = "front"
+    scheme = "forward_euler"
+    equations = "published"
+    positions = "linear"
+    solver = "cramer"
+    substep = { adaptive = { tolerance = 1e-6, min = 1e-6, max = 0.1 } }
+    singular = "refuse""#,
 ];
 
 /// The keys of a schema that a value uses, as `Part.key`.
@@ -220,6 +233,17 @@ fn every_key_of_the_reference_is_accepted() {
     let integrators = ["projection", "energy_momentum", "rattle_composition"];
     let edits = meshes.iter().map(|m| with("sheet.mesh", m));
     let edits = edits.chain(integrators.iter().map(|i| with("method.integrator", i)));
+    let charts = [
+        "{ coordinates = \"cartesian\", substep = { fixed = 1e-3 }, singular = \"rebase\" }",
+        "{ coordinates = \"front_with_straight_creases\", scheme = \"runge_kutta4\", equations = \"full\" }",
+        "{ scheme = \"symplectic_euler\", equations = \"reformed\", positions = \"projected\" }",
+        "{ positions = \"exact\", solver = \"sparse\" }",
+        "{ solver = \"dense_lu\" }",
+        "{ solver = \"cholesky\" }",
+    ];
+    let charts = charts.iter().map(|c| with("method.chart", c));
+    let charts =
+        charts.map(|edit| SceneFile::parse(ALL_KEYS[3].into(), Path::new("test.toml"), &[edit]));
     let mut scenes: Vec<SceneFile> = ALL_KEYS
         .iter()
         .map(|text| parse(text).unwrap_or_else(|e| panic!("{e}")))
@@ -228,6 +252,7 @@ fn every_key_of_the_reference_is_accepted() {
         let scene = SceneFile::parse(ALL_KEYS[2].into(), Path::new("test.toml"), &[edit]);
         scenes.push(scene.unwrap_or_else(|e| panic!("{e}")));
     }
+    scenes.extend(charts.map(|scene| scene.unwrap_or_else(|e| panic!("{e}"))));
     for scene in &scenes {
         let value: Value = toml::from_str(&scene.text().text).unwrap();
         visit(&schema, &schema, "", &value, &mut seen);

@@ -158,6 +158,7 @@ pub(super) fn method_name(integrator: Integrator) -> &'static str {
         Integrator::EnergyMomentum => "energy-momentum",
         Integrator::Rattle => "RATTLE",
         Integrator::RattleComposition => "fourth-order RATTLE",
+        Integrator::Chart => "system coordinates",
     }
 }
 

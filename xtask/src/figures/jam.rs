@@ -1,5 +1,6 @@
 //! Beyond the paper: a strip of paper is fed into a bent guide, and passes or jams.
 
+use super::feed::{Feed, INNER, OUTER, PLATE};
 use super::play::play;
 use super::sequence::{View, choose, sequence};
 use super::{Context, Made, Picture, Play, RenderEffort, Table};
@@ -8,8 +9,7 @@ use crate::draw::{
     palette, row,
 };
 use crate::runs::{self, FigureScene, RunSummary};
-use anyhow::{Context as _, Result, bail};
-use isosheet_io::scene::{Bending, Hold, Mesh, Profile, Scene, Shape, Wall};
+use anyhow::{Context as _, Result};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
@@ -40,83 +40,6 @@ fn scene((file, name): (&str, &str), effort: RenderEffort) -> Result<FigureScene
     };
     FigureScene::of(file, name, &edits)
 }
-
-/// What the figure says of a scene.
-struct Feed {
-    /// Inner and outer wall of the guide, and the plate that closes it if there is one.
-    walls: Vec<Wall>,
-    /// Length and width of the strip, metres, and its cells along these.
-    size: [f64; 2],
-    cells: [usize; 2],
-    /// Flexural rigidity of the paper, newton metres.
-    rigidity: f64,
-    /// How far the nip has moved by time, metres.
-    displacement: Profile,
-    /// The nip slips at this force, newtons: then the run ends.
-    limit: f64,
-    /// Gap below which contact acts, metres.
-    activation: f64,
-}
-
-impl Feed {
-    fn of(scene: &Scene) -> Result<Self> {
-        let Mesh::Rectangle {
-            width,
-            height,
-            columns,
-            rows,
-            ..
-        } = scene.sheet.mesh
-        else {
-            bail!("the strip is a rectangle");
-        };
-        let Bending::Hinges { rigidity } = scene.sheet.bending else {
-            bail!("the strip resists bending at its edges");
-        };
-        let Some(Hold::MovingPin(nip)) = scene.support.first().map(|s| &s.hold) else {
-            bail!("a nip moves the strip");
-        };
-        let walls = scene.obstacle.iter().map(|body| match &body.shape {
-            Shape::Wall(wall) => Ok(wall.clone()),
-            other => bail!("the guide has walls, not {other:?}"),
-        });
-        Ok(Self {
-            walls: walls.collect::<Result<_>>()?,
-            size: [width, height],
-            cells: [columns, rows],
-            rigidity,
-            displacement: nip.x.clone(),
-            limit: scene.stop.support_force.context("the nip slips")?,
-            activation: scene.contact.activation.context("a gap of contact")?,
-        })
-    }
-
-    /// Radius of the middle line of the bend, metres.
-    fn radius(&self) -> f64 {
-        0.5 * (self.walls[INNER].corner_radius + self.walls[OUTER].corner_radius)
-    }
-
-    /// Distance of the walls, metres.
-    fn channel(&self) -> f64 {
-        self.walls[OUTER].line[0][1] - self.walls[INNER].line[0][1]
-    }
-
-    /// Speed of the nip once it moves evenly, metres per second: that in the middle of its way.
-    fn speed(&self) -> f64 {
-        let (t, h) = (0.4, 0.1);
-        (self.displacement.value(t + h) - self.displacement.value(t)) / h
-    }
-
-    /// The plate that closes the outlet.
-    fn plate(&self) -> Option<&Wall> {
-        self.walls.get(PLATE)
-    }
-}
-
-/// The numbers of the walls among the bodies.
-const INNER: usize = 0;
-const OUTER: usize = 1;
-const PLATE: usize = 2;
 
 /// A run and what it says.
 struct Fed {

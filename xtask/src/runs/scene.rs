@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// The files, name and text.
-const FILES: [(&str, &str); 15] = [
+const FILES: [(&str, &str); 16] = [
+    ("fig10", include_str!("../../scenes/fig10.toml")),
     ("fig11", include_str!("../../scenes/fig11.toml")),
     ("fig12", include_str!("../../scenes/fig12.toml")),
     ("fig13", include_str!("../../scenes/fig13.toml")),
