@@ -33,21 +33,21 @@ impl TriangleSurface {
         Self::new(&positions, &faces)
     }
 
-    /// A square plate with a square opening about the z axis, from z = -height to z = 0: sides of plate and
-    /// opening along x and y, and height (metres).
+    /// A square plate with a square opening about the z axis: sides of plate and opening along x and y, and the
+    /// heights of its lower and upper face (metres).
     ///
     /// # Errors
-    /// [`SurfaceError::Length`] for a length that is not positive, or an opening that leaves nothing of the
-    /// plate.
-    pub fn frame(outer: f64, opening: f64, height: f64) -> Result<Self, SurfaceError> {
-        for (name, value) in [("outer", outer), ("opening", opening), ("height", height)] {
-            check_length(name, value)?;
-        }
+    /// [`SurfaceError::Length`] for a length that is not positive, an opening that leaves nothing of the plate,
+    /// or an upper face that is not above the lower one.
+    pub fn frame(outer: f64, opening: f64, [bottom, top]: [f64; 2]) -> Result<Self, SurfaceError> {
+        check_length("outer", outer)?;
+        check_length("opening", opening)?;
         check_length("outer less opening", outer - opening)?;
+        check_length("top less bottom", top - bottom)?;
         // Vertex 8 level + 4 ring + corner: below and above, outside and inside, counter-clockwise.
         let corners = [[0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]];
         let ring = |side: f64, z: f64| corners.map(|[x, y]| [side * x, side * y, z]);
-        let rings = [-height, 0.0].map(|z| [outer, opening].map(|side| ring(side, z)));
+        let rings = [bottom, top].map(|z| [outer, opening].map(|side| ring(side, z)));
         let positions = rings.as_flattened().as_flattened().as_flattened();
         let vertex = |level: u32, ring: u32, corner: u32| 8 * level + 4 * ring + corner % 4;
         let quad = |k: u32, [a, b]: [[u32; 2]; 2]| {
@@ -244,13 +244,19 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_has_its_volume_and_lies_below_its_upper_face() {
-        let frame = TriangleSurface::frame(0.6, 0.28, 0.3).unwrap();
+    fn a_frame_has_its_volume_and_lies_between_its_faces() {
+        let frame = TriangleSurface::frame(0.6, 0.28, [-0.5, -0.2]).unwrap();
         let exact = 0.3 * (0.6_f64.powi(2) - 0.28_f64.powi(2));
         assert!((volume(&frame) - exact).abs() < 1e-15);
-        assert!(frame.positions().iter().all(|p| p.z == 0.0 || p.z == -0.3));
-        for (outer, opening, height) in [(0.2, 0.2, 0.1), (0.2, -0.1, 0.1), (0.2, 0.1, f64::NAN)] {
-            assert!(TriangleSurface::frame(outer, opening, height).is_err());
+        assert!(frame.positions().iter().all(|p| p.z == -0.2 || p.z == -0.5));
+        let refused = [
+            (0.2, 0.2, [0.0, 0.1]),
+            (0.2, -0.1, [0.0, 0.1]),
+            (0.2, 0.1, [0.0, 0.0]),
+            (0.2, 0.1, [0.0, f64::NAN]),
+        ];
+        for (outer, opening, heights) in refused {
+            assert!(TriangleSurface::frame(outer, opening, heights).is_err());
         }
     }
 

@@ -82,7 +82,8 @@ impl<'a> Builder<'a> {
                 points.flat_map(|&p| place(pose, p)).collect()
             }
         };
-        let mass = scene.sheet.density * placed.area();
+        let by_area = scene.sheet.density * placed.area();
+        let mass = scene.sheet.mass.unwrap_or(by_area);
         let model = SheetModel::new(&placed, mass, MassKind::Lumped)
             .and_then(|m| m.with_damping(scene.sheet.damping))
             .map_err(at(&key))?;

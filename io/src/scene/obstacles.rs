@@ -65,14 +65,16 @@ pub enum Shape {
         /// Its height, metres.
         height: f64,
     },
-    /// A square plate with a square opening about the z axis, from z = -height to z = 0.
+    /// A square plate with a square opening about the z axis.
     Frame {
         /// Side of the plate, metres.
         outer: f64,
         /// Side of the opening, metres.
         opening: f64,
-        /// Its height, metres.
-        height: f64,
+        /// Height of its lower face, metres.
+        bottom: f64,
+        /// Height of its upper face, metres.
+        top: f64,
     },
     /// A thin wall that follows a line in the xz plane and extends along y, half to either side.
     Wall(Wall),
@@ -147,11 +149,12 @@ impl Obstacle {
             Shape::Frame {
                 outer,
                 opening,
-                height,
+                bottom,
+                top,
             } => {
                 length("outer", *outer);
                 length("opening", *opening);
-                length("height", *height);
+                checks.finite(shape.clone(), &[*bottom, *top]);
             }
             Shape::Wall(wall) => {
                 length("width", wall.width);
@@ -217,8 +220,9 @@ impl Shape {
             Self::Frame {
                 outer,
                 opening,
-                height,
-            } => return solid(TriangleSurface::frame(*outer, *opening, *height)),
+                bottom,
+                top,
+            } => return solid(TriangleSurface::frame(*outer, *opening, [*bottom, *top])),
             Self::Wall(wall) => return solid(wall.surface()),
             Self::File(file) => {
                 let key = key.name("file");

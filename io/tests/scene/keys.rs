@@ -12,6 +12,7 @@ const ALL_KEYS: [&str; 4] = [
     [sheet]
     mesh = { square = { side = 0.2, level = 1 } }
     density = 0.1
+    mass = 0.01
     thickness = 1e-4
     isometry = { weak = { stiffness = 100.0 } }
     bending = { plate = { rigidity = 1e-3 } }
@@ -59,7 +60,7 @@ const ALL_KEYS: [&str; 4] = [
     [[obstacle]]
     shape = { prism = { outline = { regular = { sides = 6, radius = 1 } }, height = 1 } }
     [[obstacle]]
-    shape = { frame = { outer = 2, opening = 1, height = 0.1 } }
+    shape = { frame = { outer = 2, opening = 1, bottom = 0, top = 0.1 } }
     [[obstacle]]
     shape = { wall = { line = [[0, 0], [1, 0], [1, 1]], corner_radius = 0.1, width = 1 } }
     [[obstacle]]

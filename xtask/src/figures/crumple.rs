@@ -110,7 +110,7 @@ fn describe(
     free: &RunSummary,
     context: &Context<'_>,
 ) -> Result<String> {
-    let (hanging, paper) = (Hanging::of(scene)?, &scene.scene().sheet);
+    let (hanging, mass) = (Hanging::of(scene)?, runs::mass(scene)?);
     let end = match context.effort {
         RenderEffort::Full => {
             let trajectory = runs::trajectory(context.store, scene)?;
@@ -134,10 +134,10 @@ fn describe(
          edge strain {:.0e}, smallest gap {}. Warm: the side that was above; blue: below. {:.2} s of wall time per simulated second, \
          {:.1} times that of the sheet that may pass through itself. {end}",
         1e3 * hanging.side,
-        1e3 * paper.density,
-        1e3 * paper.density * hanging.sheet.area(),
+        1e3 * mass / hanging.sheet.area(),
+        1e3 * mass,
         method_name(scene.scene().method.integrator),
-        paper.damping,
+        scene.scene().sheet.damping,
         scene.scene().contact.friction,
         s.time,
         s.frames,

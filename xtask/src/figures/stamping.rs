@@ -45,7 +45,7 @@ impl Tools {
             Shape::Box { size } => Some(size),
             _ => None,
         };
-        let Shape::Frame { opening, .. } = frame.shape else {
+        let Shape::Frame { opening, top, .. } = frame.shape else {
             anyhow::bail!("body {FRAME} is the frame");
         };
         let Profile::Course(Course::Ramp(rise)) = &die.motion.z else {
@@ -57,7 +57,7 @@ impl Tools {
             die: size(die).context("the die is a box")?[0],
             opening,
             holder: of_holder[1],
-            clearance: below - frame.pose.position[2],
+            clearance: below - top,
             stroke: rise.to - rise.from,
             duration: rise.end - rise.begin,
         })

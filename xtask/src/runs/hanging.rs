@@ -45,3 +45,11 @@ pub(crate) fn gravity(scene: &Scene) -> f64 {
     let [x, y, z] = scene.forces.gravity.unwrap_or_default();
     x.hypot(y).hypot(z)
 }
+
+/// Mass of the sheet of a scene, kilograms.
+///
+/// # Errors
+/// As [`FigureScene::setup`].
+pub(crate) fn mass(scene: &FigureScene) -> Result<f64> {
+    Ok(scene.setup()?.model.mass().vertex.iter().sum())
+}
