@@ -27,6 +27,7 @@ mod sheet;
 mod source;
 mod starting_point;
 mod stop;
+mod support_forces;
 mod supports;
 
 pub use chart::{
@@ -55,6 +56,7 @@ pub use sheet::{Bending, Isometry, Sheet, Start};
 pub use source::{SceneFile, SceneFileError};
 pub use starting_point::StartingPoint;
 pub use stop::{Rest, Stop};
+pub use support_forces::SupportForces;
 pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
 
 #[cfg(feature = "run")]

@@ -6,7 +6,7 @@ use super::frames::FrameFile;
 use super::summary::{EndReason, Ending};
 use super::{RunError, Tick};
 use crate::format::{HistoryRow, HistoryWriter};
-use crate::scene::{Origins, Scene, SceneError, SceneFile};
+use crate::scene::{Origins, Scene, SceneError, SceneFile, SupportForces};
 use isosheet_dynamics::{Simulation, StepReport};
 use nalgebra::Vector3;
 use std::time::Instant;
@@ -17,6 +17,7 @@ pub(crate) struct Stepping<'a> {
     pub(crate) folder: &'a RunFolder,
     pub(crate) simulation: Simulation,
     pub(crate) origins: Origins,
+    pub(crate) supports: SupportForces,
     pub(crate) history: HistoryWriter,
     pub(crate) frames: FrameFile,
     pub(crate) progress: Progress,
@@ -152,8 +153,7 @@ impl Stepping<'_> {
 
     /// Force of each support of the scene on the sheet, newtons.
     fn support_forces(&self) -> Vec<[f64; 3]> {
-        let count = self.file.scene().support.len();
-        self.origins.support_forces(&self.simulation, count)
+        self.supports.of(&self.simulation)
     }
 
     fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {

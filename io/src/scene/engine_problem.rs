@@ -2,7 +2,7 @@
 
 use super::problem::{Key, Problem};
 use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
-use isosheet_dynamics::{Excess, Simulation, SimulationError, StepError, Support};
+use isosheet_dynamics::{Excess, SheetModel, SimulationError, StepError, Support};
 use isosheet_mesh::VertexId;
 use std::collections::HashMap;
 
@@ -25,19 +25,16 @@ impl Origins {
         }
     }
 
-    /// Force of each of the first `count` supports of the scene on the sheet, newtons: the sums over the
-    /// vertices that they hold. Before the first step they are zero.
-    pub fn support_forces(&self, simulation: &Simulation, count: usize) -> Vec<[f64; 3]> {
-        let mut forces = vec![[0.0; 3]; count];
-        for reaction in simulation.reactions() {
-            let number = self.support(reaction.support).filter(|&k| k < count);
-            if let Some(number) = number {
-                for k in 0..3 {
-                    forces[number][k] += reaction.force[k];
-                }
-            }
-        }
-        forces
+    /// The number of the support in the scene that holds a vertex.
+    pub(crate) fn support_of_vertex(&self, model: &SheetModel, vertex: VertexId) -> Option<usize> {
+        let constrained = || {
+            let index = model
+                .constraints()
+                .iter()
+                .position(|c| c.vertex() == vertex)?;
+            self.constraints.get(index).copied()
+        };
+        self.pins.get(&vertex).copied().or_else(constrained)
     }
 
     fn support_key(&self, support: Support) -> Key {

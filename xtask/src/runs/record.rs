@@ -6,6 +6,7 @@ use crate::progress::{self, Progress};
 use crate::store::{Draft, Extent, Store};
 use anyhow::{Context, Result, ensure};
 use isosheet_dynamics::{RunEnd, Simulation, StepOutcome, StepReport};
+use isosheet_io::scene::SupportForces;
 use isosheet_io::{
     HistoryRow, HistoryWriter, Trajectory, frame_path, read_history, read_json, write_atomically,
     write_json, write_obj,
@@ -260,6 +261,7 @@ fn run(scene: &FigureScene, draft: &mut Draft, stop: impl Fn() -> bool) -> Resul
     let setup = scene.setup()?;
     let (sheet, origins) = (setup.sheet.clone(), setup.origins.clone());
     let mut simulation = setup.start()?;
+    let supports = SupportForces::new(origins, &simulation, scene.scene().support.len());
     let mut recorder = Recorder {
         sheet: &sheet,
         trajectory: Trajectory::new(&sheet),
@@ -285,7 +287,7 @@ fn run(scene: &FigureScene, draft: &mut Draft, stop: impl Fn() -> bool) -> Resul
         s.balance(report, before);
         outcome = check(report).and_then(|()| recorder.frame(simulation, Some(report)));
         bar.step();
-        let supports = origins.support_forces(simulation, scene.scene().support.len());
+        let supports = supports.of(simulation);
         let over = outcome.is_err() || scene.scene().stop.is_force_reached(&supports);
         stopped = !over && stop();
         clock = Instant::now();
@@ -426,5 +428,37 @@ mod tests {
         let whole = ensure(&store, &scene).unwrap();
         assert_eq!((whole.frames, whole.extent), (6, Extent::Complete));
         assert!(whole.max_strain < 1e-11 && whole.step_range.is_some());
+    }
+
+    /// [`simulate`](isosheet_io::run::simulate) is what `isosheet simulate` calls.
+    #[test]
+    fn the_command_makes_the_motion_that_the_figures_show() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(&folder.path().join("out")).unwrap();
+        // A strip that is pushed until its support bears 3 mN, a vertex that folds, a sheet in a chart.
+        let cases = [
+            ("fig16", vec!["stop.time=0.05", "stop.support_force=0.003"]),
+            ("fig17-vertex-odd", vec!["stop.time=0.5"]),
+            ("fig10", vec!["stop.time=0.1"]),
+        ];
+        for (file, edits) in cases {
+            let edits: Vec<String> = edits.into_iter().map(str::to_owned).collect();
+            let scene = FigureScene::of(file, file, &edits).unwrap();
+            let summary = ensure(&store, &scene).unwrap();
+            let shown = trajectory(&store, &scene).unwrap();
+            let run = folder.path().join(file);
+            let go_on = &mut |_: &isosheet_io::run::Tick| ControlFlow::Continue(());
+            isosheet_io::run::simulate(scene.file(), &run, go_on).unwrap();
+            let made = Trajectory::read(&run.join("trajectory.npz")).unwrap();
+            assert_eq!(made.times(), shown.times(), "{file}");
+            assert_eq!(made.len(), summary.frames + 1, "{file}");
+            assert!(
+                summary.frames < scene.frames() || file != "fig16",
+                "stopped by force"
+            );
+            for k in 0..made.len() {
+                assert_eq!(made.frame(k), shown.frame(k), "{file}, frame {k}");
+            }
+        }
     }
 }

@@ -100,7 +100,13 @@ impl FigureScene {
         self.file.scene()
     }
 
-    /// The scene file with its edits.
+    /// The scene file.
+    #[cfg(test)]
+    pub(crate) fn file(&self) -> &SceneFile {
+        &self.file
+    }
+
+    /// The text of the scene file with its edits.
     pub(crate) fn text(&self) -> &str {
         &self.file.text().text
     }
