@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 const ARC_STEP: f64 = PI / 32.0;
 
 impl TriangleSurface {
-    /// An upright prism with its middle at the origin: a convex outline in the xy plane, counter-clockwise, and
-    /// a height along z (metres).
+    /// An upright prism with its middle at the origin: a convex outline in the xy plane, counter-clockwise,
+    /// and a height along z (metres).
     ///
     /// # Errors
     /// [`SurfaceError::Line`] for an outline that is not convex or not counter-clockwise,
@@ -33,12 +33,12 @@ impl TriangleSurface {
         Self::new(&positions, &faces)
     }
 
-    /// A square plate with a square opening about the z axis: sides of plate and opening along x and y, and the
-    /// heights of its lower and upper face (metres).
+    /// A square plate with a square opening about the z axis: sides of plate and opening along x and y, and
+    /// the heights of its lower and upper face (metres).
     ///
     /// # Errors
-    /// [`SurfaceError::Length`] for a length that is not positive, an opening that leaves nothing of the plate,
-    /// or an upper face that is not above the lower one.
+    /// [`SurfaceError::Length`] for a length that is not positive, an opening that leaves nothing of the
+    /// plate, or an upper face that is not above the lower one.
     pub fn frame(outer: f64, opening: f64, [bottom, top]: [f64; 2]) -> Result<Self, SurfaceError> {
         check_length("outer", outer)?;
         check_length("opening", opening)?;
@@ -68,12 +68,12 @@ impl TriangleSurface {
         Self::new(positions, &faces)
     }
 
-    /// A thin wall, with two sides: a line of points `[x, z]` (metres) swept along y over a width (metres) with
-    /// its middle at y = 0.
+    /// A thin wall, with two sides: a line of points `[x, z]` (metres) swept along y over a width (metres)
+    /// with its middle at y = 0.
     ///
     /// # Errors
-    /// [`SurfaceError::Line`] for fewer than two points or two equal neighbours, [`SurfaceError::Length`] for a
-    /// width that is not positive.
+    /// [`SurfaceError::Line`] for fewer than two points or two equal neighbours, [`SurfaceError::Length`] for
+    /// a width that is not positive.
     pub fn wall(line: &[[f64; 2]], width: f64) -> Result<Self, SurfaceError> {
         check_length("width", width)?;
         check_line(line)?;
@@ -91,8 +91,8 @@ impl TriangleSurface {
 /// segments that turn by at most pi/32. With the radius 0 the line itself.
 ///
 /// # Errors
-/// [`SurfaceError::Line`] for fewer than two points, two equal neighbours, or a side too short for the arcs at
-/// its ends; [`SurfaceError::Length`] for a radius that is negative or not finite.
+/// [`SurfaceError::Line`] for fewer than two points, two equal neighbours, or a side too short for the arcs
+/// at its ends; [`SurfaceError::Length`] for a radius that is negative or not finite.
 pub fn rounded_line(points: &[[f64; 2]], radius: f64) -> Result<Vec<[f64; 2]>, SurfaceError> {
     check_line(points)?;
     if radius == 0.0 {

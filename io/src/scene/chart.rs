@@ -12,8 +12,8 @@ use isosheet_mesh::VertexId;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How the motion is computed with `integrator = "chart"`. Neither of the charts exists in a flat state: a sheet
-/// that starts flat needs `sheet.start.perturbation`.
+/// How the motion is computed with `integrator = "chart"`. Neither of the charts exists in a flat state: a
+/// sheet that starts flat needs `sheet.start.perturbation`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Chart {
@@ -135,8 +135,21 @@ pub enum NearSingularity {
     Refuse,
 }
 
+/// Most parts of a step: with more of them a step of the smallest sheet takes seconds, in which a run cannot be
+/// stopped.
+const MOST_PARTS: f64 = 1e4;
+
 impl Chart {
-    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+    /// Checks the values for steps of `step` seconds.
+    pub(crate) fn check(&self, step: f64, key: &Key, checks: &mut Checks) {
+        let (Substep::Fixed(longest) | Substep::Adaptive { max: longest, .. }) = self.substep;
+        if longest > 0.0 && step / longest > MOST_PARTS {
+            let message =
+                format!("parts of at most {longest:e} s are too many in a step of {step:e} s");
+            let remedy =
+                "choose longer parts or a shorter `method.step`, for at most 10000 parts in a step";
+            checks.report(key.name("substep"), message, remedy);
+        }
         match self.substep {
             Substep::Fixed(h) => checks.positive(key.name("substep.fixed"), h, "s"),
             Substep::Adaptive {

@@ -54,8 +54,8 @@ pub enum Integrator {
     Rattle,
     /// Fourth order, symplectic; rods without contact.
     RattleComposition,
-    /// Hamilton's equations in system coordinates, see `method.chart`; rods, contact by impulses, not from a flat
-    /// state.
+    /// Hamilton's equations in system coordinates, see `method.chart`; rods, contact by impulses, not from a
+    /// flat state.
     Chart,
 }
 
@@ -142,7 +142,7 @@ impl Method {
             return;
         }
         if let Some(chart) = &self.chart {
-            chart.check(&key.name("chart"), checks);
+            chart.check(self.step, &key.name("chart"), checks);
         }
         let usual = Self::default();
         let given = [

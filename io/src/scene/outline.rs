@@ -37,7 +37,8 @@ impl Outline {
         Self::Shape(OutlineShape::Regular { sides, radius })
     }
 
-    /// The corners in order, metres; of values that [`Scene::validate`](super::Scene::validate) refuses, none.
+    /// The corners in order, metres; of values that [`Scene::validate`](super::Scene::validate) refuses,
+    /// none.
     pub fn corners(&self) -> Vec<[f64; 2]> {
         match self {
             Self::Corners(corners) => corners.clone(),

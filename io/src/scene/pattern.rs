@@ -30,7 +30,8 @@ pub struct Miura {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DegreeFour {
-    /// Angles from crease 1 to 2 and from 2 to 3, degrees; the other two are what is left of 180 degrees of each.
+    /// Angles from crease 1 to 2 and from 2 to 3, degrees; the other two are what is left of 180 degrees of
+    /// each.
     pub sectors: [f64; 2],
     /// Length of the creases, metres.
     pub radius: f64,

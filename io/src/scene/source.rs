@@ -127,8 +127,8 @@ impl SceneFile {
         Ok(setup)
     }
 
-    /// What each edge of the sheet is meant to do, if its mesh is a crease pattern; `None` for an edge of which
-    /// the pattern does not say it.
+    /// What each edge of the sheet is meant to do, if its mesh is a crease pattern; `None` for an edge of
+    /// which the pattern does not say it.
     ///
     /// # Errors
     /// [`SceneError`] if the mesh cannot be made.

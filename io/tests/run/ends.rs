@@ -102,8 +102,9 @@ hold = { moving_pin = { x = { ramp = { to = 0.1, end = 1 } } } }
     assert_eq!(summary(&dir.join("stop")).ending.reason, EndReason::Taut);
 }
 
-/// The straight edge of a banner that hangs by two corners cannot move: the engine holds its vertices, and their
-/// forces are those of the corners. At rest the forces balance weight and torque: half of it at each corner.
+/// The straight edge of a banner that hangs by two corners cannot move: the engine holds its vertices, and
+/// their forces are those of the corners. At rest the forces balance weight and torque: half of it at each
+/// corner.
 #[test]
 fn forces_of_corners_balance_the_weight_of_a_banner() {
     let folder = tempfile::tempdir().unwrap();

@@ -136,8 +136,8 @@ pub fn miura(
     Ok(FoldPattern::new(sheet, &creases))
 }
 
-/// The zigzag creases of a pattern that [`miura`] has made: they join neighbours within a row of vertices, and
-/// fold twice as far as the panels lean.
+/// The zigzag creases of a pattern that [`miura`] has made: they join neighbours within a row of vertices,
+/// and fold twice as far as the panels lean.
 pub fn miura_zigzags(pattern: &FoldPattern) -> Vec<EdgeId> {
     let t = pattern.sheet.topology();
     let is_zigzag = |e: &EdgeId| {

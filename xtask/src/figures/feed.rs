@@ -1,6 +1,6 @@
 //! What Fig. 16 says of its scenes: a strip of paper, a nip that moves it, and the walls of a guide.
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, bail, ensure};
 use isosheet_io::scene::{Bending, Hold, Mesh, Profile, Scene, Shape, Wall};
 
 /// What the figure says of a scene.
@@ -42,8 +42,10 @@ impl Feed {
             Shape::Wall(wall) => Ok(wall.clone()),
             other => bail!("the guide has walls, not {other:?}"),
         });
+        let walls = walls.collect::<Result<Vec<_>>>()?;
+        ensure!(walls.len() > OUTER, "a guide has two walls");
         Ok(Self {
-            walls: walls.collect::<Result<_>>()?,
+            walls,
             size: [width, height],
             cells: [columns, rows],
             rigidity,

@@ -102,7 +102,8 @@ fn variants(level: u32, effort: RenderEffort) -> Result<[(&'static str, FigureSc
     ];
     let flat = ["sheet.start.perturbation=0.0"];
     let free_creases = ["method.chart.coordinates=front_with_straight_creases"];
-    // Half the energy that a fall by half a side releases: this takes steps of the size that the paper reports.
+    // Half the energy that a fall by half a side releases: this takes steps of the size that the paper
+    // reports.
     let coarse = ["method.chart.substep.adaptive.tolerance=1.815156e-3"];
     let reformed = ["method.chart.equations=reformed"];
     let scene = |edits: &[&[&str]]| {

@@ -41,8 +41,8 @@ pub(crate) struct ChartSummary {
 /// Runs a scene in a chart until it ends or cannot go on, which is a result and not an error; it is given up
 /// after `patience` seconds of wall time.
 ///
-/// Unlike [`Simulation::step`](isosheet_dynamics::Simulation::step), which cuts the last part of a step short,
-/// the scheme chooses the length of all its steps here: these lengths are what the paper reports.
+/// Unlike [`Simulation::step`](isosheet_dynamics::Simulation::step), which cuts the last part of a step
+/// short, the scheme chooses the length of all its steps here: these lengths are what the paper reports.
 ///
 /// # Errors
 /// Ctrl-C, and what has nothing to do with the scheme.
