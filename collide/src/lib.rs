@@ -64,7 +64,7 @@ pub use nalgebra;
 pub use narrow_phase::{Moving, crossings, crossings_between};
 pub use obstacle::{ContactGeometry, Obstacle, ObstacleError, Shape};
 pub use signed_distance::SignedDistance;
-pub use surface::{SurfaceError, TriangleSurface};
+pub use surface::{SurfaceError, TriangleSurface, rounded_line};
 
 #[doc(no_inline)]
 pub use isosheet_dynamics::{Keyframe, MotionError, RigidMotion};

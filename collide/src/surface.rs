@@ -10,8 +10,11 @@ use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use std::collections::HashMap;
 use thiserror::Error;
 
+mod forms;
 #[cfg(test)]
 mod tests;
+
+pub use forms::rounded_line;
 
 /// A fixed set of triangles that knows its closest points.
 ///
@@ -64,6 +67,22 @@ pub enum SurfaceError {
     NoArea {
         /// The face.
         face: usize,
+    },
+    /// A length of a surface made by formula is not positive.
+    #[error("{name} is {value} m; give a positive length")]
+    Length {
+        /// The length.
+        name: &'static str,
+        /// Its value, metres.
+        value: f64,
+    },
+    /// A line or outline of which no surface can be made.
+    #[error("the line is unusable at point {index}: {problem}")]
+    Line {
+        /// The point, from 0.
+        index: usize,
+        /// What is wrong there.
+        problem: &'static str,
     },
     /// A closed surface is inside out.
     #[error("the faces of the closed surface point inwards (volume {volume} m^3): reverse them")]

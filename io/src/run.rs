@@ -36,7 +36,7 @@ pub use recording::Recording;
 pub use summary::{EndReason, Ending, Summary};
 
 use crate::format::{HistoryWriter, frame_path, read_json, write_json, write_obj};
-use crate::scene::{SceneFile, Setup};
+use crate::scene::{SceneFile, Setup, SupportForces};
 use crate::view::PageOptions;
 use checkpoint::Progress;
 use folder::{Contents, Material, RunFolder};
@@ -212,10 +212,13 @@ fn start<'a>(
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
     let origins = setup.origins.clone();
+    let simulation = setup.start()?;
+    let count = file.scene().support.len();
     let mut stepping = Stepping {
         file,
         folder,
-        simulation: setup.start()?,
+        supports: SupportForces::new(origins.clone(), &simulation, count),
+        simulation,
         origins,
         history: HistoryWriter::create(&folder.path(RunFolder::HISTORY))?,
         frames: FrameFile::create(&folder.path(RunFolder::FRAMES))?,
@@ -261,10 +264,13 @@ fn resume<'a>(
         path,
         problem: e.to_string(),
     })?;
+    let simulation = setup.resume(checkpoint)?;
+    let count = file.scene().support.len();
     Ok(Stepping {
         file,
         folder,
-        simulation: setup.resume(checkpoint)?,
+        supports: SupportForces::new(origins.clone(), &simulation, count),
+        simulation,
         origins,
         history: HistoryWriter::resume(&folder.path(RunFolder::HISTORY), progress.history)?,
         frames,

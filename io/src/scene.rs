@@ -4,6 +4,7 @@
 //! times in seconds, masses in kilograms, **angles in degrees**. `docs/scene.md` lists all keys.
 
 mod build;
+mod chart;
 mod contact;
 mod creases;
 mod edit;
@@ -13,19 +14,26 @@ mod forces;
 mod mesh;
 mod method;
 mod obstacles;
+mod outline;
 mod output;
+mod pattern;
 mod pose;
 mod problem;
 mod profile;
 mod reference;
 mod selection;
+mod setup;
 mod sheet;
 mod source;
 mod starting_point;
 mod stop;
+mod support_forces;
 mod supports;
 
-pub use build::Setup;
+pub use chart::{
+    Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,
+    Substep,
+};
 pub use contact::Contact;
 pub use creases::{Crease, CreaseEdges, PatternEdges};
 pub use edit::EditError;
@@ -34,17 +42,21 @@ pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use forces::{Acceleration, Forces, Load};
 pub use mesh::{Diagonals, Mesh, MeshFile, PolygonFaces, UpAxis};
 pub use method::{Fallback, Integrator, Method, Taut};
-pub use obstacles::{Obstacle, Shape};
+pub use obstacles::{Obstacle, Shape, Wall};
+pub use outline::{Outline, OutlineShape};
 pub use output::Output;
+pub use pattern::{AlikeCreases, DegreeFour, Miura};
 pub use pose::{Motion, Pose, Rotation, Turn};
 pub use problem::{Key, KeyPart, Problem};
 pub use profile::{Change, Course, Interpolation, Profile};
 pub use reference::{reference_page, schema};
 pub use selection::Selection;
+pub use setup::{Integration, Setup};
 pub use sheet::{Bending, Isometry, Sheet, Start};
 pub use source::{SceneFile, SceneFileError};
 pub use starting_point::StartingPoint;
 pub use stop::{Rest, Stop};
+pub use support_forces::SupportForces;
 pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
 
 #[cfg(feature = "run")]
@@ -153,14 +165,14 @@ impl Scene {
         SceneError::of(checks.problems)
     }
 
-    /// Contact and sheets without rods need a method whose steps are minima.
+    /// Sheets without rods need a method whose steps are minima, contact such a method or a chart.
     fn check_method_fits(&self, checks: &mut Checks) {
         if self.method.integrator.is_minimising() {
             return;
         }
         let key = Key::root().name("method.integrator");
         let remedy = "choose `bdf2` or `implicit_euler`";
-        if self.has_contact() {
+        if self.has_contact() && self.method.integrator != Integrator::Chart {
             checks.report(
                 key.clone(),
                 "this integrator has no place for contact",

@@ -7,6 +7,7 @@ mod error;
 mod grid;
 mod octagon;
 mod origami;
+mod outline;
 mod refine;
 mod round;
 
@@ -16,7 +17,8 @@ pub use grid::{
     Diagonals, anisotropic_grid, grid, isotropic_rectangle, isotropic_square, ladder, strip,
 };
 pub use octagon::{octagon_244, octagon_249};
-pub use origami::{FoldAssignment, FoldPattern, degree_four, miura};
+pub use origami::{FoldAssignment, FoldPattern, degree_four, miura, miura_zigzags};
+pub use outline::{polygon_rings, regular_outline};
 pub use refine::{refine_isotropic, split_1_4};
 pub use round::{annulus, disk, fan, regular_polygon};
 

@@ -9,7 +9,7 @@
 //!   the sheet folds straight.
 //! * [`angle_from_lengths`], [`area_from_lengths`]: triangles from the lengths of their sides.
 //! * [`orient_consistently`]: repair on request.
-//! * [`generate`]: squares, grids and other sheets made by formula.
+//! * [`generate`]: squares, grids and other sheets made by formula; [`origami`]: how some of them fold.
 //!
 //! Conventions: SI units, radians, `f64`; positions are flat arrays `x0 y0 z0 x1 y1 z1 ...`; faces are
 //! counter-clockwise as seen from +z in the flat state.
@@ -29,6 +29,7 @@ mod ids;
 mod invariants;
 mod lengths;
 mod mass;
+pub mod origami;
 mod repair;
 mod sheet;
 #[cfg(test)]

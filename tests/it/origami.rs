@@ -5,8 +5,9 @@ use isosheet_dynamics::{
     CreaseSpring, CreaseSprings, Interpolation, Method, Profile, SheetModel, Simulation, State,
 };
 use isosheet_mesh::generate::{FoldAssignment, FoldPattern, degree_four, miura};
+use isosheet_mesh::origami::{DegreeFour, FoldingMode, Miura};
 use isosheet_mesh::{EdgeId, MassKind, VertexId, fold_angle};
-use isosheet_tests::{DegreeFour, FoldingMode, Miura, max_difference};
+use isosheet_tests::max_difference;
 
 /// Folds by an angle in a second, at rest before and after.
 fn folded_by(full: f64) -> Profile {

@@ -1,9 +1,11 @@
 //! The figures, one module each, and what is kept about them.
 
 pub(crate) mod all;
+mod cloths;
 mod crescent;
 mod crumple;
 mod drape;
+mod feed;
 mod fig01;
 mod fig02;
 mod fig03;

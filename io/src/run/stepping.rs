@@ -6,7 +6,7 @@ use super::frames::FrameFile;
 use super::summary::{EndReason, Ending};
 use super::{RunError, Tick};
 use crate::format::{HistoryRow, HistoryWriter};
-use crate::scene::{Origins, Scene, SceneError, SceneFile};
+use crate::scene::{Origins, Scene, SceneError, SceneFile, SupportForces};
 use isosheet_dynamics::{Simulation, StepReport};
 use nalgebra::Vector3;
 use std::time::Instant;
@@ -17,6 +17,7 @@ pub(crate) struct Stepping<'a> {
     pub(crate) folder: &'a RunFolder,
     pub(crate) simulation: Simulation,
     pub(crate) origins: Origins,
+    pub(crate) supports: SupportForces,
     pub(crate) history: HistoryWriter,
     pub(crate) frames: FrameFile,
     pub(crate) progress: Progress,
@@ -128,11 +129,8 @@ impl Stepping<'_> {
         if report.taut.is_some() {
             return Some(EndReason::Taut);
         }
-        if let Some(limit) = scene.stop.support_force {
-            let forces = self.support_forces();
-            if forces.iter().any(|f| Vector3::from(*f).norm() > limit) {
-                return Some(EndReason::SupportForce);
-            }
+        if scene.stop.is_force_reached(&self.support_forces()) {
+            return Some(EndReason::SupportForce);
         }
         if let Some(rest) = &scene.stop.rest {
             if self.largest_speed() > rest.speed {
@@ -155,15 +153,7 @@ impl Stepping<'_> {
 
     /// Force of each support of the scene on the sheet, newtons.
     fn support_forces(&self) -> Vec<[f64; 3]> {
-        let mut forces = vec![[0.0; 3]; self.file.scene().support.len()];
-        for reaction in self.simulation.reactions() {
-            if let Some(number) = self.origins.support(reaction.support) {
-                for k in 0..3 {
-                    forces[number][k] += reaction.force[k];
-                }
-            }
-        }
-        forces
+        self.supports.of(&self.simulation)
     }
 
     fn ending(&self, reason: EndReason, report: &StepReport) -> Ending {

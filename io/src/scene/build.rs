@@ -1,93 +1,22 @@
 //! From a scene to a simulation.
 
-use super::error::{SceneError, SceneText};
+use super::error::SceneError;
 use super::mesh::RestMesh;
 use super::pose::{Motion, Pose};
 use super::problem::{Key, Problem};
 use super::sheet::{Bending, Isometry};
 use super::supports::{Hold, frame_motion};
-use super::{Origins, Scene};
+use super::{Origins, Scene, Setup};
 use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
-use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{
-    AccelerationField, Checkpoint, CreaseSprings, Membrane, Method, PlateBending, PointMotion,
-    PointProfile, RigidProfile, SheetModel, Simulation, SimulationError, State, StepControl,
-    VertexConstraint, VertexLoad, WeakIsometry, leave_flat,
+    AccelerationField, CreaseSprings, Membrane, PlateBending, PointMotion, PointProfile,
+    RigidProfile, SheetModel, SimulationError, State, VertexConstraint, VertexLoad, WeakIsometry,
+    leave_flat,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3};
 use std::fmt::Display;
 use std::path::Path;
-
-/// Everything that a simulation is made of.
-#[derive(Debug)]
-pub struct Setup {
-    /// The sheet in its rest shape, placed in space.
-    pub sheet: Sheet,
-    /// The state at the start.
-    pub start: State,
-    /// What moves.
-    pub model: SheetModel,
-    /// What it meets, in scenes with contact.
-    pub contacts: Option<Contacts>,
-    /// The bodies, in the order of the scene.
-    pub obstacles: Vec<Obstacle>,
-    /// The integrator.
-    pub method: Method,
-    /// What happens to rejected steps.
-    pub control: StepControl,
-    /// What is modelled, in words.
-    pub modelled: Vec<String>,
-    /// Which entry of the scene made what.
-    pub origins: Origins,
-    /// The text of the scene, if it is a file.
-    pub(crate) text: Option<SceneText>,
-}
-
-impl Setup {
-    /// The simulation at the start.
-    ///
-    /// # Errors
-    /// [`SceneError`] at the place of the scene that is to blame.
-    pub fn start(self) -> Result<Simulation, SceneError> {
-        let Self {
-            model,
-            start,
-            contacts,
-            method,
-            control,
-            origins,
-            text,
-            ..
-        } = self;
-        let start = || -> Result<Simulation, SimulationError> {
-            let simulation = Simulation::new(model, start, method)?.with_control(control)?;
-            match contacts {
-                Some(contacts) => simulation.with_contact(contacts),
-                None => Ok(simulation),
-            }
-        };
-        start().map_err(|e| placed(origins.of_start(&e), text.as_ref()))
-    }
-
-    /// The simulation at a checkpoint.
-    ///
-    /// # Errors
-    /// [`SceneError`] if the checkpoint belongs to another scene.
-    pub fn resume(self, checkpoint: Checkpoint) -> Result<Simulation, SceneError> {
-        let contact = self.contacts.map(|c| Box::new(c) as Box<dyn Contact>);
-        Simulation::resume(self.model, contact, checkpoint)
-            .map_err(|e| placed(self.origins.of_start(&e), self.text.as_ref()))
-    }
-}
-
-fn placed(problem: Problem, text: Option<&SceneText>) -> SceneError {
-    let error = SceneError::from(problem);
-    match text {
-        Some(text) => error.in_text(text),
-        None => error,
-    }
-}
 
 impl Scene {
     /// Makes everything that a simulation needs. Masses are lumped: a third of that of each face at each of
@@ -134,7 +63,7 @@ impl<'a> Builder<'a> {
     fn new(scene: &'a Scene, folder: &Path) -> Result<Self, SceneError> {
         let key = Key::root().name("sheet");
         let mesh_key = key.name("mesh");
-        let RestMesh { sheet, assignments } = scene.sheet.mesh.build(&mesh_key, folder)?;
+        let RestMesh { sheet, roles } = scene.sheet.mesh.build(&mesh_key, folder)?;
         let pose = &scene.sheet.placement;
         let placed = sheet
             .map_positions(|p| place(pose, p))
@@ -153,7 +82,8 @@ impl<'a> Builder<'a> {
                 points.flat_map(|&p| place(pose, p)).collect()
             }
         };
-        let mass = scene.sheet.density * placed.area();
+        let by_area = scene.sheet.density * placed.area();
+        let mass = scene.sheet.mass.unwrap_or(by_area);
         let model = SheetModel::new(&placed, mass, MassKind::Lumped)
             .and_then(|m| m.with_damping(scene.sheet.damping))
             .map_err(at(&key))?;
@@ -165,7 +95,7 @@ impl<'a> Builder<'a> {
             scene,
             rest: RestMesh {
                 sheet: placed,
-                assignments,
+                roles,
             },
             unplaced: sheet,
             x,
@@ -349,8 +279,8 @@ impl<'a> Builder<'a> {
     fn add_creases(&mut self) -> Result<(), SceneError> {
         for (k, crease) in self.scene.crease.iter().enumerate() {
             let key = Key::root().name("crease").entry(k);
-            let assignments = self.rest.assignments.as_deref();
-            let springs = crease.springs(&key, &self.unplaced, assignments)?;
+            let roles = self.rest.roles.as_ref();
+            let springs = crease.springs(&key, &self.unplaced, roles)?;
             let springs = CreaseSprings::new(self.rest.sheet.topology(), springs);
             let springs = springs.map_err(at(&key))?;
             self.change(
@@ -410,8 +340,7 @@ impl<'a> Builder<'a> {
             model: model.expect("a change that fails ends the building"),
             contacts,
             obstacles,
-            method: self.scene.method.build(),
-            control: self.scene.method.control(),
+            integration: self.scene.method.build(),
             modelled: self.modelled,
             origins: self.origins,
             text: None,

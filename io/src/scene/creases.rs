@@ -1,5 +1,6 @@
 //! Creases with rest angles.
 
+use super::pattern::EdgeRoles;
 use super::problem::{Checks, Key, Problem};
 use super::profile::Profile;
 use super::selection::size;
@@ -52,6 +53,8 @@ pub enum PatternEdges {
     Valleys,
     /// The edges inside panels, which are meant to stay flat.
     Flat,
+    /// The zigzag creases of `sheet.mesh.miura`; a positive angle folds each to its side.
+    Zigzags,
 }
 
 /// Largest distance of the ends of an edge from a line, as a part of the size of the sheet: above the
@@ -82,21 +85,21 @@ impl Crease {
         &self,
         key: &Key,
         sheet: &Sheet,
-        assignments: Option<&[Option<FoldAssignment>]>,
+        roles: Option<&EdgeRoles>,
     ) -> Result<Vec<CreaseSpring>, Problem> {
         let at = key.name("at");
         let edges = match &self.at {
             CreaseEdges::Ends(ends) => by_ends(ends, &at.name("ends"), sheet)?,
             CreaseEdges::Line { from, to } => on_line(sheet, from, to),
             CreaseEdges::Pattern(wanted) => {
-                let Some(assignments) = assignments else {
+                let Some(roles) = roles else {
                     return Err(Problem::new(
                         at.name("pattern"),
                         "the mesh of the sheet is not a crease pattern",
                         "use `sheet.mesh.miura` or a FOLD file, or name the edges by `ends` or `line`",
                     ));
                 };
-                of_pattern(*wanted, assignments)
+                of_pattern(*wanted, roles)
             }
         };
         if edges.is_empty() {
@@ -156,16 +159,21 @@ fn on_line(sheet: &Sheet, from: &[f64; 3], to: &[f64; 3]) -> Vec<(EdgeId, f64)> 
     edges.map(|e| (e, 1.0)).collect()
 }
 
-fn of_pattern(wanted: PatternEdges, assignments: &[Option<FoldAssignment>]) -> Vec<(EdgeId, f64)> {
-    let sign = |a: FoldAssignment| match (wanted, a) {
-        (PatternEdges::Assigned, FoldAssignment::Mountain) => Some(-1.0),
-        (PatternEdges::Assigned | PatternEdges::Valleys, FoldAssignment::Valley)
+fn of_pattern(wanted: PatternEdges, roles: &EdgeRoles) -> Vec<(EdgeId, f64)> {
+    let sign = |e: EdgeId, a: FoldAssignment| match (wanted, a) {
+        (PatternEdges::Zigzags, _) if !roles.zigzags.contains(&e) => None,
+        (PatternEdges::Assigned | PatternEdges::Zigzags, FoldAssignment::Mountain) => Some(-1.0),
+        (
+            PatternEdges::Assigned | PatternEdges::Zigzags | PatternEdges::Valleys,
+            FoldAssignment::Valley,
+        )
         | (PatternEdges::Mountains, FoldAssignment::Mountain)
         | (PatternEdges::Flat, FoldAssignment::Flat) => Some(1.0),
         _ => None,
     };
-    let edges = assignments.iter().enumerate();
+    let edges = roles.assignments.iter().enumerate();
+    let edges = edges.map(|(e, &a)| (EdgeId::from_index(e), a));
     edges
-        .filter_map(|(e, &a)| sign(a?).map(|s| (EdgeId::from_index(e), s)))
+        .filter_map(|(e, a)| sign(e, a?).map(|s| (e, s)))
         .collect()
 }

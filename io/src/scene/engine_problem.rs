@@ -2,7 +2,7 @@
 
 use super::problem::{Key, Problem};
 use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
-use isosheet_dynamics::{Excess, SimulationError, StepError, Support};
+use isosheet_dynamics::{Excess, SheetModel, SimulationError, StepError, Support};
 use isosheet_mesh::VertexId;
 use std::collections::HashMap;
 
@@ -23,6 +23,18 @@ impl Origins {
             Support::Pin(vertex) => self.pins.get(&vertex).copied(),
             Support::Constraint { index, .. } => self.constraints.get(index).copied(),
         }
+    }
+
+    /// The number of the support in the scene that holds a vertex.
+    pub(crate) fn support_of_vertex(&self, model: &SheetModel, vertex: VertexId) -> Option<usize> {
+        let constrained = || {
+            let index = model
+                .constraints()
+                .iter()
+                .position(|c| c.vertex() == vertex)?;
+            self.constraints.get(index).copied()
+        };
+        self.pins.get(&vertex).copied().or_else(constrained)
     }
 
     fn support_key(&self, support: Support) -> Key {
@@ -94,6 +106,7 @@ impl Origins {
             }
             SimulationError::Elastic => Problem::from_error(root.name("sheet.isometry"), error),
             SimulationError::Options(_) => Problem::from_error(root.name("method"), error),
+            SimulationError::Chart(_) => Problem::from_error(root.name("method.chart"), error),
             _ => Problem::from_error(root, error),
         }
     }

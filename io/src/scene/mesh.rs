@@ -1,9 +1,11 @@
 //! Where the mesh of a sheet comes from.
 
+use super::outline::Outline;
+use super::pattern::{DegreeFour, EdgeRoles, Miura};
 use super::problem::{Checks, Key, Problem};
 use crate::format::{self, MeshOptions, Polygons, SeparateBuffers, read_mesh_with};
 use isosheet_mesh::Sheet;
-use isosheet_mesh::generate::{self, FoldAssignment, GenerateError};
+use isosheet_mesh::generate::{self, FoldPattern, GenerateError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -54,27 +56,31 @@ pub enum Mesh {
     },
     /// An irregular triangulation of a polygon.
     Polygon {
-        /// The corners in order, x and y in metres.
-        outline: Vec<[f64; 2]>,
+        /// The outline.
+        outline: Outline,
         /// Length of the edges, about, metres.
         spacing: f64,
         /// Another number gives another triangulation.
         #[serde(default)]
         seed: u64,
     },
-    /// Miura's crease pattern, with mountains and valleys.
-    Miura {
-        /// Number of panels along x.
-        columns: usize,
-        /// Number of panels along y.
-        rows: usize,
-        /// Length of the straight creases, metres.
-        straight: f64,
-        /// Length of each part of the zigzag creases, metres.
-        zigzag: f64,
-        /// Acute angle of the panels, degrees.
-        angle: f64,
+    /// A polygon in concentric rings of triangles about the origin: the lines from there to the corners are
+    /// edges. The outline has to run counter-clockwise round the origin.
+    PolygonRings {
+        /// The outline.
+        outline: Outline,
+        /// Number of rings.
+        rings: usize,
     },
+    /// The regular octagon about the origin with 244 vertices and 440 faces, a lattice of triangles.
+    Octagon {
+        /// Radius of the circle through the corners, metres.
+        radius: f64,
+    },
+    /// Miura's crease pattern, with mountains and valleys.
+    Miura(Miura),
+    /// A crease pattern of four creases that meet in a vertex.
+    DegreeFour(DegreeFour),
     /// A mesh file: OBJ, OFF, STL, PLY, FOLD (with its crease pattern) or glTF.
     File(MeshFile),
 }
@@ -182,7 +188,16 @@ impl MeshFile {
 /// A mesh, and what its edges are meant to do if it is a crease pattern.
 pub(crate) struct RestMesh {
     pub(crate) sheet: Sheet,
-    pub(crate) assignments: Option<Vec<Option<FoldAssignment>>>,
+    pub(crate) roles: Option<EdgeRoles>,
+}
+
+impl RestMesh {
+    fn of(pattern: FoldPattern, roles: EdgeRoles) -> Self {
+        Self {
+            sheet: pattern.sheet,
+            roles: Some(roles),
+        }
+    }
 }
 
 impl Mesh {
@@ -194,7 +209,10 @@ impl Mesh {
             Self::Disk { .. } => "disk",
             Self::Annulus { .. } => "annulus",
             Self::Polygon { .. } => "polygon",
-            Self::Miura { .. } => "miura",
+            Self::PolygonRings { .. } => "polygon_rings",
+            Self::Octagon { .. } => "octagon",
+            Self::Miura(_) => "miura",
+            Self::DegreeFour(_) => "degree_four",
             Self::File(_) => "file",
         }
     }
@@ -231,27 +249,19 @@ impl Mesh {
                 checks.count(key.name("segments"), *segments, 3);
                 checks.count(key.name("rings"), *rings, 1);
             }
-            Self::Polygon { spacing, .. } => length("spacing", *spacing),
-            Self::Miura {
-                columns,
-                rows,
-                straight,
-                zigzag,
-                angle,
+            Self::Polygon {
+                outline, spacing, ..
             } => {
-                length("straight", *straight);
-                length("zigzag", *zigzag);
-                checks.count(key.name("columns"), *columns, 1);
-                checks.count(key.name("rows"), *rows, 1);
-                if !(*angle > 0.0 && *angle < 90.0) {
-                    let message = format!("the panels have an angle of {angle} degrees");
-                    checks.report(
-                        key.name("angle"),
-                        message,
-                        "give more than 0 and less than 90",
-                    );
-                }
+                length("spacing", *spacing);
+                outline.check(&key.name("outline"), checks);
             }
+            Self::PolygonRings { outline, rings } => {
+                outline.check(&key.name("outline"), checks);
+                checks.count(key.name("rings"), *rings, 1);
+            }
+            Self::Octagon { radius } => length("radius", *radius),
+            Self::Miura(miura) => miura.check(&key, checks),
+            Self::DegreeFour(vertex) => vertex.check(&key, checks),
             Self::File(file) => file.check(&key, checks),
         }
     }
@@ -286,27 +296,26 @@ impl Mesh {
                 outline,
                 spacing,
                 seed,
-            } => generate::delaunay(outline, *spacing, *seed),
-            Self::Miura {
-                columns,
-                rows,
-                straight,
-                zigzag,
-                angle,
-            } => {
-                let angle = angle.to_radians();
-                let pattern = generate::miura(*columns, *rows, *straight, *zigzag, angle)
-                    .map_err(|e| generator_problem(&key, &e))?;
-                return Ok(RestMesh {
-                    sheet: pattern.sheet,
-                    assignments: Some(pattern.assignments.into_iter().map(Some).collect()),
-                });
+            } => generate::delaunay(&outline.corners(), *spacing, *seed),
+            Self::PolygonRings { outline, rings } => {
+                generate::polygon_rings(&outline.corners(), *rings)
+            }
+            Self::Octagon { radius } => generate::octagon_244(*radius),
+            Self::Miura(miura) => {
+                let pattern = miura.pattern().map_err(|e| generator_problem(&key, &e))?;
+                let roles = Miura::roles(&pattern);
+                return Ok(RestMesh::of(pattern, roles));
+            }
+            Self::DegreeFour(vertex) => {
+                let pattern = vertex.pattern().map_err(|e| generator_problem(&key, &e))?;
+                let roles = EdgeRoles::from(&pattern);
+                return Ok(RestMesh::of(pattern, roles));
             }
             Self::File(file) => return read_sheet(file, &key, folder),
         };
         Ok(RestMesh {
             sheet: made.map_err(|e| generator_problem(&key, &e))?,
-            assignments: None,
+            roles: None,
         })
     }
 }
@@ -318,8 +327,12 @@ fn read_sheet(file: &MeshFile, key: &Key, folder: &Path) -> Result<RestMesh, Pro
         let remedy = format!("`isosheet check {path} --fix FILE` repairs what can be repaired");
         Problem::new(key.name("path"), format!("{path}: {error}"), remedy)
     })?;
+    let assignments = mesh.fold_assignments(sheet.topology());
     Ok(RestMesh {
-        assignments: mesh.fold_assignments(sheet.topology()),
+        roles: assignments.map(|assignments| EdgeRoles {
+            assignments,
+            ..EdgeRoles::default()
+        }),
         sheet,
     })
 }

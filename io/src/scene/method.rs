@@ -1,6 +1,8 @@
 //! How the motion is computed.
 
+use super::chart::Chart;
 use super::problem::{Checks, Key};
+use super::setup::Integration;
 use isosheet_dynamics as engine;
 use isosheet_dynamics::{
     EnergyMomentumOptions, ImplicitOptions, ProjectionStepOptions, RattleOptions,
@@ -30,6 +32,8 @@ pub struct Method {
     pub fallback: Fallback,
     /// What to do when moving supports ask for more than the lengths allow.
     pub taut: Taut,
+    /// How the motion is computed with `integrator = "chart"`.
+    pub chart: Option<Chart>,
 }
 
 /// The integrator.
@@ -50,6 +54,9 @@ pub enum Integrator {
     Rattle,
     /// Fourth order, symplectic; rods without contact.
     RattleComposition,
+    /// Hamilton's equations in system coordinates, see `method.chart`; rods, contact by impulses, not from a
+    /// flat state.
+    Chart,
 }
 
 /// What to do when even the smallest part of a step is rejected.
@@ -88,6 +95,7 @@ impl Default for Method {
             min_fraction: engine::StepControl::default().min_fraction,
             fallback: Fallback::default(),
             taut: Taut::default(),
+            chart: None,
         }
     }
 }
@@ -120,6 +128,35 @@ impl Method {
                 );
             }
         }
+        self.check_chart(key, checks);
+    }
+
+    /// Keys that a chart has and others have not, and the other way round.
+    fn check_chart(&self, key: &Key, checks: &mut Checks) {
+        if self.integrator != Integrator::Chart {
+            if self.chart.is_some() {
+                let message = "this integrator has no chart";
+                let remedy = "leave the table out, or choose `integrator = \"chart\"`";
+                checks.report(key.name("chart"), message, remedy);
+            }
+            return;
+        }
+        if let Some(chart) = &self.chart {
+            chart.check(self.step, &key.name("chart"), checks);
+        }
+        let usual = Self::default();
+        let given = [
+            ("strain_tolerance", self.strain_tolerance.is_some()),
+            ("max_iterations", self.max_iterations.is_some()),
+            ("min_fraction", self.min_fraction != usual.min_fraction),
+            ("fallback", self.fallback != usual.fallback),
+            ("taut", self.taut != usual.taut),
+        ];
+        for (name, _) in given.iter().filter(|(_, given)| *given) {
+            let message = format!("a chart has no `{name}`");
+            let remedy = "leave the key out; `method.chart` has those of a chart";
+            checks.report(key.name(name), message, remedy);
+        }
     }
 
     fn implicit(&self) -> ImplicitOptions {
@@ -141,8 +178,11 @@ impl Method {
     }
 
     /// The integrator with its options.
-    pub(crate) fn build(&self) -> engine::Method {
-        match self.integrator {
+    pub(crate) fn build(&self) -> Integration {
+        let method = match self.integrator {
+            Integrator::Chart => {
+                return Integration::InChart(self.chart.clone().unwrap_or_default());
+            }
             Integrator::Bdf2 => engine::Method::Bdf2(self.implicit()),
             Integrator::ImplicitEuler => engine::Method::ImplicitEuler(self.implicit()),
             Integrator::Projection => {
@@ -162,11 +202,15 @@ impl Method {
             }
             Integrator::Rattle => engine::Method::Rattle(self.rattle()),
             Integrator::RattleComposition => engine::Method::RattleComposition(self.rattle()),
+        };
+        Integration::Free {
+            method,
+            control: self.control(),
         }
     }
 
     /// What happens to rejected steps.
-    pub(crate) fn control(&self) -> engine::StepControl {
+    fn control(&self) -> engine::StepControl {
         engine::StepControl {
             min_fraction: self.min_fraction,
             fallback: match self.fallback {

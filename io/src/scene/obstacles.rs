@@ -1,10 +1,11 @@
 //! Bodies that the sheet meets.
 
 use super::mesh::MeshFile;
+use super::outline::Outline;
 use super::pose::{Motion, Pose};
 use super::problem::{Checks, Key, Problem};
 use isosheet_collide as collide;
-use isosheet_collide::TriangleSurface;
+use isosheet_collide::{SurfaceError, TriangleSurface, rounded_line};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -57,8 +58,55 @@ pub enum Shape {
         /// Distance of the centres of the half balls, metres.
         length: f64,
     },
+    /// An upright prism with its middle at the origin.
+    Prism {
+        /// Its outline in the xy plane: convex, counter-clockwise.
+        outline: Outline,
+        /// Its height, metres.
+        height: f64,
+    },
+    /// A square plate with a square opening about the z axis.
+    Frame {
+        /// Side of the plate, metres.
+        outer: f64,
+        /// Side of the opening, metres.
+        opening: f64,
+        /// Height of its lower face, metres.
+        bottom: f64,
+        /// Height of its upper face, metres.
+        top: f64,
+    },
+    /// A thin wall that follows a line in the xz plane and extends along y, half to either side.
+    Wall(Wall),
     /// The triangles of a mesh file: a solid if they are closed, otherwise a surface with two sides.
     File(MeshFile),
+}
+
+/// A thin wall with two sides.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wall {
+    /// The points of its line, x and z in metres.
+    pub line: Vec<[f64; 2]>,
+    /// Radius of the corners of the line, metres.
+    #[serde(default)]
+    pub corner_radius: f64,
+    /// Its width along y, metres.
+    pub width: f64,
+}
+
+impl Wall {
+    /// Its line with the corners rounded, x and z in metres.
+    ///
+    /// # Errors
+    /// [`SurfaceError`] naming the point or length that cannot be used.
+    pub fn rounded(&self) -> Result<Vec<[f64; 2]>, SurfaceError> {
+        rounded_line(&self.line, self.corner_radius)
+    }
+
+    fn surface(&self) -> Result<TriangleSurface, SurfaceError> {
+        TriangleSurface::wall(&self.rounded()?, self.width)
+    }
 }
 
 impl Obstacle {
@@ -94,6 +142,28 @@ impl Obstacle {
                 length("radius", *radius);
                 length("length", *distance);
             }
+            Shape::Prism { outline, height } => {
+                length("height", *height);
+                outline.check(&shape.name("outline"), checks);
+            }
+            Shape::Frame {
+                outer,
+                opening,
+                bottom,
+                top,
+            } => {
+                length("outer", *outer);
+                length("opening", *opening);
+                checks.finite(shape.clone(), &[*bottom, *top]);
+            }
+            Shape::Wall(wall) => {
+                length("width", wall.width);
+                for (k, point) in wall.line.iter().enumerate() {
+                    checks.finite(shape.name("line").entry(k), point);
+                }
+                checks.count(shape.name("line"), wall.line.len(), 2);
+                checks.not_negative(shape.name("corner_radius"), wall.corner_radius, "m");
+            }
             Shape::File(file) => file.check(&shape, checks),
         }
         self.pose.check(&key.name("pose"), checks);
@@ -118,11 +188,18 @@ impl Shape {
             Self::Sphere { .. } => "sphere",
             Self::Cylinder { .. } => "cylinder",
             Self::Capsule { .. } => "capsule",
+            Self::Prism { .. } => "prism",
+            Self::Frame { .. } => "frame",
+            Self::Wall(_) => "wall",
             Self::File(_) => "file",
         }
     }
 
     fn build(&self, key: &Key, folder: &Path) -> Result<collide::Shape, Problem> {
+        let solid = |surface: Result<TriangleSurface, SurfaceError>| {
+            let surface = surface.map_err(|e| form_problem(&key.name(self.name()), &e))?;
+            Ok(collide::Shape::Surface(Arc::new(surface)))
+        };
         Ok(match self {
             Self::HalfSpace => collide::Shape::HalfSpace,
             Self::Box { size } => collide::Shape::Cuboid {
@@ -137,6 +214,16 @@ impl Shape {
                 radius: *radius,
                 half_length: 0.5 * length,
             },
+            Self::Prism { outline, height } => {
+                return solid(TriangleSurface::prism(&outline.corners(), *height));
+            }
+            Self::Frame {
+                outer,
+                opening,
+                bottom,
+                top,
+            } => return solid(TriangleSurface::frame(*outer, *opening, [*bottom, *top])),
+            Self::Wall(wall) => return solid(wall.surface()),
             Self::File(file) => {
                 let key = key.name("file");
                 let mesh = file.read(&key, folder)?;
@@ -151,4 +238,13 @@ impl Shape {
             }
         })
     }
+}
+
+/// The problem of a surface made by formula, at the value that the error names.
+fn form_problem(key: &Key, error: &SurfaceError) -> Problem {
+    let key = match error {
+        SurfaceError::Length { name, .. } if !name.contains(' ') => key.name(name),
+        _ => key.clone(),
+    };
+    Problem::from_error(key, error)
 }

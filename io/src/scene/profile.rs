@@ -101,6 +101,11 @@ impl Profile {
         }))
     }
 
+    /// The value at time `t` (seconds), in the unit of what it drives.
+    pub fn value(&self, t: f64) -> f64 {
+        self.as_given().value(t)
+    }
+
     /// The profile as the engine has it, values multiplied by `scale`.
     pub(crate) fn scaled(&self, scale: f64) -> engine::Profile {
         let course = match self {

@@ -12,9 +12,12 @@ use serde::{Deserialize, Serialize};
 pub struct Sheet {
     /// Where the mesh comes from. Its shape is the rest shape: the one with the rest lengths.
     pub mesh: Mesh,
-    /// Mass of a square metre, kg/m2: office paper has 0.08, steel of 1 mm 7.8.
+    /// Mass of a square metre, kg/m2: office paper has 0.08, steel of 1 mm 7.8. Not used if `mass` is given.
     #[serde(default = "paper_density")]
     pub density: f64,
+    /// Mass of the whole sheet, kilograms; if left out, `density` times its area.
+    #[serde(default)]
+    pub mass: Option<f64>,
     /// Thickness, metres: the least distance of its middle surface from bodies and from itself. It does not
     /// change mass or stiffness.
     #[serde(default)]
@@ -107,6 +110,7 @@ impl Sheet {
         Self {
             mesh,
             density: paper_density(),
+            mass: None,
             thickness: 0.0,
             isometry: Isometry::default(),
             bending: Bending::default(),
@@ -119,6 +123,9 @@ impl Sheet {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         self.mesh.check(&key.name("mesh"), checks);
         checks.positive(key.name("density"), self.density, "kg/m2");
+        if let Some(mass) = self.mass {
+            checks.positive(key.name("mass"), mass, "kg");
+        }
         checks.not_negative(key.name("thickness"), self.thickness, "m");
         checks.not_negative(key.name("damping"), self.damping, "1/s");
         self.isometry.check(&key.name("isometry"), checks);

@@ -127,8 +127,8 @@ impl SceneFile {
         Ok(setup)
     }
 
-    /// What each edge of the sheet is meant to do, if its mesh is a crease pattern; `None` for an edge of which
-    /// the pattern does not say it.
+    /// What each edge of the sheet is meant to do, if its mesh is a crease pattern; `None` for an edge of
+    /// which the pattern does not say it.
     ///
     /// # Errors
     /// [`SceneError`] if the mesh cannot be made.
@@ -136,7 +136,7 @@ impl SceneFile {
         let key = Key::root().name("sheet.mesh");
         let rest = self.scene.sheet.mesh.build(&key, &self.folder);
         let rest = rest.map_err(|e| SceneError::from(e).in_text(&self.text))?;
-        Ok(rest.assignments)
+        Ok(rest.roles.map(|roles| roles.assignments))
     }
 
     /// The same scene with other paths of mesh files, one for each of [`Scene::files`].

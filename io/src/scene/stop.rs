@@ -43,6 +43,13 @@ impl Default for Stop {
 }
 
 impl Stop {
+    /// Whether one of the forces of the supports (newtons) ends the run.
+    pub fn is_force_reached(&self, supports: &[[f64; 3]]) -> bool {
+        let size = |f: &[f64; 3]| f.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let limit = self.support_force.unwrap_or(f64::INFINITY);
+        supports.iter().any(|f| size(f) > limit)
+    }
+
     /// Checks the conditions for a run in steps of `step` seconds.
     pub(crate) fn check(&self, step: f64, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("time"), self.time, "s");

@@ -101,3 +101,41 @@ hold = { moving_pin = { x = { ramp = { to = 0.1, end = 1 } } } }
     assert_eq!(code(&stopped), Some(0), "{}", stderr(&stopped));
     assert_eq!(summary(&dir.join("stop")).ending.reason, EndReason::Taut);
 }
+
+/// The straight edge of a banner that hangs by two corners cannot move: the engine holds its vertices, and
+/// their forces are those of the corners. At rest the forces balance weight and torque: half of it at each
+/// corner.
+#[test]
+fn forces_of_corners_balance_the_weight_of_a_banner() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "version = 1
+        [sheet]
+        mesh = { square = { side = 0.2, level = 2 } }
+        damping = 20
+        [[support]]
+        at = { nearest = [[0.0, 0.2, 0.0]] }
+        [[support]]
+        at = { nearest = [[0.2, 0.2, 0.0]] }
+        [forces]
+        gravity = [0, 0, -9.81]
+        [stop]
+        time = 8
+        [output]
+        page = false";
+    fs::write(folder.path().join("banner.toml"), text).unwrap();
+    let output = run(folder.path(), &["simulate", "banner.toml", "--out", "run"]);
+    assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+    let ending = summary(&folder.path().join("run")).ending;
+    let weight = 0.08 * 0.2 * 0.2 * 9.81;
+    assert!(ending.kinetic < 1e-9, "at rest: {ending:?}");
+    let [left, right] = ending.supports[..] else {
+        panic!("two supports: {ending:?}");
+    };
+    for (force, part) in [(left[2], 0.5), (right[2], 0.5), (left[2] + right[2], 1.0)] {
+        assert!(
+            (force / weight - part).abs() < 0.01,
+            "{:?} of {weight} N",
+            ending.supports
+        );
+    }
+}

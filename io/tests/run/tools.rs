@@ -1,8 +1,9 @@
 //! The subcommands around runs.
 
 use crate::{code, run, stderr};
-use isosheet_io::read_sheet;
+use isosheet_io::run::Summary;
 use isosheet_io::scene::StartingPoint;
+use isosheet_io::{read_json, read_sheet};
 use std::fs;
 use std::path::Path;
 
@@ -118,4 +119,33 @@ fn meshes_are_checked_and_repaired() {
     let refused = run(dir, &["check", "fan.obj", "--fix", "no.obj"]);
     assert_eq!(code(&refused), Some(3));
     assert!(!dir.join("no.obj").exists());
+}
+
+/// The scenes of the figures are scenes like any other.
+#[test]
+fn scenes_of_the_figures_are_checked_and_run() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../xtask/scenes");
+    let files: Vec<_> = fs::read_dir(&scenes)
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
+    assert!(files.len() >= 16, "{files:?}");
+    let folder = tempfile::tempdir().unwrap();
+    for file in files {
+        let output = run(folder.path(), &["check", file.to_str().unwrap()]);
+        assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+    }
+    let vertex = scenes.join("fig17-vertex-odd.toml");
+    let arguments = [
+        "simulate",
+        vertex.to_str().unwrap(),
+        "--out",
+        "run",
+        "--set",
+        "stop.time=0.5",
+    ];
+    let output = run(folder.path(), &arguments);
+    assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+    let summary: Summary = read_json(&folder.path().join("run/summary.json")).unwrap();
+    assert_eq!((summary.steps, summary.frames), (30, 31));
 }

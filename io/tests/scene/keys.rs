@@ -7,11 +7,12 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 3] = [
+const ALL_KEYS: [&str; 4] = [
     r#"version = 1
     [sheet]
     mesh = { square = { side = 0.2, level = 1 } }
     density = 0.1
+    mass = 0.01
     thickness = 1e-4
     isometry = { weak = { stiffness = 100.0 } }
     bending = { plate = { rigidity = 1e-3 } }
@@ -56,6 +57,12 @@ const ALL_KEYS: [&str; 3] = [
     shape = { cylinder = { radius = 1, height = 1 } }
     [[obstacle]]
     shape = { capsule = { radius = 1, length = 1 } }
+    [[obstacle]]
+    shape = { prism = { outline = { regular = { sides = 6, radius = 1 } }, height = 1 } }
+    [[obstacle]]
+    shape = { frame = { outer = 2, opening = 1, bottom = 0, top = 0.1 } }
+    [[obstacle]]
+    shape = { wall = { line = [[0, 0], [1, 0], [1, 1]], corner_radius = 0.1, width = 1 } }
     [[obstacle]]
     shape = { file = { path = "b.obj" } }
     [[obstacle]]
@@ -112,6 +119,9 @@ const ALL_KEYS: [&str; 3] = [
     [[crease]]
     at = { pattern = "flat" }
     stiffness = 1
+    [[crease]]
+    at = { pattern = "zigzags" }
+    stiffness = 1
     [[support]]
     at = "all"
     hold = { curve = { shape = { circle = { centre = [0, 0, 0], normal = [0, 0, 1], radius = 1 } } } }
@@ -135,6 +145,19 @@ const ALL_KEYS: [&str; 3] = [
     bending = "none"
     [method]
     integrator = "rattle""#,
+    r#"version = 1
+    [sheet]
+    mesh = { square = { side = 1, level = 1 } }
+    [method]
+    integrator = "chart"
+    [method.chart]
+    coordinates = "front"
+    scheme = "forward_euler"
+    equations = "published"
+    positions = "linear"
+    solver = "cramer"
+    substep = { adaptive = { tolerance = 1e-6, min = 1e-6, max = 0.1 } }
+    singular = "refuse""#,
 ];
 
 /// The keys of a schema that a value uses, as `Part.key`.
@@ -199,6 +222,10 @@ fn every_key_of_the_reference_is_accepted() {
         "{ disk = { radius = 1, rings = 2 } }",
         "{ annulus = { inner = 1, outer = 2, segments = 5, rings = 1 } }",
         "{ polygon = { outline = [[0, 0], [1, 0], [0, 1]], spacing = 0.2, seed = 1 } }",
+        "{ polygon_rings = { outline = [[1, 0], [0, 1], [-1, -1]], rings = 2 } }",
+        "{ octagon = { radius = 1 } }",
+        "{ degree_four = { sectors = [60, 80], radius = 0.1, alike = \"odd\" } }",
+        "{ degree_four = { sectors = [60, 80], radius = 0.1, alike = \"even\" } }",
         "{ miura = { columns = 2, rows = 2, straight = 1, zigzag = 1, angle = 60 } }",
         "{ rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = \"falling\" } }",
         "{ rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = \"rising\" } }",
@@ -207,6 +234,17 @@ fn every_key_of_the_reference_is_accepted() {
     let integrators = ["projection", "energy_momentum", "rattle_composition"];
     let edits = meshes.iter().map(|m| with("sheet.mesh", m));
     let edits = edits.chain(integrators.iter().map(|i| with("method.integrator", i)));
+    let charts = [
+        "{ coordinates = \"cartesian\", substep = { fixed = 1e-3 }, singular = \"rebase\" }",
+        "{ coordinates = \"front_with_straight_creases\", scheme = \"runge_kutta4\", equations = \"full\" }",
+        "{ scheme = \"symplectic_euler\", equations = \"reformed\", positions = \"projected\" }",
+        "{ positions = \"exact\", solver = \"sparse\" }",
+        "{ solver = \"dense_lu\" }",
+        "{ solver = \"cholesky\" }",
+    ];
+    let charts = charts.iter().map(|c| with("method.chart", c));
+    let charts =
+        charts.map(|edit| SceneFile::parse(ALL_KEYS[3].into(), Path::new("test.toml"), &[edit]));
     let mut scenes: Vec<SceneFile> = ALL_KEYS
         .iter()
         .map(|text| parse(text).unwrap_or_else(|e| panic!("{e}")))
@@ -215,6 +253,7 @@ fn every_key_of_the_reference_is_accepted() {
         let scene = SceneFile::parse(ALL_KEYS[2].into(), Path::new("test.toml"), &[edit]);
         scenes.push(scene.unwrap_or_else(|e| panic!("{e}")));
     }
+    scenes.extend(charts.map(|scene| scene.unwrap_or_else(|e| panic!("{e}"))));
     for scene in &scenes {
         let value: Value = toml::from_str(&scene.text().text).unwrap();
         visit(&schema, &schema, "", &value, &mut seen);

@@ -1,6 +1,8 @@
 //! Scene files: what they mean, and what is said of wrong ones.
 
+mod charts;
 mod files;
+mod formulas;
 mod keys;
 mod meaning;
 mod messages;

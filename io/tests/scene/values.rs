@@ -56,6 +56,31 @@ rest = { speed = 1e-3, duration = 0.1 }
 support_force = 10
 ";
 
+/// Shapes by formula, and motion in a chart.
+const FORMULAS: &str = "version = 1
+[sheet]
+mesh = { polygon_rings = { outline = { regular = { sides = 5, radius = 0.2 } }, rings = 2 } }
+mass = 0.01
+start = { perturbation = 0.1, seed = 1 }
+[[support]]
+at = { vertices = [0] }
+[[obstacle]]
+shape = { prism = { outline = [[1, 0], [0, 1], [-1, -1]], height = 0.2 } }
+pose = { position = [0, 0, -2] }
+[[obstacle]]
+shape = { frame = { outer = 0.5, opening = 0.2, bottom = -1.2, top = -1.1 } }
+[[obstacle]]
+shape = { wall = { line = [[0, -3], [1, -3], [1, -4]], corner_radius = 0.25, width = 0.4 } }
+[forces]
+gravity = [0, 0, -9.81]
+[method]
+integrator = \"chart\"
+step = 0.001
+[method.chart]
+scheme = \"forward_euler\"
+substep = { adaptive = { tolerance = 1e-4, min = 1e-6, max = 0.001 } }
+";
+
 /// The ways to the numbers of a scene, as keys of edits.
 fn numbers(value: &toml::Value, key: &str, found: &mut Vec<String>) {
     let below = |name: &str| match key {
@@ -83,10 +108,11 @@ fn numbers(value: &toml::Value, key: &str, found: &mut Vec<String>) {
 fn no_value_makes_it_panic_or_gives_nan() {
     // The smallest meshes, and few attempts at steps that cannot be taken.
     let small = ["sheet.mesh.square.level=0", "method.min_fraction=0.2"].map(str::to_owned);
-    let kinds: [(&str, &[String]); 3] = [
+    let kinds: [(&str, &[String]); 4] = [
         (StartingPoint::Drape.text(), &small),
         (StartingPoint::Fold.text(), &small[1..]),
         (VARIED, &small[1..]),
+        (FORMULAS, &[]),
     ];
     let values = [
         "0",

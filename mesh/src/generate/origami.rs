@@ -136,6 +136,17 @@ pub fn miura(
     Ok(FoldPattern::new(sheet, &creases))
 }
 
+/// The zigzag creases of a pattern that [`miura`] has made: they join neighbours within a row of vertices,
+/// and fold twice as far as the panels lean.
+pub fn miura_zigzags(pattern: &FoldPattern) -> Vec<EdgeId> {
+    let t = pattern.sheet.topology();
+    let is_zigzag = |e: &EdgeId| {
+        let [a, b] = t.edges()[e.index()].map(VertexId::index);
+        a.abs_diff(b) == 1 && pattern.assignment(*e).sign() != 0.0
+    };
+    t.edge_ids().filter(is_zigzag).collect()
+}
+
 /// A vertex of degree four whose sectors `a1, a2, pi - a1, pi - a2` allow it to fold flat (Kawasaki), with
 /// rigid triangles of the given radius (metres): vertex 0 in the middle, vertex k at the end of crease k for
 /// k = 1 to 4, crease 1 along x.
@@ -197,6 +208,11 @@ mod tests {
             count(FoldAssignment::Mountain) + count(FoldAssignment::Valley),
             4 * 5 + 3 * 6
         );
+        // Five inner rows of four parts each, all of the length b.
+        let zigzags = miura_zigzags(&p);
+        assert_eq!(zigzags.len(), 4 * 5);
+        let lengths = zigzags.iter().map(|e| p.sheet.lengths()[e.index()]);
+        assert!(lengths.map(|l| (l - b).abs()).all(|d| d < 1e-15));
         assert!((p.sheet.area() - 24.0 * a * b * angle.sin()).abs() < 1e-15);
         for (e, l) in t.edge_ids().zip(p.sheet.lengths()) {
             match p.assignment(e) {

@@ -4,8 +4,9 @@ use super::marks::{self, Marks};
 use super::play::play;
 use super::sequence::{View, choose, sequence};
 use super::{Context, Made, Picture, Play, RenderEffort};
-use crate::runs::{self, RunSummary, Scene, SelfContact, Shape, Staged};
+use crate::runs::{self, FigureScene, Hanging, RunSummary, Shape};
 use anyhow::{Context as _, Result};
+use isosheet_io::scene::Integrator;
 use isosheet_mesh::VertexId;
 use serde_json::json;
 
@@ -14,22 +15,27 @@ use serde_json::json;
 const TIMES: [f64; 10] = [0.0, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.6, 8.0];
 
 /// The scene of the figure with mesh M^level, with contact of the sheet with itself.
-pub(crate) fn scene(level: u32, effort: RenderEffort) -> Scene {
-    without_contact(level, effort).with_self_contact()
+pub(super) fn scene(level: u32, effort: RenderEffort) -> Result<FigureScene> {
+    let mut edits = Vec::new();
+    let file = if level == 1 { "fig11" } else { "fig12" };
+    if level != 1 && level != 2 {
+        edits.push(format!("sheet.mesh.square.level={level}"));
+    }
+    if effort == RenderEffort::Quick {
+        edits.push("stop.time=0.2".to_owned());
+    }
+    FigureScene::of(file, &format!("crumple-m{level}-contact"), &edits)
 }
 
 /// The same passing through itself.
-pub(crate) fn without_contact(level: u32, effort: RenderEffort) -> Scene {
-    match effort {
-        RenderEffort::Full => Scene::paper(level, 480),
-        RenderEffort::Quick => Scene::paper(level, 12),
-    }
+pub(super) fn without_contact(level: u32, effort: RenderEffort) -> Result<FigureScene> {
+    scene(level, effort)?.without_self_contact(&format!("crumple-m{level}"))
 }
 
 pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made> {
-    let scene = scene(level, context.effort);
+    let scene = scene(level, context.effort)?;
     let summary = runs::ensure(context.store, &scene)?;
-    let free = runs::ensure(context.store, &without_contact(level, context.effort))?;
+    let free = runs::ensure(context.store, &without_contact(level, context.effort)?)?;
     let file = format!("fig{figure:02}.png");
     let mut pictures = vec![picture(file, &scene, context)?];
     let mut pages = vec![page(figure, &scene, context)?];
@@ -40,7 +46,7 @@ pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made
     );
     if figure == 12 {
         if context.effort == RenderEffort::Full {
-            let finer = self::scene(3, context.effort);
+            let finer = self::scene(3, context.effort)?;
             runs::ensure(context.store, &finer)?;
             pictures.push(picture("fig12-m3.png".into(), &finer, context)?);
             pages.push(page(figure, &finer, context)?);
@@ -90,7 +96,7 @@ fn concentration(context: &Context<'_>) -> Result<Vec<Marks>> {
         RenderEffort::Quick => &[(1, "M¹"), (2, "M²")],
     };
     let of = |&(level, name): &(u32, &str)| {
-        let scene = scene(level, context.effort);
+        let scene = scene(level, context.effort)?;
         runs::ensure(context.store, &scene)?;
         let trajectory = runs::trajectory(context.store, &scene)?;
         Ok(Marks::of(name, &scene.sheet()?, &trajectory))
@@ -99,18 +105,19 @@ fn concentration(context: &Context<'_>) -> Result<Vec<Marks>> {
 }
 
 fn describe(
-    scene: &Scene,
+    scene: &FigureScene,
     s: &RunSummary,
     free: &RunSummary,
     context: &Context<'_>,
 ) -> Result<String> {
+    let (hanging, mass) = (Hanging::of(scene)?, runs::mass(scene)?);
     let end = match context.effort {
         RenderEffort::Full => {
             let trajectory = runs::trajectory(context.store, scene)?;
             let last = trajectory
                 .frame(trajectory.len() - 1)
                 .context("last frame")?;
-            let shape = Shape::of(scene, &scene.sheet()?, last)?;
+            let shape = Shape::of(&hanging, last)?;
             format!(
                 "At the end the kinetic energy is {:.0e} of the potential energy released; the centre of mass hangs {:.3} sides below \
                  the pin (a rigid plate: {:.3}).",
@@ -126,12 +133,12 @@ fn describe(
          with itself with friction {}, {:.1} s from exactly flat and horizontal; {} frames of 1/60 s with {} rejected steps; largest \
          edge strain {:.0e}, smallest gap {}. Warm: the side that was above; blue: below. {:.2} s of wall time per simulated second, \
          {:.1} times that of the sheet that may pass through itself. {end}",
-        1e3 * scene.side,
-        1e3 * scene.paper,
-        1e3 * scene.mass(),
-        Scene::method(),
-        scene.damping,
-        runs::PAPER_FRICTION,
+        1e3 * hanging.side,
+        1e3 * mass / hanging.sheet.area(),
+        1e3 * mass,
+        method_name(scene.scene().method.integrator),
+        scene.scene().sheet.damping,
+        scene.scene().contact.friction,
         s.time,
         s.frames,
         s.rejected,
@@ -142,12 +149,25 @@ fn describe(
     ))
 }
 
+/// The integrator in words.
+pub(super) fn method_name(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::ImplicitEuler => "implicit Euler",
+        Integrator::Bdf2 => "BDF2",
+        Integrator::Projection => "projection",
+        Integrator::EnergyMomentum => "energy-momentum",
+        Integrator::Rattle => "RATTLE",
+        Integrator::RattleComposition => "fourth-order RATTLE",
+        Integrator::Chart => "system coordinates",
+    }
+}
+
 /// How a run is shown.
-fn view<'a>(scene: &Scene, pins: &'a [VertexId]) -> View<'a> {
+fn view(side: f64, pins: &[VertexId]) -> View<'_> {
     View {
         azimuth: -62.0,
         elevation: 17.0,
-        distance: 6.0 * scene.side,
+        distance: 6.0 * side,
         columns: 5,
         pins,
         bodies: &[],
@@ -156,31 +176,37 @@ fn view<'a>(scene: &Scene, pins: &'a [VertexId]) -> View<'a> {
 }
 
 /// The page that plays a run.
-pub(super) fn page(figure: u8, scene: &Scene, context: &Context<'_>) -> Result<Play> {
-    let contact = match scene.contact {
-        SelfContact::None => ", passing through itself",
-        SelfContact::Friction(_) => "",
+pub(super) fn page(figure: u8, scene: &FigureScene, context: &Context<'_>) -> Result<Play> {
+    let contact = if scene.scene().contact.self_contact {
+        ""
+    } else {
+        ", passing through itself"
     };
-    let level = ["M⁰", "M¹", "M²", "M³"][scene.level as usize];
+    let Hanging {
+        level, side, pin, ..
+    } = Hanging::of(scene)?;
+    let level = ["M⁰", "M¹", "M²", "M³"][level as usize];
     let label = format!("crumpled paper, {level}{contact}");
-    play(figure, &label, scene, &view(scene, &[scene.pin()]), context)
+    play(figure, &label, scene, &view(side, &[pin]), context)
 }
 
 /// The sequence of a run that has been made.
-fn picture(file: String, scene: &Scene, context: &Context<'_>) -> Result<Picture> {
+fn picture(file: String, scene: &FigureScene, context: &Context<'_>) -> Result<Picture> {
+    let Hanging {
+        level, side, pin, ..
+    } = Hanging::of(scene)?;
     let trajectory = runs::trajectory(context.store, scene)?;
     let frames = choose(&trajectory, &TIMES);
     Ok(Picture {
         file,
         alt: format!(
-            "A sheet of paper held at its left-upper corner falls from flat and crumples, mesh M{}",
-            scene.level
+            "A sheet of paper held at its left-upper corner falls from flat and crumples, mesh M{level}"
         ),
         bytes: sequence(
             scene,
             &trajectory,
             &frames,
-            &view(scene, &[scene.pin()]),
+            &view(side, &[pin]),
             context.effort,
         )?,
     })

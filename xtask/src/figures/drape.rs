@@ -1,12 +1,13 @@
 //! Fig. 14: a rectangular cloth on a rectangular table. Fig. 15: an octagonal one on an octagonal table, and
 //! on towards the round.
 
+use super::cloths::{Layout, irregular, octagon, polygon, rectangle, ringed};
 use super::folds::{Folds, Hem};
 use super::play::play;
 use super::sequence::{View, choose, sequence};
 use super::{Context, Made, Picture, Play, RenderEffort, Table};
 use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
-use crate::runs::{self, Cloth, Drape, Outline, RunSummary, SelfContact, Staged};
+use crate::runs::{self, FigureScene, RunSummary};
 use anyhow::{Context as _, Result};
 use isosheet_mesh::{Dof, Sheet};
 use serde_json::{Value, json};
@@ -14,103 +15,10 @@ use serde_json::{Value, json};
 /// Times of the pictures, seconds.
 const TIMES: [f64; 6] = [0.0, 0.15, 0.3, 0.6, 1.2, 8.0];
 
-/// Half the sides of the rectangular cloth and of its table, metres: 1.2 m x 0.9 m over 0.58 m x 0.435 m,
-/// similar rectangles, so that the diagonals of the mesh lead through the table's corners.
-const CLOTH: [f64; 2] = [0.6, 0.45];
-const TABLE: [f64; 2] = [0.29, 0.2175];
-
-/// Circumscribed radius of the polygonal cloths and tables, metres.
-const RADII: [f64; 2] = [0.6, 0.33];
-
-/// Cloths on a table with everything but the shapes alike: 0.2 kg/m2, damping 2/s, friction 0.3 on the table
-/// and on itself, let go where contact just begins to act.
-fn scene(name: &str, cloth: Cloth, table: Outline, effort: RenderEffort) -> Drape {
-    Drape {
-        name: name.into(),
-        cloth,
-        table,
-        drop: ACTIVATION,
-        activation: ACTIVATION,
-        stiffness: STIFFNESS,
-        friction: 0.3,
-        contact: SelfContact::Friction(0.3),
-        weight: 0.2,
-        damping: 2.0,
-        frame: 1.0 / 60.0,
-        frames: match effort {
-            RenderEffort::Full => 480,
-            RenderEffort::Quick => 8,
-        },
-    }
-}
-
-/// Gap below which contact acts, metres.
-const ACTIVATION: f64 = 5e-3;
-
-/// Stiffness of the contact barrier, joules: the few vertices at the table's edge carry all that hangs over
-/// it, so the barrier is an order of magnitude stiffer than one that is chosen for the mean weight of a
-/// vertex.
-const STIFFNESS: f64 = 1e-3;
-
-/// The scene of Fig. 14 on M^level.
-pub(super) fn rectangle(level: u32, effort: RenderEffort) -> Drape {
-    let cloth = Cloth::UnionJack { half: CLOTH, level };
-    scene(
-        &format!("drape-m{level}"),
-        cloth,
-        Outline::Rectangle { half: TABLE },
-        effort,
-    )
-}
-
-/// The scene of Fig. 15 with the paper's counts.
-pub(super) fn octagon(effort: RenderEffort) -> Drape {
-    let table = Outline::Regular {
-        sides: 8,
-        radius: RADII[1],
-    };
-    scene(
-        "drape-octagon",
-        Cloth::Octagon { radius: RADII[0] },
-        table,
-        effort,
-    )
-}
-
-/// A polygon with an irregular mesh.
-fn polygon(name: &str, sides: u32, spacing: f64, seed: u64, effort: RenderEffort) -> Drape {
-    let [outline, table] = RADII.map(|radius| Outline::Regular { sides, radius });
-    scene(
-        name,
-        Cloth::Irregular {
-            outline,
-            spacing,
-            seed,
-        },
-        table,
-        effort,
-    )
-}
-
-/// A polygon with a mesh of rings.
-fn ringed(sides: u32, rings: u32, effort: RenderEffort) -> Drape {
-    let [radius, table] = RADII;
-    let cloth = Cloth::Rings {
-        sides,
-        radius,
-        rings,
-    };
-    let table = Outline::Regular {
-        sides,
-        radius: table,
-    };
-    scene(&format!("drape-{sides}-gon-rings"), cloth, table, effort)
-}
-
 /// A cloth at the end of its run.
 struct Draped {
     label: String,
-    scene: Drape,
+    scene: FigureScene,
     run: RunSummary,
     folds: Folds,
     hem: Hem,
@@ -121,33 +29,33 @@ struct Draped {
     internal: i64,
 }
 
-fn drape(label: &str, scene: Drape, context: &Context<'_>) -> Result<Draped> {
+fn drape(label: &str, scene: FigureScene, context: &Context<'_>) -> Result<Draped> {
     let run = runs::ensure(context.store, &scene)?;
     let sheet = scene.sheet()?;
     let trajectory = runs::trajectory(context.store, &scene)?;
     let x = trajectory
         .frame(trajectory.len() - 1)
         .context("last frame")?;
-    let outline = scene.cloth.outline();
+    let layout = Layout::of(scene.scene())?;
     Ok(Draped {
         label: label.into(),
-        folds: Folds::of(&sheet, x, &scene.table, &outline),
+        folds: Folds::of(&sheet, x, &layout.table, &layout.cloth),
         hem: Hem::of(&sheet, x),
-        drop: drop(&sheet, x, &scene),
+        drop: drop(&sheet, x, &layout),
         internal: Dof::of(sheet.topology()).internal,
         run,
         scene,
     })
 }
 
-fn drop(sheet: &Sheet, x: &[f64], scene: &Drape) -> f64 {
+fn drop(sheet: &Sheet, x: &[f64], layout: &Layout) -> f64 {
     let t = sheet.topology();
     let hem = || t.vertex_ids().filter(|v| t.is_boundary_vertex(*v));
     // The table's top is below the start of the cloth.
-    let depth: f64 = hem().map(|v| -scene.drop - x[3 * v.index() + 2]).sum();
+    let depth: f64 = hem().map(|v| -layout.drop - x[3 * v.index() + 2]).sum();
     let reach = |v| {
         let [a, b, _] = sheet.position(v);
-        scene.table.outside([a, b])
+        layout.table.outside([a, b])
     };
     depth / hem().map(reach).sum::<f64>()
 }
@@ -185,10 +93,16 @@ const VIEW: View<'static> = View {
 };
 
 /// The page that plays the run of a cloth.
-pub(super) fn page(figure: u8, label: &str, scene: &Drape, context: &Context<'_>) -> Result<Play> {
-    let free = match scene.contact {
-        SelfContact::None => ", passing through itself",
-        SelfContact::Friction(_) => "",
+pub(super) fn page(
+    figure: u8,
+    label: &str,
+    scene: &FigureScene,
+    context: &Context<'_>,
+) -> Result<Play> {
+    let free = if scene.scene().contact.self_contact {
+        ""
+    } else {
+        ", passing through itself"
     };
     let label = format!("draped cloth, {}{free}", label.replace('~', ""));
     play(figure, &label, scene, &VIEW, context)
@@ -341,31 +255,15 @@ const CONDITIONS: &str = "Cloth of 0.2 kg/m², velocity damping 2/s, friction 0.
 
 pub(super) fn fig14(context: &Context<'_>) -> Result<Made> {
     let effort = context.effort;
-    let table = Outline::Rectangle { half: TABLE };
-    let outline = Outline::Rectangle { half: CLOTH };
-    let spacing = if effort == RenderEffort::Full {
-        0.08
-    } else {
-        0.15
-    };
-    let irregular = Cloth::Irregular {
-        outline,
-        spacing,
-        seed: 1,
-    };
     let fine = if effort == RenderEffort::Full { 3 } else { 1 };
     let all = vec![
-        drape("M²", rectangle(2, effort), context)?,
+        drape("M²", rectangle(2, effort)?, context)?,
         drape(
             if fine == 3 { "M³" } else { "M¹" },
-            rectangle(fine, effort),
+            rectangle(fine, effort)?,
             context,
         )?,
-        drape(
-            "irregular",
-            scene("drape-irregular", irregular, table, effort),
-            context,
-        )?,
+        drape("irregular", irregular(effort)?, context)?,
     ];
     let alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
     let words: Vec<String> = all.iter().map(|d| describe(d, effort)).collect();
@@ -411,13 +309,13 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
         0.2
     };
     let octagons = vec![
-        drape("244/440", octagon(effort), context)?,
+        drape("244/440", octagon(effort)?, context)?,
         drape(
             "finer",
-            polygon("drape-octagon-fine", 8, fine, 1, effort),
+            polygon("drape-octagon-fine", 8, fine, effort)?,
             context,
         )?,
-        drape("rings", ringed(8, RINGS[2].1, effort), context)?,
+        drape("rings", ringed(8, RINGS[2].1, effort)?, context)?,
     ];
     let mut polygons = Vec::new();
     let (sides, spacing): (&[u32], f64) = match effort {
@@ -432,7 +330,7 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
         };
         polygons.push(drape(
             &label,
-            polygon(&format!("drape-{n}-gon"), *n, spacing, 1, effort),
+            polygon(&format!("drape-{n}-gon"), *n, spacing, effort)?,
             context,
         )?);
     }
@@ -443,7 +341,7 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
     };
     for &(n, rings) in of_rings {
         let label = format!("~n~ = {n}, rings");
-        polygons.push(drape(&label, ringed(n, rings, effort), context)?);
+        polygons.push(drape(&label, ringed(n, rings, effort)?, context)?);
     }
     let hem = hems(&polygons);
     let alt = "Distance of the hem from the axis, that of the flat cloth = 1, by angle, for polygons with more and more corners";

@@ -1,9 +1,38 @@
 //! Where the folds of a draped cloth are, and how many.
 
-use crate::runs::Outline;
 use isosheet_mesh::{EdgeId, Sheet, VertexId, fold_angle};
 use serde::Serialize;
 use std::f64::consts::TAU;
+
+/// A convex outline, counter-clockwise.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Outline {
+    corners: Vec<[f64; 2]>,
+}
+
+impl Outline {
+    /// With its corners, metres.
+    pub(super) fn of(corners: Vec<[f64; 2]>) -> Self {
+        Self { corners }
+    }
+
+    /// The rectangle about the origin with half its sides along x and y, metres.
+    pub(super) fn rectangle(a: f64, b: f64) -> Self {
+        Self::of(vec![[a, b], [-a, b], [-a, -b], [a, -b]])
+    }
+
+    /// How far a point is outside, negative inside: the largest distance from the lines of the sides.
+    pub(super) fn outside(&self, p: [f64; 2]) -> f64 {
+        let n = self.corners.len();
+        (0..n)
+            .map(|k| {
+                let (a, b) = (self.corners[k], self.corners[(k + 1) % n]);
+                let side = [b[0] - a[0], b[1] - a[1]];
+                (side[1] * (p[0] - a[0]) - side[0] * (p[1] - a[1])) / side[0].hypot(side[1])
+            })
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+}
 
 /// The folds of the part of a cloth that hangs over the edge of its table.
 ///
@@ -93,7 +122,7 @@ impl Folds {
 
 fn creases(sheet: &Sheet, x: &[f64], table: &Outline, cloth: &Outline) -> Vec<Crease> {
     let t = sheet.topology();
-    let lines: Vec<_> = table.corners().into_iter().zip(cloth.corners()).collect();
+    let lines: Vec<_> = table.corners.iter().zip(&cloth.corners).collect();
     let crease = |e: EdgeId| {
         let [p, q] = t.edges()[e.index()].map(|v| sheet.position(v));
         let middle = [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
@@ -263,6 +292,20 @@ fn spread(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use isosheet_mesh::generate::isotropic_square;
+    use isosheet_mesh::generate::regular_outline;
+
+    #[test]
+    fn outside_is_the_distance_from_the_sides() {
+        let square = Outline::rectangle(2.0, 1.0);
+        assert_eq!(square.outside([0.0, 0.0]), -1.0);
+        assert_eq!(square.outside([2.5, 0.0]), 0.5);
+        let octagon = Outline::of(regular_outline(8, 1.0).unwrap());
+        let apothem = (TAU / 16.0).cos();
+        assert!((octagon.outside([0.0, 0.0]) + apothem).abs() < 1e-14);
+        assert!((octagon.outside([2.0, 0.0]) - (2.0 - apothem)).abs() < 1e-14);
+        let mut corners = octagon.corners.iter();
+        assert!(corners.all(|c| octagon.outside(*c).abs() < 1e-14));
+    }
 
     #[test]
     fn waves_are_counted_and_ripples_are_not() {
@@ -294,7 +337,7 @@ mod tests {
             .unwrap()
             .map_positions(|[x, y, z]| [x - 1.0, y - 1.0, z])
             .unwrap();
-        let [table, cloth] = [0.25, 1.0].map(|h| Outline::Rectangle { half: [h, h] });
+        let [table, cloth] = [0.25, 1.0].map(|h| Outline::rectangle(h, h));
         // A pyramid: flat faces, creased along the diagonals alone. It is not isometric, which does not
         // matter here.
         let pyramid: Vec<f64> = sheet

@@ -1,5 +1,6 @@
 //! Beyond the paper: a strip of paper is fed into a bent guide, and passes or jams.
 
+use super::feed::{Feed, INNER, OUTER, PLATE};
 use super::play::play;
 use super::sequence::{View, choose, sequence};
 use super::{Context, Made, Picture, Play, RenderEffort, Table};
@@ -7,18 +8,18 @@ use crate::draw::{
     Anchor, Axis, Colour, Drawing, Legend, Line, Plot, Series, Stroke, TEXT, Vertical, column,
     palette, row,
 };
-use crate::runs::{self, Feed, Guide, Outlet, RunSummary, SelfContact};
+use crate::runs::{self, FigureScene, RunSummary};
 use anyhow::{Context as _, Result};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
-/// Radii of the bends, metres, and their outlets: three that let the strip through, and the second one again
-/// with something stuck in it.
-const CASES: [(f64, Outlet); 4] = [
-    (0.045, Outlet::Open),
-    (0.02, Outlet::Open),
-    (0.008, Outlet::Open),
-    (0.02, Outlet::Blocked),
+/// Scene files and names of the runs: three bends that let the strip through, and the second one again with
+/// something stuck in it.
+const CASES: [(&str, &str); 4] = [
+    ("fig16-45mm", "feed-45mm"),
+    ("fig16-20mm", "feed-20mm"),
+    ("fig16-8mm", "feed-8mm"),
+    ("fig16", "feed-20mm-blocked"),
 ];
 
 /// The case that jams, and the same guide with nothing in the way.
@@ -32,44 +33,18 @@ const COLOURS: [Colour; 4] = [
     palette::VERMILION,
 ];
 
-fn scene((radius, outlet): (f64, Outlet), effort: RenderEffort) -> Feed {
-    let (cells, frames) = match effort {
-        RenderEffort::Full => ([30, 2], 320),
-        RenderEffort::Quick => ([12, 2], 12),
+fn scene((file, name): (&str, &str), effort: RenderEffort) -> Result<FigureScene> {
+    let edits = match effort {
+        RenderEffort::Full => Vec::new(),
+        RenderEffort::Quick => vec!["stop.time=0.03".to_owned()],
     };
-    let (ending, after) = match outlet {
-        Outlet::Open => ("", 0.1),
-        Outlet::Blocked => ("-blocked", 0.025),
-    };
-    Feed {
-        name: format!("feed-{:.0}mm{ending}", 1e3 * radius),
-        guide: Guide {
-            radius,
-            channel: 0.01,
-            width: 0.05,
-            straight: [0.13, after],
-            outlet,
-        },
-        size: [0.12, 0.04],
-        cells,
-        weight: 0.08,
-        rigidity: 5e-4,
-        speed: 0.15,
-        ramp: 0.1,
-        limit: 1.0,
-        friction: 0.3,
-        contact: SelfContact::Friction(0.3),
-        activation: 8e-4,
-        stiffness: 2e-6,
-        damping: 2.0,
-        frame: 1.0 / 400.0,
-        frames,
-    }
+    FigureScene::of(file, name, &edits)
 }
 
 /// A run and what it says.
 struct Fed {
-    scene: Feed,
+    scene: FigureScene,
+    feed: Feed,
     run: RunSummary,
     /// Displacement of the nip (metres) and force of the nip on the strip in the direction of this
     /// displacement (newtons), mean over [`WINDOW`] frames.
@@ -85,7 +60,8 @@ struct Fed {
 const WINDOW: usize = 5;
 
 impl Fed {
-    fn of(scene: Feed, context: &Context<'_>) -> Result<Self> {
+    fn of(scene: FigureScene, context: &Context<'_>) -> Result<Self> {
+        let feed = Feed::of(scene.scene())?;
         let run = runs::ensure(context.store, &scene)?;
         let forces = runs::supports(context.store, &scene)?;
         let trajectory = runs::trajectory(context.store, &scene)?;
@@ -93,10 +69,10 @@ impl Fed {
             .windows(WINDOW)
             .map(|w| {
                 let mean = w.iter().map(|f| f[1]).sum::<f64>() / WINDOW as f64;
-                [scene.feed_length(w[WINDOW / 2][0]), mean]
+                [feed.displacement.value(w[WINDOW / 2][0]), mean]
             })
             .collect();
-        let [along, across] = scene.cells;
+        let [along, across] = feed.cells;
         let profile = |x: &[f64]| -> Vec<[f64; 2]> {
             // The nip holds the first two.
             let first = (across / 2) * (along + 1) + 1;
@@ -106,19 +82,19 @@ impl Fed {
         let frames = (0..trajectory.len()).map(|k| trajectory.frame(k).context("frame"));
         Ok(Self {
             profiles: frames.map(|x| x.map(profile)).collect::<Result<_>>()?,
-            jammed: forces.last().is_some_and(|f| f[1] > scene.limit),
+            jammed: forces
+                .last()
+                .is_some_and(|f| f[1].hypot(f[2]).hypot(f[3]) > feed.limit),
             force,
             run,
+            feed,
             scene,
         })
     }
 
     fn label(&self) -> String {
-        let open = match self.scene.guide.outlet {
-            Outlet::Open => "",
-            Outlet::Blocked => ", blocked",
-        };
-        format!("{:.0} mm{open}", 1e3 * self.scene.guide.radius)
+        let open = self.feed.plate().map_or("", |_| ", blocked");
+        format!("{:.0} mm{open}", 1e3 * self.feed.radius())
     }
 
     fn peak(&self) -> [f64; 2] {
@@ -127,13 +103,15 @@ impl Fed {
     }
 
     fn feed_length_at(&self, frame: usize) -> f64 {
-        self.scene.feed_length(frame as f64 * self.scene.frame)
+        self.feed
+            .displacement
+            .value(frame as f64 * self.scene.frame())
     }
 
     /// The frame in which the leading edge first feels the plate.
     fn arrival(&self) -> Option<usize> {
-        let [[_, plate], _] = self.scene.guide.plate()?;
-        let near = plate + self.scene.activation;
+        let [_, plate] = self.feed.plate()?.line[0];
+        let near = plate + self.feed.activation;
         self.profiles
             .iter()
             .position(|p| p.last().is_some_and(|end| end[1] < near))
@@ -209,7 +187,7 @@ impl Fed {
     /// Buckling loads of a straight strip of a length between clamps, and between a clamp and a hinge,
     /// newtons.
     fn euler(&self, length: f64) -> [f64; 2] {
-        let bending = self.scene.rigidity * self.scene.size[1] * (PI / length).powi(2);
+        let bending = self.feed.rigidity * self.feed.size[1] * (PI / length).powi(2);
         // The root of tan z = z over pi, squared.
         [4.0 * bending, 2.0457 * bending]
     }
@@ -253,7 +231,7 @@ fn describe(jam: &Fed, passing: f64) -> String {
         format!(
             "At {:.1} mm the force passes {} N, at which the nip is taken to slip: there the run ends",
             mm(last),
-            jam.scene.limit
+            jam.feed.limit
         )
     } else {
         format!("The nip stops at {:.1} mm", mm(last))
@@ -271,7 +249,7 @@ fn describe(jam: &Fed, passing: f64) -> String {
         newtons(hinged),
         jam.inflections(last),
         turn.abs().to_degrees(),
-        1e3 * jam.scene.size[0] / jam.scene.cells[0] as f64,
+        1e3 * jam.feed.size[0] / jam.feed.cells[0] as f64,
         -1e3 * x,
     )
 }
@@ -309,16 +287,16 @@ fn table(all: &[Fed]) -> Table {
 }
 
 /// How a run is shown: without the outer wall, which would hide the strip.
-fn view(scene: &Feed) -> View<'static> {
+fn view(feed: &Feed) -> View<'static> {
     View {
         azimuth: -72.0,
         elevation: 12.0,
         distance: 0.8,
         columns: 2,
         pins: &[],
-        bodies: match scene.guide.outlet {
-            Outlet::Open => &[0],
-            Outlet::Blocked => &[0, 2],
+        bodies: match feed.plate() {
+            None => &[INNER],
+            Some(_) => &[INNER, PLATE],
         },
         depth: 0.08,
     }
@@ -327,7 +305,7 @@ fn view(scene: &Feed) -> View<'static> {
 /// The page that plays a run.
 fn page(fed: &Fed, context: &Context<'_>) -> Result<Play> {
     let label = format!("strip in a bend of {}", fed.label());
-    play(16, &label, &fed.scene, &view(&fed.scene), context)
+    play(16, &label, &fed.scene, &view(&fed.feed), context)
 }
 
 /// Parts of the run at which the jam is shown: the fold-up happens at its end.
@@ -337,7 +315,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let effort = context.effort;
     let all: Vec<Fed> = CASES
         .iter()
-        .map(|case| Fed::of(scene(*case, effort), context))
+        .map(|case| Fed::of(scene(*case, effort)?, context))
         .collect::<Result<_>>()?;
     let jam = &all[JAM];
     let passing = 2.0 * all[OPEN].peak()[1];
@@ -345,18 +323,18 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let times = SHOWN.map(|s| s * jam.run.time);
     let alt_force = "Force of the nip over its displacement in four guides";
     let alt_side = "The strip from the side at five times in each of the four guides";
-    let s = &jam.scene;
+    let (s, of_scene) = (&jam.feed, jam.scene.scene());
     let through = all.iter().take(JAM).map(|f| {
         let [fed, peak] = f.peak();
         format!(
             "{:.0} mm: {} at {:.0} mm",
-            1e3 * f.scene.guide.radius,
+            1e3 * f.feed.radius(),
             newtons(peak),
             1e3 * fed
         )
     });
     let through: Vec<String> = through.collect();
-    let side: Vec<Drawing> = all.iter().map(side_view).collect();
+    let side: Vec<Drawing> = all.iter().map(side_view).collect::<Result<_>>()?;
     Ok(Made {
         title: "Paper jam",
         paper: "The simulation of a paper jam is named as an application for the design of printers (Sec. 1); none is shown.",
@@ -367,13 +345,13 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
              the strip meets the outer wall steeply, it bows and slips past. {} In the side view time goes from blue to vermilion. Every frame of all runs has a strain below 1e-10 and a positive gap.",
             1e3 * s.size[0],
             1e3 * s.size[1],
-            1e3 * s.weight,
+            1e3 * of_scene.sheet.density,
             s.rigidity,
             jam.run.vertices,
             jam.run.faces,
-            1e3 * s.guide.channel,
-            s.speed,
-            s.friction,
+            1e3 * s.channel(),
+            s.speed(),
+            of_scene.contact.friction,
             through.join(", "),
             describe(jam, passing),
         ),
@@ -387,7 +365,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
                     &jam.scene,
                     &trajectory,
                     &choose(&trajectory, &times),
-                    &view(&jam.scene),
+                    &view(&jam.feed),
                     effort,
                 )?,
             },
@@ -446,19 +424,13 @@ const SCALE: f64 = 1300.0;
 const MOMENTS: [f64; 5] = [0.0, 0.5, 0.8, 0.91, 1.0];
 
 /// The walls and the strip from the side, from light to dark in the order of time.
-fn side_view(fed: &Fed) -> Drawing {
+fn side_view(fed: &Fed) -> Result<Drawing> {
     let mut d = Drawing::new();
     let scaled = |line: &[[f64; 2]]| -> Vec<[f64; 2]> {
         line.iter().map(|p| p.map(|c| SCALE * c)).collect()
     };
-    let guide = &fed.scene.guide;
-    let half = 0.5 * guide.channel;
-    let wall = Stroke::new(palette::GREY, 1.6);
-    for line in [guide.wall(-half), guide.wall(half)] {
-        d.line(&scaled(&line), wall);
-    }
-    if let Some(plate) = guide.plate() {
-        d.line(&scaled(&plate), wall);
+    for wall in &fed.feed.walls {
+        d.line(&scaled(&wall.rounded()?), Stroke::new(palette::GREY, 1.6));
     }
     let last = (fed.profiles.len() - 1) as f64;
     for (k, part) in MOMENTS.into_iter().enumerate() {
@@ -466,13 +438,14 @@ fn side_view(fed: &Fed) -> Drawing {
         let frame = (part * last).round() as usize;
         d.line(&scaled(&fed.profiles[frame]), Stroke::new(colour, 1.0));
     }
+    let [x, z] = fed.feed.walls[OUTER].line[0];
     d.text(
-        [-SCALE * guide.straight[0], SCALE * (half + 0.004)],
+        [SCALE * x, SCALE * (z + 0.004)],
         &fed.label(),
         TEXT,
         Anchor::Start,
         Vertical::Centre,
         palette::INK,
     );
-    d
+    Ok(d)
 }

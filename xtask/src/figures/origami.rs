@@ -4,64 +4,56 @@ use super::play::play;
 use super::sequence::{View, choose, sequence};
 use super::{Context, Made, Picture, RenderEffort, degrees};
 use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
-use crate::runs::{self, Alike, Creases, Fold, RunSummary, Staged};
-use anyhow::{Context as _, Result};
-use isosheet_mesh::generate::FoldAssignment;
+use crate::runs::{self, FigureScene, RunSummary};
+use anyhow::{Context as _, Result, bail};
+use isosheet_io::scene::{AlikeCreases, DegreeFour, Mesh, Miura};
+use isosheet_mesh::generate::{FoldAssignment, FoldPattern, miura_zigzags};
+use isosheet_mesh::origami;
 use isosheet_mesh::{VertexId, fold_angle};
-use isosheet_tests::DegreeFour;
 use serde_json::json;
 
 /// Rest angle of the driven creases in the end, radians: 150 degrees.
 const FULL: f64 = 150.0 * std::f64::consts::PI / 180.0;
 
-/// Sectors of the vertex of degree four, radians.
-const SECTORS: [f64; 2] = [1.0, 1.5];
-
-fn scene(name: &str, creases: Creases, effort: RenderEffort) -> Fold {
-    let frames = match effort {
-        RenderEffort::Full => 150,
-        RenderEffort::Quick => 15,
-    };
-    Fold {
-        name: name.into(),
-        creases,
-        weight: 0.08,
-        full: FULL,
-        duration: 2.0,
-        drive: 5e-3,
-        panel: 10.0,
-        hint: match creases {
-            Creases::Miura { .. } => 0.0,
-            Creases::Vertex { .. } => 0.01,
-        },
-        damping: 5.0,
-        frame: 2.5 / frames as f64,
-        frames,
+/// The edits of a quick run: 15 frames.
+fn edits(effort: RenderEffort) -> Vec<String> {
+    match effort {
+        RenderEffort::Full => Vec::new(),
+        RenderEffort::Quick => vec![format!("method.step={:?}", 2.5 / 15.0)],
     }
 }
 
 /// The Miura pattern of the figure.
-pub(super) fn miura(effort: RenderEffort) -> Fold {
-    let n = if effort == RenderEffort::Full { 10 } else { 4 };
-    let creases = Creases::Miura {
-        panels: [n, n],
-        sides: [0.02, 0.02],
-        angle: std::f64::consts::FRAC_PI_3,
-    };
-    scene("origami-miura", creases, effort)
+fn miura(effort: RenderEffort) -> Result<FigureScene> {
+    let mut edits = edits(effort);
+    if effort == RenderEffort::Quick {
+        edits.extend(["columns", "rows"].map(|key| format!("sheet.mesh.miura.{key}=4")));
+    }
+    FigureScene::of("fig17", "origami-miura", &edits)
 }
 
-fn vertex(mode: Alike, effort: RenderEffort) -> Fold {
-    let (name, radius) = match mode {
-        Alike::Odd => ("origami-vertex-odd", 0.05),
-        Alike::Even => ("origami-vertex-even", 0.05),
+fn vertex(alike: AlikeCreases, effort: RenderEffort) -> Result<FigureScene> {
+    let (file, name) = match alike {
+        AlikeCreases::Odd => ("fig17-vertex-odd", "origami-vertex-odd"),
+        AlikeCreases::Even => ("fig17-vertex-even", "origami-vertex-even"),
     };
-    let creases = Creases::Vertex {
-        sectors: SECTORS,
-        radius,
-        mode,
-    };
-    scene(name, creases, effort)
+    FigureScene::of(file, name, &edits(effort))
+}
+
+/// The Miura pattern of a scene.
+fn miura_of(scene: &FigureScene) -> Result<&Miura> {
+    match &scene.scene().sheet.mesh {
+        Mesh::Miura(miura) => Ok(miura),
+        other => bail!("a Miura pattern, not {other:?}"),
+    }
+}
+
+/// The vertex of degree four of a scene.
+fn vertex_of(scene: &FigureScene) -> Result<&DegreeFour> {
+    match &scene.scene().sheet.mesh {
+        Mesh::DegreeFour(vertex) => Ok(vertex),
+        other => bail!("a vertex of degree four, not {other:?}"),
+    }
 }
 
 /// A folded Miura pattern at a frame, in numbers.
@@ -77,13 +69,9 @@ struct Folded {
 }
 
 impl Folded {
-    fn of(scene: &Fold, x: &[f64]) -> Result<Self> {
-        let pattern = scene.pattern()?;
-        let exact = scene.miura().context("a Miura pattern")?;
-        let Creases::Miura { panels, .. } = scene.creases else {
-            anyhow::bail!("a Miura pattern")
-        };
-        let t = pattern.sheet.topology();
+    fn of(miura: &Miura, pattern: &FoldPattern, x: &[f64]) -> Self {
+        let (exact, t) = (miura.kinematics(), pattern.sheet.topology());
+        let driven = miura_zigzags(pattern);
         let (mut zigzags, mut straights, mut flats) = (Vec::new(), Vec::new(), Vec::new());
         for e in t.edge_ids() {
             let Some(fold) = fold_angle(t, x, e) else {
@@ -91,7 +79,7 @@ impl Folded {
             };
             match pattern.assignment(e) {
                 FoldAssignment::Flat => flats.push(fold),
-                a if scene.is_driven(&pattern, e) => zigzags.push(a.sign() * fold),
+                a if driven.contains(&e) => zigzags.push(a.sign() * fold),
                 a => straights.push(a.sign() * fold),
             }
         }
@@ -104,7 +92,7 @@ impl Folded {
             let (p, q) = (at(x, a), at(x, b));
             (p[0] - q[0]).hypot(p[1] - q[1]).hypot(p[2] - q[2])
         };
-        let [columns, rows] = panels;
+        let (columns, rows) = (miura.columns, miura.rows);
         let rigid = exact.positions(columns, rows, theta);
         let n = t.vertex_count();
         let mut apart: f64 = 0.0;
@@ -120,7 +108,7 @@ impl Folded {
             distance(x, vertex(0, 0), vertex(columns, 0)) / (columns as f64 * flat[0]),
             distance(x, vertex(0, 0), vertex(0, rows)) / (rows as f64 * flat[1]),
         ];
-        Ok(Self {
+        Self {
             zigzag,
             straight: mean(&straights),
             size,
@@ -129,15 +117,15 @@ impl Folded {
                 off(&flats, 0.0),
                 apart,
             ],
-        })
+        }
     }
 }
 
 /// The fold angles of the four creases of a vertex at every frame, with the first crease a valley.
-fn vertex_angles(scene: &Fold, context: &Context<'_>) -> Result<Vec<[f64; 4]>> {
+fn vertex_angles(scene: &FigureScene, context: &Context<'_>) -> Result<Vec<[f64; 4]>> {
     let trajectory = runs::trajectory(context.store, scene)?;
-    let pattern = scene.pattern()?;
-    let t = pattern.sheet.topology();
+    let sheet = scene.sheet()?;
+    let t = sheet.topology();
     (0..trajectory.len())
         .map(|k| {
             let x = trajectory.frame(k).context("frame")?;
@@ -154,6 +142,14 @@ fn vertex_angles(scene: &Fold, context: &Context<'_>) -> Result<Vec<[f64; 4]>> {
 /// Folds below this say more about round-off than about kinematics: the lengths, kept to 1e-12, fix an angle
 /// to that over the angle.
 const LEAST: f64 = 0.05;
+
+/// The crease, from 0, that folds most and is driven.
+fn lead(mode: origami::FoldingMode) -> usize {
+    match mode {
+        origami::FoldingMode::OddAlike => 0,
+        origami::FoldingMode::EvenAlike => 1,
+    }
+}
 
 fn lines(name: &str, points: Vec<[f64; 2]>) -> Series {
     Series {
@@ -191,12 +187,16 @@ const EVERY: usize = 6;
 
 pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let effort = context.effort;
-    let scene = miura(effort);
+    let scene = miura(effort)?;
     let run = runs::ensure(context.store, &scene)?;
-    let exact = scene.miura().context("a Miura pattern")?;
+    let pattern = miura_of(&scene)?.pattern()?;
+    let exact = miura_of(&scene)?.kinematics();
     let trajectory = runs::trajectory(context.store, &scene)?;
     let folded: Vec<Folded> = (0..trajectory.len())
-        .map(|k| Folded::of(&scene, trajectory.frame(k).context("frame")?))
+        .map(|k| {
+            let x = trajectory.frame(k).context("frame")?;
+            Ok(Folded::of(miura_of(&scene)?, &pattern, x))
+        })
         .collect::<Result<_>>()?;
     let beyond = || folded.iter().filter(|f| f.zigzag > LEAST);
     let worst = |k: usize| beyond().fold(0.0f64, |m, f| m.max(f.errors[k]));
@@ -259,26 +259,31 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let mut pages = vec![play(17, "Miura's pattern", &scene, &VIEW, context)?];
     let mut series = Vec::new();
     let mut vertices = Vec::new();
-    let vertex_exact = DegreeFour { sectors: SECTORS };
-    for (mode, name, colour, marker) in [
-        (Alike::Odd, "1 and 3 alike", palette::BLUE, Marker::Disc),
+    for (alike, name, colour, marker) in [
         (
-            Alike::Even,
+            AlikeCreases::Odd,
+            "1 and 3 alike",
+            palette::BLUE,
+            Marker::Disc,
+        ),
+        (
+            AlikeCreases::Even,
             "2 and 4 alike",
             palette::VERMILION,
             Marker::Square,
         ),
     ] {
-        let scene = vertex(mode, effort);
+        let scene = vertex(alike, effort)?;
+        let (exact, mode) = (vertex_of(&scene)?.kinematics(), vertex_of(&scene)?.mode());
         let run = runs::ensure(context.store, &scene)?;
         let label = format!("vertex of degree four, creases {name}");
         pages.push(play(17, &label, &scene, &VIEW, context)?);
         let found = vertex_angles(&scene, context)?;
         let error = found
             .iter()
-            .filter(|a| a[mode.lead()].abs() > LEAST)
+            .filter(|a| a[lead(mode)].abs() > LEAST)
             .flat_map(|a| {
-                let e = vertex_exact.angles(mode.mode(), a[0]);
+                let e = exact.angles(mode, a[0]);
                 (0..4).map(move |k| (a[k] - e[k]).abs())
             })
             .fold(0.0, f64::max);
@@ -286,7 +291,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
         let to = end[0];
         let points = (0..=80).map(|k| {
             let first = to * f64::from(k) / 80.0;
-            let angles = vertex_exact.angles(mode.mode(), first);
+            let angles = exact.angles(mode, first);
             [first.to_degrees(), angles[1].to_degrees()]
         });
         let exact_name = if series.is_empty() { "exact" } else { "" };

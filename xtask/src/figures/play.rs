@@ -2,7 +2,7 @@
 
 use super::sequence::{View, thumbnail};
 use super::{Context, Play, RenderEffort};
-use crate::runs::{self, RunSummary, Staged};
+use crate::runs::{self, FigureScene, RunSummary};
 use anyhow::Result;
 use isosheet_io::view::Replay;
 
@@ -10,27 +10,26 @@ use isosheet_io::view::Replay;
 pub(super) fn play(
     figure: u8,
     label: &str,
-    scene: &impl Staged,
+    scene: &FigureScene,
     view: &View<'_>,
     context: &Context<'_>,
 ) -> Result<Play> {
     let summary = runs::summary(context.store, scene)?;
     let trajectory = runs::trajectory(context.store, scene)?;
     let history = runs::history(context.store, scene)?;
-    let sheet = scene.sheet()?;
-    let pins = scene.simulation(&sheet)?.model().pins();
+    let setup = scene.setup()?;
+    let (pins, bodies) = (setup.model.pins(), setup.obstacles);
     let quick = match context.effort {
         RenderEffort::Full => "",
         RenderEffort::Quick => " --quick",
     };
-    let bodies = scene.bodies()?;
     let replay = Replay {
         title: format!("Figure {figure}: {label}"),
         pins: pins.iter().map(|v| v.0).collect(),
         summary: rows(&summary),
-        scene: serde_json::to_string_pretty(&summary.scene)?,
+        scene: scene.text().to_owned(),
         reproduce: format!("cargo xtask reproduce-figures --figures {figure}{quick}"),
-        ..Replay::of_motion(&sheet, &bodies, &trajectory, &history)?
+        ..Replay::of_motion(&setup.sheet, &bodies, &trajectory, &history)?
     };
     let name = format!("fig{figure:02}-{}", scene.name());
     Ok(Play {

@@ -2,7 +2,7 @@
 
 use super::RenderEffort;
 use crate::interrupt;
-use crate::runs::Staged;
+use crate::runs::FigureScene;
 use anyhow::{Context as _, Result};
 use isosheet_io::Trajectory;
 use isosheet_io::picture::{Camera, Image, Labelled, Look, SheetPicture, Solid, montage, render};
@@ -45,7 +45,7 @@ pub(super) fn choose(trajectory: &Trajectory, wanted: &[f64]) -> Vec<usize> {
 
 /// The chosen frames, seen by one camera that holds them all, as a PNG file.
 pub(super) fn sequence(
-    scene: &impl Staged,
+    scene: &FigureScene,
     trajectory: &Trajectory,
     frames: &[usize],
     view: &View<'_>,
@@ -72,7 +72,7 @@ const THUMBNAIL: usize = 130;
 
 /// The last frame as a small PNG file.
 pub(super) fn thumbnail(
-    scene: &impl Staged,
+    scene: &FigureScene,
     trajectory: &Trajectory,
     view: &View<'_>,
 ) -> Result<Vec<u8>> {
@@ -83,14 +83,14 @@ pub(super) fn thumbnail(
 
 /// The chosen frames, seen by one camera that holds them all.
 fn pictures(
-    scene: &impl Staged,
+    scene: &FigureScene,
     trajectory: &Trajectory,
     frames: &[usize],
     view: &View<'_>,
     height: usize,
 ) -> Result<Vec<Image>> {
-    let sheet = scene.sheet()?;
-    let bodies = scene.bodies()?;
+    let setup = scene.setup()?;
+    let (sheet, bodies) = (setup.sheet, setup.obstacles);
     let states: Vec<&[f64]> = frames
         .iter()
         .map(|k| trajectory.frame(*k).context("frame"))

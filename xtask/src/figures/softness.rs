@@ -2,7 +2,7 @@
 
 use super::{Context, Picture, RenderEffort, Table};
 use crate::draw::{Axis, Colour, Legend, Line, Marker, Plot, Series, palette, row};
-use crate::runs::{self, Member, Scene, Staged};
+use crate::runs::{self, FigureScene, Member};
 use anyhow::Result;
 use isosheet_mesh::Dof;
 use serde_json::{Value, json};
@@ -41,14 +41,17 @@ struct Level {
 
 /// The freedom of the fall from 0.03 s to 0.12 s.
 fn freedom(level: u32) -> Result<Vec<[f64; 2]>> {
-    let scene = Scene {
-        frame: FINE,
-        ..Scene::paper(level, 240)
-    };
+    let edits = [
+        format!("sheet.mesh.square.level={level}"),
+        "contact.self_contact=false".to_owned(),
+        format!("method.step={FINE:?}"),
+        runs::for_frames(240, FINE),
+    ];
+    let scene = FigureScene::of("fig12", "fall", &edits)?;
     let (sheet, plate, free) = (
         runs::fall(&scene)?,
         runs::plate_fall(&scene)?,
-        runs::free_fall(&scene),
+        runs::free_fall(&scene)?,
     );
     // From 0.03 s: before that the limits differ by less than the error of the steps allows to divide by.
     Ok((60..sheet.len())
@@ -90,7 +93,7 @@ fn smallest(values: &[f64]) -> f64 {
 /// Measures the falls of the scenes that `fall` gives for each level.
 pub(super) fn make(
     context: &Context<'_>,
-    fall: fn(u32, RenderEffort) -> Scene,
+    fall: fn(u32, RenderEffort) -> Result<FigureScene>,
 ) -> Result<Softness> {
     let (levels, members) = match context.effort {
         RenderEffort::Full => (0..4, MEMBERS),
@@ -98,7 +101,7 @@ pub(super) fn make(
     };
     let mut all = Vec::new();
     for level in levels {
-        let scene = fall(level, context.effort);
+        let scene = fall(level, context.effort)?;
         let sheet = scene.sheet()?;
         let t = sheet.topology();
         all.push(Level {

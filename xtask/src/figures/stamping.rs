@@ -4,30 +4,63 @@ use super::play::play;
 use super::sequence::{View, choose, sequence};
 use super::{Context, Made, Picture, Play, RenderEffort};
 use crate::draw::{Axis, Legend, Line, Plot, Series, palette};
-use crate::runs::{self, SelfContact, Stamping};
-use anyhow::Result;
+use crate::runs::{self, FigureScene};
+use anyhow::{Context as _, Result};
+use isosheet_io::scene::{Course, Obstacle, Profile, Scene, Shape};
 use serde_json::json;
 
 /// The scene of the figure.
-pub(super) fn scene(effort: RenderEffort) -> Stamping {
-    Stamping {
-        name: "stamping".into(),
-        level: if effort == RenderEffort::Full { 3 } else { 1 },
-        side: 0.5,
-        weight: 3.9,
-        die: 0.09,
-        opening: 0.14,
-        holder: 0.03,
-        clearance: 0.03,
-        speed: 0.03,
-        stroke: 0.07,
-        activation: 3e-3,
-        stiffness: 3e-3,
-        friction: 0.1,
-        contact: SelfContact::Friction(0.1),
-        damping: 2.0,
-        frame: 1.0 / 60.0,
-        frames: if effort == RenderEffort::Full { 144 } else { 8 },
+pub(super) fn scene(effort: RenderEffort) -> Result<FigureScene> {
+    let edits: &[&str] = match effort {
+        RenderEffort::Full => &[],
+        RenderEffort::Quick => &["sheet.mesh.square.level=1", "stop.time=0.13333333333333333"],
+    };
+    let edits: Vec<String> = edits.iter().map(|e| (*e).to_owned()).collect();
+    FigureScene::of("fig13", "stamping", &edits)
+}
+
+/// The numbers of the die, the frame and the holders among the bodies.
+const DIE: usize = 0;
+const FRAME: usize = 1;
+const HOLDER: usize = 2;
+
+/// The tools of the scene, lengths in metres.
+struct Tools {
+    /// Sides of the die and of the opening of the frame.
+    die: f64,
+    opening: f64,
+    /// Width of the holders along the frame, and their height above it.
+    holder: f64,
+    clearance: f64,
+    /// How far the die rises, and in which time, seconds.
+    stroke: f64,
+    duration: f64,
+}
+
+impl Tools {
+    fn of(scene: &Scene) -> Result<Self> {
+        let body = |k: usize| scene.obstacle.get(k).context("die, frame and holders");
+        let (die, frame, holder) = (body(DIE)?, body(FRAME)?, body(HOLDER)?);
+        let size = |body: &Obstacle| match body.shape {
+            Shape::Box { size } => Some(size),
+            _ => None,
+        };
+        let Shape::Frame { opening, top, .. } = frame.shape else {
+            anyhow::bail!("body {FRAME} is the frame");
+        };
+        let Profile::Course(Course::Ramp(rise)) = &die.motion.z else {
+            anyhow::bail!("the die rises at a constant speed");
+        };
+        let of_holder = size(holder).context("holders are boxes")?;
+        let below = holder.pose.position[2] - 0.5 * of_holder[2];
+        Ok(Self {
+            die: size(die).context("the die is a box")?[0],
+            opening,
+            holder: of_holder[1],
+            clearance: below - top,
+            stroke: rise.to - rise.from,
+            duration: rise.end - rise.begin,
+        })
     }
 }
 
@@ -41,33 +74,37 @@ const VIEW: View<'static> = View {
     distance: 3.0,
     columns: 3,
     pins: &[],
-    bodies: &[runs::DIE, runs::DIE + 1],
+    bodies: &[DIE, FRAME],
     depth: 0.03,
 };
 
 /// The page that plays a run.
-pub(super) fn page(figure: u8, scene: &Stamping, context: &Context<'_>) -> Result<Play> {
-    let label = match scene.contact {
-        SelfContact::None => "stamping, the sheet passing through itself",
-        SelfContact::Friction(_) => "stamping",
+pub(super) fn page(figure: u8, scene: &FigureScene, context: &Context<'_>) -> Result<Play> {
+    let label = if scene.scene().contact.self_contact {
+        "stamping"
+    } else {
+        "stamping, the sheet passing through itself"
     };
     play(figure, label, scene, &VIEW, context)
 }
 
 pub(super) fn make(context: &Context<'_>) -> Result<Made> {
-    let scene = scene(context.effort);
+    let scene = scene(context.effort)?;
+    let (tools, blank) = (Tools::of(scene.scene())?, scene.sheet()?);
+    let density = scene.scene().sheet.density;
     let run = runs::ensure(context.store, &scene)?;
     let trajectory = runs::trajectory(context.store, &scene)?;
-    let forces = runs::forces(context.store, &scene, runs::DIE)?;
-    let full = scene.stroke / scene.speed;
+    let forces = runs::forces(context.store, &scene, DIE)?;
+    let full = tools.duration;
+    let speed = tools.stroke / full;
     // The sheet presses the die down.
     let curve: Vec<[f64; 2]> = forces
         .iter()
         .filter(|f| f[0] <= full)
-        .map(|f| [1e3 * scene.speed * f[0], -f[3]])
+        .map(|f| [1e3 * speed * f[0], -f[3]])
         .collect();
     let peak = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
-    let weight = 9.8 * scene.weight * scene.side * scene.side;
+    let weight = 9.8 * density * blank.area();
     let frames = choose(&trajectory, &STROKES.map(|s| s * full));
     let image = sequence(&scene, &trajectory, &frames, &VIEW, context.effort)?;
     let alt = "Force of the sheet on the die over its stroke";
@@ -81,15 +118,15 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
              boundary could not draw in at all. Over the stroke of {:.0} mm the force on the die grows from nothing to at most {peak:.1} N; the blank weighs {weight:.1} N. \
              {}/{} vertices/faces, {} frames of 1/60 s, {} rejected sub-steps, {:.1} s of wall time per simulated second, largest strain {:.0e}, \
              smallest gap {}. The holding conditions of the paper are not known.",
-            scene.side,
-            scene.weight,
-            2e3 * scene.opening,
-            2e3 * scene.die,
-            1e3 * scene.speed,
-            scene.friction,
-            2e3 * scene.holder,
-            1e3 * scene.clearance,
-            1e3 * scene.stroke,
+            blank.area().sqrt(),
+            density,
+            1e3 * tools.opening,
+            1e3 * tools.die,
+            1e3 * speed,
+            scene.scene().obstacle[DIE].friction,
+            1e3 * tools.holder,
+            1e3 * tools.clearance,
+            1e3 * tools.stroke,
             run.vertices,
             run.faces,
             run.frames,
@@ -107,7 +144,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
             Picture {
                 file: "fig13-force.svg".into(),
                 alt: alt.into(),
-                bytes: plot(&curve, weight, 1e3 * scene.stroke, peak).draw().to_svg(alt)?.into_bytes(),
+                bytes: plot(&curve, weight, 1e3 * tools.stroke, peak).draw().to_svg(alt)?.into_bytes(),
             },
         ],
         pages: vec![page(13, &scene, context)?],

@@ -1,58 +1,16 @@
 //! The paper's own scheme on the same sheet: forward Euler in system coordinates, with the published step
 //! control.
 
-use super::{Scene, Staged};
+use super::FigureScene;
 use crate::interrupt;
 use crate::progress::Progress;
-use anyhow::Result;
-use isosheet_coords::assignment::Degenerate;
-use isosheet_coords::{
-    AssignmentOptions, CartesianChart, Chart, ChartError, Choice, FrontChart, RodSystem,
-};
-use isosheet_dynamics::chart::{
-    ChartDynamicsError, ChartMethod, ChartOptions, ChartSimulation, ChartStepControl, Equations,
-    MassSolverKind, PositionUpdate, Rebase,
-};
-use isosheet_dynamics::leave_flat;
-use isosheet_mesh::Sheet;
-use serde::{Deserialize, Serialize};
+use anyhow::{Context, Result};
+use isosheet_dynamics::chart::{ChartDynamicsError, ChartSimulation};
+use serde::Serialize;
 use std::time::Instant;
 
-/// A run of the paper's scheme.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ChartScene {
-    pub(crate) scene: Scene,
-    /// Random displacement at the start, mean edge lengths; 0 is exactly flat.
-    pub(crate) bump: f64,
-    /// Bound on the change of the Hamiltonian in a step, as part of the energy that the fall of half a side
-    /// releases.
-    pub(crate) tolerance: f64,
-    /// Smallest and largest step, seconds.
-    pub(crate) steps: [f64; 2],
-    /// Wall time after which the run is given up, seconds.
-    pub(crate) patience: f64,
-    pub(crate) scheme: ChartScheme,
-}
-
-/// The paper's scheme, with ever more help.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum ChartScheme {
-    /// As published: coordinates of `sys_coord_assnmt_single`, momenta carried over, positions to first
-    /// order.
-    Published,
-    /// The same, with a coordinate for every vertex whose three known neighbours do not determine it (Fig.
-    /// 7).
-    FreeCreases,
-    /// The same, with momenta formed anew from the velocities after every step.
-    Reformed,
-    /// The same, with positions projected onto the edge lengths, in a well-conditioned chart that is renewed
-    /// when needed.
-    Projected,
-}
-
 /// How a run ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub(crate) enum Fate {
     /// It reached the end.
@@ -66,9 +24,9 @@ pub(crate) enum Fate {
 }
 
 /// What a run of the paper's scheme did.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct ChartSummary {
-    pub(crate) run: ChartScene,
+    pub(crate) run: FigureScene,
     pub(crate) fate: Fate,
     pub(crate) steps: u64,
     /// Shortest and longest step, seconds; `None` without a step.
@@ -80,18 +38,18 @@ pub(crate) struct ChartSummary {
     pub(crate) max_strain: f64,
 }
 
-/// Largest number of coordinates for which the mass matrix is inverted by Cramer's rule as published.
-const CRAMER: usize = 16;
-
-/// Runs the paper's scheme until it ends or cannot go on, which is a result and not an error.
+/// Runs a scene in a chart until it ends or cannot go on, which is a result and not an error; it is given up
+/// after `patience` seconds of wall time.
+///
+/// Unlike [`Simulation::step`](isosheet_dynamics::Simulation::step), which cuts the last part of a step
+/// short, the scheme chooses the length of all its steps here: these lengths are what the paper reports.
 ///
 /// # Errors
 /// Ctrl-C, and what has nothing to do with the scheme.
-pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
-    let scene = &run.scene;
-    let duration = scene.frame * scene.frames as f64;
+pub(crate) fn chart_run(name: &str, scene: &FigureScene, patience: f64) -> Result<ChartSummary> {
+    let (frame, duration) = (scene.frame(), scene.scene().stop.time);
     let mut summary = ChartSummary {
-        run: run.clone(),
+        run: scene.clone(),
         fate: Fate::Finished,
         steps: 0,
         step_range: None,
@@ -100,8 +58,8 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
         frames_per_second: 0.0,
         max_strain: 0.0,
     };
-    let bar = Progress::start(name, scene.frames);
-    let mut simulation = match start(run)? {
+    let bar = Progress::start(name, scene.frames());
+    let mut simulation = match start(scene)? {
         Ok(simulation) => simulation,
         Err(error) => {
             summary.fate = Fate::Refused {
@@ -112,7 +70,7 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
         }
     };
     let clock = Instant::now();
-    let mut frame = 0;
+    let mut frames = 0;
     // The scheme chooses the lengths of its steps, so that their number is not known beforehand.
     while simulation.time() < duration {
         interrupt::check()?;
@@ -126,11 +84,11 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
                 break;
             }
         }
-        while simulation.time() >= (frame + 1) as f64 * scene.frame {
-            frame += 1;
+        while simulation.time() >= (frames + 1) as f64 * frame {
+            frames += 1;
             bar.step();
         }
-        if clock.elapsed().as_secs_f64() > run.patience {
+        if clock.elapsed().as_secs_f64() > patience {
             summary.fate = Fate::OutOfPatience {
                 t: simulation.time(),
             };
@@ -139,7 +97,7 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
     }
     summary.wall = clock.elapsed().as_secs_f64();
     summary.time = simulation.time();
-    summary.frames_per_second = summary.time / scene.frame / summary.wall.max(1e-9);
+    summary.frames_per_second = summary.time / frame / summary.wall.max(1e-9);
     let range = simulation.step_range();
     summary.steps = range.steps;
     summary.step_range = (range.steps > 0).then_some([range.min, range.max]);
@@ -151,72 +109,15 @@ pub(crate) fn chart_run(name: &str, run: &ChartScene) -> Result<ChartSummary> {
 }
 
 /// Sets the scheme up; the inner error is that of the scheme.
-fn start(run: &ChartScene) -> Result<Result<ChartSimulation, ChartDynamicsError>> {
-    let scene = &run.scene;
-    let sheet = scene.sheet()?;
-    let model = scene.model(&sheet)?;
-    let mut x = sheet.positions().to_vec();
-    if run.bump > 0.0 {
-        leave_flat(&model, &mut x, run.bump, 1)?;
-    }
-    let chart = match chart(run, &sheet, &x) {
-        Ok(chart) => chart,
-        Err(error) => return Ok(Err(error.into())),
-    };
-    let released = scene.mass() * 9.8 * 0.5 * scene.side;
-    let [min, max] = run.steps;
-    let projected = run.scheme == ChartScheme::Projected;
-    let options = ChartOptions {
-        method: ChartMethod::ForwardEuler,
-        equations: match run.scheme {
-            ChartScheme::Published | ChartScheme::FreeCreases => Equations::Published,
-            ChartScheme::Reformed | ChartScheme::Projected => Equations::Reformed,
+fn start(scene: &FigureScene) -> Result<Result<ChartSimulation, ChartDynamicsError>> {
+    let settings = scene.scene().method.chart.clone();
+    let settings = settings.context("a scene with a chart")?;
+    let setup = scene.setup()?;
+    let (x, v) = (setup.start.x, setup.start.v);
+    Ok(
+        match settings.build(&setup.sheet, &setup.model.pins(), &x) {
+            Ok(chart) => ChartSimulation::new(setup.model, chart, settings.options(), &x, &v),
+            Err(error) => Err(error.into()),
         },
-        position: if projected {
-            PositionUpdate::Projected
-        } else {
-            PositionUpdate::Linear
-        },
-        control: ChartStepControl::Adaptive {
-            tolerance: run.tolerance * released,
-            min,
-            max,
-        },
-        solver: if chart.dimension() <= CRAMER {
-            MassSolverKind::Cramer
-        } else {
-            MassSolverKind::DenseLu
-        },
-        rebase: if projected {
-            Rebase::WhenNeeded
-        } else {
-            Rebase::Never
-        },
-        ..ChartOptions::default()
-    };
-    Ok(ChartSimulation::new(
-        model,
-        chart,
-        options,
-        &x,
-        &vec![0.0; x.len()],
-    ))
-}
-
-fn chart(run: &ChartScene, sheet: &Sheet, x: &[f64]) -> Result<Box<dyn Chart>, ChartError> {
-    let pins = vec![run.scene.pin()];
-    let degenerate = match run.scheme {
-        ChartScheme::Projected => {
-            let system = RodSystem::new(sheet, &pins)?;
-            return Ok(Box::new(CartesianChart::new(system, Choice::Auto, x)?));
-        }
-        ChartScheme::Published => Degenerate::Carry,
-        ChartScheme::FreeCreases | ChartScheme::Reformed => Degenerate::Assign,
-    };
-    let options = AssignmentOptions {
-        pins,
-        degenerate,
-        ..AssignmentOptions::default()
-    };
-    Ok(Box::new(FrontChart::new(sheet, &options, x)?))
+    )
 }

@@ -1,11 +1,12 @@
 //! Running a scene and keeping what it did.
 
-use super::Staged;
+use super::FigureScene;
 use crate::interrupt::{self, Interrupted};
 use crate::progress::{self, Progress};
 use crate::store::{Draft, Extent, Store};
 use anyhow::{Context, Result, ensure};
 use isosheet_dynamics::{RunEnd, Simulation, StepOutcome, StepReport};
+use isosheet_io::scene::SupportForces;
 use isosheet_io::{
     HistoryRow, HistoryWriter, Trajectory, frame_path, read_history, read_json, write_atomically,
     write_json, write_obj,
@@ -13,7 +14,6 @@ use isosheet_io::{
 use isosheet_mesh::Sheet;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::ops::ControlFlow;
@@ -29,8 +29,8 @@ const REST: f64 = 1e-6;
 /// What a run did, as in its summary.json.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct RunSummary {
-    /// The scene, for programs.
-    pub(crate) scene: Value,
+    /// The scene file.
+    pub(crate) scene: String,
     pub(crate) extent: Extent,
     pub(crate) vertices: usize,
     pub(crate) faces: usize,
@@ -92,11 +92,11 @@ impl RunSummary {
     }
 }
 
-fn unit(scene: &impl Staged) -> String {
+fn unit(scene: &FigureScene) -> String {
     format!("run-{}", scene.name())
 }
 
-fn folder(scene: &impl Staged) -> String {
+fn folder(scene: &FigureScene) -> String {
     format!("runs/{}", scene.name())
 }
 
@@ -104,8 +104,8 @@ fn folder(scene: &impl Staged) -> String {
 ///
 /// # Errors
 /// [`Interrupted`] after Ctrl-C; the frames made so far are kept and readable.
-pub(crate) fn ensure(store: &Store, scene: &impl Staged) -> Result<RunSummary> {
-    let options = serde_json::to_value(scene)?;
+pub(crate) fn ensure(store: &Store, scene: &FigureScene) -> Result<RunSummary> {
+    let options = scene.options();
     if let Some(stamp) = store.current(&unit(scene), &options) {
         progress::note(&format!("run {}", scene.name()), "up to date");
         return Ok(serde_json::from_value(stamp.facts)?);
@@ -128,19 +128,19 @@ pub(crate) fn ensure(store: &Store, scene: &impl Staged) -> Result<RunSummary> {
 }
 
 /// The frames of a run that [`ensure()`] has made.
-pub(crate) fn trajectory(store: &Store, scene: &impl Staged) -> Result<Trajectory> {
+pub(crate) fn trajectory(store: &Store, scene: &FigureScene) -> Result<Trajectory> {
     let path = store.root().join(folder(scene)).join("trajectory.npz");
     Ok(Trajectory::read(&path)?)
 }
 
 /// The summary of a run that [`ensure()`] has made.
-pub(crate) fn summary(store: &Store, scene: &impl Staged) -> Result<RunSummary> {
+pub(crate) fn summary(store: &Store, scene: &FigureScene) -> Result<RunSummary> {
     let path = store.root().join(folder(scene)).join("summary.json");
     Ok(read_json(&path)?)
 }
 
 /// The history of a run that [`ensure()`] has made: a row for the start and for each frame.
-pub(crate) fn history(store: &Store, scene: &impl Staged) -> Result<Vec<HistoryRow>> {
+pub(crate) fn history(store: &Store, scene: &FigureScene) -> Result<Vec<HistoryRow>> {
     let path = store.root().join(folder(scene)).join("history.csv");
     Ok(read_history(&path)?)
 }
@@ -150,7 +150,7 @@ pub(crate) fn history(store: &Store, scene: &impl Staged) -> Result<Vec<HistoryR
 const LOADS: &str = "t,body,fx,fy,fz,mx,my,mz";
 
 /// Time and force of the sheet on a body in a run that [`ensure()`] has made: seconds, newtons.
-pub(crate) fn forces(store: &Store, scene: &impl Staged, body: usize) -> Result<Vec<[f64; 4]>> {
+pub(crate) fn forces(store: &Store, scene: &FigureScene, body: usize) -> Result<Vec<[f64; 4]>> {
     let rows = table(store, scene, "loads.csv")?;
     let of_body = rows.iter().filter_map(|row| match row[..] {
         [t, number, fx, fy, fz, ..] if number == body as f64 => Some([t, fx, fy, fz]),
@@ -164,7 +164,7 @@ pub(crate) fn forces(store: &Store, scene: &impl Staged, body: usize) -> Result<
 const SUPPORTS: &str = "t,fx,fy,fz";
 
 /// Time and force of all supports on the sheet in a run that [`ensure()`] has made: seconds, newtons.
-pub(crate) fn supports(store: &Store, scene: &impl Staged) -> Result<Vec<[f64; 4]>> {
+pub(crate) fn supports(store: &Store, scene: &FigureScene) -> Result<Vec<[f64; 4]>> {
     let rows = table(store, scene, "supports.csv")?;
     let rows = rows.into_iter();
     rows.map(|row| <[f64; 4]>::try_from(row).ok().context("supports.csv"))
@@ -172,7 +172,7 @@ pub(crate) fn supports(store: &Store, scene: &impl Staged) -> Result<Vec<[f64; 4
 }
 
 /// The numbers of a file of a run, row by row, without its header.
-fn table(store: &Store, scene: &impl Staged, file: &'static str) -> Result<Vec<Vec<f64>>> {
+fn table(store: &Store, scene: &FigureScene, file: &'static str) -> Result<Vec<Vec<f64>>> {
     let text = store.read(&format!("{}/{file}", folder(scene)))?;
     let text = String::from_utf8_lossy(&text);
     let numbers = |line: &str| line.split(',').map(str::parse).collect::<Result<_, _>>();
@@ -256,10 +256,12 @@ impl Recorder<'_> {
 }
 
 /// Runs a scene into a draft until it ends or `stop` says so.
-fn run(scene: &impl Staged, draft: &mut Draft, stop: impl Fn() -> bool) -> Result<RunSummary> {
+fn run(scene: &FigureScene, draft: &mut Draft, stop: impl Fn() -> bool) -> Result<RunSummary> {
     let folder = draft.folder(&folder(scene))?;
-    let sheet = scene.sheet()?;
-    let mut simulation = scene.simulation(&sheet)?;
+    let setup = scene.setup()?;
+    let (sheet, origins) = (setup.sheet.clone(), setup.origins.clone());
+    let mut simulation = setup.start()?;
+    let supports = SupportForces::new(origins, &simulation, scene.scene().support.len());
     let mut recorder = Recorder {
         sheet: &sheet,
         trajectory: Trajectory::new(&sheet),
@@ -270,7 +272,7 @@ fn run(scene: &impl Staged, draft: &mut Draft, stop: impl Fn() -> bool) -> Resul
         supports: String::new(),
     };
     recorder.frame(&simulation, None)?;
-    let mut s = RunSummary::start(scene, &sheet)?;
+    let mut s = RunSummary::start(scene, &sheet);
     // The sheet starts at rest.
     let before = simulation.energy();
     let (frame, frames) = (scene.frame(), scene.frames());
@@ -285,7 +287,8 @@ fn run(scene: &impl Staged, draft: &mut Draft, stop: impl Fn() -> bool) -> Resul
         s.balance(report, before);
         outcome = check(report).and_then(|()| recorder.frame(simulation, Some(report)));
         bar.step();
-        let over = outcome.is_err() || scene.ends(simulation);
+        let supports = supports.of(simulation);
+        let over = outcome.is_err() || scene.scene().stop.is_force_reached(&supports);
         stopped = !over && stop();
         clock = Instant::now();
         if over || stopped {
@@ -297,7 +300,7 @@ fn run(scene: &impl Staged, draft: &mut Draft, stop: impl Fn() -> bool) -> Resul
     let end = if stopped_at_once {
         RunEnd::Stopped
     } else {
-        simulation.run(frames as f64 * frame, frame, &mut [&mut record])?
+        simulation.run(scene.scene().stop.time, frame, &mut [&mut record])?
     };
     outcome?;
     if stopped && end == RunEnd::Stopped {
@@ -325,9 +328,9 @@ fn run(scene: &impl Staged, draft: &mut Draft, stop: impl Fn() -> bool) -> Resul
 
 impl RunSummary {
     /// Of a run without a frame yet.
-    fn start(scene: &impl Staged, sheet: &Sheet) -> Result<Self> {
-        Ok(Self {
-            scene: serde_json::to_value(scene)?,
+    fn start(scene: &FigureScene, sheet: &Sheet) -> Self {
+        Self {
+            scene: scene.text().to_owned(),
             extent: Extent::Complete,
             vertices: sheet.topology().vertex_count(),
             faces: sheet.topology().face_count(),
@@ -346,7 +349,7 @@ impl RunSummary {
             smallest_gap: None,
             energy: Energy::default(),
             at_rest_from: None,
-        })
+        }
     }
 
     /// The energies after a step of a run that started with the energy `before`, joules.
@@ -394,21 +397,21 @@ impl RunSummary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::runs::Scene;
     use std::cell::Cell;
 
     #[test]
     fn a_run_that_is_stopped_is_readable_and_made_again() {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
-        let scene = Scene::paper(0, 6);
+        let edits = ["sheet.mesh.square.level=0", "stop.time=0.1"].map(str::to_owned);
+        let scene = FigureScene::of("fig11", "crumple-m0", &edits).unwrap();
         for stopped_after in [0, 3] {
             let count = Cell::new(0);
             let stop = || count.replace(count.get() + 1) == stopped_after;
             let mut draft = store.draft().unwrap();
             let s = run(&scene, &mut draft, stop).unwrap();
             assert_eq!((s.frames, s.extent), (stopped_after, Extent::Partial));
-            let options = serde_json::to_value(&scene).unwrap();
+            let options = scene.options();
             store
                 .commit(
                     draft,
@@ -425,5 +428,37 @@ mod tests {
         let whole = ensure(&store, &scene).unwrap();
         assert_eq!((whole.frames, whole.extent), (6, Extent::Complete));
         assert!(whole.max_strain < 1e-11 && whole.step_range.is_some());
+    }
+
+    /// [`simulate`](isosheet_io::run::simulate) is what `isosheet simulate` calls.
+    #[test]
+    fn the_command_makes_the_motion_that_the_figures_show() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(&folder.path().join("out")).unwrap();
+        // A strip that is pushed until its support bears 3 mN, a vertex that folds, a sheet in a chart.
+        let cases = [
+            ("fig16", vec!["stop.time=0.05", "stop.support_force=0.003"]),
+            ("fig17-vertex-odd", vec!["stop.time=0.5"]),
+            ("fig10", vec!["stop.time=0.1"]),
+        ];
+        for (file, edits) in cases {
+            let edits: Vec<String> = edits.into_iter().map(str::to_owned).collect();
+            let scene = FigureScene::of(file, file, &edits).unwrap();
+            let summary = ensure(&store, &scene).unwrap();
+            let shown = trajectory(&store, &scene).unwrap();
+            let run = folder.path().join(file);
+            let go_on = &mut |_: &isosheet_io::run::Tick| ControlFlow::Continue(());
+            isosheet_io::run::simulate(scene.file(), &run, go_on).unwrap();
+            let made = Trajectory::read(&run.join("trajectory.npz")).unwrap();
+            assert_eq!(made.times(), shown.times(), "{file}");
+            assert_eq!(made.len(), summary.frames + 1, "{file}");
+            assert!(
+                summary.frames < scene.frames() || file != "fig16",
+                "stopped by force"
+            );
+            for k in 0..made.len() {
+                assert_eq!(made.frame(k), shown.frame(k), "{file}, frame {k}");
+            }
+        }
     }
 }

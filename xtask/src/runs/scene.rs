@@ -1,164 +1,177 @@
-//! A sheet of paper held at its left-upper corner.
+//! The scenes of the figures: files of the folder `xtask/scenes`, which `isosheet simulate` runs too.
 
-use super::Staged;
-use anyhow::Result;
-use isosheet_collide::{Coefficients, ContactOptions, Contacts};
-use isosheet_dynamics::{Method, SheetModel, Simulation, State};
-use isosheet_mesh::generate::isotropic_square;
-use isosheet_mesh::{MassKind, Sheet, VertexId};
-use serde::{Deserialize, Serialize};
+use anyhow::{Context, Result};
+use isosheet_io::scene::{Scene, SceneFile, Setup};
+use isosheet_mesh::Sheet;
+use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
+use std::path::Path;
 
-/// Everything that decides how a run goes: the sheet falls from exactly flat, horizontal and at rest.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Scene {
-    /// Name of the folder of the run.
-    pub(crate) name: String,
-    /// Level k of the mesh M^k.
-    pub(crate) level: u32,
-    /// Side of the sheet, metres.
-    pub(crate) side: f64,
-    /// Mass of a square metre, kilograms.
-    pub(crate) paper: f64,
-    /// Rate of the velocity damping, 1/s.
-    pub(crate) damping: f64,
-    /// Time between frames, seconds.
-    pub(crate) frame: f64,
-    /// Number of frames after the first.
-    pub(crate) frames: usize,
-    pub(crate) contact: SelfContact,
+/// The files, name and text.
+const FILES: [(&str, &str); 16] = [
+    ("fig10", include_str!("../../scenes/fig10.toml")),
+    ("fig11", include_str!("../../scenes/fig11.toml")),
+    ("fig12", include_str!("../../scenes/fig12.toml")),
+    ("fig13", include_str!("../../scenes/fig13.toml")),
+    ("fig14", include_str!("../../scenes/fig14.toml")),
+    (
+        "fig14-irregular",
+        include_str!("../../scenes/fig14-irregular.toml"),
+    ),
+    ("fig15", include_str!("../../scenes/fig15.toml")),
+    (
+        "fig15-irregular",
+        include_str!("../../scenes/fig15-irregular.toml"),
+    ),
+    ("fig15-rings", include_str!("../../scenes/fig15-rings.toml")),
+    ("fig16", include_str!("../../scenes/fig16.toml")),
+    ("fig16-8mm", include_str!("../../scenes/fig16-8mm.toml")),
+    ("fig16-20mm", include_str!("../../scenes/fig16-20mm.toml")),
+    ("fig16-45mm", include_str!("../../scenes/fig16-45mm.toml")),
+    ("fig17", include_str!("../../scenes/fig17.toml")),
+    (
+        "fig17-vertex-odd",
+        include_str!("../../scenes/fig17-vertex-odd.toml"),
+    ),
+    (
+        "fig17-vertex-even",
+        include_str!("../../scenes/fig17-vertex-even.toml"),
+    ),
+];
+
+/// The edit that lets a sheet pass through itself.
+const THROUGH_ITSELF: &str = "contact.self_contact=false";
+
+/// A scene, and the name of the folder that its run is kept in.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FigureScene {
+    name: String,
+    file: SceneFile,
 }
 
-/// Whether a sheet meets itself.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum SelfContact {
-    /// It passes through itself.
-    None,
-    /// With this coefficient of friction.
-    Friction(f64),
+impl Serialize for FigureScene {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.options().serialize(serializer)
+    }
 }
 
-impl SelfContact {
-    /// Adds it to the contacts of a scene.
+impl FigureScene {
+    /// A file of `xtask/scenes` (without `.toml`) with edits `key=value`, as `isosheet simulate --set` makes
+    /// them.
     ///
     /// # Errors
-    /// A coefficient that makes no sense.
-    pub(crate) fn add_to(self, contacts: Contacts) -> Result<Contacts> {
-        Ok(match self {
-            Self::None => contacts,
-            Self::Friction(mu) => contacts.with_self_contact(Coefficients::equal(mu))?,
+    /// A file that is not there, edits that make no sense.
+    pub(crate) fn of(file: &str, name: &str, edits: &[String]) -> Result<Self> {
+        let known = FILES.iter().find(|(known, _)| *known == file);
+        let (_, text) = known.with_context(|| format!("there is no scene {file}"))?;
+        let path = format!("xtask/scenes/{file}.toml");
+        Ok(Self {
+            name: name.to_owned(),
+            file: SceneFile::parse((*text).to_owned(), Path::new(&path), edits)?,
         })
     }
-}
 
-/// Friction of paper on paper.
-pub(crate) const PAPER_FRICTION: f64 = 0.3;
-
-impl Scene {
-    /// The scene of Figs. 11 and 12 at a level: office paper (80 g/m2) of the width of an A4 sheet.
-    pub(crate) fn paper(level: u32, frames: usize) -> Self {
-        Self {
-            name: format!("crumple-m{level}"),
-            level,
-            side: 0.21,
-            paper: 0.080,
-            damping: 2.0,
-            frame: 1.0 / 60.0,
-            frames,
-            contact: SelfContact::None,
-        }
+    /// The same scene under another name, with edits.
+    ///
+    /// # Errors
+    /// Edits that make no sense.
+    pub(crate) fn edited(&self, name: &str, edits: &[String]) -> Result<Self> {
+        let text = self.file.text();
+        Ok(Self {
+            name: name.to_owned(),
+            file: SceneFile::parse(text.text.clone(), &text.path, edits)?,
+        })
     }
 
-    /// The same with contact of the sheet with itself.
-    pub(crate) fn with_self_contact(self) -> Self {
-        Self {
-            name: format!("{}-contact", self.name),
-            contact: SelfContact::Friction(PAPER_FRICTION),
-            ..self
-        }
+    /// The same scene with a sheet that may pass through itself, under another name.
+    ///
+    /// # Errors
+    /// None that is known.
+    pub(crate) fn without_self_contact(&self, name: &str) -> Result<Self> {
+        self.edited(name, &[THROUGH_ITSELF.to_owned()])
     }
 
-    /// The vertex that is held: the left-upper corner as seen from above.
-    pub(crate) fn pin(&self) -> VertexId {
-        let cells = 2usize << self.level;
-        VertexId::from_index(cells * (cells + 1))
-    }
-
-    /// Mass of the sheet, kilograms.
-    pub(crate) fn mass(&self) -> f64 {
-        self.paper * self.side * self.side
-    }
-
-    /// The mechanical system: lumped masses as in the paper, gravity, damping, one corner held.
-    pub(crate) fn model(&self, sheet: &Sheet) -> Result<SheetModel> {
-        let model = SheetModel::new(sheet, self.mass(), MassKind::Lumped)?;
-        Ok(model
-            .with_gravity()
-            .with_damping(self.damping)?
-            .with_pins(&[self.pin()])?)
-    }
-
-    /// Name of the default method.
-    pub(crate) fn method() -> &'static str {
-        match Method::default() {
-            Method::ImplicitEuler(_) => "implicit Euler",
-            Method::Bdf2(_) => "BDF2",
-            Method::Projection(_) => "projection",
-            Method::EnergyMomentum(_) => "energy-momentum",
-            Method::Rattle(_) => "RATTLE",
-            Method::RattleComposition(_) => "fourth-order RATTLE",
-        }
-    }
-}
-
-impl Staged for Scene {
-    fn name(&self) -> &str {
+    /// Name of the folder of the run.
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
-    fn frame(&self) -> f64 {
-        self.frame
+    pub(crate) fn scene(&self) -> &Scene {
+        self.file.scene()
     }
 
-    fn frames(&self) -> usize {
-        self.frames
+    /// The scene file.
+    #[cfg(test)]
+    pub(crate) fn file(&self) -> &SceneFile {
+        &self.file
     }
 
-    /// The sheet at rest, `[0, side] x [0, side]` at height 0.
-    fn sheet(&self) -> Result<Sheet> {
-        Ok(isotropic_square(self.level, self.side)?)
+    /// The text of the scene file with its edits.
+    pub(crate) fn text(&self) -> &str {
+        &self.file.text().text
     }
 
-    /// With the default method.
-    fn simulation(&self, sheet: &Sheet) -> Result<Simulation> {
-        let model = self.model(sheet)?;
-        let contacts = match self.contact {
-            SelfContact::None => None,
-            contact => {
-                let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?;
-                Some(contact.add_to(contacts)?)
-            }
-        };
-        let state = State::at_rest(sheet.positions().to_vec());
-        let simulation = Simulation::new(model, state, Method::default())?;
-        Ok(match contacts {
-            None => simulation,
-            Some(contacts) => simulation.with_contact(contacts)?,
-        })
+    /// Everything that decides how the run goes.
+    pub(crate) fn options(&self) -> Value {
+        json!({ "name": self.name, "scene": self.text() })
     }
+
+    /// Time between frames, which are the steps, seconds.
+    pub(crate) fn frame(&self) -> f64 {
+        self.scene().method.step
+    }
+
+    /// Number of frames after the first, unless the run ends before.
+    pub(crate) fn frames(&self) -> usize {
+        (self.scene().stop.time / self.frame()).round() as usize
+    }
+
+    /// Everything that a simulation is made of.
+    ///
+    /// # Errors
+    /// Values of which no simulation can be made.
+    pub(crate) fn setup(&self) -> Result<Setup> {
+        Ok(self.file.build()?)
+    }
+
+    /// The sheet at rest, placed in space.
+    ///
+    /// # Errors
+    /// As [`FigureScene::setup`].
+    pub(crate) fn sheet(&self) -> Result<Sheet> {
+        Ok(self.setup()?.sheet)
+    }
+}
+
+/// The edit that ends a run after a number of frames of `frame` seconds.
+pub(crate) fn for_frames(frames: usize, frame: f64) -> String {
+    format!("stop.time={:?}", frames as f64 * frame)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
 
     #[test]
-    fn the_pin_is_the_left_upper_corner() {
-        for level in 0..4 {
-            let scene = Scene::paper(level, 1);
-            let sheet = scene.sheet().unwrap();
-            assert_eq!(sheet.position(scene.pin()), [0.0, scene.side, 0.0]);
+    fn every_file_of_the_folder_is_known_and_makes_a_simulation() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+        let there: BTreeSet<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        let known = FILES.iter().map(|(name, _)| format!("{name}.toml"));
+        assert_eq!(there, known.collect());
+        for (name, _) in FILES {
+            let scene = FigureScene::of(name, name, &[]).unwrap();
+            assert!(scene.setup().unwrap().start().is_ok(), "{name}");
+            // What `isosheet simulate` shows is what the figures show: every step.
+            let output = &scene.scene().output;
+            assert_eq!(output.steps_per_frame(scene.frame()), 1, "{name}");
+            assert!(
+                scene.scene().stop.rest.is_none(),
+                "figures show all of {name}"
+            );
         }
-        assert!((Scene::paper(0, 1).mass() - 3.528e-3).abs() < 1e-12);
     }
 }

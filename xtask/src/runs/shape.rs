@@ -1,8 +1,8 @@
 //! How a hanging sheet looks, in numbers.
 
-use super::Scene;
+use super::Hanging;
 use anyhow::Result;
-use isosheet_mesh::{EdgeId, MassKind, MassMatrix, Sheet, VertexId, fold_angle};
+use isosheet_mesh::{EdgeId, MassKind, MassMatrix, VertexId, fold_angle};
 use serde::{Deserialize, Serialize};
 
 /// Measures of a state of a sheet that is held at a corner. Lengths in sides of the sheet.
@@ -29,10 +29,11 @@ pub(crate) const LIMIT: f64 = 0.765_195_716_464_212_7;
 
 impl Shape {
     /// Measures the positions `x`.
-    pub(crate) fn of(scene: &Scene, sheet: &Sheet, x: &[f64]) -> Result<Self> {
+    pub(crate) fn of(hanging: &Hanging, x: &[f64]) -> Result<Self> {
+        let (sheet, side) = (&hanging.sheet, hanging.side);
         let t = sheet.topology();
         let at = |v: VertexId| [x[3 * v.index()], x[3 * v.index() + 1], x[3 * v.index() + 2]];
-        let pin = scene.pin();
+        let pin = hanging.pin;
         let mass = MassMatrix::from_total(sheet, 1.0, MassKind::Lumped)?.vertex;
         let distance = |v: VertexId| {
             let (p, q) = (sheet.position(pin), sheet.position(v));
@@ -57,10 +58,10 @@ impl Shape {
             fold_angle(t, x, e).map_or(0.0, |fold| sheet.lengths()[e.index()] * fold.abs())
         };
         Ok(Self {
-            centre_depth: mean(&depth) / scene.side,
-            corner_depth: depth(far) / scene.side,
-            extent: extent / scene.side,
-            bending: t.edge_ids().map(bend).sum::<f64>() / scene.side,
+            centre_depth: mean(&depth) / side,
+            corner_depth: depth(far) / side,
+            extent: extent / side,
+            bending: t.edge_ids().map(bend).sum::<f64>() / side,
         })
     }
 }
@@ -68,12 +69,30 @@ impl Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::runs::Staged;
+    use crate::runs::FigureScene;
+
+    /// The sheet of Fig. 12 with another mesh.
+    fn hanging(level: u32) -> Hanging {
+        let edits = [format!("sheet.mesh.square.level={level}")];
+        let scene = FigureScene::of("fig12", "test", &edits).unwrap();
+        Hanging::of(&scene).unwrap()
+    }
+
+    #[test]
+    fn the_pin_is_the_left_upper_corner() {
+        for level in 0..4 {
+            let hanging = hanging(level);
+            assert_eq!(
+                hanging.sheet.position(hanging.pin),
+                [0.0, hanging.side, 0.0]
+            );
+        }
+    }
 
     #[test]
     fn a_plate_that_hangs_flat() {
-        let scene = Scene::paper(2, 1);
-        let sheet = scene.sheet().unwrap();
+        let hanging = hanging(2);
+        let sheet = &hanging.sheet;
         // Turned so that the diagonal from the pin points down.
         let h = std::f64::consts::FRAC_1_SQRT_2;
         let x: Vec<f64> = sheet
@@ -82,11 +101,11 @@ mod tests {
             .0
             .iter()
             .flat_map(|p| {
-                let (u, w) = (p[0], scene.side - p[1]);
+                let (u, w) = (p[0], hanging.side - p[1]);
                 [h * (u - w), 0.0, -h * (u + w)]
             })
             .collect();
-        let shape = Shape::of(&scene, &sheet, &x).unwrap();
+        let shape = Shape::of(&hanging, &x).unwrap();
         assert!((shape.centre_depth - PLATE).abs() < 1e-12);
         assert!((shape.corner_depth - 2f64.sqrt()).abs() < 1e-12);
         assert!((shape.extent - 2f64.sqrt()).abs() < 1e-12);
@@ -107,8 +126,8 @@ mod tests {
 
     #[test]
     fn a_sheet_folded_in_half_along_the_diagonal_has_the_centroid_of_a_triangle() {
-        let scene = Scene::paper(1, 1);
-        let sheet = scene.sheet().unwrap();
+        let hanging = hanging(1);
+        let sheet = &hanging.sheet;
         // In the plane of the triangle with corners pin (0, 0), far (0, -sqrt 2) and side (h, -h), then
         // turned so that the centroid is below the pin.
         let h = std::f64::consts::FRAC_1_SQRT_2;
@@ -120,12 +139,12 @@ mod tests {
             .0
             .iter()
             .flat_map(|p| {
-                let (u, w) = (p[0], scene.side - p[1]);
+                let (u, w) = (p[0], hanging.side - p[1]);
                 let (across, down) = ((h * (u - w)).abs(), h * (u + w));
                 [c * across - s * down, 0.0, -s * across - c * down]
             })
             .collect();
-        let shape = Shape::of(&scene, &sheet, &x).unwrap();
+        let shape = Shape::of(&hanging, &x).unwrap();
         assert!(
             (shape.centre_depth - 5f64.sqrt() / 3.0).abs() < 1e-12,
             "{shape:?}"

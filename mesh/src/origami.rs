@@ -1,7 +1,8 @@
-//! Rigid origami with one degree of freedom: the fold angles of a vertex of degree four and those of
-//! Miura's pattern.
+//! Exact kinematics of rigid origami with one degree of freedom: the fold angles of a vertex of degree four,
+//! and fold angles and positions of Miura's pattern, for the sheets of
+//! [`generate::degree_four`](crate::generate::degree_four) and [`generate::miura`](crate::generate::miura).
 
-use isosheet_mesh::generate::FoldAssignment;
+use crate::generate::FoldAssignment;
 
 /// One of the two ways in which a flat-foldable vertex of degree four folds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,7 +16,7 @@ pub enum FoldingMode {
 /// A vertex of degree four with sectors `a1, a2, pi - a1, pi - a2`, rigid between its creases.
 ///
 /// The half-angle tangents of neighbouring creases are proportional (Huffman 1976; Tachi 2009; Foschi, Hull
-/// and Ku 2022):
+/// and Ku 2022). With the fold angles `r1` to `r4`, positive for valleys:
 ///
 /// ```text
 /// even alike: r3 = -r1, r4 =  r2, tan(r2/2) =  sin((a1 + a2)/2) / sin((a1 - a2)/2) tan(r1/2)
@@ -59,8 +60,8 @@ impl DegreeFour {
     }
 }
 
-/// Miura's pattern of [`isosheet_mesh::generate::miura`] with rigid panels, by the angle `theta` of the
-/// panels to the plane of the folded sheet, from 0 (flat) to pi/2 (folded shut). After Wei, Guo, Dudte,
+/// Miura's pattern of [`generate::miura`](crate::generate::miura) with rigid panels, by the angle `theta` of
+/// the panels to the plane of the folded sheet, from 0 (flat) to pi/2 (folded shut). After Wei, Guo, Dudte,
 /// Liang and Mahadevan 2013.
 #[derive(Debug, Clone, Copy)]
 pub struct Miura {
@@ -73,17 +74,17 @@ pub struct Miura {
 }
 
 impl Miura {
-    /// Size of the fold angle of the zigzag creases, `2 theta`.
+    /// Size of the fold angle of the zigzag creases, `2 theta`, radians.
     pub fn zigzag_fold(&self, theta: f64) -> f64 {
         2.0 * theta
     }
 
-    /// Size of the fold angle of the straight creases, `tan(fold/2) = cos(angle) tan(theta)`.
+    /// Size of the fold angle of the straight creases, `tan(fold/2) = cos(angle) tan(theta)`, radians.
     pub fn straight_fold(&self, theta: f64) -> f64 {
         2.0 * (self.angle.cos() * theta.tan()).atan()
     }
 
-    /// Width and depth of a panel in the plane of the folded sheet: along the zigzags and along the
+    /// Width and depth of a panel in the plane of the folded sheet, metres: along the zigzags and along the
     /// straight creases.
     pub fn panel(&self, theta: f64) -> [f64; 2] {
         let (c, tan) = (theta.cos(), self.angle.tan());
@@ -95,7 +96,7 @@ impl Miura {
         ]
     }
 
-    /// Positions of `columns` x `rows` panels, numbered as the generator does.
+    /// Positions of `columns` x `rows` panels, `3V`, metres, numbered as the generator does.
     pub fn positions(&self, columns: usize, rows: usize, theta: f64) -> Vec<f64> {
         let (c, tan) = (theta.cos(), self.angle.tan());
         let shift = self.zigzag / (1.0 + c * c * tan * tan).sqrt();
@@ -116,8 +117,8 @@ impl Miura {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isosheet_mesh::generate::{degree_four, miura};
-    use isosheet_mesh::{LengthConstraints, VertexId, fold_angle};
+    use crate::generate::{degree_four, miura};
+    use crate::{LengthConstraints, VertexId, fold_angle};
 
     #[test]
     fn the_folded_miura_is_isometric_and_folds_as_assigned() {
@@ -130,7 +131,8 @@ mod tests {
         let p = miura(columns, rows, m.straight, m.zigzag, m.angle).expect("valid");
         let t = p.sheet.topology();
         let flat = m.positions(columns, rows, 0.0);
-        assert!(crate::max_difference(&flat, p.sheet.positions()) < 1e-15);
+        let differences = flat.iter().zip(p.sheet.positions());
+        assert!(differences.map(|(a, b)| (a - b).abs()).all(|d| d < 1e-15));
         for theta in [0.1, 0.7, 1.3] {
             let x = m.positions(columns, rows, theta);
             assert!(LengthConstraints::new(&p.sheet).max_strain(&x) < 1e-14);

@@ -1,0 +1,114 @@
+//! Outlines in the plane.
+
+use super::problem::{Checks, Key};
+use isosheet_mesh::generate::regular_outline;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
+use std::fmt;
+
+/// A polygon in the xy plane: its corners in order, x and y in metres, or a [`OutlineShape`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outline {
+    /// The corners.
+    Corners(Vec<[f64; 2]>),
+    /// A polygon by formula.
+    Shape(OutlineShape),
+}
+
+/// A polygon by formula.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum OutlineShape {
+    /// A regular polygon about the origin. The x axis leads through the middle of a side.
+    Regular {
+        /// Number of sides.
+        sides: usize,
+        /// Radius of the circle through the corners, metres.
+        radius: f64,
+    },
+}
+
+impl Outline {
+    /// The regular polygon about the origin whose corners are at the distance `radius` (metres).
+    pub fn regular(sides: usize, radius: f64) -> Self {
+        Self::Shape(OutlineShape::Regular { sides, radius })
+    }
+
+    /// The corners in order, metres; of values that [`Scene::validate`](super::Scene::validate) refuses,
+    /// none.
+    pub fn corners(&self) -> Vec<[f64; 2]> {
+        match self {
+            Self::Corners(corners) => corners.clone(),
+            Self::Shape(OutlineShape::Regular { sides, radius }) => {
+                regular_outline(*sides, *radius).unwrap_or_default()
+            }
+        }
+    }
+
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        match self {
+            Self::Corners(corners) => {
+                for (k, corner) in corners.iter().enumerate() {
+                    checks.finite(key.entry(k), corner);
+                }
+                checks.count(key.clone(), corners.len(), 3);
+            }
+            Self::Shape(OutlineShape::Regular { sides, radius }) => {
+                checks.count(key.name("regular.sides"), *sides, 3);
+                checks.positive(key.name("regular.radius"), *radius, "m");
+            }
+        }
+    }
+}
+
+impl Serialize for Outline {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Corners(corners) => corners.serialize(serializer),
+            Self::Shape(shape) => shape.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Outline {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(OutlineVisitor)
+    }
+}
+
+struct OutlineVisitor;
+
+impl<'de> Visitor<'de> for OutlineVisitor {
+    type Value = Outline;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list of corners, or `regular` as a table")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Outline, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(list)).map(Outline::Corners)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Outline, A::Error> {
+        OutlineShape::deserialize(MapAccessDeserializer::new(map)).map(Outline::Shape)
+    }
+}
+
+impl JsonSchema for Outline {
+    fn schema_name() -> Cow<'static, str> {
+        "Outline".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let corners = generator.subschema_for::<Vec<[f64; 2]>>();
+        let shape = generator.subschema_for::<OutlineShape>();
+        json_schema!({
+            "description": "A polygon in the xy plane: the list of its corners in order, x and y in metres, or an \
+                `OutlineShape`.",
+            "anyOf": [corners, shape],
+        })
+    }
+}

@@ -1,0 +1,116 @@
+//! Everything that a simulation is made of.
+
+use super::Origins;
+use super::chart::Chart;
+use super::error::{SceneError, SceneText};
+use super::problem::{Key, Problem};
+use isosheet_collide::{Contacts, Obstacle};
+use isosheet_coords::ChartError;
+use isosheet_dynamics::contact::Contact;
+use isosheet_dynamics::{
+    Checkpoint, Method, SheetModel, Simulation, SimulationError, State, StepControl,
+};
+use isosheet_mesh::Sheet;
+
+/// How the motion is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Integration {
+    /// Over all positions.
+    Free {
+        /// The integrator.
+        method: Method,
+        /// What happens to rejected steps.
+        control: StepControl,
+    },
+    /// In the chart that exists at the start.
+    InChart(Chart),
+}
+
+/// Everything that a simulation is made of.
+#[derive(Debug)]
+pub struct Setup {
+    /// The sheet in its rest shape, placed in space.
+    pub sheet: Sheet,
+    /// The state at the start.
+    pub start: State,
+    /// What moves.
+    pub model: SheetModel,
+    /// What it meets, in scenes with contact.
+    pub contacts: Option<Contacts>,
+    /// The bodies, in the order of the scene.
+    pub obstacles: Vec<Obstacle>,
+    /// How the motion is computed.
+    pub integration: Integration,
+    /// What is modelled, in words.
+    pub modelled: Vec<String>,
+    /// Which entry of the scene made what.
+    pub origins: Origins,
+    /// The text of the scene, if it is a file.
+    pub(crate) text: Option<SceneText>,
+}
+
+impl Setup {
+    /// The simulation at the start.
+    ///
+    /// # Errors
+    /// [`SceneError`] at the place of the scene that is to blame.
+    pub fn start(self) -> Result<Simulation, SceneError> {
+        let Self {
+            sheet,
+            model,
+            start,
+            contacts,
+            integration,
+            origins,
+            text,
+            ..
+        } = self;
+        let place = |e: SimulationError| placed(origins.of_start(&e), text.as_ref());
+        let simulation = match integration {
+            Integration::Free { method, control } => {
+                Simulation::new(model, start, method).and_then(|s| s.with_control(control))
+            }
+            Integration::InChart(settings) => {
+                let chart = settings.build(&sheet, &model.pins(), &start.x);
+                let chart = chart.map_err(|e| no_chart(&e, text.as_ref()))?;
+                Simulation::in_chart(model, start, chart, settings.options())
+            }
+        };
+        let simulation = simulation.map_err(place)?;
+        match contacts {
+            Some(contacts) => simulation.with_contact(contacts).map_err(place),
+            None => Ok(simulation),
+        }
+    }
+
+    /// The simulation at a checkpoint.
+    ///
+    /// # Errors
+    /// [`SceneError`] if the checkpoint belongs to another scene.
+    pub fn resume(self, checkpoint: Checkpoint) -> Result<Simulation, SceneError> {
+        let contact = self.contacts.map(|c| Box::new(c) as Box<dyn Contact>);
+        let resumed = match self.integration {
+            Integration::Free { .. } => Simulation::resume(self.model, contact, checkpoint),
+            Integration::InChart(settings) => {
+                let chart = settings.build(&self.sheet, &self.model.pins(), &self.start.x);
+                let chart = chart.map_err(|e| no_chart(&e, self.text.as_ref()))?;
+                Simulation::resume_in_chart(self.model, chart, contact, checkpoint)
+            }
+        };
+        resumed.map_err(|e| placed(self.origins.of_start(&e), self.text.as_ref()))
+    }
+}
+
+fn no_chart(error: &ChartError, text: Option<&SceneText>) -> SceneError {
+    let key = Key::root().name("method.chart.coordinates");
+    let problem = Problem::from_error(key, error);
+    placed(problem, text)
+}
+
+fn placed(problem: Problem, text: Option<&SceneText>) -> SceneError {
+    let error = SceneError::from(problem);
+    match text {
+        Some(text) => error.in_text(text),
+        None => error,
+    }
+}
