@@ -49,6 +49,20 @@ pub enum Profile {
         /// When the change is complete, seconds.
         end: f64,
     },
+    /// `from` before `begin`, then with the constant acceleration `rate / (end - begin)`, and from `end` on
+    /// with the constant rate: how a feed gets going. The value at `end` is
+    /// `from + rate (end - begin) / 2`. The rate is continuous (C1).
+    RunUp {
+        /// Value up to `begin`; zero if a file leaves it out.
+        #[serde(default)]
+        from: f64,
+        /// Rate from `end` on, per second.
+        rate: f64,
+        /// When it begins to change, seconds.
+        begin: f64,
+        /// When the rate is reached, seconds.
+        end: f64,
+    },
     /// `mean + amplitude sin(2 pi frequency t + phase)`.
     Sine {
         /// Mean value; zero if a file leaves it out.
@@ -172,11 +186,22 @@ impl Profile {
             } => {
                 let (begin, end) = (*begin, *end);
                 check_finite(&[("from", *from), ("to", *to), ("begin", begin), ("end", end)])?;
-                if begin < end {
-                    Ok(())
-                } else {
-                    Err(ProfileError::Duration { begin, end })
-                }
+                check_duration(begin, end)
+            }
+            Self::RunUp {
+                from,
+                rate,
+                begin,
+                end,
+            } => {
+                let (begin, end) = (*begin, *end);
+                check_finite(&[
+                    ("from", *from),
+                    ("rate", *rate),
+                    ("begin", begin),
+                    ("end", end),
+                ])?;
+                check_duration(begin, end)
             }
             Self::Sine {
                 mean,
@@ -213,6 +238,7 @@ impl Profile {
         match self {
             Self::Constant(_) => true,
             Self::Ramp { from, to, .. } | Self::SmoothStep { from, to, .. } => from == to,
+            Self::RunUp { rate, .. } => *rate == 0.0,
             Self::Sine {
                 amplitude,
                 frequency,
@@ -256,6 +282,23 @@ impl Profile {
                     ]
                 }
             },
+            Self::RunUp {
+                from,
+                rate,
+                begin,
+                end,
+            } => {
+                let duration = end - begin;
+                match fraction(t, *begin, *end) {
+                    Fraction::Before => [*from, 0.0, 0.0],
+                    Fraction::Inside(s) => [
+                        from + 0.5 * rate * duration * s * s,
+                        rate * s,
+                        rate / duration,
+                    ],
+                    Fraction::After => [from + rate * (t - end + 0.5 * duration), *rate, 0.0],
+                }
+            }
             Self::Sine {
                 mean,
                 amplitude,
@@ -275,6 +318,14 @@ impl Profile {
                 keys,
             } => interpolate(*interpolation, keys, t),
         }
+    }
+}
+
+fn check_duration(begin: f64, end: f64) -> Result<(), ProfileError> {
+    if begin < end {
+        Ok(())
+    } else {
+        Err(ProfileError::Duration { begin, end })
     }
 }
 

@@ -30,6 +30,12 @@ pub(crate) fn profiles() -> impl Strategy<Value = Profile> {
             begin,
             end: begin + duration
         }),
+        step().prop_map(|(from, rate, begin, duration)| Profile::RunUp {
+            from,
+            rate,
+            begin,
+            end: begin + duration
+        }),
         (value(), value(), -2.0..2.0_f64, value()).prop_map(
             |(mean, amplitude, frequency, phase)| Profile::Sine {
                 mean,
@@ -53,9 +59,9 @@ pub(crate) fn profiles() -> impl Strategy<Value = Profile> {
 fn kinks(profile: &Profile) -> Vec<f64> {
     match profile {
         Profile::Constant(_) | Profile::Sine { .. } => Vec::new(),
-        Profile::Ramp { begin, end, .. } | Profile::SmoothStep { begin, end, .. } => {
-            vec![*begin, *end]
-        }
+        Profile::Ramp { begin, end, .. }
+        | Profile::SmoothStep { begin, end, .. }
+        | Profile::RunUp { begin, end, .. } => vec![*begin, *end],
         Profile::Keyframes { keys, .. } => keys.iter().map(|k| k[0]).collect(),
     }
 }
@@ -235,4 +241,25 @@ fn invalid_profiles_are_refused() {
         assert!(error.to_string().contains(name), "{error}");
     }
     assert!(Profile::from(f64::NAN).validate().is_err());
+}
+
+#[test]
+fn a_run_up_has_constant_acceleration_and_then_a_constant_rate() {
+    let feed = Profile::RunUp {
+        from: 1.0,
+        rate: 0.15,
+        begin: 0.1,
+        end: 0.3,
+    };
+    assert_eq!(feed.derivatives(0.0), [1.0, 0.0, 0.0]);
+    for (t, [value, rate, acceleration]) in [
+        (0.2, [1.0 + 0.75 * 0.1 * 0.1 / 2.0, 0.075, 0.75]),
+        (0.3, [1.015, 0.15, 0.0]),
+        (2.3, [1.315, 0.15, 0.0]),
+    ] {
+        let found = feed.derivatives(t);
+        assert!((found[0] - value).abs() < 1e-15, "{t}");
+        assert!((found[1] - rate).abs() < 1e-15, "{t}");
+        assert!((found[2] - acceleration).abs() < 1e-14, "{t}");
+    }
 }

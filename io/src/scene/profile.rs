@@ -28,6 +28,19 @@ pub enum Course {
     Ramp(Change),
     /// A change that begins and ends smoothly: `10 s^3 - 15 s^4 + 6 s^5` of the time that has passed.
     SmoothStep(Change),
+    /// A feed that gets going: with a constant acceleration up to a constant rate.
+    RunUp {
+        /// Value up to `begin`.
+        #[serde(default)]
+        from: f64,
+        /// Rate from `end` on, per second.
+        rate: f64,
+        /// When the change begins, seconds.
+        #[serde(default)]
+        begin: f64,
+        /// When the rate is reached, seconds.
+        end: f64,
+    },
     /// `mean + amplitude sin(360 frequency t + phase)`, the argument in degrees.
     Sine {
         /// Mean value.
@@ -125,6 +138,17 @@ impl Profile {
                 begin: c.begin,
                 end: c.end,
             },
+            Course::RunUp {
+                from,
+                rate,
+                begin,
+                end,
+            } => engine::Profile::RunUp {
+                from: scale * from,
+                rate: scale * rate,
+                begin: *begin,
+                end: *end,
+            },
             Course::Sine {
                 mean,
                 amplitude,
@@ -167,6 +191,7 @@ impl Profile {
             Self::Constant(_) => None,
             Self::Course(Course::Ramp(_)) => Some("ramp"),
             Self::Course(Course::SmoothStep(_)) => Some("smooth_step"),
+            Self::Course(Course::RunUp { .. }) => Some("run_up"),
             Self::Course(Course::Sine { .. }) => Some("sine"),
             Self::Course(Course::Keyframes { .. }) => Some("keyframes"),
         };
@@ -211,7 +236,9 @@ impl<'de> Visitor<'de> for ProfileVisitor {
     type Value = Profile;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a number, or one of `ramp`, `smooth_step`, `sine`, `keyframes` as a table")
+        f.write_str(
+            "a number, or one of `ramp`, `smooth_step`, `run_up`, `sine`, `keyframes` as a table",
+        )
     }
 
     fn visit_f64<E>(self, value: f64) -> Result<Profile, E> {
