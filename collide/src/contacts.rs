@@ -111,9 +111,9 @@ use sheet::SheetMotion;
 /// self-contact share, when the sheet has moved by a quarter of an edge since the last search; in between a
 /// motion is checked against the list of these.
 ///
-/// Between calls only boxes and lists are kept, and memory. The tree of boxes has the shape of the sheet at the first
-/// positions it was asked about, which decides about speed and about the order in which pairs are found, not
-/// about which.
+/// Between calls only boxes and lists are kept, and memory. The tree of boxes has the shape of the sheet at
+/// the first positions it was asked about, which decides about speed and about the order in which pairs are
+/// found, not about which.
 #[derive(Debug)]
 pub struct Contacts {
     options: ContactOptions,

@@ -12,19 +12,19 @@ const NO_SLACK: f64 = 1e-12;
 /// not on a line: a length error moves the vertex by a thousand times as much at most.
 const OFF_LINE: f64 = 1e-3;
 
-/// Free vertices that cannot move, found by three rules that are applied until nothing changes. Vertices found
-/// count as fixed for the others.
+/// Free vertices that cannot move, found by three rules that are applied until nothing changes. Vertices
+/// found count as fixed for the others.
 ///
-/// 1. A vertex with three fixed neighbours that are not on a line: its rods leave two places.
-/// 2. A straight line of rods from a fixed vertex to another one: the edge of a banner that hangs by both ends.
-/// 3. A straight line of rods from a fixed vertex `u` to a vertex whose rods to fixed neighbours leave a sphere
-///    or a circle, if no other point of that is as close to `u`: it could turn about its neighbours, but the
-///    line is not long enough. (On a sphere this is rule 2.)
+/// 1. A vertex with three fixed neighbours that are not on a line: its rods leave two places. 2. A straight
+/// line of rods from a fixed vertex to another one: the edge of a banner that hangs by both ends. 3. A
+/// straight line of rods from a fixed vertex `u` to a vertex whose rods to fixed neighbours leave a sphere
+/// or a circle, if no other point of that is as close to `u`: it could turn about its neighbours, but the
+/// line is not long enough. (On a sphere this is rule 2.)
 ///
-/// At such vertices the length constraints leave displacements to first order and no motion to second order,
-/// which stalls every method; as pins they cost nothing. These are stresses of small frameworks that block
-/// the infinitesimal flexes (Connelly and Whiteley, SIAM J. Discrete Math. 9, 1996); large flat patches may be
-/// immobile as a whole without being found.
+/// At such vertices the length constraints leave displacements to first order and no motion to second
+/// order, which stalls every method; as pins they cost nothing. These are stresses of small frameworks that
+/// block the infinitesimal flexes (Connelly and Whiteley, SIAM J. Discrete Math. 9, 1996); large flat
+/// patches may be immobile as a whole without being found.
 ///
 /// `x`: positions, `3V`, metres.
 pub(crate) fn immobile_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
@@ -281,8 +281,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
-        /// Vertices found return to their places when the sheet is displaced at random and brought back to the
-        /// rest lengths, whatever the others do.
+        /// Vertices found return to their places when the sheet is displaced at random and brought back to
+        /// the rest lengths, whatever the others do.
         #[test]
         fn immobile_vertices_do_not_move(seed in 0_u64..1000, angle in 0.0..6.3_f64, part in 0.2..0.5_f64) {
             let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
@@ -309,7 +309,8 @@ mod tests {
             if project_positions(&model, &mut x, 1e-12).is_ok() {
                 for v in found {
                     for k in 3 * v.index()..3 * v.index() + 3 {
-                        // A length error of 1e-12 leaves 1e-6 of an edge across, and more where several add up.
+                        // A length error of 1e-12 leaves 1e-6 of an edge across, and more where several add
+                        // up.
                         prop_assert!((x[k] - rest[k]).abs() < 1e-4, "{} by {:e}", v.0, x[k] - rest[k]);
                     }
                 }

@@ -23,12 +23,12 @@ pub enum Method {
     /// M (v1 - v0) = h f(x1) + G(x1)^T L,   x1 = x0 + h v1,   c(x1) = 0.
     /// ```
     ///
-    /// Equivalently `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)` over
-    /// all positions with the rest lengths. The minimum is found by sequential quadratic programming along
-    /// the manifold of rest lengths, and where that fails by an augmented Lagrangian, minimised by Newton's
-    /// method with a line search; a projection then makes the lengths exact. In contact with supports or bodies
-    /// that move the augmented Lagrangian comes first. Non-conservative forces are taken at the start of the
-    /// step.
+    /// Equivalently `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)` over all
+    /// positions with the rest lengths. The minimum is found by sequential quadratic programming along the
+    /// manifold of rest lengths, and where that fails by an augmented Lagrangian, minimised by Newton's
+    /// method with a line search; a projection then makes the lengths exact. In contact with supports or
+    /// bodies that move the augmented Lagrangian comes first. Non-conservative forces are taken at the
+    /// start of the step.
     ///
     /// First order, strongly dissipative, stable at any step. A sheet that starts exactly flat needs no
     /// special treatment.

@@ -44,10 +44,10 @@ const COMPARISON_SLACK: f64 = 10.0;
 /// | [`AugmentedLagrangian`] | the prediction, without multipliers | second | second |
 /// | [`AugmentedLagrangian`], exact rounds | the start, without multipliers | last | last |
 ///
-/// Elastic sheets have no rods that programming would solve for, and are minimised by the last two strategies.
-/// For sheets that are isometric in weak form programming starts at the prediction where there is no contact.
-/// (Hanging sheets of 128 to 2048 faces need three to nine times as many factorisations with the augmented
-/// Lagrangian alone.)
+/// Elastic sheets have no rods that programming would solve for, and are minimised by the last two
+/// strategies. For sheets that are isometric in weak form programming starts at the prediction where there
+/// is no contact. (Hanging sheets of 128 to 2048 faces need three to nine times as many factorisations with
+/// the augmented Lagrangian alone.)
 ///
 /// Sheets with slivers, without contact, begin with the augmented Lagrangian from the prediction and its own
 /// multipliers; programming comes after that.

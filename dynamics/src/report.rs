@@ -288,8 +288,8 @@ pub enum StepError {
         t: f64,
         /// Smallest step allowed, seconds.
         min_step: f64,
-        /// Number of length equations that depend on others at this state. Where it is not zero the sheet lies
-        /// flat in parts, and next to fixed vertices such parts may lock.
+        /// Number of length equations that depend on others at this state. Where it is not zero the sheet
+        /// lies flat in parts, and next to fixed vertices such parts may lock.
         dependent_rods: usize,
         /// Why the last step was rejected.
         cause: Box<StepError>,

@@ -23,13 +23,13 @@ const SUFFICIENT_DECREASE: f64 = 0.1;
 /// A line search that has halved its step this often has stalled.
 const SMALLEST_STEP: f64 = 1e-2;
 
-/// Part of the error that an iteration leaves from which it counts as slow, and number of slow iterations in a row
-/// that make an iterate stationary. Two to eight cost the same; without a limit hanging sheets of 81 vertices
-/// need up to 400 iterations in steps of 5 ms.
+/// Part of the error that an iteration leaves from which it counts as slow, and number of slow iterations
+/// in a row that make an iterate stationary. Two to eight cost the same; without a limit hanging sheets of
+/// 81 vertices need up to 400 iterations in steps of 5 ms.
 const SLOW: f64 = 0.9;
 const MAX_SLOW: usize = 4;
-/// Tolerance from which iterates are restored that may be far from the manifold: a stationary one is left to the
-/// caller, who takes a shorter step.
+/// Tolerance from which iterates are restored that may be far from the manifold: a stationary one is left
+/// to the caller, who takes a shorter step.
 const LOOSE_TOLERANCE: f64 = 1e-3;
 
 /// Part of the tolerance that is the goal of a projection with contact. It keeps what round-off adds in later
@@ -184,8 +184,9 @@ impl Restoration {
             } else if is_stationary && tolerance >= LOOSE_TOLERANCE {
                 break;
             } else if is_stationary {
-                // Stationary, but not solved: the error lies across the range of G, which happens where a patch
-                // is flat and asks for a fold. A displacement of order sqrt(strain), in any direction, opens it.
+                // Stationary, but not solved: the error lies across the range of G, which happens where a
+                // patch is flat and asks for a fold. A displacement of order sqrt(strain), in any
+                // direction, opens it.
                 penalty = FIRST_PENALTY;
                 let size = (opening * strain.sqrt()).min(LARGEST_OPENING);
                 self.unfold(model, contact.as_mut(), iterate, size);

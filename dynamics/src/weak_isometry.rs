@@ -87,18 +87,18 @@ pub enum WeakIsometryError {
 /// ```
 ///
 /// the [`Membrane`] with Poisson's ratio zero, by default with `k = 100 D / h^2` for the flexural rigidity
-/// `D` and `h^2` twice the mean area of the faces. On a smooth bend `E` is of the order of `h^2`, so that the
-/// energy of the membrane vanishes against that of bending as the mesh is refined. The bending stiffness is
-/// that of [`PlateBending`](crate::PlateBending), which couples the same vertices: beside it the equations and
-/// the membrane cost no further entries in the matrix of a step.
+/// `D` and `h^2` twice the mean area of the faces. On a smooth bend `E` is of the order of `h^2`, so that
+/// the energy of the membrane vanishes against that of bending as the mesh is refined. The bending
+/// stiffness is that of [`PlateBending`](crate::PlateBending), which couples the same vertices: beside it
+/// the equations and the membrane cost no further entries in the matrix of a step.
 ///
 /// # What is guaranteed
-/// Every accepted step has `|C_i| <= 1e-12` (or the tolerance that was asked for, or round-off where that is
-/// larger) at every vertex that is not pinned. Where the sheet is flat all equations are independent once two
-/// vertices are pinned; with a single pin one depends on the others, without pins three do (rigid motions of
-/// the rest plane). The rank was found to be the same in bent states. Unlike the lengths of rods the equations
-/// can be met where pins move apart: they are those of the equilibrium of an elastic sheet in its plane, and
-/// the sheet stretches as its membrane does.
+/// Every accepted step has `|C_i| <= 1e-12` (or the tolerance that was asked for, or round-off where that
+/// is larger) at every vertex that is not pinned. Where the sheet is flat all equations are independent
+/// once two vertices are pinned; with a single pin one depends on the others, without pins three do (rigid
+/// motions of the rest plane). The rank was found to be the same in bent states. Unlike the lengths of rods
+/// the equations can be met where pins move apart: they are those of the equilibrium of an elastic sheet in
+/// its plane, and the sheet stretches as its membrane does.
 ///
 /// Not guaranteed are the lengths of single edges. [`StepReport::strain`](crate::StepReport::strain) tells by
 /// how much they stretch. Measured with the default stiffness: 1e-6 to 2e-3 in heavy strips with eight
@@ -112,8 +112,9 @@ pub enum WeakIsometryError {
 /// For sheets that bend smoothly in any direction on a mesh of moderate size, are clamped, or hang freely:
 /// where rods lock, and where a membrane of the stiffness of the material
 /// ([`SheetModel::with_membrane`](crate::SheetModel::with_membrane)) is too stiff for the bends of a coarse
-/// mesh. A soft membrane alone takes fewer factorisations and stretches several times as much. Rods remain the
-/// choice for exact lengths and folds along the lines of the mesh, and for conservative methods and charts.
+/// mesh. A soft membrane alone takes fewer factorisations and stretches several times as much. Rods remain
+/// the choice for exact lengths and folds along the lines of the mesh, and for conservative methods and
+/// charts.
 ///
 /// (The equations are derived here; constraints that hold against test functions are those of mixed finite
 /// elements, see D. Boffi, F. Brezzi and M. Fortin, "Mixed Finite Element Methods and Applications", 2013.

@@ -1,8 +1,8 @@
 //! Shaded pictures of sheets and bodies: two-sided colours, ambient occlusion, thin wires.
 //!
-//! Triangles are drawn with a depth for each pixel ([`render()`]); how much of the surroundings a point sees is
-//! found by rays through a bounding volume hierarchy, on the threads that rayon has. Pictures are the same to
-//! the bit at every run, for any number of threads and with any fonts on the system.
+//! Triangles are drawn with a depth for each pixel ([`render()`]); how much of the surroundings a point
+//! sees is found by rays through a bounding volume hierarchy, on the threads that rayon has. Pictures are
+//! the same to the bit at every run, for any number of threads and with any fonts on the system.
 //!
 //! ```
 //! use isosheet_io::mesh::generate;

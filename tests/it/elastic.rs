@@ -33,7 +33,8 @@ fn bits(x: &[f64]) -> Vec<u64> {
     x.iter().map(|x| x.to_bits()).collect()
 }
 
-/// A hanging ladder of rods, which has a motion of rods: the distance from it is of first order in the compliance.
+/// A hanging ladder of rods, which has a motion of rods: the distance from it is of first order in the
+/// compliance.
 #[test]
 fn rigid_rods_are_the_limit_to_first_order_in_the_compliance() {
     let ladder = generate::ladder(5, 0.1, 0.1).expect("valid");

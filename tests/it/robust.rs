@@ -61,8 +61,9 @@ fn damped_methods_do_not_create_energy() {
     // Strips far from square and checkerboard masses, from exactly flat, step by step. The last column
     // bounds the shares of the largest kinetic energy that implicit Euler, BDF2 and the projection have
     // lost after 30 steps. Measured: 0.237, 0.031, 0.164 for the first scene; 0.254, 0.021, 0.205 for the
-    // second; 0.245 and 0.029 for the third, where the result of the projection depends on random displacements
-    // off flat patches: -0.006 to 0.644 for twelve scenes whose light masses differ by half a percent each.
+    // second; 0.245 and 0.029 for the third, where the result of the projection depends on random
+    // displacements off flat patches: -0.006 to 0.644 for twelve scenes whose light masses differ by half a
+    // percent each.
     for (width, ratio, shares) in [
         (0.02, 1.0, [0.2..0.27, 0.025..0.04, 0.14..0.19]),
         (0.005, 1.0, [0.21..0.3, 0.015..0.03, 0.17..0.24]),

@@ -54,7 +54,8 @@ pub(crate) fn observe(_simulation: &Simulation, _report: &StepReport) -> Control
     }
 }
 
-/// Does pieces of work one after the other until all are done or Ctrl-C ends one of them with [`Interrupted`].
+/// Does pieces of work one after the other until all are done or Ctrl-C ends one of them with
+/// [`Interrupted`].
 pub(crate) fn each<T>(
     items: impl IntoIterator<Item = T>,
     mut work: impl FnMut(T) -> anyhow::Result<()>,

@@ -150,8 +150,8 @@ impl Store {
     /// into the draft, and kept.
     ///
     /// # Errors
-    /// Those of `work`, with the title; [`Interrupted`](interrupt::Interrupted) before it begins; those of the
-    /// folder.
+    /// Those of `work`, with the title; [`Interrupted`](interrupt::Interrupted) before it begins; those of
+    /// the folder.
     pub(crate) fn keep<T: Serialize + DeserializeOwned>(
         &self,
         unit: &Unit,

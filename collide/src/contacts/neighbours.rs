@@ -10,8 +10,8 @@ use crate::{BroadPhase, Candidates, CrossCandidates};
 
 /// Skin of the lists, in mean edge lengths.
 const SKIN: f64 = 0.25;
-/// Part of the skin that motions may use. The rest covers the round-off of the boxes, as long as coordinates are
-/// below a million edge lengths.
+/// Part of the skin that motions may use. The rest covers the round-off of the boxes, as long as
+/// coordinates are below a million edge lengths.
 const USED: f64 = 1.0 - 1e-6;
 
 /// Whether pairs of the sheet with itself are listed.
@@ -34,11 +34,12 @@ pub(super) enum Scope {
 
 /// Pairs of primitives that may come within reach of each other, found by the broad phase.
 ///
-/// The lists are made of the boxes at one set of positions, enlarged by a skin, and hold all pairs that come
-/// within reach on motions that displace primitives by no more than the skin relative to each other (Verlet,
-/// Phys. Rev. 159, 1967). Whoever asks for pairs looks at the boxes of the motion at hand too, and so finds the
-/// same pairs whatever was asked for before. Of the sheet with itself only pairs are looked at whose distance at
-/// these positions and whose displacements since then allow a contact. A motion longer than the skin is searched for pairs on its own.
+/// The lists are made of the boxes at one set of positions, enlarged by a skin, and hold all pairs that
+/// come within reach on motions that displace primitives by no more than the skin relative to each other
+/// (Verlet, Phys. Rev. 159, 1967). Whoever asks for pairs looks at the boxes of the motion at hand too, and
+/// so finds the same pairs whatever was asked for before. Of the sheet with itself only pairs are looked at
+/// whose distance at these positions and whose displacements since then allow a contact. A motion longer
+/// than the skin is searched for pairs on its own.
 #[derive(Debug)]
 pub(super) struct Neighbours {
     /// Boxes of the sheet during the motion that was asked for last. The tree is that of the lists.
@@ -63,8 +64,8 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    /// No lists yet, with the shape of the tree from the positions of a sheet whose edges have the mean length
-    /// `length`, metres.
+    /// No lists yet, with the shape of the tree from the positions of a sheet whose edges have the mean
+    /// length `length`, metres.
     pub(super) fn new(
         sheet: SheetMotion<'_>,
         length: f64,
@@ -139,8 +140,9 @@ impl Neighbours {
             self.boxes.update_boxes(x, &self.end, 0.5 * reach);
             let before = Displacements::since(&self.reference, x, x).spread();
             let now = Displacements::since(x, &self.end, &self.end).spread();
-            // Points come nearer by the first; by what `sheet::approach` bounds, once for each primitive, which
-            // is the displacement relative to the mean of four points, by no more than twice 3/4 of the second.
+            // Points come nearer by the first; by what `sheet::approach` bounds, once for each primitive,
+            // which is the displacement relative to the mean of four points, by no more than twice 3/4 of
+            // the second.
             self.far = reach + before + 1.5 * now + (1.0 - USED) * self.skin;
         }
     }

@@ -65,7 +65,8 @@ impl Stepper {
         Ok(v)
     }
 
-    /// Sets coordinates and momenta of `s`, the reference state, to those in a new chart, given the velocities.
+    /// Sets coordinates and momenta of `s`, the reference state, to those in a new chart, given the
+    /// velocities.
     pub(super) fn enter(
         &mut self,
         s: &mut PhaseState,

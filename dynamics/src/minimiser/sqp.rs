@@ -13,8 +13,8 @@ use crate::report::SolverEffort;
 /// multipliers; [`MultiplierSolver`](crate::multipliers::MultiplierSolver) takes the regularisation out
 /// again. With the first stiffness steps keep momentum and symmetries to round-off, with 1e11 no longer.
 /// Where the multipliers do not converge, the second is used from then on, in later steps, too: beyond it
-/// the masses drown in the round-off of the penalty. (Strips of rods on edge, at rest: 10 to 16 factorisations
-/// a step, and 16 to 280 where every step begins with the first.)
+/// the masses drown in the round-off of the penalty. (Strips of rods on edge, at rest: 10 to 16
+/// factorisations a step, and 16 to 280 where every step begins with the first.)
 const STIFFNESS: [f64; 2] = [1e10, 1e13];
 /// Length of an iteration for the multipliers beyond which rods count as dependent: the inverse of the
 /// smallest eigenvalue that is not taken to be zero. Multipliers of nearly dependent rods may grow without
@@ -51,9 +51,9 @@ const WEAK_ITERATE_STRAIN: f64 = 1e-1;
 /// multipliers, Newton's method has converged by then, and small motions of taut sheets are below that size.
 /// Where there are none, the last decreases only fall as the inverse of the number of iterations.
 const NOISE_PATIENCE: usize = 10;
-/// Part of the energy that the tolerance of the lengths leaves open, `tolerance * sum |L| l^2`, that counts as
-/// noise then: length errors of different rods have different signs. Strips on edge at rest need 15 to 930
-/// factorisations a step without this rule, and 11 to 100 with it.
+/// Part of the energy that the tolerance of the lengths leaves open, `tolerance * sum |L| l^2`, that counts
+/// as noise then: length errors of different rods have different signs. Strips on edge at rest need 15 to
+/// 930 factorisations a step without this rule, and 11 to 100 with it.
 const LENGTH_NOISE: f64 = 0.1;
 /// Largest number of iterations of a restoration of an iterate: more are a sign that the step is not a small
 /// one.

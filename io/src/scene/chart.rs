@@ -135,8 +135,8 @@ pub enum NearSingularity {
     Refuse,
 }
 
-/// Most parts of a step: with more of them a step of the smallest sheet takes seconds, in which a run cannot be
-/// stopped.
+/// Most parts of a step: with more of them a step of the smallest sheet takes seconds, in which a run
+/// cannot be stopped.
 const MOST_PARTS: f64 = 1e4;
 
 impl Chart {

@@ -4,8 +4,8 @@ use super::drawing::Drawing;
 use anyhow::Result;
 use isosheet_io::picture::svg_to_png;
 
-/// Pixels for a pixel of the SVG file, of which there are 96 to the inch: 216 to the inch, enough for print in
-/// a column.
+/// Pixels for a pixel of the SVG file, of which there are 96 to the inch: 216 to the inch, enough for print
+/// in a column.
 const SCALE: f32 = 216.0 / 96.0;
 
 impl Drawing {

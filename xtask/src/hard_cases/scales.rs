@@ -192,12 +192,12 @@ fn flutters(method: &str, ratio: f64, bump: f64) -> Option<[f64; 2]> {
     }
 }
 
-/// Number of checkerboards that differ by half a percent of the light masses each. Whether a method passes one of
-/// them is a matter of chance; how many of them is not.
+/// Number of checkerboards that differ by half a percent of the light masses each. Whether a method passes
+/// one of them is a matter of chance; how many of them is not.
 const NEIGHBOURS: u32 = 16;
 
-/// How many of these may stop. Of 96 such boards implicit Euler stops at 1 and BDF2 at 8; that more than four of 16
-/// stop has a probability of one percent then.
+/// How many of these may stop. Of 96 such boards implicit Euler stops at 1 and BDF2 at 8; that more than
+/// four of 16 stop has a probability of one percent then.
 const MAY_STOP: f64 = 4.0;
 
 fn masses(effort: Effort) -> Result<Findings> {

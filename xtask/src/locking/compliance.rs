@@ -280,8 +280,8 @@ fn orders(all: &[Run], problems: &[Problem]) -> Table {
     table
 }
 
-/// The errors against the compliance: the ladders and the elastic elastica on meshes of every size in the first
-/// row, the elastica in weak form in the second.
+/// The errors against the compliance: the ladders and the elastic elastica on meshes of every size in the
+/// first row, the elastica in weak form in the second.
 fn plot(all: &[Run], sizes: &[usize]) -> Drawing {
     let is_ladder = |r: &&Run| matches!(r.problem, Problem::Ladder(_));
     let ladder_errors = all.iter().filter(is_ladder).filter_map(|r| r.error);
@@ -380,8 +380,8 @@ mod tests {
         assert!((power - 1.0).abs() < 0.05, "{power}");
     }
 
-    /// The faces of a ladder form a strip without interior vertices: as many independent equations in weak form
-    /// as rods, all of which are met by the lengths of the rods alone.
+    /// The faces of a ladder form a strip without interior vertices: as many independent equations in weak
+    /// form as rods, all of which are met by the lengths of the rods alone.
     #[test]
     fn weak_equations_of_a_ladder_hold_its_lengths() {
         let sheet = generate::ladder(5, 0.1, 0.1).unwrap();

@@ -146,9 +146,9 @@ mod tests {
     use super::*;
     use isosheet_mesh::generate;
 
-    /// A uniform stretch by 1 % along x stores `A K E^2 / 2` with Green's strain `E` and
-    /// `K = E h / (1 - nu^2)` in every model with a membrane, and no bending energy. The stiffness of the soft
-    /// ones is `100 D` over the square of the side of a cell, 0.25 m.
+    /// A uniform stretch by 1 % along x stores `A K E^2 / 2` with Green's strain `E` and `K = E h / (1 -
+    /// nu^2)` in every model with a membrane, and no bending energy. The stiffness of the soft ones is `100
+    /// D` over the square of the side of a cell, 0.25 m.
     #[test]
     fn the_energies_of_a_stretched_square_are_known() {
         let sheet = generate::isotropic_square(1, 1.0).unwrap();

@@ -95,9 +95,9 @@ pub(super) fn strain<'a>(model: Isometry, courses: impl Iterator<Item = &'a Cour
     at_most(model, "largest strain of an edge", 0.01, &strains)
 }
 
-/// What every accepted step guarantees, over all steps of all runs, those of runs included that did not reach
-/// their end: equations of isometry to a tolerance of 1e-12 (of models that have some), gaps above 0 (of scenes
-/// with contact).
+/// What every accepted step guarantees, over all steps of all runs, those of runs included that did not
+/// reach their end: equations of isometry to a tolerance of 1e-12 (of models that have some), gaps above 0
+/// (of scenes with contact).
 pub(super) fn kept(model: Isometry, runs: impl Iterator<Item = Kept>) -> Vec<Target> {
     let mut worst = Kept::default();
     runs.for_each(|kept| worst.add(kept));

@@ -27,8 +27,8 @@ pub(crate) struct Point {
     /// Wall time in seconds for a simulated second, the minimum over the repetitions.
     pub(crate) wall: f64,
     pub(crate) repetitions: usize,
-    /// What the run cost; up to the last checkpoint where it did not come to the end, but for counts other than
-    /// those of sub-steps.
+    /// What the run cost; up to the last checkpoint where it did not come to the end, but for counts other
+    /// than those of sub-steps.
     pub(crate) effort: Effort,
     /// Errors, of runs that came to the end.
     pub(crate) errors: Option<Errors>,
