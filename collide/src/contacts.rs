@@ -1,9 +1,11 @@
 //! Contact of a sheet with bodies and with itself.
 
 mod body;
+mod body_pairs;
 mod displacements;
 mod evaluate;
 mod features;
+mod motion;
 mod neighbours;
 mod options;
 mod path;
@@ -23,11 +25,11 @@ use isosheet_dynamics::contact::{
     ContactKey, ContactLaws, JointMotion, StepSpan,
 };
 use isosheet_dynamics::{SheetModel, State};
+use motion::SheetMotion;
 use nalgebra::Vector3;
 use neighbours::{Neighbours, SelfPairs};
 use options::smallest_height;
 use path::PartOfStep;
-use sheet::SheetMotion;
 
 /// The geometry of contact of a sheet with bodies and with itself: pairs within reach, distances, and motions
 /// that are checked before they are taken. Barrier and friction are those of

@@ -15,11 +15,12 @@ const OFF_LINE: f64 = 1e-3;
 /// Free vertices that cannot move, found by three rules that are applied until nothing changes. Vertices
 /// found count as fixed for the others.
 ///
-/// 1. A vertex with three fixed neighbours that are not on a line: its rods leave two places. 2. A straight
-/// line of rods from a fixed vertex to another one: the edge of a banner that hangs by both ends. 3. A
-/// straight line of rods from a fixed vertex `u` to a vertex whose rods to fixed neighbours leave a sphere
-/// or a circle, if no other point of that is as close to `u`: it could turn about its neighbours, but the
-/// line is not long enough. (On a sphere this is rule 2.)
+/// 1. A vertex with three fixed neighbours that are not on a line: its rods leave two places.
+/// 2. A straight line of rods from a fixed vertex to another one: the edge of a banner that hangs by both
+///    ends.
+/// 3. A straight line of rods from a fixed vertex `u` to a vertex whose rods to fixed neighbours leave a
+///    sphere or a circle, if no other point of that is as close to `u`: it could turn about its neighbours,
+///    but the line is not long enough. (On a sphere this is rule 2.)
 ///
 /// At such vertices the length constraints leave displacements to first order and no motion to second
 /// order, which stalls every method; as pins they cost nothing. These are stresses of small frameworks that

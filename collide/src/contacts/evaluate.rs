@@ -2,8 +2,8 @@
 
 use super::body::Body;
 use super::features::Features;
+use super::motion::{two_edges, vertex_face};
 use super::rolling::{edge_gradient, face_gradients};
-use super::sheet::{two_edges, vertex_face};
 use crate::ContactMesh;
 use crate::distance::{Closest, edge_edge, point_triangle};
 use crate::narrow_phase::gather;

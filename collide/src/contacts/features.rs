@@ -1,11 +1,19 @@
 //! The corners, edges and faces of a body, as edges and faces of a sheet meet them.
 
 use super::displacements::Displacements;
-use super::neighbours::Scope;
 use super::path::PartOfStep;
 use crate::{BroadPhase, ContactGeometry, ContactMesh, ObstacleError, Shape};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::HashMap;
+
+/// What motions lists serve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scope {
+    /// The one that they were made for, which is longer than the skin.
+    OneMotion,
+    /// All that displace primitives by no more than the skin relative to each other.
+    Skin,
+}
 
 /// Sine of the angle between two faces below which the edge between them is none: a thousand times
 /// the round-off of unit normals, and a ridge too low to matter.

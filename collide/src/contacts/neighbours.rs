@@ -2,8 +2,9 @@
 
 use super::body::Body;
 use super::displacements::Displacements;
+use super::features::Scope;
+use super::motion::{self, SheetMotion};
 use super::path::PartOfStep;
-use super::sheet::{self, SheetMotion};
 use crate::distance::{edge_edge, point_triangle};
 use crate::narrow_phase::{gather, larger};
 use crate::{BroadPhase, Candidates, CrossCandidates};
@@ -21,15 +22,6 @@ pub(super) enum SelfPairs {
     Ignored,
     /// They are.
     Listed,
-}
-
-/// What motions lists serve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scope {
-    /// The one that they were made for, which is longer than the skin.
-    OneMotion,
-    /// All that displace primitives by no more than the skin relative to each other.
-    Skin,
 }
 
 /// Pairs of primitives that may come within reach of each other, found by the broad phase.
@@ -140,7 +132,7 @@ impl Neighbours {
             self.boxes.update_boxes(x, &self.end, 0.5 * reach);
             let before = Displacements::since(&self.reference, x, x).spread();
             let now = Displacements::since(x, &self.end, &self.end).spread();
-            // Points come nearer by the first; by what `sheet::approach` bounds, once for each primitive,
+            // Points come nearer by the first; by what `approach` in sheet.rs bounds, once for each primitive,
             // which is the displacement relative to the mean of four points, by no more than twice 3/4 of
             // the second.
             self.far = reach + before + 1.5 * now + (1.0 - USED) * self.skin;
@@ -185,10 +177,10 @@ impl Neighbours {
             } = &self.candidates;
             let at = &self.reference;
             self.vertex_face.set(vertex_face, |pair| {
-                point_triangle(&gather(at, sheet::vertex_face(mesh, pair))).distance()
+                point_triangle(&gather(at, motion::vertex_face(mesh, pair))).distance()
             });
             self.edge_edge.set(two_edges, |pair| {
-                edge_edge(&gather(at, sheet::two_edges(mesh, pair))).distance()
+                edge_edge(&gather(at, motion::two_edges(mesh, pair))).distance()
             });
         }
         for (body, pairs) in bodies.iter_mut().zip(&mut self.cross) {
