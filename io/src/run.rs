@@ -24,6 +24,8 @@ mod checkpoint;
 mod collect;
 mod constraints;
 mod error;
+#[cfg(feature = "picture")]
+mod film;
 mod folder;
 mod frames;
 mod page;
@@ -35,6 +37,8 @@ mod sweep;
 
 pub use collect::Collection;
 pub use error::RunError;
+#[cfg(feature = "picture")]
+pub use film::{Film, FilmOptions};
 pub use folder::SceneHash;
 pub use page::write_page;
 pub use recording::Recording;

@@ -7,6 +7,7 @@ mod exit;
 mod info;
 mod interrupt;
 mod page;
+mod pictures;
 mod progress;
 mod simulate;
 mod start;
