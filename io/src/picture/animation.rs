@@ -3,9 +3,9 @@
 use super::canvas::{Image, srgb_bytes};
 use super::error::PictureError;
 
-/// An animated PNG file of `count` pictures of one size (pixels), which `picture` makes in their order. Each is
-/// shown for `delay` milliseconds, and the whole is repeated without end. Programs that know no animations
-/// show the first picture.
+/// An animated PNG file of `count` pictures of one size (pixels), which `picture` makes in their order. Each
+/// is shown for `delay` milliseconds, and the whole is repeated without end. Programs that know no
+/// animations show the first picture.
 ///
 /// # Errors
 /// [`PictureError::NoFrames`] for no picture, [`PictureError::FrameSize`] for one of another size,

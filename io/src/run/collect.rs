@@ -26,8 +26,8 @@ impl Collection {
     /// Reads the summaries of runs and of all runs of sweeps, in the order of `folders` and of their numbers.
     ///
     /// # Errors
-    /// [`SweepError::NothingToCollect`] for a folder with neither a run nor a sweep, [`SweepError`] if a table or
-    /// a summary cannot be read or has a number that is not finite.
+    /// [`SweepError::NothingToCollect`] for a folder with neither a run nor a sweep, [`SweepError`] if a
+    /// table or a summary cannot be read or has a number that is not finite.
     pub fn of(folders: &[PathBuf]) -> Result<Self, SweepError> {
         let mut collection = Self {
             columns: vec!["folder".into()],

@@ -33,8 +33,8 @@ impl FilmOptions {
     /// [`PictureError::Size`] for no pixels or more than 4096, [`PictureError::Angle`] for angles that are
     /// not finite or an elevation beyond 90 degrees.
     pub fn validate(&self) -> Result<(), PictureError> {
-        // A picture is drawn with three times as many pixels each way, each of 20 bytes: 4096 need 3 GB, and up to
-        // three times as much where the picture is wide.
+        // A picture is drawn with three times as many pixels each way, each of 20 bytes: 4096 need 3 GB, and
+        // up to three times as much where the picture is wide.
         if !(1..=4096).contains(&self.height) {
             let (width, height) = (self.height, self.height);
             return Err(PictureError::Size { width, height });

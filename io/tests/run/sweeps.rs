@@ -137,8 +137,8 @@ fn a_sweep_that_is_killed_ends_with_the_same_table() {
     assert_eq!(line[11], "my sweep/011");
 }
 
-/// GNU parallel runs each line in a group of its own: after a kill of the program the runs under way go on, and
-/// are found in use by the same line until they have ended.
+/// GNU parallel runs each line in a group of its own: after a kill of the program the runs under way go on,
+/// and are found in use by the same line until they have ended.
 #[cfg(unix)]
 #[test]
 fn gnu_parallel_runs_a_sweep_and_may_be_killed() {

@@ -4,21 +4,21 @@ use super::error::{GenerateError, check_count, check_faces, check_size};
 use super::origami::{FoldAssignment, FoldPattern};
 use crate::Sheet;
 
-/// The pleated hyperbolic paraboloid (hypar), flat: a square about the origin with the given side (metres) and
-/// `rings` concentric squares with the sides `side k / rings`, k = 1 to `rings`, the last of which is the
-/// boundary.
+/// The pleated hyperbolic paraboloid (hypar), flat: a square about the origin with the given side (metres)
+/// and `rings` concentric squares with the sides `side k / rings`, k = 1 to `rings`, the last of which is
+/// the boundary.
 ///
-/// Corner c of square k has the index `4 (k - 1) + c`, with c = 0 to 3 counter-clockwise from the lower left.
-/// Square k is a mountain for odd k and a valley for even k; the diagonals between the squares k and k + 1
-/// fold the other way than square k + 1. The innermost square has one diagonal, from corner 0 to corner 2,
-/// since two straight creases that cross cannot fold together.
+/// Corner c of square k has the index `4 (k - 1) + c`, with c = 0 to 3 counter-clockwise from the lower
+/// left. Square k is a mountain for odd k and a valley for even k; the diagonals between the squares k and
+/// k + 1 fold the other way than square k + 1. The innermost square has one diagonal, from corner 0 to
+/// corner 2, since two straight creases that cross cannot fold together.
 ///
 /// The trapezoids between two squares are cut in two, in one sense of rotation between even squares and in
-/// the other one between odd ones: trapezoids that stay flat do not fold at all (Demaine, Demaine, Hart,
-/// Price and Tachi, *(Non)existence of pleated folds*, Graphs and Combinatorics 27, 2011, which has the pattern
-/// and this alternating triangulation). These cuts are flat edges. At every corner of the squares 2 to
-/// `rings - 1` the sectors are 45, 45, 135 and 135 degrees, and the corner can be folded flat; the corners 1
-/// and 3 of the innermost square cannot, since they have three creases.
+/// the other one between odd ones, and these cuts are flat edges: a sheet whose trapezoids stay flat does
+/// not fold at all (Demaine, Demaine, Hart, Price and Tachi, *(Non)existence of pleated folds*, Graphs and
+/// Combinatorics 27, 2011, which has the pattern and the alternating triangulation). At every corner of the
+/// squares 2 to `rings - 1` the sectors are 45, 45, 135 and 135 degrees, and the corner can be folded flat;
+/// the corners 1 and 3 of the innermost square cannot, since they have three creases.
 ///
 /// # Errors
 /// [`GenerateError`] for no ring, a length that is not positive, or too many faces.

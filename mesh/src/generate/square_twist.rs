@@ -5,25 +5,26 @@ use super::origami::{FoldAssignment, FoldPattern};
 use crate::Sheet;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 
-/// The square twist, flat: a sheet with the given side (metres) about the origin, and in its middle a square
-/// with the side `square` (metres), turned counter-clockwise by `angle` (radians). From every side of the
-/// square a pleat leads to the edge of the sheet: two creases along an axis, from the ends of the side.
+/// The square twist, flat: a sheet with the given side (metres) about the origin, and in its middle a
+/// square with the side `square` (metres), turned counter-clockwise by `angle` (radians). From every side
+/// of the square a pleat leads to the edge of the sheet: two creases along an axis, from the ends of the
+/// side.
 ///
 /// Vertex c is corner c of the inner square, c = 0 to 3 counter-clockwise from the lower left (before the
-/// turn); vertices 4 + 3 c to 6 + 3 c are on the edge of the sheet: the ends of the creases from the corners c
-/// and c + 1 that belong to side c, and the corner of the sheet after these. The sides of the square are
-/// mountains. Of a pleat, the crease at which it makes an acute angle with the side is a valley and the other
-/// one a mountain (Kawasaki and Yoshida, *Crystallographic flat origamis*, Mem. Fac. Sci. Kyushu Univ. A 42,
-/// 1988; Silverberg et al., *Origami structures with a critical transition to bistability arising from hidden
-/// degrees of freedom*, Nature Materials 14, 2015).
+/// turn); vertices 4 + 3 c to 6 + 3 c are on the edge of the sheet: the ends of the creases from the
+/// corners c and c + 1 that belong to side c, and the corner of the sheet after these. The sides of the
+/// square are mountains. Of a pleat, the crease at which it makes an acute angle with the side is a valley
+/// and the other one a mountain (Kawasaki and Yoshida, *Crystallographic flat origamis*, Mem. Fac. Sci.
+/// Kyushu Univ. A 42, 1988; Silverberg et al., *Origami structures with a critical transition to
+/// bistability arising from hidden degrees of freedom*, Nature Materials 14, 2015).
 ///
 /// The sectors at a corner are `pi/2, pi/2 - angle, pi/2, pi/2 + angle`, so that the corner can be folded
 /// flat. Between flat and folded flat the panels have to bend; each is cut in two along its shorter
 /// diagonal, and these cuts are flat edges.
 ///
 /// # Errors
-/// [`GenerateError`] for a length that is not positive, a square whose diagonal is not shorter than the side of
-/// the sheet, or an angle that is not between 0 and pi/2.
+/// [`GenerateError`] for a length that is not positive, a square whose diagonal is not shorter than the
+/// side of the sheet, or an angle that is not between 0 and pi/2.
 pub fn square_twist(side: f64, square: f64, angle: f64) -> Result<FoldPattern, GenerateError> {
     check_size("side", side)?;
     check_size("square", square)?;

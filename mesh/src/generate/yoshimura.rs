@@ -4,15 +4,15 @@ use super::error::{GenerateError, check_count, check_faces, check_size};
 use super::origami::{FoldAssignment, FoldPattern};
 use crate::Sheet;
 
-/// Yoshimura's pattern, flat: `rows` bands of `2 columns` isosceles triangles with the given base and height
-/// (metres), alternately upright and upside down.
+/// Yoshimura's pattern, flat: `rows` bands of `2 columns` isosceles triangles with the given base and
+/// height (metres), alternately upright and upside down.
 ///
-/// Vertex (i, j) has the index `i + j (columns + 1)` and lies at `x = base i`, for odd j at `x = base (i +
-/// 1/2)`, and `y = height j`. The bases, along x, are valleys, and all other creases are mountains, as on the
-/// outside of a cylinder that was pressed together (Yoshimura, *On the mechanism of buckling of a circular
-/// cylindrical shell under axial compression*, NACA TM 1390, 1955). With the angle `a = atan(2 height / base)`
-/// the sectors at an inner vertex are `a, pi - 2 a, a` on either side of the bases, so that every inner
-/// vertex can be folded flat.
+/// Vertex (i, j) has the index `i + j (columns + 1)` and lies at `x = base i`, for odd j at
+/// `x = base (i + 1/2)`, and `y = height j`. The bases, along x, are valleys, and all other creases are
+/// mountains, as on the outside of a cylinder that was pressed together (Yoshimura, *On the mechanism of
+/// buckling of a circular cylindrical shell under axial compression*, NACA TM 1390, 1955). With the angle
+/// `a = atan(2 height / base)` the sectors at an inner vertex are `a, pi - 2 a, a` on either side of the
+/// bases, so that every inner vertex can be folded flat.
 ///
 /// # Errors
 /// [`GenerateError`] for a count of zero, a length that is not positive, or too many faces.

@@ -51,17 +51,15 @@ pub(crate) fn run(sweep: &Sweep, program: &Path, jobs: u32) -> Done {
             scope.spawn(work);
         }
     });
-    ending(
-        sweep,
-        failed.into_inner().unwrap_or_else(|e| e.into_inner()),
-    )
+    let failed = failed.into_inner().unwrap_or_else(|e| e.into_inner());
+    ending(sweep, done.into_inner(), failed)
 }
 
-/// The end of a sweep.
-fn ending(sweep: &Sweep, mut failed: Vec<Failed>) -> Done {
+/// The end of a sweep of which so many runs have ended, some of them failed.
+fn ending(sweep: &Sweep, done: usize, mut failed: Vec<Failed>) -> Done {
     failed.sort_by_key(|f| f.run.number);
     let stopped = failed.iter().any(|f| f.code == Code::Interrupted);
-    if interrupt::requested() || stopped {
+    if done < sweep.len() || stopped {
         let message = "the sweep was stopped, or a run of it was; the same command continues";
         return Err(Failure::new(Code::Interrupted, message));
     }
