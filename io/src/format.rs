@@ -11,6 +11,9 @@ mod obj_write;
 mod trajectory;
 
 pub use atomic::{FileWriter, WriteError, write_atomically};
+#[cfg(feature = "run")]
+pub(crate) use finite::{Finding, check_finite};
+
 pub use export::{
     ExportError, ExportMeshFormat, Exported, FieldSupport, MOST_KEY_FRAMES, Series, SeriesField,
     SeriesFormat, SeriesOptions, write_mesh, write_series,

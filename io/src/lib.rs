@@ -16,7 +16,7 @@
 //! | Matrix Market, coordinate format | | [`write_matrix_market`] |
 //! | summary JSON | [`read_json`] | [`write_json`] |
 //! | 3D page of a run (feature `view`) | | `view::Replay` |
-//! | shaded PNG pictures (feature `picture`) | | `picture::render` |
+//! | shaded PNG pictures (feature `picture`) | | `picture::render`, `run::Film` |
 //!
 //! Two rules hold for everything that is written: no number that is not finite gets into a file (a typed
 //! error says which one it was), and a file appears under its name only when it is complete

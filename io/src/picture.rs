@@ -22,6 +22,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod animation;
 mod camera;
 mod canvas;
 mod error;
@@ -33,6 +34,7 @@ mod solid;
 mod vector;
 mod vector_drawing;
 
+pub use animation::animated_png;
 pub use camera::Camera;
 pub use canvas::Image;
 pub use error::PictureError;

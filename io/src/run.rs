@@ -17,10 +17,15 @@
 //! gives the same bits as a run without a stop. A folder with another scene, with other files, or in use by
 //! another process is refused. When the process is killed, at most the steps since the last checkpoint are
 //! lost ([`Output::checkpoint_interval`](crate::scene::Output::checkpoint_interval)).
+//!
+//! A [`Sweep`] makes many runs of one scene, and [`Collection`] makes one table of their summaries.
 
 mod checkpoint;
+mod collect;
 mod constraints;
 mod error;
+#[cfg(feature = "picture")]
+mod film;
 mod folder;
 mod frames;
 mod page;
@@ -28,12 +33,17 @@ mod recording;
 mod replay;
 mod stepping;
 mod summary;
+mod sweep;
 
+pub use collect::Collection;
 pub use error::RunError;
+#[cfg(feature = "picture")]
+pub use film::{Film, FilmOptions};
 pub use folder::SceneHash;
 pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Summary};
+pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation, VariationError};
 
 use crate::format::{HistoryWriter, frame_path, read_json, write_json, write_obj};
 use crate::scene::{SceneFile, Setup, SupportForces};

@@ -45,7 +45,9 @@ pub use method::{Fallback, Integrator, Method, Taut};
 pub use obstacles::{Obstacle, Shape, Wall};
 pub use outline::{Outline, OutlineShape};
 pub use output::Output;
-pub use pattern::{AlikeCreases, DegreeFour, Miura};
+pub use pattern::{
+    AlikeCreases, DegreeFour, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
+};
 pub use pose::{Motion, Pose, Rotation, Turn};
 pub use problem::{Key, KeyPart, Problem};
 pub use profile::{Change, Course, Interpolation, Profile};

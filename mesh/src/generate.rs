@@ -5,22 +5,35 @@
 mod delaunay;
 mod error;
 mod grid;
+mod hypar;
+mod kresling;
 mod octagon;
 mod origami;
 mod outline;
 mod refine;
 mod round;
+mod square_twist;
+mod waterbomb;
+mod yoshimura;
 
 pub use delaunay::{delaunay, delaunay_square};
 pub use error::GenerateError;
 pub use grid::{
     Diagonals, anisotropic_grid, grid, isotropic_rectangle, isotropic_square, ladder, strip,
 };
+pub use hypar::hypar;
+pub use kresling::kresling;
 pub use octagon::{octagon_244, octagon_249};
 pub use origami::{FoldAssignment, FoldPattern, degree_four, miura, miura_zigzags};
 pub use outline::{polygon_rings, regular_outline};
 pub use refine::{refine_isotropic, split_1_4};
 pub use round::{annulus, disk, fan, regular_polygon};
+pub use square_twist::square_twist;
+pub use waterbomb::waterbomb;
+pub use yoshimura::yoshimura;
+
+#[cfg(test)]
+mod flat_folding;
 
 #[cfg(test)]
 pub(crate) use refine::{FaceSplit, split_faces};

@@ -99,9 +99,13 @@ impl Image {
     /// # Errors
     /// [`PictureError::Png`] for more pixels than a PNG file may have.
     pub fn to_png(&self) -> Result<Vec<u8>, PictureError> {
-        let data: Vec<u8> = self.pixels.iter().flat_map(|p| p.map(srgb)).collect();
-        png(self.width as u32, self.height as u32, &data)
+        png(self.width as u32, self.height as u32, &srgb_bytes(self))
     }
+}
+
+/// Three sRGB bytes for each pixel.
+pub(super) fn srgb_bytes(image: &Image) -> Vec<u8> {
+    image.pixels.iter().flat_map(|p| p.map(srgb)).collect()
 }
 
 /// The PNG file of a picture given as rows of three sRGB bytes a pixel.

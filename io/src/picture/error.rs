@@ -8,12 +8,38 @@ use isosheet_mesh::VertexId;
 #[non_exhaustive]
 pub enum PictureError {
     /// The picture has no pixels.
-    #[error("the picture has {width} x {height} pixels; give at least one each way")]
+    #[error(
+        "the picture has {width} x {height} pixels; give at least one each way, and no more than memory holds"
+    )]
     Size {
         /// Width, pixels.
         width: usize,
         /// Height, pixels.
         height: usize,
+    },
+    /// There is no frame to draw.
+    #[error("there is no such frame; choose frames that the run has")]
+    NoFrames,
+    /// A picture of an animation has another size than the animation.
+    #[error(
+        "picture {frame} has {} x {} pixels, the animation {} x {}; draw all pictures in one size",
+        found[0], found[1], size[0], size[1]
+    )]
+    FrameSize {
+        /// The picture, from 0.
+        frame: usize,
+        /// Its width and height, pixels.
+        found: [usize; 2],
+        /// Width and height of the animation, pixels.
+        size: [usize; 2],
+    },
+    /// An angle of the viewer is out of range.
+    #[error("the {name} is {value} degrees; give a finite one, and an elevation from -90 to 90")]
+    Angle {
+        /// Which angle.
+        name: &'static str,
+        /// Its value, degrees.
+        value: f64,
     },
     /// The wires have no width.
     #[error("wires have the width {width}; give a finite one of at least 0 pixels")]

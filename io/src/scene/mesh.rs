@@ -1,7 +1,9 @@
 //! Where the mesh of a sheet comes from.
 
 use super::outline::Outline;
-use super::pattern::{DegreeFour, EdgeRoles, Miura};
+use super::pattern::{
+    DegreeFour, EdgeRoles, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
+};
 use super::problem::{Checks, Key, Problem};
 use crate::format::{self, MeshOptions, Polygons, SeparateBuffers, read_mesh_with};
 use isosheet_mesh::Sheet;
@@ -81,6 +83,16 @@ pub enum Mesh {
     Miura(Miura),
     /// A crease pattern of four creases that meet in a vertex.
     DegreeFour(DegreeFour),
+    /// The waterbomb tessellation, with mountains and valleys.
+    Waterbomb(Waterbomb),
+    /// Yoshimura's crease pattern, with mountains and valleys.
+    Yoshimura(Yoshimura),
+    /// Kresling's crease pattern, with mountains and valleys.
+    Kresling(Kresling),
+    /// The pleated hyperbolic paraboloid, with mountains and valleys.
+    Hypar(Hypar),
+    /// The square twist, with mountains and valleys.
+    SquareTwist(SquareTwist),
     /// A mesh file: OBJ, OFF, STL, PLY, FOLD (with its crease pattern) or glTF.
     File(MeshFile),
 }
@@ -213,6 +225,11 @@ impl Mesh {
             Self::Octagon { .. } => "octagon",
             Self::Miura(_) => "miura",
             Self::DegreeFour(_) => "degree_four",
+            Self::Waterbomb(_) => "waterbomb",
+            Self::Yoshimura(_) => "yoshimura",
+            Self::Kresling(_) => "kresling",
+            Self::Hypar(_) => "hypar",
+            Self::SquareTwist(_) => "square_twist",
             Self::File(_) => "file",
         }
     }
@@ -262,6 +279,11 @@ impl Mesh {
             Self::Octagon { radius } => length("radius", *radius),
             Self::Miura(miura) => miura.check(&key, checks),
             Self::DegreeFour(vertex) => vertex.check(&key, checks),
+            Self::Waterbomb(pattern) => pattern.check(&key, checks),
+            Self::Yoshimura(pattern) => pattern.check(&key, checks),
+            Self::Kresling(pattern) => pattern.check(&key, checks),
+            Self::Hypar(pattern) => pattern.check(&key, checks),
+            Self::SquareTwist(twist) => twist.check(&key, checks),
             Self::File(file) => file.check(&key, checks),
         }
     }
@@ -306,11 +328,12 @@ impl Mesh {
                 let roles = Miura::roles(&pattern);
                 return Ok(RestMesh::of(pattern, roles));
             }
-            Self::DegreeFour(vertex) => {
-                let pattern = vertex.pattern().map_err(|e| generator_problem(&key, &e))?;
-                let roles = EdgeRoles::from(&pattern);
-                return Ok(RestMesh::of(pattern, roles));
-            }
+            Self::DegreeFour(vertex) => return of_pattern(&key, vertex.pattern()),
+            Self::Waterbomb(pattern) => return of_pattern(&key, pattern.pattern()),
+            Self::Yoshimura(pattern) => return of_pattern(&key, pattern.pattern()),
+            Self::Kresling(pattern) => return of_pattern(&key, pattern.pattern()),
+            Self::Hypar(pattern) => return of_pattern(&key, pattern.pattern()),
+            Self::SquareTwist(twist) => return of_pattern(&key, twist.pattern()),
             Self::File(file) => return read_sheet(file, &key, folder),
         };
         Ok(RestMesh {
@@ -318,6 +341,12 @@ impl Mesh {
             roles: None,
         })
     }
+}
+
+fn of_pattern(key: &Key, pattern: Result<FoldPattern, GenerateError>) -> Result<RestMesh, Problem> {
+    let pattern = pattern.map_err(|e| generator_problem(key, &e))?;
+    let roles = EdgeRoles::from(&pattern);
+    Ok(RestMesh::of(pattern, roles))
 }
 
 fn read_sheet(file: &MeshFile, key: &Key, folder: &Path) -> Result<RestMesh, Problem> {

@@ -3,7 +3,8 @@
 use super::problem::{Checks, Key};
 use isosheet_mesh::EdgeId;
 use isosheet_mesh::generate::{
-    FoldAssignment, FoldPattern, GenerateError, degree_four, miura, miura_zigzags,
+    FoldAssignment, FoldPattern, GenerateError, degree_four, hypar, kresling, miura, miura_zigzags,
+    square_twist, waterbomb, yoshimura,
 };
 use isosheet_mesh::origami;
 use schemars::JsonSchema;
@@ -47,6 +48,71 @@ pub enum AlikeCreases {
     Odd,
     /// Creases 2 and 4.
     Even,
+}
+
+/// The waterbomb tessellation: a rectangle of squares whose diagonals are valleys and whose sides and middle
+/// lines are mountains. Odd rows are moved by half a square.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Waterbomb {
+    /// Number of squares along x.
+    pub columns: usize,
+    /// Number of rows of squares along y.
+    pub rows: usize,
+    /// Side of the squares, metres.
+    pub side: f64,
+}
+
+/// Yoshimura's pattern: bands of isosceles triangles, whose bases are valleys and whose sides are mountains.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Yoshimura {
+    /// Number of triangles of each kind, upright and upside down, in a band along x.
+    pub columns: usize,
+    /// Number of bands along y.
+    pub rows: usize,
+    /// Base of the triangles, metres.
+    pub base: f64,
+    /// Height of the triangles, metres.
+    pub height: f64,
+}
+
+/// Kresling's pattern: parallelograms whose sides are mountains and whose longer diagonals are valleys.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Kresling {
+    /// Number of parallelograms along x.
+    pub columns: usize,
+    /// Number of rows of parallelograms along y.
+    pub rows: usize,
+    /// Length of the sides along x, metres.
+    pub base: f64,
+    /// Length of the other sides, metres.
+    pub side: f64,
+    /// Acute angle of the parallelograms, degrees.
+    pub angle: f64,
+}
+
+/// The pleated hyperbolic paraboloid: concentric squares about the origin, mountains and valleys in turn.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Hypar {
+    /// Number of squares, the edge of the sheet included.
+    pub rings: usize,
+    /// Side of the sheet, metres.
+    pub side: f64,
+}
+
+/// The square twist: a square about the origin from whose sides pleats lead to the edges of the sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SquareTwist {
+    /// Side of the sheet, metres.
+    pub side: f64,
+    /// Side of the square in the middle, metres; its diagonal has to be shorter than the side of the sheet.
+    pub square: f64,
+    /// By what the square in the middle is turned, degrees, more than 0 and less than 90.
+    pub angle: f64,
 }
 
 /// What the edges of a sheet with a crease pattern are meant to do.
@@ -134,6 +200,89 @@ impl DegreeFour {
             AlikeCreases::Odd => origami::FoldingMode::OddAlike,
             AlikeCreases::Even => origami::FoldingMode::EvenAlike,
         }
+    }
+}
+
+impl Waterbomb {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.count(key.name("columns"), self.columns, 1);
+        checks.count(key.name("rows"), self.rows, 1);
+        checks.positive(key.name("side"), self.side, "m");
+    }
+
+    /// The flat sheet with its mountains and valleys.
+    ///
+    /// # Errors
+    /// [`GenerateError`] naming the value that cannot be used.
+    pub fn pattern(&self) -> Result<FoldPattern, GenerateError> {
+        waterbomb(self.columns, self.rows, self.side)
+    }
+}
+
+impl Yoshimura {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.count(key.name("columns"), self.columns, 1);
+        checks.count(key.name("rows"), self.rows, 1);
+        checks.positive(key.name("base"), self.base, "m");
+        checks.positive(key.name("height"), self.height, "m");
+    }
+
+    /// The flat sheet with its mountains and valleys.
+    ///
+    /// # Errors
+    /// [`GenerateError`] naming the value that cannot be used.
+    pub fn pattern(&self) -> Result<FoldPattern, GenerateError> {
+        yoshimura(self.columns, self.rows, self.base, self.height)
+    }
+}
+
+impl Kresling {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.count(key.name("columns"), self.columns, 1);
+        checks.count(key.name("rows"), self.rows, 1);
+        checks.positive(key.name("base"), self.base, "m");
+        checks.positive(key.name("side"), self.side, "m");
+        check_angle(key.name("angle"), self.angle, 90.0, checks);
+    }
+
+    /// The flat sheet with its mountains and valleys.
+    ///
+    /// # Errors
+    /// [`GenerateError`] naming the value that cannot be used.
+    pub fn pattern(&self) -> Result<FoldPattern, GenerateError> {
+        let angle = self.angle.to_radians();
+        kresling(self.columns, self.rows, self.base, self.side, angle)
+    }
+}
+
+impl Hypar {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.count(key.name("rings"), self.rings, 1);
+        checks.positive(key.name("side"), self.side, "m");
+    }
+
+    /// The flat sheet with its mountains and valleys.
+    ///
+    /// # Errors
+    /// [`GenerateError`] naming the value that cannot be used.
+    pub fn pattern(&self) -> Result<FoldPattern, GenerateError> {
+        hypar(self.rings, self.side)
+    }
+}
+
+impl SquareTwist {
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        checks.positive(key.name("side"), self.side, "m");
+        checks.positive(key.name("square"), self.square, "m");
+        check_angle(key.name("angle"), self.angle, 90.0, checks);
+    }
+
+    /// The flat sheet with its mountains and valleys.
+    ///
+    /// # Errors
+    /// [`GenerateError`] naming the value that cannot be used.
+    pub fn pattern(&self) -> Result<FoldPattern, GenerateError> {
+        square_twist(self.side, self.square, self.angle.to_radians())
     }
 }
 

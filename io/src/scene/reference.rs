@@ -49,18 +49,26 @@ Where a key has several choices, a choice with keys of its own is a table with o
 with the mesh files, `history.csv`, `trajectory.npz`, `obj/` if it is asked for, `index.html`, and last
 `summary.json`. The page `index.html` shows the run in 3D and plays it, in any browser and without a connection;
 `isosheet page DIR` makes it anew, of a run that is not complete too. A run that was stopped is continued by the
-same command, or by `isosheet resume DIR`. The exit codes:
+same command, or by `isosheet resume DIR`.
+
+`isosheet sweep SCENE --over stop.time=1,2 --over sheet.damping=0.5,1,2 -j 2` runs all combinations of the values, here
+two at a time, in the folders `NAME-sweep/000`, `001` and so on; `NAME-sweep/runs.csv` is the table of the runs.
+Without `-j` it prints what GNU parallel, Slurm or Snakemake need to run them. The same command again continues what was
+stopped or killed, and values may be added at the end of the first key. `isosheet collect NAME-sweep --out all.csv`
+makes one table of the keys and of all `summary.json`, with a row for each run.
+
+The exit codes:
 
 | code | meaning |
 |---|---|
-| 0 | done; of `simulate`, the run is complete |
+| 0 | done; of `simulate`, the run is complete; of `sweep -j`, all runs are |
 | 1 | a step of the simulation failed |
 | 2 | the command line is wrong |
 | 3 | the scene or the mesh is wrong, or a file cannot be read |
-| 4 | the folder holds the run of another scene or version, or other files |
+| 4 | the folder holds the run of another scene or version, another sweep, or other files |
 | 5 | another process is writing to the folder |
 | 6 | a file or a folder cannot be written |
-| 130 | stopped by Ctrl-C; the same command continues |
+| 130 | stopped by Ctrl-C, or a run of a sweep was killed; the same command continues |
 
 This page and `scene.schema.json`, the JSON schema for editors, are made by `isosheet reference DIR` of the
 structs that read scenes.

@@ -164,3 +164,47 @@ fn the_help_lists_all_formats() {
         parts[1]
     );
 }
+
+/// The frame that is asked for, animations of all frames, and what cannot be drawn.
+#[test]
+fn frames_of_runs_become_pictures() {
+    let dir = crate::with_scene(StartingPoint::Drape);
+    let dir = dir.path();
+    let short = [
+        "simulate",
+        "scene.toml",
+        "--out",
+        "run",
+        "--set",
+        "stop.time=0.1",
+    ];
+    done(dir, &short);
+    let count = Recording::read(&dir.join("run")).unwrap().trajectory.len();
+    assert_eq!(
+        done(dir, &["convert", "run", "last.png"]),
+        "last.png: 1 frames\n"
+    );
+    let last = (count - 1).to_string();
+    done(dir, &["convert", "run", "same.png", "--frame", &last]);
+    done(dir, &["convert", "run", "first.PNG", "--frame", "0"]);
+    let said = done(dir, &["convert", "run", "all.apng"]);
+    assert_eq!(said, format!("all.apng: {count} frames\n"));
+    let said = done(dir, &["convert", "run", "some.apng", "--every", "2"]);
+    assert_eq!(said, format!("some.apng: {} frames\n", count.div_ceil(2)));
+    let [last, same, first, all] =
+        ["last.png", "same.png", "first.PNG", "all.apng"].map(|f| fs::read(dir.join(f)).unwrap());
+    assert!(last == same && last != first);
+    assert!(all.starts_with(b"\x89PNG"));
+    // The chunk that says how many frames there are, and how often they are shown.
+    let control = all.windows(4).position(|w| w == b"acTL").unwrap() + 4;
+    let number = |at: usize| u32::from_be_bytes(all[at..at + 4].try_into().unwrap());
+    assert_eq!((number(control) as usize, number(control + 4)), (count, 0));
+    let none = count.to_string();
+    let said = refused(dir, &["convert", "run", "x.png", "--frame", &none], 3);
+    assert!(said.contains(&format!("{count} frames")), "{said}");
+    refused(dir, &["convert", "run", "x.png", "--every", "2"], 3);
+    refused(dir, &["convert", "run", "x.apng", "--frame", "0"], 3);
+    refused(dir, &["convert", "run/trajectory.npz", "x.png"], 3);
+    refused(dir, &["convert", "run", "x.png", "--weld", "0.1"], 3);
+    assert!(!dir.join("x.png").exists() && !dir.join("x.apng").exists());
+}

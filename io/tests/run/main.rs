@@ -7,6 +7,7 @@ mod folders;
 #[path = "../shared/headless.rs"]
 mod headless;
 mod pages;
+mod sweeps;
 mod tools;
 
 use isosheet_io::read_json;

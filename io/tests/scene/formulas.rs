@@ -3,8 +3,8 @@
 use crate::{parse, simulation};
 use isosheet_io::collide::{Shape, TriangleSurface};
 use isosheet_io::mesh::generate::{
-    FoldPattern, degree_four, delaunay, miura, miura_zigzags, octagon_244, polygon_rings,
-    regular_outline,
+    FoldAssignment, FoldPattern, GenerateError, degree_four, delaunay, hypar, kresling, miura,
+    miura_zigzags, octagon_244, polygon_rings, regular_outline, square_twist, waterbomb, yoshimura,
 };
 use isosheet_io::mesh::origami::{DegreeFour, FoldingMode};
 use isosheet_io::mesh::{Sheet, fold_angle};
@@ -46,6 +46,69 @@ fn meshes_are_those_of_their_generators() {
             format!("degree_four = {{ sectors = [60, 80], radius = 0.1, alike = \"{alike}\" }}");
         let pattern = degree_four(vertex.sectors, 0.1, vertex.assignment(mode)).unwrap();
         same(&setup(&mesh, "").sheet, &pattern.sheet);
+    }
+}
+
+/// Crease patterns by formula, as scenes have them and as the generators make them.
+fn patterns() -> [(&'static str, Result<FoldPattern, GenerateError>); 5] {
+    let angle = 60_f64.to_radians();
+    [
+        (
+            "waterbomb = { columns = 3, rows = 2, side = 0.03 }",
+            waterbomb(3, 2, 0.03),
+        ),
+        (
+            "yoshimura = { columns = 4, rows = 3, base = 0.04, height = 0.03 }",
+            yoshimura(4, 3, 0.04, 0.03),
+        ),
+        (
+            "kresling = { columns = 4, rows = 3, base = 0.03, side = 0.02, angle = 60 }",
+            kresling(4, 3, 0.03, 0.02, angle),
+        ),
+        ("hypar = { rings = 4, side = 0.2 }", hypar(4, 0.2)),
+        (
+            "square_twist = { side = 0.2, square = 0.05, angle = 60 }",
+            square_twist(0.2, 0.05, angle),
+        ),
+    ]
+}
+
+/// Scenes have the sheets and the assignments of the generators, and springs that drive the creases fold each
+/// of them to its own side.
+#[test]
+fn crease_patterns_fold_to_their_sides() {
+    for (mesh, pattern) in patterns() {
+        let pattern = pattern.unwrap();
+        let text = format!(
+            "version = 1
+            [sheet]
+            mesh = {{ {mesh} }}
+            damping = 5
+            [[crease]]
+            at = {{ pattern = \"assigned\" }}
+            stiffness = 0.01
+            angle = {{ smooth_step = {{ to = 40, end = 1.0 }} }}"
+        );
+        let scene = parse(&text).unwrap_or_else(|e| panic!("{e}"));
+        let expected: Vec<_> = pattern.assignments.iter().copied().map(Some).collect();
+        assert_eq!(scene.fold_assignments().unwrap(), Some(expected), "{mesh}");
+        same(&scene.build().unwrap().sheet, &pattern.sheet);
+        let mut run = simulation(&text);
+        for _ in 0..90 {
+            run.step(1.0 / 60.0).unwrap();
+        }
+        let t = pattern.sheet.topology();
+        for e in t.edge_ids() {
+            let assignment = pattern.assignment(e);
+            if matches!(
+                assignment,
+                FoldAssignment::Mountain | FoldAssignment::Valley
+            ) {
+                let fold = fold_angle(t, &run.state().x, e).unwrap().to_degrees();
+                let fold = assignment.sign() * fold;
+                assert!((3.0..90.0).contains(&fold), "{mesh}: {e} folds by {fold}");
+            }
+        }
     }
 }
 

@@ -27,7 +27,7 @@ impl FoldAssignment {
         }
     }
 
-    fn of_sign(sign: i32) -> Self {
+    pub(super) fn of_sign(sign: i32) -> Self {
         if sign > 0 {
             Self::Valley
         } else {
@@ -55,7 +55,7 @@ impl FoldPattern {
     }
 
     /// A sheet whose interior edges are flat but for the creases, given by their ends.
-    fn new(sheet: Sheet, creases: &[(usize, usize, FoldAssignment)]) -> Self {
+    pub(super) fn new(sheet: Sheet, creases: &[(usize, usize, FoldAssignment)]) -> Self {
         let t = sheet.topology();
         let mut assignments: Vec<FoldAssignment> = t
             .edge_ids()

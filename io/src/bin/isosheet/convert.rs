@@ -2,6 +2,7 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::pictures::{self, FrameChoice, PictureFormat};
 use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::run::Recording;
@@ -27,6 +28,8 @@ Files that are written of a run:
   .pvd    VTK, one .vtp for each frame in a folder, with strain and fold angle (ParaView)
   .obj    one file for each frame in a folder of that name
   .csv    a line for each vertex of each frame
+  .png    a shaded picture of one frame (--frame K, the last one without it)
+  .apng   shaded pictures of all frames as an animation in real time (browsers)
 docs/formats.md says more.";
 
 /// Convert a mesh file to another format, or a run to files of other programs
@@ -53,6 +56,9 @@ impl Convert {
     pub(crate) fn run(&self) -> Done {
         if self.input.is_dir() {
             let recording = Recording::read(&self.input).map_err(Failure::from)?;
+            if let Some(format) = PictureFormat::of(&self.output) {
+                return self.write_pictures(&recording, format);
+            }
             let assignments = recording.scene.fold_assignments()?;
             let series = self.series(&recording.trajectory)?;
             let series = match assignments {
@@ -66,6 +72,11 @@ impl Convert {
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("npz"))
         {
+            if PictureFormat::of(&self.output).is_some() {
+                return Err(input(
+                    "pictures need the folder of the run, which has its bodies and supports",
+                ));
+            }
             let trajectory = Trajectory::read(&self.input).map_err(input)?;
             return self.write_run(&self.series(&trajectory)?);
         }
@@ -91,6 +102,17 @@ impl Convert {
             .every
             .map_or(1, |n| usize::try_from(n).unwrap_or(usize::MAX));
         Series::new(trajectory, &SeriesOptions { every }).map_err(input)
+    }
+
+    fn write_pictures(&self, recording: &Recording, format: PictureFormat) -> Done {
+        if self.weld.is_some() {
+            return Err(input("--weld is for mesh files; a run has shared vertices"));
+        }
+        let choice = FrameChoice {
+            frame: self.frame,
+            every: self.every.map(|n| usize::try_from(n).unwrap_or(usize::MAX)),
+        };
+        pictures::write(recording, choice, format, &self.output)
     }
 
     fn write_run(&self, series: &Series<'_>) -> Done {

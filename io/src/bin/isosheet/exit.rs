@@ -1,6 +1,6 @@
 //! How the command ends.
 
-use isosheet_io::run::RunError;
+use isosheet_io::run::{RunError, SweepError};
 use isosheet_io::scene::{Colours, SceneError, SceneFileError};
 use serde_json::json;
 use std::io::{IsTerminal, Write};
@@ -9,20 +9,22 @@ use std::process::ExitCode;
 /// The exit codes, as `--help` shows them.
 pub(crate) const EXIT_CODES: &str = "\
 Exit codes:
-  0    done; of `simulate`, the run is complete
+  0    done; of `simulate`, the run is complete; of `sweep -j`, all runs are
   1    a step of the simulation failed
   2    the command line is wrong
   3    the scene or the mesh is wrong, or a file cannot be read
-  4    the folder holds the run of another scene or version, or other files
+  4    the folder holds the run of another scene or version, another sweep, or other files
   5    another process is writing to the folder
   6    a file or a folder cannot be written
-  130  stopped by Ctrl-C; the same command continues";
+  130  stopped by Ctrl-C, or a run of a sweep was killed; the same command continues";
 
 /// A class of failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Code {
     /// A step failed.
     Step = 1,
+    /// Arguments that do not fit together.
+    CommandLine = 2,
     /// Scene, mesh or a file that is read.
     Input = 3,
     /// Another scene in the folder.
@@ -33,6 +35,22 @@ pub(crate) enum Code {
     Output = 6,
     /// Ctrl-C.
     Interrupted = 130,
+}
+
+impl Code {
+    /// The code that a run of a sweep ended with; a code that no run ends with by itself counts as that of a
+    /// failed step.
+    pub(crate) fn of(code: i32) -> Self {
+        let codes = [
+            Self::Input,
+            Self::OtherScene,
+            Self::Busy,
+            Self::Output,
+            Self::Interrupted,
+        ];
+        let found = codes.into_iter().find(|c| *c as i32 == code);
+        found.unwrap_or(Self::Step)
+    }
 }
 
 /// How messages are written.
@@ -125,6 +143,21 @@ impl From<RunError> for Failure {
             },
             error => Self::new(code, error),
         }
+    }
+}
+
+impl From<SweepError> for Failure {
+    fn from(error: SweepError) -> Self {
+        let code = match error {
+            SweepError::Scene(error) => return error.into(),
+            SweepError::NoKeys | SweepError::SameKey { .. } | SweepError::TooMany { .. } => {
+                Code::CommandLine
+            }
+            SweepError::OtherSweep { .. } | SweepError::Foreign { .. } => Code::OtherScene,
+            SweepError::Write(_) => Code::Output,
+            _ => Code::Input,
+        };
+        Self::new(code, error)
     }
 }
 

@@ -1,14 +1,18 @@
 //! The command `isosheet`: simulates scenes, checks and repairs what they are made of.
 
 mod check;
+mod collect;
 mod convert;
 mod exit;
 mod info;
 mod interrupt;
 mod page;
+mod pictures;
 mod progress;
 mod simulate;
 mod start;
+mod sweep;
+mod workers;
 mod write;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -30,6 +34,10 @@ enum Command {
     Simulate(simulate::Simulate),
     /// Continue the run in a folder, with the scene that is stored there
     Resume(simulate::Resume),
+    /// Run a scene with all combinations of some values, here or by GNU parallel, Slurm or Snakemake
+    Sweep(sweep::SweepArgs),
+    /// Make one table of the summaries of runs and sweeps
+    Collect(collect::Collect),
     /// Make the 3D page of a run, complete or not
     Page(page::Page),
     /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
@@ -57,6 +65,8 @@ fn main() -> ExitCode {
     let done = match cli.command {
         Command::Simulate(simulate) => simulate.run(),
         Command::Resume(resume) => resume.run(),
+        Command::Sweep(sweep) => sweep.run(),
+        Command::Collect(collect) => collect.run(),
         Command::Page(page) => page.run(),
         Command::Check(check) => check.run(),
         Command::Info(info) => info.run(),

@@ -1,0 +1,55 @@
+//! `isosheet collect`.
+
+use crate::Done;
+use crate::exit::{Code, Failure};
+use clap::Args;
+use isosheet_io::run::Collection;
+use std::io::{ErrorKind, Write};
+use std::path::PathBuf;
+
+/// Make one table (CSV) of the summaries of runs and sweeps
+///
+/// The table has a row for each run: its folder, the keys of its sweep, and all of its `summary.json`.
+#[derive(Debug, Args)]
+pub(crate) struct Collect {
+    /// Folders of sweeps and of runs
+    #[arg(required = true, value_name = "DIR")]
+    folders: Vec<PathBuf>,
+    /// The file to write [default: standard output]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Make the table without the runs that are not complete
+    #[arg(long)]
+    allow_incomplete: bool,
+}
+
+impl Collect {
+    pub(crate) fn run(&self) -> Done {
+        let collection = Collection::of(&self.folders)?;
+        for folder in collection.incomplete() {
+            eprintln!("not complete: {}", folder.display());
+        }
+        let missing = collection.incomplete().len();
+        if missing > 0 && !self.allow_incomplete {
+            let message = format!(
+                "{missing} of {} runs are not complete; run them, or leave them out with --allow-incomplete",
+                missing + collection.row_count()
+            );
+            return Err(Failure::new(Code::Input, message));
+        }
+        match &self.out {
+            Some(path) => {
+                collection.write(path)?;
+                eprintln!("{}: {} runs", path.display(), collection.row_count());
+                Ok(())
+            }
+            None => match std::io::stdout().write_all(&collection.to_csv()) {
+                // A reader such as `head` has enough.
+                Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+                    Err(Failure::new(Code::Output, format!("cannot write: {e}")))
+                }
+                _ => Ok(()),
+            },
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Frames of a run as pictures, for `isosheet convert`.
+
+use crate::Done;
+use crate::exit::{Code, Failure};
+use crate::write::to_stdout;
+use isosheet_io::run::{Film, FilmOptions, Recording};
+use isosheet_io::write_atomically;
+use std::io::Write;
+use std::path::Path;
+
+/// Files of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PictureFormat {
+    /// One frame.
+    Png,
+    /// All frames, animated.
+    AnimatedPng,
+}
+
+impl PictureFormat {
+    /// The format that the extension of a file says, if it is one of pictures.
+    pub(crate) fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        match extension.as_str() {
+            "png" => Some(Self::Png),
+            "apng" => Some(Self::AnimatedPng),
+            _ => None,
+        }
+    }
+}
+
+/// Which frames are drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrameChoice {
+    /// One frame; the last one if there is no choice.
+    pub(crate) frame: Option<usize>,
+    /// Every so many frames one.
+    pub(crate) every: Option<usize>,
+}
+
+/// Draws frames of a run.
+pub(crate) fn write(
+    recording: &Recording,
+    choice: FrameChoice,
+    format: PictureFormat,
+    path: &Path,
+) -> Done {
+    let count = recording.trajectory.len();
+    let frames: Vec<usize> = match (format, choice) {
+        (PictureFormat::Png, FrameChoice { every: Some(_), .. }) => {
+            return Err(input(
+                "a .png file has one frame (--frame K); --every is for .apng",
+            ));
+        }
+        (PictureFormat::AnimatedPng, FrameChoice { frame: Some(_), .. }) => {
+            return Err(input("an .apng file has all frames; --frame K is for .png"));
+        }
+        (PictureFormat::Png, FrameChoice { frame, .. }) => {
+            vec![frame.unwrap_or(count.saturating_sub(1))]
+        }
+        (PictureFormat::AnimatedPng, FrameChoice { every, .. }) => {
+            (0..count).step_by(every.unwrap_or(1).max(1)).collect()
+        }
+    };
+    if let Some(frame) = frames.iter().find(|frame| **frame >= count) {
+        let message = format!("the run has {count} frames, from 0, and no frame {frame}");
+        return Err(input(message));
+    }
+    let film = Film::new(recording, frames.clone(), &FilmOptions::default()).map_err(input)?;
+    for body in film.undrawn() {
+        eprintln!(
+            "not drawn: obstacle[{body}], since pictures have no half-spaces, balls and capsules"
+        );
+    }
+    let bytes = match format {
+        PictureFormat::Png => film.picture(0).and_then(|image| image.to_png()),
+        PictureFormat::AnimatedPng => film.animation(),
+    };
+    let bytes = bytes.map_err(input)?;
+    let written = write_atomically(path, |w| w.write_all(&bytes));
+    written.map_err(|e| Failure::new(Code::Output, e))?;
+    to_stdout(&format!("{}: {} frames\n", path.display(), frames.len()))
+}
+
+fn input(error: impl ToString) -> Failure {
+    Failure::new(Code::Input, error)
+}

@@ -1,0 +1,127 @@
+//! `isosheet sweep`.
+
+use crate::Done;
+use crate::exit::{Code, Failure};
+use crate::workers;
+use crate::write::to_stdout;
+use clap::{Args, ValueEnum};
+use isosheet_io::run::{Engine, Sweep, Variation};
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+/// What the command does, as `--help` shows it.
+const HELP: &str = "\
+The folder has runs.csv (a row for each run) and commands.txt (a line of shell for each run). Without -j nothing
+is run: the lines for other programs are printed, of one program with --engine:
+  isosheet sweep s.toml --over stop.time=1,2 --engine parallel | sh
+  isosheet sweep s.toml --over stop.time=1,2 --engine slurm > job.sh && sbatch job.sh
+  isosheet sweep s.toml --over stop.time=1,2 --engine snakemake > Snakefile && snakemake -j 8
+The same line again, after a kill or a failure, leaves complete runs as they are and continues the others.
+`isosheet collect DIR` makes one table of the results. With -j the exit code is 0 if all runs are complete, 130
+after Ctrl-C or if a run was killed, and otherwise that of the first run that failed.";
+
+/// Run a scene with all combinations of some values
+///
+/// All runs are checked before anything is written or run.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub(crate) struct SweepArgs {
+    /// The scene file
+    scene: PathBuf,
+    /// A key and its values, which are those of TOML, for example `stop.time=0.5,1` or
+    /// `method.integrator=bdf2,implicit_euler`; the last key changes fastest
+    #[arg(long = "over", value_name = "KEY=A,B,...", required = true)]
+    over: Vec<Variation>,
+    /// Change a key of the scene in all runs, as `isosheet simulate` does
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    edits: Vec<String>,
+    /// The folder to write to [default: the name of the scene with `-sweep`, in the current folder]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Run the sweep here, N runs at a time, each in a process of its own
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    jobs: Option<u32>,
+    /// Print what this program needs to run the sweep, and nothing else
+    #[arg(long, value_enum, conflicts_with = "jobs")]
+    engine: Option<EngineName>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum EngineName {
+    /// A line of shell for GNU parallel
+    Parallel,
+    /// The script of a Slurm job array
+    Slurm,
+    /// A Snakefile
+    Snakemake,
+}
+
+impl EngineName {
+    fn engine(self) -> Engine {
+        match self {
+            Self::Parallel => Engine::Parallel,
+            Self::Slurm => Engine::Slurm,
+            Self::Snakemake => Engine::Snakemake,
+        }
+    }
+}
+
+impl SweepArgs {
+    pub(crate) fn run(self) -> Done {
+        let folder = self.out.unwrap_or_else(|| default_folder(&self.scene));
+        let sweep = Sweep::new(&self.scene, &folder, self.edits, self.over)?;
+        sweep.check()?;
+        let program = this_program()?;
+        sweep.write(&word_for(&program)?)?;
+        eprintln!("{} runs in {}", sweep.len(), folder.display());
+        match (self.jobs, self.engine) {
+            (Some(jobs), _) => workers::run(&sweep, &program, jobs),
+            (None, Some(engine)) => to_stdout(&engine.engine().text(&sweep)),
+            (None, None) => to_stdout(&all_engines(&sweep)),
+        }
+    }
+}
+
+/// What every program needs, with headings.
+fn all_engines(sweep: &Sweep) -> String {
+    let parts = [
+        ("GNU parallel (--engine parallel)", Engine::Parallel),
+        ("Slurm (--engine slurm)", Engine::Slurm),
+        ("Snakemake (--engine snakemake)", Engine::Snakemake),
+    ];
+    let parts = parts.map(|(name, engine)| format!("# {name}\n{}", engine.text(sweep)));
+    parts.join("\n")
+}
+
+/// The folder of a sweep without `--out`: `drape-sweep` in the current folder for `scenes/drape.toml`.
+fn default_folder(scene: &Path) -> PathBuf {
+    let name = scene.file_stem().unwrap_or_default().to_string_lossy();
+    PathBuf::from(format!("{name}-sweep"))
+}
+
+/// The program that is running.
+fn this_program() -> Result<PathBuf, Failure> {
+    std::env::current_exe().map_err(|e| {
+        let message = format!("cannot find the program that is running: {e}; reinstall it");
+        Failure::new(Code::Input, message)
+    })
+}
+
+/// What a shell calls the program by: `isosheet` if that is the same program, its whole path otherwise.
+fn word_for(program: &Path) -> Result<String, Failure> {
+    const NAME: &str = "isosheet";
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    let mut known = std::env::split_paths(&folders).map(|folder| folder.join(NAME));
+    let found = known.find(|path| path.is_file());
+    let same = found.and_then(|path| path.canonicalize().ok()) == program.canonicalize().ok();
+    if same && program.file_name() == Some(OsStr::new(NAME)) {
+        return Ok(NAME.to_owned());
+    }
+    program.to_str().map(str::to_owned).ok_or_else(|| {
+        let message = format!(
+            "the path {} of the program is not valid UTF-8",
+            program.display()
+        );
+        Failure::new(Code::Input, format!("{message}; install it elsewhere"))
+    })
+}

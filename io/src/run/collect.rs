@@ -1,0 +1,195 @@
+//! The summaries of many runs as one table.
+
+use super::folder::RunFolder;
+use super::sweep::{Sweep, SweepError};
+use super::{Ending, Summary};
+use crate::format::{Finding, check_finite};
+use crate::format::{JsonError, read_json, write_atomically};
+use std::path::{Path, PathBuf};
+
+/// The summaries of many runs as one table: a row for each complete run.
+///
+/// The columns are `folder`, the keys of the sweeps, and the fields of [`Summary`], those inside of others
+/// with names such as `ending.t` and `ending.supports[0].x`. A run without a field has an empty cell there.
+/// Numbers have all their digits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Collection {
+    columns: Vec<String>,
+    rows: Vec<Row>,
+    incomplete: Vec<PathBuf>,
+}
+
+/// The cells of a run, with the names of their columns.
+type Row = Vec<(String, String)>;
+
+impl Collection {
+    /// Reads the summaries of runs and of all runs of sweeps, in the order of `folders` and of their numbers.
+    ///
+    /// # Errors
+    /// [`SweepError::NothingToCollect`] for a folder with neither a run nor a sweep, [`SweepError`] if a
+    /// table or a summary cannot be read or has a number that is not finite.
+    pub fn of(folders: &[PathBuf]) -> Result<Self, SweepError> {
+        let mut collection = Self {
+            columns: vec!["folder".into()],
+            rows: Vec::new(),
+            incomplete: Vec::new(),
+        };
+        let mut keys = Vec::new();
+        for folder in folders {
+            if let Some(table) = Sweep::table_in(folder)? {
+                for key in &table.keys {
+                    note(&mut keys, key);
+                }
+                for (name, values) in table.runs {
+                    let cells = table.keys.iter().cloned().zip(values).collect();
+                    collection.add(&folder.join(name), cells)?;
+                }
+            } else if folder.join(RunFolder::SCENE).is_file() {
+                collection.add(folder, Vec::new())?;
+            } else {
+                let folder = folder.clone();
+                return Err(SweepError::NothingToCollect { folder });
+            }
+        }
+        collection.columns.extend(keys);
+        for (column, _) in collection.rows.iter().flatten() {
+            note(&mut collection.columns, column);
+        }
+        Ok(collection)
+    }
+
+    /// The folders of the runs that are not complete. They have no row.
+    pub fn incomplete(&self) -> &[PathBuf] {
+        &self.incomplete
+    }
+
+    /// Number of complete runs.
+    pub fn row_count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The table as CSV.
+    pub fn to_csv(&self) -> Vec<u8> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let mut record = |cells: Vec<&str>| {
+            let written = writer.write_record(cells);
+            written.expect("memory takes rows of equal length");
+        };
+        record(self.columns.iter().map(String::as_str).collect());
+        for row in &self.rows {
+            let cell = |column: &String| {
+                let found = row.iter().find(|(name, _)| name == column);
+                found.map_or("", |(_, value)| value.as_str())
+            };
+            record(self.columns.iter().map(cell).collect());
+        }
+        writer.into_inner().expect("memory can be flushed")
+    }
+
+    /// Writes the table as a CSV file, which appears when it is complete.
+    ///
+    /// # Errors
+    /// [`SweepError::Write`].
+    pub fn write(&self, path: &Path) -> Result<(), SweepError> {
+        use std::io::Write;
+        Ok(write_atomically(path, |w| w.write_all(&self.to_csv()))?)
+    }
+
+    fn add(&mut self, folder: &Path, keys: Row) -> Result<(), SweepError> {
+        let path = folder.join(RunFolder::SUMMARY);
+        if !path.is_file() {
+            self.incomplete.push(folder.to_owned());
+            return Ok(());
+        }
+        let summary: Summary = read_json(&path)?;
+        check_finite(&summary).map_err(|finding| match finding {
+            Finding::NotFinite { path: field, value } => {
+                JsonError::NotFinite { path, field, value }
+            }
+            Finding::Other(problem) => JsonError::Form { path, problem },
+        })?;
+        let mut row = vec![("folder".to_owned(), folder.display().to_string())];
+        row.extend(keys);
+        add_summary(&mut row, &summary);
+        self.rows.push(row);
+        Ok(())
+    }
+}
+
+/// Adds a name that is not in the list yet.
+fn note(names: &mut Vec<String>, name: &str) {
+    if !names.iter().any(|known| known == name) {
+        names.push(name.to_owned());
+    }
+}
+
+/// All fields, in their order.
+fn add_summary(row: &mut Row, summary: &Summary) {
+    let Summary {
+        program,
+        version,
+        commit,
+        scene,
+        wall_time,
+        modelled,
+        vertices,
+        faces,
+        steps,
+        frames,
+        largest_strain,
+        smallest_gap,
+        iterations,
+        factorisations,
+        rejected,
+        ending,
+    } = summary;
+    let mut cell = |name: &str, value: String| row.push((name.to_owned(), value));
+    cell("program", program.clone());
+    cell("version", version.clone());
+    cell("commit", commit.clone().unwrap_or_default());
+    cell("scene", scene.clone());
+    cell("wall_time", number(*wall_time));
+    cell("modelled", modelled.join("; "));
+    cell("vertices", vertices.to_string());
+    cell("faces", faces.to_string());
+    cell("steps", steps.to_string());
+    cell("frames", frames.to_string());
+    cell("largest_strain", number(*largest_strain));
+    cell("smallest_gap", smallest_gap.map(number).unwrap_or_default());
+    cell("iterations", iterations.to_string());
+    cell("factorisations", factorisations.to_string());
+    cell("rejected", rejected.to_string());
+    add_ending(row, ending);
+}
+
+fn add_ending(row: &mut Row, ending: &Ending) {
+    let Ending {
+        reason,
+        t,
+        kinetic,
+        potential,
+        energy_drift,
+        largest_speed,
+        supports,
+        obstacles,
+    } = ending;
+    let mut cell = |name: &str, value: String| row.push((format!("ending.{name}"), value));
+    cell("reason", reason.name().to_owned());
+    cell("t", number(*t));
+    cell("kinetic", number(*kinetic));
+    cell("potential", number(*potential));
+    cell("energy_drift", number(*energy_drift));
+    cell("largest_speed", number(*largest_speed));
+    for (list, forces) in [("supports", supports), ("obstacles", obstacles)] {
+        for (k, force) in forces.iter().enumerate() {
+            for (axis, component) in ["x", "y", "z"].into_iter().zip(force) {
+                cell(&format!("{list}[{k}].{axis}"), number(*component));
+            }
+        }
+    }
+}
+
+/// The shortest text from which the same bits are read, with an exponent where that is shorter.
+fn number(value: f64) -> String {
+    serde_json::Value::from(value).to_string()
+}

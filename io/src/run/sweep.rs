@@ -1,0 +1,290 @@
+//! Sweeps: the runs of a scene with all combinations of some values of some keys.
+//!
+//! The folder of a sweep has
+//!
+//! | file | what |
+//! |---|---|
+//! | `runs.csv` | the runs: number, folder, and the value of every key of the sweep |
+//! | `commands.txt` | a line of shell for each run, which simulates the scene with its edits |
+//! | `000`, `001`, ... | the folders of the runs |
+//! | `000.log`, `001.log`, ... | what the runs said, where `isosheet sweep -j` ran them |
+//!
+//! The last key changes fastest. Values that are added to the first key add runs at the end and keep the
+//! numbers of all others.
+
+mod engine;
+mod error;
+mod table;
+mod variation;
+
+pub use engine::Engine;
+pub use error::{RefusedRuns, SweepError};
+pub use variation::{Variation, VariationError};
+
+pub(crate) use table::SweepTable;
+
+use crate::format::write_atomically;
+use crate::scene::{SceneFile, SceneFileError};
+use engine::shell_word;
+use std::fs;
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// A sweep: all combinations of the values of some keys of a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sweep {
+    scene: String,
+    folder: String,
+    edits: Vec<String>,
+    variations: Vec<Variation>,
+    count: usize,
+}
+
+/// One run of a sweep.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SweepRun {
+    /// Its number, from 0.
+    pub number: usize,
+    /// The name of its folder in that of the sweep: the number with at least three digits.
+    pub folder: String,
+    /// The value of each key of the sweep, as TOML.
+    pub values: Vec<String>,
+    /// What the sweep changes in the scene, as `key=value`: the edits that all runs have, and its own.
+    pub edits: Vec<String>,
+}
+
+impl Sweep {
+    /// Most runs of a sweep: a hundred times the longest array that Slurm accepts as it is installed (1001),
+    /// and a check of all of them takes minutes. A larger number is taken for a mistake.
+    pub const MOST_RUNS: usize = 100_000;
+
+    const TABLE: &'static str = "runs.csv";
+    const COMMANDS: &'static str = "commands.txt";
+
+    /// The sweep of a scene over `variations`, to be run in `folder`; `edits` of the form `key=value` are
+    /// made in every run before. Nothing is read or written yet.
+    ///
+    /// # Errors
+    /// [`SweepError`] without keys, for a key that is given twice or contains another one, for more than
+    /// [`Sweep::MOST_RUNS`] runs, and for paths that a line of text cannot hold.
+    pub fn new(
+        scene: &Path,
+        folder: &Path,
+        edits: Vec<String>,
+        variations: Vec<Variation>,
+    ) -> Result<Self, SweepError> {
+        if variations.is_empty() {
+            return Err(SweepError::NoKeys);
+        }
+        let names: Vec<_> = variations.iter().map(Variation::names).collect();
+        for (j, second) in names.iter().enumerate() {
+            let contained = |first: &Vec<String>| {
+                let common = first.len().min(second.len());
+                first[..common] == second[..common]
+            };
+            if let Some(i) = names[..j].iter().position(contained) {
+                return Err(SweepError::SameKey {
+                    first: variations[i].key().to_owned(),
+                    second: variations[j].key().to_owned(),
+                });
+            }
+        }
+        let counts = variations.iter().map(|v| v.values().len());
+        let count = counts.fold(1, usize::saturating_mul);
+        if count > Self::MOST_RUNS {
+            return Err(SweepError::TooMany { count });
+        }
+        Ok(Self {
+            scene: absolute(scene)?,
+            folder: absolute(folder)?,
+            edits,
+            variations,
+            count,
+        })
+    }
+
+    /// Number of runs, at least one.
+    #[expect(clippy::len_without_is_empty, reason = "a sweep has at least one run")]
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// The run with a number below [`Sweep::len`].
+    pub fn run(&self, number: usize) -> SweepRun {
+        let (mut rest, mut values) = (number, Vec::with_capacity(self.variations.len()));
+        for variation in self.variations.iter().rev() {
+            let all = variation.values();
+            values.push(all[rest % all.len()].clone());
+            rest /= all.len();
+        }
+        values.reverse();
+        let own = self.variations.iter().zip(&values);
+        let own = own.map(|(variation, value)| format!("{}={value}", variation.key()));
+        SweepRun {
+            number,
+            folder: format!("{number:03}"),
+            edits: self.edits.iter().cloned().chain(own).collect(),
+            values,
+        }
+    }
+
+    /// All runs.
+    pub fn runs(&self) -> impl Iterator<Item = SweepRun> + '_ {
+        (0..self.count).map(|number| self.run(number))
+    }
+
+    /// The folder of the sweep, absolute.
+    pub fn folder(&self) -> &Path {
+        Path::new(&self.folder)
+    }
+
+    pub(crate) fn folder_text(&self) -> &str {
+        &self.folder
+    }
+
+    pub(crate) fn commands_path(&self) -> String {
+        within(&self.folder, Self::COMMANDS)
+    }
+
+    /// The arguments with which the command `isosheet` simulates a run.
+    pub fn arguments(&self, run: &SweepRun) -> Vec<String> {
+        let mut arguments = vec!["simulate".to_owned(), self.scene.clone()];
+        for edit in &run.edits {
+            arguments.extend(["--set".to_owned(), edit.clone()]);
+        }
+        let out = within(&self.folder, &run.folder);
+        arguments.extend(["--out".to_owned(), out]);
+        arguments
+    }
+
+    /// Checks that every run can start, as `isosheet check` does it.
+    ///
+    /// # Errors
+    /// [`SweepError::Scene`] if the scene file cannot be read, [`SweepError::Refused`] with all that is wrong
+    /// in any run.
+    pub fn check(&self) -> Result<(), SweepError> {
+        let path = Path::new(&self.scene);
+        let text = fs::read_to_string(path).map_err(|source| SceneFileError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        let mut refused: Vec<RefusedRuns> = Vec::new();
+        for run in self.runs() {
+            let start = || -> Result<(), SceneFileError> {
+                SceneFile::parse(text.clone(), path, &run.edits)?
+                    .build()?
+                    .start()?;
+                Ok(())
+            };
+            let Err(error) = start() else {
+                continue;
+            };
+            let problem = RefusedRuns::problem_of(&error);
+            match refused.iter_mut().find(|r| r.problem == problem) {
+                Some(same) => same.others += 1,
+                None => refused.push(RefusedRuns {
+                    problem,
+                    message: error.to_string(),
+                    others: 0,
+                    first: run,
+                }),
+            }
+        }
+        if refused.is_empty() {
+            return Ok(());
+        }
+        Err(SweepError::Refused(refused))
+    }
+
+    /// Writes the table and the lines of shell to the folder of the sweep, which is made where it is missing.
+    /// The lines call `program`, a word or path.
+    ///
+    /// # Errors
+    /// [`SweepError::OtherSweep`] if the folder has a table that this one does not begin with,
+    /// [`SweepError::Foreign`] if it has other files, [`SweepError`] if it cannot be written.
+    pub fn write(&self, program: &str) -> Result<(), SweepError> {
+        let table = self.table();
+        let path = self.folder().join(Self::TABLE);
+        match SweepTable::read(&path) {
+            Ok(stored) if table.begins_with(&stored) => {}
+            Ok(_) => {
+                let folder = self.folder().to_owned();
+                return Err(SweepError::OtherSweep { folder });
+            }
+            Err(SweepError::Read { source, .. }) if source.kind() == ErrorKind::NotFound => {
+                self.refuse_other_files()?;
+            }
+            Err(error) => return Err(error),
+        }
+        table.write(&path)?;
+        let commands = self.folder().join(Self::COMMANDS);
+        write_atomically(&commands, |w| {
+            self.runs().try_for_each(|run| {
+                let words = self.arguments(&run);
+                let words: Vec<String> = words.iter().map(|word| shell_word(word)).collect();
+                writeln!(w, "{} {}", shell_word(program), words.join(" "))
+            })
+        })?;
+        Ok(())
+    }
+
+    fn table(&self) -> SweepTable {
+        SweepTable {
+            keys: self.variations.iter().map(|v| v.key().to_owned()).collect(),
+            runs: self.runs().map(|run| (run.folder, run.values)).collect(),
+        }
+    }
+
+    /// Refuses a folder with other files than the unfinished ones of a sweep that was killed at once.
+    fn refuse_other_files(&self) -> Result<(), SweepError> {
+        let entries = match fs::read_dir(self.folder()) {
+            Ok(entries) => entries,
+            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(()),
+            Err(source) => return Err(self.unreadable(source)),
+        };
+        for entry in entries {
+            let name = entry.map_err(|e| self.unreadable(e))?.file_name();
+            let name = name.to_string_lossy();
+            if !(name.starts_with('.') && name.ends_with(".part")) {
+                let folder = self.folder().to_owned();
+                return Err(SweepError::Foreign { folder });
+            }
+        }
+        Ok(())
+    }
+
+    fn unreadable(&self, source: io::Error) -> SweepError {
+        let path = self.folder().to_owned();
+        SweepError::Read { path, source }
+    }
+
+    /// The table of the sweep in a folder; none if there is no sweep.
+    pub(crate) fn table_in(folder: &Path) -> Result<Option<SweepTable>, SweepError> {
+        let path = folder.join(Self::TABLE);
+        if !path.is_file() {
+            return Ok(None);
+        }
+        SweepTable::read(&path).map(Some)
+    }
+}
+
+/// A path that does not depend on the current folder, as text for a line of shell.
+fn absolute(path: &Path) -> Result<String, SweepError> {
+    let whole = std::path::absolute(path).map_err(|source| SweepError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    match whole.to_str() {
+        Some(text) if !text.chars().any(char::is_control) => Ok(text.to_owned()),
+        _ => Err(SweepError::Path { path: whole }),
+    }
+}
+
+/// The path of a file in a folder, both of which are text.
+fn within(folder: &str, name: &str) -> String {
+    let path: PathBuf = [folder, name].iter().collect();
+    path.to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests;

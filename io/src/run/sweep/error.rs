@@ -1,0 +1,140 @@
+//! Why a sweep cannot be made, run or collected.
+
+use super::{Sweep, SweepRun};
+use crate::format::{JsonError, WriteError};
+use crate::scene::SceneFileError;
+use std::io;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why a sweep cannot be made, run or collected.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SweepError {
+    /// There is no key.
+    #[error("a sweep needs a key with values, for example `stop.time=0.5,1,2`")]
+    NoKeys,
+    /// Two keys are the same, or one contains the other.
+    #[error(
+        "`{first}` and `{second}` change the same part of the scene; give one key with all its values"
+    )]
+    SameKey {
+        /// The first key.
+        first: String,
+        /// The second key.
+        second: String,
+    },
+    /// There are too many runs.
+    #[error(
+        "these are {count} runs, more than {}; give fewer values, or make several sweeps",
+        Sweep::MOST_RUNS
+    )]
+    TooMany {
+        /// The number of runs.
+        count: usize,
+    },
+    /// A path cannot be part of a line of text.
+    #[error("{} is not valid UTF-8 or has a control character; rename it or choose another --out", path.display())]
+    Path {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The scene file cannot be read.
+    #[error(transparent)]
+    Scene(#[from] SceneFileError),
+    /// Some runs cannot start.
+    #[error("{}", messages(.0))]
+    Refused(Vec<RefusedRuns>),
+    /// The folder has another sweep.
+    #[error(
+        "{} holds another sweep (see {}); choose another folder with --out. Values can be added to a sweep in its \
+         folder at the end of the list of its first key", folder.display(), folder.join("runs.csv").display()
+    )]
+    OtherSweep {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The folder has other files.
+    #[error(
+        "{} holds files and is not the folder of a sweep; choose an empty or a new folder with --out",
+        folder.display()
+    )]
+    Foreign {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A file or a folder cannot be read.
+    #[error("cannot read {}: {source}; check the path and the permissions", path.display())]
+    Read {
+        /// The path.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The table is not one of a sweep.
+    #[error("{}: {problem}; make the sweep anew in another folder", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A summary cannot be read.
+    #[error(transparent)]
+    Summary(#[from] JsonError),
+    /// A folder has neither a sweep nor a run.
+    #[error(
+        "{} is the folder neither of a sweep (with runs.csv) nor of a run (with scene.toml); name folders that \
+         `isosheet sweep` or `isosheet simulate` wrote", folder.display()
+    )]
+    NothingToCollect {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// Runs of a sweep that cannot start for the same reason.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RefusedRuns {
+    /// The first of them.
+    pub first: SweepRun,
+    /// Number of the other ones.
+    pub others: usize,
+    /// What is wrong with the first one, shown at its place in the scene.
+    pub message: String,
+    /// What is wrong, without the place.
+    pub(crate) problem: String,
+}
+
+impl RefusedRuns {
+    /// What is wrong, without the place in a text, which differs between runs.
+    pub(crate) fn problem_of(error: &SceneFileError) -> String {
+        match error {
+            SceneFileError::Scene(error) => {
+                let problems = error.problems().iter();
+                problems.map(|p| format!("{p}\n")).collect()
+            }
+            other => other.to_string(),
+        }
+    }
+}
+
+fn messages(refused: &[RefusedRuns]) -> String {
+    let message = |runs: &RefusedRuns| {
+        let others = match runs.others {
+            0 => String::new(),
+            1 => " and another run".to_owned(),
+            n => format!(" and {n} other runs"),
+        };
+        let (folder, edits) = (&runs.first.folder, runs.first.edits.join(", "));
+        format!(
+            "run {folder} ({edits}){others} cannot start:\n{}",
+            runs.message
+        )
+    };
+    let all: Vec<String> = refused.iter().map(message).collect();
+    format!("nothing was run or written\n{}", all.join("\n\n"))
+}

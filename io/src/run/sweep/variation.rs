@@ -1,0 +1,223 @@
+//! A key of a scene and the values that a sweep gives it.
+
+use std::fmt;
+use std::str::FromStr;
+use thiserror::Error;
+
+/// A key of a scene and the values that it takes, written as `key=a,b,c`.
+///
+/// Values are those of TOML. As in edits of a scene, a value that is not TOML is taken as a string, so that
+/// names need no quotes. Commas inside of quotes, brackets and braces belong to a value.
+///
+/// ```
+/// use isosheet_io::run::Variation;
+/// let v: Variation = "forces.gravity=[0, 0, -9.81],[0, 0, -1.62]".parse()?;
+/// assert_eq!(v.key(), "forces.gravity");
+/// assert_eq!(v.values(), ["[0, 0, -9.81]", "[0, 0, -1.62]"]);
+/// # Ok::<(), isosheet_io::run::VariationError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Variation {
+    key: String,
+    values: Vec<String>,
+}
+
+/// A text that is not of the form `key=a,b,c`.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum VariationError {
+    /// There is no equals sign, or no key before it.
+    #[error("`{text}` is not of the form key=a,b,c; write for example `stop.time=0.5,1,2`")]
+    Form {
+        /// The text.
+        text: String,
+    },
+    /// A value is empty.
+    #[error(
+        "value {number} of `{key}` is empty; take out the comma, or write \"\" for an empty text"
+    )]
+    Empty {
+        /// The key.
+        key: String,
+        /// Which value, from 1.
+        number: usize,
+    },
+    /// A quote, bracket or brace has no partner.
+    #[error("the values of `{key}` end inside of a quote, bracket or brace; close it")]
+    Open {
+        /// The key.
+        key: String,
+    },
+    /// A value is given twice.
+    #[error(
+        "`{key}` takes the value {value} twice; give it once, since both runs would be the same"
+    )]
+    Twice {
+        /// The key.
+        key: String,
+        /// The value.
+        value: String,
+    },
+    /// A line break or another control character, which a line of a table cannot hold.
+    #[error(
+        "`{key}` has a control character; write values on one line, and \\n in quotes for a line break"
+    )]
+    Control {
+        /// The key.
+        key: String,
+    },
+}
+
+impl Variation {
+    /// The key, as it was written.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// The values as TOML, at least one.
+    pub fn values(&self) -> &[String] {
+        &self.values
+    }
+
+    /// The names on the way to the key, with `list[1]` as `list` and `1`.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let key = self.key.replace('[', ".").replace(']', "");
+        key.split('.').map(|n| n.trim().to_owned()).collect()
+    }
+}
+
+impl FromStr for Variation {
+    type Err = VariationError;
+
+    fn from_str(text: &str) -> Result<Self, VariationError> {
+        let form = || VariationError::Form {
+            text: text.to_owned(),
+        };
+        let (key, values) = text.split_once('=').ok_or_else(form)?;
+        let key = key.trim().to_owned();
+        if key.is_empty() {
+            return Err(form());
+        }
+        if text.chars().any(char::is_control) {
+            return Err(VariationError::Control { key });
+        }
+        let pieces = split(values).ok_or_else(|| VariationError::Open { key: key.clone() })?;
+        let mut values: Vec<String> = Vec::new();
+        for (k, piece) in pieces.into_iter().enumerate() {
+            let value = piece.trim().to_owned();
+            if value.is_empty() {
+                return Err(VariationError::Empty { key, number: k + 1 });
+            }
+            if values.contains(&value) {
+                return Err(VariationError::Twice { key, value });
+            }
+            values.push(value);
+        }
+        Ok(Self { key, values })
+    }
+}
+
+impl fmt::Display for Variation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.key, self.values.join(","))
+    }
+}
+
+/// The parts of a text between the commas that are in no quotes, brackets or braces; none if one of these is
+/// not closed. A quote opens at the start of a value and inside of brackets; elsewhere it is a letter.
+fn split(text: &str) -> Option<Vec<&str>> {
+    let (mut parts, mut start, mut depth) = (Vec::new(), 0, 0usize);
+    let mut letters = text.char_indices();
+    while let Some((at, letter)) = letters.next() {
+        match letter {
+            '[' | '{' => depth += 1,
+            ']' | '}' => depth = depth.checked_sub(1)?,
+            '"' | '\'' if depth > 0 || text[start..at].trim().is_empty() => {
+                skip_quoted(&mut letters, letter)?;
+            }
+            ',' if depth == 0 => {
+                parts.push(&text[start..at]);
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(&text[start..]);
+    (depth == 0).then_some(parts)
+}
+
+/// Goes behind the closing quote; none if there is none. `"` has escapes, `'` has not.
+fn skip_quoted(letters: &mut impl Iterator<Item = (usize, char)>, quote: char) -> Option<()> {
+    while let Some((_, letter)) = letters.next() {
+        if letter == quote {
+            return Some(());
+        }
+        if letter == '\\' && quote == '"' {
+            letters.next()?;
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toml_edit::Value;
+
+    fn values(text: &str) -> Vec<String> {
+        text.parse::<Variation>().unwrap().values
+    }
+
+    #[test]
+    fn commas_inside_of_values_do_not_part_them() {
+        assert_eq!(values("a.b = 1, 2.5 ,-3e-2"), ["1", "2.5", "-3e-2"]);
+        assert_eq!(values("a=bdf2,implicit_euler"), ["bdf2", "implicit_euler"]);
+        assert_eq!(
+            values("a={ x = [1, 2], y = \"}\" },{ x = [3] }"),
+            ["{ x = [1, 2], y = \"}\" }", "{ x = [3] }"]
+        );
+        assert_eq!(
+            values(r#"a="one, \"two\"",'three\',it's"#),
+            [r#""one, \"two\"""#, r"'three\'", "it's"]
+        );
+        assert_eq!(values("a=x=1,y"), ["x=1", "y"]);
+    }
+
+    /// The parts are those of a TOML array of the same text, for values that are TOML.
+    #[test]
+    fn the_parts_are_the_entries_of_an_array() {
+        for text in [
+            "1,2,3",
+            "[1,2],[[3],4]",
+            r#"{a="x,y",b='{'},{a="\\",b=','}"#,
+            "true,1979-05-27,\"\\\"\"",
+        ] {
+            let array: Value = format!("[{text}]").parse().unwrap();
+            let entries = array.as_array().unwrap().iter();
+            let entries: Vec<String> = entries.map(|v| v.to_string().trim().to_owned()).collect();
+            assert_eq!(values(&format!("k={text}")), entries);
+        }
+    }
+
+    #[test]
+    fn what_is_no_list_of_values_is_refused() {
+        type E = VariationError;
+        let error = |text: &str| text.parse::<Variation>().unwrap_err();
+        assert!(matches!(error("stop.time"), E::Form { .. }));
+        assert!(matches!(error(" =1"), E::Form { .. }));
+        assert!(matches!(error("a="), E::Empty { number: 1, .. }));
+        assert!(matches!(error("a=1,,2"), E::Empty { number: 2, .. }));
+        for open in ["a=[1,2", "a=1]", "a=\"x", "a='x,y", "a={b=\"}\"", "a=\"\\"] {
+            assert!(matches!(error(open), E::Open { .. }), "{open}");
+        }
+        assert!(matches!(error("a=1,2,1"), E::Twice { .. }));
+        assert!(matches!(error("a=\"x\ny\""), E::Control { .. }));
+    }
+
+    #[test]
+    fn numbers_in_brackets_are_names() {
+        let v: Variation = "obstacle[1].friction=0".parse().unwrap();
+        assert_eq!(v.names(), ["obstacle", "1", "friction"]);
+        assert_eq!(v.to_string(), "obstacle[1].friction=0");
+    }
+}
