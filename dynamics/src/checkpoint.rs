@@ -92,6 +92,44 @@ pub(crate) struct FreeMotion {
     pub(crate) barrier: Option<BarrierPotential>,
 }
 
+impl FreeMotion {
+    /// Refuses numbers that are not finite, which a checkpoint that was changed from outside may have.
+    pub(crate) fn check_numbers(&self) -> Result<(), CheckpointError> {
+        let Moment {
+            state,
+            history,
+            balance,
+            ..
+        } = &self.moment;
+        let forces = [&balance.multipliers, &balance.constraints];
+        for force in forces.into_iter().flatten() {
+            check_finite("forces of supports", force.as_slice())?;
+        }
+        check_finite("forces of pins", &balance.pins)?;
+        let previous = history.previous.as_ref().unwrap_or(state);
+        let multipliers = &history.multipliers;
+        check_finite("times", &[state.t, previous.t, multipliers.step])?;
+        check_finite("positions", &state.x)?;
+        check_finite("velocities", &state.v)?;
+        check_finite("positions of the step before", &previous.x)?;
+        check_finite("velocities of the step before", &previous.v)?;
+        check_finite("multipliers of the isometry", &multipliers.rods)?;
+        check_finite("stiffnesses of the rods", &[history.rod_stiffness])
+    }
+}
+
+/// Refuses an array with a number that is not finite.
+pub(crate) fn check_finite(what: &'static str, values: &[f64]) -> Result<(), CheckpointError> {
+    match values.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(CheckpointError::NotFinite {
+            what,
+            index,
+            value: values[index],
+        }),
+    }
+}
+
 /// Sums of the energy balance since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EnergySums {
@@ -115,6 +153,19 @@ pub(crate) struct SheetFingerprint {
     lengths: u64,
     masses: u64,
     supports: u64,
+}
+
+impl EnergySums {
+    /// Refuses sums that are not finite.
+    pub(crate) fn check(&self) -> Result<(), CheckpointError> {
+        let Self {
+            start,
+            work,
+            dissipated,
+            friction,
+        } = *self;
+        check_finite("sums of energies", &[start, work, dissipated, friction])
+    }
 }
 
 impl SheetFingerprint {
@@ -233,6 +284,18 @@ pub enum CheckpointError {
         found: usize,
         /// Values that the model needs.
         expected: usize,
+    },
+    /// A number of the state is not finite.
+    #[error(
+        "{what} of the checkpoint have the value {value} at index {index}: the checkpoint was changed from outside; use an earlier one"
+    )]
+    NotFinite {
+        /// Which array.
+        what: &'static str,
+        /// Index in the array.
+        index: usize,
+        /// The value.
+        value: f64,
     },
     /// A vertex of the checkpoint does not exist.
     #[error(

@@ -104,6 +104,7 @@ impl Engine {
         motion: FreeMotion,
     ) -> Result<Self, SimulationError> {
         check_lengths(&model, &motion)?;
+        motion.check_numbers()?;
         let fixed: Vec<VertexId> = motion.fixed.iter().copied().map(VertexId).collect();
         model.fix(&fixed);
         let state = motion.moment.state.clone();
