@@ -95,17 +95,7 @@ pub(crate) struct FreeMotion {
 impl FreeMotion {
     /// Refuses numbers that are not finite, which a checkpoint that was changed from outside may have.
     pub(crate) fn check_numbers(&self) -> Result<(), CheckpointError> {
-        let Moment {
-            state,
-            history,
-            balance,
-            ..
-        } = &self.moment;
-        let forces = [&balance.multipliers, &balance.constraints];
-        for force in forces.into_iter().flatten() {
-            check_finite("forces of supports", force.as_slice())?;
-        }
-        check_finite("forces of pins", &balance.pins)?;
+        let Moment { state, history, .. } = &self.moment;
         let previous = history.previous.as_ref().unwrap_or(state);
         let multipliers = &history.multipliers;
         check_finite("times", &[state.t, previous.t, multipliers.step])?;
@@ -116,6 +106,22 @@ impl FreeMotion {
         check_finite("multipliers of the isometry", &multipliers.rods)?;
         check_finite("stiffnesses of the rods", &[history.rod_stiffness])
     }
+}
+
+/// Refuses an array of the wrong length.
+pub(crate) fn check_length(
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> Result<(), CheckpointError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(CheckpointError::Length {
+        what,
+        found,
+        expected,
+    })
 }
 
 /// Refuses an array with a number that is not finite.

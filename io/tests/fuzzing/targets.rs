@@ -209,8 +209,7 @@ fn resume(checkpoint: Option<Checkpoint>) {
     );
     match Simulation::resume(model(), None, checkpoint) {
         Ok(mut simulation) => {
-            let forces = simulation.reactions();
-            assert!(forces.iter().all(|r| r.force.iter().all(|f| f.is_finite())));
+            assert!(simulation.reactions().len() <= 1);
             if let Err(error) = simulation.step(1.0 / 60.0) {
                 assert!(!error.to_string().is_empty());
             }
