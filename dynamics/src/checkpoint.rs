@@ -416,3 +416,67 @@ fn check_version(found: u32) -> Result<(), CheckpointError> {
 fn checksum(bytes: &[u8]) -> u32 {
     Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(bytes)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Checkpoint, CheckpointError, Motion};
+    use crate::{Method, SheetModel, Simulation, SimulationError, State};
+    use isosheet_mesh::{MassKind, VertexId, generate};
+
+    /// A square that hangs by a corner.
+    fn model() -> SheetModel {
+        let sheet = generate::isotropic_square(0, 0.2).unwrap();
+        let model = SheetModel::new(&sheet, 1e-3, MassKind::Lumped).unwrap();
+        model.with_gravity().with_pins(&[VertexId(6)]).unwrap()
+    }
+
+    /// After a step.
+    fn checkpoint() -> Checkpoint {
+        let sheet = generate::isotropic_square(0, 0.2).unwrap();
+        let start = State::at_rest(sheet.positions().to_vec());
+        let mut simulation = Simulation::new(model(), start, Method::default()).unwrap();
+        simulation.step(1.0 / 60.0).unwrap();
+        simulation.checkpoint()
+    }
+
+    #[test]
+    fn what_was_changed_from_outside_is_refused() {
+        let good = checkpoint();
+        assert!(Simulation::resume(model(), None, good.clone()).is_ok());
+        let changes: [fn(&mut super::FreeMotion); 6] = [
+            |m| m.moment.state.t = f64::INFINITY,
+            |m| m.moment.state.x[4] = f64::NAN,
+            |m| m.moment.state.v[26] = f64::NEG_INFINITY,
+            |m| m.moment.balance.pins[18] = f64::NAN,
+            |m| drop(m.moment.balance.pins.pop()),
+            |m| m.moment.history.rod_stiffness = f64::NAN,
+        ];
+        for (k, change) in changes.into_iter().enumerate() {
+            let mut changed = good.clone();
+            let Motion::Free(motion) = &mut changed.motion else {
+                unreachable!("the method needs no chart");
+            };
+            change(motion);
+            let refused = Simulation::resume(model(), None, changed);
+            assert!(
+                matches!(
+                    refused.map(drop),
+                    Err(SimulationError::Checkpoint(
+                        CheckpointError::NotFinite { .. } | CheckpointError::Length { .. }
+                    ))
+                ),
+                "change {k}"
+            );
+        }
+        let mut changed = good;
+        changed.energy.work = f64::NAN;
+        let error = Simulation::resume(model(), None, changed)
+            .map(drop)
+            .unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains("sums of energies") && text.contains("index 1"),
+            "{text}"
+        );
+    }
+}
