@@ -3,7 +3,8 @@
 //! A reader may return a value or a typed error. Failures are panics, numbers that are not finite and indices
 //! of nothing in what was read, cases of more than [`SLOW`], and allocations beyond [`MOST_MEMORY`].
 //! `cargo test` tries [`CASES`] cases of each target. With `ISOSHEET_FUZZ_SECONDS=N` in the environment each
-//! target runs for N seconds, and `ISOSHEET_FUZZ_SEED=S` begins another sequence; `--nocapture` shows the numbers of cases.
+//! target runs for N seconds, and `ISOSHEET_FUZZ_SEED=S` begins another sequence,
+//! `ISOSHEET_FUZZ_TARGET=T` runs one target alone, and `--nocapture` shows the numbers of cases.
 //! The seeds of all targets are written to `target/tmp/fuzz/` for cargo-fuzz, which `io/fuzz` is for.
 
 mod mutation;
@@ -140,7 +141,9 @@ fn run(name: &'static str) {
 #[test]
 fn damaged_files_give_a_value_or_a_typed_error() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-    for (name, _) in TARGETS {
+    let only = std::env::var("ISOSHEET_FUZZ_TARGET").ok();
+    let names = TARGETS.map(|(name, _)| name).into_iter();
+    for name in names.filter(|name| only.as_deref().is_none_or(|only| only == *name)) {
         run(name);
     }
 }
