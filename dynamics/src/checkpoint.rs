@@ -92,6 +92,50 @@ pub(crate) struct FreeMotion {
     pub(crate) barrier: Option<BarrierPotential>,
 }
 
+impl FreeMotion {
+    /// Refuses numbers that are not finite, which a checkpoint that was changed from outside may have.
+    pub(crate) fn check_numbers(&self) -> Result<(), CheckpointError> {
+        let Moment { state, history, .. } = &self.moment;
+        let previous = history.previous.as_ref().unwrap_or(state);
+        let multipliers = &history.multipliers;
+        check_finite("times", &[state.t, previous.t, multipliers.step])?;
+        check_finite("positions", &state.x)?;
+        check_finite("velocities", &state.v)?;
+        check_finite("positions of the step before", &previous.x)?;
+        check_finite("velocities of the step before", &previous.v)?;
+        check_finite("multipliers of the isometry", &multipliers.rods)?;
+        check_finite("stiffnesses of the rods", &[history.rod_stiffness])
+    }
+}
+
+/// Refuses an array of the wrong length.
+pub(crate) fn check_length(
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> Result<(), CheckpointError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(CheckpointError::Length {
+        what,
+        found,
+        expected,
+    })
+}
+
+/// Refuses an array with a number that is not finite.
+pub(crate) fn check_finite(what: &'static str, values: &[f64]) -> Result<(), CheckpointError> {
+    match values.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(CheckpointError::NotFinite {
+            what,
+            index,
+            value: values[index],
+        }),
+    }
+}
+
 /// Sums of the energy balance since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EnergySums {
@@ -115,6 +159,19 @@ pub(crate) struct SheetFingerprint {
     lengths: u64,
     masses: u64,
     supports: u64,
+}
+
+impl EnergySums {
+    /// Refuses sums that are not finite.
+    pub(crate) fn check(&self) -> Result<(), CheckpointError> {
+        let Self {
+            start,
+            work,
+            dissipated,
+            friction,
+        } = *self;
+        check_finite("sums of energies", &[start, work, dissipated, friction])
+    }
 }
 
 impl SheetFingerprint {
@@ -234,6 +291,18 @@ pub enum CheckpointError {
         /// Values that the model needs.
         expected: usize,
     },
+    /// A number of the state is not finite.
+    #[error(
+        "{what} of the checkpoint have the value {value} at index {index}: the checkpoint was changed from outside; use an earlier one"
+    )]
+    NotFinite {
+        /// Which array.
+        what: &'static str,
+        /// Index in the array.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
     /// A vertex of the checkpoint does not exist.
     #[error(
         "the checkpoint names vertex {vertex}, the model has only {vertices} vertices: the checkpoint was changed from outside"
@@ -305,7 +374,10 @@ impl Checkpoint {
         if found != expected {
             return Err(CheckpointError::Damaged { expected, found });
         }
-        postcard::from_bytes(fields).map_err(|e| CheckpointError::Decode(e.to_string()))
+        let decoded = postcard::from_bytes(fields);
+        let checkpoint: Self = decoded.map_err(|e| CheckpointError::Decode(e.to_string()))?;
+        check_version(checkpoint.version)?;
+        Ok(checkpoint)
     }
 
     /// The JSON form.
@@ -346,4 +418,68 @@ fn check_version(found: u32) -> Result<(), CheckpointError> {
 
 fn checksum(bytes: &[u8]) -> u32 {
     Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Checkpoint, CheckpointError, Motion};
+    use crate::{Method, SheetModel, Simulation, SimulationError, State};
+    use isosheet_mesh::{MassKind, VertexId, generate};
+
+    /// A square that hangs by a corner.
+    fn model() -> SheetModel {
+        let sheet = generate::isotropic_square(0, 0.2).unwrap();
+        let model = SheetModel::new(&sheet, 1e-3, MassKind::Lumped).unwrap();
+        model.with_gravity().with_pins(&[VertexId(6)]).unwrap()
+    }
+
+    /// After a step.
+    fn checkpoint() -> Checkpoint {
+        let sheet = generate::isotropic_square(0, 0.2).unwrap();
+        let start = State::at_rest(sheet.positions().to_vec());
+        let mut simulation = Simulation::new(model(), start, Method::default()).unwrap();
+        simulation.step(1.0 / 60.0).unwrap();
+        simulation.checkpoint()
+    }
+
+    #[test]
+    fn what_was_changed_from_outside_is_refused() {
+        let good = checkpoint();
+        assert!(Simulation::resume(model(), None, good.clone()).is_ok());
+        let changes: [fn(&mut super::FreeMotion); 6] = [
+            |m| m.moment.state.t = f64::INFINITY,
+            |m| m.moment.state.x[4] = f64::NAN,
+            |m| m.moment.state.v[26] = f64::NEG_INFINITY,
+            |m| m.moment.balance.pins[18] = f64::NAN,
+            |m| m.moment.balance.pins.truncate(26),
+            |m| m.moment.history.rod_stiffness = f64::NAN,
+        ];
+        for (k, change) in changes.into_iter().enumerate() {
+            let mut changed = good.clone();
+            let Motion::Free(motion) = &mut changed.motion else {
+                unreachable!("the method needs no chart");
+            };
+            change(motion);
+            let refused = Simulation::resume(model(), None, changed);
+            assert!(
+                matches!(
+                    refused.map(drop),
+                    Err(SimulationError::Checkpoint(
+                        CheckpointError::NotFinite { .. } | CheckpointError::Length { .. }
+                    ))
+                ),
+                "change {k}"
+            );
+        }
+        let mut changed = good;
+        changed.energy.work = f64::NAN;
+        let error = Simulation::resume(model(), None, changed)
+            .map(drop)
+            .unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains("sums of energies") && text.contains("index 1"),
+            "{text}"
+        );
+    }
 }

@@ -1,6 +1,6 @@
 //! The chart-free engine: proposals of an integrator, judged and committed.
 
-use crate::checkpoint::{CheckpointError, FreeMotion};
+use crate::checkpoint::{CheckpointError, FreeMotion, check_length};
 use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
 use crate::control::{Decision, Stepping, take_substep};
 use crate::energy_account::{EnergyAccount, Exchange};
@@ -104,8 +104,11 @@ impl Engine {
         motion: FreeMotion,
     ) -> Result<Self, SimulationError> {
         check_lengths(&model, &motion)?;
+        motion.check_numbers()?;
         let fixed: Vec<VertexId> = motion.fixed.iter().copied().map(VertexId).collect();
         model.fix(&fixed);
+        motion.moment.balance.check(&model)?;
+        check_energy(&model, &motion.moment.state)?;
         let state = motion.moment.state.clone();
         let mut engine = Self::with_fixed(model, motion.method, state, fixed)?;
         engine.set_control(motion.control)?;
@@ -403,7 +406,7 @@ fn check_energy(model: &SheetModel, state: &State) -> Result<(), StepError> {
         return Ok(());
     }
     Err(StepError::NonFiniteEnergy {
-        quantity: "the energy at the end of the step",
+        quantity: "the energy",
         value,
         t: state.t,
     })
@@ -443,13 +446,7 @@ fn check_lengths(model: &SheetModel, motion: &FreeMotion) -> Result<(), Checkpoi
             k,
         ),
     ] {
-        if found != expected {
-            return Err(CheckpointError::Length {
-                what,
-                found,
-                expected,
-            });
-        }
+        check_length(what, found, expected)?;
     }
     match largest {
         Some(&v) if v as usize >= vertices => Err(CheckpointError::NoSuchVertex {

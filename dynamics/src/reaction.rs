@@ -1,6 +1,7 @@
 //! Forces of pins, curves and surfaces on the sheet.
 
 use crate::SheetModel;
+use crate::checkpoint::{CheckpointError, check_finite, check_length};
 use crate::constraint::rows::{VertexRows, add, point};
 use crate::contact::ContactTerms;
 use crate::support::Support;
@@ -127,6 +128,21 @@ impl Balance {
         self.constraints.clone_from(&other.constraints);
         self.time = other.time;
         self.unassigned.copy_from(&other.unassigned);
+    }
+
+    /// Refuses arrays of the wrong length and numbers that are not finite.
+    pub(crate) fn check(&self, model: &SheetModel) -> Result<(), CheckpointError> {
+        let (n, m) = (model.coordinate_count(), model.constraints().len());
+        let pins = if model.has_supports() { n } else { 0 };
+        check_length("forces of pins", self.pins.len(), pins)?;
+        check_finite("forces of pins", &self.pins)?;
+        for forces in [&self.multipliers, &self.constraints] {
+            check_length("forces of vertex constraints", forces.len(), m)?;
+            for force in forces {
+                check_finite("forces of vertex constraints", force.as_slice())?;
+            }
+        }
+        self.unassigned.check(n, m)
     }
 
     /// The forces alone, without room for further ones.

@@ -129,13 +129,14 @@ impl Simulation {
     ///
     /// # Errors
     /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of
-    /// simulation.
+    /// simulation, or has numbers that are not finite.
     pub fn resume(
         model: SheetModel,
         contact: Option<Box<dyn Contact>>,
         checkpoint: Checkpoint,
     ) -> Result<Self, SimulationError> {
         checkpoint.check_model(&model)?;
+        checkpoint.energy.check()?;
         let Motion::Free(motion) = checkpoint.motion else {
             return Err(CheckpointError::Chart { in_chart: true }.into());
         };
@@ -149,7 +150,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of
-    /// simulation.
+    /// simulation, or has numbers that are not finite.
     pub fn resume_in_chart(
         model: SheetModel,
         chart: Box<dyn Chart>,
@@ -157,6 +158,7 @@ impl Simulation {
         checkpoint: Checkpoint,
     ) -> Result<Self, SimulationError> {
         checkpoint.check_model(&model)?;
+        checkpoint.energy.check()?;
         let Motion::Chart(motion) = checkpoint.motion else {
             return Err(CheckpointError::Chart { in_chart: false }.into());
         };

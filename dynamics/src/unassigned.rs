@@ -1,6 +1,7 @@
 //! Momentum that projections have given to the sheet and that is not yet assigned to the supports.
 
 use crate::SheetModel;
+use crate::checkpoint::{CheckpointError, check_finite, check_length};
 use crate::constraint::rows::VertexRows;
 use crate::primal::{PrimalMatrix, penalties};
 use isosheet_coords::linalg::norm_inf;
@@ -106,6 +107,23 @@ impl UnassignedMomentum {
             self.clear();
             self.append(other, 1.0);
         }
+    }
+
+    /// Refuses arrays of the wrong length and numbers that are not finite, for `n` coordinates and `m` vertex
+    /// constraints.
+    pub(crate) fn check(&self, n: usize, m: usize) -> Result<(), CheckpointError> {
+        const WHAT: &str = "momenta that are not shared out";
+        if self.len > self.entries.len() {
+            check_length(WHAT, self.entries.len(), self.len)?;
+        }
+        for entry in &self.entries {
+            check_length(WHAT, entry.momentum.len(), n)?;
+            check_length("positions of these", entry.x.len(), n)?;
+            check_length("constraints of these", entry.active.len(), m)?;
+            check_finite(WHAT, &entry.momentum)?;
+            check_finite("positions of these", &entry.x)?;
+        }
+        Ok(())
     }
 
     /// Adds a multiple of another unassigned.

@@ -164,6 +164,16 @@ impl Scene {
         let step = self.method.step;
         self.stop.check(step, &root.name("stop"), &mut checks);
         self.output.check(&root.name("output"), &mut checks);
+        if checks.problems.is_empty()
+            && let Err(error) = toml::Table::try_from(self)
+        {
+            let message = format!("the scene cannot be written as TOML: {error}");
+            let remedy = format!(
+                "whole numbers go up to {}, and paths have to be valid UTF-8",
+                i64::MAX
+            );
+            checks.report(root, message, remedy);
+        }
         SceneError::of(checks.problems)
     }
 

@@ -27,3 +27,13 @@ pub fn max_difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len(), "vectors of equal length");
     a.iter().zip(b).fold(0.0, |m, (a, b)| m.max((a - b).abs()))
 }
+
+/// The Rust samples of the book, compiled and run as documentation tests.
+#[cfg(doctest)]
+mod book {
+    #[doc = include_str!("../../docs/start.md")]
+    pub struct Start;
+
+    #[doc = include_str!("../../docs/methods.md")]
+    pub struct Methods;
+}

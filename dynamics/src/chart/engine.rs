@@ -1,7 +1,7 @@
 //! A simulation in a chart as an engine of [`Simulation`](crate::Simulation).
 
 use super::{ChartDynamicsError, ChartSimulation};
-use crate::checkpoint::{CheckpointError, InChart};
+use crate::checkpoint::{CheckpointError, InChart, check_finite};
 use crate::contact::Contact;
 use crate::reaction::{Reaction, supports};
 use crate::report::{StepError, StepOutcome, StepTotals};
@@ -61,6 +61,8 @@ impl ChartEngine {
             }
             .into());
         }
+        check_finite("velocities", &kept.velocities)?;
+        kept.motion.check_numbers()?;
         let mut simulation = ChartSimulation::resume(model, chart, kept.options, kept.motion)?;
         if let Some(contact) = contact {
             simulation.set_contact(contact)?;

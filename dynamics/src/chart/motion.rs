@@ -2,6 +2,7 @@
 
 use super::ContactImpulse;
 use super::stepping::PhaseState;
+use crate::checkpoint::{CheckpointError, check_finite};
 use crate::reaction::Balance;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -49,6 +50,18 @@ pub(crate) struct ChartMotion {
 }
 
 impl ChartMotion {
+    /// Refuses numbers that are not finite, which a checkpoint that was changed from outside may have.
+    pub(crate) fn check_numbers(&self) -> Result<(), CheckpointError> {
+        check_finite("times", &[self.t])?;
+        check_finite("positions", &self.state.x)?;
+        check_finite("coordinates", &self.state.q)?;
+        check_finite("momenta", &self.state.p)?;
+        check_finite(
+            "reference positions",
+            self.reference.as_deref().unwrap_or_default(),
+        )
+    }
+
     /// The motion at time `t` before its first step, with the chart as its user built it.
     pub(super) fn start(
         t: f64,

@@ -154,12 +154,16 @@ impl Checks {
         }
     }
 
-    /// A count of at least `least`.
+    /// A count of at least `least`, and not above the largest whole number of TOML.
     pub(crate) fn count(&mut self, key: Key, value: usize, least: usize) {
-        if value < least {
-            let message = format!("`{key}` is {value}");
-            self.report(key, message, format!("give at least {least}"));
-        }
+        let remedy = if value < least {
+            format!("give at least {least}")
+        } else if i64::try_from(value).is_err() {
+            format!("give at most {}", i64::MAX)
+        } else {
+            return;
+        };
+        self.report(key.clone(), format!("`{key}` is {value}"), remedy);
     }
 
     /// Finite components.

@@ -1,5 +1,7 @@
 //! The command `isosheet`: simulates scenes, checks and repairs what they are made of.
 
+#[cfg(test)]
+mod book_tests;
 mod check;
 mod collect;
 mod convert;

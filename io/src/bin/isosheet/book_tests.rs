@@ -1,0 +1,68 @@
+//! The lines of shell in the hand-written pages are command lines that the parser takes.
+
+use crate::Cli;
+use clap::{CommandFactory, Parser};
+use std::fs;
+use std::path::Path;
+
+/// Subcommands of parameter studies, which a version of the command may not have yet.
+const STUDIES: [&str; 2] = ["sweep", "collect"];
+
+/// The command lines of a page: in blocks of shell what begins with `isosheet`, up to the end of the command.
+fn lines(page: &str) -> Vec<String> {
+    let blocks = page.split("```sh\n").skip(1);
+    let blocks = blocks.map(|b| b.split("```").next().unwrap_or_default());
+    let lines = blocks.flat_map(str::lines);
+    let commands = lines.filter_map(|l| {
+        let at = l
+            .find("isosheet ")
+            .filter(|&k| k == 0 || l[..k].ends_with(' '))?;
+        let whole = !l[..at].contains("cargo");
+        whole.then(|| {
+            l[at..]
+                .split([';', '#', '|'])
+                .next()
+                .unwrap_or_default()
+                .to_owned()
+        })
+    });
+    commands.collect()
+}
+
+/// The words of a command line; single quotes keep blanks together.
+fn words(line: &str) -> Vec<String> {
+    let (mut words, mut quoted) = (vec![String::new()], false);
+    for c in line.chars() {
+        match c {
+            '\'' => quoted = !quoted,
+            ' ' if !quoted => words.push(String::new()),
+            c => words.last_mut().expect("never empty").push(c),
+        }
+    }
+    words.retain(|w| !w.is_empty());
+    words
+}
+
+#[test]
+fn the_commands_of_the_book_are_known() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let entries = fs::read_dir(root.join("docs")).expect("the folder of the book");
+    let paths = entries.map(|e| e.expect("an entry").path());
+    let pages = paths.filter(|p| p.extension().is_some_and(|e| e == "md"));
+    let mut known = 0;
+    for path in pages.chain([root.join("README.md")]) {
+        let page = fs::read_to_string(&path).expect("a page");
+        for line in lines(&page) {
+            let words = words(&line);
+            let name = words.get(1).map_or("", String::as_str);
+            if Cli::command().find_subcommand(name).is_none() && STUDIES.contains(&name) {
+                continue;
+            }
+            if let Err(error) = Cli::try_parse_from(&words) {
+                panic!("{}: {line}\n{error}", path.display());
+            }
+            known += 1;
+        }
+    }
+    assert!(known > 15, "{known} lines were found");
+}

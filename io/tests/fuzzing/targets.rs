@@ -1,0 +1,264 @@
+//! What the readers are held to, one function for each of them. The program of cargo-fuzz (`io/fuzz`) includes
+//! this file, so that there is one list of targets.
+//!
+//! A target may return a value or a typed error and has to panic on anything that neither of them may be:
+//! a number that is not finite, an index of nothing, a value that another call of the crate does not take.
+
+use isosheet_io::dynamics::{Checkpoint, Method, SheetModel, Simulation, State};
+use isosheet_io::mesh::{MassKind, VertexId, generate};
+use isosheet_io::scene::{Mesh, Outline, OutlineShape, Scene, SceneFile};
+use isosheet_io::{MeshFile, MeshFormat, MeshOptions, Polygons, SeparateBuffers, parse_mesh};
+use std::path::Path;
+
+/// A reader under test.
+pub(crate) type Target = fn(&[u8]);
+
+/// All targets with their names.
+pub(crate) const TARGETS: [(&str, Target); 10] = [
+    ("obj", obj),
+    ("off", off),
+    ("stl", stl),
+    ("ply", ply),
+    ("fold", fold),
+    ("gltf", gltf),
+    ("glb", glb),
+    ("scene", scene),
+    ("checkpoint", checkpoint),
+    ("checkpoint_json", checkpoint_json),
+];
+
+/// The target of a name.
+pub(crate) fn target(name: &str) -> Target {
+    let found = TARGETS.iter().find(|(known, _)| *known == name);
+    found.expect("a name of the list").1
+}
+
+fn obj(data: &[u8]) {
+    mesh(data, MeshFormat::Obj);
+}
+
+fn off(data: &[u8]) {
+    mesh(data, MeshFormat::Off);
+}
+
+fn stl(data: &[u8]) {
+    mesh(data, MeshFormat::Stl);
+}
+
+fn ply(data: &[u8]) {
+    mesh(data, MeshFormat::Ply);
+}
+
+fn fold(data: &[u8]) {
+    mesh(data, MeshFormat::Fold);
+}
+
+fn gltf(data: &[u8]) {
+    mesh(data, MeshFormat::Gltf);
+}
+
+fn glb(data: &[u8]) {
+    mesh(data, MeshFormat::Glb);
+}
+
+/// Reads a mesh as it is by default, and with the other choice of every option.
+fn mesh(data: &[u8], format: MeshFormat) {
+    let other = MeshOptions {
+        polygons: Polygons::Refuse,
+        weld: Some(1e-3),
+        frame: Some(1),
+        mesh: None,
+        buffers: SeparateBuffers::Refuse,
+    };
+    for options in [MeshOptions::default(), other] {
+        // A folder that does not exist: no buffers beside the file.
+        let path = Path::new("no-such-folder/mesh");
+        match parse_mesh(data, format, path, &options) {
+            Ok(mesh) => use_mesh(mesh),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
+}
+
+/// What the commands `check`, `check --fix` and `simulate` do with a mesh.
+fn use_mesh(mesh: MeshFile) {
+    check_mesh(&mesh);
+    let mut repaired = mesh.clone();
+    if repaired.repair().is_ok() {
+        check_mesh(&repaired);
+    }
+    let mut used = mesh.clone();
+    used.drop_unreferenced();
+    check_mesh(&used);
+    for mesh in [mesh, repaired, used] {
+        if let Ok(sheet) = mesh.clone().into_sheet() {
+            assert!(sheet.area().is_finite() && sheet.area() > 0.0);
+            let assignments = mesh.fold_assignments(sheet.topology());
+            let edges = sheet.topology().edge_count();
+            assert!(assignments.is_none_or(|a| a.len() == edges));
+        }
+    }
+}
+
+fn check_mesh(mesh: &MeshFile) {
+    assert_eq!(mesh.positions.len() % 3, 0);
+    assert!(mesh.positions.iter().all(|x| x.is_finite()));
+    let inside = |v: &u32| (*v as usize) < mesh.vertex_count();
+    assert!(mesh.faces.iter().flatten().all(inside));
+    assert!(mesh.diagonals.iter().flatten().all(inside));
+    let angles = mesh.creases.iter().filter_map(|c| c.angle);
+    assert!(mesh.creases.iter().all(|c| c.ends.iter().all(inside)));
+    assert!(angles.into_iter().all(f64::is_finite));
+}
+
+/// From TOML to a scene that can start, as `isosheet check` does it. Scenes that name files or many vertices
+/// are checked and not built.
+fn scene(data: &[u8]) {
+    let Ok(text) = String::from_utf8(data.to_vec()) else {
+        return;
+    };
+    let file = match SceneFile::parse(text, Path::new("no-such-folder/scene.toml"), &[]) {
+        Ok(file) => file,
+        Err(error) => return assert!(!error.to_string().is_empty()),
+    };
+    let written = toml::Table::try_from(file.scene()).expect("a scene can be written");
+    check_table(&toml::Value::Table(written.clone()));
+    let text = toml::to_string(&written).expect("a table can be written");
+    let again: Scene = toml::from_str(&text).expect("a written scene can be read");
+    assert_eq!(&again, file.scene());
+    if !is_small(file.scene()) {
+        return;
+    }
+    match file.build() {
+        Ok(setup) => match setup.start() {
+            Ok(simulation) => assert!(simulation.state().x.iter().all(|x| x.is_finite())),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        },
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+}
+
+/// Whether a scene is built within milliseconds: its mesh has at most a few hundred cells.
+fn is_small(scene: &Scene) -> bool {
+    const MOST: usize = 300;
+    let cells = match &scene.sheet.mesh {
+        Mesh::Square { level, .. } => 4usize.saturating_pow(level.saturating_add(1)),
+        Mesh::Rectangle { columns, rows, .. } => columns.saturating_mul(*rows),
+        Mesh::Disk { rings, .. } => rings.saturating_mul(*rings).saturating_mul(6),
+        Mesh::Annulus {
+            segments, rings, ..
+        } => segments.saturating_mul(*rings),
+        Mesh::Miura(miura) => miura.columns.saturating_mul(miura.rows),
+        Mesh::PolygonRings { outline, rings } => {
+            let sides = match outline {
+                Outline::Corners(corners) => corners.len(),
+                Outline::Shape(OutlineShape::Regular { sides, .. }) => *sides,
+            };
+            rings.saturating_mul(*rings).saturating_mul(sides)
+        }
+        Mesh::DegreeFour(_) => 4,
+        _ => usize::MAX,
+    };
+    cells <= MOST && scene.files().is_empty()
+}
+
+/// Infinite numbers are written by nobody and mean nothing.
+fn check_table(value: &toml::Value) {
+    match value {
+        toml::Value::Float(x) => assert!(x.is_finite(), "{x} in a checked scene"),
+        toml::Value::Array(values) => values.iter().for_each(check_table),
+        toml::Value::Table(table) => table.values().for_each(check_table),
+        _ => {}
+    }
+}
+
+/// Reads a checkpoint as it is, and once more with the header and the checksum that its fields should have:
+/// without these every change of a byte is found at once, and the decoder is not reached.
+fn checkpoint(data: &[u8]) {
+    const HEADER: usize = 12;
+    const SUM: usize = 4;
+    resume(Checkpoint::from_bytes(data).ok());
+    if data.len() < HEADER + SUM {
+        return;
+    }
+    let [valid, ..] = checkpoints();
+    let mut mended = valid[..HEADER].to_vec();
+    mended.extend_from_slice(&data[HEADER..data.len() - SUM]);
+    let sum = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&mended);
+    mended.extend_from_slice(&sum.to_le_bytes());
+    resume(Checkpoint::from_bytes(&mended).ok());
+}
+
+fn checkpoint_json(data: &[u8]) {
+    if let Ok(text) = std::str::from_utf8(data) {
+        resume(Checkpoint::from_json(text).ok());
+    }
+}
+
+/// A checkpoint that can be read continues or is refused; a simulation that continues has
+/// finite numbers, and its next step ends.
+fn resume(checkpoint: Option<Checkpoint>) {
+    let Some(checkpoint) = checkpoint else {
+        return;
+    };
+    let bytes = checkpoint.to_bytes().expect("a checkpoint can be written");
+    let again = Checkpoint::from_bytes(&bytes).expect("a written checkpoint can be read");
+    assert_eq!(
+        again.to_bytes().expect("a checkpoint can be written"),
+        bytes
+    );
+    match Simulation::resume(model(), None, checkpoint) {
+        Ok(mut simulation) => {
+            // The pin, and vertices that rods keep in place: at most all nine.
+            assert!(simulation.reactions().len() <= 9);
+            if let Err(error) = simulation.step(1.0 / 60.0) {
+                assert!(!error.to_string().is_empty());
+            }
+            let State { x, v, t, .. } = simulation.state();
+            assert!(x.iter().chain(v).chain([t]).all(|x| x.is_finite()));
+            assert!(simulation.energy().is_finite());
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+}
+
+/// The model of the checkpoints: a square of eight triangles, held at a corner.
+fn model() -> SheetModel {
+    let sheet = generate::isotropic_square(0, 0.21).expect("valid");
+    SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)
+        .expect("valid")
+        .with_gravity()
+        .with_pins(&[VertexId(6)])
+        .expect("the corner exists")
+}
+
+/// Checkpoints to begin with, in the binary form: after two steps of BDF2 and of implicit Euler.
+pub(crate) fn checkpoints() -> [Vec<u8>; 2] {
+    [
+        simulation(Method::default()),
+        simulation(Method::ImplicitEuler(Default::default())),
+    ]
+    .map(|s| s.checkpoint().to_bytes().expect("memory suffices"))
+}
+
+/// The same in the JSON form.
+pub(crate) fn checkpoints_json() -> [Vec<u8>; 2] {
+    [
+        simulation(Method::default()),
+        simulation(Method::ImplicitEuler(Default::default())),
+    ]
+    .map(|s| {
+        let text = s.checkpoint().to_json().expect("memory suffices");
+        text.into_bytes()
+    })
+}
+
+fn simulation(method: Method) -> Simulation {
+    let sheet = generate::isotropic_square(0, 0.21).expect("valid");
+    let start = State::at_rest(sheet.positions().to_vec());
+    let mut simulation = Simulation::new(model(), start, method).expect("valid");
+    for _ in 0..2 {
+        simulation.step(1.0 / 60.0).expect("a hanging square");
+    }
+    simulation
+}

@@ -1,0 +1,89 @@
+//! The scenes in the hand-written pages: whole ones can start, parts of one have keys and values that exist.
+
+use isosheet_io::scene::SceneFile;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The pages of the book, and the README.
+fn pages() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let entries = fs::read_dir(root.join("docs")).expect("the folder of the book");
+    let paths = entries.map(|e| e.expect("an entry").path());
+    let mut pages: Vec<PathBuf> = paths
+        .filter(|p| p.extension().is_some_and(|e| e == "md"))
+        .collect();
+    pages.push(root.join("README.md"));
+    pages.sort();
+    pages
+}
+
+/// The fenced blocks of a page in a language, indented or not.
+fn blocks(page: &str, language: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut lines = page.lines();
+    while let Some(line) = lines.next() {
+        if line.trim() == format!("```{language}") {
+            let inside = lines.by_ref().take_while(|l| l.trim() != "```");
+            found.push(inside.map(|l| format!("{l}\n")).collect());
+        }
+    }
+    found
+}
+
+#[test]
+fn the_scenes_of_the_book_can_start() {
+    let (mut whole, mut parts) = (0, 0);
+    for path in pages() {
+        let page = fs::read_to_string(&path).expect("a page");
+        for block in blocks(&page, "toml") {
+            let text = match block.starts_with("version = 1\n") {
+                true => block.clone(),
+                false => format!("version = 1\n{block}"),
+            };
+            let scene = SceneFile::parse(text, &path, &[]);
+            let scene = scene.unwrap_or_else(|e| panic!("{}: {e}\n{block}", path.display()));
+            // Scenes that name files of the reader's are checked as far as that goes without the files.
+            if block.starts_with("version = 1\n") && scene.scene().files().is_empty() {
+                let started = scene.build().and_then(|setup| setup.start());
+                started.unwrap_or_else(|e| panic!("{}: {e}\n{block}", path.display()));
+                whole += 1;
+            } else {
+                parts += 1;
+            }
+        }
+    }
+    assert!(
+        whole >= 5 && parts >= 3,
+        "{whole} scenes and {parts} parts were found"
+    );
+}
+
+/// Pages refer to pages that exist, and the table of contents has all of them.
+#[test]
+fn links_between_pages_lead_somewhere() {
+    let mut links = 0;
+    for path in pages() {
+        let page = fs::read_to_string(&path).expect("a page");
+        let folder = path.parent().expect("pages are in folders");
+        for target in page.split("](").skip(1) {
+            let target = target.split(')').next().unwrap_or_default();
+            let file = target.split('#').next().unwrap_or_default();
+            if file.is_empty() || file.contains("://") {
+                continue;
+            }
+            assert!(folder.join(file).exists(), "{}: {target}", path.display());
+            links += 1;
+        }
+    }
+    assert!(links > 20, "{links} links were found");
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let contents = fs::read_to_string(docs.join("SUMMARY.md")).expect("the contents");
+    for path in pages() {
+        let name = path.file_name().expect("a name").to_string_lossy();
+        assert!(
+            ["README.md", "SUMMARY.md"].contains(&&*name)
+                || contents.contains(&format!("({name})")),
+            "{name} is not in SUMMARY.md"
+        );
+    }
+}
