@@ -3,7 +3,7 @@
 /// A commented scene file to start from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StartingPoint {
-    /// A sheet of paper that hangs by two corners.
+    /// A sheet of paper that hangs by one corner.
     Hanging,
     /// A cloth that drapes over a box.
     Drape,

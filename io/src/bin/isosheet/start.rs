@@ -20,7 +20,7 @@ pub(crate) struct New {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Kind {
-    /// A sheet of paper that hangs by two corners
+    /// A sheet of paper that hangs by one corner
     Hanging,
     /// A cloth that drapes over a box
     Drape,
