@@ -152,7 +152,9 @@ fn starting_points_run_and_keep_their_promises() {
         let mut run = scene.build().unwrap().start().unwrap();
         let h = scene.scene().method.step;
         for _ in 0..(scene.scene().stop.time / h).round() as usize {
-            let report = run.step(h).expect(kind.name());
+            let report = run
+                .step(h)
+                .unwrap_or_else(|e| panic!("{}: {e}", kind.name()));
             assert!(report.strain < 2e-12, "{}: {}", kind.name(), report.strain);
             assert!(report.gap.is_none_or(|gap| gap > 0.0), "{}", kind.name());
             assert_eq!(report.gap.is_some(), scene.scene().has_contact());
