@@ -182,7 +182,7 @@ fn frames_of_runs_become_pictures() {
     let count = Recording::read(&dir.join("run")).unwrap().trajectory.len();
     assert_eq!(
         done(dir, &["convert", "run", "last.png"]),
-        "last.png: 1 frames\n"
+        "last.png: 1 frame\n"
     );
     let last = (count - 1).to_string();
     done(dir, &["convert", "run", "same.png", "--frame", &last]);

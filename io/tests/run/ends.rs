@@ -1,11 +1,12 @@
 //! How runs end.
 
-use crate::{code, run, stderr, summary, with_scene};
+use crate::{code, isosheet, run, stderr, summary, with_scene};
 use isosheet_io::run::EndReason;
 use isosheet_io::scene::StartingPoint;
 use isosheet_io::{frame_path, read_sheet};
 use serde_json::Value;
 use std::fs;
+use std::process::Stdio;
 
 #[test]
 fn conditions_to_stop_end_a_run() {
@@ -138,4 +139,27 @@ fn forces_of_corners_balance_the_weight_of_a_banner() {
             ending.supports
         );
     }
+}
+
+/// As behind `2>&1 | head`: nobody reads standard error any more.
+#[test]
+fn a_run_goes_on_when_nobody_reads_its_messages() {
+    let dir = with_scene(StartingPoint::Drape);
+    let arguments = [
+        "simulate",
+        "scene.toml",
+        "--out",
+        "run",
+        "--set",
+        "stop.time=0.1",
+    ];
+    let mut command = isosheet(dir.path());
+    let mut child = command
+        .args(arguments)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stderr.take());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    assert!(dir.path().join("run/summary.json").exists());
 }

@@ -2,6 +2,7 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::message::print_message;
 use clap::Args;
 use isosheet_io::run::Collection;
 use std::io::{ErrorKind, Write};
@@ -27,7 +28,7 @@ impl Collect {
     pub(crate) fn run(&self) -> Done {
         let collection = Collection::of(&self.folders)?;
         for folder in collection.incomplete() {
-            eprintln!("not complete: {}", folder.display());
+            print_message(format_args!("not complete: {}", folder.display()));
         }
         let missing = collection.incomplete().len();
         if missing > 0 && !self.allow_incomplete {
@@ -40,7 +41,11 @@ impl Collect {
         match &self.out {
             Some(path) => {
                 collection.write(path)?;
-                eprintln!("{}: {} runs", path.display(), collection.row_count());
+                print_message(format_args!(
+                    "{}: {} runs",
+                    path.display(),
+                    collection.row_count()
+                ));
                 Ok(())
             }
             None => match std::io::stdout().write_all(&collection.to_csv()) {

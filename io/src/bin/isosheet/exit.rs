@@ -1,5 +1,6 @@
 //! How the command ends.
 
+use crate::message::print_message;
 use isosheet_io::run::{RunError, SweepError};
 use isosheet_io::scene::{Colours, SceneError, SceneFileError};
 use serde_json::json;
@@ -101,7 +102,7 @@ impl Failure {
                     }
                     Message::Scene(error) => error.render(Colours::Plain),
                 };
-                eprintln!("{text}");
+                print_message(format_args!("{text}"));
             }
             Format::Json => {
                 let problems = match &self.message {

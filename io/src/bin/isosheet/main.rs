@@ -8,6 +8,7 @@ mod convert;
 mod exit;
 mod info;
 mod interrupt;
+mod message;
 mod page;
 mod pictures;
 mod progress;

@@ -2,6 +2,7 @@
 
 use crate::Done;
 use crate::exit::Failure;
+use crate::message::print_message;
 use clap::Args;
 use isosheet_io::run::write_page;
 use isosheet_io::view::PageOptions;
@@ -32,7 +33,11 @@ impl Page {
             budget: self.budget,
         };
         let size = write_page(&self.dir, &file, &options).map_err(Failure::from)?;
-        eprintln!("page: {} ({} kB)", file.display(), size.div_ceil(1000));
+        print_message(format_args!(
+            "page: {} ({} kB)",
+            file.display(),
+            size.div_ceil(1000)
+        ));
         Ok(())
     }
 }

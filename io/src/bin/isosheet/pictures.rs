@@ -2,6 +2,7 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::message::print_message;
 use crate::write::to_stdout;
 use isosheet_io::run::{Film, FilmOptions, Recording};
 use isosheet_io::write_atomically;
@@ -68,9 +69,9 @@ pub(crate) fn write(
     }
     let film = Film::new(recording, frames.clone(), &FilmOptions::default()).map_err(input)?;
     for body in film.undrawn() {
-        eprintln!(
+        print_message(format_args!(
             "not drawn: obstacle[{body}], since pictures have no half-spaces, balls and capsules"
-        );
+        ));
     }
     let bytes = match format {
         PictureFormat::Png => film.picture(0).and_then(|image| image.to_png()),
@@ -79,7 +80,11 @@ pub(crate) fn write(
     let bytes = bytes.map_err(input)?;
     let written = write_atomically(path, |w| w.write_all(&bytes));
     written.map_err(|e| Failure::new(Code::Output, e))?;
-    to_stdout(&format!("{}: {} frames\n", path.display(), frames.len()))
+    let count = match frames.len() {
+        1 => "1 frame".to_owned(),
+        n => format!("{n} frames"),
+    };
+    to_stdout(&format!("{}: {count}\n", path.display()))
 }
 
 fn input(error: impl ToString) -> Failure {

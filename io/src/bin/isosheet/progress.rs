@@ -2,6 +2,7 @@
 
 use crate::exit::Format;
 use crate::interrupt;
+use crate::message::print_message;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use isosheet_io::run::{Beginning, Tick, Watch};
 use serde_json::{Value, json};
@@ -78,7 +79,9 @@ impl Watch for Progress {
             0 => String::new(),
             n => format!(", continued after step {n}"),
         };
-        eprintln!("{vertices} vertices: {modelled}; {of} steps{from}");
+        print_message(format_args!(
+            "{vertices} vertices: {modelled}; {of} steps{from}"
+        ));
         if std::io::stderr().is_terminal() {
             let bar = ProgressBar::with_draw_target(Some(*of), ProgressDrawTarget::stderr());
             let template = "{wide_bar} {pos}/{len} steps, {per_sec}, {eta} left";
@@ -106,10 +109,10 @@ impl Watch for Progress {
             }
             Format::Text if self.bar.is_none() && self.last.elapsed() >= LINES => {
                 self.last = Instant::now();
-                eprintln!(
+                print_message(format_args!(
                     "step {} of {}, t = {:.4} s, {rate:.1} steps/s, {left:.0} s left",
                     tick.steps, tick.of, tick.t
-                );
+                ));
             }
             _ => {}
         }

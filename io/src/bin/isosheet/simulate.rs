@@ -3,6 +3,7 @@
 use crate::Done;
 use crate::exit::{Code, Failure, Format};
 use crate::interrupt;
+use crate::message::print_message;
 use crate::progress::{Progress, event};
 use clap::Args;
 use isosheet_io::run::{Outcome, RunError, Summary, resume_folder, simulate};
@@ -89,9 +90,9 @@ impl How {
                 &json!({ "event": event_name, "folder": folder, "page": page, "summary": summary }),
             );
         } else {
-            eprintln!("{}", sentence(event_name, folder, &summary));
+            print_message(format_args!("{}", sentence(event_name, folder, &summary)));
             if let Some(page) = page(folder) {
-                eprintln!("page: {}", page.display());
+                print_message(format_args!("page: {}", page.display()));
             }
         }
         Ok(())

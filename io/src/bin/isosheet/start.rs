@@ -2,6 +2,7 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::message::print_message;
 use clap::{Args, ValueEnum};
 use isosheet_io::scene::StartingPoint;
 use isosheet_io::write_atomically;
@@ -52,10 +53,10 @@ impl New {
         .text();
         write_atomically(&path, |w| w.write_all(text.as_bytes()))
             .map_err(|e| Failure::new(Code::Output, e))?;
-        eprintln!(
+        print_message(format_args!(
             "wrote {path}; run it with `isosheet simulate {path}`",
             path = path.display()
-        );
+        ));
         Ok(())
     }
 }

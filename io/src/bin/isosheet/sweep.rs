@@ -2,6 +2,7 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::message::print_message;
 use crate::workers;
 use crate::write::to_stdout;
 use clap::{Args, ValueEnum};
@@ -73,7 +74,7 @@ impl SweepArgs {
         sweep.check()?;
         let program = this_program()?;
         sweep.write(&word_for(&program)?)?;
-        eprintln!("{} runs in {}", sweep.len(), folder.display());
+        print_message(format_args!("{} runs in {}", sweep.len(), folder.display()));
         match (self.jobs, self.engine) {
             (Some(jobs), _) => workers::run(&sweep, &program, jobs),
             (None, Some(engine)) => to_stdout(&engine.engine().text(&sweep)),

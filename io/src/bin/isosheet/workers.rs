@@ -4,6 +4,7 @@
 use crate::Done;
 use crate::exit::{Code, Failure};
 use crate::interrupt;
+use crate::message::print_message;
 use isosheet_io::run::{Sweep, SweepRun};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -36,9 +37,9 @@ pub(crate) fn run(sweep: &Sweep, program: &Path, jobs: u32) -> Done {
             let (folder, edits) = (&run.folder, run.edits.join(", "));
             let head = format!("{count} of {}: run {folder} ({edits})", sweep.len());
             match outcome {
-                Ok(()) => eprintln!("{head}: complete"),
+                Ok(()) => print_message(format_args!("{head}: complete")),
                 Err((code, message)) => {
-                    eprintln!("{head}: {message}");
+                    print_message(format_args!("{head}: {message}"));
                     let entry = Failed { run, code, message };
                     failed.lock().unwrap_or_else(|e| e.into_inner()).push(entry);
                 }
@@ -64,11 +65,11 @@ fn ending(sweep: &Sweep, done: usize, mut failed: Vec<Failed>) -> Done {
         return Err(Failure::new(Code::Interrupted, message));
     }
     let Some(first) = failed.first() else {
-        eprintln!(
+        print_message(format_args!(
             "complete: {} runs in {}",
             sweep.len(),
             sweep.folder().display()
-        );
+        ));
         return Ok(());
     };
     let message = format!(
