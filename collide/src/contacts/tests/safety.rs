@@ -311,3 +311,39 @@ fn sets_do_not_depend_on_earlier_searches() {
     assert_eq!(searched(&mut used), expected);
     assert_eq!(searched(&mut used), expected);
 }
+
+/// A scroll with layers 20 mm apart, of an edge length of 125 mm and more, that shakes: lists of neighbours
+/// serve several motions each, and every search finds what new contacts find.
+#[test]
+fn sets_do_not_depend_on_lists_that_serve_many_motions() {
+    let sheet = sheet(2);
+    let model = model(&sheet);
+    let make = || {
+        Contacts::new(&model, options(&model, 0.015))
+            .unwrap()
+            .with_self_contact(Coefficients::FRICTIONLESS)
+            .unwrap()
+    };
+    let mut x = sheet.positions().to_vec();
+    for p in x.as_chunks_mut::<3>().0 {
+        let angle = 10.0 * p[0];
+        let radius = 0.05 + 0.02 * angle / std::f64::consts::TAU;
+        *p = [radius * angle.cos(), p[1], radius * angle.sin()];
+    }
+    let mut used = make();
+    let bodies = BodyMotions::over(&used, StepSpan { t0: 0.0, h: 0.02 });
+    let (mut pairs, mut cut) = (0, 0);
+    for k in 0..60 {
+        let size = if k % 7 == 6 { 9e-3 } else { 1e-3 };
+        let shake = |i: usize| size * (1.7 * i as f64 + 0.9 * f64::from(k)).sin();
+        let dx: Vec<f64> = (0..x.len()).map(shake).collect();
+        let motion = motion(&bodies, [0.0, 1.0], &x, &dx);
+        let set = ContactSet::of(&mut used, motion);
+        assert_eq!(set, ContactSet::of(&mut make(), motion), "motion {k}");
+        pairs += set.pairs().len();
+        cut += usize::from(set.safe_fraction() < 1.0);
+        let part = 0.5 * set.safe_fraction();
+        x.iter_mut().zip(&dx).for_each(|(x, d)| *x += part * d);
+    }
+    assert!(pairs > 1000 && cut > 5, "{pairs} pairs, {cut} motions cut");
+}
