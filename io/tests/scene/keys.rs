@@ -49,7 +49,7 @@ const ALL_KEYS: [&str; 4] = [
     [[obstacle]]
     shape = { box = { size = [1, 1, 1] } }
     pose = { position = [0, 0, -3] }
-    motion = { z = { smooth_step = { to = 1, end = 1 } } }
+    motion = { x = { run_up = { from = 0, rate = 0.1, begin = 0, end = 1 } }, z = { smooth_step = { to = 1, end = 1 } } }
     friction = 0.1
     [[obstacle]]
     shape = { sphere = { radius = 1 } }
