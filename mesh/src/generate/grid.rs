@@ -36,40 +36,51 @@ pub fn grid(
     check_size("width", width)?;
     check_size("height", height)?;
     check_faces(2 * columns as u128 * rows as u128)?;
+    let place = |i, j| {
+        [
+            width * i as f64 / columns as f64,
+            height * j as f64 / rows as f64,
+        ]
+    };
+    cut_quadrilaterals(columns, rows, place, |i, j| match diagonals {
+        Diagonals::UnionJack => (i + j) % 2 == 0,
+        Diagonals::Falling => false,
+        Diagonals::Rising => true,
+    })
+}
+
+/// A flat sheet of `columns` x `rows` quadrilaterals, each cut into two triangles.
+///
+/// Vertex (i, j) has the index i + j (columns + 1) and lies at `place(i, j)`, `[x, y]` in metres. The
+/// quadrilateral (i, j) is cut from lower left to upper right where `is_rising(i, j)`, and the other way
+/// elsewhere. The counts have been checked.
+pub(super) fn cut_quadrilaterals(
+    columns: usize,
+    rows: usize,
+    place: impl Fn(usize, usize) -> [f64; 2],
+    is_rising: impl Fn(usize, usize) -> bool,
+) -> Result<Sheet, GenerateError> {
     let mut positions = Vec::with_capacity(3 * (columns + 1) * (rows + 1));
     for j in 0..=rows {
         for i in 0..=columns {
-            positions.extend([
-                width * i as f64 / columns as f64,
-                height * j as f64 / rows as f64,
-                0.0,
-            ]);
+            let [x, y] = place(i, j);
+            positions.extend([x, y, 0.0]);
         }
     }
-    let faces = grid_faces(columns, rows, diagonals);
-    Ok(Sheet::new(positions, &faces)?)
-}
-
-fn grid_faces(columns: usize, rows: usize, diagonals: Diagonals) -> Vec<[u32; 3]> {
     let mut faces = Vec::with_capacity(2 * columns * rows);
     for j in 0..rows {
         for i in 0..columns {
             let sw = (i + j * (columns + 1)) as u32;
             let (se, nw) = (sw + 1, sw + columns as u32 + 1);
             let ne = nw + 1;
-            let rising = match diagonals {
-                Diagonals::UnionJack => (i + j) % 2 == 0,
-                Diagonals::Falling => false,
-                Diagonals::Rising => true,
-            };
-            if rising {
+            if is_rising(i, j) {
                 faces.extend([[sw, se, ne], [sw, ne, nw]]);
             } else {
                 faces.extend([[sw, se, nw], [se, ne, nw]]);
             }
         }
     }
-    faces
+    Ok(Sheet::new(positions, &faces)?)
 }
 
 /// The isotropic square M^level of side `side` (metres): a grid of 2^(level + 1) cells each way, cut in the

@@ -1,8 +1,8 @@
 //! Kresling's pattern.
 
 use super::error::{GenerateError, check_angle, check_count, check_faces, check_size};
+use super::grid::cut_quadrilaterals;
 use super::origami::{FoldAssignment, FoldPattern};
-use crate::Sheet;
 use std::f64::consts::FRAC_PI_2;
 
 /// Kresling's pattern, flat: `columns` x `rows` parallelograms with sides `base` along x and `side`
@@ -33,30 +33,23 @@ pub fn kresling(
     check_faces(2 * columns as u128 * rows as u128)?;
     let at = |i: usize, j: usize| i + j * (columns + 1);
     let (sine, cosine) = angle.sin_cos();
-    let mut positions = Vec::with_capacity(3 * (columns + 1) * (rows + 1));
-    for j in 0..=rows {
+    let place = |i, j| {
         let along = side * j as f64;
-        for i in 0..=columns {
-            positions.extend([base * i as f64 + cosine * along, sine * along, 0.0]);
-        }
-    }
-    let mut faces = Vec::with_capacity(2 * columns * rows);
+        [base * i as f64 + cosine * along, sine * along]
+    };
+    let sheet = cut_quadrilaterals(columns, rows, place, |_, _| true)?;
     let mut creases = Vec::new();
     for j in 0..rows {
         for i in 0..columns {
-            let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            let [sw, se, ne, nw] = corners.map(|v| v as u32);
-            faces.extend([[sw, se, ne], [sw, ne, nw]]);
-            creases.push((corners[0], corners[2], FoldAssignment::Valley));
+            creases.push((at(i, j), at(i + 1, j + 1), FoldAssignment::Valley));
             if i > 0 {
-                creases.push((corners[0], corners[3], FoldAssignment::Mountain));
+                creases.push((at(i, j), at(i, j + 1), FoldAssignment::Mountain));
             }
             if j > 0 {
-                creases.push((corners[0], corners[1], FoldAssignment::Mountain));
+                creases.push((at(i, j), at(i + 1, j), FoldAssignment::Mountain));
             }
         }
     }
-    let sheet = Sheet::new(positions, &faces)?;
     Ok(FoldPattern::new(sheet, &creases))
 }
 

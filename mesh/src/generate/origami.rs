@@ -1,6 +1,7 @@
 //! Crease patterns of origami, with mountains and valleys.
 
 use super::error::{GenerateError, check_angle, check_count, check_faces, check_size};
+use super::grid::cut_quadrilaterals;
 use crate::{EdgeId, Sheet, VertexId};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -102,14 +103,11 @@ pub fn miura(
     check_faces(2 * columns as u128 * rows as u128)?;
     let at = |i: usize, j: usize| i + j * (columns + 1);
     let (step, shift) = (zigzag * angle.sin(), zigzag * angle.cos());
-    let mut positions = Vec::with_capacity(3 * (columns + 1) * (rows + 1));
-    for j in 0..=rows {
-        for i in 0..=columns {
-            let y = straight * j as f64 + if i % 2 == 1 { shift } else { 0.0 };
-            positions.extend([step * i as f64, y, 0.0]);
-        }
-    }
-    let mut faces = Vec::with_capacity(2 * columns * rows);
+    let place = |i, j| {
+        let y = straight * j as f64 + if i % 2 == 1 { shift } else { 0.0 };
+        [step * i as f64, y]
+    };
+    let sheet = cut_quadrilaterals(columns, rows, place, |i, _| i % 2 == 1)?;
     let mut creases = Vec::new();
     for j in 0..=rows {
         let zigzag = if j % 2 == 0 { 1 } else { -1 };
@@ -121,18 +119,8 @@ pub fn miura(
                 let sign = if i % 2 == 1 { zigzag } else { -zigzag };
                 creases.push((at(i, j), at(i, j + 1), FoldAssignment::of_sign(sign)));
             }
-            if i < columns && j < rows {
-                let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-                let [sw, se, ne, nw] = corners.map(|v| v as u32);
-                if i % 2 == 1 {
-                    faces.extend([[sw, se, ne], [sw, ne, nw]]);
-                } else {
-                    faces.extend([[sw, se, nw], [se, ne, nw]]);
-                }
-            }
         }
     }
-    let sheet = Sheet::new(positions, &faces)?;
     Ok(FoldPattern::new(sheet, &creases))
 }
 

@@ -1,8 +1,8 @@
 //! Yoshimura's pattern.
 
 use super::error::{GenerateError, check_count, check_faces, check_size};
+use super::grid::cut_quadrilaterals;
 use super::origami::{FoldAssignment, FoldPattern};
-use crate::Sheet;
 
 /// Yoshimura's pattern, flat: `rows` bands of `2 columns` isosceles triangles with the given base and
 /// height (metres), alternately upright and upside down.
@@ -28,27 +28,20 @@ pub fn yoshimura(
     check_size("height", height)?;
     check_faces(2 * columns as u128 * rows as u128)?;
     let at = |i: usize, j: usize| i + j * (columns + 1);
-    let mut positions = Vec::with_capacity(3 * (columns + 1) * (rows + 1));
-    for j in 0..=rows {
+    let place = |i, j| {
         let shift = if j % 2 == 1 { 0.5 } else { 0.0 };
-        for i in 0..=columns {
-            positions.extend([base * (i as f64 + shift), height * j as f64, 0.0]);
-        }
-    }
-    let mut faces = Vec::with_capacity(2 * columns * rows);
+        [base * (i as f64 + shift), height * j as f64]
+    };
+    let sheet = cut_quadrilaterals(columns, rows, place, |_, j| j % 2 == 1)?;
     let mut creases = Vec::new();
     for j in 0..rows {
         for i in 0..columns {
-            let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            let [sw, se, ne, nw] = corners.map(|v| v as u32);
-            let diagonal = if j % 2 == 0 {
-                faces.extend([[sw, se, nw], [se, ne, nw]]);
-                (corners[1], corners[3])
+            let (a, b) = if j % 2 == 0 {
+                (at(i + 1, j), at(i, j + 1))
             } else {
-                faces.extend([[sw, se, ne], [sw, ne, nw]]);
-                (corners[0], corners[2])
+                (at(i, j), at(i + 1, j + 1))
             };
-            creases.push((diagonal.0, diagonal.1, FoldAssignment::Mountain));
+            creases.push((a, b, FoldAssignment::Mountain));
             if i > 0 {
                 creases.push((at(i, j), at(i, j + 1), FoldAssignment::Mountain));
             }
@@ -57,7 +50,6 @@ pub fn yoshimura(
             }
         }
     }
-    let sheet = Sheet::new(positions, &faces)?;
     Ok(FoldPattern::new(sheet, &creases))
 }
 
