@@ -27,34 +27,10 @@ fn energy_momentum_keeps_energy_and_lengths_for_a_second() {
     }
 }
 
-fn tumbling_model() -> SheetModel {
-    SheetModel::new(&bumped(1, 0.1), 0.1, MassKind::Lumped).expect("valid")
-}
-
-/// A folded sheet flying and tumbling: smooth velocities, projected on the constraints by a tiny
-/// step of the projection method.
+/// A folded sheet flying and tumbling.
 fn tumbling(method: Method) -> Simulation {
-    let sheet = bumped(1, 0.1);
-    let x = sheet.positions().to_vec();
-    let v = x
-        .chunks(3)
-        .flat_map(|p| {
-            [
-                0.3 - 2.0 * p[1] + p[2],
-                0.1 + 2.0 * p[0],
-                1.0 - p[0] + 0.8 * (p[0] - 0.5) * (p[1] - 0.3),
-            ]
-        })
-        .collect();
-    let mut settle = Simulation::new(
-        tumbling_model(),
-        State::moving(x, v),
-        Method::Projection(Default::default()),
-    )
-    .expect("valid");
-    settle.step(1e-6).expect("accepted");
-    let State { x, v, .. } = settle.state().clone();
-    Simulation::new(tumbling_model(), State::moving(x, v), method).expect("valid")
+    let (model, start) = isosheet_tests::tumbling(&bumped(1, 0.1));
+    Simulation::new(model, start, method).expect("valid")
 }
 
 #[test]
@@ -145,8 +121,8 @@ fn symmetric_methods_run_backwards() {
         }
         let State { x, v, .. } = run.state().clone();
         let back = v.iter().map(|v| -v).collect();
-        let mut run =
-            Simulation::new(tumbling_model(), State::moving(x, back), method).expect("valid");
+        let (model, _) = isosheet_tests::tumbling(&bumped(1, 0.1));
+        let mut run = Simulation::new(model, State::moving(x, back), method).expect("valid");
         for _ in 0..40 {
             run.step(4e-3).expect("accepted");
         }

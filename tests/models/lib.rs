@@ -8,6 +8,7 @@ mod linkage;
 mod pendulum;
 mod strip;
 mod triangle;
+mod tumbling;
 
 pub use catenary::Catenary;
 pub use elliptic::{agm, complete_k, jacobi};
@@ -16,6 +17,7 @@ pub use linkage::Linkage;
 pub use pendulum::Pendulum;
 pub use strip::{HangingStrip, laguerre, laguerre_zeros};
 pub use triangle::FreeTriangle;
+pub use tumbling::tumbling;
 
 /// Observed orders `log2(e_k / e_{k+1})` of a sequence of errors at halved steps.
 pub fn orders(errors: &[f64]) -> Vec<f64> {

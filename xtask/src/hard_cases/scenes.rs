@@ -35,24 +35,7 @@ pub(super) fn pinned(sheet: &Sheet, pins: &[VertexId]) -> Result<SheetModel> {
 
 /// `M^1` with a bump (metres), flying and tumbling, with velocities that keep the lengths.
 pub(super) fn tumbling(bump: f64) -> Result<(SheetModel, State)> {
-    let sheet = bumped(1, bump)?;
-    let model = || SheetModel::new(&sheet, 0.1, MassKind::Lumped);
-    let x = sheet.positions().to_vec();
-    let v = x
-        .chunks(3)
-        .flat_map(|p| {
-            [
-                0.3 - 2.0 * p[1] + p[2],
-                0.1 + 2.0 * p[0],
-                1.0 - p[0] + 0.8 * (p[0] - 0.5) * (p[1] - 0.3),
-            ]
-        })
-        .collect();
-    let projection = Method::Projection(Default::default());
-    let mut settle = Simulation::new(model()?, State::moving(x, v), projection)?;
-    settle.step(1e-6)?;
-    let State { x, v, .. } = settle.state().clone();
-    Ok((model()?, State::moving(x, v)))
+    Ok(isosheet_tests::tumbling(&bumped(1, bump)?))
 }
 
 /// A simulation from rest.
