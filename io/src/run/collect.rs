@@ -3,8 +3,7 @@
 use super::folder::RunFolder;
 use super::sweep::{Sweep, SweepError};
 use super::{Ending, Summary};
-use crate::format::{Finding, check_finite};
-use crate::format::{JsonError, read_json, write_atomically};
+use crate::format::{Finding, JsonError, check_finite, read_json, write_atomically};
 use std::path::{Path, PathBuf};
 
 /// The summaries of many runs as one table: a row for each complete run.

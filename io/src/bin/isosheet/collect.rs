@@ -3,9 +3,9 @@
 use crate::Done;
 use crate::exit::{Code, Failure};
 use crate::message::print_message;
+use crate::write::bytes_to_stdout;
 use clap::Args;
 use isosheet_io::run::Collection;
-use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 
 /// Make one table (CSV) of the summaries of runs and sweeps
@@ -48,13 +48,7 @@ impl Collect {
                 ));
                 Ok(())
             }
-            None => match std::io::stdout().write_all(&collection.to_csv()) {
-                // A reader such as `head` has enough.
-                Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-                    Err(Failure::new(Code::Output, format!("cannot write: {e}")))
-                }
-                _ => Ok(()),
-            },
+            None => bytes_to_stdout(&collection.to_csv()),
         }
     }
 }

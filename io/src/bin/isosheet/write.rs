@@ -9,7 +9,12 @@ use std::path::Path;
 
 /// Writes text to stdout.
 pub(crate) fn to_stdout(text: &str) -> Done {
-    match std::io::stdout().write_all(text.as_bytes()) {
+    bytes_to_stdout(text.as_bytes())
+}
+
+/// Writes bytes to stdout.
+pub(crate) fn bytes_to_stdout(bytes: &[u8]) -> Done {
+    match std::io::stdout().write_all(bytes) {
         // A reader such as `head` has enough.
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         Err(e) => Err(Failure::new(Code::Output, format!("cannot write: {e}"))),
