@@ -1,5 +1,5 @@
-//! Mechanical problems with exact solutions, shared by the tests that span several crates and by
-//! reports. Each model gives a sheet, a start state and the exact motion.
+//! Mechanical problems, shared by the tests that span several crates and by reports. Each model gives a sheet,
+//! a start state and the exact motion, but for [`tumbling`], which gives a start alone.
 
 mod catenary;
 mod elliptic;
