@@ -15,17 +15,18 @@ mod naive;
 mod page;
 mod pins;
 mod plate;
-mod plot;
 mod rigid;
 mod scales;
 mod scenes;
 mod spin;
 mod steps;
 
-pub(crate) use case::{Case, Effort, Findings, Record, Shortfall};
+pub(crate) use case::{Case, Findings, Record, Shortfall};
 
+use crate::draw::{Chart, Drawing, Series};
 use crate::interrupt::{self, Outcome};
 use crate::progress;
+use crate::report::Effort;
 use crate::store::{Draft, Store, Unit};
 use anyhow::{Result, bail};
 use clap::Args;
@@ -95,11 +96,7 @@ pub(crate) struct HardCasesArgs {
 /// Runs the command.
 pub(crate) fn run(args: &HardCasesArgs) -> Result<Outcome> {
     let store = Store::open(&args.out)?;
-    let effort = match (args.quick, args.full) {
-        (true, _) => Effort::Quick,
-        (_, true) => Effort::Full,
-        _ => Effort::Standard,
-    };
+    let effort = Effort::of_flags([args.quick, args.full]);
     let wanted =
         |case: &Case| args.cases.is_empty() || args.cases.iter().any(|c| c.name == case.name);
     let results: Vec<Result<()>> = CASES
@@ -133,6 +130,19 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<Outcome> {
         );
     }
     Ok(outcome)
+}
+
+/// Size of the area inside the axes of charts, points.
+const SIZE: [f64; 2] = [230.0, 150.0];
+
+/// A chart with logarithmic axes.
+fn log_log(x: &str, y: &str, series: Vec<Series>) -> Drawing {
+    Chart::log_log(x, y, SIZE, series).draw()
+}
+
+/// A chart whose vertical axis is logarithmic.
+fn semi_log(x: &str, y: &str, series: Vec<Series>) -> Drawing {
+    Chart::semi_log(x, y, SIZE, series).draw()
 }
 
 fn unit(case: &Case, effort: Effort) -> Unit {

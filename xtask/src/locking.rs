@@ -13,7 +13,6 @@ mod course;
 mod cylinder;
 mod disk;
 mod drape;
-mod effort;
 mod elastica;
 mod everyday;
 mod findings;
@@ -30,11 +29,11 @@ mod targets;
 
 use crate::draw::Drawing;
 use crate::interrupt::{self, Outcome};
+use crate::report::Effort;
 use crate::report::plot_files;
 use crate::store::{Store, Unit};
 use anyhow::Result;
 use clap::Args;
-use effort::LockingEffort;
 use findings::Findings;
 use page::Section;
 use records::Records;
@@ -125,7 +124,7 @@ impl Part {
 }
 
 impl Part {
-    fn unit(self, effort: LockingEffort) -> Unit {
+    fn unit(self, effort: Effort) -> Unit {
         Unit {
             name: format!("locking-{self}"),
             title: self.to_string(),
@@ -182,11 +181,7 @@ pub(crate) struct LockingArgs {
 
 /// Runs the command.
 pub(crate) fn run(args: &LockingArgs) -> Result<Outcome> {
-    let effort = if args.quick {
-        LockingEffort::Quick
-    } else {
-        LockingEffort::Full
-    };
+    let effort = Effort::of_flags([args.quick, true]);
     let store = Store::open(&args.out)?;
     let parts = if args.yardsticks.is_empty() {
         Part::ALL.to_vec()

@@ -2,9 +2,10 @@
 
 mod page;
 
-use crate::figures::{Context, Made, PageRef, Record, RenderEffort, all};
+use crate::figures::{self, Context, Made, PageRef, Record};
 use crate::interrupt::{self, Outcome};
 use crate::progress;
+use crate::report::Effort;
 use crate::selection::Selection;
 use crate::store::{Draft, Store, Unit};
 use anyhow::{Result, bail};
@@ -38,11 +39,7 @@ pub(crate) struct ReproduceArgs {
 /// Runs the command.
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
     let store = Store::open(&args.out)?;
-    let effort = if args.quick {
-        RenderEffort::Quick
-    } else {
-        RenderEffort::Full
-    };
+    let effort = Effort::of_flags([args.quick, true]);
     claim(&store, effort)?;
     let context = Context {
         store: &store,
@@ -59,7 +56,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
         let title = unit.title.clone();
         store.keep(&unit, |draft| {
             let started = Instant::now();
-            let record = record(figure, all::make(figure, &context)?, draft)?;
+            let record = record(figure, figures::make(figure, &context)?, draft)?;
             let wall = started.elapsed().as_secs_f64();
             progress::note(&title, &format!("made ({wall:.1} s)"));
             Ok(record)
@@ -79,15 +76,15 @@ const EFFORT: &str = ".stamps/effort.json";
 
 /// Keeps quick and full results apart, which share the names of figures and runs: full results are not
 /// replaced by quick ones, and quick ones are removed before the first full one is made.
-fn claim(store: &Store, effort: RenderEffort) -> Result<()> {
+fn claim(store: &Store, effort: Effort) -> Result<()> {
     let recorded = store.read(EFFORT).ok();
-    let recorded = recorded.and_then(|text| serde_json::from_slice::<RenderEffort>(&text).ok());
+    let recorded = recorded.and_then(|text| serde_json::from_slice::<Effort>(&text).ok());
     match (recorded, effort) {
-        (Some(RenderEffort::Full), RenderEffort::Quick) => bail!(
+        (Some(Effort::Full), Effort::Quick) => bail!(
             "{} is for results without --quick, which are not mixed with quick ones; choose another folder with --out",
             store.root().display()
         ),
-        (Some(RenderEffort::Quick), RenderEffort::Full) => {
+        (Some(Effort::Quick), Effort::Full) => {
             progress::note("quick results", "removed");
             store.clear()?;
         }
@@ -100,7 +97,7 @@ fn claim(store: &Store, effort: RenderEffort) -> Result<()> {
 }
 
 /// What is kept of a figure.
-fn unit(figure: u8, effort: RenderEffort) -> Unit {
+fn unit(figure: u8, effort: Effort) -> Unit {
     Unit {
         name: format!("fig{figure:02}"),
         title: format!("figure {figure}"),
@@ -109,12 +106,10 @@ fn unit(figure: u8, effort: RenderEffort) -> Unit {
 }
 
 /// All figures made so far, with the effort of each.
-fn records(store: &Store) -> Result<Vec<(Record, RenderEffort)>> {
+fn records(store: &Store) -> Result<Vec<(Record, Effort)>> {
     let of = |figure| {
         let made = |effort| Some((store.earlier(&unit(figure, effort))?, effort));
-        [RenderEffort::Quick, RenderEffort::Full]
-            .into_iter()
-            .find_map(made)
+        [Effort::Quick, Effort::Full].into_iter().find_map(made)
     };
     Ok(Selection::all().iter().filter_map(of).collect())
 }

@@ -2,32 +2,9 @@
 
 use super::scenes::Course;
 use crate::draw::Drawing;
-use crate::report::{Picture, PictureRef, Table, number};
+use crate::report::{Effort, Picture, PictureRef, Table, number};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
-
-/// How much work to put in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Effort {
-    /// Seconds.
-    Quick,
-    /// Minutes.
-    Standard,
-    /// As long as it takes.
-    Full,
-}
-
-impl Effort {
-    /// The value for this effort.
-    pub(super) fn pick<T>(self, quick: T, standard: T, full: T) -> T {
-        match self {
-            Self::Quick => quick,
-            Self::Standard => standard,
-            Self::Full => full,
-        }
-    }
-}
 
 /// A hard case.
 pub(crate) struct Case {
@@ -271,9 +248,8 @@ impl Findings {
     }
 
     /// A drawing.
-    pub(super) fn drawing(&mut self, file: &str, drawing: &Drawing, alt: &str) -> Result<()> {
-        self.pictures.push(Picture::svg(file, drawing, alt)?);
-        Ok(())
+    pub(super) fn drawing(&mut self, file: &str, drawing: &Drawing, alt: &str) {
+        self.pictures.push(Picture::svg(file, drawing, alt));
     }
 
     /// A table.

@@ -2,10 +2,11 @@
 //! degenerate placement of Fig. 7.
 
 use super::scenes::{STRAIN, apart, course, methods, pinned};
-use super::{Case, Effort, Findings, plot};
+use super::{Case, Findings};
 use crate::condition;
 use crate::draw::Series;
 use crate::interrupt;
+use crate::report::Effort;
 use crate::report::number;
 use crate::timing::{bumped, corner, hanging};
 use anyhow::Result;
@@ -109,7 +110,7 @@ fn condition(effort: Effort) -> Result<Findings> {
         "chart-condition",
         &condition::plot(&rows),
         "Condition number of the mass matrix of bent sheets by mesh level, in three systems of coordinates",
-    )?;
+    );
     Ok(f)
 }
 
@@ -300,12 +301,12 @@ fn literal(effort: Effort) -> Result<Findings> {
     f.here = "The same sheet with momenta formed anew (first order), the full equations of Hamilton's principle (fourth order), and \
               without a chart (second order), against RATTLE's fourth-order composition at 0.1 ms."
         .into();
-    let drawing = plot::log_log("step, ms", "position error after 0.3 s, m", lines);
+    let drawing = super::log_log("step, ms", "position error after 0.3 s, m", lines);
     f.drawing(
         "literal-scheme",
         &drawing,
         "Position error of M^0 held at a corner against the step",
-    )?;
+    );
     Ok(f)
 }
 

@@ -2,9 +2,10 @@
 
 use super::naive::{TEXTBOOK, textbook, textbook_step};
 use super::scenes::{FRAME, STRAIN, apart, at_rest, conservative, course, damped, methods, pinned};
-use super::{Case, Effort, Findings, plot};
+use super::{Case, Findings};
 use crate::draw::Series;
 use crate::interrupt;
+use crate::report::Effort;
 use crate::report::Picture;
 use crate::timing::{bumped, corner};
 use anyhow::Result;
@@ -341,11 +342,11 @@ fn branch(effort: Effort) -> Result<Findings> {
          starts at {:.2} rad and passes {FRAC_PI_2:.2}.",
         crossing(FOLDED)?.flap.start_angle
     );
-    let drawing = plot::log_log("step, ms", "position error after 1 s, m", lines);
+    let drawing = super::log_log("step, ms", "position error after 1 s, m", lines);
     f.drawing(
         "branch-point",
         &drawing,
         "Error against the closed form after passing through flat",
-    )?;
+    );
     Ok(f)
 }

@@ -4,9 +4,10 @@ use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel_step, textbook_step};
 use super::scenes::{
     apart, at_rest, conservative, course, damped, energy_momentum, pinned, tumbling,
 };
-use super::{Case, Effort, Findings, plot};
+use super::{Case, Findings};
 use crate::draw::Series;
 use crate::interrupt;
+use crate::report::Effort;
 use crate::report::number;
 use crate::timing::{bumped, corner, hanging};
 use anyhow::Result;
@@ -99,13 +100,13 @@ fn reversal(effort: Effort) -> Result<Findings> {
         .into();
     f.drawing(
         "time-reversal",
-        &plot::semi_log(
+        &super::semi_log(
             "time of the way out, s",
             "distance from the start, m",
             lines,
         ),
         "There and back: distance from the start",
-    )?;
+    );
     Ok(f)
 }
 
@@ -305,7 +306,7 @@ fn symmetry(effort: Effort) -> Result<Findings> {
                 differences[9],
                 1e2 * unit,
             );
-            lines.push(plot::curve(
+            lines.push(Series::curve(
                 k,
                 what,
                 differences
@@ -333,7 +334,7 @@ fn symmetry(effort: Effort) -> Result<Findings> {
                 "energy-momentum"
             }
         );
-        f.drawing(&file, &plot::semi_log("time, s", "largest difference, m", lines), &format!("M^1 held at a corner, {name}, 5 ms: difference from the reference run, and the error of one step (2e-16 m for the conservative method, 1e-12 m for the damped one) times the growth measured with twin runs"))?;
+        f.drawing(&file, &super::semi_log("time, s", "largest difference, m", lines), &format!("M^1 held at a corner, {name}, 5 ms: difference from the reference run, and the error of one step (2e-16 m for the conservative method, 1e-12 m for the damped one) times the growth measured with twin runs"));
     }
     Ok(f)
 }

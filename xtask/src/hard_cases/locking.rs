@@ -1,8 +1,9 @@
 //! The same drape on different triangulations.
 
 use super::scenes::{FRAME, STRAIN, at_rest, course};
-use super::{Case, Effort, Findings};
+use super::{Case, Findings};
 use crate::locking::meshes::nearest;
+use crate::report::Effort;
 use crate::report::Picture;
 use crate::report::number;
 use anyhow::Result;

@@ -4,9 +4,10 @@ use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook, textbook_step
 use super::scenes::{
     FRAME, STRAIN, apart, at_rest, course, energy_momentum, methods, pinned, tumbling, upright,
 };
-use super::{Case, Effort, Findings, Shortfall, plot};
+use super::{Case, Findings, Shortfall};
 use crate::draw::Series;
 use crate::interrupt;
+use crate::report::Effort;
 use crate::report::number;
 use crate::timing::{bumped, hanging};
 use anyhow::Result;
@@ -68,16 +69,16 @@ fn rest(effort: Effort) -> Result<Findings> {
             1e-9,
         )
         .ended(&c);
-        lines.push(plot::curve(k, name, points));
+        lines.push(Series::curve(k, name, points));
     }
     f.here =
         "M^1, steps of 1/60 s, vertex by vertex compared with the start after every step.".into();
-    let drawing = plot::log_log("steps", "largest displacement, m", lines);
+    let drawing = super::log_log("steps", "largest displacement, m", lines);
     f.drawing(
         "rest",
         &drawing,
         "Displacement of a hanging sheet at rest (1e-18 stands for none)",
-    )?;
+    );
     Ok(f)
 }
 
@@ -217,10 +218,10 @@ fn million(effort: Effort) -> Result<Findings> {
             iterations as f64 / c.steps.max(1) as f64,
             c.rejected
         ));
-        lines.push(plot::curve(k, what, points));
+        lines.push(Series::curve(k, what, points));
     }
     lines.push(Series::guide("textbook, tumbling", naive));
-    let drawing = plot::log_log("steps", "largest relative energy error so far", lines);
-    f.drawing("million-steps", &drawing, "Energy error of M^1 by the energy-momentum method, steps of 5 ms, relative to the largest kinetic energy")?;
+    let drawing = super::log_log("steps", "largest relative energy error so far", lines);
+    f.drawing("million-steps", &drawing, "Energy error of M^1 by the energy-momentum method, steps of 5 ms, relative to the largest kinetic energy");
     Ok(f)
 }

@@ -2,7 +2,8 @@
 
 use super::naive::{GAUSS_SEIDEL, gauss_seidel};
 use super::scenes::{FRAME, STRAIN, at_rest, conservative, course, damped, pinned};
-use super::{Case, Effort, Findings};
+use super::{Case, Findings};
+use crate::report::Effort;
 use crate::report::number;
 use anyhow::Result;
 use isosheet_coords::{Start, sys_coord_assnmt_single};

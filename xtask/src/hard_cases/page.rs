@@ -1,7 +1,7 @@
 //! The report: DIR/index.html, DIR/verdicts.csv, DIR/verdicts.json and the table on the terminal.
 
-use super::case::{Bound, Check, Effort, Record, Verdict};
-use crate::report::{Page, Table, number};
+use super::case::{Bound, Check, Record, Verdict};
+use crate::report::{Effort, Page, Table, number};
 use crate::store::Store;
 use anyhow::Result;
 use maud::{Markup, html};

@@ -2,7 +2,8 @@
 
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook};
 use super::scenes::{FRAME, STRAIN, apart, at_rest, course, damped, methods, pinned, upright};
-use super::{Case, Effort, Findings, Shortfall};
+use super::{Case, Findings, Shortfall};
+use crate::report::Effort;
 use crate::report::number;
 use crate::timing::bumped;
 use anyhow::Result;

@@ -3,9 +3,9 @@
 use super::rigid::tetrahedron;
 use super::scenes::{STRAIN, apart, conservative, course};
 use super::spin::{SPIN, carried, inertia, spinning, turned};
-use super::{Case, Effort, Findings, plot};
-use crate::draw::Series;
-use crate::draw::{Axis, Legend, Plot};
+use super::{Case, Findings};
+use crate::draw::{Axis, Chart, Series};
+use crate::report::Effort;
 use crate::report::number;
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
@@ -89,22 +89,20 @@ fn held(f: &mut Findings) -> Result<()> {
         let t = 0.01 * f64::from(k);
         [t, exact(0.5 * altitude, t)]
     };
-    let swing = Plot {
-        x: Axis::round("time, s", [0.0, END], 4),
-        y: Axis::round("angle, rad", [-1.5, 1.5], 6),
-        size: [230.0, 120.0],
-        series: vec![
-            plot::curve(1, "lumped", lumped_curve),
-            plot::curve(0, "consistent", consistent_curve),
-            Series::guide("uniform plate", (0..=200).map(curve).collect()),
-        ],
-        legend: Legend::Right,
-    };
+    let x = Axis::round("time, s", [0.0, END], 4);
+    let y = Axis::round("angle, rad", [-1.5, 1.5], 6);
+    let series = vec![
+        Series::curve(1, "lumped", lumped_curve),
+        Series::curve(0, "consistent", consistent_curve),
+        Series::guide("uniform plate", (0..=200).map(curve).collect()),
+    ];
+    let swing = Chart::new(x, y, [230.0, 120.0], series);
     f.drawing(
         "plate-held",
         &swing.draw(),
         "A triangle held at an edge: angle over time, and the exact motion of the uniform plate",
-    )
+    );
+    Ok(())
 }
 
 /// The uniform shell as point masses of the same inertia: a third of the mass of every face in the middle
@@ -197,7 +195,8 @@ fn free(f: &mut Findings, effort: Effort) -> Result<()> {
     );
     f.drawing(
         "plate-free",
-        &plot::log_log("step, ms", "position error after 2 s, m", lines),
+        &super::log_log("step, ms", "position error after 2 s, m", lines),
         "A free tetrahedral shell against Euler's rigid body",
-    )
+    );
+    Ok(())
 }

@@ -3,8 +3,9 @@
 use super::naive::{TEXTBOOK, textbook_step};
 use super::scenes::{apart, course, methods};
 use super::spin::{SPIN, carried, inertia, spinning, turned};
-use super::{Case, Effort, Findings, Shortfall};
+use super::{Case, Findings, Shortfall};
 use crate::interrupt;
+use crate::report::Effort;
 use crate::report::number;
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State};

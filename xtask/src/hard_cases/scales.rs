@@ -5,7 +5,8 @@ use super::scenes::{
     FRAME, STRAIN, apart, at_rest, conservative, course, damped, energy_momentum, methods, pinned,
     strain_bound,
 };
-use super::{Case, Effort, Findings, Shortfall};
+use super::{Case, Findings, Shortfall};
+use crate::report::Effort;
 use crate::report::number;
 use crate::timing::{bumped, corner};
 use anyhow::Result;

@@ -2,8 +2,9 @@
 
 use super::naive::{TEXTBOOK, textbook, textbook_step};
 use super::scenes::{STRAIN, apart, course, damped, methods};
-use super::{Case, Effort, Findings, Shortfall, plot};
+use super::{Case, Findings, Shortfall};
 use crate::draw::Series;
+use crate::report::Effort;
 use crate::report::number;
 use crate::timing::{bumped, hanging};
 use anyhow::Result;
@@ -169,12 +170,12 @@ fn sizes(effort: Effort) -> Result<Findings> {
     f.here = "Conservative steps solve for impulses, which stay moderate when the step goes to zero; lengths are relative. The curves flatten where \
               rounding of the positions takes over."
         .into();
-    let drawing = plot::log_log("step, s", "position error after 0.1 s, m", lines);
+    let drawing = super::log_log("step, s", "position error after 0.1 s, m", lines);
     f.drawing(
         "step-sizes",
         &drawing,
         "A triangle held at an edge (exact pendulum): error against the step",
-    )?;
+    );
     Ok(f)
 }
 

@@ -2,7 +2,6 @@
 
 use super::bisection::{Bracket, Verdict, bisect};
 use super::course::{Kept, Plan, Scene};
-use super::effort::LockingEffort;
 use super::findings::Findings;
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
@@ -10,6 +9,7 @@ use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
 use super::targets::{Target, at_most, kept};
 use crate::draw::{Axis, Drawing};
+use crate::report::Effort;
 use crate::report::Table;
 use anyhow::Result;
 use isosheet_dynamics::Method;
@@ -138,14 +138,14 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     let effort = records.effort;
     let plan = Plan {
         step: STEP,
-        duration: effort.pick(5.0, 20.0),
+        duration: effort.quick_or(5.0, 20.0),
         rest_speed: Some(REST),
         patience: effort.patience(0.2, 6.0),
     };
-    let halvings = effort.pick(3, 8);
-    let sizes: &[usize] = effort.pick(&[2], &[2, 4]);
+    let halvings = effort.quick_or(3, 8);
+    let sizes: &[usize] = effort.quick_or(&[2], &[2, 4]);
     let mut patterns: Vec<(Pattern, f64)> = Pattern::ALL.map(|p| (p, 0.0)).to_vec();
-    if effort == LockingEffort::Full {
+    if effort == Effort::Full {
         patterns.extend([(Pattern::UnionJack, 45.0), (Pattern::OneWay, 22.5)]);
     }
     let meshes: Vec<Mesh> = sizes

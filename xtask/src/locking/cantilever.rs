@@ -104,12 +104,12 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     let effort = records.effort;
     let plan = Plan {
         step: STEP,
-        duration: effort.pick(3.0, 10.0),
+        duration: effort.quick_or(3.0, 10.0),
         rest_speed: Some(REST),
         patience: effort.patience(0.3, 4.0),
     };
-    let sizes: &[usize] = effort.pick(&[2], &[2, 4, 8]);
-    let directions: &[f64] = effort.pick(&[0.0, 22.5], &DIRECTIONS);
+    let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
+    let directions: &[f64] = effort.quick_or(&[0.0, 22.5], &DIRECTIONS);
     let exact = RIGIDITIES.map(|rigidity| (rigidity, exact_drop(rigidity)));
     let mut jobs = Vec::new();
     for of in exact {
@@ -192,7 +192,7 @@ fn table(all: &[Hung], plan: &Plan) -> Table {
             ("model", &|h| h.isometry.to_string().into()),
             ("ending", &|h| h.course.ending.name().into()),
             ("t at the end, s", &|h| h.course.t.into()),
-            ("factorisations", &|h| h.course.effort.factorisations.into()),
+            ("factorisations", &|h| h.course.cost.factorisations.into()),
             ("speed left, m/s", &|h| h.course.speed.into()),
             ("drop, m", &|h| h.drop.into()),
             ("exact, m", &|h| h.exact.into()),

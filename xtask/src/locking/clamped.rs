@@ -1,13 +1,13 @@
 //! Flat sheets that are clamped along lines of any direction.
 
 use super::course::{Course, Plan, Scene};
-use super::effort::LockingEffort;
 use super::findings::Findings;
 use super::isometry::{Isometry, Material};
 use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
 use super::targets::{Target, at_least, at_most, kept};
 use crate::draw::{Axis, Drawing};
+use crate::report::Effort;
 use crate::report::Table;
 use anyhow::Result;
 use isosheet_dynamics::Method;
@@ -138,12 +138,12 @@ impl By {
     }
 
     /// The number of sheets that a model is tried on.
-    fn sheets(self, isometry: Isometry, effort: LockingEffort) -> usize {
+    fn sheets(self, isometry: Isometry, effort: Effort) -> usize {
         match self {
-            Self::Bdf2 => effort.pick(10, 200),
-            Self::ImplicitEuler => effort.pick(0, 25),
+            Self::Bdf2 => effort.quick_or(10, 200),
+            Self::ImplicitEuler => effort.quick_or(0, 25),
             // The projection step is one onto the lengths of rods.
-            Self::Projection if isometry == Isometry::Rods => effort.pick(0, 25),
+            Self::Projection if isometry == Isometry::Rods => effort.quick_or(0, 25),
             Self::Projection => 0,
         }
     }
@@ -188,7 +188,7 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     let effort = records.effort;
     let plan = Plan {
         step: 1.0 / 60.0,
-        duration: effort.pick(0.5, 2.0),
+        duration: effort.quick_or(0.5, 2.0),
         rest_speed: None,
         patience: effort.patience(0.3, 2.0),
     };
@@ -231,11 +231,11 @@ fn runs(all: &[Fallen], plan: &Plan) -> Table {
             ("ending", &|f| f.course.ending.name().into()),
             ("t at the end, s", &|f| f.course.t.into()),
             ("factorisations per step", &|f| {
-                f.course.effort.factorisations_per_step().into()
+                f.course.cost.factorisations_per_step().into()
             }),
             ("most in a step", &|f| f.course.worst.into()),
             ("drop, m", &|f| f.drop.into()),
-            ("wall time, s", &|f| f.course.effort.wall.into()),
+            ("wall time, s", &|f| f.course.cost.wall.into()),
             ("message", &|f| f.course.ending.message().into()),
         ],
     )
@@ -310,8 +310,8 @@ fn summary(all: &[Fallen]) -> Table {
 
 /// Mean number of factorisations in the steps that were completed; nothing where none was.
 fn factorisations(fallen: &[&Fallen]) -> Option<f64> {
-    let steps: usize = fallen.iter().map(|f| f.course.effort.steps).sum();
-    let factorisations: usize = fallen.iter().map(|f| f.course.effort.factorisations).sum();
+    let steps: usize = fallen.iter().map(|f| f.course.cost.steps).sum();
+    let factorisations: usize = fallen.iter().map(|f| f.course.cost.factorisations).sum();
     (steps > 0).then(|| factorisations as f64 / steps as f64)
 }
 
@@ -387,7 +387,7 @@ fn plot(all: &[Fallen]) -> Drawing {
                 mesh: 0,
                 x: f.vertices as f64,
                 y: f.course
-                    .effort
+                    .cost
                     .factorisations_per_step()
                     .filter(|_| f.course.ending.is_good()),
             })
@@ -395,7 +395,7 @@ fn plot(all: &[Fallen]) -> Drawing {
         guides: Vec::new(),
     };
     let costs = all.iter().filter(|f| f.course.ending.is_good());
-    let costs = costs.filter_map(|f| f.course.effort.factorisations_per_step());
+    let costs = costs.filter_map(|f| f.course.cost.factorisations_per_step());
     Figure {
         x: Axis::round("vertices ~V~", [15.0, 135.0], 4),
         rows: vec![(

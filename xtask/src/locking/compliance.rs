@@ -8,8 +8,8 @@ use super::isometry::{Material, PAPER, PAPER_RIGIDITY, elastic, rods, weak};
 use super::meshes::Pattern;
 use super::plot::order;
 use super::records::Records;
-use crate::draw::{Axis, Drawing, Legend, Marker, Series, column, row};
-use crate::report::{Chart, Missing, Table};
+use crate::draw::{Axis, Chart, Drawing, Legend, Marker, Missing, Series, column, row};
+use crate::report::Table;
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method};
 use isosheet_mesh::{Sheet, VertexId, generate};
@@ -201,8 +201,8 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         rest_speed: Some(cantilever::REST),
         patience: effort.patience(0.5, 5.0),
     };
-    let stiffnesses: &[f64] = effort.pick(&[1e4, 1e6], &STIFFNESSES);
-    let sizes: &[usize] = effort.pick(&[2], &[2, 4, 8]);
+    let stiffnesses: &[f64] = effort.quick_or(&[1e4, 1e6], &STIFFNESSES);
+    let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
     let mut problems: Vec<Problem> = LADDERS.map(Problem::Ladder).to_vec();
     for form in [Form::Elastic, Form::Weak] {
         for &across in sizes {
@@ -243,7 +243,7 @@ fn table(all: &[Run]) -> Table {
             ("stiffness, N/m", &|r| r.stiffness.into()),
             ("ending", &|r| r.course.ending.name().into()),
             ("factorisations per step", &|r| {
-                r.course.effort.factorisations_per_step().into()
+                r.course.cost.factorisations_per_step().into()
             }),
             ("error", &|r| r.error.into()),
             ("message", &|r| r.course.ending.message().into()),

@@ -2,7 +2,7 @@
 
 use super::limit::{GivenUp, Guard, unless_given_up};
 use crate::interrupt::Interrupted;
-use crate::report::Effort;
+use crate::report::Cost;
 use anyhow::Result;
 use isosheet_collide::Contacts;
 use isosheet_dynamics::{
@@ -98,7 +98,7 @@ pub(super) struct Course {
     /// Time at the end, seconds.
     pub(super) t: f64,
     /// What the completed steps cost; wall time of the whole run.
-    pub(super) effort: Effort,
+    pub(super) cost: Cost,
     /// Most factorisations in one step.
     pub(super) worst: usize,
     /// Kinetic energy after the last complete step, joules.
@@ -117,7 +117,7 @@ impl Course {
             x: start.to_vec(),
             reactions: Vec::new(),
             t: 0.0,
-            effort: Effort::default(),
+            cost: Cost::default(),
             worst: 0,
             kinetic: 0.0,
             speed: 0.0,
@@ -127,7 +127,7 @@ impl Course {
     }
 
     fn add(&mut self, state: &State, report: &StepReport) {
-        self.effort.add(report);
+        self.cost.add(report);
         self.worst = self.worst.max(report.factorisations);
         self.kinetic = report.kinetic;
         self.strain = self.strain.max(report.strain);
@@ -216,7 +216,7 @@ impl Scene {
         }
         course.x.copy_from_slice(&simulation.state().x);
         course.t = simulation.state().t;
-        course.effort.wall = clock.elapsed().as_secs_f64();
+        course.cost.wall = clock.elapsed().as_secs_f64();
         Ok(course)
     }
 }
@@ -279,7 +279,7 @@ mod tests {
     fn runs_end_complete_at_rest_out_of_time_or_with_an_error() {
         let course = falling().run(&PLAN).unwrap();
         assert_eq!(
-            (course.ending.clone(), course.effort.steps),
+            (course.ending.clone(), course.cost.steps),
             (Ending::Complete, 10)
         );
         // Damped methods of first and second order fall by g t^2 / 2 to within the order of a step.
@@ -294,7 +294,7 @@ mod tests {
         };
         let course = falling().run(&fast).unwrap();
         assert_eq!(
-            (course.ending.clone(), course.effort.steps),
+            (course.ending.clone(), course.cost.steps),
             (Ending::Rest, QUIET)
         );
         let hurried = Plan {
@@ -303,7 +303,7 @@ mod tests {
         };
         let course = falling().run(&hurried).unwrap();
         assert_eq!(
-            (course.ending.name(), course.effort.steps),
+            (course.ending.name(), course.cost.steps),
             ("wall time over", 0)
         );
         let mut broken = falling();

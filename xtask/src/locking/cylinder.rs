@@ -204,8 +204,8 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         rest_speed: Some(REST),
         patience: effort.patience(0.3, 4.0),
     };
-    let sizes: &[usize] = effort.pick(&[4], &[4, 8, 16]);
-    let directions: &[f64] = effort.pick(&[0.0, 22.5, 45.0], &DIRECTIONS);
+    let sizes: &[usize] = effort.quick_or(&[4], &[4, 8, 16]);
+    let directions: &[f64] = effort.quick_or(&[0.0, 22.5, 45.0], &DIRECTIONS);
     let mut meshes: Vec<Mesh> = Vec::new();
     for pattern in Pattern::ALL {
         for &degrees in directions {
@@ -247,7 +247,7 @@ fn table(all: &[Bent], plan: &Plan) -> Table {
             ("model", &|b| b.isometry.to_string().into()),
             ("ending", &|b| b.course.ending.name().into()),
             ("t at the end, s", &|b| b.course.t.into()),
-            ("factorisations per step", &|b| b.course.effort.factorisations_per_step().into()),
+            ("factorisations per step", &|b| b.course.cost.factorisations_per_step().into()),
             ("energy", &|b| b.energy.into()),
             ("bending energy", &|b| b.bending.into()),
             ("moment", &|b| b.moment.into()),

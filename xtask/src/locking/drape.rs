@@ -182,14 +182,14 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     let effort = records.effort;
     let plan = Plan {
         step: 1.0 / 60.0,
-        duration: effort.pick(0.3, 10.0),
+        duration: effort.quick_or(0.3, 10.0),
         rest_speed: Some(2e-3),
         patience: effort.patience(0.5, 9.0),
     };
-    let rings = effort.pick(3, RINGS);
-    let meshes: &[Mesh] = effort.pick(&Mesh::ALL[..1], &Mesh::ALL);
-    let frictions: &[f64] = effort.pick(&[0.3], &[0.0, 0.3]);
-    let seeds = effort.pick(1, 10);
+    let rings = effort.quick_or(3, RINGS);
+    let meshes: &[Mesh] = effort.quick_or(&Mesh::ALL[..1], &Mesh::ALL);
+    let frictions: &[f64] = effort.quick_or(&[0.3], &[0.0, 0.3]);
+    let seeds = effort.quick_or(1, 10);
     let mut jobs: Vec<(Mesh, f64, u64)> = Vec::new();
     for &mesh in meshes {
         for &friction in frictions {
@@ -302,7 +302,7 @@ fn runs(all: &[Drape]) -> Table {
             ("ending", &|d| d.course.ending.name().into()),
             ("t at the end, s", &|d| d.course.t.into()),
             ("factorisations per step", &|d| {
-                d.course.effort.factorisations_per_step().into()
+                d.course.cost.factorisations_per_step().into()
             }),
             ("folds", &|d| d.rim.map(|r| r.folds as f64).into()),
             ("largest wave", &|d| d.rim.map(|r| r.wave as f64).into()),

@@ -1,7 +1,6 @@
 //! Single everyday scenes with paper.
 
 use super::course::{Course, Plan, Scene};
-use super::effort::LockingEffort;
 use super::findings::Findings;
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::vertices;
@@ -9,6 +8,7 @@ use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
 use super::targets::{at_least, kept, strain};
 use crate::draw::{Axis, Drawing};
+use crate::report::Effort;
 use crate::report::Table;
 use anyhow::Result;
 use isosheet_dynamics::{Method, PointProfile, Profile, SheetModel};
@@ -55,14 +55,14 @@ impl fmt::Display for Everyday {
 }
 
 impl Everyday {
-    fn all(effort: LockingEffort) -> Vec<Self> {
+    fn all(effort: Effort) -> Vec<Self> {
         let mut all = vec![
             Self::Pushed(2),
             Self::Roll(2),
             Self::Banner(1),
             Self::Corners(1),
         ];
-        if effort == LockingEffort::Full {
+        if effort == Effort::Full {
             all.extend([
                 Self::Pushed(4),
                 Self::Roll(4),
@@ -219,7 +219,7 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     let effort = records.effort;
     let plan = Plan {
         step: 1.0 / 60.0,
-        duration: effort.pick(0.5, 3.0),
+        duration: effort.quick_or(0.5, 3.0),
         rest_speed: None,
         patience: effort.patience(0.3, 10.0),
     };
@@ -266,13 +266,13 @@ fn table(all: &[Day], plan: &Plan) -> Table {
             ("model", &|d| d.isometry.to_string().into()),
             ("ending", &|d| d.course.ending.name().into()),
             ("t at the end, s", &|d| d.course.t.into()),
-            ("factorisations per step", &|d| d.course.effort.factorisations_per_step().into()),
+            ("factorisations per step", &|d| d.course.cost.factorisations_per_step().into()),
             ("most in a step", &|d| d.course.worst.into()),
             ("lowest vertex, m", &|d| d.heights[0].into()),
             ("highest vertex, m", &|d| d.heights[1].into()),
             ("energy of bending, J", &|d| d.bending.into()),
             ("strain", &|d| d.course.strain.into()),
-            ("wall time, s", &|d| d.course.effort.wall.into()),
+            ("wall time, s", &|d| d.course.cost.wall.into()),
             ("message", &|d| d.course.ending.message().into()),
         ],
     )
@@ -293,7 +293,7 @@ fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
         .filter_map(|d| {
             let cost = d
                 .course
-                .effort
+                .cost
                 .factorisations_per_step()
                 .filter(|_| d.course.ending.is_good());
             Some(Dot {
@@ -315,7 +315,7 @@ fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
     let x = Axis::linear("squares across, or mesh", range, ticks.collect());
     let cost = all
         .iter()
-        .filter_map(|d| d.course.effort.factorisations_per_step());
+        .filter_map(|d| d.course.cost.factorisations_per_step());
     Figure {
         x: (x),
         rows: vec![(
@@ -340,7 +340,7 @@ mod tests {
 
     #[test]
     fn every_scene_starts_with_its_lengths_and_pins() {
-        for everyday in Everyday::all(LockingEffort::Full) {
+        for everyday in Everyday::all(Effort::Full) {
             let sheet = everyday.sheet().unwrap();
             let model = everyday.model(Isometry::Rods, &sheet).unwrap();
             let start = everyday.start(&sheet);

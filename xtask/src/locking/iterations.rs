@@ -61,7 +61,7 @@ impl Hanging {
 
     /// Factorisations a step of a run that reached its end.
     fn cost(&self) -> Option<f64> {
-        let cost = self.course.effort.factorisations_per_step();
+        let cost = self.course.cost.factorisations_per_step();
         cost.filter(|_| self.course.ending.is_good())
     }
 }
@@ -71,11 +71,11 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     let effort = records.effort;
     let plan = Plan {
         step: 1.0 / 60.0,
-        duration: effort.pick(0.25, 1.0),
+        duration: effort.quick_or(0.25, 1.0),
         rest_speed: None,
         patience: effort.patience(0.5, 60.0),
     };
-    let levels: &[u32] = effort.pick(&[1, 2], &[2, 3, 4, 5]);
+    let levels: &[u32] = effort.quick_or(&[1, 2], &[2, 3, 4, 5]);
     // The longest runs begin first, so that no core is left alone with one of them.
     let jobs: Vec<(u32, Option<f64>)> = levels
         .iter()
@@ -124,17 +124,16 @@ fn table(all: &[Hanging], plan: &Plan) -> Table {
     ).named("iterations");
     for h in all {
         let course = &h.course;
-        let per_step =
-            (course.effort.steps > 0).then(|| course.effort.wall / course.effort.steps as f64);
+        let per_step = (course.cost.steps > 0).then(|| course.cost.wall / course.cost.steps as f64);
         table.push(vec![
             format!("M^{}", h.level).into(),
             h.vertices.into(),
             h.rigidity.unwrap_or(0.0).into(),
             h.isometry.to_string().into(),
             course.ending.name().into(),
-            course.effort.steps.into(),
-            course.effort.iterations_per_step().into(),
-            course.effort.factorisations_per_step().into(),
+            course.cost.steps.into(),
+            course.cost.iterations_per_step().into(),
+            course.cost.factorisations_per_step().into(),
             course.worst.into(),
             per_step.into(),
             course.strain.into(),
@@ -241,10 +240,10 @@ mod tests {
         assert_eq!(scene.model.pins(), [VertexId(20)]);
         let course = scene.run(&plan).unwrap();
         assert!(
-            course.ending.is_good() && course.effort.steps == 6,
+            course.ending.is_good() && course.cost.steps == 6,
             "{course:?}"
         );
-        assert!(course.effort.factorisations >= 6 && course.effort.iterations >= 6);
+        assert!(course.cost.factorisations >= 6 && course.cost.iterations >= 6);
         assert!(course.lowest() < -0.01 && course.strain < 1e-11);
     }
 }

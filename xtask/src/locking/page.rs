@@ -1,8 +1,8 @@
 //! The page: every yardstick with its figure and tables.
 
-use super::effort::LockingEffort;
 use super::findings::Findings;
 use super::targets::{self, Target};
+use crate::report::Effort;
 use crate::report::{Page, drawing, list, machine};
 use crate::store::Store;
 use anyhow::Result;
@@ -19,7 +19,7 @@ pub(super) struct Section {
 }
 
 /// Writes the page, `tables/targets.csv` and `targets.json`.
-pub(super) fn write(store: &Store, sections: &[Section], effort: LockingEffort) -> Result<()> {
+pub(super) fn write(store: &Store, sections: &[Section], effort: Effort) -> Result<()> {
     let named = |s: &'_ Section| {
         let of = s.found.targets.iter().map(|t| (s.name.clone(), t.clone()));
         of.collect::<Vec<_>>()
@@ -34,7 +34,7 @@ pub(super) fn write(store: &Store, sections: &[Section], effort: LockingEffort) 
             "SI units, z upwards. Times are wall times of runs on one core each, with other runs beside. Machine: "
             (machine()) "."
         }
-        @if effort == LockingEffort::Quick {
+        @if effort == Effort::Quick {
             p.note {
                 "Made with " code { "--quick" } ": few sheets on coarse meshes. They show that the command works, and no "
                 "result."

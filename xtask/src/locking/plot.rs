@@ -2,8 +2,10 @@
 
 use super::isometry::Isometry;
 use super::meshes::Pattern;
-use crate::draw::{Axis, Drawing, Legend, Line, Marker, Series, column, palette, row};
-use crate::report::{Chart, Missing, exponent, number, order_line};
+use crate::draw::{
+    Axis, Chart, Drawing, Legend, Line, Marker, Missing, Series, column, palette, row,
+};
+use crate::report::{exponent, number, order_line};
 
 /// Symbols of the meshes of a figure, in order.
 const MARKERS: [Marker; 4] = [

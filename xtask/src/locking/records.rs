@@ -1,9 +1,9 @@
 //! Runs that are computed on all cores and kept in the output folder, so that an interrupted report
 //! continues where it stopped.
 
-use super::effort::LockingEffort;
 use super::isometry::Isometry;
 use crate::progress::Progress;
+use crate::report::Effort;
 use crate::store::{Store, Unit};
 use anyhow::Result;
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ pub(super) struct Records<'a> {
     pub(super) store: &'a Store,
     /// Its name.
     pub(super) part: String,
-    pub(super) effort: LockingEffort,
+    pub(super) effort: Effort,
 }
 
 impl Records<'_> {
@@ -110,7 +110,7 @@ mod tests {
         let records = Records {
             store: &store,
             part: "sliding".into(),
-            effort: LockingEffort::Quick,
+            effort: Effort::Quick,
         };
         let count = AtomicUsize::new(0);
         let run = || {

@@ -93,8 +93,8 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         rest_speed: None,
         patience: effort.patience(0.5, 3.0),
     };
-    let (halvings, cells) = effort.pick((4, 2), (9, 4));
-    let coefficients: &[f64] = effort.pick(&[0.3], &[0.1, 0.3, 0.6]);
+    let (halvings, cells) = effort.quick_or((4, 2), (9, 4));
+    let coefficients: &[f64] = effort.quick_or(&[0.3], &[0.1, 0.3, 0.6]);
     let jobs: Vec<(Pattern, f64)> = Pattern::ALL
         .iter()
         .flat_map(|p| coefficients.iter().map(|mu| (*p, *mu)))

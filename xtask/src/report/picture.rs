@@ -25,12 +25,12 @@ pub(crate) struct PictureRef {
 
 impl Picture {
     /// A drawing as the SVG file `name.svg`.
-    pub(crate) fn svg(name: &str, drawing: &Drawing, alt: &str) -> Result<Self> {
-        Ok(Self {
+    pub(crate) fn svg(name: &str, drawing: &Drawing, alt: &str) -> Self {
+        Self {
             file: format!("{name}.svg"),
             alt: alt.to_owned(),
-            bytes: drawing.to_svg(alt)?.into_bytes(),
-        })
+            bytes: drawing.to_svg(alt).into_bytes(),
+        }
     }
 
     /// Adds the picture to the files of a unit.
@@ -51,7 +51,7 @@ pub(crate) fn plot_files(
     drawing: &Drawing,
     alt: &str,
 ) -> Result<()> {
-    let svg = drawing.to_svg(alt)?;
+    let svg = drawing.to_svg(alt);
     draft.write(&format!("plots/{name}.svg"), svg.as_bytes())?;
     draft.write(&format!("plots/{name}.png"), &drawing.to_png(alt)?)?;
     Ok(())

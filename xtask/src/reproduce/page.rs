@@ -1,7 +1,7 @@
 //! The page of the figures and `summary.json`.
 
-use crate::figures::{PageRef, Record, RenderEffort};
-use crate::report::{Page, PictureRef};
+use crate::figures::{PageRef, Record};
+use crate::report::{Effort, Page, PictureRef};
 use crate::selection::PAPER;
 use crate::store::{Store, StoreError};
 use anyhow::Result;
@@ -9,11 +9,7 @@ use maud::{Markup, html};
 use serde_json::json;
 
 /// Writes `index.html` and `summary.json`.
-pub(super) fn write(
-    store: &Store,
-    effort: RenderEffort,
-    records: &[(Record, RenderEffort)],
-) -> Result<()> {
+pub(super) fn write(store: &Store, effort: Effort, records: &[(Record, Effort)]) -> Result<()> {
     let page = page(records, &|path| store.read(path))?;
     store.write("index.html", page.to_html().as_bytes())?;
     let figures: Vec<_> = records
@@ -36,7 +32,7 @@ pub(super) fn write(
 /// Reads a picture.
 type Read<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, StoreError>;
 
-fn page(records: &[(Record, RenderEffort)], read: Read<'_>) -> Result<Page, StoreError> {
+fn page(records: &[(Record, Effort)], read: Read<'_>) -> Result<Page, StoreError> {
     let sections = records
         .iter()
         .map(|(record, effort)| section(record, *effort, read))
@@ -47,7 +43,7 @@ fn page(records: &[(Record, RenderEffort)], read: Read<'_>) -> Result<Page, Stor
             i { "Modeling dynamic developable meshes by the Hamilton principle" } ", Computer-Aided Design 39 (2007) "
             "719–731, and what is measured here. SI units, z upwards."
         }
-        @if records.iter().any(|(_, e)| *e == RenderEffort::Quick) {
+        @if records.iter().any(|(_, e)| *e == Effort::Quick) {
             p.note {
                 "Some figures below were made with " code { "--quick" } ": their runs are cut short and "
                 "show that the programs work, not what they find."
@@ -61,7 +57,7 @@ fn page(records: &[(Record, RenderEffort)], read: Read<'_>) -> Result<Page, Stor
     })
 }
 
-fn section(record: &Record, effort: RenderEffort, read: Read<'_>) -> Result<Markup, StoreError> {
+fn section(record: &Record, effort: Effort, read: Read<'_>) -> Result<Markup, StoreError> {
     let n = record.figure;
     let kind = if n > PAPER {
         "Beyond the paper,"
@@ -74,7 +70,7 @@ fn section(record: &Record, effort: RenderEffort, read: Read<'_>) -> Result<Mark
     let plays = plays(record, read)?;
     Ok(html! {
         section id={ "fig" (n) } {
-            h2 { (kind) " " (n) ". " (record.title) @if effort == RenderEffort::Quick { " (quick)" } }
+            h2 { (kind) " " (n) ". " (record.title) @if effort == Effort::Quick { " (quick)" } }
             @for picture in &pictures { figure { (picture) } }
             @if !plays.is_empty() {
                 p { b { "Turn it round and play it:" } }
@@ -140,7 +136,7 @@ mod tests {
                 vec![1, 2, 3]
             })
         };
-        let html = page(&[(record, RenderEffort::Full)], &read).unwrap();
+        let html = page(&[(record, Effort::Full)], &read).unwrap();
         let html = html.to_html();
         for part in [
             "A &lt; B",

@@ -133,6 +133,13 @@ pub(crate) fn trajectory(store: &Store, scene: &FigureScene) -> Result<Trajector
     Ok(Trajectory::read(&path)?)
 }
 
+/// The positions (3V, metres) in the last frame of a run that [`ensure()`] has made.
+pub(crate) fn end(store: &Store, scene: &FigureScene) -> Result<Vec<f64>> {
+    let trajectory = trajectory(store, scene)?;
+    let last = trajectory.frame(trajectory.len() - 1);
+    Ok(last.context("last frame")?.to_vec())
+}
+
 /// The summary of a run that [`ensure()`] has made.
 pub(crate) fn summary(store: &Store, scene: &FigureScene) -> Result<RunSummary> {
     let path = store.root().join(folder(scene)).join("summary.json");

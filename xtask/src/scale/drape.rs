@@ -3,7 +3,7 @@
 use super::measure::{STEP, peak_memory};
 use super::timed::Timed;
 use crate::interrupt;
-use crate::report::Effort;
+use crate::report::Cost;
 use crate::timing::bumped;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
@@ -87,7 +87,7 @@ pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRo
         peak: None,
         stopped: None,
     };
-    let mut effort = Effort::default();
+    let mut effort = Cost::default();
     let first = run.step(STEP);
     let (clock, before) = (Instant::now(), watch.read());
     let mut observe = |_: &Simulation, report: &StepReport| {

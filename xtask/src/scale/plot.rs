@@ -6,8 +6,7 @@ use super::measure::Row;
 use super::results::Results;
 use super::tables::factor_bytes;
 use super::whole::{Damped, SCENES, name};
-use crate::draw::{Axis, Colour, Drawing, Line, Marker, Series, column, palette};
-use crate::report::Chart;
+use crate::draw::{Chart, Colour, Drawing, Marker, Series, column, palette};
 
 /// A law through the last point of a series.
 fn law(name: &str, of: &[[f64; 2]], f: fn(f64) -> f64) -> Series {
@@ -30,23 +29,11 @@ const ORDER: Look = (palette::PURPLE, Marker::Diamond);
 const DETECTION: Look = (palette::VERMILION, Marker::Square);
 
 fn series(name: &str, points: &[[f64; 2]], (colour, marker): Look) -> Series {
-    Series {
-        name: name.into(),
-        points: points.to_vec(),
-        colour,
-        marker: Some(marker),
-        line: Line::Solid,
-    }
+    Series::line(name, colour, points.to_vec()).marked(marker)
 }
 
 fn panel(label: &str, series: Vec<Series>) -> Drawing {
-    let all = |k: usize| {
-        let of = move |s: &Series| s.points.iter().map(move |p| p[k]).collect::<Vec<_>>();
-        series.iter().flat_map(of)
-    };
-    let x = Axis::holding("vertices", all(0));
-    let y = Axis::holding(label, all(1));
-    Chart::new(x, y, [230.0, 130.0], series).draw()
+    Chart::log_log("vertices", label, [230.0, 130.0], series).draw()
 }
 
 /// Time, time with contact, memory and operations against the number of vertices.

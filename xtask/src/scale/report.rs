@@ -20,7 +20,7 @@ const PICTURE: &str = "Time, memory and fill of a step against the number of ver
 pub(super) fn files(results: &Results) -> Result<Vec<(&'static str, Vec<u8>)>> {
     let plot = plot::plot(results);
     Ok(vec![
-        ("scale.svg", plot.to_svg(PICTURE)?.into_bytes()),
+        ("scale.svg", plot.to_svg(PICTURE).into_bytes()),
         ("scale.png", plot.to_png(PICTURE)?),
         ("scale.csv", steps_data(&results.hanging).csv()?),
         ("draping.csv", draping_data(&results.draping).csv()?),
@@ -30,7 +30,7 @@ pub(super) fn files(results: &Results) -> Result<Vec<(&'static str, Vec<u8>)>> {
 
 /// The page.
 pub(super) fn page(results: &Results) -> Result<Page> {
-    let svg = plot::plot(results).to_svg(PICTURE)?;
+    let svg = plot::plot(results).to_svg(PICTURE);
     let body = html! {
         p {
             "A square sheet of 1 m and 0.1 kg hangs by a corner from a start that is flat but for a bump of 1 mm; steps of "

@@ -124,7 +124,7 @@ mod tests {
                 let run = &r.measured.run;
                 assert_eq!(run.failure, None, "{r:?}");
                 assert!((run.reached - scene.duration()).abs() < 1e-9, "{r:?}");
-                let (steps, effort) = ((scene.duration() / STEP).round() as usize, &run.effort);
+                let (steps, effort) = ((scene.duration() / STEP).round() as usize, &run.cost);
                 assert_eq!(effort.steps, steps);
                 assert!(run.strain < 1e-9 && effort.factorisations >= steps, "{r:?}");
                 assert_eq!(run.gap.is_some(), scene != Work::Hanging);

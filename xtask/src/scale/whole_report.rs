@@ -80,9 +80,9 @@ fn powers(runs: &[&WholeRun], method: Damped) -> String {
             .chunk_by(|a, b| a.measured.level == b.measured.level)
             .count(),
         fit(&Timed::rate),
-        fit(&|run| run.effort.wall_per_factorisation()),
-        fit(&|run| run.effort.factorisations_per_step()),
-        fit(&|run| run.effort.iterations_per_step()),
+        fit(&|run| run.cost.wall_per_factorisation()),
+        fit(&|run| run.cost.factorisations_per_step()),
+        fit(&|run| run.cost.iterations_per_step()),
     )
 }
 
@@ -114,7 +114,7 @@ fn apart(runs: &[&WholeRun]) -> Option<String> {
 fn difference(pair: &[&WholeRun]) -> Option<f64> {
     let counts = pair
         .iter()
-        .map(|r| r.measured.run.effort.factorisations as f64);
+        .map(|r| r.measured.run.cost.factorisations as f64);
     let [low, high] = counts
         .map(|n| [n; 2])
         .reduce(|[l, h], [a, b]| [l.min(a), h.max(b)])?;
@@ -178,17 +178,17 @@ pub(super) fn table(scene: Work, runs: &[&WholeRun]) -> Table {
             ("start", &|(r, _)| r.start.into()),
             ("s/s", &|r| cell(run(r).rate())),
             ("iterations per step", &|r| {
-                cell(run(r).effort.iterations_per_step())
+                cell(run(r).cost.iterations_per_step())
             }),
             ("factorisations per step", &|r| {
-                cell(run(r).effort.factorisations_per_step())
+                cell(run(r).cost.factorisations_per_step())
             }),
             ("ms per factorisation", &|r| {
-                cell(run(r).effort.wall_per_factorisation().map(|s| 1e3 * s))
+                cell(run(r).cost.wall_per_factorisation().map(|s| 1e3 * s))
             }),
             (COLUMNS[0], &|(_, c)| c[0].as_str().into()),
             (COLUMNS[1], &|(_, c)| c[1].as_str().into()),
-            ("rejected", &|r| run(r).effort.rejected.into()),
+            ("rejected", &|r| run(r).cost.rejected.into()),
             ("strain", &|r| format!("{:.0e}", run(r).strain).into()),
             ("smallest gap, µm", &|r| {
                 cell(run(r).gap.map(|gap| 1e6 * gap))
@@ -211,15 +211,13 @@ pub(super) fn data(runs: &[WholeRun]) -> Table {
             ("method", &|(r, _)| r.method.name().into()),
             ("start", &|(r, _)| r.start.into()),
             ("step_s", &|_| STEP.into()),
-            ("wall_s", &|(_, run)| run.effort.wall.into()),
+            ("wall_s", &|(_, run)| run.cost.wall.into()),
             ("repetitions", &|(_, run)| run.repetitions.into()),
             ("reached_s", &|(_, run)| run.reached.into()),
-            ("steps", &|(_, run)| run.effort.steps.into()),
-            ("rejected", &|(_, run)| run.effort.rejected.into()),
-            ("iterations", &|(_, run)| run.effort.iterations.into()),
-            ("factorisations", &|(_, run)| {
-                run.effort.factorisations.into()
-            }),
+            ("steps", &|(_, run)| run.cost.steps.into()),
+            ("rejected", &|(_, run)| run.cost.rejected.into()),
+            ("iterations", &|(_, run)| run.cost.iterations.into()),
+            ("factorisations", &|(_, run)| run.cost.factorisations.into()),
             ("factorisation_s", &|(r, _)| r.measured.factorisation.into()),
             ("strain", &|(_, run)| run.strain.into()),
             ("gap_m", &|(_, run)| run.gap.into()),
@@ -231,7 +229,7 @@ pub(super) fn data(runs: &[WholeRun]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Effort;
+    use crate::report::Cost;
     use crate::timing::Measured;
 
     /// A run of the hanging sheet with made-up numbers: `cost` times `V^2` seconds, `V^1.5` of them for each
@@ -239,7 +237,7 @@ mod tests {
     fn made_up(level: u32, method: Damped, start: usize, cost: f64) -> WholeRun {
         let vertices = (2_usize.pow(level + 1) + 1).pow(2);
         let v = vertices as f64;
-        let effort = Effort {
+        let cost = Cost {
             steps: 60,
             substeps: 60,
             rejected: 0,
@@ -345,8 +343,8 @@ mod tests {
     #[test]
     fn neighbouring_starts_are_compared_by_their_factorisations() {
         let mut runs = made_up_runs();
-        let first = runs[0].measured.run.effort.factorisations;
-        runs[1].measured.run.effort.factorisations = first * 4 / 3;
+        let first = runs[0].measured.run.cost.factorisations;
+        runs[1].measured.run.cost.factorisations = first * 4 / 3;
         let all: Vec<&WholeRun> = runs.iter().collect();
         let text = apart(&all).expect("pairs of runs");
         assert!(text.contains("M^1 33 %, M^2 0 %"), "{text}");

@@ -167,7 +167,7 @@ pub(crate) fn first_clause(message: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Effort;
+    use crate::report::Cost;
 
     fn point(scheme: &str, step: f64, wall: f64, position: f64) -> Point {
         Point {
@@ -177,7 +177,7 @@ mod tests {
             uniform: true,
             wall,
             repetitions: 1,
-            effort: Effort::default(),
+            cost: Cost::default(),
             errors: Some(Errors {
                 position,
                 energy: position,

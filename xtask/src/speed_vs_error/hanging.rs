@@ -1,8 +1,8 @@
 //! A work that other programs have been measured on as well: the hanging sheet.
 
-use super::effort::StudyEffort;
 use super::scheme::DEFAULT;
 use crate::progress::Progress;
+use crate::report::Effort;
 use crate::report::{Table, percent, short};
 use crate::timing::{
     self, BUMP, COLUMNS, Entry, Measured, Work, bumped, factorisation_time, repeated,
@@ -50,7 +50,7 @@ fn methods() -> [(&'static str, Method, f64); 6] {
 }
 
 /// Runs the work on all meshes.
-pub(crate) fn make(effort: StudyEffort) -> Result<Vec<Measured>> {
+pub(crate) fn make(effort: Effort) -> Result<Vec<Measured>> {
     let levels = 1..=effort.hanging_level();
     let bar = Progress::start("hanging sheet", levels.clone().count() * methods().len());
     let mut rows = Vec::new();
@@ -96,9 +96,9 @@ pub(crate) fn data(rows: &[Measured]) -> Table {
             ("strain", &|r| r.run.strain.into()),
             ("energy_balance", &|r| r.run.balance().into()),
             ("largest_energy_change", &|r| r.run.relative_drift().into()),
-            ("factorisations", &|r| r.run.effort.factorisations.into()),
-            ("steps", &|r| r.run.effort.substeps.into()),
-            ("rejected", &|r| r.run.effort.rejected.into()),
+            ("factorisations", &|r| r.run.cost.factorisations.into()),
+            ("steps", &|r| r.run.cost.substeps.into()),
+            ("rejected", &|r| r.run.cost.rejected.into()),
             ("factorisation_s", &|r| r.factorisation.into()),
             ("reached_s", &|r| r.run.reached.into()),
             ("repetitions", &|r| r.run.repetitions.into()),
@@ -136,11 +136,9 @@ pub(crate) fn table(rows: &[Measured]) -> Table {
             ("largest change", &|(r, _)| {
                 percent(r.run.relative_drift()).into()
             }),
-            ("factorisations", &|(r, _)| {
-                r.run.effort.factorisations.into()
-            }),
-            ("steps", &|(r, _)| r.run.effort.substeps.into()),
-            ("rejected", &|(r, _)| r.run.effort.rejected.into()),
+            ("factorisations", &|(r, _)| r.run.cost.factorisations.into()),
+            ("steps", &|(r, _)| r.run.cost.substeps.into()),
+            ("rejected", &|(r, _)| r.run.cost.rejected.into()),
             ("remark", &|(r, _)| r.remark().into()),
         ],
     )
@@ -163,7 +161,7 @@ pub(crate) fn conclusions(rows: &[Measured]) -> Vec<String> {
         let here = || finished.iter().filter(|r| r.level == level);
         let damped = here()
             .filter(|r| r.method != CONSERVATIVE)
-            .min_by(|a, b| a.run.effort.wall.total_cmp(&b.run.effort.wall));
+            .min_by(|a, b| a.run.cost.wall.total_cmp(&b.run.cost.wall));
         let mut text = match damped {
             Some(r) => format!(
                 "M^{level}: the cheapest damped run is {} at {:.1} ms, {} s/s with strain {:.0e}",
@@ -240,7 +238,7 @@ mod tests {
         let row = measure(1, methods()[0].clone(), 1e-4, 1.0).unwrap();
         assert_eq!(row.run.failure, None);
         assert!((row.run.reached - 1.0).abs() < 1e-9);
-        assert!(row.run.strain < 1e-11 && row.run.effort.factorisations > 60);
+        assert!(row.run.strain < 1e-11 && row.run.cost.factorisations > 60);
         let csv = data(std::slice::from_ref(&row)).csv().unwrap();
         assert!(
             String::from_utf8(csv)
@@ -253,11 +251,11 @@ mod tests {
     #[test]
     fn comparisons_follow_the_numbers() {
         let mut row = measure(1, methods()[0].clone(), 1e-4, 1.0).unwrap();
-        row.run.effort.wall = 0.6 * row.run.reached;
+        row.run.cost.wall = 0.6 * row.run.reached;
         row.factorisation = 0.1 * row.step;
         let mut other = row.clone();
         other.method = CONSERVATIVE.into();
-        other.run.effort.wall *= 3.0;
+        other.run.cost.wall *= 3.0;
         let mut finer = row.clone();
         finer.level = 2;
         let all = [row, other, finer];

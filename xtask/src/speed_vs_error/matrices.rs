@@ -1,8 +1,8 @@
 //! The matrices of the solver study, and their Matrix Market files.
 
-use super::effort::StudyEffort;
 use crate::interrupt::{self, Outcome};
 use crate::progress;
+use crate::report::Effort;
 use anyhow::Result;
 use isosheet_coords::linalg::Pattern;
 use isosheet_coords::{BentState, RodSystem, bent_square};
@@ -189,7 +189,7 @@ impl Body {
 }
 
 /// Writes the matrices of all sizes of an effort.
-pub(crate) fn write(folder: &Path, effort: StudyEffort) -> Result<Outcome> {
+pub(crate) fn write(folder: &Path, effort: Effort) -> Result<Outcome> {
     for body in Body::all(effort.solver_level()) {
         let body = body?;
         let kinds = [
@@ -274,7 +274,7 @@ mod tests {
     #[test]
     fn files_are_written() {
         let folder = tempfile::tempdir().unwrap();
-        write(folder.path(), StudyEffort::Quick).unwrap();
+        write(folder.path(), Effort::Quick).unwrap();
         let text = std::fs::read_to_string(folder.path().join("pair-saddle.mtx")).unwrap();
         assert!(text.starts_with("%%MatrixMarket matrix coordinate real symmetric\n% saddle"));
         assert!(

@@ -1,14 +1,14 @@
 //! The study of one problem: all methods, all steps; its table, its plot, its words.
 
 use super::analysis::{Measure, advice, cheapest, first_clause, on_front, order};
-use super::effort::StudyEffort;
 use super::measure::{Point, sweep};
 use super::problem::{CHECKPOINTS, Problem};
 use super::reference::{self, Reference};
 use super::scheme::{DEFAULT, ROBUST, Scheme, is_paper};
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
+use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
 use crate::progress::Progress;
-use crate::report::{Cell, Chart, Table, rounded, short};
+use crate::report::Effort;
+use crate::report::{Cell, Table, rounded, short};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
@@ -22,7 +22,7 @@ pub(crate) struct Study {
 }
 
 /// Runs all methods on a problem.
-pub(crate) fn make(problem: Problem, effort: StudyEffort) -> Result<Study> {
+pub(crate) fn make(problem: Problem, effort: Effort) -> Result<Study> {
     let schemes = Scheme::all();
     let bar = Progress::start(problem.to_string(), schemes.len() + 1);
     let reference = reference::compute(problem, effort.reference(problem))?;
@@ -64,9 +64,9 @@ impl Study {
                 ("position_error_m", &|p| error(p, Measure::Position)),
                 ("relative_energy_error", &|p| error(p, Measure::Energy)),
                 ("strain", &|p| error(p, Measure::Strain)),
-                ("steps", &|p| p.effort.substeps.into()),
-                ("rejected", &|p| p.effort.rejected.into()),
-                ("factorisations", &|p| p.effort.factorisations.into()),
+                ("steps", &|p| p.cost.substeps.into()),
+                ("rejected", &|p| p.cost.rejected.into()),
+                ("factorisations", &|p| p.cost.factorisations.into()),
                 ("repetitions", &|p| p.repetitions.into()),
                 ("failure", &|p| p.failure.clone().into()),
             ],
@@ -385,12 +385,12 @@ mod tests {
 
     #[test]
     fn a_quick_study_of_the_pendulum_holds_together() {
-        let study = make(Problem::Pendulum, StudyEffort::Quick).unwrap();
+        let study = make(Problem::Pendulum, Effort::Quick).unwrap();
         let csv = String::from_utf8(study.data().csv().unwrap()).unwrap();
         assert_eq!(csv.lines().count(), 1 + study.points.len());
         assert!(csv.contains("pendulum,BDF2 (default),"), "{csv}");
         assert!(!csv.contains(",NaN") && !csv.contains(",inf"), "{csv}");
-        let svg = study.plot().to_svg("t").unwrap();
+        let svg = study.plot().to_svg("t");
         assert!(svg.contains("RATTLE composition"));
         assert_eq!(study.table().rows.len(), Scheme::all().len());
         assert_eq!(study.solver_table().rows.len(), 6);

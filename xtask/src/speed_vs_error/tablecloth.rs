@@ -2,9 +2,9 @@
 
 mod penetration;
 
-use super::effort::StudyEffort;
 use super::scheme::DEFAULT;
 use crate::progress::Progress;
+use crate::report::Effort;
 use crate::report::{Table, percent, rounded, short};
 use crate::timing::{
     self, BUMP, COLUMNS, Entry, Measured, Pairs, STEP, Work, bumped, factorisation_time, repeated,
@@ -38,7 +38,7 @@ pub(crate) struct Tablecloth {
 impl Tablecloth {
     /// Part of the wall time that the factorisations take, if each costs as much as without contact.
     fn factorising(&self) -> f64 {
-        let effort = &self.measured.run.effort;
+        let effort = &self.measured.run.cost;
         self.measured.factorisation * effort.factorisations as f64 / effort.wall
     }
 
@@ -61,7 +61,7 @@ fn methods() -> [(&'static str, Method); 2] {
 }
 
 /// Runs the work on all meshes.
-pub(crate) fn make(effort: StudyEffort) -> Result<Vec<Tablecloth>> {
+pub(crate) fn make(effort: Effort) -> Result<Vec<Tablecloth>> {
     let levels = effort.tablecloth_levels();
     let bar = Progress::start("tablecloth", 4 * levels.clone().count());
     let mut rows = Vec::new();
@@ -143,10 +143,10 @@ pub(crate) fn data(rows: &[Tablecloth]) -> Table {
             ("smallest_gap_m", &|(.., r)| r.gap.into()),
             ("depth_m", &|(r, ..)| r.depth.into()),
             ("crossings", &|(r, ..)| r.crossings.into()),
-            ("iterations", &|(.., r)| r.effort.iterations.into()),
-            ("factorisations", &|(.., r)| r.effort.factorisations.into()),
-            ("steps", &|(.., r)| r.effort.substeps.into()),
-            ("rejected", &|(.., r)| r.effort.rejected.into()),
+            ("iterations", &|(.., r)| r.cost.iterations.into()),
+            ("factorisations", &|(.., r)| r.cost.factorisations.into()),
+            ("steps", &|(.., r)| r.cost.substeps.into()),
+            ("rejected", &|(.., r)| r.cost.rejected.into()),
             ("factorisation_s", &|(_, m, _)| m.factorisation.into()),
             ("reached_s", &|(.., r)| r.reached.into()),
             ("repetitions", &|(.., r)| r.repetitions.into()),
@@ -184,12 +184,12 @@ pub(crate) fn table(rows: &[Tablecloth]) -> Table {
             ("gap (µm)", &|(r, ..)| gap(r).into()),
             ("depth (µm)", &|(r, ..)| short(1e6 * r.depth).into()),
             ("crossings", &|(r, ..)| r.crossings.into()),
-            ("iterations", &|(_, run, _)| run.effort.iterations.into()),
+            ("iterations", &|(_, run, _)| run.cost.iterations.into()),
             ("factorisations", &|(_, run, _)| {
-                run.effort.factorisations.into()
+                run.cost.factorisations.into()
             }),
-            ("steps", &|(_, run, _)| run.effort.substeps.into()),
-            ("rejected", &|(_, run, _)| run.effort.rejected.into()),
+            ("steps", &|(_, run, _)| run.cost.substeps.into()),
+            ("rejected", &|(_, run, _)| run.cost.rejected.into()),
             ("remark", &|(r, ..)| r.measured.remark().into()),
         ],
     )
@@ -241,7 +241,7 @@ fn entries(scene: &[Tablecloth]) -> Vec<Entry> {
 
 /// Where the time of a run goes.
 fn effort(r: &Tablecloth) -> String {
-    let (run, effort) = (&r.measured.run, &r.measured.run.effort);
+    let (run, effort) = (&r.measured.run, &r.measured.run.cost);
     let mut text = format!("{}, {}", r.measured.mesh(), pairs(r));
     if let Some(failure) = &run.failure {
         let _ = write!(
@@ -280,7 +280,7 @@ mod tests {
         assert_eq!(run.failure, None);
         assert!((run.reached - 1.5).abs() < 1e-9 && run.gap.is_some());
         assert!(run.strain < 1e-10 && row.clean(), "{row:?}");
-        assert!(run.effort.factorisations >= run.effort.substeps, "{row:?}");
+        assert!(run.cost.factorisations >= run.cost.substeps, "{row:?}");
     }
 
     #[test]
@@ -288,10 +288,10 @@ mod tests {
         let mut row = measure(1, Pairs::Table, methods()[0].clone(), [3e-3, 0.0]).unwrap();
         let run = &mut row.measured.run;
         (run.failure, run.reached, run.gap) = (None, 1.5, Some(1e-4));
-        (run.effort.wall, run.effort.factorisations) = (0.75, 100);
+        (run.cost.wall, run.cost.factorisations) = (0.75, 100);
         let mut faster = row.clone();
         faster.measured.method = "implicit Euler".into();
-        faster.measured.run.effort.wall = 0.375;
+        faster.measured.run.cost.wall = 0.375;
         let mut rows = [row, faster];
         let text = conclusions(&rows).join(" ");
         assert!(

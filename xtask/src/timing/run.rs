@@ -2,7 +2,7 @@
 
 use super::comparison::Entry;
 use crate::interrupt::{self, Interrupted};
-use crate::report::{Effort, rounded, short};
+use crate::report::{Cost, rounded, short};
 use anyhow::Result;
 use isosheet_dynamics::{RunEnd, Simulation, StepReport};
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// A run from start to end, or as far as it came.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Timed {
-    pub(crate) effort: Effort,
+    pub(crate) cost: Cost,
     /// Largest relative edge length error.
     pub(crate) strain: f64,
     /// Change of the energy at the end, and its largest change on the way, joules.
@@ -33,7 +33,7 @@ pub(crate) struct Timed {
 impl Timed {
     /// Wall seconds for a simulated second; nothing if not a single step was completed.
     pub(crate) fn rate(&self) -> Option<f64> {
-        (self.reached > 0.0).then(|| self.effort.wall / self.reached)
+        (self.reached > 0.0).then(|| self.cost.wall / self.reached)
     }
 
     /// Change of the energy at the end, as part of the potential energy released; 0 if none was.
@@ -110,11 +110,11 @@ pub(crate) fn repeated(
     look: &mut dyn FnMut(&Simulation, &StepReport),
 ) -> Result<Timed> {
     let mut run = timed(&mut start()?, span, patience, look)?;
-    let mut spent = run.effort.wall;
+    let mut spent = run.cost.wall;
     while run.ended() && run.repetitions < REPETITIONS && spent < short {
         let again = timed(&mut start()?, span, patience, &mut |_, _| {})?;
-        spent += again.effort.wall;
-        run.effort.wall = run.effort.wall.min(again.effort.wall);
+        spent += again.cost.wall;
+        run.cost.wall = run.cost.wall.min(again.cost.wall);
         run.repetitions += 1;
     }
     Ok(run)
@@ -144,7 +144,7 @@ fn timed(
     let mut looking = Duration::ZERO;
     let mut watch = |simulation: &Simulation, report: &StepReport| {
         let before = Instant::now();
-        run.effort.add(report);
+        run.cost.add(report);
         run.strain = run.strain.max(report.strain);
         run.drift = run.drift.max(report.energy_drift.abs());
         run.gap = [run.gap, report.gap].into_iter().flatten().reduce(f64::min);
@@ -157,7 +157,7 @@ fn timed(
         ControlFlow::Continue(())
     };
     let end = simulation.run(duration, step, &mut [&mut watch, &mut interrupt::observe]);
-    run.effort.wall = (clock.elapsed() - looking).as_secs_f64();
+    run.cost.wall = (clock.elapsed() - looking).as_secs_f64();
     interrupt::check()?;
     run.gained = simulation.energy() - energy;
     run.released = height - potential(simulation);

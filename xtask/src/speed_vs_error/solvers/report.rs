@@ -1,8 +1,8 @@
 //! What the rows of the solver study say: tables, plot, words.
 
 use super::row::{CHOLESKY, CRAMER, LDLT, MINORS, SCHUR, SOLVERS, SPARSE_LU, SolverRow};
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
-use crate::report::{Cell, Chart, Table, exponent, short};
+use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
+use crate::report::{Cell, Table, exponent, short};
 
 /// All rows, for programs.
 pub(crate) fn data(rows: &[SolverRow]) -> Table {
