@@ -1,11 +1,12 @@
 //! The paper's coordinates and its scheme: condition, an error that does not vanish with the step, the
 //! degenerate placement of Fig. 7.
 
-use super::scenes::{STRAIN, apart, course, methods, pinned};
+use super::scenes::{STRAIN, apart, course, pinned};
 use super::{Case, Findings};
 use crate::condition;
 use crate::draw::Series;
 use crate::interrupt;
+use crate::methods::methods;
 use crate::report::Effort;
 use crate::report::number;
 use crate::timing::{bumped, corner, hanging};

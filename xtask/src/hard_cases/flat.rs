@@ -1,10 +1,11 @@
 //! Exactly flat starts, and passing through states where the rods are dependent.
 
 use super::naive::{TEXTBOOK, textbook, textbook_step};
-use super::scenes::{FRAME, STRAIN, apart, at_rest, conservative, course, damped, methods, pinned};
+use super::scenes::{FRAME, STRAIN, apart, at_rest, course, pinned};
 use super::{Case, Findings};
 use crate::draw::Series;
 use crate::interrupt;
+use crate::methods::{conservative, damped, methods};
 use crate::report::Effort;
 use crate::report::Picture;
 use crate::timing::{bumped, corner};

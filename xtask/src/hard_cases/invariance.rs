@@ -1,12 +1,11 @@
 //! Time reversal, renumbering, turning the frame, and the number of threads.
 
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel_step, textbook_step};
-use super::scenes::{
-    apart, at_rest, conservative, course, damped, energy_momentum, pinned, tumbling,
-};
+use super::scenes::{apart, at_rest, course, pinned, tumbling};
 use super::{Case, Findings};
 use crate::draw::Series;
 use crate::interrupt;
+use crate::methods::{conservative, damped, energy_momentum};
 use crate::report::Effort;
 use crate::report::number;
 use crate::timing::{bumped, corner, hanging};

@@ -1,12 +1,11 @@
 //! Long runs: rest stays rest, and energy over a million steps.
 
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook, textbook_step};
-use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, course, energy_momentum, methods, pinned, tumbling, upright,
-};
+use super::scenes::{FRAME, STRAIN, apart, at_rest, course, pinned, tumbling, upright};
 use super::{Case, Findings, Shortfall};
 use crate::draw::Series;
 use crate::interrupt;
+use crate::methods::{energy_momentum, methods};
 use crate::report::Effort;
 use crate::report::number;
 use crate::timing::{bumped, hanging};

@@ -1,8 +1,9 @@
 //! Large degrees, long chains, irregular meshes, holes and several components.
 
 use super::naive::{GAUSS_SEIDEL, gauss_seidel};
-use super::scenes::{FRAME, STRAIN, at_rest, conservative, course, damped, pinned};
+use super::scenes::{FRAME, STRAIN, at_rest, course, pinned};
 use super::{Case, Findings};
+use crate::methods::{conservative, damped};
 use crate::report::Effort;
 use crate::report::number;
 use anyhow::Result;

@@ -1,8 +1,9 @@
 //! Too many pins, and sheets pulled taut.
 
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook};
-use super::scenes::{FRAME, STRAIN, apart, at_rest, course, damped, methods, pinned, upright};
+use super::scenes::{FRAME, STRAIN, apart, at_rest, course, pinned, upright};
 use super::{Case, Findings, Shortfall};
+use crate::methods::{damped, methods};
 use crate::report::Effort;
 use crate::report::number;
 use crate::timing::bumped;

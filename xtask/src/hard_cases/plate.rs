@@ -1,10 +1,11 @@
 //! The inertia of plates: lumped and consistent mass.
 
 use super::rigid::tetrahedron;
-use super::scenes::{STRAIN, apart, conservative, course};
+use super::scenes::{STRAIN, apart, course};
 use super::spin::{SPIN, carried, inertia, spinning, turned};
 use super::{Case, Findings};
 use crate::draw::{Axis, Chart, Series};
+use crate::methods::conservative;
 use crate::report::Effort;
 use crate::report::number;
 use anyhow::Result;

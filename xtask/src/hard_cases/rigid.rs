@@ -1,10 +1,11 @@
 //! Meshes that cannot bend.
 
 use super::naive::{TEXTBOOK, textbook_step};
-use super::scenes::{apart, course, methods};
+use super::scenes::{apart, course};
 use super::spin::{SPIN, carried, inertia, spinning, turned};
 use super::{Case, Findings, Shortfall};
 use crate::interrupt;
+use crate::methods::methods;
 use crate::report::Effort;
 use crate::report::number;
 use anyhow::Result;

@@ -1,11 +1,9 @@
 //! Extreme shapes, masses and sizes.
 
 use super::naive::{GAUSS_SEIDEL, gauss_seidel};
-use super::scenes::{
-    FRAME, STRAIN, apart, at_rest, conservative, course, damped, energy_momentum, methods, pinned,
-    strain_bound,
-};
+use super::scenes::{FRAME, STRAIN, apart, at_rest, course, pinned, strain_bound};
 use super::{Case, Findings, Shortfall};
+use crate::methods::{conservative, damped, energy_momentum, methods};
 use crate::report::Effort;
 use crate::report::number;
 use crate::timing::{bumped, corner};

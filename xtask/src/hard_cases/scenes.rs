@@ -43,40 +43,6 @@ pub(super) fn at_rest(model: SheetModel, x: &[f64], method: Method) -> Result<Si
     Ok(Simulation::new(model, State::at_rest(x.to_vec()), method)?)
 }
 
-/// The damped methods.
-pub(super) fn damped() -> [(&'static str, Method); 3] {
-    [
-        ("BDF2", Method::Bdf2(Default::default())),
-        ("implicit Euler", Method::ImplicitEuler(Default::default())),
-        ("projection", Method::Projection(Default::default())),
-    ]
-}
-
-/// The conservative methods.
-pub(super) fn conservative() -> [(&'static str, Method); 3] {
-    [
-        (
-            "energy-momentum",
-            Method::EnergyMomentum(Default::default()),
-        ),
-        ("RATTLE", Method::Rattle(Default::default())),
-        (
-            "RATTLE composition",
-            Method::RattleComposition(Default::default()),
-        ),
-    ]
-}
-
-/// All chart-free methods.
-pub(super) fn methods() -> impl Iterator<Item = (&'static str, Method)> {
-    damped().into_iter().chain(conservative())
-}
-
-/// The energy-momentum method.
-pub(super) fn energy_momentum() -> Method {
-    Method::EnergyMomentum(Default::default())
-}
-
 /// What happened in a number of steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Course {

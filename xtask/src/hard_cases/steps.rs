@@ -1,9 +1,10 @@
 //! Step sizes, and free fall.
 
 use super::naive::{TEXTBOOK, textbook, textbook_step};
-use super::scenes::{STRAIN, apart, course, damped, methods};
+use super::scenes::{STRAIN, apart, course};
 use super::{Case, Findings, Shortfall};
 use crate::draw::Series;
+use crate::methods::{damped, methods};
 use crate::report::Effort;
 use crate::report::number;
 use crate::timing::{bumped, hanging};

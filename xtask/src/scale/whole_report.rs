@@ -256,7 +256,7 @@ mod tests {
                 step: STEP,
                 factorisation: 1e-6 * v * v * STEP,
                 run: Timed {
-                    effort,
+                    cost,
                     strain: 1e-12,
                     reached: 1.0,
                     repetitions: 1,
@@ -318,7 +318,7 @@ mod tests {
             .find(|r| r.measured.level == 3)
             .map(|r| &mut r.measured.run)
             .expect("a run of M^3");
-        (lost.effort.wall, lost.reached) = (1e9, 0.25);
+        (lost.cost.wall, lost.reached) = (1e9, 0.25);
         lost.failure = Some("600 s of wall time were over".into());
         let all: Vec<&WholeRun> = runs.iter().collect();
         let text = findings(&all).join("\n");

@@ -182,13 +182,13 @@ mod tests {
         let run = |limits| repeated(&start, [1.0, STEP], limits, &mut |_, _| {}).unwrap();
         let cut = run([0.0, 1.0]);
         assert!(
-            !cut.ended() && (cut.effort.steps, cut.repetitions) == (1, 1),
+            !cut.ended() && (cut.cost.steps, cut.repetitions) == (1, 1),
             "{cut:?}"
         );
         assert!((cut.reached - STEP).abs() < 1e-12, "{cut:?}");
-        assert_eq!(cut.rate(), Some(cut.effort.wall / cut.reached));
+        assert_eq!(cut.rate(), Some(cut.cost.wall / cut.reached));
         let whole = run([60.0, 60.0]);
-        assert!(whole.ended() && (whole.effort.steps, whole.repetitions) == (60, 3));
+        assert!(whole.ended() && (whole.cost.steps, whole.repetitions) == (60, 3));
         assert!((-0.9..0.01).contains(&whole.balance()) && whole.strain < 1e-11);
     }
 }
