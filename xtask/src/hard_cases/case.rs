@@ -1,6 +1,6 @@
 //! What a hard case is, and what is found in it.
 
-use super::scenes::Course;
+use super::scenes::{Course, STRAIN};
 use crate::draw::Drawing;
 use crate::report::{Effort, Picture, PictureRef, Table, number};
 use anyhow::Result;
@@ -199,19 +199,24 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
-    /// What a naive method did.
-    pub(super) fn naive(
-        &mut self,
-        method: &str,
-        outcome: impl Into<String>,
-        failed: bool,
-    ) -> &mut Self {
+    /// What a naive method did, and whether it failed.
+    pub(super) fn naive(&mut self, method: &str, outcome: impl Into<String>, failed: bool) {
         self.naive.push(Naive {
             method: method.to_owned(),
             outcome: outcome.into(),
             failed,
         });
-        self
+    }
+
+    /// What a naive method did that may break down, which is a failure.
+    pub(super) fn naive_run<T>(
+        &mut self,
+        method: &str,
+        outcome: Result<T, String>,
+        judge: impl FnOnce(T) -> (String, bool),
+    ) {
+        let (text, failed) = outcome.map_or_else(|e| (format!("{e}."), true), judge);
+        self.naive(method, text, failed);
     }
 
     /// A number with an upper bound.
@@ -247,14 +252,50 @@ impl Findings {
         &mut self.checks[at]
     }
 
+    /// Numbers of a run, which are none if it ended early; `what` says which run.
+    pub(super) fn of<'a>(&'a mut self, course: &'a Course, what: impl Into<String>) -> Judge<'a> {
+        Judge {
+            findings: self,
+            course,
+            what: what.into(),
+        }
+    }
+
     /// A drawing.
     pub(super) fn drawing(&mut self, file: &str, drawing: &Drawing, alt: &str) {
         self.pictures.push(Picture::svg(file, drawing, alt));
     }
+}
 
-    /// A table.
-    pub(super) fn table(&mut self, caption: &str, head: &[&str], rows: Vec<Vec<String>>) {
-        self.tables.push(Table::new(caption, head).with_texts(rows));
+/// Judges the numbers of a run.
+pub(super) struct Judge<'a> {
+    findings: &'a mut Findings,
+    course: &'a Course,
+    what: String,
+}
+
+impl Judge<'_> {
+    /// A number with an upper bound.
+    pub(super) fn at_most(&mut self, quantity: &str, value: f64, bound: f64) -> &mut Check {
+        self.check(quantity, value, Bound::AtMost(bound))
+    }
+
+    /// A number with a lower bound.
+    pub(super) fn at_least(&mut self, quantity: &str, value: f64, bound: f64) -> &mut Check {
+        self.check(quantity, value, Bound::AtLeast(bound))
+    }
+
+    /// The largest edge strain of the run, bounded by [`STRAIN`].
+    pub(super) fn strain(&mut self, quantity: &str) -> &mut Check {
+        self.at_most(quantity, self.course.strain, STRAIN)
+    }
+
+    fn check(&mut self, quantity: &str, value: f64, bound: Bound) -> &mut Check {
+        let (what, value) = (
+            format!("{}: {quantity}", self.what),
+            self.course.if_finished(value),
+        );
+        self.findings.check(what, value, bound).ended(self.course)
     }
 }
 

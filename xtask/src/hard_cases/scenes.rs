@@ -43,6 +43,16 @@ pub(super) fn at_rest(model: SheetModel, x: &[f64], method: Method) -> Result<Si
     Ok(Simulation::new(model, State::at_rest(x.to_vec()), method)?)
 }
 
+/// A sheet of 0.1 kg under gravity, pinned at the given vertices, released at rest in its own positions.
+pub(super) fn released(sheet: &Sheet, pins: &[VertexId], method: Method) -> Result<Simulation> {
+    at_rest(pinned(sheet, pins)?, sheet.positions(), method)
+}
+
+/// The top row of `M^1`.
+pub(super) fn top_row() -> Vec<VertexId> {
+    (20..25).map(VertexId).collect()
+}
+
 /// What happened in a number of steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Course {
@@ -67,6 +77,19 @@ impl Course {
     /// The error message of an early end, shortened to its first reason.
     pub(super) fn said(&self) -> Option<String> {
         self.refusal.as_ref().map(ToString::to_string)
+    }
+
+    /// Takes another run into account: the worst of both, and the first error.
+    pub(super) fn add(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.rejected += other.rejected;
+        self.strain = self.strain.max(other.strain);
+        self.drift = self.drift.max(other.drift);
+        self.gain = self.gain.max(other.gain);
+        self.kinetic = self.kinetic.max(other.kinetic);
+        if self.refusal.is_none() {
+            (self.end, self.refusal) = (other.end, other.refusal);
+        }
     }
 
     /// NaN if the run ended early: no number of it is what was asked for.
@@ -103,6 +126,11 @@ pub(super) fn course(
     course.refusal = end.err();
     course.end = run.state().t;
     Ok(course)
+}
+
+/// Takes steps as [`course`] does, unwatched.
+pub(super) fn go(run: &mut Simulation, h: f64, steps: usize) -> Result<Course, Interrupted> {
+    course(run, h, steps, |_, _| {})
 }
 
 /// Largest distance of corresponding vertices, metres.
