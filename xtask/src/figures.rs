@@ -27,67 +27,57 @@ mod stamping;
 mod style;
 
 use crate::draw::{Anchor, Drawing, Vertical, palette};
-use crate::report::{Effort, Picture, PictureRef, Table};
-use crate::store::Store;
+use crate::report::{Effort, Picture, Table};
+use crate::store::{Draft, Store};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-
-/// A page that plays a run, as the record of a figure keeps it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct PageRef {
-    /// Paths relative to the output folder.
-    pub(crate) path: String,
-    pub(crate) thumbnail: String,
-    /// Choices in the address of the page, empty or from `#` on.
-    pub(crate) choices: String,
-    pub(crate) label: String,
-}
-
-/// What is known about a figure.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Record {
-    pub(crate) figure: u8,
-    pub(crate) title: String,
-    /// What the paper shows.
-    pub(crate) paper: String,
-    /// What is measured here.
-    pub(crate) measured: String,
-    pub(crate) pictures: Vec<PictureRef>,
-    /// Pages that play its runs; in records of earlier versions there are none.
-    #[serde(default)]
-    pub(crate) pages: Vec<PageRef>,
-    pub(crate) tables: Vec<Table>,
-    /// The numbers, for programs.
-    pub(crate) facts: Value,
-}
+use std::borrow::Cow;
 
 /// A page that plays a run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Play {
-    /// Names of page and picture without folder.
-    pub(crate) file: String,
-    pub(crate) thumbnail_file: String,
+    /// Path of the page relative to the output folder.
+    pub(crate) path: String,
     /// Choices in the address of the page, empty or from `#` on.
-    pub(crate) choices: &'static str,
+    pub(crate) choices: String,
     /// What tells it from the other pages of the figure.
     pub(crate) label: String,
+    /// The page; it is not part of records.
+    #[serde(skip)]
     pub(crate) page: String,
     /// The last frame as a PNG file.
-    pub(crate) thumbnail: Vec<u8>,
+    pub(crate) thumbnail: Picture,
 }
 
 /// A figure that has been made.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Made {
-    pub(crate) title: &'static str,
-    pub(crate) paper: &'static str,
+    pub(crate) title: Cow<'static, str>,
+    /// What the paper shows.
+    pub(crate) paper: Cow<'static, str>,
+    /// What is measured here.
     pub(crate) measured: String,
     pub(crate) pictures: Vec<Picture>,
     /// Pages that play its runs.
     pub(crate) pages: Vec<Play>,
     pub(crate) tables: Vec<Table>,
+    /// The numbers, for programs.
     pub(crate) facts: Value,
+}
+
+impl Made {
+    /// Adds its files to those of a unit.
+    pub(crate) fn keep(&self, draft: &mut Draft) -> Result<()> {
+        for picture in &self.pictures {
+            draft.write(&picture.path, &picture.bytes)?;
+        }
+        for play in &self.pages {
+            draft.write(&play.path, play.page.as_bytes())?;
+            draft.write(&play.thumbnail.path, &play.thumbnail.bytes)?;
+        }
+        Ok(())
+    }
 }
 
 /// What figures are made with.

@@ -156,18 +156,15 @@ fn unit(case: &Case, effort: Effort) -> Unit {
 /// Runs a case.
 fn make(case: &Case, effort: Effort, draft: &mut Draft) -> Result<Record> {
     let started = Instant::now();
-    let findings = (case.run)(effort)?;
-    let pictures = findings.pictures.iter().map(|p| p.keep(draft));
-    let pictures = pictures.collect::<Result<_>>()?;
+    let found = (case.run)(effort)?;
+    for picture in &found.pictures {
+        draft.write(&picture.path, &picture.bytes)?;
+    }
     let record = Record {
         name: case.name.to_owned(),
         title: case.title.to_owned(),
         expected: case.expected.to_owned(),
-        naive: findings.naive,
-        here: findings.here,
-        checks: findings.checks,
-        pictures,
-        tables: findings.tables,
+        found,
         wall: started.elapsed().as_secs_f64(),
     };
     progress::note(

@@ -13,5 +13,5 @@ pub(crate) use effort::Effort;
 pub(crate) use machine::machine;
 pub(crate) use number::{exponent, number, order_line, percent, rounded, short};
 pub(crate) use page::{Page, drawing, list};
-pub(crate) use picture::{Picture, PictureRef, plot_files};
+pub(crate) use picture::{Picture, plot_files};
 pub(crate) use table::{Cell, Table};

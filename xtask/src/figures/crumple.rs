@@ -35,8 +35,8 @@ pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made
     let run = runs::ensure(context.store, &scene)?;
     let free = runs::ensure(context.store, &without_contact(level, context.effort)?)?;
     let mut made = Made {
-        title: ["Crumpled paper, M¹", "Crumpled paper, M²"][level as usize - 1],
-        paper: PAPER[level as usize - 1],
+        title: ["Crumpled paper, M¹", "Crumpled paper, M²"][level as usize - 1].into(),
+        paper: PAPER[level as usize - 1].into(),
         measured: describe(&scene, &run, &free, context)?,
         pictures: vec![picture(&format!("fig{figure:02}.png"), &scene, context)?],
         pages: vec![page(figure, &scene, context)?],

@@ -255,9 +255,9 @@ pub(super) fn fig14(context: &Context<'_>) -> Result<Made> {
     let alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
     let words: Vec<String> = all.iter().map(|d| describe(d, effort)).collect();
     Ok(Made {
-        title: "Rectangular cloth on a rectangular table",
+        title: "Rectangular cloth on a rectangular table".into(),
         paper: "A rectangular plastic tablecloth draped over a rectangular table with M², and with a second resolution: the principal folds run from the \
-                table corners to the cloth corners.",
+                table corners to the cloth corners.".into(),
         measured: format!(
             "{CONDITIONS}The cloth is 1.2 m x 0.9 m, the table 0.58 m x 0.435 m. The diagonals of M^k lead through the corners of the table, so the \
              mesh could favour what is to be shown: an irregular triangulation, which has no such lines, is the check. {} {} {}",
@@ -319,9 +319,9 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
     let words = all().map(|d| describe(d, context.effort).replace('~', ""));
     let words: Vec<String> = words.collect();
     Ok(Made {
-        title: "Octagonal cloth on an octagonal table",
+        title: "Octagonal cloth on an octagonal table".into(),
         paper: "An octagonal plastic tablecloth (244/440) draped over an octagonal table, with two resolutions: principal folds from table corners to cloth corners. For n-gonal \
-                cloths on n-gonal tables with more and more corners the paper infers that uniform folding patterns will occur.",
+                cloths on n-gonal tables with more and more corners the paper infers that uniform folding patterns will occur.".into(),
         measured: format!(
             "{CONDITIONS}Cloths of circumscribed radius 0.6 m on tables of 0.33 m. Folds of the hem are outward bulges of its distance from the axis, divided by that of the flat cloth, that stand out by more than 0.02. A cloth folds along mesh lines: in the irregular triangulations and in 244/440, \
              a lattice of triangles, none runs from a table corner to its cloth corner; the last mesh, concentric rings of triangles, has these lines among its edges. {} {} {} {}",

@@ -55,9 +55,9 @@ pub(super) fn make() -> Result<Made> {
     let all = captioned(vec![single.drawing, pair.drawing], &lines, 60.0);
     let alt = "One triangle, and two triangles folding about their common edge";
     Ok(Made {
-        title: "External and internal degrees of freedom",
+        title: "External and internal degrees of freedom".into(),
         paper: "A single triangle only moves rigidly (six external degrees of freedom); two triangles with a common edge have \
-                a seventh, internal one: the fold about that edge.",
+                a seventh, internal one: the fold about that edge.".into(),
         measured: "Counted on the two meshes: 6 = 6 + 0 and 7 = 6 + 1. The arrow is the path of the far vertex when the one \
                    internal coordinate changes from flat to 51.6°."
             .into(),

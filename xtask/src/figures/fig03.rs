@@ -46,9 +46,9 @@ pub(super) fn make() -> Result<Made> {
     let anisotropy = |k: usize| facts[k]["anisotropy"].as_f64().unwrap_or(f64::NAN);
     let alt = "Crease lines of the one-way grid and of the union-jack grid with their directions";
     Ok(Made {
-        title: "Folding directions",
+        title: "Folding directions".into(),
         paper: "Meshes refined by the 1–4 split fold horizontally, vertically and along the diagonal from lower right to upper \
-                left, but not along the other diagonal: the pattern is anisotropic.",
+                left, but not along the other diagonal: the pattern is anisotropic.".into(),
         measured: format!(
             "Straight crease lines from boundary to boundary, found on the meshes and coloured by direction; the bars at the right \
              are their total lengths by direction, in sides of the square. The one-way grid has none at 45°, the union jack has all \

@@ -71,9 +71,9 @@ pub(super) fn make() -> Result<Made> {
     let [one, two] = triples[1];
     let alt = "A pair of triangles at rest and folded, with the angles alpha, beta and gamma at both ends";
     Ok(Made {
-        title: "Angle triples and the compatibility condition",
+        title: "Angle triples and the compatibility condition".into(),
         paper: "Two triangles that share an edge can only fold about it, so γᵗ ≤ α + β = γ⁰ at either end (Eq. 10), and one end's \
-                condition implies the other's.",
+                condition implies the other's.".into(),
         measured: format!(
             "Angles measured on a pair folded by {}: γᵗ = {} at one end and {} at the other. The fold angle follows from either triple \
              alone: {} and {}.",

@@ -23,9 +23,9 @@ pub(super) fn make() -> Result<Made> {
     let all = captioned(vec![rule_h()?, rule_g()?, f], &names, 30.0);
     let alt = "The placement functions h, g and f: one, two and three known neighbours";
     Ok(Made {
-        title: "Basic geometric relations",
+        title: "Basic geometric relations".into(),
         paper: "A vertex with one known neighbour takes two spherical coordinates, with two known neighbours one angle, with three \
-                none.",
+                none.".into(),
         measured: format!(
             "Known vertices blue, placed vertices red, all placed by the functions h, g and f of the library. (a) the two arcs are \
              the coordinates. (b) five values of the one coordinate. (c) three known vertices of a pair of triangles folded by 55°; \

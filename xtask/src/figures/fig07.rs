@@ -46,9 +46,9 @@ pub(super) fn make() -> Result<Made> {
     let alt =
         "Three known vertices on a bent and on a straight line and the places of a fourth vertex";
     Ok(Made {
-        title: "The degenerate case of function f",
+        title: "The degenerate case of function f".into(),
         paper: "When the three known vertices lie on a line (γ = π), the vertex can still turn about that line: one coordinate has \
-                to be assigned.",
+                to be assigned.".into(),
         measured: format!(
             "Left, the line bent by {}: function f has two solutions. Right, straight: f refuses (sine of the smallest angle \
              {sine}, limit {COLLINEAR:.0e}) and the vertex keeps the angle it had before; for the five angles drawn the middle rod, \

@@ -54,9 +54,9 @@ pub(super) fn make() -> Result<Made> {
     let count = |letter| assignment.rule_count(letter);
     let alt = "Fronts, rules and order of the assignment of system coordinates on M1";
     Ok(Made {
-        title: "Assignment of system coordinates",
+        title: "Assignment of system coordinates".into(),
         paper: "From the left-upper corner, front after front, each vertex is placed by the rule that its known neighbours \
-                allow; the number of coordinates is the number of degrees of freedom.",
+                allow; the number of coordinates is the number of degrees of freedom.".into(),
         measured: format!(
             "sys_coord_assnmt_single on M¹: {} fronts; 3 coordinates for the start vertex, {} vertex by rule h with two, {} by rule g with \
              one, {} by rule f with none: {} = DOF. Every rod is used exactly once, by the end that is placed later (b).",

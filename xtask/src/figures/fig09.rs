@@ -76,9 +76,9 @@ pub(super) fn make() -> Result<Made> {
     d.label(&middle(&q_arc), [6.0, 6.0], "~q~", PLACED);
     let alt = "A triangle at rest, aligned with the known edge, and turned about it";
     Ok(Made {
-        title: "Construction of function g",
+        title: "Construction of function g".into(),
         paper: "The rest triangle is turned by A(θ) so that its edge lies on the known edge at time t, then by A(q) about that edge: \
-                the system coordinate q places the third vertex.",
+                the system coordinate q places the third vertex.".into(),
         measured: format!(
             "The rest triangle (left), aligned with the known edge by θ = {:.1}° about r (blue), and turned by q = {:.1}° (orange), by the \
              Euler parameters of the paper. The library's g, which takes the same lengths and q but no rotation matrix, \

@@ -334,8 +334,8 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
         shown(f, context).play(16, &label)
     };
     Ok(Made {
-        title: "Paper jam",
-        paper: "The simulation of a paper jam is named as an application for the design of printers (Sec. 1); none is shown.",
+        title: "Paper jam".into(),
+        paper: "The simulation of a paper jam is named as an application for the design of printers (Sec. 1); none is shown.".into(),
         measured: format!(
             "A strip of office paper ({:.0} mm x {:.0} mm, {:.0} g/m², flexural rigidity {:.0e} N m, {}/{} vertices/faces) starts flat between two walls \
              {:.0} mm apart that turn downwards by 90°. A nip holds its last two rungs straight and moves along at {} m/s; friction {} with the walls and \

@@ -321,8 +321,8 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let mut pages = vec![miura.play(17, "Miura's pattern")?];
     pages.extend(vertices.iter().map(|v| v.page.clone()));
     Ok(Made {
-        title: "Origami: crease patterns folded by driven angles",
-        paper: "Origami is named as an application (Sec. 1): how can a model be folded from one sheet of paper? No crease pattern is folded.",
+        title: "Origami: crease patterns folded by driven angles".into(),
+        paper: "Origami is named as an application (Sec. 1): how can a model be folded from one sheet of paper? No crease pattern is folded.".into(),
         measured: format!(
             "A Miura pattern ({}/{} vertices/faces, panels of 20 mm with an angle of 60°, 80 g/m², no gravity) starts exactly flat. Springs \
              drive the zigzag creases alone, to 150° in 2 s, valleys and mountains by their sign; the straight creases are free hinges, and springs ten times \

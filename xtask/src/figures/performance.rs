@@ -173,8 +173,9 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let condition = crate::condition::plot(&condition);
     let alt = "Condition number of the mass matrix in the paper's coordinates and in chosen Cartesian ones, by mesh level";
     Ok(Made {
-        title: "Performance",
-        paper: "Frames per second and step sizes of the examples, on a Pentium III at 937 MHz.",
+        title: "Performance".into(),
+        paper: "Frames per second and step sizes of the examples, on a Pentium III at 937 MHz."
+            .into(),
         measured: format!(
             "{verdict}A frame is the state of the sheet 1/60 s of simulated time after the one before; frames per second are frames over the \
              wall time of the steps on one core, without drawing and writing (the paper does not say how long its frames are). Our runs \

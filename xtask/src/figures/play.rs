@@ -1,7 +1,7 @@
 //! Pages that play the runs of a figure in 3D.
 
-use super::Play;
 use super::sequence::Shown;
+use super::{Picture, Play};
 use crate::runs::{self, RunSummary};
 use anyhow::Result;
 use isosheet_io::view::Replay;
@@ -27,13 +27,14 @@ impl Shown<'_> {
         let name = format!("fig{figure:02}-{}", scene.name());
         // Where the figure leaves bodies out, they would hide the sheet.
         let is_hidden = self.view.bodies.len() < bodies.len();
+        let alt = format!("Figure {figure}, {label}, at the end");
+        let (file, end) = (format!("{name}-end.png"), self.thumbnail(&trajectory)?);
         Ok(Play {
-            file: format!("{name}.html"),
-            thumbnail_file: format!("{name}-end.png"),
-            choices: if is_hidden { "#bodies=glass" } else { "" },
+            path: format!("{name}.html"),
+            choices: if is_hidden { "#bodies=glass" } else { "" }.to_owned(),
             label: label.to_owned(),
             page: replay.to_html()?,
-            thumbnail: self.thumbnail(&trajectory)?,
+            thumbnail: Picture::file(&file, end, &alt),
         })
     }
 }

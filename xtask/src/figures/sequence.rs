@@ -67,11 +67,7 @@ impl Shown<'_> {
             label: format!("{:.2} s", trajectory.times()[*k]),
         });
         let all = montage(&labelled.collect::<Vec<_>>(), self.view.columns)?;
-        Ok(Picture {
-            file: file.to_owned(),
-            alt: alt.to_owned(),
-            bytes: all.to_png()?,
-        })
+        Ok(Picture::file(file, all.to_png()?, alt))
     }
 
     /// The last frame as a small PNG file.

@@ -111,8 +111,8 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let plot = plot(&curve, weight, 1e3 * tools.stroke, peak);
     let alt = "Force of the sheet on the die over its stroke";
     Ok(Made {
-        title: "Sheet metal stamping",
-        paper: "A square die punches a sheet (M³, 289/512) upwards; the sequence shows how the buckled developable surface is formed.",
+        title: "Sheet metal stamping".into(),
+        paper: "A square die punches a sheet (M³, 289/512) upwards; the sequence shows how the buckled developable surface is formed.".into(),
         measured: format!(
             "A blank of {:.1} m and {:.1} kg/m² (half a millimetre of steel) lies on a frame with a square opening of {:.0} mm; a die of {:.0} mm rises through it at \
              {:.0} mm/s. Holding: friction {} on all tools, weight, and four holders (not drawn) {:.0} mm wide above the middles of the frame's \

@@ -2,7 +2,7 @@
 
 use super::scenes::{Course, STRAIN};
 use crate::draw::Drawing;
-use crate::report::{Effort, Picture, PictureRef, Table, number};
+use crate::report::{Effort, Picture, Table, number};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 
@@ -189,7 +189,7 @@ pub(crate) struct Naive {
 }
 
 /// What was found in a case.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Findings {
     pub(crate) naive: Vec<Naive>,
     pub(crate) here: String,
@@ -329,11 +329,7 @@ pub(crate) struct Record {
     pub(crate) name: String,
     pub(crate) title: String,
     pub(crate) expected: String,
-    pub(crate) naive: Vec<Naive>,
-    pub(crate) here: String,
-    pub(crate) checks: Vec<Check>,
-    pub(crate) pictures: Vec<PictureRef>,
-    pub(crate) tables: Vec<Table>,
+    pub(crate) found: Findings,
     /// Wall time, seconds.
     pub(crate) wall: f64,
 }
@@ -341,7 +337,7 @@ pub(crate) struct Record {
 impl Record {
     /// The worst verdict of the checks.
     pub(super) fn verdict(&self) -> Verdict {
-        let has = |v| self.checks.iter().any(|c| c.verdict() == v);
+        let has = |v| self.found.checks.iter().any(|c| c.verdict() == v);
         [
             Verdict::Failed,
             Verdict::Cured,

@@ -98,18 +98,19 @@ fn condition(effort: Effort) -> Result<Findings> {
     Ok(f)
 }
 
-/// The paper's coordinates of a sheet that is held at a vertex, at its own positions.
+/// The paper's coordinates of a sheet that is held at a vertex, at positions `x`.
 fn front_chart(
     sheet: &Sheet,
     pin: VertexId,
     degenerate: Degenerate,
+    x: &[f64],
 ) -> Result<FrontChart, ChartError> {
     let options = AssignmentOptions {
         pins: vec![pin],
         degenerate,
         ..Default::default()
     };
-    FrontChart::new(sheet, &options, sheet.positions())
+    FrontChart::new(sheet, &options, x)
 }
 
 #[derive(Clone, Copy)]
@@ -144,7 +145,7 @@ fn velocity_error(
     let State { x, v: want, .. } = settle.state().clone();
     let model = pinned(&bent, &[pin])?;
     let chart: Box<dyn Chart> = match coordinates {
-        Coordinates::FrontCorner => match front_chart(&bent, pin, Degenerate::default()) {
+        Coordinates::FrontCorner => match front_chart(&bent, pin, Degenerate::default(), &x) {
             Ok(chart) => Box::new(chart),
             Err(e) => return Ok((None, Some(e.to_string()))),
         },
@@ -264,7 +265,7 @@ fn chart_error(
 ) -> Result<f64> {
     interrupt::check()?;
     let sheet = bumped(0, BUMP)?;
-    let chart = front_chart(&sheet, corner(0), Degenerate::Assign)?;
+    let chart = front_chart(&sheet, corner(0), Degenerate::Assign, sheet.positions())?;
     let is_exact = method == ChartMethod::RungeKutta4;
     let options = ChartOptions {
         method,
@@ -385,7 +386,7 @@ fn front_strain(
     degenerate: Degenerate,
     options: ChartOptions,
 ) -> Result<Result<f64, String>> {
-    let chart = match front_chart(sheet, corner(1), degenerate) {
+    let chart = match front_chart(sheet, corner(1), degenerate, sheet.positions()) {
         Ok(chart) => chart,
         Err(e) => return Ok(Err(e.to_string())),
     };

@@ -114,13 +114,10 @@ fn fall() -> Result<Picture> {
             label: format!("{t:.2} s"),
         });
     }
-    Ok(Picture {
-        file: "flat-start.png".into(),
-        alt: "M^2 released from exactly flat and horizontal, held at a corner (BDF2, 1/60 s). Warm: the upper side at the start; blue: \
-              the lower one."
-            .into(),
-        bytes: montage(&frames, 6)?.to_png()?,
-    })
+    let alt = "M^2 released from exactly flat and horizontal, held at a corner (BDF2, 1/60 s). Warm: the upper side at the start; blue: \
+               the lower one.";
+    let image = montage(&frames, 6)?.to_png()?;
+    Ok(Picture::file("flat-start.png", image, alt))
 }
 
 pub(crate) const BRANCH: Case = Case {

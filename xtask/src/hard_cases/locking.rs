@@ -247,9 +247,8 @@ fn picture(ends: &[End<'_>]) -> Result<Picture> {
         });
     }
     let how = ends[0].how;
-    Ok(Picture {
-        file: format!("locking-{}.png", how.replace(' ', "-")),
-        alt: format!("At rest, {how}: union jack, one-way grid, irregular mesh."),
-        bytes: montage(&frames, 3)?.to_png()?,
-    })
+    let file = format!("locking-{}.png", how.replace(' ', "-"));
+    let alt = format!("At rest, {how}: union jack, one-way grid, irregular mesh.");
+    let image = montage(&frames, 3)?.to_png()?;
+    Ok(Picture::file(&file, image, &alt))
 }

@@ -23,12 +23,13 @@ pub(super) fn write(store: &Store, records: &[Record], effort: Effort) -> Result
         .iter()
         .map(|r| {
             let checks: Vec<_> = r
+                .found
                 .checks
                 .iter()
                 .map(|c| json!({ "what": c.what, "value": c.value, "bound": c.bound, "verdict": c.verdict(),
                                  "limitation": c.limitation, "stopped": c.stopped, "remark": c.remark }))
                 .collect();
-            json!({ "case": r.name, "title": r.title, "verdict": r.verdict(), "naive": r.naive, "checks": checks,
+            json!({ "case": r.name, "title": r.title, "verdict": r.verdict(), "naive": r.found.naive, "checks": checks,
                     "seconds": r.wall })
         })
         .collect();
@@ -82,7 +83,7 @@ fn page(store: &Store, records: &[Record], effort: Effort) -> Result<Page> {
 }
 
 fn summary(records: &[Record]) -> Markup {
-    let checks = || records.iter().flat_map(|r| &r.checks);
+    let checks = || records.iter().flat_map(|r| &r.found.checks);
     let count = |v: Verdict| checks().filter(|c| c.verdict() == v).count();
     let failed = checks().filter(|c| c.verdict().is_failure()).count();
     html! {
@@ -94,7 +95,7 @@ fn summary(records: &[Record]) -> Markup {
             thead { tr { th { "Case" } th { "Checks" } th { "Naive method" } th { "isosheet" } } }
             tbody { @for r in records { tr {
                 td { a href={ "#" (r.name) } { (r.title) } }
-                td { (r.checks.len()) }
+                td { (r.found.checks.len()) }
                 td { (naive_word(r)) }
                 td { (badge(r.verdict())) }
             } } }
@@ -103,8 +104,8 @@ fn summary(records: &[Record]) -> Markup {
 }
 
 fn naive_word(r: &Record) -> &'static str {
-    let failed = r.naive.iter().filter(|n| n.failed).count();
-    match (failed, r.naive.len()) {
+    let failed = r.found.naive.iter().filter(|n| n.failed).count();
+    match (failed, r.found.naive.len()) {
         (_, 0) => "none shown",
         (0, _) => "copes",
         (f, n) if f == n => "fails",
@@ -114,7 +115,7 @@ fn naive_word(r: &Record) -> &'static str {
 
 fn section(store: &Store, r: &Record) -> Result<Markup> {
     let mut pictures = Vec::new();
-    for picture in &r.pictures {
+    for picture in &r.found.pictures {
         let inside = picture.inside(&store.read(&picture.path)?);
         pictures.push(html! { figure { (inside) figcaption { (picture.alt) } } });
     }
@@ -123,20 +124,20 @@ fn section(store: &Store, r: &Record) -> Result<Markup> {
             h2 { (r.title) (badge(r.verdict())) }
             h3 { "What should happen" }
             p { (r.expected) }
-            @if !r.naive.is_empty() {
+            @if !r.found.naive.is_empty() {
                 h3 { "What a naive method does" }
-                ul { @for n in &r.naive {
+                ul { @for n in &r.found.naive {
                     li { (n.method) ": " b { @if n.failed { "fails" } @else { "copes" } } ". " (n.outcome) }
                 } }
             }
             h3 { "What isosheet does" }
-            p { (r.here) }
+            p { (r.found.here) }
             div.scroll { table {
                 thead { tr { th { "Check" } th { "Measured" } th { "Bound" } th { "Verdict" } } }
-                tbody { @for check in &r.checks { (check_row(check)) } }
+                tbody { @for check in &r.found.checks { (check_row(check)) } }
             } }
             @for picture in &pictures { (picture) }
-            @for table in &r.tables { (table) }
+            @for table in &r.found.tables { (table) }
         }
     })
 }
@@ -170,7 +171,7 @@ fn checks(records: &[Record]) -> Table {
     };
     let all = records
         .iter()
-        .flat_map(|r| r.checks.iter().map(move |c| (r, c)));
+        .flat_map(|r| r.found.checks.iter().map(move |c| (r, c)));
     Table::of(
         "",
         all,
@@ -202,11 +203,16 @@ pub(super) fn text(records: &[Record]) -> String {
             out,
             "{:<16}{:<34}{:<15}{:>8.1}",
             r.name,
-            format!("{} ({} checks)", r.verdict().text(), r.checks.len()),
+            format!("{} ({} checks)", r.verdict().text(), r.found.checks.len()),
             naive_word(r),
             r.wall
         );
-        for c in r.checks.iter().filter(|c| c.verdict() != Verdict::Passed) {
+        for c in r
+            .found
+            .checks
+            .iter()
+            .filter(|c| c.verdict() != Verdict::Passed)
+        {
             let _ = writeln!(
                 out,
                 "  {}: {}, {} ({}){}",

@@ -1,10 +1,10 @@
 //! The page of the scaling study, its other files, and its text for a terminal.
 
+use super::Results;
 use super::drape;
 use super::findings::{conclusion, draping_conclusion, threads};
 use super::measure::STEP;
 use super::plot;
-use super::results::Results;
 use super::tables::{draping, draping_data, orders, steps, steps_data};
 use super::whole::{SCENES, name};
 use super::whole_report;

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// What one run of a method gave.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Point {
     /// Name of the method.
     pub(crate) scheme: String,
@@ -42,7 +42,7 @@ pub(crate) struct Point {
 }
 
 /// Largest errors over a run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Errors {
     /// Distance of a vertex from the reference at the checkpoints, metres.
     pub(crate) position: f64,
@@ -53,6 +53,7 @@ pub(crate) struct Errors {
 }
 
 /// One pass over the checkpoints.
+#[derive(Default)]
 struct Pass {
     cost: Cost,
     errors: Errors,
@@ -111,15 +112,8 @@ fn refused(scheme: &Scheme, fineness: f64, failure: String) -> Point {
     Point {
         scheme: scheme.name.clone(),
         fineness,
-        step: 0.0,
-        uniform: false,
-        wall: 0.0,
-        repetitions: 0,
-        cost: Cost::default(),
-        errors: None,
-        partial: None,
-        reached: 0.0,
         failure: Some(failure),
+        ..Point::default()
     }
 }
 
@@ -206,17 +200,7 @@ fn run(
     pieces: usize,
     patience: f64,
 ) -> Result<Pass> {
-    let mut pass = Pass {
-        cost: Cost::default(),
-        errors: Errors {
-            position: 0.0,
-            energy: 0.0,
-            strain: 0.0,
-        },
-        failure: None,
-        reached: 0.0,
-        checkpoints: 0,
-    };
+    let mut pass = Pass::default();
     let h = reference.interval() / pieces as f64;
     let clock = Instant::now();
     let mut comparing = 0.0;

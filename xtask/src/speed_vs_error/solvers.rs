@@ -118,18 +118,8 @@ impl<'a> Task<'a> {
 
     fn row(&self, solver: &str, order: usize) -> SolverRow {
         SolverRow {
-            solver: solver.into(),
-            mesh: self.body.name.clone(),
-            n: self.body.system.dof(),
             order,
-            form: 0.0,
-            first: 0.0,
-            again: 0.0,
-            solve: 0.0,
-            backward: None,
-            velocity: None,
-            two: None,
-            failure: None,
+            ..SolverRow::new(solver, &self.body.name, self.body.system.dof())
         }
     }
 

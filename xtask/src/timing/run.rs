@@ -1,7 +1,10 @@
 //! Runs with a limit of wall time.
 
 use super::comparison::Entry;
+use super::factorisation::factorisation_time;
+use super::scene::{BUMP, Work, bumped};
 use crate::interrupt::{self, Interrupted};
+use crate::methods::Named;
 use crate::report::{Cost, rounded, short};
 use anyhow::Result;
 use isosheet_dynamics::{RunEnd, Simulation, StepReport};
@@ -60,12 +63,16 @@ impl Timed {
     }
 }
 
-/// A run on a mesh, to be compared with others.
+/// A run of a scene, to be compared with others.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Measured {
-    /// The mesh `M^level`.
+    pub(crate) work: Work,
+    /// The mesh `M^level`, and its number of vertices.
     pub(crate) level: u32,
+    pub(crate) vertices: usize,
     pub(crate) method: String,
+    /// Which of some neighbouring starts, from 1.
+    pub(crate) start: usize,
     /// Step asked for, seconds.
     pub(crate) step: f64,
     /// Seconds for one Cholesky factorisation of the matrix of a damped step without contact.
@@ -73,7 +80,62 @@ pub(crate) struct Measured {
     pub(crate) run: Timed,
 }
 
+/// A mesh, and what a factorisation of its matrix takes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mesh {
+    pub(crate) level: u32,
+    pub(crate) vertices: usize,
+    /// See [`factorisation_time`].
+    pub(crate) factorisation: f64,
+}
+
+impl Mesh {
+    /// Measures the factorisation of `M^level`.
+    pub(crate) fn measured(level: u32) -> Result<Self> {
+        let sheet = bumped(level, BUMP)?;
+        Ok(Self {
+            level,
+            vertices: sheet.topology().vertex_count(),
+            factorisation: factorisation_time(&sheet)?,
+        })
+    }
+}
+
+/// Height by which the bumps of two neighbouring starts differ, metres.
+pub(crate) const NEIGHBOUR: f64 = 1e-9;
+
 impl Measured {
+    /// Runs a scene by a method with steps of `step` seconds from a start, within limits as [`repeated`] has them.
+    ///
+    /// # Errors
+    /// Those of [`repeated`].
+    pub(crate) fn of(
+        work: Work,
+        mesh: Mesh,
+        (name, method): Named,
+        (start, step): (usize, f64),
+        limits: [f64; 2],
+        look: &mut dyn FnMut(&Simulation, &StepReport),
+    ) -> Result<Self> {
+        let bump = BUMP + NEIGHBOUR * (start - 1) as f64;
+        let begin = || work.start(mesh.level, bump, method.clone());
+        Ok(Self {
+            work,
+            level: mesh.level,
+            vertices: mesh.vertices,
+            method: name.to_owned(),
+            start,
+            step,
+            factorisation: mesh.factorisation,
+            run: repeated(&begin, [work.duration(), step], limits, look)?,
+        })
+    }
+
+    /// Wall seconds for a simulated second, for people.
+    pub(crate) fn rate(&self) -> String {
+        self.run.rate().map_or("–".into(), short)
+    }
+
     /// What a comparison needs; `name` tells the run from the others.
     pub(crate) fn entry(&self, name: String) -> Entry {
         Entry {
@@ -103,7 +165,7 @@ impl Measured {
 ///
 /// # Errors
 /// Those of `start`; [`Interrupted`].
-pub(crate) fn repeated(
+fn repeated(
     start: &dyn Fn() -> Result<Simulation>,
     span: [f64; 2],
     [patience, short]: [f64; 2],
@@ -173,7 +235,7 @@ fn timed(
 
 #[cfg(test)]
 mod tests {
-    use super::super::scene::{STEP, Work};
+    use super::super::scene::STEP;
     use super::*;
 
     #[test]
