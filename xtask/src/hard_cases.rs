@@ -18,7 +18,6 @@ mod plate;
 mod rigid;
 mod scales;
 mod scenes;
-mod spin;
 mod steps;
 
 pub(crate) use case::{Case, Findings, Record, Shortfall};

@@ -13,7 +13,6 @@ mod course;
 mod cylinder;
 mod disk;
 mod drape;
-mod elastica;
 mod everyday;
 mod isometry;
 mod iterations;
@@ -53,6 +52,9 @@ struct Findings {
     targets: Vec<Target>,
 }
 
+/// Applies a yardstick: what it found, and its figure.
+type Make = fn(&Records<'_>) -> Result<(Findings, Option<Drawing>)>;
+
 /// A yardstick.
 #[derive(Debug)]
 pub(crate) struct Yardstick {
@@ -61,14 +63,11 @@ pub(crate) struct Yardstick {
     title: &'static str,
     /// The set-up in words.
     about: &'static str,
-    make: fn(&Records<'_>) -> Result<(Findings, Option<Drawing>)>,
+    make: Make,
 }
 
 impl Yardstick {
-    const fn new(
-        [name, title, about]: [&'static str; 3],
-        make: fn(&Records<'_>) -> Result<(Findings, Option<Drawing>)>,
-    ) -> Self {
+    const fn new([name, title, about]: [&'static str; 3], make: Make) -> Self {
         Self {
             name,
             title,

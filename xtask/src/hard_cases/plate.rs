@@ -1,8 +1,7 @@
 //! The inertia of plates: lumped and consistent mass.
 
-use super::rigid::tetrahedron;
+use super::rigid::{SPIN, tetrahedron};
 use super::scenes::{apart, at_rest, course, go};
-use super::spin::{SPIN, carried, inertia, spinning, turned};
 use super::{Case, Findings, log_log};
 use crate::draw::{Axis, Chart, Series};
 use crate::methods::{conservative, energy_momentum, rattle_composition};
@@ -10,7 +9,7 @@ use crate::report::{Effort, number};
 use anyhow::Result;
 use isosheet_dynamics::{Method, SheetModel, Simulation};
 use isosheet_mesh::{MassKind, Sheet, VertexId};
-use isosheet_tests::{complete_k, jacobi, orders};
+use isosheet_tests::{RigidBody, complete_k, jacobi, orders};
 use nalgebra::Vector3;
 
 pub(crate) const PLATE: Case = Case {
@@ -109,14 +108,14 @@ fn shell(sheet: &Sheet, mass: f64) -> Vec<(f64, Vector3<f64>)> {
 fn free(f: &mut Findings, effort: Effort) -> Result<()> {
     let sheet = tetrahedron()?;
     let mass = 0.4;
-    let (tensor, centre, _) = inertia(&shell(&sheet, mass));
+    let body = RigidBody::of_masses(&shell(&sheet, mass));
     let counts = &[100, 200, 400, 800, 1600][..effort.pick(2, 4, 5)];
     let run = |kind: MassKind, method: &Method, n: usize| -> Result<f64> {
         let model = SheetModel::new(&sheet, mass, kind)?;
-        let mut run = Simulation::new(model, spinning(&sheet, centre), method.clone())?;
+        let mut run = Simulation::new(model, body.start(&sheet, SPIN), method.clone())?;
         let c = go(&mut run, END / n as f64, n)?;
-        let q = turned(tensor, Vector3::from(SPIN), END, 20 * n.max(1000));
-        Ok(c.if_finished(apart(&run.state().x, &carried(&sheet, centre, &q))))
+        let exact = body.positions(&sheet, SPIN, END, 20 * n.max(1000));
+        Ok(c.if_finished(apart(&run.state().x, &exact)))
     };
     let errors = |kind, method: &Method| -> Result<Vec<f64>> {
         counts.iter().map(|n| run(kind, method, *n)).collect()
@@ -158,7 +157,7 @@ fn free(f: &mut Findings, effort: Effort) -> Result<()> {
     );
     f.naive("Lumped mass, a free tetrahedral shell", text, off > 1e-3);
     let model = SheetModel::new(&sheet, mass, MassKind::Consistent)?;
-    let mut run = Simulation::new(model, spinning(&sheet, centre), energy_momentum())?;
+    let mut run = Simulation::new(model, body.start(&sheet, SPIN), energy_momentum())?;
     let c = go(&mut run, 1e-2, 100)?;
     f.of(&c, "free shell, energy-momentum at 10 ms")
         .strain("edge strain");

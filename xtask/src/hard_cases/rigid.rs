@@ -2,7 +2,6 @@
 
 use super::naive::{TEXTBOOK, textbook_steps};
 use super::scenes::{apart, course};
-use super::spin::{SPIN, carried, inertia, spinning, turned};
 use super::{Case, Findings, Shortfall};
 use crate::interrupt;
 use crate::methods::{Named, methods};
@@ -10,6 +9,7 @@ use crate::report::{Effort, Table, number};
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State};
 use isosheet_mesh::{Dof, MassMatrix, Sheet, fold_angle};
+use isosheet_tests::RigidBody;
 use nalgebra::Vector3;
 
 pub(crate) const CLOSED: Case = Case {
@@ -90,14 +90,8 @@ fn boxed() -> Result<Sheet> {
     Ok(Sheet::new(x, &faces)?)
 }
 
-/// Vertex masses and positions.
-fn points(sheet: &Sheet, masses: &[f64]) -> Vec<(f64, Vector3<f64>)> {
-    masses
-        .iter()
-        .zip(sheet.positions().chunks(3))
-        .map(|(m, p)| (*m, Vector3::from_column_slice(p)))
-        .collect()
-}
+/// Angular velocity at the start, radians per second.
+pub(super) const SPIN: [f64; 3] = [1.0, 3.0, 0.5];
 
 /// Largest change of a fold angle, radians.
 fn bending(sheet: &Sheet, x: &[f64]) -> f64 {
@@ -129,6 +123,13 @@ impl Solid {
     fn model(&self) -> Result<SheetModel> {
         let masses = MassMatrix::from_vertex_masses(self.masses())?;
         Ok(SheetModel::with_mass(&self.sheet, masses)?)
+    }
+
+    fn body(&self) -> RigidBody {
+        let places = self.sheet.positions().chunks(3);
+        let places = places.map(Vector3::from_column_slice);
+        let masses: Vec<_> = self.masses().into_iter().zip(places).collect();
+        RigidBody::of_masses(&masses)
     }
 
     fn dof(&self) -> Dof {
@@ -180,8 +181,7 @@ fn closed(effort: Effort) -> Result<Findings> {
 
 /// What the textbook method makes of the spin.
 fn textbook_spin(f: &mut Findings, solid: &Solid, steps: usize) -> Result<()> {
-    let (_, centre, _) = inertia(&points(&solid.sheet, &solid.masses()));
-    let State { mut x, mut v, .. } = spinning(&solid.sheet, centre);
+    let State { mut x, mut v, .. } = solid.body().start(&solid.sheet, SPIN);
     let model = solid.model()?;
     let outcome = textbook_steps(&model, (&mut x, &mut v), STEP, steps, |_, _, _| {});
     let method = format!("{TEXTBOOK}, on the {}", solid.name);
@@ -199,12 +199,9 @@ fn textbook_spin(f: &mut Findings, solid: &Solid, steps: usize) -> Result<()> {
 /// A method against Euler's rigid body.
 fn spin(f: &mut Findings, solid: &Solid, (name, method): Named, steps: usize) -> Result<()> {
     let sheet = &solid.sheet;
-    let (tensor, centre, _) = inertia(&points(sheet, &solid.masses()));
-    let euler = |n| {
-        let turn = turned(tensor, SPIN.into(), STEP * steps as f64, n * steps);
-        carried(sheet, centre, &turn)
-    };
-    let mut run = Simulation::new(solid.model()?, spinning(sheet, centre), method)?;
+    let body = solid.body();
+    let euler = |n| body.positions(sheet, SPIN, STEP * steps as f64, n * steps);
+    let mut run = Simulation::new(solid.model()?, body.start(sheet, SPIN), method)?;
     let (mut bent, mut n) = (0.0_f64, 0_usize);
     let c = course(&mut run, STEP, steps, |_, s| {
         n += 1;

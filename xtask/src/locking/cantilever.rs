@@ -3,7 +3,6 @@
 use super::Findings;
 use super::course::{Course, Plan, Scene};
 use super::cylinder::DIRECTIONS;
-use super::elastica::Elastica;
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
 use super::plot::{Dot, Figure, Panel, order};
@@ -15,6 +14,7 @@ use crate::report::{Table, number};
 use anyhow::Result;
 use isosheet_dynamics::SheetModel;
 use isosheet_mesh::Sheet;
+use isosheet_tests::Elastica;
 use serde::{Deserialize, Serialize};
 
 pub(super) const ABOUT: &str = "A strip of 0.06 m width and 80 g/m² is clamped horizontally over 0.03 m and hangs free over 0.30 m: the heavy elastica. The \

@@ -238,8 +238,11 @@ fn table(all: &[Bent], plan: &Plan) -> Table {
     .named("cylinder")
 }
 
+/// An error of a square that came to rest.
+type Measure = fn(&Bent) -> Option<f64>;
+
 /// The errors that are judged and drawn.
-const ERRORS: [(&str, fn(&Bent) -> Option<f64>); 2] = [
+const ERRORS: [(&str, Measure); 2] = [
     ("energy", Bent::energy_error),
     ("moment", Bent::moment_error),
 ];
@@ -248,7 +251,7 @@ const ERRORS: [(&str, fn(&Bent) -> Option<f64>); 2] = [
 fn fitted(
     all: &[Bent],
     (isometry, pattern, degrees): (Isometry, Pattern, f64),
-    error: fn(&Bent) -> Option<f64>,
+    error: Measure,
 ) -> Option<f64> {
     let of = OfModel::of(isometry, all).with(|job| (job.0, job.2) == (pattern, degrees));
     let points = of.all.iter().map(|b| Some([b.spacing(), error(b)?]));
@@ -283,7 +286,7 @@ fn targets(
     directions: &[f64],
 ) -> Vec<Target> {
     let judged = of.with(|job| job.1 == JUDGED);
-    let two = |(name, error): (&str, fn(&Bent) -> Option<f64>)| {
+    let two = |(name, error): (&str, Measure)| {
         let combinations = combinations(of.isometry, directions).into_iter();
         let powers: Vec<_> = combinations.map(|key| fitted(all, key, error)).collect();
         let order = format!("order of the error of the {name}, every mesh and direction");
