@@ -1,5 +1,6 @@
-//! Mechanical problems, shared by the tests that span several crates and by reports. Each model gives a sheet,
-//! a start state and the exact motion, but for [`tumbling`], which gives a start alone.
+//! Mechanical problems, shared by the tests that span several crates and by reports. Each model gives a
+//! sheet, a start state and the exact motion, but for [`tumbling`], which gives a start alone, for
+//! [`RigidBody`], which gives the motion of any sheet that cannot bend, and for [`Elastica`], a strip at rest.
 
 mod catenary;
 mod elastica;

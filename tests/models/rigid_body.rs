@@ -41,8 +41,8 @@ impl RigidBody {
 
     /// Where the vertices of a sheet are after `t` seconds of free spin, metres (3V).
     ///
-    /// Euler's equations `I w' = I w x w` in the frame of the body and `q' = q w / 2` for the quaternion of its
-    /// attitude are integrated by the classical Runge-Kutta method in so many steps.
+    /// Euler's equations `I w' = I w x w` in the frame of the body and `q' = q w / 2` for the quaternion
+    /// of its attitude are integrated by the classical Runge-Kutta method in so many steps.
     pub fn positions(&self, sheet: &Sheet, spin: [f64; 3], t: f64, steps: usize) -> Vec<f64> {
         let turn = self.attitude(spin, t, steps);
         let place = |p: &[f64]| {

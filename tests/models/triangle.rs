@@ -116,8 +116,9 @@ impl FreeTriangle {
         4.0 * complete_k(m) / rate
     }
 
-    /// Positions (9 coordinates, metres) at increasing times (seconds): the attitude R follows from the exact spin
-    /// w in body axes by `R' = R [w]`, integrated by the classical Runge-Kutta method to round-off.
+    /// Positions (9 coordinates, metres) at increasing times (seconds): the attitude R follows from the
+    /// exact spin w in body axes by `R' = R [w]`, integrated by the classical Runge-Kutta method to
+    /// round-off.
     pub fn positions(&self, times: &[f64]) -> Vec<Vec<f64>> {
         // At 2e-4 of a period the error of the method is about (2 pi 2e-4)^4 / 120, below 1e-13.
         let longest = 2e-4 * self.period();

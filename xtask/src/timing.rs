@@ -8,4 +8,6 @@ mod scene;
 pub(crate) use comparison::{COLUMNS, Entry, words};
 pub(crate) use factorisation::{OrderRow, order};
 pub(crate) use run::{Measured, Mesh, NEIGHBOUR, Timed};
-pub(crate) use scene::{BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging};
+pub(crate) use scene::{
+    BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging, on_table,
+};

@@ -7,12 +7,12 @@ use crate::draw::Series;
 use crate::interrupt;
 use crate::methods::{conservative, damped, energy_momentum};
 use crate::report::{Effort, number};
-use crate::timing::{bumped, corner, hanging};
+use crate::timing::{Pairs, bumped, corner, hanging, on_table};
 use anyhow::Result;
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_collide::ContactOptions;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State, project_positions};
 use isosheet_mesh::{MassKind, Sheet, VertexId};
-use nalgebra::{Isometry3, Rotation3, Vector3};
+use nalgebra::{Rotation3, Vector3};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -383,13 +383,9 @@ fn cloth(steps: usize) -> Result<Vec<f64>> {
     let sheet = bumped(4, 0.1)?;
     let model = pinned(&sheet, &[])?;
     let options = ContactOptions::for_sheet(&model);
-    let half = [0.25, 0.25, 0.1];
     // Just below the lowest part of the bump above it.
-    let pose = Isometry3::translation(0.5, 0.5, 0.05 - half[2] - 0.95 * options.activation);
-    let table = Obstacle::fixed(Shape::Cuboid { half }, pose)?;
-    let contacts = Contacts::new(&model, options)?
-        .with_body(table, Coefficients::FRICTIONLESS)?
-        .with_self_contact(Coefficients::FRICTIONLESS)?;
+    let table = ([0.25, 0.25, 0.1], 0.05 - 0.95 * options.activation);
+    let contacts = on_table(&model, options, table, Pairs::TableAndItself)?;
     let run = at_rest(model, sheet.positions(), Method::default())?;
     let mut run = run.with_contact(contacts)?;
     match go(&mut run, 1e-3, steps)?.refusal {

@@ -112,7 +112,8 @@ pub(super) fn gauss_seidel_step(model: &SheetModel, x: &mut [f64], v: &mut [f64]
     }
 }
 
-/// Takes steps of the textbook method; `watch` sees the number of each, from 1, and may change the velocities.
+/// Takes steps of the textbook method; `watch` sees the number of each, from 1, and may change the
+/// velocities.
 ///
 /// # Errors
 /// The step that failed, and why.

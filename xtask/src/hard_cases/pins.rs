@@ -187,8 +187,8 @@ fn taut(effort: Effort) -> Result<Findings> {
     Ok(f)
 }
 
-/// A taut strip as a string of beads: transverse displacement in its slowest mode, whose frequency (radians per
-/// second) is returned.
+/// A taut strip as a string of beads: transverse displacement in its slowest mode, whose frequency
+/// (radians per second) is returned.
 fn taut_strip(f: &mut Findings, force: f64, effort: Effort) -> Result<f64> {
     let links = 10;
     let spacing = 1.0 / links as f64;

@@ -178,9 +178,9 @@ fn table(all: &[Buckled], plan: &Plan, halvings: usize) -> Table {
     .named("buckling")
 }
 
-/// How far the critical load is from the reference, relative: of rods the nearest load between both bounds, of
-/// the others the load of the plate, see [`ABOUT`]. (Membranes and equations in weak form do not resist the
-/// first small twist: strains are quadratic in it.)
+/// How far the critical load is from the reference, relative: of rods the nearest load between both
+/// bounds, of the others the load of the plate, see [`ABOUT`]. (Membranes and equations in weak form do
+/// not resist the first small twist: strains are quadratic in it.)
 fn error(b: &Buckled) -> Option<f64> {
     let ([low, high], load) = (bounds(), b.run.found.middle()?);
     let reference = match b.isometry {

@@ -121,8 +121,8 @@ fn sheets(isometry: Isometry, by: usize, effort: Effort) -> usize {
     }
 }
 
-/// A clamped sheet at the end of its run, its rigidity (N m), and how far its lowest vertex is below the clamp
-/// (metres).
+/// A clamped sheet at the end of its run, its rigidity (N m), and how far its lowest vertex is below the
+/// clamp (metres).
 type Fallen = Sample<Job, Course, (f64, f64)>;
 
 fn method(f: &Fallen) -> &'static str {

@@ -27,7 +27,8 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// A search by [`bisect`]; `probe` says what the scene does at a value, and what the steps of its run kept.
+    /// A search by [`bisect`]; `probe` says what the scene does at a value, and what the steps of its run
+    /// kept.
     pub(super) fn over(
         range: [f64; 2],
         halvings: usize,

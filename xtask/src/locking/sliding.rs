@@ -57,8 +57,8 @@ fn slides(
     Ok((verdict, course.kept))
 }
 
-/// Where a sheet begins to slide: tangents of the critical tilt over the coefficient of friction, of a mesh and a
-/// coefficient.
+/// Where a sheet begins to slide: tangents of the critical tilt over the coefficient of friction, of a
+/// mesh and a coefficient.
 type Slide = Sample<(Pattern, f64), Search>;
 
 /// Runs the yardstick.

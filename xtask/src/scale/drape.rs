@@ -4,12 +4,11 @@ use super::measure::{STEP, peak_memory};
 use super::timed::{Spent, Timed};
 use crate::interrupt;
 use crate::report::Cost;
-use crate::timing::bumped;
+use crate::timing::{Pairs, bumped, on_table};
 use anyhow::Result;
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_collide::ContactOptions;
 use isosheet_dynamics::{Method, RunEnd, SheetModel, Simulation, State, StepReport};
 use isosheet_mesh::{MassKind, VertexId};
-use nalgebra::Isometry3;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -86,11 +85,7 @@ pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRo
     let options = ContactOptions::for_sheet(&model);
     // The bump is at half its height above the corners of the table, where the cloth is lowest.
     let top = 0.5 * BUMP - START * options.activation;
-    let pose = Isometry3::translation(0.5, 0.5, top - TABLE[2]);
-    let table = Obstacle::fixed(Shape::Cuboid { half: TABLE }, pose)?;
-    let contacts = Contacts::new(&model, options)?
-        .with_body(table, Coefficients::FRICTIONLESS)?
-        .with_self_contact(Coefficients::FRICTIONLESS)?;
+    let contacts = on_table(&model, options, (TABLE, top), Pairs::TableAndItself)?;
     let (contacts, watch) = Timed::new(contacts);
     let start = State::at_rest(sheet.positions().to_vec());
     let mut run = Simulation::new(model, start, Method::default())?.with_contact(contacts)?;

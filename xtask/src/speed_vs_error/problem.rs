@@ -1,14 +1,13 @@
 //! The problems of the study.
 
 use super::barrier::Barrier;
-use crate::timing::{bumped, corner};
+use crate::timing::{Pairs, bumped, corner, on_table};
 use anyhow::{Result, bail};
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_collide::{ContactOptions, Contacts};
 use isosheet_dynamics::contact::ContactError;
 use isosheet_dynamics::{Method, SheetModel, Simulation, SimulationError, State};
 use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId};
 use isosheet_tests::{FreeTriangle, Pendulum};
-use nalgebra::Isometry3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -145,10 +144,13 @@ impl Problem {
             return Ok(None);
         }
         let model = self.without_contact()?;
-        let pose = Isometry3::translation(0.5, 0.5, TABLE_TOP - TABLE[2]);
-        let table = Obstacle::fixed(Shape::Cuboid { half: TABLE }, pose)?;
-        let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?;
-        Ok(Some(contacts.with_body(table, Coefficients::FRICTIONLESS)?))
+        let options = ContactOptions::for_sheet(&model);
+        Ok(Some(on_table(
+            &model,
+            options,
+            (TABLE, TABLE_TOP),
+            Pairs::Table,
+        )?))
     }
 
     /// The mechanical system as methods without a place for contact see it: the barrier is a potential.

@@ -105,7 +105,8 @@ impl Mesh {
 pub(crate) const NEIGHBOUR: f64 = 1e-9;
 
 impl Measured {
-    /// Runs a scene by a method with steps of `step` seconds from a start, within limits as [`repeated`] has them.
+    /// Runs a scene by a method with steps of `step` seconds from a start, within limits as [`repeated`]
+    /// has them.
     ///
     /// # Errors
     /// Those of [`repeated`].
