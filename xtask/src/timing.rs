@@ -2,11 +2,13 @@
 
 mod comparison;
 mod factorisation;
+mod matrices;
 mod run;
 mod scene;
 
 pub(crate) use comparison::{COLUMNS, Entry, words};
 pub(crate) use factorisation::{OrderRow, order};
+pub(crate) use matrices::{Body, STIFFNESS, Sparse};
 pub(crate) use run::{Measured, Mesh, NEIGHBOUR, Timed};
 pub(crate) use scene::{
     BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging, on_table,

@@ -7,10 +7,10 @@ mod row;
 pub(crate) use report::{conclusions, data, plot, table};
 pub(crate) use row::SolverRow;
 
-use super::matrices::{Body, STIFFNESS, Sparse};
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::report::Effort;
+use crate::timing::{Body, STIFFNESS, Sparse};
 use anyhow::Result;
 use elimination::elimination;
 use isosheet_coords::linalg::{LinalgError, SparseLdlt, SparseLlt, SparseLu, norm_inf};
