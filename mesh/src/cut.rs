@@ -138,30 +138,45 @@ mod tests {
     use super::*;
     use crate::generate::{Diagonals, grid};
 
-    /// A square without the corner beyond an oblique line: the area is known, and no edge crosses the line.
+    /// A square cut along an oblique line through two of its vertices, and without what lies beyond: areas are
+    /// known, and no edge crosses the line.
     #[test]
-    fn a_square_loses_a_corner() {
+    fn a_square_loses_a_part() {
         let square = grid(8, 8, 1.0, 1.0, Diagonals::UnionJack).unwrap();
-        let (sin, cos) = 0.6_f64.sin_cos();
-        let (point, inwards) = ([0.0, 0.4], [cos, sin]);
+        // From (0, 0.5) to (0.25, 0).
+        let norm = 5.0_f64.sqrt();
+        let (point, inwards) = ([0.0, 0.5], [2.0 / norm, 1.0 / norm]);
         let mut cut = FlatCut::of(&square);
-        cut.split(point, inwards, 0.25 / 8.0);
+        cut.split(point, inwards, 1e-9);
         let whole = cut.sheet().unwrap();
+        assert!((whole.area() - 1.0).abs() < 1e-12);
+        for edge in whole.topology().edges() {
+            let [a, b] = edge.map(|v| {
+                let [x, y, _] = whole.position(v);
+                (x - point[0]) * inwards[0] + (y - point[1]) * inwards[1]
+            });
+            assert!(a * b > -1e-15, "{a} {b}");
+        }
         cut.keep(point, inwards);
         let rest = cut.sheet().unwrap();
-        let beyond = 0.5 * 0.4 * 0.4 * sin / cos;
-        // Vertices of the outline that are near the line move onto it.
-        assert!((whole.area() - 1.0).abs() < 0.01);
-        assert!((whole.area() - rest.area() - beyond).abs() < 0.01);
-        let side = |v| {
-            let [x, y, _]: [f64; 3] = whole.position(v);
-            (x - point[0]) * inwards[0] + (y - point[1]) * inwards[1]
-        };
-        for edge in whole.topology().edges() {
-            let [a, b] = edge.map(side);
-            assert!(a * b > -1e-18, "{a} {b}");
-        }
+        assert!((rest.area() - (1.0 - 0.5 * 0.25 * 0.5)).abs() < 1e-12);
         cut.keep([2.0, 0.0], [1.0, 0.0]);
         assert!(cut.sheet().is_err(), "nothing is left");
+    }
+
+    /// Vertices near the line are moved onto it.
+    #[test]
+    fn near_vertices_are_on_the_line() {
+        let square = grid(4, 4, 1.0, 1.0, Diagonals::UnionJack).unwrap();
+        let mut cut = FlatCut::of(&square);
+        cut.split([0.55, 0.0], [1.0, 0.0], 0.06);
+        let moved = cut.sheet().unwrap();
+        let count = |sheet: &Sheet| sheet.topology().vertex_count();
+        assert_eq!(count(&moved), count(&square));
+        let on_line = moved
+            .positions()
+            .chunks(3)
+            .filter(|p| (p[0] - 0.55).abs() < 1e-15);
+        assert_eq!(on_line.count(), 5);
     }
 }

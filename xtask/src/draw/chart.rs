@@ -174,6 +174,6 @@ impl Chart {
 
 /// One coordinate of all points.
 fn values(series: &[Series], k: usize) -> impl Iterator<Item = f64> + '_ {
-    let of = move |s: &'_ Series| s.points.iter().map(|p| p[k]).collect::<Vec<_>>();
+    let of = move |s: &Series| s.points.iter().map(|p| p[k]).collect::<Vec<_>>();
     series.iter().flat_map(of)
 }

@@ -145,19 +145,15 @@ pub(super) fn method_name(integrator: Integrator) -> &'static str {
     }
 }
 
-/// Lets `work` see how a run is shown, and its mesh.
-fn shown<T>(
-    scene: &FigureScene,
-    context: &Context<'_>,
-    work: impl FnOnce(Shown<'_>, u32) -> Result<T>,
-) -> Result<T> {
+/// How a run is shown, and the level of its mesh.
+fn shown<'a>(scene: &'a FigureScene, context: &'a Context<'_>) -> Result<(Shown<'a>, usize)> {
     let hanging = Hanging::of(scene)?;
     let view = View {
         azimuth: -62.0,
         elevation: 17.0,
         distance: 6.0 * hanging.side,
         columns: 5,
-        pins: &[hanging.pin],
+        pins: vec![hanging.pin],
         bodies: &[],
         depth: 0.0,
     };
@@ -166,25 +162,23 @@ fn shown<T>(
         view,
         context,
     };
-    work(shown, hanging.level)
+    Ok((shown, hanging.level as usize))
 }
 
 /// The page that plays a run.
 pub(super) fn page(figure: u8, scene: &FigureScene, context: &Context<'_>) -> Result<Play> {
     let has_contact = scene.scene().contact.self_contact;
     let free = ["", ", passing through itself"][usize::from(!has_contact)];
-    shown(scene, context, |shown, level| {
-        let level = ["M⁰", "M¹", "M²", "M³"][level as usize];
-        shown.play(figure, &format!("crumpled paper, {level}{free}"))
-    })
+    let (shown, level) = shown(scene, context)?;
+    let level = ["M⁰", "M¹", "M²", "M³"][level];
+    shown.play(figure, &format!("crumpled paper, {level}{free}"))
 }
 
 /// The sequence of a run that has been made.
 fn picture(file: &str, scene: &FigureScene, context: &Context<'_>) -> Result<Picture> {
-    shown(scene, context, |shown, level| {
-        let alt = format!(
-            "A sheet of paper held at its left-upper corner falls from flat and crumples, mesh M{level}"
-        );
-        shown.picture(file, &alt, &TIMES)
-    })
+    let (shown, level) = shown(scene, context)?;
+    let alt = format!(
+        "A sheet of paper held at its left-upper corner falls from flat and crumples, mesh M{level}"
+    );
+    shown.picture(file, &alt, &TIMES)
 }

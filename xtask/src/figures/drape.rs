@@ -72,12 +72,12 @@ impl Draped {
 }
 
 /// How a cloth is shown.
-const VIEW: View<'static> = View {
+const VIEW: View = View {
     azimuth: -62.0,
     elevation: 24.0,
     distance: 6.0,
     columns: 3,
-    pins: &[],
+    pins: Vec::new(),
     bodies: &[0],
     depth: 0.4,
 };

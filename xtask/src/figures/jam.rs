@@ -281,13 +281,13 @@ fn table(all: &[Fed]) -> Table {
 }
 
 /// How a run is shown: without the outer wall, which would hide the strip.
-fn view(feed: &Feed) -> View<'static> {
+fn view(feed: &Feed) -> View {
     View {
         azimuth: -72.0,
         elevation: 12.0,
         distance: 0.8,
         columns: 2,
-        pins: &[],
+        pins: Vec::new(),
         bodies: match feed.plate() {
             None => &[INNER],
             Some(_) => &[INNER, PLATE],

@@ -148,12 +148,12 @@ fn lead(mode: origami::FoldingMode) -> usize {
 }
 
 /// How the runs are shown.
-const VIEW: View<'static> = View {
+const VIEW: View = View {
     azimuth: -62.0,
     elevation: 38.0,
     distance: 1.2,
     columns: 3,
-    pins: &[],
+    pins: Vec::new(),
     bodies: &[],
     depth: 0.0,
 };

@@ -9,8 +9,8 @@ use isosheet_io::picture::{Camera, Image, Labelled, Look, SheetPicture, Solid, m
 use isosheet_mesh::VertexId;
 
 /// How a run is shown.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct View<'a> {
+#[derive(Clone, Debug)]
+pub(super) struct View {
     /// Where the viewer is, degrees.
     pub(super) azimuth: f64,
     pub(super) elevation: f64,
@@ -19,9 +19,9 @@ pub(super) struct View<'a> {
     /// Pictures in a row.
     pub(super) columns: usize,
     /// Vertices marked with a dot.
-    pub(super) pins: &'a [VertexId],
+    pub(super) pins: Vec<VertexId>,
     /// Bodies to draw, by number.
-    pub(super) bodies: &'a [usize],
+    pub(super) bodies: &'static [usize],
     /// Bodies are framed down to this depth below the start of the sheet, metres.
     pub(super) depth: f64,
 }
@@ -47,10 +47,10 @@ fn choose(trajectory: &Trajectory, wanted: &[f64]) -> Vec<usize> {
 const THUMBNAIL: usize = 130;
 
 /// A run that has been made, and how it is shown.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Shown<'a> {
     pub(super) scene: &'a FigureScene,
-    pub(super) view: View<'a>,
+    pub(super) view: View,
     pub(super) context: &'a Context<'a>,
 }
 
@@ -83,7 +83,7 @@ fn pictures(
     scene: &FigureScene,
     trajectory: &Trajectory,
     frames: &[usize],
-    view: &View<'_>,
+    view: &View,
     height: usize,
 ) -> Result<Vec<Image>> {
     let setup = scene.setup()?;
@@ -120,7 +120,7 @@ fn pictures(
         let picture = SheetPicture {
             topology: sheet.topology(),
             positions: x,
-            pins: view.pins,
+            pins: &view.pins,
             solids,
         };
         images.push(render(&picture, &camera, &look)?);

@@ -64,12 +64,12 @@ impl Tools {
 const STROKES: [f64; 6] = [0.0, 0.3, 0.5, 0.7, 0.85, 1.0];
 
 /// How the run is shown. The holders would hide the sheet.
-const VIEW: View<'static> = View {
+const VIEW: View = View {
     azimuth: -58.0,
     elevation: 30.0,
     distance: 3.0,
     columns: 3,
-    pins: &[],
+    pins: Vec::new(),
     bodies: &[DIE, FRAME],
     depth: 0.03,
 };

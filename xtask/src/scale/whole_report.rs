@@ -133,7 +133,7 @@ fn cell(value: Option<f64>) -> Cell {
 
 /// The runs of one scene.
 pub(super) fn table(scene: Work, runs: &[&Measured]) -> Table {
-    let with = |r: &&'_ Measured| {
+    let with = |r: &&Measured| {
         let entry = r.entry(r.method.clone());
         ((*r).clone(), entry.cells(&entries(runs, r.level)))
     };

@@ -146,7 +146,7 @@ pub(crate) fn data(rows: &[Tablecloth]) -> Table {
 pub(crate) fn table(rows: &[Tablecloth]) -> Table {
     let rows = scenes(rows).flat_map(|scene| {
         let entries = entries(scene);
-        let with = move |r: &'_ Tablecloth| (r.clone(), r.entry().cells(&entries));
+        let with = move |r: &Tablecloth| (r.clone(), r.entry().cells(&entries));
         scene.iter().map(with)
     });
     Table::of(
