@@ -28,6 +28,7 @@ mod style;
 
 use crate::draw::{Anchor, Drawing, Vertical, palette};
 use crate::report::{Effort, Picture, Table};
+use crate::runs::FigureScene;
 use crate::store::{Draft, Store};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
@@ -126,6 +127,15 @@ fn caption(drawing: &mut Drawing, at: [f64; 2], size: f64, lines: &[String]) {
         let place = [at[0], at[1] - 1.35 * size * k as f64];
         let (anchor, ink) = (Anchor::Middle, palette::INK);
         drawing.text(place, line, size, anchor, Vertical::Below, ink);
+    }
+}
+
+/// What tells a run in which the sheet may pass through itself from the one of the figure.
+fn through_itself(scene: &FigureScene) -> &'static str {
+    if scene.scene().contact.self_contact {
+        ""
+    } else {
+        ", passing through itself"
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::marks::{self, Marks};
 use super::sequence::{Shown, View};
-use super::{Context, Effort, Made, Picture, Play};
+use super::{Context, Effort, Made, Picture, Play, through_itself};
 use crate::runs::{self, FigureScene, Hanging, RunSummary, Shape};
 use anyhow::Result;
 use isosheet_io::scene::Integrator;
@@ -167,8 +167,7 @@ fn shown<'a>(scene: &'a FigureScene, context: &'a Context<'_>) -> Result<(Shown<
 
 /// The page that plays a run.
 pub(super) fn page(figure: u8, scene: &FigureScene, context: &Context<'_>) -> Result<Play> {
-    let has_contact = scene.scene().contact.self_contact;
-    let free = ["", ", passing through itself"][usize::from(!has_contact)];
+    let free = through_itself(scene);
     let (shown, level) = shown(scene, context)?;
     let level = ["M⁰", "M¹", "M²", "M³"][level];
     shown.play(figure, &format!("crumpled paper, {level}{free}"))

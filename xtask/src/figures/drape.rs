@@ -4,7 +4,7 @@
 use super::cloths::{Layout, irregular, octagon, polygon, rectangle, ringed};
 use super::folds::{Folds, Hem};
 use super::sequence::{Shown, View};
-use super::{Context, Effort, Made, Picture, Play, Table, whole_percent};
+use super::{Context, Effort, Made, Picture, Play, Table, through_itself, whole_percent};
 use crate::draw::{Axis, Chart, Drawing, Legend, Marker, Series, column, palette, row};
 use crate::report::Cell;
 use crate::runs::{self, FigureScene, RunSummary};
@@ -97,8 +97,7 @@ pub(super) fn page(
     scene: &FigureScene,
     context: &Context<'_>,
 ) -> Result<Play> {
-    let has_contact = scene.scene().contact.self_contact;
-    let free = ["", ", passing through itself"][usize::from(!has_contact)];
+    let free = through_itself(scene);
     let label = format!("draped cloth, {}{free}", label.replace('~', ""));
     shown(scene, context).play(figure, &label)
 }

@@ -84,9 +84,12 @@ fn shown<'a>(scene: &'a FigureScene, context: &'a Context<'_>) -> Shown<'a> {
 
 /// The page that plays a run.
 pub(super) fn page(figure: u8, scene: &FigureScene, context: &Context<'_>) -> Result<Play> {
-    let has_contact = scene.scene().contact.self_contact;
-    let free = ["", ", the sheet passing through itself"][usize::from(!has_contact)];
-    shown(scene, context).play(figure, &format!("stamping{free}"))
+    let label = if scene.scene().contact.self_contact {
+        "stamping"
+    } else {
+        "stamping, the sheet passing through itself"
+    };
+    shown(scene, context).play(figure, label)
 }
 
 pub(super) fn make(context: &Context<'_>) -> Result<Made> {

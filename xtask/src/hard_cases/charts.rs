@@ -266,11 +266,14 @@ fn chart_error(
     interrupt::check()?;
     let sheet = bumped(0, BUMP)?;
     let chart = front_chart(&sheet, corner(0), Degenerate::Assign, sheet.positions())?;
-    let is_exact = method == ChartMethod::RungeKutta4;
+    let position = match method {
+        ChartMethod::RungeKutta4 => PositionUpdate::Exact,
+        _ => PositionUpdate::Linear,
+    };
     let options = ChartOptions {
         method,
         equations,
-        position: [PositionUpdate::Linear, PositionUpdate::Exact][usize::from(is_exact)],
+        position,
         control: ChartStepControl::Fixed(END / n as f64),
         ..ChartOptions::default()
     };

@@ -107,14 +107,15 @@ fn random_sheet(kind: &str, rng: &mut ChaCha8Rng) -> Result<Sheet> {
 /// The number of a method among the damped ones, and the number of a sheet in the family.
 type Job = (usize, usize);
 
-/// The number of the default method.
+/// The numbers of the default method and of implicit Euler.
 const BDF2: usize = 0;
+const EULER: usize = 1;
 
 /// The number of sheets that a model is tried on by a method.
 fn sheets(isometry: Isometry, by: usize, effort: Effort) -> usize {
     match by {
         BDF2 => effort.quick_or(10, 200),
-        1 => effort.quick_or(0, 25),
+        EULER => effort.quick_or(0, 25),
         // The projection step is one onto the lengths of rods.
         _ if isometry == Isometry::Rods => effort.quick_or(0, 25),
         _ => 0,

@@ -28,9 +28,12 @@ pub(crate) fn make(problem: Problem, effort: Effort) -> Result<Study> {
     let reference = reference::compute(problem, effort.reference(problem))?;
     bar.step();
     let mut points = Vec::new();
-    let limits = [effort.run(), effort.chart_run()];
     for scheme in &schemes {
-        let limit = limits[usize::from(scheme.is_chart())];
+        let limit = if scheme.is_chart() {
+            effort.chart_run()
+        } else {
+            effort.run()
+        };
         points.extend(sweep(problem, scheme, &reference, limit)?);
         bar.step();
     }
@@ -304,13 +307,12 @@ impl Study {
         ];
         let mut drawn: Vec<Series> = free.map(look).to_vec();
         for name in self.names() {
-            let (colour, marker) = if is_paper(name) {
-                let free_creases = name.ends_with("creases");
-                let fixed = name.ends_with("fixed steps");
-                (
-                    [palette::BLACK, palette::GREY][usize::from(free_creases)],
-                    [Marker::Square, Marker::Diamond][usize::from(fixed)],
-                )
+            let (colour, marker) = if name.ends_with("fixed steps") {
+                (palette::BLACK, Marker::Diamond)
+            } else if name.ends_with("free creases") {
+                (palette::GREY, Marker::Square)
+            } else if is_paper(name) {
+                (palette::BLACK, Marker::Square)
             } else if !name.ends_with("Cartesian chart, saddle") {
                 continue;
             } else if name.starts_with("Runge") {
