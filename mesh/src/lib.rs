@@ -21,6 +21,7 @@ mod angles;
 mod area;
 mod build;
 mod creases;
+mod cut;
 mod dof;
 mod edit;
 mod error;
@@ -43,6 +44,7 @@ pub use angles::{
 };
 pub use area::area_from_lengths;
 pub use creases::{CreaseLine, CreasePattern, FoldingDirection, LineEnds};
+pub use cut::FlatCut;
 pub use dof::Dof;
 pub use error::{MeshError, TopologyError};
 pub use ids::{EdgeId, FaceId, HalfEdgeId, VertexId};

@@ -1,20 +1,25 @@
-//! Mechanical problems, shared by the tests that span several crates and by reports. Each model gives a sheet,
-//! a start state and the exact motion, but for [`tumbling`], which gives a start alone.
+//! Mechanical problems, shared by the tests that span several crates and by reports. Each model gives a
+//! sheet, a start state and the exact motion, but for [`tumbling`], which gives a start alone, for
+//! [`RigidBody`], which gives the motion of any sheet that cannot bend, and for [`Elastica`], a strip at rest.
 
 mod catenary;
+mod elastica;
 mod elliptic;
 mod flap;
 mod linkage;
 mod pendulum;
+mod rigid_body;
 mod strip;
 mod triangle;
 mod tumbling;
 
 pub use catenary::Catenary;
+pub use elastica::Elastica;
 pub use elliptic::{agm, complete_k, jacobi};
 pub use flap::Flap;
 pub use linkage::Linkage;
 pub use pendulum::Pendulum;
+pub use rigid_body::RigidBody;
 pub use strip::{HangingStrip, laguerre, laguerre_zeros};
 pub use triangle::FreeTriangle;
 pub use tumbling::tumbling;

@@ -116,6 +116,34 @@ impl FreeTriangle {
         4.0 * complete_k(m) / rate
     }
 
+    /// Positions (9 coordinates, metres) at increasing times (seconds): the attitude R follows from the
+    /// exact spin w in body axes by `R' = R [w]`, integrated by the classical Runge-Kutta method to
+    /// round-off.
+    pub fn positions(&self, times: &[f64]) -> Vec<Vec<f64>> {
+        // At 2e-4 of a period the error of the method is about (2 pi 2e-4)^4 / 120, below 1e-13.
+        let longest = 2e-4 * self.period();
+        let rate = |r: &Matrix3<f64>, t: f64| r * Vector3::from(self.spin_at(t)).cross_matrix();
+        let mut attitude = Matrix3::identity();
+        let mut now = 0.0;
+        let mut states = Vec::new();
+        for &t in times {
+            let steps = ((t - now) / longest).ceil().max(1.0);
+            let h = (t - now) / steps;
+            for k in 0..steps as usize {
+                let at = now + k as f64 * h;
+                let k1 = rate(&attitude, at);
+                let k2 = rate(&(attitude + 0.5 * h * k1), at + 0.5 * h);
+                let k3 = rate(&(attitude + 0.5 * h * k2), at + 0.5 * h);
+                let k4 = rate(&(attitude + h * k3), at + h);
+                attitude += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+            }
+            now = t;
+            let corners = self.corners().map(|c| attitude * c);
+            states.push(corners.iter().flat_map(|p| [p.x, p.y, p.z]).collect());
+        }
+        states
+    }
+
     /// Angular velocity in body axes of a state, from its angular momentum and body frame.
     pub fn spin_of(&self, model: &SheetModel, state: &State) -> [f64; 3] {
         let p = |v: usize| Vector3::from_column_slice(&state.x[3 * v..3 * v + 3]);

@@ -1,6 +1,5 @@
 //! The figures, one module each, and what is kept about them.
 
-pub(crate) mod all;
 mod cloths;
 mod crescent;
 mod crumple;
@@ -22,82 +21,64 @@ mod origami;
 mod performance;
 mod play;
 mod sequence;
+mod sketch;
 mod softness;
 mod stamping;
 mod style;
 
 use crate::draw::{Anchor, Drawing, Vertical, palette};
-use crate::report::{Picture, PictureRef, Table};
-use crate::store::Store;
+use crate::report::{Effort, Picture, Table};
+use crate::runs::FigureScene;
+use crate::store::{Draft, Store};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-
-/// How much work to put in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum RenderEffort {
-    /// What the figures show.
-    Full,
-    /// Seconds: short runs, small pictures.
-    Quick,
-}
-
-/// A page that plays a run, as the record of a figure keeps it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct PageRef {
-    /// Paths relative to the output folder.
-    pub(crate) path: String,
-    pub(crate) thumbnail: String,
-    /// Choices in the address of the page, empty or from `#` on.
-    pub(crate) choices: String,
-    pub(crate) label: String,
-}
-
-/// What is known about a figure.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Record {
-    pub(crate) figure: u8,
-    pub(crate) title: String,
-    /// What the paper shows.
-    pub(crate) paper: String,
-    /// What is measured here.
-    pub(crate) measured: String,
-    pub(crate) pictures: Vec<PictureRef>,
-    /// Pages that play its runs; in records of earlier versions there are none.
-    #[serde(default)]
-    pub(crate) pages: Vec<PageRef>,
-    pub(crate) tables: Vec<Table>,
-    /// The numbers, for programs.
-    pub(crate) facts: Value,
-}
+use std::borrow::Cow;
 
 /// A page that plays a run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Play {
-    /// Names of page and picture without folder.
-    pub(crate) file: String,
-    pub(crate) thumbnail_file: String,
+    /// Path of the page relative to the output folder.
+    pub(crate) path: String,
     /// Choices in the address of the page, empty or from `#` on.
-    pub(crate) choices: &'static str,
+    pub(crate) choices: String,
     /// What tells it from the other pages of the figure.
     pub(crate) label: String,
+    /// The page; it is not part of records.
+    #[serde(skip)]
     pub(crate) page: String,
     /// The last frame as a PNG file.
-    pub(crate) thumbnail: Vec<u8>,
+    pub(crate) thumbnail: Picture,
 }
 
 /// A figure that has been made.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Made {
-    pub(crate) title: &'static str,
-    pub(crate) paper: &'static str,
+    pub(crate) title: Cow<'static, str>,
+    /// What the paper shows.
+    pub(crate) paper: Cow<'static, str>,
+    /// What is measured here.
     pub(crate) measured: String,
     pub(crate) pictures: Vec<Picture>,
     /// Pages that play its runs.
     pub(crate) pages: Vec<Play>,
     pub(crate) tables: Vec<Table>,
+    /// The numbers, for programs.
     pub(crate) facts: Value,
+}
+
+impl Made {
+    /// Adds its files to those of a unit.
+    pub(crate) fn keep(&self, draft: &mut Draft) -> Result<()> {
+        for picture in &self.pictures {
+            draft.write(&picture.path, &picture.bytes)?;
+        }
+        for play in &self.pages {
+            draft.write(&play.path, play.page.as_bytes())?;
+            draft.write(&play.thumbnail.path, &play.thumbnail.bytes)?;
+        }
+        Ok(())
+    }
 }
 
 /// What figures are made with.
@@ -105,30 +86,56 @@ pub(crate) struct Made {
 pub(crate) struct Context<'a> {
     /// Where runs are kept.
     pub(crate) store: &'a Store,
-    pub(crate) effort: RenderEffort,
+    pub(crate) effort: Effort,
+}
+
+/// Makes a figure.
+///
+/// # Errors
+/// [`Interrupted`](crate::interrupt::Interrupted) after Ctrl-C.
+pub(crate) fn make(figure: u8, context: &Context<'_>) -> Result<Made> {
+    match figure {
+        1 => fig01::make(),
+        2 => fig02::make(),
+        3 => fig03::make(),
+        4 => fig04::make(),
+        5 => fig05::make(),
+        6 => fig06::make(),
+        7 => fig07::make(),
+        8 => fig08::make(),
+        9 => fig09::make(),
+        10 => performance::make(context),
+        11 => crumple::make(11, 1, context),
+        12 => crumple::make(12, 2, context),
+        13 => stamping::make(context),
+        14 => drape::fig14(context),
+        15 => drape::fig15(context),
+        16 => jam::make(context),
+        17 => origami::make(context),
+        _ => anyhow::bail!("figure {figure} cannot be made"),
+    }
 }
 
 /// A drawing as the picture `figNN.svg`.
-fn svg(figure: u8, drawing: &Drawing, alt: &str) -> Result<Vec<Picture>> {
-    Ok(vec![Picture::svg(
-        &format!("fig{figure:02}"),
-        drawing,
-        alt,
-    )?])
+fn svg(figure: u8, drawing: &Drawing, alt: &str) -> Vec<Picture> {
+    vec![Picture::svg(&format!("fig{figure:02}"), drawing, alt)]
 }
 
 /// Centred lines of text below each other, the first hanging from `at`.
 fn caption(drawing: &mut Drawing, at: [f64; 2], size: f64, lines: &[String]) {
     for (k, line) in lines.iter().enumerate() {
-        let y = at[1] - 1.35 * size * k as f64;
-        drawing.text(
-            [at[0], y],
-            line,
-            size,
-            Anchor::Middle,
-            Vertical::Below,
-            palette::INK,
-        );
+        let place = [at[0], at[1] - 1.35 * size * k as f64];
+        let (anchor, ink) = (Anchor::Middle, palette::INK);
+        drawing.text(place, line, size, anchor, Vertical::Below, ink);
+    }
+}
+
+/// What tells a run in which the sheet may pass through itself from the one of the figure.
+fn through_itself(scene: &FigureScene) -> &'static str {
+    if scene.scene().contact.self_contact {
+        ""
+    } else {
+        ", passing through itself"
     }
 }
 
@@ -139,6 +146,11 @@ fn gap(gap: Option<f64>) -> String {
         Some(metres) if metres < 1e-3 => format!("{:.1} µm", 1e6 * metres),
         Some(metres) => format!("{:.2} mm", 1e3 * metres),
     }
+}
+
+/// A part as a percentage without decimals.
+fn whole_percent(part: f64) -> String {
+    format!("{:.0} %", 100.0 * part)
 }
 
 fn degrees(angle: f64) -> String {

@@ -15,17 +15,17 @@ mod naive;
 mod page;
 mod pins;
 mod plate;
-mod plot;
 mod rigid;
 mod scales;
 mod scenes;
-mod spin;
 mod steps;
 
-pub(crate) use case::{Case, Effort, Findings, Record, Shortfall};
+pub(crate) use case::{Case, Findings, Record, Shortfall};
 
+use crate::draw::{Chart, Drawing, Series};
 use crate::interrupt::{self, Outcome};
 use crate::progress;
+use crate::report::Effort;
 use crate::store::{Draft, Store, Unit};
 use anyhow::{Result, bail};
 use clap::Args;
@@ -95,11 +95,7 @@ pub(crate) struct HardCasesArgs {
 /// Runs the command.
 pub(crate) fn run(args: &HardCasesArgs) -> Result<Outcome> {
     let store = Store::open(&args.out)?;
-    let effort = match (args.quick, args.full) {
-        (true, _) => Effort::Quick,
-        (_, true) => Effort::Full,
-        _ => Effort::Standard,
-    };
+    let effort = Effort::of_flags([args.quick, args.full]);
     let wanted =
         |case: &Case| args.cases.is_empty() || args.cases.iter().any(|c| c.name == case.name);
     let results: Vec<Result<()>> = CASES
@@ -135,6 +131,19 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<Outcome> {
     Ok(outcome)
 }
 
+/// Size of the area inside the axes of charts, points.
+const SIZE: [f64; 2] = [230.0, 150.0];
+
+/// A chart with logarithmic axes.
+fn log_log(x: &str, y: &str, series: Vec<Series>) -> Drawing {
+    Chart::log_log(x, y, SIZE, series).draw()
+}
+
+/// A chart whose vertical axis is logarithmic.
+fn semi_log(x: &str, y: &str, series: Vec<Series>) -> Drawing {
+    Chart::semi_log(x, y, SIZE, series).draw()
+}
+
 fn unit(case: &Case, effort: Effort) -> Unit {
     Unit {
         name: format!("case-{}", case.name),
@@ -146,18 +155,15 @@ fn unit(case: &Case, effort: Effort) -> Unit {
 /// Runs a case.
 fn make(case: &Case, effort: Effort, draft: &mut Draft) -> Result<Record> {
     let started = Instant::now();
-    let findings = (case.run)(effort)?;
-    let pictures = findings.pictures.iter().map(|p| p.keep(draft));
-    let pictures = pictures.collect::<Result<_>>()?;
+    let found = (case.run)(effort)?;
+    for picture in &found.pictures {
+        draft.write(&picture.path, &picture.bytes)?;
+    }
     let record = Record {
         name: case.name.to_owned(),
         title: case.title.to_owned(),
         expected: case.expected.to_owned(),
-        naive: findings.naive,
-        here: findings.here,
-        checks: findings.checks,
-        pictures,
-        tables: findings.tables,
+        found,
         wall: started.elapsed().as_secs_f64(),
     };
     progress::note(

@@ -13,10 +13,7 @@ mod course;
 mod cylinder;
 mod disk;
 mod drape;
-mod effort;
-mod elastica;
 mod everyday;
-mod findings;
 mod isometry;
 mod iterations;
 mod limit;
@@ -25,143 +22,144 @@ mod page;
 mod plot;
 mod records;
 mod rim;
+mod sample;
 mod sliding;
 mod targets;
 
 use crate::draw::Drawing;
 use crate::interrupt::{self, Outcome};
-use crate::report::plot_files;
-use crate::store::{Store, Unit};
+use crate::report::{Effort, Table, plot_files};
+use crate::store::{Draft, Store, Unit};
 use anyhow::Result;
 use clap::Args;
-use effort::LockingEffort;
-use findings::Findings;
 use page::Section;
 use records::Records;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::fmt;
 use std::path::PathBuf;
-use std::str::FromStr;
+use targets::Target;
+
+/// What a yardstick found.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Findings {
+    /// Tables of the page, which are files as well.
+    tables: Vec<Table>,
+    /// Tables that are files alone: every single run.
+    files: Vec<Table>,
+    /// What the numbers say, one sentence or two each.
+    remarks: Vec<String>,
+    /// What the models are required to reach here.
+    targets: Vec<Target>,
+}
+
+/// Applies a yardstick: what it found, and its figure.
+type Make = fn(&Records<'_>) -> Result<(Findings, Option<Drawing>)>;
 
 /// A yardstick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Part {
-    /// Flat sheets that are clamped along lines of any direction.
-    Clamped,
-    /// Single everyday scenes with paper.
-    Everyday,
-    /// A square that clamps bend to a cylinder.
-    Cylinder,
-    /// The drop of a heavy strip.
-    Cantilever,
-    /// Elastic sheets against rods and against an inextensible strip.
-    Compliance,
-    /// Iterations of the hanging sheet.
-    Iterations,
-    /// A disk on a round table.
-    Drape,
-    /// Lateral buckling of a strip on edge.
-    Buckling,
-    /// The angle at which a sheet slides.
-    Sliding,
-}
-
-impl Part {
-    /// All of them, in the order of the page.
-    const ALL: [Self; 9] = [
-        Self::Clamped,
-        Self::Everyday,
-        Self::Cylinder,
-        Self::Cantilever,
-        Self::Compliance,
-        Self::Iterations,
-        Self::Drape,
-        Self::Buckling,
-        Self::Sliding,
-    ];
-
-    fn title(self) -> &'static str {
-        match self {
-            Self::Clamped => "Clamped sheets",
-            Self::Everyday => "Everyday scenes",
-            Self::Cylinder => "Bent to a cylinder",
-            Self::Cantilever => "The heavy elastica",
-            Self::Compliance => "Error against compliance",
-            Self::Iterations => "Iterations of the hanging sheet",
-            Self::Drape => "A disk on a round table",
-            Self::Buckling => "Lateral buckling",
-            Self::Sliding => "Sliding down a plane",
-        }
-    }
-
+#[derive(Debug)]
+pub(crate) struct Yardstick {
+    /// Its name on the command line and in file names.
+    name: &'static str,
+    title: &'static str,
     /// The set-up in words.
-    fn about(self) -> &'static str {
-        match self {
-            Self::Clamped => clamped::ABOUT,
-            Self::Everyday => everyday::ABOUT,
-            Self::Cylinder => cylinder::ABOUT,
-            Self::Cantilever => cantilever::ABOUT,
-            Self::Compliance => compliance::ABOUT,
-            Self::Iterations => iterations::ABOUT,
-            Self::Drape => drape::ABOUT,
-            Self::Buckling => buckling::ABOUT,
-            Self::Sliding => sliding::ABOUT,
-        }
-    }
-
-    fn make(self, records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
-        match self {
-            Self::Clamped => clamped::make(records),
-            Self::Everyday => everyday::make(records),
-            Self::Cylinder => cylinder::make(records),
-            Self::Cantilever => cantilever::make(records),
-            Self::Compliance => compliance::make(records),
-            Self::Iterations => iterations::make(records),
-            Self::Drape => drape::make(records),
-            Self::Buckling => buckling::make(records),
-            Self::Sliding => sliding::make(records),
-        }
-    }
+    about: &'static str,
+    make: Make,
 }
 
-impl Part {
-    fn unit(self, effort: LockingEffort) -> Unit {
+impl Yardstick {
+    const fn new([name, title, about]: [&'static str; 3], make: Make) -> Self {
+        Self {
+            name,
+            title,
+            about,
+            make,
+        }
+    }
+
+    fn unit(&self, effort: Effort) -> Unit {
         Unit {
-            name: format!("locking-{self}"),
-            title: self.to_string(),
+            name: format!("locking-{}", self.name),
+            title: self.name.to_owned(),
             options: json!({ "effort": effort }),
         }
     }
-}
 
-impl fmt::Display for Part {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Clamped => "clamped",
-            Self::Everyday => "everyday",
-            Self::Cylinder => "cylinder",
-            Self::Cantilever => "cantilever",
-            Self::Compliance => "compliance",
-            Self::Iterations => "iterations",
-            Self::Drape => "drape",
-            Self::Buckling => "buckling",
-            Self::Sliding => "sliding",
-        })
-    }
-}
-
-impl FromStr for Part {
-    type Err = anyhow::Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        match Self::ALL.iter().find(|p| p.to_string() == text) {
-            Some(part) => Ok(*part),
-            None => {
-                let names = Self::ALL.map(|p| p.to_string()).join(", ");
-                anyhow::bail!("there is no yardstick {text:?}; choose from {names}")
-            }
+    /// Applies the yardstick; its tables and its figure go into the draft.
+    fn apply(&self, store: &Store, effort: Effort, draft: &mut Draft) -> Result<Findings> {
+        let part = self.name.to_owned();
+        let (found, drawing) = (self.make)(&Records {
+            store,
+            part,
+            effort,
+        })?;
+        for table in found.tables.iter().chain(&found.files) {
+            draft.write(&format!("tables/{}", table.file()), &table.csv()?)?;
         }
+        if let Some(drawing) = drawing {
+            plot_files(draft, self.name, &drawing, self.title)?;
+        }
+        Ok(found)
     }
+}
+
+/// All of them, in the order of the page.
+static YARDSTICKS: [Yardstick; 9] = [
+    Yardstick::new(["clamped", "Clamped sheets", clamped::ABOUT], clamped::make),
+    Yardstick::new(
+        ["everyday", "Everyday scenes", everyday::ABOUT],
+        everyday::make,
+    ),
+    Yardstick::new(
+        ["cylinder", "Bent to a cylinder", cylinder::ABOUT],
+        cylinder::make,
+    ),
+    Yardstick::new(
+        ["cantilever", "The heavy elastica", cantilever::ABOUT],
+        cantilever::make,
+    ),
+    Yardstick::new(
+        ["compliance", "Error against compliance", compliance::ABOUT],
+        compliance::make,
+    ),
+    Yardstick::new(
+        [
+            "iterations",
+            "Iterations of the hanging sheet",
+            iterations::ABOUT,
+        ],
+        iterations::make,
+    ),
+    Yardstick::new(
+        ["drape", "A disk on a round table", drape::ABOUT],
+        drape::make,
+    ),
+    Yardstick::new(
+        ["buckling", "Lateral buckling", buckling::ABOUT],
+        buckling::make,
+    ),
+    Yardstick::new(
+        ["sliding", "Sliding down a plane", sliding::ABOUT],
+        sliding::make,
+    ),
+];
+
+/// A yardstick by its name on the command line.
+fn parse(name: &str) -> Result<&'static Yardstick, String> {
+    let found = YARDSTICKS.iter().find(|y| y.name == name);
+    found.ok_or_else(|| {
+        let names = YARDSTICKS.each_ref().map(|y| y.name).join(", ");
+        format!("there is no yardstick {name:?}; choose from {names}")
+    })
+}
+
+/// The median; NaN of nothing.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    if n == 0 {
+        return f64::NAN;
+    }
+    0.5 * (values[(n - 1) / 2] + values[n / 2])
 }
 
 /// Arguments of `locking`.
@@ -176,53 +174,32 @@ pub(crate) struct LockingArgs {
     pub(crate) quick: bool,
 
     /// Yardsticks to apply, separated by commas, such as clamped; all when left out
-    #[arg(long, value_name = "LIST", value_delimiter = ',')]
-    pub(crate) yardsticks: Vec<Part>,
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse)]
+    pub(crate) yardsticks: Vec<&'static Yardstick>,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &LockingArgs) -> Result<Outcome> {
-    let effort = if args.quick {
-        LockingEffort::Quick
-    } else {
-        LockingEffort::Full
-    };
+    let effort = Effort::of_flags([args.quick, true]);
     let store = Store::open(&args.out)?;
-    let parts = if args.yardsticks.is_empty() {
-        Part::ALL.to_vec()
-    } else {
-        args.yardsticks.clone()
-    };
-    let outcome = interrupt::each(parts, |part| {
-        let found = store.keep(&part.unit(effort), |draft| {
-            let (found, drawing) = part.make(&Records {
-                store: &store,
-                part: part.to_string(),
-                effort,
-            })?;
-            for table in found.tables.iter().chain(&found.files) {
-                draft.write(&format!("tables/{}", table.file()), &table.csv()?)?;
-            }
-            if let Some(drawing) = drawing {
-                plot_files(draft, &part.to_string(), &drawing, part.title())?;
-            }
-            Ok(found)
-        })?;
+    let mut yardsticks = args.yardsticks.clone();
+    if yardsticks.is_empty() {
+        yardsticks.extend(&YARDSTICKS);
+    }
+    let outcome = interrupt::each(yardsticks, |yardstick| {
+        let unit = yardstick.unit(effort);
+        let found = store.keep(&unit, |draft| yardstick.apply(&store, effort, draft))?;
         for table in &found.tables {
             println!("{}", table.text());
         }
         found.remarks.iter().for_each(|remark| println!("{remark}"));
         Ok(())
     })?;
-    let section = |part: Part| {
-        Some(Section {
-            name: part.to_string(),
-            title: part.title(),
-            about: part.about(),
-            found: store.earlier(&part.unit(effort))?,
-        })
+    let section = |yardstick: &'static Yardstick| {
+        let found = store.earlier(&yardstick.unit(effort))?;
+        Some(Section { yardstick, found })
     };
-    let sections: Vec<Section> = Part::ALL.into_iter().filter_map(section).collect();
+    let sections: Vec<Section> = YARDSTICKS.iter().filter_map(section).collect();
     page::write(&store, &sections, effort)?;
     println!("{}", store.root().join("index.html").display());
     Ok(outcome)
@@ -233,11 +210,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_read_back() {
-        for part in Part::ALL {
-            assert_eq!(part.to_string().parse::<Part>().unwrap(), part);
+    fn yardsticks_are_found_by_their_names() {
+        for yardstick in &YARDSTICKS {
+            assert_eq!(parse(yardstick.name).unwrap().name, yardstick.name);
         }
-        let error = "moon".parse::<Part>().unwrap_err().to_string();
+        let error = parse("moon").unwrap_err();
         assert!(error.contains("choose from clamped, everyday"), "{error}");
+    }
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(vec![4.0, 1.0]), 2.5);
+        assert!(median(Vec::new()).is_nan());
     }
 }

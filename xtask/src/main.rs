@@ -19,6 +19,7 @@ mod figures;
 mod hard_cases;
 mod interrupt;
 mod locking;
+mod methods;
 mod progress;
 mod report;
 mod reproduce;

@@ -1,6 +1,6 @@
 //! What all reports are made with: pages, tables, charts, what a run cost, numbers in words.
 
-mod chart;
+mod cost;
 mod effort;
 mod machine;
 mod number;
@@ -8,10 +8,10 @@ mod page;
 mod picture;
 mod table;
 
-pub(crate) use chart::{Chart, Missing, order_line};
+pub(crate) use cost::Cost;
 pub(crate) use effort::Effort;
 pub(crate) use machine::machine;
-pub(crate) use number::{exponent, number, percent, rounded, short};
+pub(crate) use number::{exponent, number, order_line, percent, rounded, short};
 pub(crate) use page::{Page, drawing, list};
-pub(crate) use picture::{Picture, PictureRef, plot_files};
+pub(crate) use picture::{Picture, plot_files};
 pub(crate) use table::{Cell, Table};

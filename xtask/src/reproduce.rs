@@ -2,14 +2,16 @@
 
 mod page;
 
-use crate::figures::{Context, Made, PageRef, Record, RenderEffort, all};
+use crate::figures::{self, Context, Made};
 use crate::interrupt::{self, Outcome};
 use crate::progress;
-use crate::selection::Selection;
-use crate::store::{Draft, Store, Unit};
+use crate::report::Effort;
+use crate::selection;
+use crate::store::{Store, Unit};
 use anyhow::{Result, bail};
 use clap::Args;
 use serde_json::json;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -17,8 +19,8 @@ use std::time::Instant;
 #[derive(Debug, Args)]
 pub(crate) struct ReproduceArgs {
     /// Figures to make, such as 3 or 1-9,11; all when left out
-    #[arg(long, value_name = "LIST", default_value_t = Selection::all())]
-    pub(crate) figures: Selection,
+    #[arg(long, value_name = "LIST", default_value = "1-17", value_parser = selection::parse)]
+    pub(crate) figures: BTreeSet<u8>,
 
     /// Folder to write to: a new or empty one, or one of an earlier run of this program
     #[arg(long, value_name = "DIR", default_value = "out/reproduce-figures")]
@@ -38,20 +40,16 @@ pub(crate) struct ReproduceArgs {
 /// Runs the command.
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
     let store = Store::open(&args.out)?;
-    let effort = if args.quick {
-        RenderEffort::Quick
-    } else {
-        RenderEffort::Full
-    };
+    let effort = Effort::of_flags([args.quick, true]);
     claim(&store, effort)?;
     let context = Context {
         store: &store,
         effort,
     };
-    if args.force && args.figures.iter().any(|f| f >= 10) {
+    if args.force && args.figures.iter().any(|f| *f >= 10) {
         store.forget("run-")?;
     }
-    let outcome = interrupt::each(args.figures.iter(), |figure| {
+    let outcome = interrupt::each(&args.figures, |&figure| {
         let unit = unit(figure, effort);
         if args.force {
             store.forget(&unit.name)?;
@@ -59,14 +57,15 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
         let title = unit.title.clone();
         store.keep(&unit, |draft| {
             let started = Instant::now();
-            let record = record(figure, all::make(figure, &context)?, draft)?;
+            let made = figures::make(figure, &context)?;
+            made.keep(draft)?;
             let wall = started.elapsed().as_secs_f64();
             progress::note(&title, &format!("made ({wall:.1} s)"));
-            Ok(record)
+            Ok(made)
         })?;
         Ok(())
     })?;
-    page::write(&store, effort, &records(&store)?)?;
+    page::write(&store, effort, &records(&store))?;
     progress::note(
         "report",
         &store.root().join("index.html").display().to_string(),
@@ -79,15 +78,15 @@ const EFFORT: &str = ".stamps/effort.json";
 
 /// Keeps quick and full results apart, which share the names of figures and runs: full results are not
 /// replaced by quick ones, and quick ones are removed before the first full one is made.
-fn claim(store: &Store, effort: RenderEffort) -> Result<()> {
+fn claim(store: &Store, effort: Effort) -> Result<()> {
     let recorded = store.read(EFFORT).ok();
-    let recorded = recorded.and_then(|text| serde_json::from_slice::<RenderEffort>(&text).ok());
+    let recorded = recorded.and_then(|text| serde_json::from_slice::<Effort>(&text).ok());
     match (recorded, effort) {
-        (Some(RenderEffort::Full), RenderEffort::Quick) => bail!(
+        (Some(Effort::Full), Effort::Quick) => bail!(
             "{} is for results without --quick, which are not mixed with quick ones; choose another folder with --out",
             store.root().display()
         ),
-        (Some(RenderEffort::Quick), RenderEffort::Full) => {
+        (Some(Effort::Quick), Effort::Full) => {
             progress::note("quick results", "removed");
             store.clear()?;
         }
@@ -100,7 +99,7 @@ fn claim(store: &Store, effort: RenderEffort) -> Result<()> {
 }
 
 /// What is kept of a figure.
-fn unit(figure: u8, effort: RenderEffort) -> Unit {
+fn unit(figure: u8, effort: Effort) -> Unit {
     Unit {
         name: format!("fig{figure:02}"),
         title: format!("figure {figure}"),
@@ -109,40 +108,10 @@ fn unit(figure: u8, effort: RenderEffort) -> Unit {
 }
 
 /// All figures made so far, with the effort of each.
-fn records(store: &Store) -> Result<Vec<(Record, RenderEffort)>> {
+fn records(store: &Store) -> Vec<(u8, Made, Effort)> {
     let of = |figure| {
-        let made = |effort| Some((store.earlier(&unit(figure, effort))?, effort));
-        [RenderEffort::Quick, RenderEffort::Full]
-            .into_iter()
-            .find_map(made)
+        let made = |effort| Some((figure, store.earlier(&unit(figure, effort))?, effort));
+        [Effort::Quick, Effort::Full].into_iter().find_map(made)
     };
-    Ok(Selection::all().iter().filter_map(of).collect())
-}
-
-/// What is kept about a figure, whose files go into the draft.
-fn record(figure: u8, made: Made, draft: &mut Draft) -> Result<Record> {
-    let pictures = made.pictures.iter().map(|p| p.keep(draft));
-    let pictures = pictures.collect::<Result<_>>()?;
-    let mut pages = Vec::new();
-    for play in &made.pages {
-        let thumbnail = format!("figures/{}", play.thumbnail_file);
-        draft.write(&play.file, play.page.as_bytes())?;
-        draft.write(&thumbnail, &play.thumbnail)?;
-        pages.push(PageRef {
-            path: play.file.clone(),
-            thumbnail,
-            choices: play.choices.to_owned(),
-            label: play.label.clone(),
-        });
-    }
-    Ok(Record {
-        figure,
-        title: made.title.to_owned(),
-        paper: made.paper.to_owned(),
-        measured: made.measured,
-        pictures,
-        pages,
-        tables: made.tables,
-        facts: made.facts,
-    })
+    selection::all().filter_map(of).collect()
 }

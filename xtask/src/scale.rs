@@ -5,7 +5,6 @@ mod findings;
 mod measure;
 mod plot;
 mod report;
-mod results;
 mod tables;
 mod timed;
 mod whole;
@@ -14,10 +13,10 @@ mod whole_report;
 use crate::interrupt::{self, Outcome};
 use crate::progress::Progress;
 use crate::store::Store;
+use crate::timing::{Measured, Work};
 use anyhow::Result;
 use clap::Args;
 use measure::measure;
-use results::Results;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use whole::SCENES;
@@ -48,6 +47,23 @@ impl Extent {
             runs: 1..=finest,
             limit,
         }
+    }
+}
+
+/// Everything measured.
+#[derive(Clone, Debug)]
+struct Results {
+    hanging: Vec<measure::Row>,
+    draping: Vec<drape::DrapeRow>,
+    /// Whole runs, and the limit of wall time of each, seconds.
+    whole: Vec<Measured>,
+    limit: f64,
+}
+
+impl Results {
+    /// The whole runs of a scene.
+    fn whole_of(&self, scene: Work) -> Vec<&Measured> {
+        self.whole.iter().filter(|r| r.work == scene).collect()
     }
 }
 
@@ -129,11 +145,11 @@ fn measured(extent: &Extent) -> Result<Option<Results>> {
 fn draping(level: u32) -> Result<drape::DrapeRow> {
     let mut best = drape::measure(level, STEPS, PATIENCE)?;
     for _ in 1..REPETITIONS {
-        if best.per_step * best.steps as f64 > LONG {
+        if best.cost.wall > LONG {
             break;
         }
         let row = drape::measure(level, STEPS, PATIENCE)?;
-        if row.per_step < best.per_step {
+        if row.step() < best.step() {
             best = row;
         }
     }

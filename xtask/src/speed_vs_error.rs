@@ -20,11 +20,11 @@ mod tablecloth;
 mod verdict;
 
 use crate::interrupt::{self, Outcome};
+use crate::report::Effort;
 use crate::report::plot_files;
 use crate::store::{Store, Unit};
 use anyhow::Result;
 use clap::Args;
-use effort::StudyEffort;
 use page::Results;
 use problem::Problem;
 use serde_json::json;
@@ -47,11 +47,11 @@ pub(crate) enum Part {
 
 impl Part {
     /// All parts that an effort has time for.
-    fn all(effort: StudyEffort) -> Vec<Self> {
+    fn all(effort: Effort) -> Vec<Self> {
         let costly = [Problem::Strip(64), Problem::Sheet(2), Problem::Sheet(3)];
         let mut all: Vec<Self> = Problem::ALL
             .into_iter()
-            .filter(|p| effort != StudyEffort::Quick || !costly.contains(p))
+            .filter(|p| effort != Effort::Quick || !costly.contains(p))
             .map(Self::Problem)
             .collect();
         all.extend([Self::Hanging, Self::Tablecloth, Self::Solvers]);
@@ -113,13 +113,7 @@ pub(crate) struct SpeedArgs {
 
 /// Runs the command.
 pub(crate) fn run(args: &SpeedArgs) -> Result<Outcome> {
-    let effort = if args.quick {
-        StudyEffort::Quick
-    } else if args.full {
-        StudyEffort::Full
-    } else {
-        StudyEffort::Usual
-    };
+    let effort = Effort::of_flags([args.quick, args.full]);
     if let Some(folder) = &args.matrices {
         return matrices::write(folder, effort);
     }
@@ -145,7 +139,7 @@ pub(crate) fn run(args: &SpeedArgs) -> Result<Outcome> {
 }
 
 impl Part {
-    fn unit(self, effort: StudyEffort) -> Unit {
+    fn unit(self, effort: Effort) -> Unit {
         Unit {
             name: format!("speed-{self}"),
             title: self.to_string(),
@@ -155,7 +149,7 @@ impl Part {
 }
 
 /// Makes a part with its files, unless it is up to date.
-fn make(store: &Store, part: Part, effort: StudyEffort) -> Result<()> {
+fn make(store: &Store, part: Part, effort: Effort) -> Result<()> {
     let unit = part.unit(effort);
     let csv = format!("tables/{part}.csv");
     match part {
@@ -204,7 +198,7 @@ mod tests {
 
     #[test]
     fn parts_read_back() {
-        for part in Part::all(StudyEffort::Full) {
+        for part in Part::all(Effort::Full) {
             assert_eq!(part.to_string().parse::<Part>().unwrap(), part);
         }
         let error = "sun".parse::<Part>().unwrap_err().to_string();

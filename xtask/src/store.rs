@@ -14,6 +14,8 @@ mod error;
 pub(crate) use draft::Draft;
 pub(crate) use error::StoreError;
 
+use error::{reading, writing};
+
 use crate::interrupt;
 use crate::progress;
 use anyhow::{Context, Result};
@@ -34,10 +36,11 @@ const MARKER: &str = "isosheet-xtask.lock";
 const PARTIAL: &str = "partial-";
 
 /// Whether a unit was finished.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Extent {
     /// All of it.
+    #[default]
     Complete,
     /// Cut short by Ctrl-C; readable, and made again next time.
     Partial,
@@ -86,28 +89,22 @@ impl Store {
     /// Creates the folder when missing, checks that it is empty or this program's own and that it can be
     /// written to, locks it and removes what a killed process left.
     pub(crate) fn open(root: &Path) -> Result<Self, StoreError> {
+        let folder = || root.to_owned();
         let unwritable = |source| StoreError::Unwritable {
-            folder: root.to_owned(),
+            folder: folder(),
             source,
         };
         fs::create_dir_all(root).map_err(unwritable)?;
         let records = root.join(RECORDS);
         if !records.join(MARKER).is_file() && !is_empty(root).map_err(unwritable)? {
-            return Err(StoreError::Foreign {
-                folder: root.to_owned(),
-            });
+            return Err(StoreError::Foreign { folder: folder() });
         }
         fs::create_dir_all(&records).map_err(unwritable)?;
         let lock = File::create(records.join(MARKER)).map_err(unwritable)?;
-        match lock.try_lock() {
-            Ok(()) => {}
-            Err(fs::TryLockError::WouldBlock) => {
-                return Err(StoreError::Busy {
-                    folder: root.to_owned(),
-                });
-            }
-            Err(fs::TryLockError::Error(source)) => return Err(unwritable(source)),
-        }
+        lock.try_lock().map_err(|error| match error {
+            fs::TryLockError::WouldBlock => StoreError::Busy { folder: folder() },
+            fs::TryLockError::Error(source) => unwritable(source),
+        })?;
         tempfile::tempfile_in(root).map_err(unwritable)?;
         for entry in fs::read_dir(&records).map_err(unwritable)?.flatten() {
             if entry.file_name().to_string_lossy().starts_with(PARTIAL) {
@@ -115,7 +112,7 @@ impl Store {
             }
         }
         Ok(Self {
-            root: root.to_owned(),
+            root: folder(),
             program: program_fingerprint(),
             _lock: lock,
         })
@@ -182,16 +179,19 @@ impl Store {
         is_whole.then(|| serde_json::from_value(stamp.facts).ok())?
     }
 
+    /// The files of all stamps.
+    fn stamps(&self) -> Result<Vec<PathBuf>, StoreError> {
+        let folder = self.root.join(RECORDS);
+        let listing = fs::read_dir(&folder).map_err(reading(&folder))?;
+        Ok(listing.flatten().map(|entry| entry.path()).collect())
+    }
+
     /// Forgets all units whose names start with `prefix`, so that they are made again.
     pub(crate) fn forget(&self, prefix: &str) -> Result<(), StoreError> {
-        let folder = self.root.join(RECORDS);
-        let failed = |source| StoreError::Read {
-            path: folder.clone(),
-            source,
-        };
-        for entry in fs::read_dir(&folder).map_err(failed)?.flatten() {
-            if entry.file_name().to_string_lossy().starts_with(prefix) {
-                fs::remove_file(entry.path()).map_err(failed)?;
+        for stamp in self.stamps()? {
+            let name = stamp.file_name().unwrap_or_default().to_string_lossy();
+            if name.starts_with(prefix) {
+                fs::remove_file(&stamp).map_err(writing(&stamp))?;
             }
         }
         Ok(())
@@ -199,20 +199,15 @@ impl Store {
 
     /// Removes all units with their files.
     pub(crate) fn clear(&self) -> Result<(), StoreError> {
-        let folder = self.root.join(RECORDS);
-        let listing = fs::read_dir(&folder).map_err(|source| StoreError::Read {
-            path: folder.clone(),
-            source,
-        })?;
-        for entry in listing.flatten() {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            let Some(stamp) = name.strip_suffix(".json").and_then(|u| self.stamp(u)) else {
+        for path in self.stamps()? {
+            let unit = path.file_stem().unwrap_or_default().to_string_lossy();
+            let Some(stamp) = self.stamp(&unit) else {
                 continue;
             };
             // The stamp last: a clearing that is cut short is done again.
             let files = stamp.entries.iter().map(|e| self.root.join(e));
-            for path in files.chain([entry.path()]).filter(|p| p.exists()) {
-                remove(&path).map_err(|source| StoreError::Write { path, source })?;
+            for path in files.chain([path]).filter(|p| p.exists()) {
+                remove(&path).map_err(writing(&path))?;
             }
         }
         Ok(())
@@ -244,24 +239,18 @@ impl Store {
     ) -> Result<Stamp, StoreError> {
         let stamp_path = self.stamp_path(unit);
         if stamp_path.exists() {
-            fs::remove_file(&stamp_path).map_err(|source| StoreError::Write {
-                path: stamp_path,
-                source,
-            })?;
+            fs::remove_file(&stamp_path).map_err(writing(&stamp_path))?;
         }
         let discarded = draft.folder.path().join(".discarded");
         for (k, entry) in draft.entries.iter().enumerate() {
             let target = self.root.join(entry);
-            let write = |source| StoreError::Write {
-                path: target.clone(),
-                source,
-            };
+            let write = writing(&target);
             if let Some(parent) = target.parent() {
-                fs::create_dir_all(parent).map_err(write)?;
+                fs::create_dir_all(parent).map_err(&write)?;
             }
             if target.is_dir() {
-                fs::create_dir_all(&discarded).map_err(write)?;
-                fs::rename(&target, discarded.join(k.to_string())).map_err(write)?;
+                fs::create_dir_all(&discarded).map_err(&write)?;
+                fs::rename(&target, discarded.join(k.to_string())).map_err(&write)?;
             }
             fs::rename(draft.folder.path().join(entry), &target).map_err(write)?;
         }
@@ -281,26 +270,21 @@ impl Store {
     /// Writes a file of the output folder in one piece.
     pub(crate) fn write(&self, path: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let target = self.root.join(path);
-        let failed = |source| StoreError::Write {
-            path: target.clone(),
-            source,
-        };
+        let failed = writing(&target);
         let mut file = tempfile::Builder::new()
             .prefix(PARTIAL)
             .tempfile_in(self.root.join(RECORDS))
-            .map_err(failed)?;
-        file.write_all(bytes).map_err(failed)?;
-        share(file.path()).map_err(failed)?;
+            .map_err(&failed)?;
+        file.write_all(bytes).map_err(&failed)?;
+        share(file.path()).map_err(&failed)?;
         file.persist(&target).map_err(|e| failed(e.error))?;
         Ok(())
     }
 
     /// Writes a JSON file of the output folder in one piece.
     pub(crate) fn write_json(&self, path: &str, value: &impl Serialize) -> Result<(), StoreError> {
-        let mut text = serde_json::to_vec_pretty(value).map_err(|e| StoreError::Write {
-            path: self.root.join(path),
-            source: e.into(),
-        })?;
+        let text = serde_json::to_vec_pretty(value).map_err(std::io::Error::from);
+        let mut text = text.map_err(writing(&self.root.join(path)))?;
         text.push(b'\n');
         self.write(path, &text)
     }
@@ -308,7 +292,7 @@ impl Store {
     /// Reads a file of the output folder.
     pub(crate) fn read(&self, path: &str) -> Result<Vec<u8>, StoreError> {
         let path = self.root.join(path);
-        fs::read(&path).map_err(|source| StoreError::Read { path, source })
+        fs::read(&path).map_err(reading(&path))
     }
 }
 
@@ -363,10 +347,16 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    #[test]
-    fn a_unit_is_current_until_something_changes() {
+    /// A store in a new folder, which is removed with the first value.
+    fn opened() -> (tempfile::TempDir, Store) {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
+        (folder, store)
+    }
+
+    #[test]
+    fn a_unit_is_current_until_something_changes() {
+        let (folder, store) = opened();
         let options = json!({"size": 3});
         assert!(store.current("one", &options).is_none());
         let mut draft = store.draft().unwrap();
@@ -388,8 +378,7 @@ mod tests {
 
     #[test]
     fn folders_are_replaced_whole_and_drafts_leave_nothing() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = Store::open(folder.path()).unwrap();
+        let (folder, store) = opened();
         for name in ["old", "new"] {
             let mut draft = store.draft().unwrap();
             fs::write(draft.folder("runs/r").unwrap().join(name), "").unwrap();
@@ -410,11 +399,11 @@ mod tests {
 
     fn names(folder: &Path) -> Vec<String> {
         let entries = fs::read_dir(folder).unwrap().flatten();
-        let mut names: Vec<String> = entries
-            .map(|e| e.file_name().to_string_lossy().into_owned())
-            .collect();
-        names.sort();
+        let names = entries.map(|e| e.file_name().to_string_lossy().into_owned());
         names
+            .collect::<std::collections::BTreeSet<_>>()
+            .into_iter()
+            .collect()
     }
 
     #[test]
@@ -457,8 +446,7 @@ mod tests {
 
     #[test]
     fn clearing_removes_units_and_nothing_else() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = Store::open(folder.path()).unwrap();
+        let (folder, store) = opened();
         let mut draft = store.draft().unwrap();
         draft.write("figures/one.svg", b"<svg/>").unwrap();
         draft.folder("runs/one").unwrap();
@@ -475,8 +463,7 @@ mod tests {
     /// What was finished is not made again, unless its options are others.
     #[test]
     fn units_are_kept() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = Store::open(folder.path()).unwrap();
+        let (_folder, store) = opened();
         let unit = |options| Unit {
             name: "one".into(),
             title: "first".into(),

@@ -2,10 +2,14 @@
 
 mod comparison;
 mod factorisation;
+mod matrices;
 mod run;
 mod scene;
 
 pub(crate) use comparison::{COLUMNS, Entry, words};
-pub(crate) use factorisation::{OrderRow, factorisation_time, order};
-pub(crate) use run::{Measured, Timed, repeated};
-pub(crate) use scene::{BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging};
+pub(crate) use factorisation::{OrderRow, order};
+pub(crate) use matrices::{Body, STIFFNESS, Sparse};
+pub(crate) use run::{Measured, Mesh, NEIGHBOUR, Timed};
+pub(crate) use scene::{
+    BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging, on_table,
+};

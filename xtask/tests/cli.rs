@@ -9,19 +9,34 @@ fn xtask() -> Command {
     Command::new(assert_cmd::cargo::cargo_bin!("xtask"))
 }
 
-/// Runs `reproduce-figures` with a list and further arguments and returns exit code, output and messages.
-fn reproduce(out: &Path, figures: &str, more: &[&str]) -> (Option<i32>, String) {
-    let result = xtask()
-        .args(["reproduce-figures", "--figures", figures, "--out"])
-        .arg(out)
-        .args(more)
-        .output()
-        .unwrap();
+/// Runs a command with arguments and an output folder; returns exit code, output and messages.
+fn run(args: &[&str], out: &Path) -> (Option<i32>, String) {
+    let result = xtask().args(args).arg("--out").arg(out).output().unwrap();
     let text = [result.stdout, result.stderr].concat();
-    (
-        result.status.code(),
-        String::from_utf8_lossy(&text).into_owned(),
-    )
+    let text = String::from_utf8_lossy(&text).into_owned();
+    (result.status.code(), text)
+}
+
+/// Runs `reproduce-figures` with a list and further arguments.
+fn reproduce(out: &Path, figures: &str, more: &[&str]) -> (Option<i32>, String) {
+    let args = [&["reproduce-figures", "--figures", figures], more].concat();
+    run(&args, out)
+}
+
+/// Checks that files were written and are larger than `least` bytes.
+fn assert_written(out: &Path, least: u64, files: &[&str]) {
+    for file in files {
+        let length = fs::metadata(out.join(file)).map_or(0, |m| m.len());
+        assert!(length > least, "{file} has {length} bytes");
+    }
+}
+
+fn read(path: PathBuf) -> String {
+    fs::read_to_string(path).unwrap()
+}
+
+fn read_json(path: PathBuf) -> serde_json::Value {
+    serde_json::from_str(&read(path)).unwrap()
 }
 
 fn folder() -> (TempDir, PathBuf) {
@@ -32,18 +47,16 @@ fn folder() -> (TempDir, PathBuf) {
 
 /// Names in a folder that start with a dot and are not the program's own records.
 fn leftovers(out: &Path) -> Vec<String> {
-    fs::read_dir(out)
-        .unwrap()
-        .flatten()
-        .map(|e| e.file_name().to_string_lossy().into_owned())
-        .filter(|n| n.starts_with('.') && n != ".stamps")
-        .chain(
-            fs::read_dir(out.join(".stamps"))
-                .unwrap()
-                .flatten()
-                .map(|e| e.file_name().to_string_lossy().into_owned())
-                .filter(|n| n.starts_with("partial-")),
-        )
+    let names = |folder: &Path| -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap().flatten();
+        let names = entries.map(|e| e.file_name().to_string_lossy().into_owned());
+        names.collect()
+    };
+    let hidden = names(out).into_iter();
+    let hidden = hidden.filter(|n| n.starts_with('.') && n != ".stamps");
+    let partial = names(&out.join(".stamps")).into_iter();
+    hidden
+        .chain(partial.filter(|n| n.starts_with("partial-")))
         .collect()
 }
 
@@ -52,38 +65,32 @@ fn makes_figures_and_skips_them_when_run_again() {
     let (_keep, out) = folder();
     let (code, text) = reproduce(&out, "1,2", &["--quick"]);
     assert_eq!(code, Some(0), "{text}");
-    for file in [
+    let files = [
         "figures/fig01.svg",
         "figures/fig02.svg",
         "index.html",
         "summary.json",
-    ] {
-        assert!(
-            fs::metadata(out.join(file)).unwrap().len() > 500,
-            "{file} is empty"
-        );
-    }
-    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    ];
+    assert_written(&out, 500, &files);
+    let page = read(out.join("index.html"));
     assert_eq!(page.matches("<section").count(), 2);
     assert!(page.contains("<svg") && !page.contains("<script") && !page.contains("<link"));
-    let summary: serde_json::Value =
-        serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+    let summary = read_json(out.join("summary.json"));
     assert_eq!(summary["figures"][1]["facts"]["pair"]["total"], 7);
     assert_eq!(leftovers(&out), Vec::<String>::new());
 
-    let before = fs::metadata(out.join("figures/fig01.svg"))
-        .unwrap()
-        .modified()
-        .unwrap();
+    let made = || {
+        fs::metadata(out.join("figures/fig01.svg"))
+            .unwrap()
+            .modified()
+            .unwrap()
+    };
+    let before = made();
     let (code, text) = reproduce(&out, "1-3", &["--quick"]);
     assert_eq!(code, Some(0), "{text}");
     assert_eq!(text.matches("up to date").count(), 2, "{text}");
-    let after = fs::metadata(out.join("figures/fig01.svg"))
-        .unwrap()
-        .modified()
-        .unwrap();
-    assert_eq!(before, after);
-    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    assert_eq!(before, made());
+    let page = read(out.join("index.html"));
     assert_eq!(
         page.matches("<section").count(),
         3,
@@ -119,7 +126,7 @@ fn a_quick_run_of_everything_writes_readable_runs() {
     let (code, text) = reproduce(&out, "10-12", &["--quick"]);
     assert_eq!(code, Some(0), "{text}");
     let run = out.join("runs/crumple-m1");
-    let history = fs::read_to_string(run.join("history.csv")).unwrap();
+    let history = read(run.join("history.csv"));
     assert_eq!(
         history.lines().count(),
         1 + 13,
@@ -127,10 +134,9 @@ fn a_quick_run_of_everything_writes_readable_runs() {
     );
     assert!(run.join("trajectory.npz").exists());
     assert_eq!(fs::read_dir(run.join("obj")).unwrap().count(), 13);
-    let summary: serde_json::Value =
-        serde_json::from_slice(&fs::read(run.join("summary.json")).unwrap()).unwrap();
+    let summary = read_json(run.join("summary.json"));
     assert_eq!(summary["extent"], "complete");
-    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    let page = read(out.join("index.html"));
     assert!(page.contains("data:image/png;base64,") && page.contains("33.33"));
     assert!(page.contains("made with <code>--quick</code>"));
     // Every run has a page of its own beside the report, which has all that it needs.
@@ -144,11 +150,11 @@ fn a_quick_run_of_everything_writes_readable_runs() {
     for name in played {
         let file = format!("{name}.html");
         assert!(page.contains(&format!("<a href=\"{file}")), "{file}");
-        let replay = fs::read_to_string(out.join(&file)).unwrap();
+        let replay = read(out.join(&file));
         assert!(replay.len() < 8_000_000, "{file} exceeds the budget");
         assert!(!replay.contains("<script src") && !replay.contains("<link rel=\"style"));
     }
-    let replay = fs::read_to_string(out.join("fig11-crumple-m1-contact.html")).unwrap();
+    let replay = read(out.join("fig11-crumple-m1-contact.html"));
     assert!(replay.contains("\"frames\":13,") && replay.contains("\"pins\":[20]"));
 }
 
@@ -170,11 +176,7 @@ fn refuses_what_makes_no_sense_before_any_work() {
     assert_eq!(code, Some(2));
     assert!(text.contains("unexpected argument '--fast'"), "{text}");
     assert!(!out.exists(), "nothing was written");
-    let result = xtask()
-        .args(["condition-table", "--level", "9"])
-        .output()
-        .unwrap();
-    assert_eq!(result.status.code(), Some(2));
+    assert_eq!(run(&["condition-table", "--level", "9"], &out).0, Some(2));
 }
 
 #[test]
@@ -204,12 +206,7 @@ fn folders_of_others_are_left_alone() {
         text.contains("choose an empty or a new folder with --out"),
         "{text}"
     );
-    let table = xtask()
-        .args(["condition-table", "--level", "0", "--out"])
-        .arg(&out)
-        .output()
-        .unwrap();
-    assert_eq!(table.status.code(), Some(1));
+    assert_eq!(run(&["condition-table", "--level", "0"], &out).0, Some(1));
     assert_eq!(fs::read(out.join("index.html")).unwrap(), b"MYSITE");
     assert!(out.join(".partial-work/f").exists());
     assert_eq!(fs::read_dir(&out).unwrap().count(), 2);
@@ -224,7 +221,7 @@ fn quick_and_full_results_do_not_mix() {
     assert_eq!(code, Some(0), "{text}");
     assert!(!out.join("runs/crumple-m1").exists() && !out.join("figures/fig11.png").exists());
     assert!(!out.join("fig11-crumple-m1-contact.html").exists());
-    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    let page = read(out.join("index.html"));
     assert!(page.matches("<section").count() == 1 && !page.contains("quick"));
     let (code, text) = reproduce(&out, "2", &["--quick"]);
     assert_eq!(code, Some(1), "{text}");
@@ -248,9 +245,8 @@ fn ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on() {
     while !run.exists() && start.elapsed().as_secs() < 60 {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
-    let pid = child.id().to_string();
-    std::process::Command::new("kill")
-        .args(["-INT", &pid])
+    let mut kill = std::process::Command::new("kill");
+    kill.args(["-INT", &child.id().to_string()])
         .status()
         .unwrap();
     let status = child.wait().unwrap();
@@ -272,37 +268,22 @@ fn ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on() {
 #[test]
 fn speed_vs_error_measures_parts_and_keeps_them() {
     let (_keep, out) = folder();
-    let run = |list: &str| {
-        let result = xtask()
-            .args(["speed-vs-error", "--quick", "--problems", list, "--out"])
-            .arg(&out)
-            .output()
-            .unwrap();
-        let text = [result.stdout, result.stderr].concat();
-        (
-            result.status.code(),
-            String::from_utf8_lossy(&text).into_owned(),
-        )
-    };
+    let run = |list| run(&["speed-vs-error", "--quick", "--problems", list], &out);
     let (code, text) = run("triangle,solvers");
     assert_eq!(code, Some(0), "{text}");
-    for file in [
+    let files = [
         "tables/triangle.csv",
         "plots/triangle.svg",
         "plots/triangle.png",
         "tables/solvers.csv",
         "plots/solvers.png",
         "index.html",
-    ] {
-        assert!(
-            fs::metadata(out.join(file)).unwrap().len() > 500,
-            "{file} is empty"
-        );
-    }
+    ];
+    assert_written(&out, 500, &files);
     let (code, text) = run("hanging,triangle");
     assert_eq!(code, Some(0), "{text}");
     assert_eq!(text.matches("up to date").count(), 1, "{text}");
-    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    let page = read(out.join("index.html"));
     for part in ["id=\"triangle\"", "id=\"hanging\"", "id=\"solvers\""] {
         assert!(page.contains(part), "{part} is missing");
     }
@@ -321,45 +302,32 @@ fn matrices_are_written_for_other_programs() {
         .output()
         .unwrap();
     assert_eq!(result.status.code(), Some(0));
-    let text = fs::read_to_string(out.join("M0-schur.mtx")).unwrap();
+    let text = read(out.join("M0-schur.mtx"));
     assert!(text.starts_with("%%MatrixMarket matrix coordinate real symmetric"));
 }
 
 #[test]
 fn yardsticks_of_locking_are_kept() {
     let (_keep, out) = folder();
-    let run = |list: &str| {
-        let result = xtask()
-            .args(["locking", "--quick", "--yardsticks", list, "--out"])
-            .arg(&out)
-            .output()
-            .unwrap();
-        let text = [result.stdout, result.stderr].concat();
-        (
-            result.status.code(),
-            String::from_utf8_lossy(&text).into_owned(),
-        )
-    };
+    let run = |list| run(&["locking", "--quick", "--yardsticks", list], &out);
     let (code, text) = run("cylinder");
     assert_eq!(code, Some(0), "{text}");
-    for file in [
+    let files = [
         "tables/cylinder.csv",
         "tables/cylinder-orders.csv",
         "plots/cylinder.svg",
         "plots/cylinder.png",
         "index.html",
-    ] {
-        let length = fs::metadata(out.join(file)).unwrap().len();
-        assert!(length > 200, "{file} is empty");
-    }
+    ];
+    assert_written(&out, 200, &files);
     let (code, text) = run("sliding,cylinder");
     assert_eq!(code, Some(0), "{text}");
     assert_eq!(text.matches("up to date").count(), 1, "{text}");
-    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    let page = read(out.join("index.html"));
     assert!(page.contains("id=\"cylinder\"") && page.contains("id=\"sliding\""));
     assert!(!page.contains("<script") && !page.contains("<link") && !page.contains("NaN"));
     // Coulomb's law, to within the four halvings of the quick form.
-    let table = fs::read_to_string(out.join("tables/sliding.csv")).unwrap();
+    let table = read(out.join("tables/sliding.csv"));
     for row in table.lines().skip(1) {
         let cells: Vec<&str> = row.split(',').collect();
         let bounds = [4, 5].map(|k| cells[k].parse::<f64>().unwrap());

@@ -212,6 +212,12 @@ impl Drawing {
         });
     }
 
+    /// A text of the ordinary size with its middle at `at`.
+    pub(crate) fn label(&mut self, at: [f64; 2], text: &str, colour: Colour) {
+        let (size, middle) = (text::TEXT, Anchor::Middle);
+        self.text(at, text, size, middle, Vertical::Centre, colour);
+    }
+
     /// A text that runs upwards, centred at `at`, which lies to the right of it.
     pub(crate) fn text_upwards(&mut self, at: [f64; 2], text: &str, size: f64, colour: Colour) {
         self.items.push(Item::Text {

@@ -13,13 +13,13 @@ impl Drawing {
     ///
     /// No fonts of the system are used, so that equal drawings give equal files everywhere.
     pub(crate) fn to_png(&self, title: &str) -> Result<Vec<u8>> {
-        Ok(svg_to_png(&self.to_svg(title)?, SCALE)?)
+        Ok(svg_to_png(&self.to_svg(title), SCALE)?)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::draw::{Anchor, Drawing, TEXT, Vertical, palette};
+    use crate::draw::{Drawing, palette};
 
     #[test]
     fn shapes_and_letters_leave_ink() {
@@ -39,18 +39,8 @@ mod tests {
         d.polygon(&square, palette::WHITE);
         let (none, size) = dark(&d);
         assert_eq!((none, size), (0, 162 * 132));
-        let write = |d: &mut Drawing, text| {
-            d.text(
-                [25.0, 20.0],
-                text,
-                TEXT,
-                Anchor::Middle,
-                Vertical::Centre,
-                palette::INK,
-            );
-        };
         let mut letters = d.clone();
-        write(&mut letters, "~M~^{2} − ε");
+        letters.label([25.0, 20.0], "~M~^{2} − ε", palette::INK);
         let (some, _) = dark(&letters);
         assert!(some > 100, "{some} dark pixels");
         d.polygon(&square[..3], palette::INK);

@@ -31,8 +31,12 @@ pub(crate) fn axpy(a: &[f64; 3], s: f64, b: &[f64; 3]) -> [f64; 3] {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
+pub(crate) fn norm(a: &[f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}
+
 pub(crate) fn unit(a: &[f64; 3]) -> [f64; 3] {
-    let l = dot(a, a).sqrt();
+    let l = norm(a);
     if l > 0.0 { a.map(|c| c / l) } else { *a }
 }
 

@@ -1,38 +1,36 @@
 //! The scenes of Figs. 14 and 15: cloths on tables, with everything but the shapes alike.
 
-use super::RenderEffort;
+use super::Effort;
 use super::folds::Outline;
 use crate::runs::FigureScene;
 use anyhow::{Context as _, Result, bail};
 use isosheet_io::scene;
 
 /// A scene of a cloth, cut short where the effort is small.
-fn cloth(file: &str, name: &str, edits: Vec<String>, effort: RenderEffort) -> Result<FigureScene> {
+fn cloth(file: &str, name: &str, edits: Vec<String>, effort: Effort) -> Result<FigureScene> {
     let mut edits = edits;
-    if effort == RenderEffort::Quick {
+    if effort == Effort::Quick {
         edits.push("stop.time=0.13333333333333333".to_owned());
     }
     FigureScene::of(file, name, &edits)
 }
 
 /// The scene of Fig. 14 on M^level.
-pub(super) fn rectangle(level: u32, effort: RenderEffort) -> Result<FigureScene> {
+pub(super) fn rectangle(level: u32, effort: Effort) -> Result<FigureScene> {
     let cells = 2 << level;
     let edits = ["columns", "rows"].map(|key| format!("sheet.mesh.rectangle.{key}={cells}"));
     cloth("fig14", &format!("drape-m{level}"), edits.to_vec(), effort)
 }
 
 /// The same with an irregular mesh.
-pub(super) fn irregular(effort: RenderEffort) -> Result<FigureScene> {
-    let edits = match effort {
-        RenderEffort::Full => Vec::new(),
-        RenderEffort::Quick => vec!["sheet.mesh.polygon.spacing=0.15".to_owned()],
-    };
+pub(super) fn irregular(effort: Effort) -> Result<FigureScene> {
+    let coarse = vec!["sheet.mesh.polygon.spacing=0.15".to_owned()];
+    let edits = effort.quick_or(coarse, Vec::new());
     cloth("fig14-irregular", "drape-irregular", edits, effort)
 }
 
 /// The scene of Fig. 15 with the paper's counts.
-pub(super) fn octagon(effort: RenderEffort) -> Result<FigureScene> {
+pub(super) fn octagon(effort: Effort) -> Result<FigureScene> {
     cloth("fig15", "drape-octagon", Vec::new(), effort)
 }
 
@@ -44,19 +42,14 @@ fn sides(mesh: &str, sides: u32) -> Vec<String> {
 }
 
 /// A polygon with an irregular mesh.
-pub(super) fn polygon(
-    name: &str,
-    n: u32,
-    spacing: f64,
-    effort: RenderEffort,
-) -> Result<FigureScene> {
+pub(super) fn polygon(name: &str, n: u32, spacing: f64, effort: Effort) -> Result<FigureScene> {
     let mut edits = sides("polygon", n);
     edits.push(format!("sheet.mesh.polygon.spacing={spacing:?}"));
     cloth("fig15-irregular", name, edits, effort)
 }
 
 /// A polygon with a mesh of rings.
-pub(super) fn ringed(n: u32, rings: u32, effort: RenderEffort) -> Result<FigureScene> {
+pub(super) fn ringed(n: u32, rings: u32, effort: Effort) -> Result<FigureScene> {
     let mut edits = sides("polygon_rings", n);
     edits.push(format!("sheet.mesh.polygon_rings.rings={rings}"));
     cloth(

@@ -3,12 +3,12 @@
 
 use super::cloths::{Layout, irregular, octagon, polygon, rectangle, ringed};
 use super::folds::{Folds, Hem};
-use super::play::play;
-use super::sequence::{View, choose, sequence};
-use super::{Context, Made, Picture, Play, RenderEffort, Table};
-use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
+use super::sequence::{Shown, View};
+use super::{Context, Effort, Made, Picture, Play, Table, through_itself, whole_percent};
+use crate::draw::{Axis, Chart, Drawing, Legend, Marker, Series, column, palette, row};
+use crate::report::Cell;
 use crate::runs::{self, FigureScene, RunSummary};
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use isosheet_mesh::{Dof, Sheet};
 use serde_json::{Value, json};
 
@@ -32,16 +32,13 @@ struct Draped {
 fn drape(label: &str, scene: FigureScene, context: &Context<'_>) -> Result<Draped> {
     let run = runs::ensure(context.store, &scene)?;
     let sheet = scene.sheet()?;
-    let trajectory = runs::trajectory(context.store, &scene)?;
-    let x = trajectory
-        .frame(trajectory.len() - 1)
-        .context("last frame")?;
+    let x = runs::end(context.store, &scene)?;
     let layout = Layout::of(scene.scene())?;
     Ok(Draped {
         label: label.into(),
-        folds: Folds::of(&sheet, x, &layout.table, &layout.cloth),
-        hem: Hem::of(&sheet, x),
-        drop: drop(&sheet, x, &layout),
+        folds: Folds::of(&sheet, &x, &layout.table, &layout.cloth),
+        hem: Hem::of(&sheet, &x),
+        drop: drop(&sheet, &x, &layout),
         internal: Dof::of(sheet.topology()).internal,
         run,
         scene,
@@ -62,16 +59,9 @@ fn drop(sheet: &Sheet, x: &[f64], layout: &Layout) -> f64 {
 
 impl Draped {
     fn picture(&self, file: &str, context: &Context<'_>) -> Result<Picture> {
-        let trajectory = runs::trajectory(context.store, &self.scene)?;
-        let frames = choose(&trajectory, &TIMES);
-        Ok(Picture {
-            file: file.into(),
-            alt: format!(
-                "{}: it is let go flat above a table, falls and drapes",
-                self.label
-            ),
-            bytes: sequence(&self.scene, &trajectory, &frames, &VIEW, context.effort)?,
-        })
+        let label = &self.label;
+        let alt = format!("{label}: it is let go flat above a table, falls and drapes");
+        shown(&self.scene, context).picture(file, &alt, &TIMES)
     }
 
     fn facts(&self) -> Value {
@@ -82,15 +72,23 @@ impl Draped {
 }
 
 /// How a cloth is shown.
-const VIEW: View<'static> = View {
+const VIEW: View = View {
     azimuth: -62.0,
     elevation: 24.0,
     distance: 6.0,
     columns: 3,
-    pins: &[],
+    pins: Vec::new(),
     bodies: &[0],
     depth: 0.4,
 };
+
+fn shown<'a>(scene: &'a FigureScene, context: &'a Context<'_>) -> Shown<'a> {
+    Shown {
+        scene,
+        view: VIEW,
+        context,
+    }
+}
 
 /// The page that plays the run of a cloth.
 pub(super) fn page(
@@ -99,13 +97,9 @@ pub(super) fn page(
     scene: &FigureScene,
     context: &Context<'_>,
 ) -> Result<Play> {
-    let free = if scene.scene().contact.self_contact {
-        ""
-    } else {
-        ", passing through itself"
-    };
+    let free = through_itself(scene);
     let label = format!("draped cloth, {}{free}", label.replace('~', ""));
-    play(figure, &label, scene, &VIEW, context)
+    shown(scene, context).play(figure, &label)
 }
 
 /// The pages of some cloths; one that is there twice has a single page.
@@ -125,30 +119,40 @@ fn pages<'a>(
     Ok(pages)
 }
 
-fn percent(v: f64) -> String {
-    format!("{:.0} %", 100.0 * v)
+fn mesh(d: &Draped) -> Cell {
+    format!("{}/{}", d.run.vertices, d.run.faces).into()
 }
 
 fn fold_table(all: &[Draped]) -> Table {
-    let rows = all.iter().map(|d| {
-        let f = &d.folds;
-        vec![
-            d.label.clone(),
-            format!("{}/{}", d.run.vertices, d.run.faces),
-            percent(f.share_at_corners),
-            percent(f.length_at_corners),
-            format!("{:.1}", f.density_at_corners),
-            format!("{} of {}", f.strongest[1], f.strongest[0]),
-            format!("{:.0}° ({:.0}°)", f.angle[0], f.angle[1]),
-            d.internal.to_string(),
-            percent(d.drop),
-        ]
-    });
-    Table::new("Principal folds at rest, in the part of the cloth that hangs beyond the first row of cells at the table's edge. Bending is edge length \
+    let part = |part: f64| Cell::from(whole_percent(part));
+    Table::of(
+        "Principal folds at rest, in the part of the cloth that hangs beyond the first row of cells at the table's edge. Bending is edge length \
                   times size of the fold angle. At the corners: within one mean edge of a line from a table corner to its cloth \
                   corner. Strongest edges: the fewest that carry half of the bending. Angle with the nearest of these \
                   lines: weighted by bending (in brackets: of all edges, what the mesh alone gives). Drop: how far the hem hangs below the table, of its distance \
-                  from the table in the flat cloth.", &["cloth", "V/F", "bending at the corners", "edges there", "density, all = 1", "strongest edges there", "angle", "internal DOF", "drop"]).with_texts(rows)
+                  from the table in the flat cloth.",
+        all,
+        &[
+            ("cloth", &|d| d.label.as_str().into()),
+            ("V/F", &|d| mesh(d)),
+            ("bending at the corners", &|d| {
+                part(d.folds.share_at_corners)
+            }),
+            ("edges there", &|d| part(d.folds.length_at_corners)),
+            ("density, all = 1", &|d| {
+                format!("{:.1}", d.folds.density_at_corners).into()
+            }),
+            ("strongest edges there", &|d| {
+                let [all, there] = d.folds.strongest;
+                format!("{there} of {all}").into()
+            }),
+            ("angle", &|d| {
+                format!("{:.0}° ({:.0}°)", d.folds.angle[0], d.folds.angle[1]).into()
+            }),
+            ("internal DOF", &|d| d.internal.to_string().into()),
+            ("drop", &|d| part(d.drop)),
+        ],
+    )
 }
 
 /// Bending at the corner lines that is this many times as dense as on the mean of the overhang makes
@@ -191,13 +195,13 @@ fn locking<'a>(all: impl Iterator<Item = &'a Draped>) -> String {
          it cannot shear as woven cloth does, and its hem hangs by {} to {} of what it could.",
         dof[0],
         dof[1],
-        percent(drop[0]),
-        percent(drop[1])
+        whole_percent(drop[0]),
+        whole_percent(drop[1])
     )
 }
 
 /// Bending density by distance from the corner lines.
-fn profiles(all: &[Draped]) -> Plot {
+fn profiles(all: &[Draped]) -> Drawing {
     let looks = [
         (palette::VERMILION, Marker::Square),
         (palette::BLUE, Marker::Disc),
@@ -207,36 +211,22 @@ fn profiles(all: &[Draped]) -> Plot {
     let all_points = || all.iter().flat_map(|d| &d.folds.profile);
     let far = all_points().map(|p| p[0] + 0.5).fold(1.0, f64::max);
     let top = 1.1 * all_points().map(|p| p[1]).fold(1.0, f64::max);
-    Plot {
-        x: Axis::round(
-            "distance from the nearest corner line (mean edges)",
-            [0.0, far],
-            6,
-        ),
-        y: Axis::round("bending (mean = 1)", [0.0, top], 4),
-        size: [230.0, 130.0],
-        series: all
-            .iter()
-            .zip(looks)
-            .map(|(d, (colour, marker))| Series {
-                name: d.label.clone(),
-                points: d.folds.profile.clone(),
-                colour,
-                marker: Some(marker),
-                line: Line::Solid,
-            })
-            .collect(),
-        legend: Legend::Right,
-    }
+    let label = "distance from the nearest corner line (mean edges)";
+    let of = |(d, (colour, marker)): (&Draped, _)| {
+        Series::line(&d.label, colour, d.folds.profile.clone()).marked(marker)
+    };
+    let series = all.iter().zip(looks).map(of).collect();
+    let y = Axis::round("bending (mean = 1)", [0.0, top], 4);
+    Chart::new(Axis::round(label, [0.0, far], 6), y, [230.0, 130.0], series).draw()
 }
 
 /// What holds for a run, in words.
-fn describe(d: &Draped, effort: RenderEffort) -> String {
+fn describe(d: &Draped, effort: Effort) -> String {
     let r = &d.run;
     let rest = match (r.at_rest_from, effort) {
         (Some(t), _) => format!("at rest from {t:.1} s on"),
-        (None, RenderEffort::Quick) => "cut short".to_owned(),
-        (None, RenderEffort::Full) => format!(
+        (None, Effort::Quick) => "cut short".to_owned(),
+        (None, _) => format!(
             "kinetic energy at the end {:.0e} of the potential energy released",
             r.motion_left
         ),
@@ -255,22 +245,18 @@ const CONDITIONS: &str = "Cloth of 0.2 kg/m², velocity damping 2/s, friction 0.
 
 pub(super) fn fig14(context: &Context<'_>) -> Result<Made> {
     let effort = context.effort;
-    let fine = if effort == RenderEffort::Full { 3 } else { 1 };
+    let (fine, name) = effort.quick_or((1, "M¹"), (3, "M³"));
     let all = vec![
         drape("M²", rectangle(2, effort)?, context)?,
-        drape(
-            if fine == 3 { "M³" } else { "M¹" },
-            rectangle(fine, effort)?,
-            context,
-        )?,
+        drape(name, rectangle(fine, effort)?, context)?,
         drape("irregular", irregular(effort)?, context)?,
     ];
     let alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
     let words: Vec<String> = all.iter().map(|d| describe(d, effort)).collect();
     Ok(Made {
-        title: "Rectangular cloth on a rectangular table",
+        title: "Rectangular cloth on a rectangular table".into(),
         paper: "A rectangular plastic tablecloth draped over a rectangular table with M², and with a second resolution: the principal folds run from the \
-                table corners to the cloth corners.",
+                table corners to the cloth corners.".into(),
         measured: format!(
             "{CONDITIONS}The cloth is 1.2 m x 0.9 m, the table 0.58 m x 0.435 m. The diagonals of M^k lead through the corners of the table, so the \
              mesh could favour what is to be shown: an irregular triangulation, which has no such lines, is the check. {} {} {}",
@@ -282,11 +268,7 @@ pub(super) fn fig14(context: &Context<'_>) -> Result<Made> {
             all[0].picture("fig14.png", context)?,
             all[1].picture("fig14-fine.png", context)?,
             all[2].picture("fig14-irregular.png", context)?,
-            Picture {
-                file: "fig14-folds.svg".into(),
-                alt: alt.into(),
-                bytes: profiles(&all).draw().to_svg(alt)?.into_bytes(),
-            },
+            Picture::svg("fig14-folds", &profiles(&all), alt),
         ],
         pages: pages(14, all.iter(), context)?,
         tables: vec![fold_table(&all)],
@@ -301,85 +283,61 @@ const RINGS: [(u32, u32); 5] = [(4, 11), (6, 9), (8, 8), (12, 7), (16, 6)];
 /// Corners of the irregular polygons of the study; the last stands for the circle.
 const SIDES: [u32; 6] = [4, 6, 8, 12, 16, 48];
 
-pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
+/// The octagons, and the polygons with more and more corners, of which the second number is the round one.
+fn fig15_cloths(context: &Context<'_>) -> Result<(Vec<Draped>, Vec<Draped>, usize)> {
     let effort = context.effort;
-    let fine = if effort == RenderEffort::Full {
-        0.045
-    } else {
-        0.2
-    };
+    let fine = polygon("drape-octagon-fine", 8, effort.quick_or(0.2, 0.045), effort)?;
     let octagons = vec![
         drape("244/440", octagon(effort)?, context)?,
-        drape(
-            "finer",
-            polygon("drape-octagon-fine", 8, fine, effort)?,
-            context,
-        )?,
+        drape("finer", fine, context)?,
         drape("rings", ringed(8, RINGS[2].1, effort)?, context)?,
     ];
     let mut polygons = Vec::new();
-    let (sides, spacing): (&[u32], f64) = match effort {
-        RenderEffort::Full => (&SIDES, 0.06),
-        RenderEffort::Quick => (&SIDES[..1], 0.2),
-    };
-    for n in sides {
-        let label = if *n == 48 {
-            "round".to_owned()
-        } else {
-            format!("~n~ = {n}")
+    let (sides, spacing) = effort.quick_or((&SIDES[..1], 0.2), (&SIDES, 0.06));
+    for &n in sides {
+        let label = match n {
+            48 => "round".to_owned(),
+            _ => format!("~n~ = {n}"),
         };
-        polygons.push(drape(
-            &label,
-            polygon(&format!("drape-{n}-gon"), *n, spacing, effort)?,
-            context,
-        )?);
+        let scene = polygon(&format!("drape-{n}-gon"), n, spacing, effort)?;
+        polygons.push(drape(&label, scene, context)?);
     }
     let round = polygons.len() - 1;
-    let of_rings = match effort {
-        RenderEffort::Full => &RINGS[..],
-        RenderEffort::Quick => &RINGS[2..3],
-    };
-    for &(n, rings) in of_rings {
+    for &(n, rings) in effort.quick_or(&RINGS[2..3], &RINGS) {
         let label = format!("~n~ = {n}, rings");
         polygons.push(drape(&label, ringed(n, rings, effort)?, context)?);
     }
-    let hem = hems(&polygons);
+    Ok((octagons, polygons, round))
+}
+
+pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
+    let (octagons, polygons, round) = fig15_cloths(context)?;
     let alt = "Distance of the hem from the axis, that of the flat cloth = 1, by angle, for polygons with more and more corners";
     let folds_alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
-    let words: Vec<String> = octagons
-        .iter()
-        .chain(&polygons)
-        .map(|d| describe(d, effort).replace('~', ""))
-        .collect();
+    let all = || octagons.iter().chain(&polygons);
+    let words = all().map(|d| describe(d, context.effort).replace('~', ""));
+    let words: Vec<String> = words.collect();
     Ok(Made {
-        title: "Octagonal cloth on an octagonal table",
+        title: "Octagonal cloth on an octagonal table".into(),
         paper: "An octagonal plastic tablecloth (244/440) draped over an octagonal table, with two resolutions: principal folds from table corners to cloth corners. For n-gonal \
-                cloths on n-gonal tables with more and more corners the paper infers that uniform folding patterns will occur.",
+                cloths on n-gonal tables with more and more corners the paper infers that uniform folding patterns will occur.".into(),
         measured: format!(
             "{CONDITIONS}Cloths of circumscribed radius 0.6 m on tables of 0.33 m. Folds of the hem are outward bulges of its distance from the axis, divided by that of the flat cloth, that stand out by more than 0.02. A cloth folds along mesh lines: in the irregular triangulations and in 244/440, \
              a lattice of triangles, none runs from a table corner to its cloth corner; the last mesh, concentric rings of triangles, has these lines among its edges. {} {} {} {}",
             at_corners(&octagons),
             uniform(&polygons),
-            locking(octagons.iter().chain(&polygons)),
+            locking(all()),
             words.join(" ")
         ),
         pictures: vec![
             octagons[0].picture("fig15.png", context)?,
             octagons[1].picture("fig15-fine.png", context)?,
-            Picture {
-                file: "fig15-folds.svg".into(),
-                alt: folds_alt.into(),
-                bytes: profiles(&octagons).draw().to_svg(folds_alt)?.into_bytes(),
-            },
+            Picture::svg("fig15-folds", &profiles(&octagons), folds_alt),
             octagons[2].picture("fig15-rings.png", context)?,
             polygons[round].picture("fig15-round.png", context)?,
-            Picture {
-                file: "fig15-hems.svg".into(),
-                alt: alt.into(),
-                bytes: hem.to_svg(alt)?.into_bytes(),
-            },
+            Picture::svg("fig15-hems", &hems(&polygons), alt),
         ],
-        pages: pages(15, octagons.iter().chain(&polygons), context)?,
+        pages: pages(15, all(), context)?,
         tables: vec![fold_table(&octagons), hem_table(&polygons)],
         facts: json!({
             "octagons": octagons.iter().map(Draped::facts).collect::<Vec<_>>(),
@@ -408,58 +366,49 @@ fn uniform(all: &[Draped]) -> String {
     };
     format!(
         "Patterns whose folds are spaced and sized alike to {}: {which}.",
-        percent(UNIFORM)
+        whole_percent(UNIFORM)
     )
 }
 
 /// The hems of the polygons, one small plot each.
-fn hems(all: &[Draped]) -> crate::draw::Drawing {
-    let plots: Vec<_> = all
-        .iter()
-        .map(|d| {
-            let ticks = [0.0, 180.0, 360.0].map(|a| (a, format!("{a:.0}")));
-            Plot {
-                x: Axis::linear(
-                    &format!("angle (°), {}", d.label),
-                    [0.0, 360.0],
-                    ticks.to_vec(),
-                ),
-                y: Axis::round("distance", [0.5, 1.0], 3),
-                size: [120.0, 60.0],
-                series: vec![Series {
-                    name: String::new(),
-                    points: d.hem.curve.clone(),
-                    colour: palette::BLUE,
-                    marker: None,
-                    line: Line::Solid,
-                }],
-                legend: Legend::None,
-            }
-            .draw()
-        })
-        .collect();
-    let rows: Vec<_> = plots.chunks(3).map(|c| row(c, 20.0)).collect();
-    crate::draw::column(&rows, 16.0)
+fn hems(all: &[Draped]) -> Drawing {
+    let plot = |d: &Draped| {
+        let ticks = [0.0, 180.0, 360.0].map(|a| (a, format!("{a:.0}")));
+        let label = format!("angle (°), {}", d.label);
+        let x = Axis::linear(&label, [0.0, 360.0], ticks.to_vec());
+        let y = Axis::round("distance", [0.5, 1.0], 3);
+        let hem = Series::line("", palette::BLUE, d.hem.curve.clone());
+        let chart = Chart::new(x, y, [120.0, 60.0], vec![hem]);
+        chart.with_legend(Legend::None).draw()
+    };
+    let plots: Vec<Drawing> = all.iter().map(plot).collect();
+    let rows: Vec<Drawing> = plots.chunks(3).map(|c| row(c, 20.0)).collect();
+    column(&rows, 16.0)
 }
 
 fn hem_table(all: &[Draped]) -> Table {
-    let rows = all.iter().map(|d| {
-        let h = &d.hem;
-        vec![
-            d.label.replace('~', ""),
-            format!("{}/{}", d.run.vertices, d.run.faces),
-            h.folds.to_string(),
-            percent(h.spacing_spread),
-            percent(h.size_spread),
-            format!("{} ({})", h.wave.0, percent(h.wave.1)),
-            d.internal.to_string(),
-            percent(d.drop),
-            d.run
-                .at_rest_from
-                .map_or("–".into(), |t| format!("{t:.1} s")),
-        ]
-    });
-    Table::new("Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are standard deviations over means, of \
+    let part = |part: f64| Cell::from(whole_percent(part));
+    Table::of(
+        "Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are standard deviations over means, of \
                   the angles between neighbouring folds and of how far the folds stand out: both are 0 for a uniform pattern. Wave: the wave number with the \
-                  largest part of the variance of the hem's relative distance from the axis, and that part.", &["cloth", "V/F", "folds", "spread of spacing", "spread of size", "wave", "internal DOF", "drop", "at rest from"]).with_texts(rows)
+                  largest part of the variance of the hem's relative distance from the axis, and that part.",
+        all,
+        &[
+            ("cloth", &|d| d.label.replace('~', "").into()),
+            ("V/F", &|d| mesh(d)),
+            ("folds", &|d| d.hem.folds.to_string().into()),
+            ("spread of spacing", &|d| part(d.hem.spacing_spread)),
+            ("spread of size", &|d| part(d.hem.size_spread)),
+            ("wave", &|d| {
+                let (wave, share) = d.hem.wave;
+                format!("{wave} ({})", whole_percent(share)).into()
+            }),
+            ("internal DOF", &|d| d.internal.to_string().into()),
+            ("drop", &|d| part(d.drop)),
+            ("at rest from", &|d| {
+                let time = d.run.at_rest_from;
+                time.map(|t| format!("{t:.1} s")).into()
+            }),
+        ],
+    )
 }

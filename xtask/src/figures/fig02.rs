@@ -1,8 +1,9 @@
 //! Fig. 2: external and internal degrees of freedom.
 
-use super::{Made, caption, style, svg};
+use super::sketch::{PLACED, Sketch, captioned};
+use super::{Made, style, svg};
 use crate::draw::spatial::arc;
-use crate::draw::{Drawing, Stroke, TEXT, View, palette, row};
+use crate::draw::{Stroke, palette};
 use anyhow::Result;
 use isosheet_coords::EulerParameters;
 use isosheet_mesh::{Dof, Sheet};
@@ -12,33 +13,26 @@ use serde_json::json;
 const FOLD: f64 = 0.9;
 
 pub(super) fn make() -> Result<Made> {
-    let view = View::from(-24.0, 34.0, 108.0);
     let a = [0.0, 0.0, 0.0];
     let b = [1.0, 0.0, 0.0];
     let left = [0.55, 0.85, 0.0];
     let right = [0.42, -0.8, 0.0];
     let one = Sheet::new([a, b, left].concat(), &[[0, 1, 2]])?;
     let two = Sheet::new([a, b, left, right].concat(), &[[0, 1, 2], [0, 3, 1]])?;
-    let mut single = Drawing::new();
-    triangle(&mut single, &view, &[a, b, left], style::FACE);
-    let mut pair = Drawing::new();
+    let sketch = || Sketch::seen(-24.0, 34.0, 108.0);
+    let (mut single, mut pair) = (sketch(), sketch());
+    single.face([a, b, left], style::FACE);
     // The far face turns about the common edge; its rest place is drawn as a ghost.
     let turned = EulerParameters::about(&[1.0, 0.0, 0.0], FOLD).rotate(&left);
     let foot = [left[0], 0.0, 0.0];
-    let ghost = view.project_all(&[a, left, b]);
-    pair.polygon(&ghost, palette::PALE.alpha(0.35));
-    pair.line(&ghost, style::GHOST.dashed());
-    triangle(&mut pair, &view, &[a, right, b], style::FACE);
-    triangle(&mut pair, &view, &[a, b, turned], palette::SKY.tint(0.55));
-    pair.line(
-        &view.project_all(&[a, b]),
-        Stroke::new(palette::VERMILION, 1.4),
-    );
+    let ghost = pair.view.project_all(&[a, left, b]);
+    pair.drawing.polygon(&ghost, palette::PALE.alpha(0.35));
+    pair.drawing.line(&ghost, style::GHOST.dashed());
+    pair.face([a, right, b], style::FACE);
+    pair.blue_face([a, b, turned], 1.0);
+    pair.line(&[a, b], Stroke::new(PLACED, 1.4));
     let path = arc(&foot, &[0.0, left[1], 0.0], &[0.0, 0.0, left[1]], FOLD);
-    pair.arrow(
-        &view.project_all(&path),
-        Stroke::new(palette::VERMILION, 0.8),
-    );
+    pair.arrow(&path, PLACED);
     let mut facts = Vec::new();
     let mut lines = Vec::new();
     for sheet in [&one, &two] {
@@ -58,28 +52,17 @@ pub(super) fn make() -> Result<Made> {
             json!({ "total": dof.total, "external": dof.external, "internal": dof.internal }),
         );
     }
-    let low = single.bounds().min[1].min(pair.bounds().min[1]) - 9.0;
-    for (d, lines) in [(&mut single, &lines[0]), (&mut pair, &lines[1])] {
-        let x = d.bounds().centre()[0];
-        caption(d, [x, low], TEXT, lines);
-    }
-    let all = row(&[single, pair], 60.0);
+    let all = captioned(vec![single.drawing, pair.drawing], &lines, 60.0);
+    let alt = "One triangle, and two triangles folding about their common edge";
     Ok(Made {
-        title: "External and internal degrees of freedom",
+        title: "External and internal degrees of freedom".into(),
         paper: "A single triangle only moves rigidly (six external degrees of freedom); two triangles with a common edge have \
-                a seventh, internal one: the fold about that edge.",
+                a seventh, internal one: the fold about that edge.".into(),
         measured: "Counted on the two meshes: 6 = 6 + 0 and 7 = 6 + 1. The arrow is the path of the far vertex when the one \
                    internal coordinate changes from flat to 51.6°."
             .into(),
-        pictures: svg(2, &all, "One triangle, and two triangles folding about their common edge")?,
-        pages: Vec::new(),
-        tables: Vec::new(),
+        pictures: svg(2, &all, alt),
         facts: json!({ "triangle": facts[0], "pair": facts[1], "fold": FOLD }),
+        ..Made::default()
     })
-}
-
-fn triangle(d: &mut Drawing, view: &View, corners: &[[f64; 3]; 3], colour: crate::draw::Colour) {
-    let points = view.project_all(corners);
-    d.polygon(&points, view.shade(colour, corners));
-    d.outline(&points, style::EDGE);
 }

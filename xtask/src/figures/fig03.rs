@@ -44,10 +44,11 @@ pub(super) fn make() -> Result<Made> {
     let pairs: Vec<Drawing> = panels.chunks(2).map(|pair| row(pair, gaps[0])).collect();
     let all = row(&pairs, gaps[1]);
     let anisotropy = |k: usize| facts[k]["anisotropy"].as_f64().unwrap_or(f64::NAN);
+    let alt = "Crease lines of the one-way grid and of the union-jack grid with their directions";
     Ok(Made {
-        title: "Folding directions",
+        title: "Folding directions".into(),
         paper: "Meshes refined by the 1–4 split fold horizontally, vertically and along the diagonal from lower right to upper \
-                left, but not along the other diagonal: the pattern is anisotropic.",
+                left, but not along the other diagonal: the pattern is anisotropic.".into(),
         measured: format!(
             "Straight crease lines from boundary to boundary, found on the meshes and coloured by direction; the bars at the right \
              are their total lengths by direction, in sides of the square. The one-way grid has none at 45°, the union jack has all \
@@ -55,14 +56,9 @@ pub(super) fn make() -> Result<Made> {
             anisotropy(0),
             anisotropy(1)
         ),
-        pictures: svg(
-            3,
-            &all,
-            "Crease lines of the one-way grid and of the union-jack grid with their directions",
-        )?,
-        pages: Vec::new(),
-        tables: Vec::new(),
+        pictures: svg(3, &all, alt),
         facts: json!({ "one_way": facts[0], "union_jack": facts[1] }),
+        ..Made::default()
     })
 }
 

@@ -1,8 +1,9 @@
 //! Fig. 5: angle triples of a folded pair of triangles, and the compatibility condition.
 
-use super::{Made, Table, caption, degrees, style, svg};
+use super::sketch::{Sketch, captioned};
+use super::{Made, Table, degrees, style, svg};
 use crate::draw::spatial::angle_arc;
-use crate::draw::{Anchor, Colour, Drawing, Stroke, TEXT, Vertical, View, palette, row};
+use crate::draw::{Colour, Drawing, Stroke, palette};
 use anyhow::{Context, Result, ensure};
 use isosheet_coords::EulerParameters;
 use isosheet_mesh::{EdgeAngles, Sheet, VertexId, fold_angle};
@@ -16,7 +17,6 @@ const BETA: Colour = palette::GREEN;
 const GAMMA: Colour = palette::VERMILION;
 
 pub(super) fn make() -> Result<Made> {
-    let view = View::from(-13.0, 56.0, 150.0);
     let rest = [
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],
@@ -42,62 +42,38 @@ pub(super) fn make() -> Result<Made> {
             ends.iter().all(|e| e.margin() > -1e-12),
             "Eq. 10 is violated by a fold: {ends:?}"
         );
-        panels.push(panel(&view, x, time));
+        panels.push(panel(x, time));
         triples.push(ends);
     }
     let fold = fold_angle(sheet.topology(), &folded.concat(), edge)
         .context("the common edge is interior")?;
-    let low = panels
-        .iter()
-        .map(|p| p.bounds().min[1])
-        .fold(f64::INFINITY, f64::min)
-        - 8.0;
-    for (panel, name) in panels
-        .iter_mut()
-        .zip(["at rest", "at time ~t~, folded by "])
-    {
-        let text = if name.ends_with(' ') {
-            format!("{name}{}", degrees(fold.abs()))
-        } else {
-            name.to_owned()
-        };
-        let x = panel.bounds().centre()[0];
-        caption(panel, [x, low], TEXT, &[text]);
-    }
-    let all = row(&panels, 44.0);
-    let rows = (0..2)
-        .map(|k| {
-            let (r, t) = (triples[0][k], triples[1][k]);
-            vec![
-                ["first (α, β, γ)", "second (α′, β′, γ′)"][k].to_owned(),
-                degrees(t.alpha),
-                degrees(t.beta),
-                degrees(t.alpha + t.beta),
-                degrees(r.gamma),
-                degrees(t.gamma),
-                if t.gamma <= t.alpha + t.beta {
-                    "holds"
-                } else {
-                    "violated"
-                }
-                .to_owned(),
-            ]
-        })
-        .collect::<Vec<_>>();
-    let head = [
-        "end of the edge",
-        "α",
-        "β",
-        "α + β",
-        "γ⁰",
-        "γᵗ",
-        "γᵗ ≤ α + β",
-    ];
+    let folded_by = format!("at time ~t~, folded by {}", degrees(fold.abs()));
+    let names = [vec!["at rest".into()], vec![folded_by]];
+    let all = captioned(panels, &names, 44.0);
+    let ends = ["first (α, β, γ)", "second (α′, β′, γ′)"];
+    let rows = (0..2).map(|k| (ends[k], triples[0][k].gamma, triples[1][k]));
+    let table = Table::of(
+        "Measured angles of the folded pair",
+        rows,
+        &[
+            ("end of the edge", &|r| r.0.into()),
+            ("α", &|r| degrees(r.2.alpha).into()),
+            ("β", &|r| degrees(r.2.beta).into()),
+            ("α + β", &|r| degrees(r.2.alpha + r.2.beta).into()),
+            ("γ⁰", &|r| degrees(r.1).into()),
+            ("γᵗ", &|r| degrees(r.2.gamma).into()),
+            ("γᵗ ≤ α + β", &|r| {
+                let holds = r.2.gamma <= r.2.alpha + r.2.beta;
+                if holds { "holds" } else { "violated" }.into()
+            }),
+        ],
+    );
     let [one, two] = triples[1];
+    let alt = "A pair of triangles at rest and folded, with the angles alpha, beta and gamma at both ends";
     Ok(Made {
-        title: "Angle triples and the compatibility condition",
+        title: "Angle triples and the compatibility condition".into(),
         paper: "Two triangles that share an edge can only fold about it, so γᵗ ≤ α + β = γ⁰ at either end (Eq. 10), and one end's \
-                condition implies the other's.",
+                condition implies the other's.".into(),
         measured: format!(
             "Angles measured on a pair folded by {}: γᵗ = {} at one end and {} at the other. The fold angle follows from either triple \
              alone: {} and {}.",
@@ -107,57 +83,39 @@ pub(super) fn make() -> Result<Made> {
             degrees(one.fold()),
             degrees(two.fold()),
         ),
-        pictures: svg(
-            5,
-            &all,
-            "A pair of triangles at rest and folded, with the angles alpha, beta and gamma at both ends",
-        )?,
-        pages: Vec::new(),
-        tables: vec![Table::new("Measured angles of the folded pair", &head).with_texts(rows)],
+        pictures: svg(5, &all, alt),
+        tables: vec![table],
         facts: json!({
             "fold_degrees": fold.to_degrees(),
             "ends": triples[1].map(|t| json!({
                 "alpha": t.alpha, "beta": t.beta, "gamma": t.gamma, "flat": t.flat(), "fold": t.fold(),
             })),
         }),
+        ..Made::default()
     })
 }
 
-fn panel(view: &View, x: &[[f64; 3]; 4], time: &str) -> Drawing {
-    let mut d = Drawing::new();
+fn panel(x: &[[f64; 3]; 4], time: &str) -> Drawing {
+    let mut d = Sketch::seen(-13.0, 56.0, 150.0);
     let [a, b, left, right] = *x;
     for corners in [[a, b, left], [a, right, b]] {
-        let points = view.project_all(&corners);
-        d.polygon(&points, view.shade(style::FACE, &corners));
-        d.outline(&points, style::EDGE);
+        d.face(corners, style::FACE);
     }
-    d.line(&view.project_all(&[a, b]), Stroke::new(palette::INK, 1.5));
-    let prime = [String::new(), "′".to_owned()];
-    for (k, (apex, other)) in [(a, b), (b, a)].into_iter().enumerate() {
-        let prime = &prime[k];
+    d.line(&[a, b], Stroke::new(palette::INK, 1.5));
+    for (k, (apex, other, prime)) in [(a, b, ""), (b, a, "′")].into_iter().enumerate() {
         // Where along the arc the name stands, how far outside of it and how much higher, points. At the far
         // end of the folded pair gamma's arc runs over the others, whose names stand outside then.
         let crowded = k == 0 && time != "0";
-        let inside = if crowded { 8.0 } else { -11.0 };
-        let gamma =
-            [[0.3, 12.0, 0.0], [0.12, 12.0, 0.0], [0.0, 4.0, 8.0]][if crowded { 2 } else { 1 - k }];
-        let marks = [
-            (
-                other,
-                left,
-                0.21,
-                ALPHA,
-                format!("α{prime}"),
-                [0.5, inside, 0.0],
-            ),
-            (
-                other,
-                right,
-                0.21,
-                BETA,
-                format!("β{prime}"),
-                [0.5, inside, 0.0],
-            ),
+        let inside = [0.5, if crowded { 8.0 } else { -11.0 }, 0.0];
+        let gamma = match (crowded, k) {
+            (true, _) => [0.0, 4.0, 8.0],
+            (false, 0) => [0.12, 12.0, 0.0],
+            (false, _) => [0.3, 12.0, 0.0],
+        };
+        let [alpha, beta] = ["α", "β"].map(|name| format!("{name}{prime}"));
+        for (from, to, radius, colour, name, [part, distance, lift]) in [
+            (other, left, 0.21, ALPHA, alpha, inside),
+            (other, right, 0.21, BETA, beta, inside),
             (
                 left,
                 right,
@@ -166,26 +124,17 @@ fn panel(view: &View, x: &[[f64; 3]; 4], time: &str) -> Drawing {
                 format!("γ{prime}^{{{time}}}"),
                 gamma,
             ),
-        ];
-        for (from, to, radius, colour, name, [part, distance, lift]) in marks {
+        ] {
             let arc = angle_arc(&apex, &from, &to, radius);
-            d.line(&view.project_all(&arc), Stroke::new(colour, 1.0));
+            d.line(&arc, Stroke::new(colour, 1.0));
             let middle = arc[(part * arc.len() as f64) as usize];
-            let (p, o) = (view.project(&middle), view.project(&apex));
+            let (p, o) = (d.view.project(&middle), d.view.project(&apex));
             let l = (p[0] - o[0]).hypot(p[1] - o[1]);
-            let mut at = [0, 1].map(|i| p[i] + (p[i] - o[i]) * distance / l);
-            at[1] += lift;
-            d.text(at, &name, TEXT, Anchor::Middle, Vertical::Centre, colour);
+            let [x, y] = [0, 1].map(|i| p[i] + (p[i] - o[i]) * distance / l);
+            d.drawing.label([x, y + lift], &name, colour);
         }
     }
-    let middle = view.project(&[0, 1, 2].map(|i| 0.64 * a[i] + 0.36 * b[i]));
-    d.text(
-        [middle[0] - 7.0, middle[1]],
-        "~e~",
-        TEXT,
-        Anchor::Middle,
-        Vertical::Centre,
-        palette::INK,
-    );
-    d
+    let middle = [0, 1, 2].map(|i| 0.64 * a[i] + 0.36 * b[i]);
+    d.label(&middle, [-7.0, 0.0], "~e~", palette::INK);
+    d.drawing
 }

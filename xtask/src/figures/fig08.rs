@@ -31,20 +31,15 @@ pub(super) fn make() -> Result<Made> {
         "{} coordinates assigned, {dof} expected",
         assignment.dof()
     );
-    let mut fronts = fronts(&sheet, &assignment);
-    let mut order = order(&sheet, &assignment);
-    caption(
-        &mut fronts,
-        [0.5 * SIDE, -22.0],
-        TEXT,
-        &["(a) fronts, rules and coordinates".into()],
-    );
-    caption(
-        &mut order,
-        [0.5 * SIDE, -22.0],
-        TEXT,
-        &["(b) order, and the rods that place each vertex".into()],
-    );
+    let mut panels = [fronts(&sheet, &assignment), order(&sheet, &assignment)];
+    let captions = [
+        "(a) fronts, rules and coordinates",
+        "(b) order, and the rods that place each vertex",
+    ];
+    for (panel, text) in panels.iter_mut().zip(captions) {
+        caption(panel, [0.5 * SIDE, -22.0], TEXT, &[text.to_owned()]);
+    }
+    let [fronts, order] = panels;
     let all = row(&[fronts, order, legend(&assignment)], 20.0);
     let vertices: Vec<_> = assignment
         .order()
@@ -57,10 +52,11 @@ pub(super) fn make() -> Result<Made> {
         })
         .collect();
     let count = |letter| assignment.rule_count(letter);
+    let alt = "Fronts, rules and order of the assignment of system coordinates on M1";
     Ok(Made {
-        title: "Assignment of system coordinates",
+        title: "Assignment of system coordinates".into(),
         paper: "From the left-upper corner, front after front, each vertex is placed by the rule that its known neighbours \
-                allow; the number of coordinates is the number of degrees of freedom.",
+                allow; the number of coordinates is the number of degrees of freedom.".into(),
         measured: format!(
             "sys_coord_assnmt_single on M¹: {} fronts; 3 coordinates for the start vertex, {} vertex by rule h with two, {} by rule g with \
              one, {} by rule f with none: {} = DOF. Every rod is used exactly once, by the end that is placed later (b).",
@@ -70,17 +66,12 @@ pub(super) fn make() -> Result<Made> {
             count('f'),
             assignment.dof(),
         ),
-        pictures: svg(
-            8,
-            &all,
-            "Fronts, rules and order of the assignment of system coordinates on M1",
-        )?,
-        pages: Vec::new(),
-        tables: Vec::new(),
+        pictures: svg(8, &all, alt),
         facts: json!({
             "dof": dof, "fronts": assignment.front_count(), "h": count('h'), "g": count('g'), "f": count('f'),
             "vertices": vertices,
         }),
+        ..Made::default()
     })
 }
 
@@ -128,15 +119,10 @@ fn fronts(sheet: &Sheet, assignment: &Assignment) -> Drawing {
             d.line(&[place(a), place(b)], Stroke::new(colour(front), 2.2));
         }
     }
+    let rim = Stroke::new(palette::WHITE, 0.8);
     for placing in assignment.order() {
-        let p = place(placing.vertex);
-        marker(&placing.rule).draw(
-            &mut d,
-            p,
-            4.6,
-            colour(placing.front),
-            Stroke::new(palette::WHITE, 0.8),
-        );
+        let (p, fill) = (place(placing.vertex), colour(placing.front));
+        marker(&placing.rule).draw(&mut d, p, 4.6, fill, rim);
         let names = match placing.rule {
             Rule::Start { q } => format!("~q~_{{{}–{}}}", q + 1, q + 3),
             Rule::H { q, .. } => format!("~q~_{{{},{}}}", q + 1, q + 2),
@@ -148,18 +134,16 @@ fn fronts(sheet: &Sheet, assignment: &Assignment) -> Drawing {
     d
 }
 
+/// A small text beside or at a point.
+fn small(d: &mut Drawing, at: [f64; 2], text: &str, anchor: Anchor) {
+    d.text(at, text, SMALL, anchor, Vertical::Centre, palette::INK);
+}
+
 /// A label below right of a vertex, on a pale ground so that lines do not run through it.
 fn label(d: &mut Drawing, p: [f64; 2], text: &str) {
     let at = [p[0] + 5.5, p[1] - 8.5];
     let mut probe = Drawing::new();
-    probe.text(
-        at,
-        text,
-        SMALL,
-        Anchor::Start,
-        Vertical::Centre,
-        palette::INK,
-    );
+    small(&mut probe, at, text, Anchor::Start);
     let b = probe.bounds();
     let ground = [b.min, [b.max[0], b.min[1]], b.max, [b.min[0], b.max[1]]];
     d.polygon(&ground, palette::WHITE.alpha(0.72));
@@ -189,14 +173,7 @@ fn order(sheet: &Sheet, assignment: &Assignment) -> Drawing {
             palette::WHITE,
             Stroke::new(colour(placing.front), 1.2),
         );
-        d.text(
-            p,
-            &k.to_string(),
-            SMALL,
-            Anchor::Middle,
-            Vertical::Centre,
-            palette::INK,
-        );
+        small(&mut d, p, &k.to_string(), Anchor::Middle);
     }
     d
 }
@@ -209,14 +186,7 @@ fn legend(assignment: &Assignment) -> Drawing {
             marker.draw(d, [4.0, y], 4.2, fill, Stroke::new(palette::WHITE, 0.8));
         }
         let x = if symbol.is_some() { 13.0 } else { 0.0 };
-        d.text(
-            [x, y],
-            text,
-            SMALL,
-            Anchor::Start,
-            Vertical::Centre,
-            palette::INK,
-        );
+        small(d, [x, y], text, Anchor::Start);
         y -= 13.0;
     };
     for (marker, name) in [

@@ -1,13 +1,12 @@
 //! Beyond the paper: a strip of paper is fed into a bent guide, and passes or jams.
 
 use super::feed::{Feed, INNER, OUTER, PLATE};
-use super::play::play;
-use super::sequence::{View, choose, sequence};
-use super::{Context, Made, Picture, Play, RenderEffort, Table};
+use super::sequence::{Shown, View};
+use super::{Context, Effort, Made, Picture, Table};
 use crate::draw::{
-    Anchor, Axis, Colour, Drawing, Legend, Line, Plot, Series, Stroke, TEXT, Vertical, column,
-    palette, row,
+    Anchor, Axis, Chart, Colour, Drawing, Series, Stroke, TEXT, Vertical, column, palette, row,
 };
+use crate::report::Cell;
 use crate::runs::{self, FigureScene, RunSummary};
 use anyhow::{Context as _, Result};
 use serde_json::{Value, json};
@@ -33,11 +32,8 @@ const COLOURS: [Colour; 4] = [
     palette::VERMILION,
 ];
 
-fn scene((file, name): (&str, &str), effort: RenderEffort) -> Result<FigureScene> {
-    let edits = match effort {
-        RenderEffort::Full => Vec::new(),
-        RenderEffort::Quick => vec!["stop.time=0.03".to_owned()],
-    };
+fn scene((file, name): (&str, &str), effort: Effort) -> Result<FigureScene> {
+    let edits = effort.quick_or(vec!["stop.time=0.03".to_owned()], Vec::new());
     FigureScene::of(file, name, &edits)
 }
 
@@ -255,45 +251,43 @@ fn describe(jam: &Fed, passing: f64) -> String {
 }
 
 fn table(all: &[Fed]) -> Table {
-    let joules = |e: f64| format!("{:.2}", 1e3 * e);
-    let rows = all.iter().map(|f| {
-        let e = &f.run.energy;
-        let [fed, peak] = f.peak();
-        vec![
-            f.label(),
-            format!("{:.0} mm", 1e3 * f.feed_length_at(f.run.frames)),
-            format!("{} at {:.0} mm", newtons(peak), 1e3 * fed),
-            joules(e.work),
-            joules(-e.released),
-            joules(e.friction),
-            joules(e.damped),
-            joules(e.drift),
-            format!("{:.0e}", f.run.max_strain),
-            super::gap(f.run.smallest_gap),
-            format!("{}", f.run.rejected),
-            format!("{:.1} s", f.run.wall),
-        ]
-    });
-    Table::new(
+    let joules = |e: f64| Cell::from(format!("{:.2}", 1e3 * e));
+    Table::of(
         "Energies at the end in millijoules. Stored: in bending, weight and contact. Missing: what the balance lacks; negative is taken out by the \
-                  integrator, which damps what it does not resolve; positive is the error of the work of the nip, by the trapezoidal rule \
-                  between forces that jump.",
+         integrator, which damps what it does not resolve; positive is the error of the work of the nip, by the trapezoidal rule \
+         between forces that jump.",
+        all,
         &[
-            "bend", "displacement", "largest force", "work of the nip", "stored", "friction", "damping", "missing", "strain", "gap",
-            "rejected", "wall time",
+            ("bend", &|f| f.label().into()),
+            ("displacement", &|f| {
+                let fed = f.feed_length_at(f.run.frames);
+                format!("{:.0} mm", 1e3 * fed).into()
+            }),
+            ("largest force", &|f| {
+                let [fed, peak] = f.peak();
+                format!("{} at {:.0} mm", newtons(peak), 1e3 * fed).into()
+            }),
+            ("work of the nip", &|f| joules(f.run.energy.work)),
+            ("stored", &|f| joules(-f.run.energy.released)),
+            ("friction", &|f| joules(f.run.energy.friction)),
+            ("damping", &|f| joules(f.run.energy.damped)),
+            ("missing", &|f| joules(f.run.energy.drift)),
+            ("strain", &|f| format!("{:.0e}", f.run.max_strain).into()),
+            ("gap", &|f| super::gap(f.run.smallest_gap).into()),
+            ("rejected", &|f| f.run.rejected.to_string().into()),
+            ("wall time", &|f| format!("{:.1} s", f.run.wall).into()),
         ],
     )
-    .with_texts(rows)
 }
 
 /// How a run is shown: without the outer wall, which would hide the strip.
-fn view(feed: &Feed) -> View<'static> {
+fn view(feed: &Feed) -> View {
     View {
         azimuth: -72.0,
         elevation: 12.0,
         distance: 0.8,
         columns: 2,
-        pins: &[],
+        pins: Vec::new(),
         bodies: match feed.plate() {
             None => &[INNER],
             Some(_) => &[INNER, PLATE],
@@ -302,25 +296,24 @@ fn view(feed: &Feed) -> View<'static> {
     }
 }
 
-/// The page that plays a run.
-fn page(fed: &Fed, context: &Context<'_>) -> Result<Play> {
-    let label = format!("strip in a bend of {}", fed.label());
-    play(16, &label, &fed.scene, &view(&fed.feed), context)
+fn shown<'a>(fed: &'a Fed, context: &'a Context<'_>) -> Shown<'a> {
+    Shown {
+        scene: &fed.scene,
+        view: view(&fed.feed),
+        context,
+    }
 }
 
 /// Parts of the run at which the jam is shown: the fold-up happens at its end.
 const SHOWN: [f64; 6] = [0.0, 0.5, 0.84, 0.91, 0.95, 1.0];
 
 pub(super) fn make(context: &Context<'_>) -> Result<Made> {
-    let effort = context.effort;
-    let all: Vec<Fed> = CASES
-        .iter()
-        .map(|case| Fed::of(scene(*case, effort)?, context))
-        .collect::<Result<_>>()?;
+    let fed = |case| Fed::of(scene(case, context.effort)?, context);
+    let all: Vec<Fed> = CASES.into_iter().map(fed).collect::<Result<_>>()?;
     let jam = &all[JAM];
     let passing = 2.0 * all[OPEN].peak()[1];
-    let trajectory = runs::trajectory(context.store, &jam.scene)?;
     let times = SHOWN.map(|s| s * jam.run.time);
+    let alt = "A strip of paper is pushed round a bend against a plate, buckles and folds up";
     let alt_force = "Force of the nip over its displacement in four guides";
     let alt_side = "The strip from the side at five times in each of the four guides";
     let (s, of_scene) = (&jam.feed, jam.scene.scene());
@@ -335,9 +328,14 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     });
     let through: Vec<String> = through.collect();
     let side: Vec<Drawing> = all.iter().map(side_view).collect::<Result<_>>()?;
+    let side = column(&[row(&side[..2], 30.0), row(&side[2..], 30.0)], 24.0);
+    let page = |f: &Fed| {
+        let label = format!("strip in a bend of {}", f.label());
+        shown(f, context).play(16, &label)
+    };
     Ok(Made {
-        title: "Paper jam",
-        paper: "The simulation of a paper jam is named as an application for the design of printers (Sec. 1); none is shown.",
+        title: "Paper jam".into(),
+        paper: "The simulation of a paper jam is named as an application for the design of printers (Sec. 1); none is shown.".into(),
         measured: format!(
             "A strip of office paper ({:.0} mm x {:.0} mm, {:.0} g/m², flexural rigidity {:.0e} N m, {}/{} vertices/faces) starts flat between two walls \
              {:.0} mm apart that turn downwards by 90°. A nip holds its last two rungs straight and moves along at {} m/s; friction {} with the walls and \
@@ -356,65 +354,28 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
             describe(jam, passing),
         ),
         pictures: vec![
-            Picture {
-                file: "fig16.png".into(),
-                alt:
-                    "A strip of paper is pushed round a bend against a plate, buckles and folds up"
-                        .into(),
-                bytes: sequence(
-                    &jam.scene,
-                    &trajectory,
-                    &choose(&trajectory, &times),
-                    &view(&jam.feed),
-                    effort,
-                )?,
-            },
-            Picture {
-                file: "fig16-force.svg".into(),
-                alt: alt_force.into(),
-                bytes: force_plot(&all).draw().to_svg(alt_force)?.into_bytes(),
-            },
-            Picture {
-                file: "fig16-side.svg".into(),
-                alt: alt_side.into(),
-                bytes: column(&[row(&side[..2], 30.0), row(&side[2..], 30.0)], 24.0)
-                    .to_svg(alt_side)?
-                    .into_bytes(),
-            },
+            shown(jam, context).picture("fig16.png", alt, &times)?,
+            Picture::svg("fig16-force", &force_plot(&all), alt_force),
+            Picture::svg("fig16-side", &side, alt_side),
         ],
-        pages: all
-            .iter()
-            .map(|f| page(f, context))
-            .collect::<Result<_>>()?,
+        pages: all.iter().map(page).collect::<Result<_>>()?,
         tables: vec![table(&all)],
         facts: json!(all.iter().map(|f| f.facts(passing)).collect::<Vec<_>>()),
     })
 }
 
-fn force_plot(all: &[Fed]) -> Plot {
+fn force_plot(all: &[Fed]) -> Drawing {
     let displacements = all.iter().flat_map(|f| &f.force).map(|p| 1e3 * p[0]);
+    let far = displacements.fold(1e-3, f64::max);
     let top = all.iter().map(|f| f.peak()[1]).fold(1e-6, f64::max);
-    Plot {
-        x: Axis::round(
-            "displacement of the nip (mm)",
-            [0.0, displacements.fold(1e-3, f64::max)],
-            6,
-        ),
-        y: Axis::round("force of the nip (N)", [0.0, 1.05 * top], 5),
-        size: [250.0, 140.0],
-        series: all
-            .iter()
-            .zip(COLOURS)
-            .map(|(f, colour)| Series {
-                name: f.label(),
-                points: f.force.iter().map(|p| [1e3 * p[0], p[1]]).collect(),
-                colour,
-                marker: None,
-                line: Line::Solid,
-            })
-            .collect(),
-        legend: Legend::Right,
-    }
+    let of = |(f, colour): (&Fed, Colour)| {
+        let points = f.force.iter().map(|p| [1e3 * p[0], p[1]]);
+        Series::line(&f.label(), colour, points.collect())
+    };
+    let series = all.iter().zip(COLOURS).map(of).collect();
+    let x = Axis::round("displacement of the nip (mm)", [0.0, far], 6);
+    let y = Axis::round("force of the nip (N)", [0.0, 1.05 * top], 5);
+    Chart::new(x, y, [250.0, 140.0], series).draw()
 }
 
 /// Points of a drawing for a metre.
@@ -439,13 +400,8 @@ fn side_view(fed: &Fed) -> Result<Drawing> {
         d.line(&scaled(&fed.profiles[frame]), Stroke::new(colour, 1.0));
     }
     let [x, z] = fed.feed.walls[OUTER].line[0];
-    d.text(
-        [SCALE * x, SCALE * (z + 0.004)],
-        &fed.label(),
-        TEXT,
-        Anchor::Start,
-        Vertical::Centre,
-        palette::INK,
-    );
+    let (at, start) = ([SCALE * x, SCALE * (z + 0.004)], Anchor::Start);
+    let (label, centre) = (fed.label(), Vertical::Centre);
+    d.text(at, &label, TEXT, start, centre, palette::INK);
     Ok(d)
 }

@@ -1,8 +1,9 @@
 //! Crescent marks: how far the folds of a crumpled sheet concentrate in few edges.
 
-use super::Table;
 use super::crescent::Crescent;
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Plot, Series, palette, row};
+use super::{Table, whole_percent};
+use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Series, palette, row};
+use crate::report::Cell;
 use isosheet_io::Trajectory;
 use isosheet_mesh::{EdgeId, Sheet, fold_angle};
 use serde::Serialize;
@@ -100,52 +101,26 @@ impl Marks {
     }
 }
 
-const LOOKS: [(Colour, Marker); 3] = [
-    (palette::VERMILION, Marker::Square),
-    (palette::GREEN, Marker::Triangle),
-    (palette::BLUE, Marker::Disc),
-];
+const COLOURS: [Colour; 3] = [palette::VERMILION, palette::GREEN, palette::BLUE];
 
 /// The shares over time, and how many of the final marks are there already.
 pub(super) fn plot(all: &[Marks]) -> Drawing {
-    let end = all
-        .iter()
-        .filter_map(|m| m.shares.last())
-        .map(|s| s[0])
-        .fold(0.0, f64::max);
-    let panel = |label: &str, column: usize, legend: Legend| {
-        let mut series: Vec<Series> = Vec::new();
-        for (m, (colour, _)) in all.iter().zip(LOOKS) {
-            let points = m.shares.iter().map(|s| [s[0], 100.0 * s[column]]).collect();
-            series.push(Series {
-                name: m.name.clone(),
-                points,
-                colour,
-                marker: None,
-                line: Line::Solid,
-            });
-        }
-        if column == 1 {
-            let points = vec![[0.0, 100.0 * NORMAL], [end, 100.0 * NORMAL]];
-            series.push(Series {
-                name: "normal".into(),
-                points,
-                colour: palette::GREY,
-                marker: None,
-                line: Line::Dashed,
-            });
-        }
+    let ends = all.iter().filter_map(|m| Some(m.shares.last()?[0]));
+    let end = ends.fold(0.0, f64::max);
+    let panel = |label: &str, column: usize| {
+        let of = |(m, colour): (&Marks, Colour)| {
+            let points = m.shares.iter().map(|s| [s[0], 100.0 * s[column]]);
+            Series::line(&m.name, colour, points.collect())
+        };
+        let series: Vec<Series> = all.iter().zip(COLOURS).map(of).collect();
         let x = Axis::round("time (s)", [0.0, end], 4);
-        Plot {
-            x,
-            y: Axis::round(label, [0.0, 100.0], 5),
-            size: [165.0, 118.0],
-            series,
-            legend,
-        }
+        let y = Axis::round(label, [0.0, 100.0], 5);
+        Chart::new(x, y, [165.0, 118.0], series)
     };
-    let left = panel("share of fold angle (%)", 1, Legend::Right);
-    let right = panel("final marks present (%)", 2, Legend::None);
+    let mut left = panel("share of fold angle (%)", 1);
+    let normal = [0.0, end].map(|t| [t, 100.0 * NORMAL]).to_vec();
+    left.series.push(Series::guide("normal", normal));
+    let right = panel("final marks present (%)", 2).with_legend(Legend::None);
     row(&[left.draw(), right.draw()], 26.0)
 }
 
@@ -176,45 +151,42 @@ pub(super) fn crescents(all: &[Marks]) -> String {
 }
 
 pub(super) fn table(all: &[Marks]) -> Table {
-    fn percent(v: f64) -> String {
-        format!("{:.0} %", 100.0 * v)
-    }
-    let rows = all.iter().map(|m| {
-        let shape = |f: fn(&Crescent) -> String| m.shape.as_ref().map_or("–".into(), f);
-        vec![
-            m.name.clone(),
-            format!("{} of {}", m.sharpest, m.edges),
-            percent(m.at(0.2, 1)),
-            percent(m.at(0.6, 1)),
-            percent(m.late(1)),
-            percent(m.at(0.6, 2)),
-            percent(m.late(2)),
-            shape(|c| c.edges.to_string()),
-            shape(|c| format!("{:.0}°", c.opening.to_degrees())),
-            shape(|c| percent(c.straightness)),
-        ]
-    });
-    Table::new(format!(
-            "Marks: the part of the sum of all sizes of fold angles that the sharpest {:.0} % of the inner edges carry ({:.0} % if all \
+    let caption = format!(
+        "Marks: the part of the sum of all sizes of fold angles that the sharpest {:.0} % of the inner edges carry ({:.0} % if all \
              folds were equal, {:.0} % if they were normally distributed), and how many of the edges that are sharpest at the end are among \
              the sharpest earlier (to 1 %, as symmetric folds are equal). Late: mean over the second half of the run. The largest connected mark at the end is compared, in the flat \
              sheet, with the arc of a crescent: the angle in which the centre of the best circle sees it (a straight fold: near zero), and \
              what is left of its mean square distance from the best line when the line is bent to the circle (an arc: 0 %).",
-            100.0 * SHARPEST,
-            100.0 * SHARPEST,
-            100.0 * NORMAL
-        ), &[
-            "mesh",
-            "edges",
-            "share at 0.2 s",
-            "share at 0.6 s",
-            "share, late",
-            "final marks present at 0.6 s",
-            "late",
-            "edges of the largest mark",
-            "opening",
-            "left by the arc",
-        ]).with_texts(rows)
+        100.0 * SHARPEST,
+        100.0 * SHARPEST,
+        100.0 * NORMAL
+    );
+    let shape = |m: &Marks, f: fn(&Crescent) -> String| Cell::from(m.shape.as_ref().map(f));
+    let share = |part: f64| Cell::from(whole_percent(part));
+    Table::of(
+        caption,
+        all,
+        &[
+            ("mesh", &|m| m.name.as_str().into()),
+            ("edges", &|m| {
+                format!("{} of {}", m.sharpest, m.edges).into()
+            }),
+            ("share at 0.2 s", &|m| share(m.at(0.2, 1))),
+            ("share at 0.6 s", &|m| share(m.at(0.6, 1))),
+            ("share, late", &|m| share(m.late(1))),
+            ("final marks present at 0.6 s", &|m| share(m.at(0.6, 2))),
+            ("late", &|m| share(m.late(2))),
+            ("edges of the largest mark", &|m| {
+                shape(m, |c| c.edges.to_string())
+            }),
+            ("opening", &|m| {
+                shape(m, |c| format!("{:.0}°", c.opening.to_degrees()))
+            }),
+            ("left by the arc", &|m| {
+                shape(m, |c| whole_percent(c.straightness))
+            }),
+        ],
+    )
 }
 
 #[cfg(test)]

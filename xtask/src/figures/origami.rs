@@ -1,9 +1,8 @@
 //! Beyond the paper: crease patterns folded by driven angles.
 
-use super::play::play;
-use super::sequence::{View, choose, sequence};
-use super::{Context, Made, Picture, RenderEffort, degrees};
-use crate::draw::{Axis, Legend, Line, Marker, Plot, Series, palette, row};
+use super::sequence::{Shown, View};
+use super::{Context, Effort, Made, Picture, Play, degrees};
+use crate::draw::{Axis, Chart, Colour, Drawing, Marker, Series, palette, row};
 use crate::runs::{self, FigureScene, RunSummary};
 use anyhow::{Context as _, Result, bail};
 use isosheet_io::scene::{AlikeCreases, DegreeFour, Mesh, Miura};
@@ -16,23 +15,20 @@ use serde_json::json;
 const FULL: f64 = 150.0 * std::f64::consts::PI / 180.0;
 
 /// The edits of a quick run: 15 frames.
-fn edits(effort: RenderEffort) -> Vec<String> {
-    match effort {
-        RenderEffort::Full => Vec::new(),
-        RenderEffort::Quick => vec![format!("method.step={:?}", 2.5 / 15.0)],
-    }
+fn edits(effort: Effort) -> Vec<String> {
+    effort.quick_or(vec![format!("method.step={:?}", 2.5 / 15.0)], Vec::new())
 }
 
 /// The Miura pattern of the figure.
-fn miura(effort: RenderEffort) -> Result<FigureScene> {
+fn miura(effort: Effort) -> Result<FigureScene> {
     let mut edits = edits(effort);
-    if effort == RenderEffort::Quick {
+    if effort == Effort::Quick {
         edits.extend(["columns", "rows"].map(|key| format!("sheet.mesh.miura.{key}=4")));
     }
     FigureScene::of("fig17", "origami-miura", &edits)
 }
 
-fn vertex(alike: AlikeCreases, effort: RenderEffort) -> Result<FigureScene> {
+fn vertex(alike: AlikeCreases, effort: Effort) -> Result<FigureScene> {
     let (file, name) = match alike {
         AlikeCreases::Odd => ("fig17-vertex-odd", "origami-vertex-odd"),
         AlikeCreases::Even => ("fig17-vertex-even", "origami-vertex-even"),
@@ -151,33 +147,13 @@ fn lead(mode: origami::FoldingMode) -> usize {
     }
 }
 
-fn lines(name: &str, points: Vec<[f64; 2]>) -> Series {
-    Series {
-        name: name.into(),
-        points,
-        colour: palette::GREY,
-        marker: None,
-        line: Line::Solid,
-    }
-}
-
-fn marks(name: &str, points: Vec<[f64; 2]>, colour: crate::draw::Colour, marker: Marker) -> Series {
-    Series {
-        name: name.into(),
-        points,
-        colour,
-        marker: Some(marker),
-        line: Line::None,
-    }
-}
-
 /// How the runs are shown.
-const VIEW: View<'static> = View {
+const VIEW: View = View {
     azimuth: -62.0,
     elevation: 38.0,
     distance: 1.2,
     columns: 3,
-    pins: &[],
+    pins: Vec::new(),
     bodies: &[],
     depth: 0.0,
 };
@@ -185,152 +161,168 @@ const VIEW: View<'static> = View {
 /// Every so many frames are marked in plots.
 const EVERY: usize = 6;
 
-pub(super) fn make(context: &Context<'_>) -> Result<Made> {
-    let effort = context.effort;
-    let scene = miura(effort)?;
-    let run = runs::ensure(context.store, &scene)?;
-    let pattern = miura_of(&scene)?.pattern()?;
-    let exact = miura_of(&scene)?.kinematics();
-    let trajectory = runs::trajectory(context.store, &scene)?;
-    let folded: Vec<Folded> = (0..trajectory.len())
-        .map(|k| {
-            let x = trajectory.frame(k).context("frame")?;
-            Ok(Folded::of(miura_of(&scene)?, &pattern, x))
-        })
-        .collect::<Result<_>>()?;
-    let beyond = || folded.iter().filter(|f| f.zigzag > LEAST);
-    let worst = |k: usize| beyond().fold(0.0f64, |m, f| m.max(f.errors[k]));
-    let errors = [worst(0), worst(1), worst(2)];
-    let last = folded.last().context("frames")?;
+/// A run of one of the patterns.
+fn shown<'a>(scene: &'a FigureScene, context: &'a Context<'_>) -> Shown<'a> {
+    Shown {
+        scene,
+        view: VIEW,
+        context,
+    }
+}
 
-    let thetas: Vec<f64> = (0..=80).map(|k| 0.5 * FULL * f64::from(k) / 80.0).collect();
-    let curve = |f: &dyn Fn(f64) -> f64| -> Vec<[f64; 2]> {
-        thetas
-            .iter()
-            .map(|t| [2.0 * t.to_degrees(), f(*t)])
-            .collect()
+/// Exact curves are grey.
+fn exact_curve(name: &str, points: Vec<[f64; 2]>) -> Series {
+    Series::line(name, palette::GREY, points)
+}
+
+/// A fold angle from 0 to 150 degrees.
+fn fold_axis(label: &str) -> Axis {
+    Axis::round(label, [0.0, 150.0], 5)
+}
+
+/// The fold of the straight creases and the size of the sheet over the fold of the zigzags.
+fn folds_plot(exact: &origami::Miura, folded: &[Folded]) -> Drawing {
+    let thetas = (0..=80).map(|k| 0.5 * FULL * f64::from(k) / 80.0);
+    let thetas: Vec<f64> = thetas.collect();
+    let curve = |name: &str, f: &dyn Fn(f64) -> f64| {
+        let points = thetas.iter().map(|t| [2.0 * t.to_degrees(), f(*t)]);
+        exact_curve(name, points.collect())
     };
     let measured = |f: &dyn Fn(&Folded) -> f64| -> Vec<[f64; 2]> {
-        folded
-            .iter()
-            .step_by(EVERY)
-            .map(|m| [m.zigzag.to_degrees(), f(m)])
-            .collect()
+        let marked = folded.iter().step_by(EVERY);
+        marked.map(|m| [m.zigzag.to_degrees(), f(m)]).collect()
     };
-    let flat = exact.panel(0.0);
-    let angles = Plot {
-        x: Axis::round("fold of the zigzags (°)", [0.0, 150.0], 5),
-        y: Axis::round("fold of the straight creases (°)", [0.0, 150.0], 5),
-        size: [190.0, 150.0],
-        series: vec![
-            lines("exact", curve(&|t| exact.straight_fold(t).to_degrees())),
-            marks(
-                "simulated",
-                measured(&|m| m.straight.to_degrees()),
-                palette::BLUE,
-                Marker::Disc,
-            ),
+    let (flat, size) = (exact.panel(0.0), [190.0, 150.0]);
+    let straight = measured(&|m| m.straight.to_degrees());
+    let angles = Chart::new(
+        fold_axis("fold of the zigzags (°)"),
+        fold_axis("fold of the straight creases (°)"),
+        size,
+        vec![
+            curve("exact", &|t| exact.straight_fold(t).to_degrees()),
+            Series::dots("simulated", palette::BLUE, Marker::Disc, straight),
         ],
-        legend: Legend::Right,
-    };
-    let sizes = Plot {
-        x: Axis::round("fold of the zigzags (°)", [0.0, 150.0], 5),
-        y: Axis::round("size (flat = 1)", [0.0, 1.0], 5),
-        size: [190.0, 150.0],
-        series: vec![
-            lines("exact", curve(&|t| exact.panel(t)[0] / flat[0])),
-            lines("", curve(&|t| exact.panel(t)[1] / flat[1])),
-            marks(
-                "along zigzags",
-                measured(&|m| m.size[0]),
-                palette::VERMILION,
-                Marker::Square,
-            ),
-            marks(
-                "across",
-                measured(&|m| m.size[1]),
-                palette::GREEN,
-                Marker::Triangle,
-            ),
+    );
+    let (along, across) = (measured(&|m| m.size[0]), measured(&|m| m.size[1]));
+    let sizes = Chart::new(
+        fold_axis("fold of the zigzags (°)"),
+        Axis::round("size (flat = 1)", [0.0, 1.0], 5),
+        size,
+        vec![
+            curve("exact", &|t| exact.panel(t)[0] / flat[0]),
+            curve("", &|t| exact.panel(t)[1] / flat[1]),
+            Series::dots("along zigzags", palette::VERMILION, Marker::Square, along),
+            Series::dots("across", palette::GREEN, Marker::Triangle, across),
         ],
-        legend: Legend::Right,
-    };
+    );
+    row(&[angles.draw(), sizes.draw()], 24.0)
+}
 
-    let mut pages = vec![play(17, "Miura's pattern", &scene, &VIEW, context)?];
-    let mut series = Vec::new();
-    let mut vertices = Vec::new();
-    for (alike, name, colour, marker) in [
-        (
-            AlikeCreases::Odd,
-            "1 and 3 alike",
-            palette::BLUE,
-            Marker::Disc,
-        ),
-        (
-            AlikeCreases::Even,
-            "2 and 4 alike",
-            palette::VERMILION,
-            Marker::Square,
-        ),
-    ] {
-        let scene = vertex(alike, effort)?;
+/// A vertex of degree four in one of its two modes.
+struct Vertex {
+    run: RunSummary,
+    page: Play,
+    /// Largest difference of an angle from the exact one, radians.
+    error: f64,
+    /// The angles at the end, radians.
+    end: [f64; 4],
+    series: [Series; 2],
+}
+
+/// The two modes, their names, and how they are drawn.
+const MODES: [(AlikeCreases, &str, Colour, Marker); 2] = [
+    (
+        AlikeCreases::Odd,
+        "1 and 3 alike",
+        palette::BLUE,
+        Marker::Disc,
+    ),
+    (
+        AlikeCreases::Even,
+        "2 and 4 alike",
+        palette::VERMILION,
+        Marker::Square,
+    ),
+];
+
+impl Vertex {
+    fn of(
+        (alike, name, colour, marker): (AlikeCreases, &str, Colour, Marker),
+        context: &Context<'_>,
+    ) -> Result<Self> {
+        let scene = vertex(alike, context.effort)?;
         let (exact, mode) = (vertex_of(&scene)?.kinematics(), vertex_of(&scene)?.mode());
         let run = runs::ensure(context.store, &scene)?;
         let label = format!("vertex of degree four, creases {name}");
-        pages.push(play(17, &label, &scene, &VIEW, context)?);
         let found = vertex_angles(&scene, context)?;
-        let error = found
-            .iter()
-            .filter(|a| a[lead(mode)].abs() > LEAST)
-            .flat_map(|a| {
-                let e = exact.angles(mode, a[0]);
-                (0..4).map(move |k| (a[k] - e[k]).abs())
-            })
-            .fold(0.0, f64::max);
-        let end = found.last().context("frames")?;
-        let to = end[0];
-        let points = (0..=80).map(|k| {
-            let first = to * f64::from(k) / 80.0;
-            let angles = exact.angles(mode, first);
-            [first.to_degrees(), angles[1].to_degrees()]
+        let folded = found.iter().filter(|a| a[lead(mode)].abs() > LEAST);
+        let errors = folded.flat_map(|a| {
+            let e = exact.angles(mode, a[0]);
+            (0..4).map(move |k| (a[k] - e[k]).abs())
         });
-        let exact_name = if series.is_empty() { "exact" } else { "" };
-        series.push(lines(exact_name, points.collect()));
-        let points = found
-            .iter()
-            .step_by(EVERY)
-            .map(|a| [a[0].to_degrees(), a[1].to_degrees()]);
-        series.push(marks(name, points.collect(), colour, marker));
-        vertices.push((run, error, *end));
-    }
-    let branches = Plot {
-        x: Axis::round("fold of crease 1 (°)", [0.0, 160.0], 4),
-        y: Axis::round("fold of crease 2 (°)", [-160.0, 0.0], 4),
-        size: [190.0, 150.0],
-        series,
-        legend: Legend::Right,
-    };
-
-    let times: Vec<f64> = [0.0, 30.0, 60.0, 90.0, 120.0, 150.0f64]
-        .iter()
-        .map(|angle| {
-            let near = |m: &&(usize, &Folded)| (m.1.zigzag.to_degrees() - angle).abs();
-            let frames: Vec<(usize, &Folded)> = folded.iter().enumerate().collect();
-            let best = frames.iter().min_by(|a, b| near(a).total_cmp(&near(b)));
-            best.map_or(0.0, |(k, _)| trajectory.times()[*k])
+        let end = *found.last().context("frames")?;
+        let two = |a: &[f64; 4]| [a[0].to_degrees(), a[1].to_degrees()];
+        let curve = (0..=80).map(|k| two(&exact.angles(mode, end[0] * f64::from(k) / 80.0)));
+        let exact_name = ["exact", ""][alike as usize];
+        let measured = found.iter().step_by(EVERY).map(two).collect();
+        Ok(Self {
+            run,
+            page: shown(&scene, context).play(17, &label)?,
+            error: errors.fold(0.0, f64::max),
+            end,
+            series: [
+                exact_curve(exact_name, curve.collect()),
+                Series::dots(name, colour, marker, measured),
+            ],
         })
-        .collect();
+    }
+}
+
+/// What a run did, in words.
+fn describe(r: &RunSummary) -> String {
+    format!(
+        "{} frames, {} rejected sub-steps, {:.2} s of wall time, largest strain {:.0e}, work of the drive {:.2e} J, of which the balance lacks {:.1e} J",
+        r.frames, r.rejected, r.wall, r.max_strain, r.energy.work, r.energy.drift
+    )
+}
+
+pub(super) fn make(context: &Context<'_>) -> Result<Made> {
+    let scene = miura(context.effort)?;
+    let run = runs::ensure(context.store, &scene)?;
+    let (pattern, exact) = (miura_of(&scene)?.pattern()?, miura_of(&scene)?.kinematics());
+    let trajectory = runs::trajectory(context.store, &scene)?;
+    let frames = (0..trajectory.len()).map(|k| {
+        let x = trajectory.frame(k).context("frame")?;
+        Ok(Folded::of(miura_of(&scene)?, &pattern, x))
+    });
+    let folded: Vec<Folded> = frames.collect::<Result<_>>()?;
+    let beyond = || folded.iter().filter(|f| f.zigzag > LEAST);
+    let errors = [0, 1, 2].map(|k| beyond().fold(0.0f64, |m, f| m.max(f.errors[k])));
+    let last = folded.last().context("frames")?;
+    let mut vertices = Vec::new();
+    for mode in MODES {
+        vertices.push(Vertex::of(mode, context)?);
+    }
+    let branches = Chart::new(
+        Axis::round("fold of crease 1 (°)", [0.0, 160.0], 4),
+        Axis::round("fold of crease 2 (°)", [-160.0, 0.0], 4),
+        [190.0, 150.0],
+        vertices.iter().flat_map(|v| v.series.clone()).collect(),
+    );
+    let times = [0.0, 30.0, 60.0, 90.0, 120.0, 150.0].map(|angle: f64| {
+        let off = |k: &usize| (folded[*k].zigzag.to_degrees() - angle).abs();
+        let nearest = (0..folded.len()).min_by(|a, b| off(a).total_cmp(&off(b)));
+        trajectory.times()[nearest.unwrap_or(0)]
+    });
+    let alt = "A flat sheet with a Miura pattern folds up";
     let alt_folds = "Fold of the straight creases, and size of the sheet, over the fold of the zigzags: simulated and exact";
     let alt_vertex = "Fold of the second crease of a vertex over that of the first in its two modes: simulated and exact";
-    let describe = |r: &RunSummary| {
-        format!(
-            "{} frames, {} rejected sub-steps, {:.2} s of wall time, largest strain {:.0e}, work of the drive {:.2e} J, of which the balance lacks {:.1e} J",
-            r.frames, r.rejected, r.wall, r.max_strain, r.energy.work, r.energy.drift
-        )
-    };
+    let miura = shown(&scene, context);
+    let mut pages = vec![miura.play(17, "Miura's pattern")?];
+    pages.extend(vertices.iter().map(|v| v.page.clone()));
     Ok(Made {
-        title: "Origami: crease patterns folded by driven angles",
-        paper: "Origami is named as an application (Sec. 1): how can a model be folded from one sheet of paper? No crease pattern is folded.",
+        title: "Origami: crease patterns folded by driven angles".into(),
+        paper: "Origami is named as an application (Sec. 1): how can a model be folded from one sheet of paper? No crease pattern is folded.".into(),
         measured: format!(
             "A Miura pattern ({}/{} vertices/faces, panels of 20 mm with an angle of 60°, 80 g/m², no gravity) starts exactly flat. Springs \
              drive the zigzag creases alone, to 150° in 2 s, valleys and mountains by their sign; the straight creases are free hinges, and springs ten times \
@@ -350,42 +342,22 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
             degrees(last.straight),
             last.errors[0],
             describe(&run),
-            vertices[0].1,
-            vertices[1].1,
+            vertices[0].error,
+            vertices[1].error,
         ),
         pictures: vec![
-            Picture {
-                file: "fig17.png".into(),
-                alt: "A flat sheet with a Miura pattern folds up".into(),
-                bytes: sequence(
-                    &scene,
-                    &trajectory,
-                    &choose(&trajectory, &times),
-                    &VIEW,
-                    effort,
-                )?,
-            },
-            Picture {
-                file: "fig17-folds.svg".into(),
-                alt: alt_folds.into(),
-                bytes: row(&[angles.draw(), sizes.draw()], 24.0)
-                    .to_svg(alt_folds)?
-                    .into_bytes(),
-            },
-            Picture {
-                file: "fig17-vertex.svg".into(),
-                alt: alt_vertex.into(),
-                bytes: branches.draw().to_svg(alt_vertex)?.into_bytes(),
-            },
+            miura.picture("fig17.png", alt, &times)?,
+            Picture::svg("fig17-folds", &folds_plot(&exact, &folded), alt_folds),
+            Picture::svg("fig17-vertex", &branches.draw(), alt_vertex),
         ],
         pages,
-        tables: Vec::new(),
         facts: json!({
             "run": run,
             "errors": { "straight_rad": errors[0], "panels_rad": errors[1], "distances_m": errors[2] },
             "folds": folded.iter().map(|f| [f.zigzag, f.straight, f.size[0], f.size[1]]).collect::<Vec<_>>(),
-            "vertices": vertices.iter().map(|(run, error, end)| json!({ "run": run, "error_rad": error, "end_rad": end })).collect::<Vec<_>>(),
+            "vertices": vertices.iter().map(|v| json!({ "run": v.run, "error_rad": v.error, "end_rad": v.end })).collect::<Vec<_>>(),
             "name": scene.name(),
         }),
+        ..Made::default()
     })
 }

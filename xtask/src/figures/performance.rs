@@ -1,12 +1,12 @@
 //! Fig. 10: the paper's table of performance, with ours beside it.
 
-use super::{Context, Made, Picture, Play, RenderEffort, Table, cloths, crumple, drape, stamping};
-use crate::report::{machine, rounded};
+use super::{Context, Effort, Made, Picture, Play, Table, cloths, crumple, drape, stamping};
+use crate::report::{Cell, machine, rounded};
 use crate::runs::{self, ChartSummary, Fate, FigureScene, RunSummary};
 use anyhow::Result;
 use isosheet_coords::condition_table;
 use isosheet_io::scene::{Coordinates, Integrator};
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// A row of the paper's table.
 struct Published {
@@ -18,42 +18,25 @@ struct Published {
     steps: &'static str,
 }
 
+impl Published {
+    const fn new(figure: u8, level: Option<u32>, columns: [&'static str; 3]) -> Self {
+        let [mesh, frames_per_second, steps] = columns;
+        Self {
+            figure,
+            level,
+            mesh,
+            frames_per_second,
+            steps,
+        }
+    }
+}
+
 const PUBLISHED: [Published; 5] = [
-    Published {
-        figure: 11,
-        level: Some(1),
-        mesh: "25/32",
-        frames_per_second: "33.33",
-        steps: "50/250",
-    },
-    Published {
-        figure: 12,
-        level: Some(2),
-        mesh: "81/128",
-        frames_per_second: "3.33",
-        steps: "18/150",
-    },
-    Published {
-        figure: 13,
-        level: None,
-        mesh: "289/512",
-        frames_per_second: "0.152",
-        steps: "0.2/10",
-    },
-    Published {
-        figure: 14,
-        level: None,
-        mesh: "81/128",
-        frames_per_second: "1.67",
-        steps: "2/150",
-    },
-    Published {
-        figure: 15,
-        level: None,
-        mesh: "244/440",
-        frames_per_second: "0.435",
-        steps: "1.5/30",
-    },
+    Published::new(11, Some(1), ["25/32", "33.33", "50/250"]),
+    Published::new(12, Some(2), ["81/128", "3.33", "18/150"]),
+    Published::new(13, None, ["289/512", "0.152", "0.2/10"]),
+    Published::new(14, None, ["81/128", "1.67", "2/150"]),
+    Published::new(15, None, ["244/440", "0.435", "1.5/30"]),
 ];
 
 /// Our run of a figure, with everything that it meets, and without contact of the sheet with itself.
@@ -72,7 +55,7 @@ fn runs_of(figure: u8, context: &Context<'_>) -> Result<[RunSummary; 2]> {
 }
 
 /// The scene of a figure without contact of the sheet with itself.
-fn free(figure: u8, effort: RenderEffort) -> Result<FigureScene> {
+fn free(figure: u8, effort: Effort) -> Result<FigureScene> {
     match figure {
         11 | 12 => crumple::without_contact(u32::from(figure - 10), effort),
         13 => stamping::scene(effort)?.without_self_contact("stamping-free"),
@@ -94,7 +77,7 @@ fn pages(context: &Context<'_>) -> Result<Vec<Play>> {
 }
 
 /// The paper's scheme on a mesh, with ever more help: the last one is the scene file.
-fn variants(level: u32, effort: RenderEffort) -> Result<[(&'static str, FigureScene); 6]> {
+fn variants(level: u32, effort: Effort) -> Result<[(&'static str, FigureScene); 6]> {
     let published = [
         "method.chart.coordinates=front",
         "method.chart.equations=published",
@@ -114,29 +97,26 @@ fn variants(level: u32, effort: RenderEffort) -> Result<[(&'static str, FigureSc
             // Cramer's rule is used for the 16 coordinates of M^1 alone.
             all.push("method.chart.solver=dense_lu".to_owned());
         }
-        if effort == RenderEffort::Quick {
+        if effort == Effort::Quick {
             all.push("stop.time=0.2".to_owned());
         }
         FigureScene::of("fig10", "chart", &all)
     };
+    let creases = "and a coordinate for every straight crease (Fig. 7)";
+    let coarser = "the same, ε = 50 % (steps of the paper's size)";
+    let formed_anew = "ε = 0.1 %, and momenta formed anew at each step";
+    let straight: [&[&str]; 2] = [&published, &free_creases];
+    let [with_coarse, with_reformed] =
+        [&coarse, &reformed].map(|last| [straight[0], straight[1], last]);
     Ok([
         (
             "published scheme, from exactly flat",
             scene(&[&published, &flat])?,
         ),
         ("the same, from slightly crumpled", scene(&[&published])?),
-        (
-            "and a coordinate for every straight crease (Fig. 7)",
-            scene(&[&published, &free_creases])?,
-        ),
-        (
-            "the same, ε = 50 % (steps of the paper's size)",
-            scene(&[&published, &free_creases, &coarse])?,
-        ),
-        (
-            "ε = 0.1 %, and momenta formed anew at each step",
-            scene(&[&published, &free_creases, &reformed])?,
-        ),
+        (creases, scene(&straight)?),
+        (coarser, scene(&with_coarse)?),
+        (formed_anew, scene(&with_reformed)?),
         (
             "and positions projected, in a well-conditioned chart",
             scene(&[])?,
@@ -144,56 +124,103 @@ fn variants(level: u32, effort: RenderEffort) -> Result<[(&'static str, FigureSc
     ])
 }
 
-pub(super) fn make(context: &Context<'_>) -> Result<Made> {
-    let mut rows = Vec::new();
-    let mut facts = Vec::new();
-    let mut contact = Vec::new();
-    // Whether the scheme as published is refused at the start on all meshes.
-    let mut refused = true;
-    let patience = match context.effort {
-        RenderEffort::Full => 60.0,
-        RenderEffort::Quick => 0.5,
-    };
-    for published in &PUBLISHED {
+/// The runs of a row of the paper's table.
+struct Tried {
+    published: &'static Published,
+    ours: RunSummary,
+    /// Without contact of the sheet with itself.
+    free: RunSummary,
+    /// The paper's scheme with ever more help.
+    charts: Vec<(&'static str, ChartSummary)>,
+}
+
+impl Tried {
+    fn of(published: &'static Published, context: &Context<'_>) -> Result<Self> {
         let [ours, free] = runs_of(published.figure, context)?;
-        rows.push(vec![
-            format!("{}", published.figure),
-            published.mesh.into(),
-            "the paper, its computer".into(),
-            published.frames_per_second.into(),
-            published.steps.into(),
-            String::new(),
-        ]);
-        let mesh = format!("{}/{}", ours.vertices, ours.faces);
-        rows.push(default_row(&mesh, &ours));
-        contact.push(contact_row(published.figure, &mesh, &ours, &free));
-        let mut chart = Vec::new();
+        let patience = context.effort.quick_or(0.5, 60.0);
+        let mut charts = Vec::new();
         if let Some(level) = published.level {
             for (name, scene) in variants(level, context.effort)? {
                 let title = format!("published scheme, M^{level}");
-                let s = runs::chart_run(&title, &scene, patience)?;
-                let chart_of_scene = scene.scene().method.chart.as_ref();
-                if chart_of_scene.is_some_and(|c| c.coordinates == Coordinates::Front) {
-                    refused &= matches!(s.fate, Fate::Refused { .. });
-                }
-                rows.push(chart_row(&mesh, name, &s));
-                chart.push(serde_json::to_value(&s)?);
+                charts.push((name, runs::chart_run(&title, &scene, patience)?));
             }
         }
-        facts.push(
-            json!({ "figure": published.figure, "default": ours, "without_self_contact": free, "published_scheme": chart }),
-        );
+        Ok(Self {
+            published,
+            ours,
+            free,
+            charts,
+        })
     }
-    let verdict = if refused {
-        "As published, the scheme cannot start on either mesh: in the union jack every inner vertex of degree 4 keeps one of its creases \
-         straight, which is the degenerate case of Fig. 7, flat or not. The rows below help it step by step until it runs. "
-    } else {
-        ""
-    };
+
+    /// Whether the scheme as published was refused at the start, if it was tried.
+    fn is_refused(&self) -> bool {
+        self.charts.iter().all(|(_, s)| {
+            let chart = s.run.scene().method.chart.as_ref();
+            let is_published = chart.is_some_and(|c| c.coordinates == Coordinates::Front);
+            !is_published || matches!(s.fate, Fate::Refused { .. })
+        })
+    }
+
+    /// Rows of the table: the paper's, ours, and the paper's scheme.
+    fn rows(&self) -> Vec<Vec<String>> {
+        let (figure, p) = (self.published.figure.to_string(), self.published);
+        let paper = [
+            &figure,
+            p.mesh,
+            "the paper, its computer",
+            p.frames_per_second,
+            p.steps,
+            "",
+        ];
+        let mesh = format!("{}/{}", self.ours.vertices, self.ours.faces);
+        let mut rows = vec![
+            paper.map(str::to_owned).to_vec(),
+            default_row(&mesh, &self.ours),
+        ];
+        rows.extend(
+            self.charts
+                .iter()
+                .map(|(name, s)| chart_row(&mesh, name, s)),
+        );
+        rows
+    }
+
+    fn facts(&self) -> Value {
+        let charts: Vec<&ChartSummary> = self.charts.iter().map(|(_, s)| s).collect();
+        json!({ "figure": self.published.figure, "default": self.ours, "without_self_contact": self.free, "published_scheme": charts })
+    }
+}
+
+/// What is said where the scheme as published cannot start.
+const REFUSED: &str = "As published, the scheme cannot start on either mesh: in the union jack every inner vertex of degree 4 keeps one of its creases \
+                       straight, which is the degenerate case of Fig. 7, flat or not. The rows below help it step by step until it runs. ";
+
+pub(super) fn make(context: &Context<'_>) -> Result<Made> {
+    let all = PUBLISHED
+        .iter()
+        .map(|published| Tried::of(published, context));
+    let all: Vec<Tried> = all.collect::<Result<_>>()?;
+    let is_refused = all.iter().all(Tried::is_refused);
+    let verdict = if is_refused { REFUSED } else { "" };
+    let head = [
+        "Fig.",
+        "V/F",
+        "scheme",
+        "frames/s",
+        "step min/max (ms)",
+        "outcome",
+    ];
+    let table = Table::new("Fig. 10: the paper's columns beside ours", &head);
     let machine = machine();
+    // Why the coordinates of the front do not carry far.
+    let condition = condition_table(0..context.effort.quick_or(2, 5))?;
+    let condition = crate::condition::plot(&condition);
+    let alt = "Condition number of the mass matrix in the paper's coordinates and in chosen Cartesian ones, by mesh level";
     Ok(Made {
-        title: "Performance",
-        paper: "Frames per second and step sizes of the examples, on a Pentium III at 937 MHz.",
+        title: "Performance".into(),
+        paper: "Frames per second and step sizes of the examples, on a Pentium III at 937 MHz."
+            .into(),
         measured: format!(
             "{verdict}A frame is the state of the sheet 1/60 s of simulated time after the one before; frames per second are frames over the \
              wall time of the steps on one core, without drawing and writing (the paper does not say how long its frames are). Our runs \
@@ -204,40 +231,13 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
              displacements of up to 10 % of an edge, put back onto the edge lengths. The plot: condition number of the mass matrix of bent sheets; \
              beyond 1/ε nothing is left of a dense solve, whichever method is used."
         ),
-        pictures: vec![condition(context.effort)?],
+        pictures: vec![Picture::svg("fig10-condition", &condition, alt)],
         pages: pages(context)?,
         tables: vec![
-            Table::new(
-                "Fig. 10: the paper's columns beside ours",
-                &[
-                    "Fig.",
-                    "V/F",
-                    "scheme",
-                    "frames/s",
-                    "step min/max (ms)",
-                    "outcome",
-                ],
-            )
-            .with_texts(rows),
-            contact_table(contact),
+            table.with_texts(all.iter().flat_map(Tried::rows)),
+            contact_table(&all),
         ],
-        facts: json!({ "machine": machine, "rows": facts }),
-    })
-}
-
-/// Why the coordinates of the front do not carry far: the condition number of their mass matrix.
-fn condition(effort: RenderEffort) -> Result<Picture> {
-    let levels = match effort {
-        RenderEffort::Full => 0..5,
-        RenderEffort::Quick => 0..2,
-    };
-    let alt = "Condition number of the mass matrix in the paper's coordinates and in chosen Cartesian ones, by mesh level";
-    Ok(Picture {
-        file: "fig10-condition.svg".into(),
-        alt: alt.into(),
-        bytes: crate::condition::plot(&condition_table(levels)?)
-            .to_svg(alt)?
-            .into_bytes(),
+        facts: json!({ "machine": machine, "rows": all.iter().map(Tried::facts).collect::<Vec<_>>() }),
     })
 }
 
@@ -273,57 +273,54 @@ fn default_row(mesh: &str, s: &RunSummary) -> Vec<String> {
 }
 
 /// What the paper does not report of its runs.
-fn contact_row(figure: u8, mesh: &str, s: &RunSummary, free: &RunSummary) -> Vec<String> {
-    let joules = |v: f64| {
+fn contact_table(all: &[Tried]) -> Table {
+    let joules = |v: f64| -> Cell {
         if v == 0.0 {
-            "0".to_owned()
-        } else {
-            format!("{v:.2e}").replace('-', "−")
+            return "0".into();
         }
+        format!("{v:.2e}").replace('-', "−").into()
     };
-    let e = &s.energy;
-    let step = 1e3 * s.wall / s.frames.max(1) as f64;
-    vec![
-        figure.to_string(),
-        mesh.into(),
-        format!("{:.2}", s.slowness()),
-        format!("{:.2}", free.slowness()),
-        format!("{:.1}", s.slowness() / free.slowness().max(1e-12)),
-        format!(
-            "{step:.1} ms, {:.0}",
-            s.iterations as f64 / s.frames.max(1) as f64
-        ),
-        format!("{:.0}", s.solves_per_second()),
-        format!("{:.0e}", s.max_strain).replace('-', "−"),
-        super::gap(s.smallest_gap),
-        joules(e.released),
-        joules(e.work),
-        joules(e.damped),
-        joules(e.friction),
-        joules(e.drift),
-    ]
-}
-
-fn contact_table(rows: Vec<Vec<String>>) -> Table {
-    Table::new("What the paper did not report. Slowness: seconds of wall time per simulated second, on one core, with and without contact of the sheet with \
+    let frames = |s: &RunSummary| s.frames.max(1) as f64;
+    Table::of(
+        "What the paper did not report. Slowness: seconds of wall time per simulated second, on one core, with and without contact of the sheet with \
                   itself (two different motions where it touches itself), and their ratio; a frame is 1/60 s; solves are Newton steps, each with a factorisation. \
                   Energies (J) at the end: potential energy released, work of the die, losses to damping and friction, and what the balance lacks: what \
-                  the implicit steps take out of fast motion.", &[
-            "Fig.",
-            "V/F",
-            "slowness",
-            "without self-contact",
-            "ratio",
-            "frame, solves in it",
-            "solves/s",
-            "largest strain",
-            "smallest gap",
-            "released",
-            "work",
-            "damping",
-            "friction",
-            "drift",
-        ]).with_texts(rows)
+                  the implicit steps take out of fast motion.",
+        all,
+        &[
+            ("Fig.", &|r| r.published.figure.to_string().into()),
+            ("V/F", &|r| {
+                format!("{}/{}", r.ours.vertices, r.ours.faces).into()
+            }),
+            ("slowness", &|r| format!("{:.2}", r.ours.slowness()).into()),
+            ("without self-contact", &|r| {
+                format!("{:.2}", r.free.slowness()).into()
+            }),
+            ("ratio", &|r| {
+                let ratio = r.ours.slowness() / r.free.slowness().max(1e-12);
+                format!("{ratio:.1}").into()
+            }),
+            ("frame, solves in it", &|r| {
+                let (step, solves) = (1e3 * r.ours.wall, r.ours.iterations as f64);
+                let [step, solves] = [step, solves].map(|all| all / frames(&r.ours));
+                format!("{step:.1} ms, {solves:.0}").into()
+            }),
+            ("solves/s", &|r| {
+                format!("{:.0}", r.ours.solves_per_second()).into()
+            }),
+            ("largest strain", &|r| {
+                format!("{:.0e}", r.ours.max_strain)
+                    .replace('-', "−")
+                    .into()
+            }),
+            ("smallest gap", &|r| super::gap(r.ours.smallest_gap).into()),
+            ("released", &|r| joules(r.ours.energy.released)),
+            ("work", &|r| joules(r.ours.energy.work)),
+            ("damping", &|r| joules(r.ours.energy.damped)),
+            ("friction", &|r| joules(r.ours.energy.friction)),
+            ("drift", &|r| joules(r.ours.energy.drift)),
+        ],
+    )
 }
 
 fn chart_row(mesh: &str, name: &str, s: &ChartSummary) -> Vec<String> {

@@ -1,16 +1,16 @@
 //! The frames of a run as a grid of shaded pictures.
 
-use super::RenderEffort;
+use super::{Context, Picture};
 use crate::interrupt;
-use crate::runs::FigureScene;
+use crate::runs::{self, FigureScene};
 use anyhow::{Context as _, Result};
 use isosheet_io::Trajectory;
 use isosheet_io::picture::{Camera, Image, Labelled, Look, SheetPicture, Solid, montage, render};
 use isosheet_mesh::VertexId;
 
 /// How a run is shown.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct View<'a> {
+#[derive(Clone, Debug)]
+pub(super) struct View {
     /// Where the viewer is, degrees.
     pub(super) azimuth: f64,
     pub(super) elevation: f64,
@@ -19,15 +19,15 @@ pub(super) struct View<'a> {
     /// Pictures in a row.
     pub(super) columns: usize,
     /// Vertices marked with a dot.
-    pub(super) pins: &'a [VertexId],
+    pub(super) pins: Vec<VertexId>,
     /// Bodies to draw, by number.
-    pub(super) bodies: &'a [usize],
+    pub(super) bodies: &'static [usize],
     /// Bodies are framed down to this depth below the start of the sheet, metres.
     pub(super) depth: f64,
 }
 
 /// Frames nearest to the wanted times; a run that ends before half of the last shows four evenly spread.
-pub(super) fn choose(trajectory: &Trajectory, wanted: &[f64]) -> Vec<usize> {
+fn choose(trajectory: &Trajectory, wanted: &[f64]) -> Vec<usize> {
     let times = trajectory.times();
     let end = times.last().copied().unwrap_or(0.0);
     let nearest = |t: f64| {
@@ -43,42 +43,39 @@ pub(super) fn choose(trajectory: &Trajectory, wanted: &[f64]) -> Vec<usize> {
     wanted.iter().map(|t| nearest(*t)).collect()
 }
 
-/// The chosen frames, seen by one camera that holds them all, as a PNG file.
-pub(super) fn sequence(
-    scene: &FigureScene,
-    trajectory: &Trajectory,
-    frames: &[usize],
-    view: &View<'_>,
-    effort: RenderEffort,
-) -> Result<Vec<u8>> {
-    let height = match effort {
-        RenderEffort::Full => 470,
-        RenderEffort::Quick => 170,
-    };
-    let images = pictures(scene, trajectory, frames, view, height)?;
-    let labelled: Vec<Labelled> = images
-        .into_iter()
-        .zip(frames)
-        .map(|(image, k)| Labelled {
-            image,
-            label: format!("{:.2} s", trajectory.times()[*k]),
-        })
-        .collect();
-    Ok(montage(&labelled, view.columns)?.to_png()?)
-}
-
 /// Height of a thumbnail, pixels.
 const THUMBNAIL: usize = 130;
 
-/// The last frame as a small PNG file.
-pub(super) fn thumbnail(
-    scene: &FigureScene,
-    trajectory: &Trajectory,
-    view: &View<'_>,
-) -> Result<Vec<u8>> {
-    let last = trajectory.len() - 1;
-    let images = pictures(scene, trajectory, &[last], view, THUMBNAIL)?;
-    Ok(images.first().context("a picture")?.to_png()?)
+/// A run that has been made, and how it is shown.
+#[derive(Clone, Debug)]
+pub(super) struct Shown<'a> {
+    pub(super) scene: &'a FigureScene,
+    pub(super) view: View,
+    pub(super) context: &'a Context<'a>,
+}
+
+impl Shown<'_> {
+    /// The frames nearest to some times (seconds) as a picture.
+    pub(super) fn picture(&self, file: &str, alt: &str, times: &[f64]) -> Result<Picture> {
+        let trajectory = runs::trajectory(self.context.store, self.scene)?;
+        let frames = choose(&trajectory, times);
+        let height = self.context.effort.quick_or(170, 470);
+        let images = pictures(self.scene, &trajectory, &frames, &self.view, height)?;
+        let labelled = images.into_iter().zip(&frames);
+        let labelled = labelled.map(|(image, k)| Labelled {
+            image,
+            label: format!("{:.2} s", trajectory.times()[*k]),
+        });
+        let all = montage(&labelled.collect::<Vec<_>>(), self.view.columns)?;
+        Ok(Picture::file(file, all.to_png()?, alt))
+    }
+
+    /// The last frame as a small PNG file.
+    pub(super) fn thumbnail(&self, trajectory: &Trajectory) -> Result<Vec<u8>> {
+        let last = [trajectory.len() - 1];
+        let images = pictures(self.scene, trajectory, &last, &self.view, THUMBNAIL)?;
+        Ok(images.first().context("a picture")?.to_png()?)
+    }
 }
 
 /// The chosen frames, seen by one camera that holds them all.
@@ -86,7 +83,7 @@ fn pictures(
     scene: &FigureScene,
     trajectory: &Trajectory,
     frames: &[usize],
-    view: &View<'_>,
+    view: &View,
     height: usize,
 ) -> Result<Vec<Image>> {
     let setup = scene.setup()?;
@@ -123,7 +120,7 @@ fn pictures(
         let picture = SheetPicture {
             topology: sheet.topology(),
             positions: x,
-            pins: view.pins,
+            pins: &view.pins,
             solids,
         };
         images.push(render(&picture, &camera, &look)?);

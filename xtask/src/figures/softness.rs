@@ -1,7 +1,7 @@
 //! How soft a sheet is, by mesh level: what the paper says of Figs. 11 and 12 by eye.
 
-use super::{Context, Picture, RenderEffort, Table};
-use crate::draw::{Axis, Colour, Legend, Line, Marker, Plot, Series, palette, row};
+use super::{Context, Effort, Picture, Table, whole_percent};
+use crate::draw::{Axis, Chart, Drawing, Marker, Series, palette, row};
 use crate::runs::{self, FigureScene, Member};
 use anyhow::Result;
 use isosheet_mesh::Dof;
@@ -93,12 +93,9 @@ fn smallest(values: &[f64]) -> f64 {
 /// Measures the falls of the scenes that `fall` gives for each level.
 pub(super) fn make(
     context: &Context<'_>,
-    fall: fn(u32, RenderEffort) -> Result<FigureScene>,
+    fall: fn(u32, Effort) -> Result<FigureScene>,
 ) -> Result<Softness> {
-    let (levels, members) = match context.effort {
-        RenderEffort::Full => (0..4, MEMBERS),
-        RenderEffort::Quick => (0..2, 2),
-    };
+    let (levels, members) = context.effort.quick_or((0..2, 2), (0..4, MEMBERS));
     let mut all = Vec::new();
     for level in levels {
         let scene = fall(level, context.effort)?;
@@ -116,11 +113,7 @@ pub(super) fn make(
     let alt =
         "How freely the sheet falls in its first moments, and its total bending, by mesh level";
     Ok(Softness {
-        picture: Picture {
-            file: "fig12-softness.svg".into(),
-            alt: alt.into(),
-            bytes: plots(&all).to_svg(alt)?.into_bytes(),
-        },
+        picture: Picture::svg("fig12-softness", &plots(&all), alt),
         table: table(&all),
         facts: Value::Array(
             all.iter()
@@ -130,125 +123,95 @@ pub(super) fn make(
     })
 }
 
-fn plots(all: &[Level]) -> crate::draw::Drawing {
-    let last = all.last().map_or(0.0, |l| f64::from(l.level));
-    let mesh = || {
-        let ticks = all
-            .iter()
-            .map(|l| (f64::from(l.level), format!("~M~^{{{}}}", l.level)));
-        Axis::linear("mesh", [-0.25, last + 0.25], ticks.collect())
-    };
-    let series = |name: &str, points: Vec<[f64; 2]>, colour: Colour, marker, line| Series {
-        name: name.to_owned(),
-        points,
-        colour,
-        marker,
-        line,
-    };
-    let cloud = |f: &dyn Fn(&Member) -> f64| {
-        all.iter()
-            .flat_map(|l| l.values(f).into_iter().map(|v| [f64::from(l.level), v]))
-            .collect::<Vec<_>>()
-    };
-    let line = |f: &dyn Fn(&Member) -> f64| {
-        all.iter()
-            .map(|l| [f64::from(l.level), mean(&l.values(f))])
-            .collect::<Vec<_>>()
-    };
-    let bending = |m: &Member| m.mean_bending;
-    let top = 1.1 * largest(&cloud(&bending).iter().map(|p| p[1]).collect::<Vec<_>>());
+fn plots(all: &[Level]) -> Drawing {
     let size = [165.0, 118.0];
+    let x = Axis::round("time (s)", [0.03, 0.12], 5);
+    let y = Axis::round("freedom of the fall", [0.0, 1.0], 4);
+    let left = Chart::new(x, y, size, all.iter().flat_map(freedom_series).collect());
+    let place = |l: &Level| f64::from(l.level);
+    let each = |l: &Level| {
+        l.values(bending)
+            .into_iter()
+            .map(|v| [place(l), v])
+            .collect()
+    };
+    let cloud: Vec<[f64; 2]> = all
+        .iter()
+        .flat_map(|l: &Level| -> Vec<_> { each(l) })
+        .collect();
+    let means = all.iter().map(|l| [place(l), mean(&l.values(bending))]);
+    let top = 1.1 * cloud.iter().map(|p| p[1]).fold(0.0, f64::max);
+    let ticks = all
+        .iter()
+        .map(|l| (place(l), format!("~M~^{{{}}}", l.level)));
+    let last = all.last().map_or(0.0, place);
+    let right = Chart::new(
+        Axis::linear("mesh", [-0.25, last + 0.25], ticks.collect()),
+        Axis::round("total bending (rad · side)", [0.0, top], 4),
+        size,
+        vec![
+            Series::dots("each fall", palette::SKY, Marker::Disc, cloud.clone()),
+            Series::line("mean", palette::INK, means.collect()).marked(Marker::Square),
+        ],
+    );
+    row(&[left.draw(), right.draw()], 26.0)
+}
+
+fn bending(fall: &Member) -> f64 {
+    fall.mean_bending
+}
+
+/// A line with few symbols, and its entry of the legend.
+fn freedom_series(l: &Level) -> [Series; 3] {
     let looks = [
         (palette::ORANGE, Marker::Diamond),
         (palette::VERMILION, Marker::Square),
         (palette::GREEN, Marker::Triangle),
         (palette::BLUE, Marker::Disc),
     ];
-    let mut first = Vec::new();
-    for l in all {
-        let (colour, marker) = looks[l.level as usize % looks.len()];
-        first.push(series("", l.freedom.clone(), colour, None, Line::Solid));
-        let marked = l.freedom.iter().skip(20).step_by(40).copied().collect();
-        first.push(series("", marked, colour, Some(marker), Line::None));
-        let entry = series(
-            &format!("~M~^{{{}}}", l.level),
-            Vec::new(),
-            colour,
-            Some(marker),
-            Line::Solid,
-        );
-        first.push(entry);
-    }
-    let left = Plot {
-        x: Axis::round("time (s)", [0.03, 0.12], 5),
-        y: Axis::round("freedom of the fall", [0.0, 1.0], 4),
-        size,
-        series: first,
-        legend: Legend::Right,
-    };
-    let right = Plot {
-        x: mesh(),
-        y: Axis::round("total bending (rad · side)", [0.0, top], 4),
-        size,
-        series: vec![
-            series(
-                "each fall",
-                cloud(&bending),
-                palette::SKY,
-                Some(Marker::Disc),
-                Line::None,
-            ),
-            series(
-                "mean",
-                line(&bending),
-                palette::INK,
-                Some(Marker::Square),
-                Line::Solid,
-            ),
-        ],
-        legend: Legend::Right,
-    };
-    row(&[left.draw(), right.draw()], 26.0)
+    let (colour, marker) = looks[l.level as usize % looks.len()];
+    let marked = l.freedom.iter().skip(20).step_by(40).copied();
+    let name = format!("~M~^{{{}}}", l.level);
+    [
+        Series::line("", colour, l.freedom.clone()),
+        Series::dots("", colour, marker, marked.collect()),
+        Series::line(&name, colour, Vec::new()).marked(marker),
+    ]
 }
 
 fn table(all: &[Level]) -> Table {
-    let range = |v: &[f64], digits: usize| {
-        format!(
-            "{:.digits$} ({:.digits$}–{:.digits$})",
-            mean(v),
-            smallest(v),
-            largest(v)
-        )
-    };
-    let rows = all.iter().map(|l| {
-        vec![
-            format!("M{}", ["⁰", "¹", "²", "³"][l.level as usize % 4]),
-            format!("{}/{}", l.vertices, l.faces),
-            l.internal.to_string(),
-            format!("{:.0} %", 100.0 * l.early()),
-            range(&l.values(|m| m.mean_bending), 2),
-            range(&l.values(|m| m.shape.extent), 2),
-            range(&l.values(|m| m.shape.centre_depth), 3),
-        ]
-    });
-    Table::new(format!(
-            "Softness by mesh. Freedom of the fall, {EARLY} s after the sheet was let go from exactly flat: how far its centre of mass \
+    let caption = format!(
+        "Softness by mesh. Freedom of the fall, {EARLY} s after the sheet was let go from exactly flat: how far its centre of mass \
              has sunk, between the same masses welded to a rigid plate (0 %) and free fall (100 %). The other columns: mean (range) of \
              {} falls from flat up to a random {:.1} % of an edge. Total bending, averaged over the run: sum of edge length (in \
              sides) times fold angle, which does not depend on how many edges share a bend. Width: largest horizontal distance \
              at the end. Depth of the centre of mass at the end, between a rigid plate ({:.4}) and the limit of any unstretchable sheet \
              ({:.4}), in sides: it depends on the folds in which a sheet happens to come to rest, more than on the mesh.",
-            all.first().map_or(0, |l| l.falls.len()),
-            100.0 * BUMP,
-            runs::PLATE,
-            runs::LIMIT,
-        ), &[
-            "mesh",
-            "V/F",
-            "internal DOF",
-            "freedom of the fall",
-            "total bending",
-            "width",
-            "depth of the centre",
-        ]).with_texts(rows)
+        all.first().map_or(0, |l| l.falls.len()),
+        100.0 * BUMP,
+        runs::PLATE,
+        runs::LIMIT,
+    );
+    let range = |l: &Level, digits: usize, f: fn(&Member) -> f64| {
+        let v = l.values(f);
+        let (mean, low, high) = (mean(&v), smallest(&v), largest(&v));
+        format!("{mean:.digits$} ({low:.digits$}–{high:.digits$})").into()
+    };
+    Table::of(
+        caption,
+        all,
+        &[
+            ("mesh", &|l| {
+                format!("M{}", ["⁰", "¹", "²", "³"][l.level as usize % 4]).into()
+            }),
+            ("V/F", &|l| format!("{}/{}", l.vertices, l.faces).into()),
+            ("internal DOF", &|l| l.internal.to_string().into()),
+            ("freedom of the fall", &|l| whole_percent(l.early()).into()),
+            ("total bending", &|l| range(l, 2, bending)),
+            ("width", &|l| range(l, 2, |m| m.shape.extent)),
+            ("depth of the centre", &|l| {
+                range(l, 3, |m| m.shape.centre_depth)
+            }),
+        ],
+    )
 }

@@ -1,21 +1,17 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
-use super::play::play;
-use super::sequence::{View, choose, sequence};
-use super::{Context, Made, Picture, Play, RenderEffort};
-use crate::draw::{Axis, Legend, Line, Plot, Series, palette};
+use super::sequence::{Shown, View};
+use super::{Context, Effort, Made, Picture, Play};
+use crate::draw::{Axis, Chart, Series, palette};
 use crate::runs::{self, FigureScene};
 use anyhow::{Context as _, Result};
 use isosheet_io::scene::{Course, Obstacle, Profile, Scene, Shape};
 use serde_json::json;
 
 /// The scene of the figure.
-pub(super) fn scene(effort: RenderEffort) -> Result<FigureScene> {
-    let edits: &[&str] = match effort {
-        RenderEffort::Full => &[],
-        RenderEffort::Quick => &["sheet.mesh.square.level=1", "stop.time=0.13333333333333333"],
-    };
-    let edits: Vec<String> = edits.iter().map(|e| (*e).to_owned()).collect();
+pub(super) fn scene(effort: Effort) -> Result<FigureScene> {
+    let quick = ["sheet.mesh.square.level=1", "stop.time=0.13333333333333333"];
+    let edits = effort.quick_or(quick.map(str::to_owned).to_vec(), Vec::new());
     FigureScene::of("fig13", "stamping", &edits)
 }
 
@@ -68,15 +64,23 @@ impl Tools {
 const STROKES: [f64; 6] = [0.0, 0.3, 0.5, 0.7, 0.85, 1.0];
 
 /// How the run is shown. The holders would hide the sheet.
-const VIEW: View<'static> = View {
+const VIEW: View = View {
     azimuth: -58.0,
     elevation: 30.0,
     distance: 3.0,
     columns: 3,
-    pins: &[],
+    pins: Vec::new(),
     bodies: &[DIE, FRAME],
     depth: 0.03,
 };
+
+fn shown<'a>(scene: &'a FigureScene, context: &'a Context<'_>) -> Shown<'a> {
+    Shown {
+        scene,
+        view: VIEW,
+        context,
+    }
+}
 
 /// The page that plays a run.
 pub(super) fn page(figure: u8, scene: &FigureScene, context: &Context<'_>) -> Result<Play> {
@@ -85,7 +89,7 @@ pub(super) fn page(figure: u8, scene: &FigureScene, context: &Context<'_>) -> Re
     } else {
         "stamping, the sheet passing through itself"
     };
-    play(figure, label, scene, &VIEW, context)
+    shown(scene, context).play(figure, label)
 }
 
 pub(super) fn make(context: &Context<'_>) -> Result<Made> {
@@ -93,7 +97,6 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let (tools, blank) = (Tools::of(scene.scene())?, scene.sheet()?);
     let density = scene.scene().sheet.density;
     let run = runs::ensure(context.store, &scene)?;
-    let trajectory = runs::trajectory(context.store, &scene)?;
     let forces = runs::forces(context.store, &scene, DIE)?;
     let full = tools.duration;
     let speed = tools.stroke / full;
@@ -105,12 +108,14 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
         .collect();
     let peak = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
     let weight = 9.8 * density * blank.area();
-    let frames = choose(&trajectory, &STROKES.map(|s| s * full));
-    let image = sequence(&scene, &trajectory, &frames, &VIEW, context.effort)?;
+    let pressed =
+        "A square die rises through the opening of a frame and punches the sheet that lies on it";
+    let times = STROKES.map(|s| s * full);
+    let plot = plot(&curve, weight, 1e3 * tools.stroke, peak);
     let alt = "Force of the sheet on the die over its stroke";
     Ok(Made {
-        title: "Sheet metal stamping",
-        paper: "A square die punches a sheet (M³, 289/512) upwards; the sequence shows how the buckled developable surface is formed.",
+        title: "Sheet metal stamping".into(),
+        paper: "A square die punches a sheet (M³, 289/512) upwards; the sequence shows how the buckled developable surface is formed.".into(),
         measured: format!(
             "A blank of {:.1} m and {:.1} kg/m² (half a millimetre of steel) lies on a frame with a square opening of {:.0} mm; a die of {:.0} mm rises through it at \
              {:.0} mm/s. Holding: friction {} on all tools, weight, and four holders (not drawn) {:.0} mm wide above the middles of the frame's \
@@ -136,45 +141,21 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
             super::gap(run.smallest_gap),
         ),
         pictures: vec![
-            Picture {
-                file: "fig13.png".into(),
-                alt: "A square die rises through the opening of a frame and punches the sheet that lies on it".into(),
-                bytes: image,
-            },
-            Picture {
-                file: "fig13-force.svg".into(),
-                alt: alt.into(),
-                bytes: plot(&curve, weight, 1e3 * tools.stroke, peak).draw().to_svg(alt)?.into_bytes(),
-            },
+            shown(&scene, context).picture("fig13.png", pressed, &times)?,
+            Picture::svg("fig13-force", &plot.draw(), alt),
         ],
         pages: vec![page(13, &scene, context)?],
-        tables: Vec::new(),
         facts: json!({ "run": run, "peak_force": peak, "weight": weight, "stroke_mm_and_force_n": curve }),
+        ..Made::default()
     })
 }
 
-fn plot(curve: &[[f64; 2]], weight: f64, stroke: f64, peak: f64) -> Plot {
-    let top = 1.1 * peak.max(weight);
-    Plot {
-        x: Axis::round("stroke (mm)", [0.0, stroke], 5),
-        y: Axis::round("force on the die (N)", [0.0, top], 5),
-        size: [230.0, 130.0],
-        series: vec![
-            Series {
-                name: "force".into(),
-                points: curve.to_vec(),
-                colour: palette::BLUE,
-                marker: None,
-                line: Line::Solid,
-            },
-            Series {
-                name: "weight".into(),
-                points: vec![[0.0, weight], [stroke, weight]],
-                colour: palette::GREY,
-                marker: None,
-                line: Line::Dashed,
-            },
-        ],
-        legend: Legend::Right,
-    }
+fn plot(curve: &[[f64; 2]], weight: f64, stroke: f64, peak: f64) -> Chart {
+    let x = Axis::round("stroke (mm)", [0.0, stroke], 5);
+    let y = Axis::round("force on the die (N)", [0.0, 1.1 * peak.max(weight)], 5);
+    let series = vec![
+        Series::line("force", palette::BLUE, curve.to_vec()),
+        Series::guide("weight", vec![[0.0, weight], [stroke, weight]]),
+    ];
+    Chart::new(x, y, [230.0, 130.0], series)
 }

@@ -1,33 +1,10 @@
 //! What a hard case is, and what is found in it.
 
-use super::scenes::Course;
+use super::scenes::{Course, STRAIN};
 use crate::draw::Drawing;
-use crate::report::{Picture, PictureRef, Table, number};
+use crate::report::{Effort, Picture, Table, number};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
-
-/// How much work to put in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Effort {
-    /// Seconds.
-    Quick,
-    /// Minutes.
-    Standard,
-    /// As long as it takes.
-    Full,
-}
-
-impl Effort {
-    /// The value for this effort.
-    pub(super) fn pick<T>(self, quick: T, standard: T, full: T) -> T {
-        match self {
-            Self::Quick => quick,
-            Self::Standard => standard,
-            Self::Full => full,
-        }
-    }
-}
 
 /// A hard case.
 pub(crate) struct Case {
@@ -212,7 +189,7 @@ pub(crate) struct Naive {
 }
 
 /// What was found in a case.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Findings {
     pub(crate) naive: Vec<Naive>,
     pub(crate) here: String,
@@ -222,19 +199,24 @@ pub(crate) struct Findings {
 }
 
 impl Findings {
-    /// What a naive method did.
-    pub(super) fn naive(
-        &mut self,
-        method: &str,
-        outcome: impl Into<String>,
-        failed: bool,
-    ) -> &mut Self {
+    /// What a naive method did, and whether it failed.
+    pub(super) fn naive(&mut self, method: &str, outcome: impl Into<String>, failed: bool) {
         self.naive.push(Naive {
             method: method.to_owned(),
             outcome: outcome.into(),
             failed,
         });
-        self
+    }
+
+    /// What a naive method did that may break down, which is a failure.
+    pub(super) fn naive_run<T>(
+        &mut self,
+        method: &str,
+        outcome: Result<T, String>,
+        judge: impl FnOnce(T) -> (String, bool),
+    ) {
+        let (text, failed) = outcome.map_or_else(|e| (format!("{e}."), true), judge);
+        self.naive(method, text, failed);
     }
 
     /// A number with an upper bound.
@@ -270,15 +252,50 @@ impl Findings {
         &mut self.checks[at]
     }
 
-    /// A drawing.
-    pub(super) fn drawing(&mut self, file: &str, drawing: &Drawing, alt: &str) -> Result<()> {
-        self.pictures.push(Picture::svg(file, drawing, alt)?);
-        Ok(())
+    /// Numbers of a run, which are none if it ended early; `what` says which run.
+    pub(super) fn of<'a>(&'a mut self, course: &'a Course, what: impl Into<String>) -> Judge<'a> {
+        Judge {
+            findings: self,
+            course,
+            what: what.into(),
+        }
     }
 
-    /// A table.
-    pub(super) fn table(&mut self, caption: &str, head: &[&str], rows: Vec<Vec<String>>) {
-        self.tables.push(Table::new(caption, head).with_texts(rows));
+    /// A drawing.
+    pub(super) fn drawing(&mut self, file: &str, drawing: &Drawing, alt: &str) {
+        self.pictures.push(Picture::svg(file, drawing, alt));
+    }
+}
+
+/// Judges the numbers of a run.
+pub(super) struct Judge<'a> {
+    findings: &'a mut Findings,
+    course: &'a Course,
+    what: String,
+}
+
+impl Judge<'_> {
+    /// A number with an upper bound.
+    pub(super) fn at_most(&mut self, quantity: &str, value: f64, bound: f64) -> &mut Check {
+        self.check(quantity, value, Bound::AtMost(bound))
+    }
+
+    /// A number with a lower bound.
+    pub(super) fn at_least(&mut self, quantity: &str, value: f64, bound: f64) -> &mut Check {
+        self.check(quantity, value, Bound::AtLeast(bound))
+    }
+
+    /// The largest edge strain of the run, bounded by [`STRAIN`].
+    pub(super) fn strain(&mut self, quantity: &str) -> &mut Check {
+        self.at_most(quantity, self.course.strain, STRAIN)
+    }
+
+    fn check(&mut self, quantity: &str, value: f64, bound: Bound) -> &mut Check {
+        let (what, value) = (
+            format!("{}: {quantity}", self.what),
+            self.course.if_finished(value),
+        );
+        self.findings.check(what, value, bound).ended(self.course)
     }
 }
 
@@ -312,11 +329,7 @@ pub(crate) struct Record {
     pub(crate) name: String,
     pub(crate) title: String,
     pub(crate) expected: String,
-    pub(crate) naive: Vec<Naive>,
-    pub(crate) here: String,
-    pub(crate) checks: Vec<Check>,
-    pub(crate) pictures: Vec<PictureRef>,
-    pub(crate) tables: Vec<Table>,
+    pub(crate) found: Findings,
     /// Wall time, seconds.
     pub(crate) wall: f64,
 }
@@ -324,7 +337,7 @@ pub(crate) struct Record {
 impl Record {
     /// The worst verdict of the checks.
     pub(super) fn verdict(&self) -> Verdict {
-        let has = |v| self.checks.iter().any(|c| c.verdict() == v);
+        let has = |v| self.found.checks.iter().any(|c| c.verdict() == v);
         [
             Verdict::Failed,
             Verdict::Cured,

@@ -1,19 +1,21 @@
 //! The paper's coordinates and its scheme: condition, an error that does not vanish with the step, the
 //! degenerate placement of Fig. 7.
 
-use super::scenes::{STRAIN, apart, course, methods, pinned};
-use super::{Case, Effort, Findings, plot};
+use super::scenes::{FRAME, apart, go, pinned, released};
+use super::{Case, Findings, log_log};
 use crate::condition;
 use crate::draw::Series;
+use crate::draw::spatial::{norm, sub};
 use crate::interrupt;
-use crate::report::number;
+use crate::methods::{energy_momentum, methods, rattle_composition};
+use crate::report::{Cell, Effort, Table, number};
 use crate::timing::{bumped, corner, hanging};
 use anyhow::Result;
 use isosheet_coords::assignment::Degenerate;
 use isosheet_coords::placement::{place_f, place_on_line};
 use isosheet_coords::{
-    AssignmentOptions, BentState, Branch, CartesianChart, Chart, Choice, ConditionRow, FrontChart,
-    RodSystem, TableChart, bent_square, condition_table,
+    AssignmentOptions, BentState, Branch, CartesianChart, Chart, ChartError, Choice, ConditionRow,
+    FrontChart, RodSystem, TableChart, bent_square, condition_table,
 };
 use isosheet_dynamics::chart::{
     ChartMechanics, ChartMethod, ChartOptions, ChartStepControl, Equations, MassSolverKind,
@@ -40,77 +42,75 @@ fn condition(effort: Effort) -> Result<Findings> {
         rows.extend(condition_table([level])?);
     }
     let worst = |chart, level| {
-        rows.iter()
-            .filter(|r| r.chart == chart && r.level == level)
-            .map(|r| r.condition)
-            .fold(0.0, f64::max)
+        let of = rows.iter().filter(|r| r.chart == chart && r.level == level);
+        of.map(|r| r.condition).fold(0.0, f64::max)
     };
     let finest = rows.iter().map(|r| r.level).max().unwrap_or(0);
     for level in 0..=finest {
-        f.at_most(
-            format!("M^{level}: condition number of the mass matrix, chosen Cartesian coordinates"),
-            worst(TableChart::Cartesian, level),
-            1e6,
-        );
+        let what =
+            format!("M^{level}: condition number of the mass matrix, chosen Cartesian coordinates");
+        f.at_most(what, worst(TableChart::Cartesian, level), 1e6);
     }
     // The velocity from the momenta, by the published way and by the sparse one, in the paper's coordinates.
-    let mut table = Vec::new();
+    let mut all = Vec::new();
     for level in 0..=effort.pick(1, 3, 3) {
         interrupt::check()?;
-        let (dense, _) = velocity_error(level, Coordinates::FrontCorner, MassSolverKind::DenseLu)?;
-        let (front, said) =
-            velocity_error(level, Coordinates::FrontCorner, MassSolverKind::Saddle)?;
-        let (chosen, _) = velocity_error(level, Coordinates::Cartesian, MassSolverKind::Saddle)?;
-        f.naive(
-            &format!("Dense LU of the mass matrix in the paper's coordinates, M^{level}"),
-            match dense {
-                Some(e) => format!(
-                    "Relative error of the velocities {}; condition number {:.0e}.",
-                    number(e),
-                    worst(TableChart::FrontCorner, level)
-                ),
-                None => format!(
-                    "Refused; condition number {:.0e}.",
-                    worst(TableChart::FrontCorner, level)
-                ),
-            },
-            dense.is_none_or(|e| e > 1e-4),
+        let front = Coordinates::FrontCorner;
+        let (dense, _) = velocity_error(level, front, MassSolverKind::DenseLu)?;
+        let (sparse, said) = velocity_error(level, front, MassSolverKind::Saddle)?;
+        let chosen = velocity_error(level, Coordinates::Cartesian, MassSolverKind::Saddle)?.0;
+        let condition = worst(TableChart::FrontCorner, level);
+        let condition = format!("condition number {condition:.0e}.");
+        let outcome = match dense {
+            Some(e) => format!(
+                "Relative error of the velocities {}; {condition}",
+                number(e)
+            ),
+            None => format!("Refused; {condition}"),
+        };
+        let method = format!("Dense LU of the mass matrix in the paper's coordinates, M^{level}");
+        f.naive(&method, outcome, dense.is_none_or(|e| e > 1e-4));
+        let what = format!(
+            "M^{level}: relative error of velocities from momenta, saddle point in chosen coordinates"
         );
-        let show = |e: Option<f64>| e.map_or("refused".to_owned(), number);
-        table.push(vec![
-            format!("M^{level}"),
-            show(dense),
-            show(front),
-            show(chosen),
-        ]);
-        f.at_most(
-            format!("M^{level}: relative error of velocities from momenta, saddle point in chosen coordinates"),
-            chosen.unwrap_or(f64::NAN),
-            1e-9,
-        )
-        .remark(said.filter(|_| chosen.is_none()));
+        f.at_most(what, chosen.unwrap_or(f64::NAN), 1e-9)
+            .remark(said.filter(|_| chosen.is_none()));
+        all.push((level, [dense, sparse, chosen]));
     }
-    f.table(
+    let show = |e: Option<f64>| Cell::from(e.map_or("refused".to_owned(), number));
+    f.tables.push(Table::of(
         "Relative error of the velocities v that belong to the momenta p = J^T M v",
+        all,
         &[
-            "mesh",
-            "front, dense LU",
-            "front, sparse saddle point",
-            "chosen Cartesian, saddle point",
+            ("mesh", &|r| format!("M^{}", r.0).into()),
+            ("front, dense LU", &|r| show(r.1[0])),
+            ("front, sparse saddle point", &|r| show(r.1[1])),
+            ("chosen Cartesian, saddle point", &|r| show(r.1[2])),
         ],
-        table,
-    );
+    ));
     f.here = format!(
         "The mass matrix of any chart is solved with one sparse saddle-point matrix, and coordinates are chosen by a rank-revealing \
          elimination: condition number {} on M^{finest}. A chart whose condition number leaves no digits is refused at the start.",
         number(worst(TableChart::Cartesian, finest))
     );
-    f.drawing(
-        "chart-condition",
-        &condition::plot(&rows),
-        "Condition number of the mass matrix of bent sheets by mesh level, in three systems of coordinates",
-    )?;
+    let alt = "Condition number of the mass matrix of bent sheets by mesh level, in three systems of coordinates";
+    f.drawing("chart-condition", &condition::plot(&rows), alt);
     Ok(f)
+}
+
+/// The paper's coordinates of a sheet that is held at a vertex, at positions `x`.
+fn front_chart(
+    sheet: &Sheet,
+    pin: VertexId,
+    degenerate: Degenerate,
+    x: &[f64],
+) -> Result<FrontChart, ChartError> {
+    let options = AssignmentOptions {
+        pins: vec![pin],
+        degenerate,
+        ..Default::default()
+    };
+    FrontChart::new(sheet, &options, x)
 }
 
 #[derive(Clone, Copy)]
@@ -145,21 +145,14 @@ fn velocity_error(
     let State { x, v: want, .. } = settle.state().clone();
     let model = pinned(&bent, &[pin])?;
     let chart: Box<dyn Chart> = match coordinates {
-        Coordinates::FrontCorner => {
-            let options = AssignmentOptions {
-                pins: vec![pin],
-                ..Default::default()
-            };
-            match FrontChart::new(&bent, &options, &x) {
-                Ok(chart) => Box::new(chart),
-                Err(e) => return Ok((None, Some(e.to_string()))),
-            }
+        Coordinates::FrontCorner => match front_chart(&bent, pin, Degenerate::default(), &x) {
+            Ok(chart) => Box::new(chart),
+            Err(e) => return Ok((None, Some(e.to_string()))),
+        },
+        Coordinates::Cartesian => {
+            let system = RodSystem::new(&bent, &[pin])?;
+            Box::new(CartesianChart::new(system, Choice::Auto, &x)?)
         }
-        Coordinates::Cartesian => Box::new(CartesianChart::new(
-            RodSystem::new(&bent, &[pin])?,
-            Choice::Auto,
-            &x,
-        )?),
     };
     let found = (|| {
         let mut mechanics = ChartMechanics::new(model, chart, solver)?;
@@ -174,10 +167,8 @@ fn velocity_error(
     Ok(match found {
         Ok(v) if v.iter().all(|v| v.is_finite()) => {
             let scale = want.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-            (
-                Some(isosheet_tests::max_difference(&v, &want) / scale),
-                None,
-            )
+            let error = isosheet_tests::max_difference(&v, &want) / scale;
+            (Some(error), None)
         }
         Ok(_) => (None, Some("the velocities are not finite".into())),
         Err(e) => (None, Some(e.to_string())),
@@ -192,121 +183,105 @@ pub(crate) const LITERAL: Case = Case {
     run: literal,
 };
 
+/// Height of the bump (metres) and duration of the runs (seconds).
+const BUMP: f64 = 0.1;
+const END: f64 = 0.3;
+
 fn literal(effort: Effort) -> Result<Findings> {
-    const BUMP: f64 = 0.1;
-    const END: f64 = 0.3;
     let mut f = Findings::default();
-    let steps: Vec<usize> = effort.pick(
-        vec![75, 150, 300],
-        vec![75, 150, 300, 600, 1200, 2400],
-        vec![75, 150, 300, 600, 1200, 2400, 4800],
-    );
-    let reference = {
-        let mut run = hanging(0, BUMP, Method::RattleComposition(Default::default()))?;
-        course(&mut run, 1e-4, 3000, |_, _| {})?;
-        run.state().x.clone()
+    let counts = [75, 150, 300, 600, 1200, 2400, 4800];
+    let counts = &counts[..effort.pick(3, 6, 7)];
+    let mut run = hanging(0, BUMP, rattle_composition())?;
+    go(&mut run, 1e-4, 3000)?;
+    let reference = &run.state().x;
+    let chart = |method, equations| {
+        let errors = counts
+            .iter()
+            .map(|n| chart_error((method, equations), *n, reference));
+        errors.collect::<Result<Vec<f64>>>()
     };
-    let chart_error = |method, equations, n: usize| -> Result<f64> {
-        interrupt::check()?;
-        let sheet = bumped(0, BUMP)?;
-        let options = AssignmentOptions {
-            pins: vec![corner(0)],
-            degenerate: Degenerate::Assign,
-            ..Default::default()
-        };
-        let chart = FrontChart::new(&sheet, &options, sheet.positions())?;
-        let options = ChartOptions {
-            method,
-            equations,
-            position: if method == ChartMethod::RungeKutta4 {
-                PositionUpdate::Exact
-            } else {
-                PositionUpdate::Linear
-            },
-            control: ChartStepControl::Fixed(END / n as f64),
-            ..ChartOptions::default()
-        };
-        let start = State::at_rest(sheet.positions().to_vec());
-        let mut run = Simulation::in_chart(
-            pinned(&sheet, &[corner(0)])?,
-            start,
-            Box::new(chart),
-            options,
-        )?;
-        Ok(run
-            .step(END)
-            .map_or(f64::NAN, |_| apart(&run.state().x, &reference)))
-    };
-    let mut lines = Vec::new();
-    let mut all =
-        |k: usize, name: &str, error: &dyn Fn(usize) -> Result<f64>| -> Result<Vec<f64>> {
-            let errors = steps
-                .iter()
-                .map(|n| error(*n))
-                .collect::<Result<Vec<f64>>>()?;
-            let points = steps
-                .iter()
-                .zip(&errors)
-                .map(|(n, e)| [1e3 * END / *n as f64, *e])
-                .collect();
-            lines.push(Series::styled(k, name, points));
-            Ok(errors)
-        };
-    let euler = ChartMethod::ForwardEuler;
-    let published = all(1, "published", &|n| {
-        chart_error(euler, Equations::Published, n)
-    })?;
-    let reformed = all(3, "momenta re-formed", &|n| {
-        chart_error(euler, Equations::Reformed, n)
-    })?;
-    let full = all(2, "Hamilton, Runge–Kutta", &|n| {
-        chart_error(ChartMethod::RungeKutta4, Equations::Full, n)
-    })?;
-    let em = all(0, "energy-momentum", &|n| {
-        let mut run = hanging(0, BUMP, Method::EnergyMomentum(Default::default()))?;
-        let c = course(&mut run, END / n as f64, n, |_, _| {})?;
-        Ok(c.if_finished(apart(&run.state().x, &reference)))
-    })?;
-    let last = steps.len() - 1;
+    let published = chart(ChartMethod::ForwardEuler, Equations::Published)?;
+    let reformed = chart(ChartMethod::ForwardEuler, Equations::Reformed)?;
+    let full = chart(ChartMethod::RungeKutta4, Equations::Full)?;
+    let em = counts.iter().map(|n| {
+        let mut run = hanging(0, BUMP, energy_momentum())?;
+        let c = go(&mut run, END / *n as f64, *n)?;
+        Ok(c.if_finished(apart(&run.state().x, reference)))
+    });
+    let em: Vec<f64> = em.collect::<Result<_>>()?;
+    let last = counts.len() - 1;
     let order = |errors: &[f64]| orders(errors)[errors.len() - 2];
+    let step = |k: usize| number(1e3 * END / counts[k] as f64);
+    let outcome = format!(
+        "Position error after 0.3 s: {} m with steps of {} ms, {} m with {} ms; observed order {:.2}.",
+        number(published[0]),
+        step(0),
+        number(published[last]),
+        step(last),
+        order(&published)
+    );
+    let failed = order(&published).abs() < 0.2 && published[last] > 0.05;
     f.naive(
         "Forward Euler with the published equations, M^0",
-        format!(
-            "Position error after 0.3 s: {} m with steps of {} ms, {} m with {} ms; observed order {:.2}.",
-            number(published[0]),
-            number(1e3 * END / steps[0] as f64),
-            number(published[last]),
-            number(1e3 * END / steps[last] as f64),
-            order(&published)
-        ),
-        order(&published).abs() < 0.2 && published[last] > 0.05,
+        outcome,
+        failed,
     );
-    f.at_least(
-        "momenta formed anew at every step: order (exact: 1)",
-        order(&reformed),
-        0.9,
-    );
+    let what = "momenta formed anew at every step: order (exact: 1)";
+    f.at_least(what, order(&reformed), 0.9);
     f.at_least("energy-momentum: order (exact: 2)", order(&em), 1.9);
-    f.at_most(
-        "full Hamilton equations, Runge–Kutta: position error, m",
-        full[last],
-        1e-7,
-    );
-    f.at_least(
-        "error of the published scheme over that of energy-momentum at the same smallest step",
-        published[last] / em[last],
-        1e3,
-    );
+    let what = "full Hamilton equations, Runge–Kutta: position error, m";
+    f.at_most(what, full[last], 1e-7);
+    let what =
+        "error of the published scheme over that of energy-momentum at the same smallest step";
+    f.at_least(what, published[last] / em[last], 1e3);
     f.here = "The same sheet with momenta formed anew (first order), the full equations of Hamilton's principle (fourth order), and \
               without a chart (second order), against RATTLE's fourth-order composition at 0.1 ms."
         .into();
-    let drawing = plot::log_log("step, ms", "position error after 0.3 s, m", lines);
-    f.drawing(
-        "literal-scheme",
-        &drawing,
-        "Position error of M^0 held at a corner against the step",
-    )?;
+    let line = |(k, name, errors): (usize, &str, Vec<f64>)| {
+        let points = counts
+            .iter()
+            .zip(errors)
+            .map(|(n, e)| [1e3 * END / *n as f64, e]);
+        Series::styled(k, name, points.collect())
+    };
+    let lines = [
+        (1, "published", published),
+        (3, "momenta re-formed", reformed),
+        (2, "Hamilton, Runge–Kutta", full),
+        (0, "energy-momentum", em),
+    ];
+    let lines = lines.map(line).to_vec();
+    let drawing = log_log("step, ms", "position error after 0.3 s, m", lines);
+    let alt = "Position error of M^0 held at a corner against the step";
+    f.drawing("literal-scheme", &drawing, alt);
     Ok(f)
+}
+
+/// The distance from the reference of a run in the paper's coordinates, metres; NaN of one that does not end.
+fn chart_error(
+    (method, equations): (ChartMethod, Equations),
+    n: usize,
+    reference: &[f64],
+) -> Result<f64> {
+    interrupt::check()?;
+    let sheet = bumped(0, BUMP)?;
+    let chart = front_chart(&sheet, corner(0), Degenerate::Assign, sheet.positions())?;
+    let position = match method {
+        ChartMethod::RungeKutta4 => PositionUpdate::Exact,
+        _ => PositionUpdate::Linear,
+    };
+    let options = ChartOptions {
+        method,
+        equations,
+        position,
+        control: ChartStepControl::Fixed(END / n as f64),
+        ..ChartOptions::default()
+    };
+    let start = State::at_rest(sheet.positions().to_vec());
+    let model = pinned(&sheet, &[corner(0)])?;
+    let mut run = Simulation::in_chart(model, start, Box::new(chart), options)?;
+    let end = run.step(END);
+    Ok(end.map_or(f64::NAN, |_| apart(&run.state().x, reference)))
 }
 
 pub(crate) const COLLINEAR: Case = Case {
@@ -333,144 +308,94 @@ fn trilateration(p: [Vector3<f64>; 3], r: [f64; 3]) -> Vector3<f64> {
 
 fn collinear(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
-    let known = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.25, 0.0, 0.0]];
-    let vertex: [f64; 3] = [0.5, 0.6, 0.2];
-    let length = |k: usize| {
-        (0..3)
-            .map(|i| (vertex[i] - known[k][i]).powi(2))
-            .sum::<f64>()
-            .sqrt()
-    };
-    let lengths = [length(0), length(1), length(2)];
-    let points = known.map(Vector3::from);
-    let place = trilateration(points, lengths);
-    let off = (place - Vector3::from(vertex)).norm();
-    f.naive(
-        "Trilateration",
-        format!(
-            "With three known vertices on the x axis the place is ({}, {}, {}).",
-            place.x, place.y, place.z
-        ),
-        off.is_nan() || off > 1e-6,
-    );
-    let refs = [&known[0], &known[1], &known[2]];
-    let refused = place_f(refs, lengths, Branch::Above, 1e-9);
-    f.at_least(
-        "rule f refuses the exactly collinear case with a reason (1 yes, 0 no)",
-        f64::from(u8::from(refused.is_err())),
-        1.0,
-    )
-    .remark(refused.err().map(|e| e.to_string()));
-    let near = [0.52, 0.58, 0.21];
-    let carried = place_on_line(
-        [&known[0], &known[1]],
-        [lengths[0], lengths[1]],
-        &near,
-        1e-9,
-    )?;
-    let error = (0..3)
-        .map(|k| {
-            let d: f64 = (0..3)
-                .map(|i| (carried.position[i] - known[k][i]).powi(2))
-                .sum();
-            (d.sqrt() / lengths[k] - 1.0).abs()
-        })
-        .fold(0.0, f64::max);
-    f.at_most(
-        "carrying the angle over: relative error of the three lengths",
-        error,
-        1e-14,
-    );
+    placements(&mut f)?;
+    let outcome = paper_on_fold()?;
+    let method = "The paper's assignment on M^1 folded along its middle line";
+    f.naive_run(method, outcome, |strain| {
+        let text = format!("Runs; edge strain {}.", number(strain));
+        (text, false)
+    });
     // Every interior vertex of degree 4 keeps one straight crease; the bumped M^1 has four of them next to
     // its boundary.
     let sheet = bumped(1, 0.1)?;
-    let chart = |degenerate| {
-        let options = AssignmentOptions {
-            pins: vec![corner(1)],
-            degenerate,
-            ..Default::default()
-        };
-        FrontChart::new(&sheet, &options, sheet.positions())
+    let options = ChartOptions {
+        method: ChartMethod::RungeKutta4,
+        control: ChartStepControl::Fixed(1e-3),
+        rebase: Rebase::WhenNeeded,
+        ..ChartOptions::default()
     };
-    let run = |chart: FrontChart, rebase| -> Result<Result<f64, String>> {
-        let options = ChartOptions {
-            method: ChartMethod::RungeKutta4,
-            control: ChartStepControl::Fixed(1e-3),
-            rebase,
-            ..ChartOptions::default()
-        };
-        let start = State::at_rest(sheet.positions().to_vec());
-        let model = pinned(&sheet, &[corner(1)])?;
-        Ok(Simulation::in_chart(model, start, Box::new(chart), options)
-            .map_err(|e| e.to_string())
-            .and_then(|mut run| run.step(0.1).map(|r| r.strain).map_err(|e| e.to_string())))
-    };
-    let square = {
-        // Exactly folded along one crease, so that all others are straight.
-        let flat = generate::isotropic_square(1, 1.0)?;
-        flat.map_positions(|[x, y, _]| {
-            let (s, c) = 0.7_f64.sin_cos();
-            if x > 0.5 {
-                [0.5 + c * (x - 0.5), y, s * (x - 0.5)]
-            } else {
-                [x, y, 0.0]
-            }
-        })?
-    };
-    let options = AssignmentOptions {
-        pins: vec![corner(1)],
-        ..Default::default()
-    };
-    let outcome = FrontChart::new(&square, &options, square.positions())
-        .map_err(|e| e.to_string())
-        .and_then(|chart| {
-            let options = ChartOptions {
-                equations: Equations::Published,
-                rebase: Rebase::Never,
-                ..ChartOptions::default()
-            };
-            let model = pinned(&square, &[corner(1)]).map_err(|e| e.to_string())?;
-            Simulation::in_chart(
-                model,
-                State::at_rest(square.positions().to_vec()),
-                Box::new(chart),
-                options,
-            )
-            .map_err(|e| e.to_string())?
-            .step(0.1)
-            .map_err(|e| e.to_string())
-        });
-    f.naive(
-        "The paper's assignment on M^1 folded along its middle line",
-        match &outcome {
-            Ok(r) => format!("Runs; edge strain {}.", number(r.strain)),
-            Err(e) => format!("{e}."),
-        },
-        outcome.is_err(),
-    );
-    match chart(Degenerate::Assign) {
-        Ok(chart) => {
-            let result = run(chart, Rebase::WhenNeeded)?;
-            let strain = result.as_ref().copied().unwrap_or(f64::NAN);
-            f.at_most("a coordinate for every free angle: edge strain after 0.1 s of M^1 in the front's chart", strain, 1e-11)
-                .remark(result.err());
-        }
-        Err(e) => {
-            f.at_most("a coordinate for every free angle", f64::NAN, 1e-11)
-                .remark(Some(e.to_string()));
-        }
-    }
+    let result = front_strain(&sheet, Degenerate::Assign, options)?;
+    let what =
+        "a coordinate for every free angle: edge strain after 0.1 s of M^1 in the front's chart";
+    f.at_most(what, result.as_ref().copied().unwrap_or(f64::NAN), 1e-11)
+        .remark(result.err());
+    let square = folded_square()?;
     for (name, method) in methods().take(effort.pick(2, 3, 3)) {
-        let mut run =
-            super::scenes::at_rest(pinned(&square, &[corner(1)])?, square.positions(), method)?;
-        let c = course(&mut run, super::scenes::FRAME, 60, |_, _| {})?;
-        f.at_most(
-            format!("M^1 folded along its middle line, {name}: edge strain in 1 s"),
-            c.if_finished(c.strain),
-            STRAIN,
-        )
-        .remark(c.said());
+        let mut run = released(&square, &[corner(1)], method)?;
+        let c = go(&mut run, FRAME, 60)?;
+        f.of(&c, format!("M^1 folded along its middle line, {name}"))
+            .strain("edge strain in 1 s");
     }
     f.here = "Placement has a typed refusal for the case and two ways on; the chart-free methods do not know it at all.".into();
     Ok(f)
+}
+
+/// What the rules of placement do where the three known vertices are on a line.
+fn placements(f: &mut Findings) -> Result<()> {
+    let known = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.25, 0.0, 0.0]];
+    let vertex: [f64; 3] = [0.5, 0.6, 0.2];
+    let lengths = known.map(|k| norm(&sub(&vertex, &k)));
+    let place = trilateration(known.map(Vector3::from), lengths);
+    let off = (place - Vector3::from(vertex)).norm();
+    let [x, y, z]: [f64; 3] = place.into();
+    let outcome = format!("With three known vertices on the x axis the place is ({x}, {y}, {z}).");
+    f.naive("Trilateration", outcome, off.is_nan() || off > 1e-6);
+    let refused = place_f(known.each_ref(), lengths, Branch::Above, 1e-9);
+    let what = "rule f refuses the exactly collinear case with a reason (1 yes, 0 no)";
+    f.at_least(what, f64::from(u8::from(refused.is_err())), 1.0)
+        .remark(refused.err().map(|e| e.to_string()));
+    let (ends, near) = ([&known[0], &known[1]], [0.52, 0.58, 0.21]);
+    let carried = place_on_line(ends, [lengths[0], lengths[1]], &near, 1e-9)?.position;
+    let errors = known.iter().zip(lengths);
+    let errors = errors.map(|(k, length)| (norm(&sub(&carried, k)) / length - 1.0).abs());
+    let what = "carrying the angle over: relative error of the three lengths";
+    f.at_most(what, errors.fold(0.0, f64::max), 1e-14);
+    Ok(())
+}
+
+/// `M^1` exactly folded along one crease, so that all others are straight.
+fn folded_square() -> Result<Sheet> {
+    let (s, c) = 0.7_f64.sin_cos();
+    let flat = generate::isotropic_square(1, 1.0)?;
+    Ok(flat.map_positions(|[x, y, _]| {
+        let beyond = (x - 0.5).max(0.0);
+        [x - beyond + c * beyond, y, s * beyond]
+    })?)
+}
+
+/// The edge strain of the folded square after a step of the paper's scheme, or why there is none.
+fn paper_on_fold() -> Result<Result<f64, String>> {
+    let options = ChartOptions {
+        equations: Equations::Published,
+        rebase: Rebase::Never,
+        ..ChartOptions::default()
+    };
+    front_strain(&folded_square()?, Degenerate::default(), options)
+}
+
+/// The edge strain of `M^1` after 0.1 s in the paper's coordinates, or why there is none.
+fn front_strain(
+    sheet: &Sheet,
+    degenerate: Degenerate,
+    options: ChartOptions,
+) -> Result<Result<f64, String>> {
+    let chart = match front_chart(sheet, corner(1), degenerate, sheet.positions()) {
+        Ok(chart) => chart,
+        Err(e) => return Ok(Err(e.to_string())),
+    };
+    let start = State::at_rest(sheet.positions().to_vec());
+    let model = pinned(sheet, &[corner(1)])?;
+    let run = Simulation::in_chart(model, start, Box::new(chart), options);
+    let run = run.map_err(|e| e.to_string());
+    Ok(run.and_then(|mut run| run.step(0.1).map(|r| r.strain).map_err(|e| e.to_string())))
 }

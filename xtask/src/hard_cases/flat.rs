@@ -1,14 +1,17 @@
 //! Exactly flat starts, and passing through states where the rods are dependent.
 
-use super::naive::{TEXTBOOK, textbook, textbook_step};
-use super::scenes::{FRAME, STRAIN, apart, at_rest, conservative, course, damped, methods, pinned};
-use super::{Case, Effort, Findings, plot};
+use super::naive::{TEXTBOOK, textbook, textbook_steps};
+use super::scenes::{Course, FRAME, apart, course, go, pinned, released};
+use super::{Case, Findings, log_log};
 use crate::draw::Series;
 use crate::interrupt;
-use crate::report::Picture;
+use crate::methods::{Named, conservative, damped, methods};
+use crate::report::{Effort, Picture};
 use crate::timing::{bumped, corner};
 use anyhow::Result;
-use isosheet_coords::{AssignmentOptions, CartesianChart, Choice, FrontChart, RodSystem};
+use isosheet_coords::{
+    AssignmentOptions, CartesianChart, ChartError, Choice, FrontChart, RodSystem, mass_condition,
+};
 use isosheet_dynamics::chart::{ChartOptions, Rebase};
 use isosheet_dynamics::{Frames, Method, SheetModel, Simulation, State, rod_rank};
 use isosheet_io::picture::{Camera, Labelled, Look, SheetPicture, montage, render};
@@ -28,73 +31,38 @@ fn start(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
     let sheet = bumped(1, 0.0)?;
     let model = pinned(&sheet, &[corner(1)])?;
-    let options = AssignmentOptions {
-        pins: vec![corner(1)],
-        ..Default::default()
-    };
-    match FrontChart::new(&sheet, &options, sheet.positions()).and_then(|chart| {
-        isosheet_coords::mass_condition(
-            &RodSystem::new(&sheet, &[corner(1)])?,
-            &chart,
-            model.mass(),
-            sheet.positions(),
-        )
-    }) {
-        Ok(condition) => f.naive(
-            "The paper's coordinates",
-            format!("Their mass matrix has condition number {condition:.0e}."),
-            condition > 1e15,
-        ),
-        Err(error) => f.naive("The paper's coordinates", format!("{error}."), true),
-    };
+    let condition = front_condition(&sheet, &model).map_err(|e| e.to_string());
+    f.naive_run("The paper's coordinates", condition, |condition| {
+        let text = format!("Their mass matrix has condition number {condition:.0e}.");
+        (text, condition > 1e15)
+    });
     let outcome = textbook(&model, sheet.positions(), 1e-3, 1000);
-    let failed = !matches!(outcome, Ok((strain, _)) if strain < 1e-2);
-    f.naive(
-        TEXTBOOK,
-        match outcome {
-            Ok((strain, _)) => format!("M^1, 1 ms, 1 s: largest edge strain {strain:.0e}."),
-            Err(e) => format!("M^1, 1 ms, {e}."),
-        },
-        failed,
-    );
-    let levels = effort.pick(1..=1, 1..=3, 1..=4);
-    for level in levels {
+    let outcome = outcome.map_err(|e| format!("M^1, 1 ms, {e}"));
+    f.naive_run(TEXTBOOK, outcome, |(strain, _)| {
+        let text = format!("M^1, 1 ms, 1 s: largest edge strain {strain:.0e}.");
+        (text, strain.is_nan() || strain >= 1e-2)
+    });
+    for level in effort.pick(1..=1, 1..=3, 1..=4) {
         let sheet = bumped(level, 0.0)?;
         for (name, method) in damped() {
-            let model = pinned(&sheet, &[corner(level)])?;
-            let mut run = at_rest(model, sheet.positions(), method)?;
+            let mut run = released(&sheet, &[corner(level)], method)?;
             let mut potential = 0.0_f64;
             let c = course(&mut run, FRAME, 60, |r, _| {
                 potential = potential.min(r.potential);
             })?;
-            let what = format!("M^{level}, {name}");
-            f.at_most(
-                format!("{what}: largest edge strain in a second"),
-                c.if_finished(c.strain),
-                STRAIN,
-            )
-            .remark(c.said());
-            f.at_most(
-                format!("{what}: rejected steps"),
-                c.if_finished(c.rejected as f64),
-                0.0,
-            )
-            .remark(c.said());
-            f.at_least(
-                format!("{what}: largest energy released, J"),
-                c.if_finished(-potential),
-                0.1,
-            );
+            let mut judge = f.of(&c, format!("M^{level}, {name}"));
+            judge.strain("largest edge strain in a second");
+            judge.at_most("rejected steps", c.rejected as f64, 0.0);
+            judge.at_least("largest energy released, J", -potential, 0.1);
         }
     }
-    let rank = rod_rank(&model, sheet.positions());
+    let rank = rod_rank(&model, sheet.positions()).map_or(String::new(), |r| {
+        let (dependent, all) = (r.deficiency, r.rods);
+        format!("At the start of M^1 {dependent} of {all} rods are dependent.")
+    });
     f.here = format!(
         "The damped methods minimise an incremental potential over the positions with the right lengths, which has a solution at any \
-         rank; a seeded perturbation decides which way the sheet folds. {}",
-        rank.map_or(String::new(), |r| format!(
-            "At the start of M^1 {} of {} rods are dependent.",
-            r.deficiency, r.rods
-        ))
+         rank; a seeded perturbation decides which way the sheet folds. {rank}"
     );
     if effort != Effort::Quick {
         f.pictures.push(fall()?);
@@ -102,11 +70,23 @@ fn start(effort: Effort) -> Result<Findings> {
     Ok(f)
 }
 
+/// The condition number of the mass matrix in the paper's coordinates.
+fn front_condition(sheet: &Sheet, model: &SheetModel) -> Result<f64, ChartError> {
+    let pins = vec![corner(1)];
+    let system = RodSystem::new(sheet, &pins)?;
+    let options = AssignmentOptions {
+        pins,
+        ..Default::default()
+    };
+    let x = sheet.positions();
+    let chart = FrontChart::new(sheet, &options, x)?;
+    mass_condition(&system, &chart, model.mass(), x)
+}
+
 /// The fall of M^2, rendered.
 fn fall() -> Result<Picture> {
     let sheet = bumped(2, 0.0)?;
-    let model = pinned(&sheet, &[corner(2)])?;
-    let mut run = at_rest(model, sheet.positions(), Method::default())?;
+    let mut run = released(&sheet, &[corner(2)], Method::default())?;
     let mut kept = Frames::every(1);
     run.run(1.0, FRAME, &mut [&mut kept, &mut interrupt::observe])?;
     interrupt::check()?;
@@ -134,13 +114,10 @@ fn fall() -> Result<Picture> {
             label: format!("{t:.2} s"),
         });
     }
-    Ok(Picture {
-        file: "flat-start.png".into(),
-        alt: "M^2 released from exactly flat and horizontal, held at a corner (BDF2, 1/60 s). Warm: the upper side at the start; blue: \
-              the lower one."
-            .into(),
-        bytes: montage(&frames, 6)?.to_png()?,
-    })
+    let alt = "M^2 released from exactly flat and horizontal, held at a corner (BDF2, 1/60 s). Warm: the upper side at the start; blue: \
+               the lower one.";
+    let image = montage(&frames, 6)?.to_png()?;
+    Ok(Picture::file("flat-start.png", image, alt))
 }
 
 pub(crate) const BRANCH: Case = Case {
@@ -158,6 +135,11 @@ struct Crossing {
     model: SheetModel,
     start: State,
     sheet: Sheet,
+}
+
+/// The distance of the corners from their exact places at the end, metres.
+fn off_exact(flap: &Flap, x: &[f64]) -> f64 {
+    apart(&x[..12], &flap.exact(DURATION))
 }
 
 fn crossing(start_angle: f64) -> Result<Crossing> {
@@ -193,12 +175,60 @@ const DURATION: f64 = 1.0;
 
 fn branch(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
-    // In coordinates that do not change on the way.
+    let off = |error: f64| {
+        (
+            format!("Ends {error:.0e} m from the exact motion."),
+            error > 0.05,
+        )
+    };
+    let method = "Explicit steps of 1 ms in fixed coordinates";
+    f.naive_run(method, in_fixed_coordinates()?, off);
+    let counts = [50, 100, 200, 400, 800, 1600];
+    let counts = &counts[..effort.pick(2, 5, 6)];
+    let mut lines = Vec::new();
+    for (k, named) in methods().enumerate() {
+        let points = converges(&mut f, &named, counts)?;
+        lines.push(Series::styled(k, named.0, points));
+    }
+    // Started exactly there, with the velocities of one of the two ways.
+    let c = crossing(FRAC_PI_2)?;
+    let (mut x, mut v) = (c.start.x.clone(), c.start.v.clone());
+    let h = 0.01 * DURATION;
+    let outcome = textbook_steps(&c.model, (&mut x, &mut v), h, 100, |_, _, _| {});
+    let method = format!("{TEXTBOOK}, started at the branch point");
+    f.naive_run(&method, outcome, |()| off(off_exact(&c.flap, &x)));
+    for (name, method) in methods() {
+        let Crossing {
+            flap, model, start, ..
+        } = crossing(FRAC_PI_2)?;
+        let mut run = Simulation::new(model, start, method)?;
+        let c = go(&mut run, DURATION / 200.0, 200)?;
+        let is_first = ["implicit Euler", "projection"].contains(&name);
+        let bound = if is_first { 2e-2 } else { 1e-3 };
+        let what = format!("started exactly at the branch point, {name}, 200 steps");
+        f.of(&c, what)
+            .at_most("error, m", off_exact(&flap, &run.state().x), bound);
+    }
+    f.here = format!(
+        "All methods step across the flat state at t = {:.3} s and converge to the closed form at their orders. The half-angle \
+         starts at {:.2} rad and passes {FRAC_PI_2:.2}.",
+        flat_at()?,
+        crossing(FOLDED)?.flap.start_angle
+    );
+    let drawing = log_log("step, ms", "position error after 1 s, m", lines);
+    let alt = "Error against the closed form after passing through flat";
+    f.drawing("branch-point", &drawing, alt);
+    Ok(f)
+}
+
+/// How far the motion in coordinates that do not change on the way ends from the exact one, metres, or why it
+/// does not end.
+fn in_fixed_coordinates() -> Result<Result<f64, String>> {
     let Crossing {
+        flap,
         model,
         start,
         sheet,
-        ..
     } = crossing(FOLDED)?;
     let chart = CartesianChart::new(RodSystem::new(&sheet, &[])?, Choice::Auto, &start.x)?;
     let options = ChartOptions {
@@ -206,146 +236,62 @@ fn branch(effort: Effort) -> Result<Findings> {
         condition_limit: f64::MAX,
         ..ChartOptions::default()
     };
-    let outcome = Simulation::in_chart(model, start.clone(), Box::new(chart), options)
-        .map_err(|e| e.to_string())
-        .and_then(|mut run| {
-            run.run(DURATION, 0.01 * DURATION, &mut [])
-                .map_err(|e| e.to_string())?;
-            Ok(run.state().x.clone())
-        });
-    let crossing_at =
-        |x: &[f64]| crossing(FOLDED).map(|c| apart(&x[..12], &c.flap.exact(DURATION)));
-    match outcome {
-        Ok(x) => {
-            let error = crossing_at(&x)?;
-            f.naive(
-                "Explicit steps of 1 ms in fixed coordinates",
-                format!("Ends {error:.0e} m from the exact motion."),
-                error > 0.05,
-            );
-        }
-        Err(e) => {
-            f.naive(
-                "Explicit steps of 1 ms in fixed coordinates",
-                format!("{e}."),
-                true,
-            );
-        }
-    }
-    let counts = effort.pick(
-        vec![50, 100],
-        vec![50, 100, 200, 400, 800],
-        vec![50, 100, 200, 400, 800, 1600],
-    );
-    let mut lines = Vec::new();
-    for (k, (name, method)) in methods().enumerate() {
-        let mut errors = Vec::new();
-        let (mut rejected, mut strain, mut said) = (0, 0.0_f64, None);
-        for &n in &counts {
-            let Crossing {
-                flap, model, start, ..
-            } = crossing(FOLDED)?;
-            let mut run = Simulation::new(model, start, method.clone())?;
-            let c = course(&mut run, DURATION / n as f64, n, |_, _| {})?;
-            rejected += c.rejected;
-            strain = strain.max(c.strain);
-            said = said.or(c.said());
-            errors.push(c.if_finished(apart(&run.state().x[..12], &flap.exact(DURATION))));
-        }
-        let last = errors[errors.len() - 1];
-        let order = *orders(&errors).last().unwrap_or(&f64::NAN);
-        let expected = match name {
-            "implicit Euler" | "projection" => 1.0,
-            "RATTLE composition" => 4.0,
-            _ => 2.0,
-        };
-        if name == "RATTLE composition" {
-            f.at_most(
-                format!("{name}: error with {} steps, m", counts[counts.len() - 1]),
-                last,
-                1e-7,
-            )
-            .remark(said.clone());
-        } else {
-            f.at_least(
-                format!("{name}: order of convergence (exact: {expected})"),
-                order,
-                expected - 0.2,
-            )
-            .remark(said.clone());
-        }
-        f.at_most(
-            format!("{name}: largest edge strain"),
-            if last.is_nan() { last } else { strain },
-            STRAIN,
-        )
-        .remark(said);
-        if conservative().iter().any(|c| c.0 == name) {
-            f.at_most(format!("{name}: rejected steps"), rejected as f64, 0.0);
-        }
-        let points = counts
-            .iter()
-            .zip(&errors)
-            .map(|(n, e)| [1e3 * DURATION / *n as f64, *e])
-            .collect();
-        lines.push(Series::styled(k, name, points));
-    }
-    // Started exactly there, with the velocities of one of the two ways.
-    let Crossing {
-        model, start, flap, ..
-    } = crossing(FRAC_PI_2)?;
-    let (mut x, mut v) = (start.x.clone(), start.v.clone());
-    let outcome = (1..=100).try_for_each(|k| {
-        textbook_step(&model, &mut x, &mut v, 0.01 * DURATION).map_err(|e| format!("step {k}: {e}"))
-    });
-    let error = apart(&x[..12], &flap.exact(DURATION));
-    f.naive(
-        &format!("{TEXTBOOK}, started at the branch point"),
-        outcome.clone().map_or_else(
-            |e| format!("{e}."),
-            |()| format!("Ends {error:.0e} m from the exact motion."),
-        ),
-        outcome.is_err() || error > 0.05,
-    );
-    for (name, method) in methods() {
-        let Crossing {
-            model, start, flap, ..
-        } = crossing(FRAC_PI_2)?;
-        let mut run = Simulation::new(model, start, method)?;
-        let c = course(&mut run, DURATION / 200.0, 200, |_, _| {})?;
-        let bound = if ["implicit Euler", "projection"].contains(&name) {
-            2e-2
-        } else {
-            1e-3
-        };
-        f.at_most(
-            format!("started exactly at the branch point, {name}, 200 steps: error, m"),
-            c.if_finished(apart(&run.state().x[..12], &flap.exact(DURATION))),
-            bound,
-        )
-        .remark(c.said());
-    }
-    let flat_at = {
-        let c = crossing(FOLDED)?;
-        let (mut low, mut high) = (0.0, DURATION);
-        for _ in 0..50 {
-            let t = 0.5 * (low + high);
-            let x = c.flap.exact(t);
-            // The apexes are below the hinge line after flat.
-            if x[8] > x[2] { low = t } else { high = t }
-        }
-        low
+    let run = Simulation::in_chart(model, start, Box::new(chart), options);
+    let mut run = match run {
+        Ok(run) => run,
+        Err(e) => return Ok(Err(e.to_string())),
     };
-    f.here = format!(
-        "All methods step across the flat state at t = {flat_at:.3} s and converge to the closed form at their orders. The half-angle \
-         starts at {:.2} rad and passes {FRAC_PI_2:.2}.",
-        crossing(FOLDED)?.flap.start_angle
-    );
-    let drawing = plot::log_log("step, ms", "position error after 1 s, m", lines);
-    f.drawing(
-        "branch-point",
-        &drawing,
-        "Error against the closed form after passing through flat",
-    )?;
-    Ok(f)
+    let end = run.run(DURATION, 0.01 * DURATION, &mut []);
+    let error = off_exact(&flap, &run.state().x);
+    Ok(end.map(|_| error).map_err(|e| e.to_string()))
+}
+
+/// The errors of a method against its steps (milliseconds), and its checks.
+fn converges(f: &mut Findings, named: &Named, counts: &[usize]) -> Result<Vec<[f64; 2]>> {
+    let (name, method) = named;
+    let mut points = Vec::new();
+    let mut all = Course::default();
+    for &n in counts {
+        let Crossing {
+            flap, model, start, ..
+        } = crossing(FOLDED)?;
+        let mut run = Simulation::new(model, start, method.clone())?;
+        let c = go(&mut run, DURATION / n as f64, n)?;
+        let error = c.if_finished(off_exact(&flap, &run.state().x));
+        points.push([1e3 * DURATION / n as f64, error]);
+        all.add(c);
+    }
+    let errors: Vec<f64> = points.iter().map(|p| p[1]).collect();
+    let expected = match *name {
+        "implicit Euler" | "projection" => 1.0,
+        "RATTLE composition" => 4.0,
+        _ => 2.0,
+    };
+    let mut judge = f.of(&all, *name);
+    if *name == "RATTLE composition" {
+        let quantity = format!("error with {} steps, m", counts[counts.len() - 1]);
+        judge.at_most(&quantity, errors[errors.len() - 1], 1e-7);
+    } else {
+        let order = *orders(&errors).last().unwrap_or(&f64::NAN);
+        let quantity = format!("order of convergence (exact: {expected})");
+        judge.at_least(&quantity, order, expected - 0.2);
+    }
+    judge.strain("largest edge strain");
+    if conservative().iter().any(|c| c.0 == *name) {
+        judge.at_most("rejected steps", all.rejected as f64, 0.0);
+    }
+    Ok(points)
+}
+
+/// When the sheet is flat, seconds.
+fn flat_at() -> Result<f64> {
+    let flap = crossing(FOLDED)?.flap;
+    let (mut low, mut high) = (0.0, DURATION);
+    for _ in 0..50 {
+        let t = 0.5 * (low + high);
+        let x = flap.exact(t);
+        // The apexes are below the hinge line after flat.
+        if x[8] > x[2] { low = t } else { high = t }
+    }
+    Ok(low)
 }

@@ -1,10 +1,9 @@
 //! The same drape on different triangulations.
 
-use super::scenes::{FRAME, STRAIN, at_rest, course};
-use super::{Case, Effort, Findings};
+use super::scenes::{Course, FRAME, at_rest, course};
+use super::{Case, Findings};
 use crate::locking::meshes::nearest;
-use crate::report::Picture;
-use crate::report::number;
+use crate::report::{Effort, Picture, Table, number};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Method, SheetModel};
@@ -58,143 +57,154 @@ fn table(activation: f64) -> Result<Obstacle> {
 }
 
 /// A sheet at rest.
-struct End {
+struct End<'a> {
+    mesh: &'a (&'static str, Sheet),
+    how: &'static str,
     x: Vec<f64>,
     pins: Vec<VertexId>,
     body: Option<Obstacle>,
+    /// Kinetic energy left, of weight times 1 m, and smallest gap, metres.
+    kinetic: f64,
+    gap: f64,
+    course: Course,
+}
+
+impl<'a> End<'a> {
+    /// Where a sheet comes to rest on a support after a number of steps.
+    fn of(
+        mesh: &'a (&'static str, Sheet),
+        (how, support): (&'static str, Support),
+        steps: usize,
+    ) -> Result<Self> {
+        let sheet = &mesh.1;
+        let mut model = SheetModel::new(sheet, 0.1, MassKind::Lumped)?
+            .with_gravity()
+            .with_damping(1.0)?;
+        let mut pins = Vec::new();
+        if let Support::Pin(target) = support {
+            pins.push(nearest(sheet, target));
+            model = model.with_pins(&pins)?;
+        }
+        let options = ContactOptions::for_sheet(&model);
+        let mut contacts = Contacts::new(&model, options)?;
+        let mut run = at_rest(model, sheet.positions(), Method::default())?;
+        let mut body = None;
+        if support == Support::Table {
+            let table = table(options.activation)?;
+            contacts = contacts.with_body(table.clone(), Coefficients::equal(FRICTION))?;
+            run = run.with_contact(contacts)?;
+            body = Some(table);
+        }
+        let (mut kinetic, mut gap) = (0.0, f64::INFINITY);
+        let course = course(&mut run, FRAME, steps, |r, _| {
+            kinetic = r.kinetic / 0.98;
+            gap = gap.min(r.gap.unwrap_or(f64::INFINITY));
+        })?;
+        Ok(Self {
+            mesh,
+            how,
+            x: run.state().x.clone(),
+            pins,
+            body,
+            kinetic,
+            gap,
+            course,
+        })
+    }
+
+    /// Depth of the centre and area of the shadow, see [`shape`].
+    fn shape(&self) -> (f64, f64) {
+        let top = self.pins.first().map_or(0.0, |p| self.x[3 * p.index() + 2]);
+        shape(&self.mesh.1, &self.x, top)
+    }
 }
 
 fn drape(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
-    let cells = effort.pick(4, 8, 16);
-    let spacing = 1.0 / cells as f64;
+    let n = effort.pick(4, 8, 16);
     let meshes: [(&str, Sheet); 3] = [
         (
             "union jack",
-            generate::grid(cells, cells, 1.0, 1.0, Diagonals::UnionJack)?,
+            generate::grid(n, n, 1.0, 1.0, Diagonals::UnionJack)?,
         ),
         (
             "one-way",
-            generate::grid(cells, cells, 1.0, 1.0, Diagonals::Falling)?,
+            generate::grid(n, n, 1.0, 1.0, Diagonals::Falling)?,
         ),
         (
             "irregular",
-            generate::delaunay_square(1.0, 1.08 * spacing, 5)?,
+            generate::delaunay_square(1.0, 1.08 / n as f64, 5)?,
         ),
     ];
-    let mut rows = Vec::new();
-    let mut depths = Vec::new();
-    for (how, support) in SUPPORTS {
-        let mut of_meshes = [f64::INFINITY, 0.0];
-        let mut ends = Vec::new();
-        for (name, sheet) in &meshes {
-            let mut model = SheetModel::new(sheet, 0.1, MassKind::Lumped)?
-                .with_gravity()
-                .with_damping(1.0)?;
-            let mut pins = Vec::new();
-            if let Support::Pin(target) = support {
-                pins.push(nearest(sheet, target));
-                model = model.with_pins(&pins)?;
-            }
-            let contact = match support {
-                Support::Pin(_) => None,
-                Support::Table => {
-                    let options = ContactOptions::for_sheet(&model);
-                    let body = table(options.activation)?;
-                    let contacts = Contacts::new(&model, options)?
-                        .with_body(body.clone(), Coefficients::equal(FRICTION))?;
-                    Some((body, contacts))
-                }
-            };
-            let mut run = at_rest(model, sheet.positions(), Method::default())?;
-            let mut body = None;
-            if let Some((table, contacts)) = contact {
-                run = run.with_contact(contacts)?;
-                body = Some(table);
-            }
-            let (mut kinetic, mut gap) = (0.0, f64::INFINITY);
-            let c = course(&mut run, FRAME, effort.pick(60, 900, 1800), |r, _| {
-                kinetic = r.kinetic;
-                gap = gap.min(r.gap.unwrap_or(f64::INFINITY));
-            })?;
-            let x = run.state().x.clone();
-            let top = pins.first().map_or(0.0, |p| x[3 * p.index() + 2]);
-            let (depth, shadow) = shape(sheet, &x, top);
-            let lines = CreasePattern::of(sheet, 1e-6);
-            let directions = lines.folding_directions().len();
-            rows.push(vec![
-                (*name).to_owned(),
-                how.to_owned(),
-                format!(
-                    "{}/{}",
-                    sheet.topology().vertex_count(),
-                    sheet.topology().face_count()
-                ),
-                directions.to_string(),
-                format!("{depth:.3}"),
-                format!("{shadow:.3}"),
-                number(kinetic / 0.98),
-            ]);
-            f.at_most(
-                format!("{name}, {how}: edge strain"),
-                c.if_finished(c.strain),
-                STRAIN,
-            )
-            .remark(c.said());
-            if support == Support::Table {
-                f.at_least(
-                    format!("{name}, {how}: smallest gap, m"),
-                    c.if_finished(gap),
-                    f64::MIN_POSITIVE,
-                );
+    let (mut all, mut differences) = (Vec::new(), Vec::new());
+    for support in SUPPORTS {
+        let end = |mesh| End::of(mesh, support, effort.pick(60, 900, 1800));
+        let ends: Vec<End<'_>> = meshes.iter().map(end).collect::<Result<_>>()?;
+        for end in &ends {
+            let mut judge = f.of(&end.course, format!("{}, {}", end.mesh.0, end.how));
+            judge.strain("edge strain");
+            if support.1 == Support::Table {
+                judge.at_least("smallest gap, m", end.gap, f64::MIN_POSITIVE);
             }
             if effort != Effort::Quick {
-                f.at_most(
-                    format!("{name}, {how}: kinetic energy at the end, of weight × 1 m"),
-                    kinetic / 0.98,
-                    REST,
-                );
+                let quantity = "kinetic energy at the end, of weight × 1 m";
+                judge.at_most(quantity, end.kinetic, REST);
             }
-            of_meshes = [of_meshes[0].min(depth), of_meshes[1].max(depth)];
-            ends.push(End { x, pins, body });
         }
-        depths.push(of_meshes);
         if effort != Effort::Quick {
-            f.pictures.push(picture(how, &meshes, &ends)?);
+            f.pictures.push(picture(&ends)?);
         }
+        let depths = ends.iter().map(|end| end.shape().0);
+        let [low, high] = depths.fold([f64::INFINITY, 0.0_f64], |[l, h], d| [l.min(d), h.max(d)]);
+        differences.push((high - low, support.0));
+        all.extend(ends);
     }
-    let differences: Vec<f64> = depths.iter().map(|[low, high]| high - low).collect();
-    let listed: Vec<String> = SUPPORTS
+    let listed = differences
         .iter()
-        .zip(&differences)
-        .map(|((how, _), d)| format!("{} m {how}", number(*d)))
-        .collect();
-    f.naive(
-        "Taking one triangulation for the sheet",
-        format!(
-            "The centre of mass hangs higher or lower on another mesh of the same size, by up to {}.",
-            listed.join(", ")
-        ),
-        differences.iter().any(|d| *d > 1e-3),
+        .map(|(d, how)| format!("{} m {how}", number(*d)));
+    let listed = listed.collect::<Vec<_>>().join(", ");
+    let text = format!(
+        "The centre of mass hangs higher or lower on another mesh of the same size, by up to {listed}."
     );
-    f.table(
-        "Sheets at rest, damping 1/s, BDF2 at 1/60 s from flat; on the table with contact and friction",
-        &[
-            "mesh",
-            "support",
-            "V/F",
-            "directions of straight lines",
-            "depth of the centre, m",
-            "area of the shadow, m²",
-            "kinetic energy left, of weight × 1 m",
-        ],
-        rows,
-    );
+    let differ = differences.iter().any(|(d, _)| *d > 1e-3);
+    f.naive("Taking one triangulation for the sheet", text, differ);
+    f.tables.push(table_of(&all));
     f.here = "Lengths are exact and the sheets at rest; what differs is the shape. A smooth sheet would bend about any line. Its triangulation bends \
               about lines of edges; where they do not run through, bending needs crumpling of the triangles on the way, or does not take place. The \
               round table prefers no direction: the folds of the overhang are where the lines of the mesh let them be."
         .into();
     Ok(f)
+}
+
+fn table_of(all: &[End<'_>]) -> Table {
+    let directions = |end: &End<'_>| {
+        let lines = CreasePattern::of(&end.mesh.1, 1e-6);
+        lines.folding_directions().len()
+    };
+    Table::of(
+        "Sheets at rest, damping 1/s, BDF2 at 1/60 s from flat; on the table with contact and friction",
+        all,
+        &[
+            ("mesh", &|end| end.mesh.0.into()),
+            ("support", &|end| end.how.into()),
+            ("V/F", &|end| {
+                let t = end.mesh.1.topology();
+                format!("{}/{}", t.vertex_count(), t.face_count()).into()
+            }),
+            ("directions of straight lines", &|end| {
+                directions(end).to_string().into()
+            }),
+            ("depth of the centre, m", &|end| {
+                format!("{:.3}", end.shape().0).into()
+            }),
+            ("area of the shadow, m²", &|end| {
+                format!("{:.3}", end.shape().1).into()
+            }),
+            ("kinetic energy left, of weight × 1 m", &|end| {
+                number(end.kinetic).into()
+            }),
+        ],
+    )
 }
 
 /// Depth of the centre of area below a height, and the area of the vertical projection, in which overlaps
@@ -210,7 +220,7 @@ fn shape(sheet: &Sheet, x: &[f64], top: f64) -> (f64, f64) {
 }
 
 /// The three ends on one support.
-fn picture(how: &str, meshes: &[(&str, Sheet)], ends: &[End]) -> Result<Picture> {
+fn picture(ends: &[End<'_>]) -> Result<Picture> {
     let points = ends
         .iter()
         .flat_map(|end| end.x.as_chunks::<3>().0.iter().copied());
@@ -222,11 +232,11 @@ fn picture(how: &str, meshes: &[(&str, Sheet)], ends: &[End]) -> Result<Picture>
         ..Look::default()
     };
     let mut frames = Vec::new();
-    for ((_, sheet), end) in meshes.iter().zip(ends) {
+    for end in ends {
         let solids = end.body.iter().map(|b| Solid::of(b, 0.0));
         let solids = solids.collect::<Result<Vec<_>, _>>()?;
         let picture = SheetPicture {
-            topology: sheet.topology(),
+            topology: end.mesh.1.topology(),
             positions: &end.x,
             pins: &end.pins,
             solids: &solids,
@@ -236,9 +246,9 @@ fn picture(how: &str, meshes: &[(&str, Sheet)], ends: &[End]) -> Result<Picture>
             label: String::new(),
         });
     }
-    Ok(Picture {
-        file: format!("locking-{}.png", how.replace(' ', "-")),
-        alt: format!("At rest, {how}: union jack, one-way grid, irregular mesh."),
-        bytes: montage(&frames, 3)?.to_png()?,
-    })
+    let how = ends[0].how;
+    let file = format!("locking-{}.png", how.replace(' ', "-"));
+    let alt = format!("At rest, {how}: union jack, one-way grid, irregular mesh.");
+    let image = montage(&frames, 3)?.to_png()?;
+    Ok(Picture::file(&file, image, &alt))
 }

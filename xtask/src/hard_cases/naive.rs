@@ -1,5 +1,6 @@
 //! Methods as textbooks and games have them, to show where they break. Dense and short on purpose.
 
+use crate::interrupt;
 use isosheet_dynamics::SheetModel;
 use nalgebra::{DMatrix, DVector};
 
@@ -35,12 +36,7 @@ fn inverse_masses(model: &SheetModel) -> Vec<f64> {
 ///
 /// # Errors
 /// The reason in words, when the matrix is not positive definite or the result not finite.
-pub(super) fn textbook_step(
-    model: &SheetModel,
-    x: &mut [f64],
-    v: &mut [f64],
-    h: f64,
-) -> Result<(), String> {
+fn textbook_step(model: &SheetModel, x: &mut [f64], v: &mut [f64], h: f64) -> Result<(), String> {
     let a = textbook_acceleration(model, x, v)?;
     for i in 0..x.len() {
         v[i] += h * a[i];
@@ -116,6 +112,26 @@ pub(super) fn gauss_seidel_step(model: &SheetModel, x: &mut [f64], v: &mut [f64]
     }
 }
 
+/// Takes steps of the textbook method; `watch` sees the number of each, from 1, and may change the
+/// velocities.
+///
+/// # Errors
+/// The step that failed, and why.
+pub(super) fn textbook_steps(
+    model: &SheetModel,
+    (x, v): (&mut [f64], &mut [f64]),
+    h: f64,
+    steps: usize,
+    mut watch: impl FnMut(usize, &[f64], &mut [f64]),
+) -> Result<(), String> {
+    for k in 1..=steps {
+        interrupt::check().map_err(|e| e.to_string())?;
+        textbook_step(model, x, v, h).map_err(|e| format!("step {k}: {e}"))?;
+        watch(k, x, v);
+    }
+    Ok(())
+}
+
 /// Runs the textbook method from rest. Returns the largest strain and the positions, or when and why the
 /// run broke down.
 pub(super) fn textbook(
@@ -126,11 +142,12 @@ pub(super) fn textbook(
 ) -> Result<(f64, Vec<f64>), String> {
     let (mut x, mut v) = (x.to_vec(), vec![0.0; x.len()]);
     let mut strain = 0.0_f64;
-    for k in 0..steps {
-        textbook_step(model, &mut x, &mut v, h)
-            .map_err(|e| format!("step {} of {steps}: {e}", k + 1))?;
-        strain = strain.max(model.rods().max_strain(&x));
-    }
+    let mut watch = |_: usize, x: &[f64], _: &mut [f64]| {
+        strain = strain.max(model.rods().max_strain(x));
+    };
+    let outcome = textbook_steps(model, (&mut x, &mut v), h, steps, &mut watch);
+    let count = format!("{steps}:");
+    outcome.map_err(|e| e.replacen(':', &format!(" of {count}"), 1))?;
     Ok((strain, x))
 }
 

@@ -1,7 +1,7 @@
 //! The report: DIR/index.html, DIR/verdicts.csv, DIR/verdicts.json and the table on the terminal.
 
-use super::case::{Bound, Check, Effort, Record, Verdict};
-use crate::report::{Page, Table, number};
+use super::case::{Bound, Check, Record, Verdict};
+use crate::report::{Effort, Page, Table, number};
 use crate::store::Store;
 use anyhow::Result;
 use maud::{Markup, html};
@@ -19,19 +19,16 @@ pub(super) fn write(store: &Store, records: &[Record], effort: Effort) -> Result
     let page = page(store, records, effort)?;
     store.write("index.html", page.to_html().as_bytes())?;
     store.write("verdicts.csv", &checks(records).csv()?)?;
-    let cases: Vec<_> = records
-        .iter()
-        .map(|r| {
-            let checks: Vec<_> = r
-                .checks
-                .iter()
-                .map(|c| json!({ "what": c.what, "value": c.value, "bound": c.bound, "verdict": c.verdict(),
-                                 "limitation": c.limitation, "stopped": c.stopped, "remark": c.remark }))
-                .collect();
-            json!({ "case": r.name, "title": r.title, "verdict": r.verdict(), "naive": r.naive, "checks": checks,
-                    "seconds": r.wall })
-        })
-        .collect();
+    let check = |c: &Check| {
+        json!({ "what": c.what, "value": c.value, "bound": c.bound, "verdict": c.verdict(),
+                "limitation": c.limitation, "stopped": c.stopped, "remark": c.remark })
+    };
+    let case = |r: &Record| {
+        let checks: Vec<_> = r.found.checks.iter().map(check).collect();
+        json!({ "case": r.name, "title": r.title, "verdict": r.verdict(), "naive": r.found.naive, "checks": checks,
+                "seconds": r.wall })
+    };
+    let cases: Vec<_> = records.iter().map(case).collect();
     store.write_json(
         "verdicts.json",
         &json!({ "version": env!("CARGO_PKG_VERSION"), "effort": effort, "cases": cases }),
@@ -82,7 +79,7 @@ fn page(store: &Store, records: &[Record], effort: Effort) -> Result<Page> {
 }
 
 fn summary(records: &[Record]) -> Markup {
-    let checks = || records.iter().flat_map(|r| &r.checks);
+    let checks = || of_all(records).map(|(_, c)| c);
     let count = |v: Verdict| checks().filter(|c| c.verdict() == v).count();
     let failed = checks().filter(|c| c.verdict().is_failure()).count();
     html! {
@@ -94,7 +91,7 @@ fn summary(records: &[Record]) -> Markup {
             thead { tr { th { "Case" } th { "Checks" } th { "Naive method" } th { "isosheet" } } }
             tbody { @for r in records { tr {
                 td { a href={ "#" (r.name) } { (r.title) } }
-                td { (r.checks.len()) }
+                td { (r.found.checks.len()) }
                 td { (naive_word(r)) }
                 td { (badge(r.verdict())) }
             } } }
@@ -103,8 +100,8 @@ fn summary(records: &[Record]) -> Markup {
 }
 
 fn naive_word(r: &Record) -> &'static str {
-    let failed = r.naive.iter().filter(|n| n.failed).count();
-    match (failed, r.naive.len()) {
+    let failed = r.found.naive.iter().filter(|n| n.failed).count();
+    match (failed, r.found.naive.len()) {
         (_, 0) => "none shown",
         (0, _) => "copes",
         (f, n) if f == n => "fails",
@@ -114,7 +111,7 @@ fn naive_word(r: &Record) -> &'static str {
 
 fn section(store: &Store, r: &Record) -> Result<Markup> {
     let mut pictures = Vec::new();
-    for picture in &r.pictures {
+    for picture in &r.found.pictures {
         let inside = picture.inside(&store.read(&picture.path)?);
         pictures.push(html! { figure { (inside) figcaption { (picture.alt) } } });
     }
@@ -123,20 +120,20 @@ fn section(store: &Store, r: &Record) -> Result<Markup> {
             h2 { (r.title) (badge(r.verdict())) }
             h3 { "What should happen" }
             p { (r.expected) }
-            @if !r.naive.is_empty() {
+            @if !r.found.naive.is_empty() {
                 h3 { "What a naive method does" }
-                ul { @for n in &r.naive {
+                ul { @for n in &r.found.naive {
                     li { (n.method) ": " b { @if n.failed { "fails" } @else { "copes" } } ". " (n.outcome) }
                 } }
             }
             h3 { "What isosheet does" }
-            p { (r.here) }
+            p { (r.found.here) }
             div.scroll { table {
                 thead { tr { th { "Check" } th { "Measured" } th { "Bound" } th { "Verdict" } } }
-                tbody { @for check in &r.checks { (check_row(check)) } }
+                tbody { @for check in &r.found.checks { (check_row(check)) } }
             } }
             @for picture in &pictures { (picture) }
-            @for table in &r.tables { (table) }
+            @for table in &r.found.tables { (table) }
         }
     })
 }
@@ -157,6 +154,13 @@ fn check_row(check: &Check) -> Markup {
     }
 }
 
+/// Every check of every case.
+fn of_all(records: &[Record]) -> impl Iterator<Item = (&Record, &Check)> {
+    records
+        .iter()
+        .flat_map(|r| r.found.checks.iter().map(move |c| (r, c)))
+}
+
 /// Every check, for programs.
 fn checks(records: &[Record]) -> Table {
     let bound = |c: &Check| match c.bound {
@@ -164,16 +168,12 @@ fn checks(records: &[Record]) -> Table {
         Bound::AtLeast(b) => ("at_least", b),
     };
     let limitation = |c: &Check| {
-        c.limitation
-            .as_ref()
-            .map(|l| (l.why.clone(), l.shortfall.text()))
+        let declared = c.limitation.as_ref();
+        declared.map(|l| (l.why.clone(), l.shortfall.text()))
     };
-    let all = records
-        .iter()
-        .flat_map(|r| r.checks.iter().map(move |c| (r, c)));
     Table::of(
         "",
-        all,
+        of_all(records),
         &[
             ("case", &|(r, _)| r.name.as_str().into()),
             ("check", &|(_, c)| c.what.as_str().into()),
@@ -191,35 +191,28 @@ fn checks(records: &[Record]) -> Table {
 
 /// The table on the terminal: every case, and every check that did not simply pass.
 pub(super) fn text(records: &[Record]) -> String {
-    let mut out = String::new();
-    let _ = writeln!(
-        out,
-        "{:<16}{:<34}{:<15}{:>8}",
-        "case", "isosheet", "naive method", "seconds"
+    let table = Table::of(
+        "Hard cases",
+        records,
+        &[
+            ("case", &|r| r.name.as_str().into()),
+            ("isosheet", &|r| {
+                format!("{} ({} checks)", r.verdict().text(), r.found.checks.len()).into()
+            }),
+            ("naive method", &|r| naive_word(r).into()),
+            ("seconds", &|r| format!("{:.1}", r.wall).into()),
+        ],
     );
-    for r in records {
+    let mut out = table.text();
+    for (r, c) in of_all(records).filter(|(_, c)| c.verdict() != Verdict::Passed) {
+        let (name, verdict, what) = (&r.name, c.verdict().text(), &c.what);
+        let (found, bound) = (measured(c), c.bound.text());
+        let declared = c.limitation.as_ref().map(|l| l.shortfall.text());
+        let declared = declared.map_or(String::new(), |text| format!("; declared: {text}"));
         let _ = writeln!(
             out,
-            "{:<16}{:<34}{:<15}{:>8.1}",
-            r.name,
-            format!("{} ({} checks)", r.verdict().text(), r.checks.len()),
-            naive_word(r),
-            r.wall
+            "{name}: {verdict}: {what}, {found} ({bound}){declared}"
         );
-        for c in r.checks.iter().filter(|c| c.verdict() != Verdict::Passed) {
-            let _ = writeln!(
-                out,
-                "  {}: {}, {} ({}){}",
-                c.verdict().text(),
-                c.what,
-                measured(c),
-                c.bound.text(),
-                c.limitation.as_ref().map_or(String::new(), |l| format!(
-                    "; declared: {}",
-                    l.shortfall.text()
-                ))
-            );
-        }
     }
     out
 }

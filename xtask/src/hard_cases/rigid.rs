@@ -1,14 +1,15 @@
 //! Meshes that cannot bend.
 
-use super::naive::{TEXTBOOK, textbook_step};
-use super::scenes::{apart, course, methods};
-use super::spin::{SPIN, carried, inertia, spinning, turned};
-use super::{Case, Effort, Findings, Shortfall};
+use super::naive::{TEXTBOOK, textbook_steps};
+use super::scenes::{apart, course};
+use super::{Case, Findings, Shortfall};
 use crate::interrupt;
-use crate::report::number;
+use crate::methods::{Named, methods};
+use crate::report::{Effort, Table, number};
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State};
 use isosheet_mesh::{Dof, MassMatrix, Sheet, fold_angle};
+use isosheet_tests::RigidBody;
 use nalgebra::Vector3;
 
 pub(crate) const CLOSED: Case = Case {
@@ -40,17 +41,8 @@ fn icosahedron() -> Result<Sheet> {
     let p = 0.5 * (1.0 + 5.0_f64.sqrt());
     let mut x = Vec::new();
     for (a, b) in [(1.0, p), (-1.0, p), (1.0, -p), (-1.0, -p)] {
-        x.extend([
-            0.0,
-            0.3 * a,
-            0.3 * b,
-            0.3 * a,
-            0.3 * b,
-            0.0,
-            0.3 * b,
-            0.0,
-            0.3 * a,
-        ]);
+        let (a, b) = (0.3 * a, 0.3 * b);
+        x.extend([[0.0, a, b], [a, b, 0.0], [b, 0.0, a]].concat());
     }
     // Faces: three vertices an edge length apart, oriented outwards.
     let at = |i: usize| Vector3::from_column_slice(&x[3 * i..3 * i + 3]);
@@ -74,13 +66,8 @@ fn icosahedron() -> Result<Sheet> {
 fn boxed() -> Result<Sheet> {
     let (size, mut x) = ([0.7, 0.9, 1.1], Vec::new());
     for k in 0..8 {
-        x.extend((0..3).map(|i| {
-            if k >> i & 1 == 1 {
-                0.5 * size[i]
-            } else {
-                -0.5 * size[i]
-            }
-        }));
+        let side = |i: usize| f64::from(k >> i & 1) - 0.5;
+        x.extend((0..3).map(|i| side(i) * size[i]));
     }
     let mut faces = Vec::new();
     for axis in 0..3 {
@@ -103,14 +90,8 @@ fn boxed() -> Result<Sheet> {
     Ok(Sheet::new(x, &faces)?)
 }
 
-/// Vertex masses and positions.
-fn points(sheet: &Sheet, masses: &[f64]) -> Vec<(f64, Vector3<f64>)> {
-    masses
-        .iter()
-        .zip(sheet.positions().chunks(3))
-        .map(|(m, p)| (*m, Vector3::from_column_slice(p)))
-        .collect()
-}
+/// Angular velocity at the start, radians per second.
+pub(super) const SPIN: [f64; 3] = [1.0, 3.0, 0.5];
 
 /// Largest change of a fold angle, radians.
 fn bending(sheet: &Sheet, x: &[f64]) -> f64 {
@@ -144,6 +125,17 @@ impl Solid {
         Ok(SheetModel::with_mass(&self.sheet, masses)?)
     }
 
+    fn body(&self) -> RigidBody {
+        let places = self.sheet.positions().chunks(3);
+        let places = places.map(Vector3::from_column_slice);
+        let masses: Vec<_> = self.masses().into_iter().zip(places).collect();
+        RigidBody::of_masses(&masses)
+    }
+
+    fn dof(&self) -> Dof {
+        Dof::of(self.sheet.topology())
+    }
+
     /// Vertex masses, kilograms.
     fn masses(&self) -> Vec<f64> {
         vec![0.1; self.sheet.topology().vertex_count()]
@@ -153,128 +145,99 @@ impl Solid {
 fn closed(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
     let steps = effort.pick(100, 1000, 10_000);
-    let mut rows = Vec::new();
-    for (name, sheet, bound) in [
+    let solids = [
         ("tetrahedron", tetrahedron()?, 1e-9),
         ("icosahedron", icosahedron()?, 1e-9),
         // Moving the middle of a side by d strains its rods by d^2. Lengths therefore determine positions
         // to the square root of the strain.
         ("box with a vertex inside every side", boxed()?, 1e-5),
-    ] {
-        let (topology, dof) = (sheet.topology(), Dof::of(sheet.topology()));
-        rows.push(vec![
-            name.to_owned(),
-            format!("{}/{}", topology.vertex_count(), topology.face_count()),
-            dof.total.to_string(),
-            dof.internal.to_string(),
-        ]);
-        let solid = Solid { name, sheet, bound };
-        textbook_spin(&mut f, &solid, steps)?;
-        spin(&mut f, &solid, steps)?;
+    ];
+    let solids = solids.map(|(name, sheet, bound)| Solid { name, sheet, bound });
+    for solid in &solids {
+        textbook_spin(&mut f, solid, steps)?;
+        for named in methods() {
+            interrupt::check()?;
+            spin(&mut f, solid, named, steps)?;
+        }
     }
-    f.table(
+    f.tables.push(Table::of(
         "Closed meshes",
-        &["mesh", "V/F", "3V − E", "internal DOF by counting"],
-        rows,
-    );
+        &solids,
+        &[
+            ("mesh", &|s| s.name.into()),
+            ("V/F", &|s| {
+                let t = s.sheet.topology();
+                format!("{}/{}", t.vertex_count(), t.face_count()).into()
+            }),
+            ("3V − E", &|s| s.dof().total.to_string().into()),
+            ("internal DOF by counting", &|s| {
+                s.dof().internal.to_string().into()
+            }),
+        ],
+    ));
     f.here = "Free spin of 3.2 rad/s about no principal axis, steps of 2 ms. The reference integrates Euler's equations and a quaternion.".into();
     Ok(f)
 }
 
 /// What the textbook method makes of the spin.
 fn textbook_spin(f: &mut Findings, solid: &Solid, steps: usize) -> Result<()> {
+    let State { mut x, mut v, .. } = solid.body().start(&solid.sheet, SPIN);
     let model = solid.model()?;
-    let (_, centre, _) = inertia(&points(&solid.sheet, &solid.masses()));
-    let State { mut x, mut v, .. } = spinning(&solid.sheet, centre);
-    let mut ended = None;
-    for k in 0..steps {
-        if let Err(e) = textbook_step(&model, &mut x, &mut v, STEP) {
-            ended = Some(format!("step {}: {e}", k + 1));
-            break;
-        }
-    }
-    let bent = bending(&solid.sheet, &x);
-    let text = match &ended {
-        Some(e) => format!("{e}."),
-        None => format!(
+    let outcome = textbook_steps(&model, (&mut x, &mut v), STEP, steps, |_, _, _| {});
+    let method = format!("{TEXTBOOK}, on the {}", solid.name);
+    f.naive_run(&method, outcome, |()| {
+        let bent = bending(&solid.sheet, &x);
+        let text = format!(
             "After {steps} steps of 2 ms the largest fold angle has changed by {} rad.",
             number(bent)
-        ),
-    };
-    f.naive(
-        &format!("{TEXTBOOK}, on the {}", solid.name),
-        text,
-        ended.is_some() || bent > solid.bound,
-    );
+        );
+        (text, bent > solid.bound)
+    });
     Ok(())
 }
 
-/// All methods against Euler's rigid body.
-fn spin(f: &mut Findings, solid: &Solid, steps: usize) -> Result<()> {
-    let Solid { name: what, .. } = *solid;
+/// A method against Euler's rigid body.
+fn spin(f: &mut Findings, solid: &Solid, (name, method): Named, steps: usize) -> Result<()> {
     let sheet = &solid.sheet;
-    let (tensor, centre, _) = inertia(&points(sheet, &solid.masses()));
-    let duration = STEP * steps as f64;
-    let euler = |n| {
-        let turn = turned(tensor, SPIN.into(), duration, n * steps);
-        carried(sheet, centre, &turn)
-    };
-    let exact = euler(20);
-    let reference = apart(&exact, &euler(10));
-    for (name, method) in methods() {
-        interrupt::check()?;
-        let mut run = Simulation::new(solid.model()?, spinning(sheet, centre), method)?;
-        let mut bent = 0.0_f64;
-        let mut n = 0_usize;
-        let c = course(&mut run, STEP, steps, |_, s| {
-            n += 1;
-            if n.is_multiple_of(50) {
-                bent = bent.max(bending(sheet, &s.x));
-            }
-        })?;
-        f.at_most(
-            format!("{what}, {name}: largest change of a fold angle in {steps} steps, rad"),
-            c.if_finished(bent),
-            solid.bound,
-        )
-        .ended(&c);
-        // Measured: 1.2e-7 s, 0.068 s, 0 s.
-        let stops = match name {
-            "energy-momentum" => Some([0.0, 1e-4]),
-            "RATTLE" => Some([0.02, 0.15]),
-            "RATTLE composition" => Some([0.0, 1e-3]),
-            _ => None,
-        };
-        let dependent = stops
-            .filter(|_| what.starts_with("box"))
-            .map(|at| Shortfall::stops(at, "the length constraints are dependent"));
-        let declare = |f: &mut Findings| {
-            if let (Some(check), Some(declared)) = (f.checks.last_mut(), &dependent) {
-                check.limited(DEPENDENT, declared.clone());
-            }
-        };
-        declare(f);
-        if name == "RATTLE composition" {
-            // Fourth order: the spin of 3 rad/s turns by 6e-3 rad in a step.
-            f.at_most(
-                format!(
-                    "{what}, {name}: distance from Euler's rigid body (reference good to {}), m",
-                    number(reference)
-                ),
-                c.if_finished(apart(&run.state().x, &exact)),
-                1e-6,
-            )
-            .ended(&c);
-            declare(f);
+    let body = solid.body();
+    let euler = |n| body.positions(sheet, SPIN, STEP * steps as f64, n * steps);
+    let mut run = Simulation::new(solid.model()?, body.start(sheet, SPIN), method)?;
+    let (mut bent, mut n) = (0.0_f64, 0_usize);
+    let c = course(&mut run, STEP, steps, |_, s| {
+        n += 1;
+        if n.is_multiple_of(50) {
+            bent = bent.max(bending(sheet, &s.x));
         }
-        if name == "energy-momentum" {
-            f.at_most(
-                format!("{what}, {name}: energy error, of the kinetic energy"),
-                c.if_finished(c.drift / c.kinetic),
-                1e-10,
-            )
-            .ended(&c);
-            declare(f);
+    })?;
+    let from = f.checks.len();
+    let mut judge = f.of(&c, format!("{}, {name}", solid.name));
+    let quantity = format!("largest change of a fold angle in {steps} steps, rad");
+    judge.at_most(&quantity, bent, solid.bound);
+    if name == "RATTLE composition" {
+        let exact = euler(20);
+        // Fourth order: the spin of 3 rad/s turns by 6e-3 rad in a step.
+        let good_to = number(apart(&exact, &euler(10)));
+        let quantity = format!("distance from Euler's rigid body (reference good to {good_to}), m");
+        judge.at_most(&quantity, apart(&run.state().x, &exact), 1e-6);
+    }
+    if name == "energy-momentum" {
+        judge.at_most(
+            "energy error, of the kinetic energy",
+            c.drift / c.kinetic,
+            1e-10,
+        );
+    }
+    // Measured: 1.2e-7 s, 0.068 s, 0 s.
+    let stops = match name {
+        "energy-momentum" => Some([0.0, 1e-4]),
+        "RATTLE" => Some([0.02, 0.15]),
+        "RATTLE composition" => Some([0.0, 1e-3]),
+        _ => None,
+    };
+    if let Some(at) = stops.filter(|_| solid.name.starts_with("box")) {
+        let stops = Shortfall::stops(at, "the length constraints are dependent");
+        for check in &mut f.checks[from..] {
+            check.limited(DEPENDENT, stops.clone());
         }
     }
     Ok(())

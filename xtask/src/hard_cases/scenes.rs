@@ -43,38 +43,14 @@ pub(super) fn at_rest(model: SheetModel, x: &[f64], method: Method) -> Result<Si
     Ok(Simulation::new(model, State::at_rest(x.to_vec()), method)?)
 }
 
-/// The damped methods.
-pub(super) fn damped() -> [(&'static str, Method); 3] {
-    [
-        ("BDF2", Method::Bdf2(Default::default())),
-        ("implicit Euler", Method::ImplicitEuler(Default::default())),
-        ("projection", Method::Projection(Default::default())),
-    ]
+/// A sheet of 0.1 kg under gravity, pinned at the given vertices, released at rest in its own positions.
+pub(super) fn released(sheet: &Sheet, pins: &[VertexId], method: Method) -> Result<Simulation> {
+    at_rest(pinned(sheet, pins)?, sheet.positions(), method)
 }
 
-/// The conservative methods.
-pub(super) fn conservative() -> [(&'static str, Method); 3] {
-    [
-        (
-            "energy-momentum",
-            Method::EnergyMomentum(Default::default()),
-        ),
-        ("RATTLE", Method::Rattle(Default::default())),
-        (
-            "RATTLE composition",
-            Method::RattleComposition(Default::default()),
-        ),
-    ]
-}
-
-/// All chart-free methods.
-pub(super) fn methods() -> impl Iterator<Item = (&'static str, Method)> {
-    damped().into_iter().chain(conservative())
-}
-
-/// The energy-momentum method.
-pub(super) fn energy_momentum() -> Method {
-    Method::EnergyMomentum(Default::default())
+/// The top row of `M^1`.
+pub(super) fn top_row() -> Vec<VertexId> {
+    (20..25).map(VertexId).collect()
 }
 
 /// What happened in a number of steps.
@@ -101,6 +77,19 @@ impl Course {
     /// The error message of an early end, shortened to its first reason.
     pub(super) fn said(&self) -> Option<String> {
         self.refusal.as_ref().map(ToString::to_string)
+    }
+
+    /// Takes another run into account: the worst of both, and the first error.
+    pub(super) fn add(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.rejected += other.rejected;
+        self.strain = self.strain.max(other.strain);
+        self.drift = self.drift.max(other.drift);
+        self.gain = self.gain.max(other.gain);
+        self.kinetic = self.kinetic.max(other.kinetic);
+        if self.refusal.is_none() {
+            (self.end, self.refusal) = (other.end, other.refusal);
+        }
     }
 
     /// NaN if the run ended early: no number of it is what was asked for.
@@ -137,6 +126,11 @@ pub(super) fn course(
     course.refusal = end.err();
     course.end = run.state().t;
     Ok(course)
+}
+
+/// Takes steps as [`course`] does, unwatched.
+pub(super) fn go(run: &mut Simulation, h: f64, steps: usize) -> Result<Course, Interrupted> {
+    course(run, h, steps, |_, _| {})
 }
 
 /// Largest distance of corresponding vertices, metres.

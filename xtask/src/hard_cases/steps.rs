@@ -1,14 +1,15 @@
 //! Step sizes, and free fall.
 
-use super::naive::{TEXTBOOK, textbook, textbook_step};
-use super::scenes::{STRAIN, apart, course, damped, methods};
-use super::{Case, Effort, Findings, Shortfall, plot};
+use super::naive::{TEXTBOOK, textbook, textbook_steps};
+use super::scenes::{Course, apart, course, go};
+use super::{Case, Findings, Shortfall, log_log};
 use crate::draw::Series;
-use crate::report::number;
+use crate::methods::{Named, damped, methods};
+use crate::report::{Effort, number};
 use crate::timing::{bumped, hanging};
 use anyhow::Result;
-use isosheet_dynamics::{SheetModel, Simulation, State, StepOutcome, leave_flat};
-use isosheet_mesh::MassKind;
+use isosheet_dynamics::{SheetModel, Simulation, State, leave_flat};
+use isosheet_mesh::{MassKind, Sheet};
 use isosheet_tests::Pendulum;
 
 pub(crate) const SIZES: Case = Case {
@@ -26,156 +27,124 @@ const TINY_AND_FLAT: &str = "While the folds are still so small that the displac
 const ROUND_OFF: &str = "RATTLE solves for the rods' impulses also where they are zero; dependent rods answer round-off in their lengths with impulses that \
                          buckle the sheet. The energy-momentum method asks first whether the forces alone leave the rods as they are.";
 
+/// Time after which pendulums are compared, seconds.
+const END: f64 = 0.1;
+
 fn sizes(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
-    let problem = Pendulum::default();
-    let end = 0.1;
-    let counts: &[usize] = effort.pick(
+    let counts: &[usize] = effort.quick_or(
         &[1, 10, 100, 1000],
-        &[1, 3, 10, 30, 100, 1000, 10_000, 100_000],
         &[1, 3, 10, 30, 100, 1000, 10_000, 100_000],
     );
     let mut lines = Vec::new();
-    for (k, (name, method)) in methods().enumerate() {
-        let mut points = Vec::new();
-        let (mut strain, mut said, mut smallest) = (0.0_f64, None, f64::INFINITY);
-        let mut shortest = f64::NAN;
-        for &n in counts {
-            let mut run = Simulation::new(problem.model(), problem.start(), method.clone())?;
-            let h = end / n as f64;
-            let c = course(&mut run, h, n, |_, _| {})?;
-            strain = strain.max(c.strain);
-            said = said.or(c.said());
-            let error = c.if_finished(apart(&run.state().x, &problem.exact(end)));
-            smallest = smallest.min(error);
-            shortest = error;
-            points.push([h, error]);
-        }
-        f.at_most(
-            format!(
-                "pendulum, {name}: edge strain, steps {} s to 0.1 s",
-                number(end / counts[counts.len() - 1] as f64)
-            ),
-            if said.is_some() { f64::NAN } else { strain },
-            STRAIN,
-        )
-        .remark(said);
-        let bound = match (name, effort) {
-            (_, Effort::Quick) => 1e-3,
-            ("implicit Euler" | "projection", _) => 1e-6,
-            // Lengths that err by 1e-12 over a step of 1e-6 s leave velocities of 1e-6 m/s open, for 0.1 s.
-            ("BDF2", _) => 1e-7,
-            _ => 1e-9,
-        };
-        f.at_most(
-            format!("pendulum, {name}: position error at the shortest step, m"),
-            shortest,
-            bound,
-        );
-        lines.push(Series::styled(k, name, points));
+    for (k, named) in methods().enumerate() {
+        let points = pendulum(&mut f, &named, counts, effort)?;
+        lines.push(Series::styled(k, named.0, points));
     }
     // The sheet at its extremes.
-    for (h, steps) in [
+    let extremes = [
         (1e-6, effort.pick(100, 2000, 10_000)),
         (0.1, effort.pick(10, 30, 300)),
-    ] {
-        for (name, method) in methods() {
-            let damping = damped().iter().any(|d| d.0 == name);
-            let mut run = hanging(1, 0.05, method)?;
-            let (mut v, mut last) = (0.0_f64, 0.0);
-            let c = course(&mut run, h, steps, |r, s| {
-                last = r.potential + r.kinetic;
-                v = s.v.iter().fold(v, |m, v| m.max(v.abs()));
-            })?;
-            f.at_most(
-                format!("M^1, {name}, {steps} steps of {} s: edge strain", number(h)),
-                c.if_finished(c.strain),
-                STRAIN,
-            )
-            .ended(&c);
-            let scale = c.kinetic.max(1e-12);
-            if damping {
-                f.at_most(
-                    format!(
-                        "M^1, {name}, steps of {} s: energy gained, of the largest kinetic energy",
-                        number(h)
-                    ),
-                    c.if_finished(c.gain / scale),
-                    0.15,
-                );
-            } else if name == "energy-momentum" && h > 1e-3 {
-                f.at_most(
-                    format!(
-                        "M^1, {name}, steps of {} s: energy error, of the largest kinetic energy",
-                        number(h)
-                    ),
-                    c.if_finished(c.drift / scale),
-                    1e-8,
-                );
-            }
+    ];
+    for extreme in extremes {
+        for named in methods() {
+            bumped_sheet(&mut f, named, extreme)?;
         }
     }
-    for (name, method) in damped() {
-        for h in [1e-6, 0.1] {
-            let mut run = hanging(1, 0.0, method.clone())?;
-            let c = course(
-                &mut run,
-                h,
-                effort.pick(30, if h < 1e-3 { 2000 } else { 30 }, 2000),
-                |_, _| {},
-            )?;
-            let check = f.at_most(
-                format!(
-                    "M^1 from exactly flat, {name}, steps of {} s: edge strain",
-                    number(h)
-                ),
-                c.if_finished(c.strain),
-                STRAIN,
-            );
-            check.ended(&c);
-            // Measured: 1.3e-3 s, 1.8e-4 s, 4.7e-4 s; the quick run ends after 1e-4 s.
-            let stops = match name {
-                "BDF2" => Shortfall::stops([2e-4, 1.9e-3], "would create"),
-                "implicit Euler" => Shortfall::stops([6e-5, 6e-4], "would create"),
-                _ => Shortfall::stops([1.5e-4, 1.5e-3], "Newton's method stopped"),
-            };
-            if h < 1e-3 && effort != Effort::Quick {
-                check.limited(TINY_AND_FLAT, stops);
-            }
-        }
+    for named in damped() {
+        flat_sheet(&mut f, &named, effort)?;
     }
-    let model = problem.model();
+    let problem = Pendulum::default();
     for h in [1e-3, 0.1] {
-        let (mut x, mut v) = (problem.start().x, vec![0.0; 9]);
-        let (mut strain, mut ended) = (0.0_f64, None);
-        for k in 0..(10.0 / h) as usize {
-            if let Err(e) = textbook_step(&model, &mut x, &mut v, h) {
-                ended = Some(format!("stops at step {}: {e}", k + 1));
-                break;
-            }
-            strain = strain.max(model.rods().max_strain(&x));
-        }
-        f.naive(
-            TEXTBOOK,
-            format!(
-                "The pendulum for 10 s at {} s: edge strain {}{}.",
-                number(h),
-                number(strain),
-                ended.map_or(String::new(), |e| format!("; {e}"))
-            ),
-            strain > 1e-2,
-        );
+        let (model, mut x, mut v) = (problem.model(), problem.start().x, vec![0.0; 9]);
+        let mut strain = 0.0_f64;
+        let watch = |_: usize, x: &[f64], _: &mut [f64]| {
+            strain = strain.max(model.rods().max_strain(x));
+        };
+        let count = (10.0 / h) as usize;
+        let outcome = textbook_steps(&model, (&mut x, &mut v), h, count, watch);
+        let ended = outcome.map_or_else(|e| format!("; stops at {e}"), |()| String::new());
+        let (h, off) = (number(h), number(strain));
+        let text = format!("The pendulum for 10 s at {h} s: edge strain {off}{ended}.");
+        f.naive(TEXTBOOK, text, strain > 1e-2);
     }
     f.here = "Conservative steps solve for impulses, which stay moderate when the step goes to zero; lengths are relative. The curves flatten where \
               rounding of the positions takes over."
         .into();
-    let drawing = plot::log_log("step, s", "position error after 0.1 s, m", lines);
-    f.drawing(
-        "step-sizes",
-        &drawing,
-        "A triangle held at an edge (exact pendulum): error against the step",
-    )?;
+    let drawing = log_log("step, s", "position error after 0.1 s, m", lines);
+    let alt = "A triangle held at an edge (exact pendulum): error against the step";
+    f.drawing("step-sizes", &drawing, alt);
     Ok(f)
+}
+
+/// The errors of the pendulum against the step.
+fn pendulum(
+    f: &mut Findings,
+    (name, method): &Named,
+    counts: &[usize],
+    effort: Effort,
+) -> Result<Vec<[f64; 2]>> {
+    let problem = Pendulum::default();
+    let mut points = Vec::new();
+    let mut all = Course::default();
+    for &n in counts {
+        let mut run = Simulation::new(problem.model(), problem.start(), method.clone())?;
+        let h = END / n as f64;
+        let c = go(&mut run, h, n)?;
+        points.push([h, c.if_finished(apart(&run.state().x, &problem.exact(END)))]);
+        all.add(c);
+    }
+    let [smallest, error] = points[points.len() - 1];
+    let bound = match (*name, effort) {
+        (_, Effort::Quick) => 1e-3,
+        ("implicit Euler" | "projection", _) => 1e-6,
+        // Lengths that err by 1e-12 over a step of 1e-6 s leave velocities of 1e-6 m/s open, for 0.1 s.
+        ("BDF2", _) => 1e-7,
+        _ => 1e-9,
+    };
+    let steps = format!("edge strain, steps {} s to 0.1 s", number(smallest));
+    let mut judge = f.of(&all, format!("pendulum, {name}"));
+    judge.strain(&steps);
+    judge.at_most("position error at the shortest step, m", error, bound);
+    Ok(points)
+}
+
+/// `M^1` hanging by a corner from a bump.
+fn bumped_sheet(f: &mut Findings, (name, method): Named, (h, steps): (f64, usize)) -> Result<()> {
+    let c = go(&mut hanging(1, 0.05, method)?, h, steps)?;
+    let (size, scale) = (number(h), c.kinetic.max(1e-12));
+    f.of(&c, format!("M^1, {name}, {steps} steps of {size} s"))
+        .strain("edge strain");
+    let mut judge = f.of(&c, format!("M^1, {name}, steps of {size} s"));
+    if damped().iter().any(|d| d.0 == name) {
+        let quantity = "energy gained, of the largest kinetic energy";
+        judge.at_most(quantity, c.gain / scale, 0.15);
+    } else if name == "energy-momentum" && h > 1e-3 {
+        let quantity = "energy error, of the largest kinetic energy";
+        judge.at_most(quantity, c.drift / scale, 1e-8);
+    }
+    Ok(())
+}
+
+/// `M^1` hanging by a corner from exactly flat.
+fn flat_sheet(f: &mut Findings, (name, method): &Named, effort: Effort) -> Result<()> {
+    for h in [1e-6, 0.1] {
+        let steps = effort.pick(30, if h < 1e-3 { 2000 } else { 30 }, 2000);
+        let c = go(&mut hanging(1, 0.0, method.clone())?, h, steps)?;
+        let what = format!("M^1 from exactly flat, {name}, steps of {} s", number(h));
+        let mut judge = f.of(&c, what);
+        let check = judge.strain("edge strain");
+        // Measured: 1.3e-3 s, 1.8e-4 s, 4.7e-4 s; the quick run ends after 1e-4 s.
+        let stops = match *name {
+            "BDF2" => Shortfall::stops([2e-4, 1.9e-3], "would create"),
+            "implicit Euler" => Shortfall::stops([6e-5, 6e-4], "would create"),
+            _ => Shortfall::stops([1.5e-4, 1.5e-3], "Newton's method stopped"),
+        };
+        if h < 1e-3 && effort != Effort::Quick {
+            check.limited(TINY_AND_FLAT, stops);
+        }
+    }
+    Ok(())
 }
 
 pub(crate) const FREE_FALL: Case = Case {
@@ -185,111 +154,110 @@ pub(crate) const FREE_FALL: Case = Case {
     run: free_fall,
 };
 
+/// Velocity of the throw, m/s; length (seconds) and number of steps.
+const THROW: [f64; 3] = [1.0, -0.5, 3.0];
+const H: f64 = 1e-2;
+const STEPS: usize = 100;
+
+/// The sheet of a throw.
+fn thrown(sheet: &Sheet) -> Result<SheetModel> {
+    Ok(SheetModel::new(sheet, 0.1, MassKind::Lumped)?.with_gravity())
+}
+
 fn free_fall(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
     let level = effort.pick(1, 2, 3);
-    let (h, steps) = (1e-2, 100);
+    let sheet = bumped(level, 0.0)?;
     for (state, displaced) in [("exactly flat", 0.0), ("crumpled", 0.3)] {
-        let sheet = bumped(level, 0.0)?;
-        let model = || -> Result<SheetModel> {
-            Ok(SheetModel::new(&sheet, 0.1, MassKind::Lumped)?.with_gravity())
-        };
         let mut x = sheet.positions().to_vec();
         if displaced > 0.0 {
-            leave_flat(&model()?, &mut x, displaced, 2)?;
+            leave_flat(&thrown(&sheet)?, &mut x, displaced, 2)?;
         }
-        let outcome = textbook(&model()?, &x, h, steps);
-        let (text, failed) = match outcome {
-            Ok((strain, _)) => (
-                format!("M^{level}, {state}: edge strain {}.", number(strain)),
-                strain > 1e-6,
-            ),
-            Err(e) => (format!("M^{level}, {state}, {e}."), true),
-        };
-        f.naive(TEXTBOOK, text, failed);
-        for (name, method) in methods() {
-            let throw = [1.0, -0.5, 3.0];
-            let v: Vec<f64> = (0..x.len()).map(|i| throw[i % 3]).collect();
-            let mut run = Simulation::new(model()?, State::moving(x.clone(), v), method)?;
-            let mut before = run.state().v.clone();
-            // BDF2 looks back one step: its velocities change by gravity only after its start.
-            let mut force = 0.0_f64;
-            let mut n = 0;
-            let mut newton = true;
-            let c = course(&mut run, h, steps, |r, s| {
-                n += 1;
-                newton &= r.outcome == StepOutcome::Newton;
-                if n > 2 {
-                    for (i, (new, old)) in s.v.iter().zip(&before).enumerate() {
-                        let g = if i % 3 == 2 { -9.8 } else { 0.0 };
-                        force = force.max(((new - old) / h - g).abs() / 9.8);
-                    }
-                }
-                before.clone_from(&s.v);
-            })?;
-            let centre = |x: &[f64]| {
-                [0, 1, 2].map(|k| x.iter().skip(k).step_by(3).sum::<f64>() * 3.0 / x.len() as f64)
-            };
-            let (now, start) = (centre(&run.state().x), centre(&x));
-            let shape = run
-                .state()
-                .x
-                .iter()
-                .zip(&x)
-                .enumerate()
-                .map(|(i, (a, b))| ((a - now[i % 3]) - (b - start[i % 3])).abs())
-                .fold(0.0, f64::max);
-            let what = format!("M^{level} {state}, {name}");
-            f.at_most(
-                format!("{what}: largest net rod force on a vertex, of its weight"),
-                c.if_finished(force),
-                // Lengths exact to 1e-12 leave accelerations of 1e-12 m / h^2 undetermined, and larger ones
-                // along weak directions.
-                1e-6,
-            )
-            .ended(&c);
-            f.at_most(
-                format!("{what}: change of shape after 1 s, m"),
-                c.if_finished(shape),
-                1e-9,
-            );
-            let t = h * steps as f64;
-            let first = ["implicit Euler", "projection"].contains(&name);
-            // Backward Euler falls by g h^2 n (n + 1) / 2 in its own discrete time; BDF2 starts with one
-            // such step.
-            let fall = match name {
-                _ if first => 4.9 * t * (t + h),
-                "BDF2" => 4.9 * (t * t + 1.5 * h * h),
-                _ => 4.9 * t * t,
-            };
+        let what = format!("M^{level}, {state}");
+        let outcome = textbook(&thrown(&sheet)?, &x, H, STEPS);
+        let outcome = outcome.map_err(|e| format!("{what}, {e}"));
+        f.naive_run(TEXTBOOK, outcome, |(strain, _)| {
+            let text = format!("{what}: edge strain {}.", number(strain));
+            (text, strain > 1e-6)
+        });
+        for named in methods() {
             // M^1 does not stop. M^2 stops, as measured, after 0.02125 s (RATTLE) and at the start (its
             // composition). M^3 does not stop with RATTLE, and stops after 0.428 s with its composition.
-            let stops = match (name, effort) {
+            let stops = match (named.0, effort) {
                 ("RATTLE", Effort::Standard) => Some([5e-3, 0.1]),
                 ("RATTLE composition", Effort::Standard) => Some([0.0, 0.02]),
                 ("RATTLE composition", Effort::Full) => Some([0.1, 0.99]),
                 _ => None,
             };
-            let stops = stops.filter(|_| displaced == 0.0);
-            let off = (0..3)
-                .map(|k| now[k] - start[k] - throw[k] * t + if k == 2 { fall } else { 0.0 })
-                .fold(0.0_f64, |m, d| m.max(d.abs()));
-            f.at_most(
-                format!("{what}: centre off the method's parabola, m"),
-                c.if_finished(off),
-                1e-9,
-            );
-            if let Some(at) = stops {
-                let from = f.checks.len() - 3;
-                f.checks[from..].iter_mut().for_each(|check| {
-                    let stops = Shortfall::stops(at, "the length constraints are dependent");
-                    check.limited(ROUND_OFF, stops).ended(&c);
-                });
+            let what = format!("M^{level} {state}, {}", named.0);
+            throw(&mut f, what, named, (thrown(&sheet)?, &x))?;
+            let from = f.checks.len() - 3;
+            if let Some(at) = stops.filter(|_| displaced == 0.0) {
+                let stops = Shortfall::stops(at, "the length constraints are dependent");
+                for check in &mut f.checks[from..] {
+                    check.limited(ROUND_OFF, stops.clone());
+                }
             }
         }
     }
     f.here = format!(
-        "M^{level} thrown with 3.2 m/s, {steps} steps of 10 ms. The parabola of the first-order methods is that of their discrete time."
+        "M^{level} thrown with 3.2 m/s, {STEPS} steps of 10 ms. The parabola of the first-order methods is that of their discrete time."
     );
     Ok(f)
+}
+
+/// The mean place of all vertices, metres.
+fn centre(x: &[f64]) -> [f64; 3] {
+    [0, 1, 2].map(|k| x.iter().skip(k).step_by(3).sum::<f64>() * 3.0 / x.len() as f64)
+}
+
+/// Throws a sheet by a method and makes three checks.
+fn throw(
+    f: &mut Findings,
+    what: String,
+    (name, method): Named,
+    (model, x): (SheetModel, &[f64]),
+) -> Result<()> {
+    let v = (0..x.len()).map(|i| THROW[i % 3]).collect();
+    let mut run = Simulation::new(model, State::moving(x.to_vec(), v), method)?;
+    let mut before = run.state().v.clone();
+    let (mut force, mut n) = (0.0_f64, 0);
+    let c = course(&mut run, H, STEPS, |_, s| {
+        n += 1;
+        let pairs = s.v.iter().zip(&before).enumerate();
+        // BDF2 looks back one step: its velocities change by gravity only after its start.
+        for (i, (new, old)) in pairs.filter(|_| n > 2) {
+            let g = if i % 3 == 2 { -9.8 } else { 0.0 };
+            force = force.max(((new - old) / H - g).abs() / 9.8);
+        }
+        before.clone_from(&s.v);
+    })?;
+    let now = &run.state().x;
+    let (there, start) = (centre(now), centre(x));
+    let moved = now.iter().zip(x).enumerate();
+    let shape = moved.map(|(i, (a, b))| ((a - there[i % 3]) - (b - start[i % 3])).abs());
+    let t = H * STEPS as f64;
+    // Backward Euler falls by g h^2 n (n + 1) / 2 in its own discrete time; BDF2 starts with one such step.
+    let fall = match name {
+        "implicit Euler" | "projection" => 4.9 * t * (t + H),
+        "BDF2" => 4.9 * (t * t + 1.5 * H * H),
+        _ => 4.9 * t * t,
+    };
+    let off = |k: usize| there[k] - start[k] - THROW[k] * t + if k == 2 { fall } else { 0.0 };
+    let off = (0..3).map(|k| off(k).abs()).fold(0.0, f64::max);
+    let mut judge = f.of(&c, what);
+    // Lengths exact to 1e-12 leave accelerations of 1e-12 m / h^2 undetermined, and larger ones along weak
+    // directions.
+    judge.at_most(
+        "largest net rod force on a vertex, of its weight",
+        force,
+        1e-6,
+    );
+    judge.at_most(
+        "change of shape after 1 s, m",
+        shape.fold(0.0, f64::max),
+        1e-9,
+    );
+    judge.at_most("centre off the method's parabola, m", off, 1e-9);
+    Ok(())
 }

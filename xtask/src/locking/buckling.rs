@@ -1,20 +1,18 @@
 //! Lateral buckling of a strip that is clamped at one end and stands on edge.
 
-use super::bisection::{Bracket, Verdict, bisect};
+use super::Findings;
+use super::bisection::Verdict;
 use super::course::{Kept, Plan, Scene};
-use super::effort::LockingEffort;
-use super::findings::Findings;
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
-use super::plot::{Dot, Figure, Joined, Panel};
+use super::plot::{Dot, Figure, Panel};
 use super::records::Records;
-use super::targets::{Target, at_most, kept};
+use super::sample::{Sample, Search, requirements};
 use crate::draw::{Axis, Drawing};
-use crate::report::Table;
+use crate::methods::implicit_euler;
+use crate::report::{Effort, Table};
 use anyhow::Result;
-use isosheet_dynamics::Method;
 use isosheet_mesh::Sheet;
-use serde::{Deserialize, Serialize};
 
 pub(super) const ABOUT: &str = "A strip of 0.30 m x 0.02 m and 80 g/m² is clamped at one end with its width upright; gravity acts in its plane, and one \
     thousandth of it across. Below a critical weight the strip stays upright, above it bends and twists sideways (a test of Romero et al., \
@@ -84,29 +82,17 @@ fn prandtl_michell() -> f64 {
 fn verdict(isometry: Isometry, flat: &Sheet, load: f64, plan: &Plan) -> Result<(Verdict, Kept)> {
     let rigidity = DENSITY * GRAVITY * STRIP.free.powi(3) / load;
     let clamp = STRIP.clamp(flat);
-    let material = Material {
-        mass: DENSITY * flat.area(),
-        rigidity: Some(rigidity),
-        clamped: &clamp,
-    };
+    let material = Material::plate(flat, DENSITY, rigidity, &clamp);
     let model = isometry
         .model(flat, material)?
         .with_acceleration([0.0, -GRAVITY, -IMPERFECTION * GRAVITY])
         .with_damping(DAMPING)?
         .with_pins(&clamp)?;
-    let scene = Scene {
-        model,
-        start: flat.positions().to_vec(),
-        method: Method::ImplicitEuler(Default::default()),
-        contacts: None,
-    };
-    let course = scene.run(plan)?;
-    let tip = STRIP.tip(flat);
-    let aside = tip.iter().map(|v| course.x[3 * v.index() + 2].abs());
-    let aside = aside.sum::<f64>() / tip.len() as f64;
+    let course = Scene::flat(model, flat).by(implicit_euler()).run(plan)?;
+    let aside = course.mean(&STRIP.tip(flat), 2, f64::abs);
     let verdict = if aside > BUCKLED * STRIP.free {
         Verdict::Above
-    } else if course.ending.is_good() {
+    } else if course.is_good() {
         Verdict::Below
     } else {
         Verdict::Undecided(course.ending.name().to_owned())
@@ -117,16 +103,8 @@ fn verdict(isometry: Isometry, flat: &Sheet, load: f64, plan: &Plan) -> Result<(
 /// A mesh: its pattern, the angle of its squares against the strip (degrees), squares across.
 type Mesh = (Pattern, f64, usize);
 
-/// Where a strip buckles.
-#[derive(Serialize, Deserialize)]
-struct Buckled {
-    isometry: Isometry,
-    mesh: Mesh,
-    vertices: usize,
-    /// Critical load `q L^3 / (D w)`.
-    found: Bracket,
-    kept: Kept,
-}
+/// Where a strip buckles: critical load `q L^3 / (D w)`.
+type Buckled = Sample<Mesh, Search>;
 
 /// Critical loads of the beams that bound the strip: its energy lies between theirs.
 fn bounds() -> [f64; 2] {
@@ -136,172 +114,116 @@ fn bounds() -> [f64; 2] {
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
     let effort = records.effort;
-    let plan = Plan {
-        step: STEP,
-        duration: effort.pick(5.0, 20.0),
-        rest_speed: Some(REST),
-        patience: effort.patience(0.2, 6.0),
-    };
-    let halvings = effort.pick(3, 8);
-    let sizes: &[usize] = effort.pick(&[2], &[2, 4]);
+    let duration = effort.quick_or(5.0, 20.0);
+    let plan = Plan::new(STEP, duration, effort.patience(0.2, 6.0)).until_rest(REST);
+    let halvings = effort.quick_or(3, 8);
+    let sizes: &[usize] = effort.quick_or(&[2], &[2, 4]);
     let mut patterns: Vec<(Pattern, f64)> = Pattern::ALL.map(|p| (p, 0.0)).to_vec();
-    if effort == LockingEffort::Full {
+    if effort != Effort::Quick {
         patterns.extend([(Pattern::UnionJack, 45.0), (Pattern::OneWay, 22.5)]);
     }
-    let meshes: Vec<Mesh> = sizes
-        .iter()
-        .rev()
-        .flat_map(|n| patterns.iter().map(|(p, d)| (*p, *d, *n)))
-        .collect();
-    let mut all = records.of_models(
+    let of_size = |n: &usize| {
+        let n = *n;
+        patterns.iter().map(move |(p, d)| (*p, *d, n))
+    };
+    let meshes: Vec<Mesh> = sizes.iter().rev().flat_map(of_size).collect();
+    let mut all: Vec<Buckled> = records.of_models(
         |_| meshes.clone(),
         |isometry, &(pattern, degrees, across)| {
             let sheet = STRIP.mesh(pattern, across, degrees)?;
-            let mut kept = Kept::default();
-            let found = bisect(LOADS, halvings, |load| {
-                let (verdict, run) = verdict(isometry, &sheet, load, &plan)?;
-                kept.add(run);
-                Ok(verdict)
+            let search = Search::over(LOADS, halvings, |load| {
+                verdict(isometry, &sheet, load, &plan)
             })?;
-            Ok(Buckled {
-                isometry,
-                mesh: (pattern, degrees, across),
-                vertices: sheet.topology().vertex_count(),
-                found,
-                kept,
-            })
+            Ok((sheet.topology().vertex_count(), search, ()))
         },
     )?;
-    all.sort_by_key(|b| (b.isometry, b.mesh.0.number(), b.mesh.1 as usize, b.mesh.2));
-    Ok((
-        Findings {
-            tables: vec![table(&all, &plan, halvings)],
-            targets: Isometry::ALL
-                .iter()
-                .flat_map(|m| targets(*m, &all))
-                .collect(),
-            ..Findings::default()
-        },
-        Some(plot(&all, &patterns)),
-    ))
+    all.sort_by_key(|b| (b.isometry, b.job.0.number(), b.job.1 as usize, b.job.2));
+    let finest = sizes.iter().max();
+    let quantity = "relative error of the critical load on the finest of every mesh";
+    let findings = Findings {
+        tables: vec![table(&all, &plan, halvings)],
+        targets: requirements(&all, |of| {
+            let judged = of.with(|mesh| Some(&mesh.2) == finest);
+            vec![judged.at_most(quantity, 0.1, error)]
+        }),
+        ..Findings::default()
+    };
+    Ok((findings, Some(plot(&all, &patterns, sizes))))
 }
 
 fn table(all: &[Buckled], plan: &Plan, halvings: usize) -> Table {
-    let mut table = Table::new(format!(
+    let bounds = bounds();
+    Table::of(
+        format!(
             "Critical load q L³ / (D w), between the largest load that leaves the strip upright and the smallest that moves its tip aside by more than \
              {BUCKLED} of its length: at most {halvings} halvings of the ratio of the loads. Every run ends at rest, after {} s, or after {} s of wall time; the \
              search ends where a run neither moves aside nor reaches its end",
             plan.duration,
-            plan.patience.as_secs_f64()
+            plan.limit()
         ),
+        all,
         &[
-            "mesh",
-            "turned by, degrees",
-            "squares across",
-            "V",
-            "model",
-            "upright at",
-            "buckled at",
-            "lower bound",
-            "upper bound",
-            "not decided",
+            ("mesh", &|b| b.job.0.to_string().into()),
+            ("turned by, degrees", &|b| b.job.1.into()),
+            ("squares across", &|b| b.job.2.into()),
+            ("V", &|b| b.vertices.into()),
+            ("model", &|b| b.isometry.to_string().into()),
+            ("upright at", &|b| b.run.found.below.into()),
+            ("buckled at", &|b| b.run.found.above.into()),
+            ("lower bound", &|_| bounds[0].into()),
+            ("upper bound", &|_| bounds[1].into()),
+            ("not decided", &|b| b.run.found.undecided.as_str().into()),
         ],
-    ).named("buckling");
-    let bounds = bounds();
-    for b in all {
-        let (pattern, degrees, across) = b.mesh;
-        table.push(vec![
-            pattern.to_string().into(),
-            degrees.into(),
-            across.into(),
-            b.vertices.into(),
-            b.isometry.to_string().into(),
-            b.found.below.into(),
-            b.found.above.into(),
-            bounds[0].into(),
-            bounds[1].into(),
-            b.found.undecided.as_str().into(),
-        ]);
-    }
-    table
+    )
+    .named("buckling")
 }
 
-/// How far the critical load on the finest meshes is from the reference, relative: of rods the nearest load
-/// between both bounds, of the others the load of the plate, see [`ABOUT`]. (Membranes and equations in weak
-/// form do not resist the first small twist: strains are quadratic in it.)
-fn targets(isometry: Isometry, all: &[Buckled]) -> Vec<Target> {
-    let [low, high] = bounds();
-    let reference = |load: f64| match isometry {
+/// How far the critical load is from the reference, relative: of rods the nearest load between both
+/// bounds, of the others the load of the plate, see [`ABOUT`]. (Membranes and equations in weak form do
+/// not resist the first small twist: strains are quadratic in it.)
+fn error(b: &Buckled) -> Option<f64> {
+    let ([low, high], load) = (bounds(), b.run.found.middle()?);
+    let reference = match b.isometry {
         Isometry::Rods => load.clamp(low, high),
         _ => low,
     };
-    let finest = all.iter().map(|b| b.mesh.2).max();
-    let of = || all.iter().filter(|b| b.isometry == isometry);
-    let errors: Vec<Option<f64>> = of()
-        .filter(|b| Some(b.mesh.2) == finest)
-        .map(|b| {
-            let load = b.found.middle()?;
-            Some((load / reference(load) - 1.0).abs())
-        })
-        .collect();
-    let quantity = "relative error of the critical load on the finest of every mesh";
-    let mut targets = vec![at_most(isometry, quantity, 0.1, &errors)];
-    targets.extend(kept(isometry, of().map(|b| b.kept)));
-    targets
+    Some((load / reference - 1.0).abs())
 }
 
 /// The critical loads over the meshes, with the two bounds.
-fn plot(all: &[Buckled], patterns: &[(Pattern, f64)]) -> Drawing {
-    let sizes: Vec<usize> = {
-        let mut sizes: Vec<usize> = all.iter().map(|b| b.mesh.2).collect();
-        sizes.sort_unstable();
-        sizes.dedup();
-        sizes
-    };
+fn plot(all: &[Buckled], patterns: &[(Pattern, f64)], sizes: &[usize]) -> Drawing {
     let dots = all.iter().filter_map(|b| {
-        let (pattern, degrees, across) = b.mesh;
+        let (pattern, degrees, across) = b.job;
         let place = patterns.iter().position(|p| *p == (pattern, degrees))? as f64;
         let mesh = sizes.iter().position(|n| *n == across)?;
         // Models and sizes beside one another.
         let aside = 0.2 * b.isometry.aside() + 0.09 * (mesh as f64 - 0.5);
-        Some(Dot {
-            isometry: b.isometry,
-            mesh,
-            x: place + aside,
-            y: b.found.middle(),
-        })
+        Some(Dot::of(b, mesh, place + aside, b.run.found.middle()))
     });
-    let ticks = patterns.iter().enumerate();
-    let ticks = ticks.map(|(k, (p, d))| {
-        (
-            k as f64,
-            if *d == 0.0 {
-                p.to_string()
-            } else {
-                format!("{p} {d}°")
-            },
-        )
-    });
+    let name = |(p, degrees): &(Pattern, f64)| match degrees {
+        0.0 => p.to_string(),
+        _ => format!("{p} {degrees}°"),
+    };
+    let ticks = patterns
+        .iter()
+        .enumerate()
+        .map(|(k, p)| (k as f64, name(p)));
     let ends = [-0.6, patterns.len() as f64 - 0.4];
-    let loads = vec![15.0, 20.0, 25.0, 30.0, 40.0, 60.0];
-    let loads = loads.into_iter().map(|l| (l, format!("{l}"))).collect();
+    let loads = [15.0, 20.0, 25.0, 30.0, 40.0, 60.0].map(|l| (l, format!("{l}")));
+    let x = Axis::linear("mesh", ends, ticks.collect());
+    let y = Axis::at("critical load ~qL~^{3} / (~Dw~)", loads.to_vec());
+    let panel = Panel {
+        guides: bounds().map(|b| ends.map(|x| [x, b]).to_vec()).to_vec(),
+        ..Panel::new("Lateral buckling", dots.collect())
+    };
+    let names = sizes
+        .iter()
+        .map(|n| format!("{n} squares across"))
+        .collect();
+    let size = [74.0 * patterns.len() as f64, 150.0];
     Figure {
-        x: Axis::linear("mesh", ends, ticks.collect()),
-        rows: vec![(
-            Axis::at("critical load ~qL~^{3} / (~Dw~)", loads),
-            vec![Panel {
-                title: "Lateral buckling".into(),
-                dots: dots.collect(),
-                guides: bounds().map(|b| ends.map(|x| [x, b]).to_vec()).to_vec(),
-            }],
-        )],
-        meshes: sizes
-            .iter()
-            .map(|n| format!("{n} squares across"))
-            .collect(),
         guide: "bounds of the load".into(),
-        joined: Joined::No,
-        size: [74.0 * patterns.len() as f64, 150.0],
+        ..Figure::of_row(x, y, vec![panel], names, size)
     }
     .draw()
 }

@@ -1,19 +1,20 @@
 //! The drop of a heavy strip against the exact elastica, on meshes turned against the strip.
 
+use super::Findings;
 use super::course::{Course, Plan, Scene};
 use super::cylinder::DIRECTIONS;
-use super::elastica::Elastica;
-use super::findings::Findings;
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
 use super::plot::{Dot, Figure, Panel, order};
 use super::records::Records;
-use super::targets::{Target, at_most, kept};
+use super::sample::{OfModel, Sample, requirements};
 use crate::draw::{Axis, Drawing};
+use crate::methods::implicit_euler;
 use crate::report::{Table, number};
 use anyhow::Result;
-use isosheet_dynamics::{Method, SheetModel};
+use isosheet_dynamics::SheetModel;
 use isosheet_mesh::Sheet;
+use isosheet_tests::Elastica;
 use serde::{Deserialize, Serialize};
 
 pub(super) const ABOUT: &str = "A strip of 0.06 m width and 80 g/m² is clamped horizontally over 0.03 m and hangs free over 0.30 m: the heavy elastica. The \
@@ -44,102 +45,91 @@ pub(super) const REST: f64 = 5e-4;
 /// Squares across at which the error is limited.
 const JUDGED: usize = 8;
 
-/// A strip at rest.
-#[derive(Serialize, Deserialize)]
-struct Hung {
+/// A mesh and a rigidity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Job {
     pattern: Pattern,
-    across: usize,
     degrees: f64,
+    across: usize,
     rigidity: f64,
-    vertices: usize,
-    isometry: Isometry,
-    course: Course,
-    drop: f64,
-    exact: f64,
 }
 
-impl Hung {
-    fn measure(
-        isometry: Isometry,
-        (pattern, degrees): (Pattern, f64),
-        across: usize,
-        (rigidity, exact): (f64, f64),
-        plan: &Plan,
-    ) -> Result<Self> {
-        let sheet = STRIP.mesh(pattern, across, degrees)?;
-        let clamp = STRIP.clamp(&sheet);
-        let material = Material {
-            mass: DENSITY * sheet.area(),
-            rigidity: Some(rigidity),
-            clamped: &clamp,
-        };
-        let model = isometry.model(&sheet, material)?;
-        let course = scene(&sheet, model)?.run(plan)?;
-        Ok(Self {
-            pattern,
-            across,
-            degrees,
-            rigidity,
-            vertices: sheet.topology().vertex_count(),
-            isometry,
-            drop: drop(&sheet, &course),
-            exact,
-            course,
-        })
-    }
+/// A strip at rest, its drop, and the exact one (metres).
+type Hung = Sample<Job, Course, [f64; 2]>;
 
+impl Hung {
     fn spacing(&self) -> f64 {
-        STRIP.width / self.across as f64
+        STRIP.width / self.job.across as f64
     }
 
     /// The relative error of the drop, of a run that reached its end.
     fn error(&self) -> Option<f64> {
-        let is_good = self.course.ending.is_good();
-        is_good.then(|| self.drop / self.exact - 1.0)
+        let [drop, exact] = self.measured;
+        self.run.is_good().then(|| drop / exact - 1.0)
     }
+
+    /// Its size.
+    fn size(&self) -> Option<f64> {
+        self.error().map(f64::abs)
+    }
+}
+
+/// All combinations of rigidities, patterns and directions, without the size of the mesh.
+fn combinations(directions: &[f64]) -> Vec<Job> {
+    let mut jobs = Vec::new();
+    for rigidity in RIGIDITIES {
+        for pattern in Pattern::ALL {
+            jobs.extend(directions.iter().map(|&degrees| Job {
+                pattern,
+                degrees,
+                across: 0,
+                rigidity,
+            }));
+        }
+    }
+    jobs
 }
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
     let effort = records.effort;
-    let plan = Plan {
-        step: STEP,
-        duration: effort.pick(3.0, 10.0),
-        rest_speed: Some(REST),
-        patience: effort.patience(0.3, 4.0),
-    };
-    let sizes: &[usize] = effort.pick(&[2], &[2, 4, 8]);
-    let directions: &[f64] = effort.pick(&[0.0, 22.5], &DIRECTIONS);
-    let exact = RIGIDITIES.map(|rigidity| (rigidity, exact_drop(rigidity)));
-    let mut jobs = Vec::new();
-    for of in exact {
-        for pattern in Pattern::ALL {
-            for &degrees in directions {
-                jobs.extend(sizes.iter().map(|&across| ((pattern, degrees), across, of)));
-            }
-        }
-    }
+    let plan = Plan::new(STEP, effort.quick_or(3.0, 10.0), effort.patience(0.3, 4.0));
+    let plan = plan.until_rest(REST);
+    let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
+    let directions: &[f64] = effort.quick_or(&[0.0, 22.5], &DIRECTIONS);
+    let of_sizes = |job: Job| sizes.iter().map(move |&across| Job { across, ..job });
+    let jobs: Vec<Job> = combinations(directions)
+        .into_iter()
+        .flat_map(of_sizes)
+        .collect();
     let all = records.of_models(
         |_| jobs.clone(),
-        |isometry, (mesh, across, of)| Hung::measure(isometry, *mesh, *across, *of, &plan),
-    )?;
-    let mut remarks: Vec<String> = exact
-        .iter()
-        .map(|(rigidity, drop)| format!("Exact drop at D = {rigidity:e} N m: {drop:.4} m."))
-        .collect();
-    remarks.extend(Isometry::ALL.map(|isometry| remark(isometry, &all)));
-    Ok((
-        Findings {
-            remarks,
-            tables: vec![orders(&all, directions), table(&all, &plan)],
-            targets: Isometry::ALL
-                .iter()
-                .flat_map(|m| targets(*m, &all))
-                .collect(),
-            files: Vec::new(),
+        |isometry, job| {
+            let sheet = STRIP.mesh(job.pattern, job.across, job.degrees)?;
+            let clamp = STRIP.clamp(&sheet);
+            let material = Material::plate(&sheet, DENSITY, job.rigidity, &clamp);
+            let course = scene(&sheet, isometry.model(&sheet, material)?)?.run(&plan)?;
+            let drop = [drop(&sheet, &course), exact_drop(job.rigidity)];
+            Ok((sheet.topology().vertex_count(), course, drop))
         },
-        Some(plot(&all, directions, sizes)),
-    ))
+    )?;
+    let of_exact = |rigidity: f64| {
+        let drop = exact_drop(rigidity);
+        format!("Exact drop at D = {rigidity:e} N m: {drop:.4} m.")
+    };
+    let mut remarks = RIGIDITIES.map(of_exact).to_vec();
+    remarks.extend(Isometry::ALL.map(|isometry| remark(isometry, &all)));
+    let quantity = "relative error of the drop, 8 squares across, every mesh, direction and D";
+    let findings = Findings {
+        remarks,
+        tables: vec![orders(&all, directions), table(&all, &plan)],
+        targets: requirements(&all, |of| {
+            let judged = of.with(|job| job.across == JUDGED);
+            vec![judged.at_most(quantity, 0.02, Hung::size)]
+        }),
+        files: Vec::new(),
+    };
+    Ok((findings, Some(plot(&all, directions, sizes))))
 }
 
 /// A strip of this yardstick with its clamp, weight and damping, from flat.
@@ -148,19 +138,12 @@ pub(super) fn scene(sheet: &Sheet, model: SheetModel) -> Result<Scene> {
         .with_acceleration([0.0, 0.0, -GRAVITY])
         .with_damping(DAMPING)?
         .with_pins(&STRIP.clamp(sheet))?;
-    Ok(Scene {
-        model,
-        start: sheet.positions().to_vec(),
-        method: Method::ImplicitEuler(Default::default()),
-        contacts: None,
-    })
+    Ok(Scene::flat(model, sheet).by(implicit_euler()))
 }
 
 /// How far the free edge is below the clamp at the end, metres: the mean over its vertices.
 pub(super) fn drop(sheet: &Sheet, course: &Course) -> f64 {
-    let tip = STRIP.tip(sheet);
-    let heights = tip.iter().map(|v| course.x[3 * v.index() + 2]);
-    0.0 - heights.sum::<f64>() / tip.len() as f64
+    0.0 - course.mean(&STRIP.tip(sheet), 2, |z| z)
 }
 
 /// The exact drop of the tip, metres.
@@ -180,79 +163,60 @@ fn table(all: &[Hung], plan: &Plan) -> Table {
              time. A negative error is a strip that is too stiff; a positive one comes from the springs along the clamp, which are as soft as those between two \
              free rows of triangles and bend over half the length",
             plan.duration,
-            plan.patience.as_secs_f64()
+            plan.limit()
         ),
         all,
         &[
-            ("mesh", &|h| h.pattern.to_string().into()),
-            ("turned by, degrees", &|h| h.degrees.into()),
-            ("squares across", &|h| h.across.into()),
-            ("D, N m", &|h| h.rigidity.into()),
+            ("mesh", &|h| h.job.pattern.to_string().into()),
+            ("turned by, degrees", &|h| h.job.degrees.into()),
+            ("squares across", &|h| h.job.across.into()),
+            ("D, N m", &|h| h.job.rigidity.into()),
             ("V", &|h| h.vertices.into()),
             ("model", &|h| h.isometry.to_string().into()),
-            ("ending", &|h| h.course.ending.name().into()),
-            ("t at the end, s", &|h| h.course.t.into()),
-            ("factorisations", &|h| h.course.effort.factorisations.into()),
-            ("speed left, m/s", &|h| h.course.speed.into()),
-            ("drop, m", &|h| h.drop.into()),
-            ("exact, m", &|h| h.exact.into()),
+            ("ending", &|h| h.run.ending.name().into()),
+            ("t at the end, s", &|h| h.run.t.into()),
+            ("factorisations", &|h| h.run.cost.factorisations.into()),
+            ("speed left, m/s", &|h| h.run.speed.into()),
+            ("drop, m", &|h| h.measured[0].into()),
+            ("exact, m", &|h| h.measured[1].into()),
             ("error", &|h| h.error().into()),
-            ("message", &|h| h.course.ending.message().into()),
+            ("message", &|h| h.run.ending.message().into()),
         ],
     )
     .named("cantilever")
 }
 
-/// Errors against the spacing, of the runs that reached their end.
-fn points(
-    all: &[Hung],
-    pattern: Pattern,
-    isometry: Isometry,
-    rigidity: f64,
-    degrees: f64,
-) -> Vec<[f64; 2]> {
-    all.iter()
-        .filter(|h| h.pattern == pattern && h.isometry == isometry)
-        .filter(|h| h.rigidity == rigidity && h.degrees == degrees)
-        .filter_map(|h| Some([h.spacing(), h.error()?.abs()]))
-        .collect()
-}
-
 fn orders(all: &[Hung], directions: &[f64]) -> Table {
-    let mut table = Table::new(
+    // Errors against the spacing, of the runs that reached their end.
+    let points = |(isometry, of): &(Isometry, Job)| -> Vec<[f64; 2]> {
+        let across = |job: &Job| Job { across: 0, ..*job };
+        let of = OfModel::of(*isometry, all).with(|job| across(job) == *of);
+        let points = of.all.iter().filter_map(|h| Some([h.spacing(), h.size()?]));
+        points.collect()
+    };
+    let all_models = Isometry::ALL.into_iter();
+    let of_model = |m| {
+        combinations(directions)
+            .into_iter()
+            .map(move |job| (m, job))
+    };
+    Table::of(
         "Fitted powers of h of the error of the drop, of the runs that reached their end",
+        all_models.flat_map(of_model),
         &[
-            "mesh",
-            "turned by, degrees",
-            "D, N m",
-            "model",
-            "runs",
-            "power",
+            ("mesh", &|(_, job)| job.pattern.to_string().into()),
+            ("turned by, degrees", &|(_, job)| job.degrees.into()),
+            ("D, N m", &|(_, job)| job.rigidity.into()),
+            ("model", &|(isometry, _)| isometry.to_string().into()),
+            ("runs", &|of| points(of).len().into()),
+            ("power", &|of| order(&points(of), 0.0).into()),
         ],
     )
-    .named("cantilever-orders");
-    for isometry in Isometry::ALL {
-        for rigidity in RIGIDITIES {
-            for pattern in Pattern::ALL {
-                for &degrees in directions {
-                    let points = points(all, pattern, isometry, rigidity, degrees);
-                    table.push(vec![
-                        pattern.to_string().into(),
-                        degrees.into(),
-                        rigidity.into(),
-                        isometry.to_string().into(),
-                        points.len().into(),
-                        order(&points, 0.0).into(),
-                    ]);
-                }
-            }
-        }
-    }
-    table
+    .named("cantilever-orders")
 }
 
 fn remark(isometry: Isometry, all: &[Hung]) -> String {
-    let of: Vec<&Hung> = all.iter().filter(|h| h.isometry == isometry).collect();
+    let of = OfModel::of(isometry, all).all;
     let errors: Vec<f64> = of.iter().filter_map(|h| h.error()).collect();
     if errors.is_empty() {
         return format!("{isometry}: no strip reaches the end.");
@@ -268,38 +232,18 @@ fn remark(isometry: Isometry, all: &[Hung]) -> String {
     )
 }
 
-fn targets(isometry: Isometry, all: &[Hung]) -> Vec<Target> {
-    let of = || all.iter().filter(|h| h.isometry == isometry);
-    let judged = of().filter(|h| h.across == JUDGED);
-    let errors: Vec<Option<f64>> = judged.map(|h| Some(h.error()?.abs())).collect();
-    let quantity = "relative error of the drop, 8 squares across, every mesh, direction and D";
-    let mut targets = vec![at_most(isometry, quantity, 0.02, &errors)];
-    targets.extend(kept(isometry, of().map(|h| h.course.kept)));
-    targets
-}
-
 /// The error against the spacing, a panel for every direction and a row for every rigidity.
 fn plot(all: &[Hung], directions: &[f64], sizes: &[usize]) -> Drawing {
     let rows = RIGIDITIES.map(|rigidity| {
         let panel = |&degrees: &f64| {
-            let of = all.iter();
-            let of = of.filter(|h| h.rigidity == rigidity && h.degrees == degrees);
-            let dots: Vec<Dot> = of
-                .map(|h| Dot {
-                    isometry: h.isometry,
-                    mesh: h.pattern.number(),
-                    x: h.spacing(),
-                    y: h.error().map(f64::abs),
-                })
-                .collect();
+            let is_here = |h: &&Hung| (h.job.rigidity, h.job.degrees) == (rigidity, degrees);
+            let dot = |h: &Hung| Dot::of(h, h.job.pattern.number(), h.spacing(), h.size());
+            let dots = all.iter().filter(is_here).map(dot).collect();
             Panel::of_second_order(format!("mesh turned by {degrees}°"), dots)
         };
-        let errors = all.iter().filter_map(Hung::error).map(f64::abs);
         let label = format!("error of the drop, ~D~ = {rigidity} N m");
-        (
-            Axis::holding(&label, errors),
-            directions.iter().map(panel).collect(),
-        )
+        let y = Axis::holding(&label, all.iter().filter_map(Hung::size));
+        (y, directions.iter().map(panel).collect())
     });
     let spacings: Vec<f64> = sizes.iter().map(|&n| STRIP.width / n as f64).collect();
     Figure::of_spacings(&spacings, rows.to_vec()).draw()

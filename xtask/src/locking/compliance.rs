@@ -1,15 +1,16 @@
 //! How elastic sheets approach rigid rods, and elastic and weakly isometric ones the inextensible strip, as
 //! their membrane becomes stiffer.
 
+use super::Findings;
 use super::cantilever;
 use super::course::{Course, Plan, Scene};
-use super::findings::Findings;
 use super::isometry::{Material, PAPER, PAPER_RIGIDITY, elastic, rods, weak};
 use super::meshes::Pattern;
 use super::plot::order;
 use super::records::Records;
-use crate::draw::{Axis, Drawing, Legend, Marker, Series, column, row};
-use crate::report::{Chart, Missing, Table};
+use crate::draw::spatial::{norm, sub};
+use crate::draw::{Axis, Chart, Drawing, Legend, Marker, Missing, Series, column, row};
+use crate::report::Table;
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method};
 use isosheet_mesh::{Sheet, VertexId, generate};
@@ -121,48 +122,30 @@ fn tilted(ladder: &Sheet) -> Vec<f64> {
 
 /// A run of a ladder with the stiffness, or with rods.
 fn ladder(sheet: &Sheet, stiffness: Option<f64>, plan: &Plan) -> Result<Course> {
-    let material = Material {
-        mass: MASS,
-        rigidity: None,
-        clamped: &[],
-    };
+    let material = Material::limp(MASS);
     let model = match stiffness {
         None => rods(sheet, material)?,
         Some(stiffness) => elastic(sheet, material, (stiffness, PAPER.1))?,
     };
+    let model = model
+        .with_acceleration([0.0, -9.8, 0.0])
+        .with_pins(&[VertexId(0), VertexId(1)])?;
     let options = ImplicitOptions {
         tolerance: TOLERANCE,
         ..ImplicitOptions::default()
     };
-    let scene = Scene {
-        model: model
-            .with_acceleration([0.0, -9.8, 0.0])
-            .with_pins(&[VertexId(0), VertexId(1)])?,
-        start: tilted(sheet),
-        method: Method::ImplicitEuler(options),
-        contacts: None,
-    };
-    Ok(scene.run(plan)?)
+    let scene = Scene::flat(model, sheet).from(tilted(sheet));
+    Ok(scene.by(Method::ImplicitEuler(options)).run(plan)?)
 }
 
 fn ladder_error(squares: usize, stiffness: f64, plan: &Plan) -> Result<(Course, Option<f64>)> {
     let sheet = generate::ladder(squares, 0.1, 0.1)?;
-    let plan = Plan {
-        step: STEP,
-        duration: DURATION,
-        rest_speed: None,
-        ..*plan
-    };
+    let plan = Plan::new(STEP, DURATION, plan.patience);
     let limit = ladder(&sheet, None, &plan)?;
     let course = ladder(&sheet, Some(stiffness), &plan)?;
-    let pairs = course
-        .x
-        .as_chunks::<3>()
-        .0
-        .iter()
-        .zip(limit.x.as_chunks::<3>().0);
-    let distance =
-        |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+    let pairs = course.x.as_chunks::<3>().0.iter();
+    let pairs = pairs.zip(limit.x.as_chunks::<3>().0);
+    let distance = |(a, b): (&[f64; 3], &[f64; 3])| norm(&sub(a, b));
     let largest = pairs.map(distance).fold(0.0, f64::max);
     let error = limit.ending.is_good().then_some(largest);
     Ok((course, error))
@@ -177,11 +160,7 @@ fn elastica_error(
     let (pattern, degrees) = MESHES[mesh];
     let sheet = cantilever::STRIP.mesh(pattern, across, degrees)?;
     let clamp = cantilever::STRIP.clamp(&sheet);
-    let material = Material {
-        mass: cantilever::DENSITY * sheet.area(),
-        rigidity: Some(PAPER_RIGIDITY),
-        clamped: &clamp,
-    };
+    let material = Material::plate(&sheet, cantilever::DENSITY, PAPER_RIGIDITY, &clamp);
     let model = match form {
         Form::Elastic => elastic(&sheet, material, (stiffness, PAPER.1))?,
         Form::Weak => weak(&sheet, material, stiffness)?,
@@ -195,14 +174,10 @@ fn elastica_error(
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
     let effort = records.effort;
-    let plan = Plan {
-        step: cantilever::STEP,
-        duration: 10.0,
-        rest_speed: Some(cantilever::REST),
-        patience: effort.patience(0.5, 5.0),
-    };
-    let stiffnesses: &[f64] = effort.pick(&[1e4, 1e6], &STIFFNESSES);
-    let sizes: &[usize] = effort.pick(&[2], &[2, 4, 8]);
+    let plan = Plan::new(cantilever::STEP, 10.0, effort.patience(0.5, 5.0));
+    let plan = plan.until_rest(cantilever::REST);
+    let stiffnesses: &[f64] = effort.quick_or(&[1e4, 1e6], &STIFFNESSES);
+    let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
     let mut problems: Vec<Problem> = LADDERS.map(Problem::Ladder).to_vec();
     for form in [Form::Elastic, Form::Weak] {
         for &across in sizes {
@@ -214,17 +189,14 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         .iter()
         .flat_map(|p| stiffnesses.iter().map(|k| (*p, *k)))
         .collect();
-    let all = records.runs("membranes", &jobs, |(problem, stiffness)| {
-        problem.measure(*stiffness, &plan)
-    })?;
-    Ok((
-        Findings {
-            tables: vec![orders(&all, &problems)],
-            files: vec![table(&all)],
-            ..Findings::default()
-        },
-        Some(plot(&all, sizes)),
-    ))
+    let measure = |job: &(Problem, f64)| job.0.measure(job.1, &plan);
+    let all = records.runs("membranes", &jobs, measure)?;
+    let findings = Findings {
+        tables: vec![orders(&all, &problems)],
+        files: vec![table(&all)],
+        ..Findings::default()
+    };
+    Ok((findings, Some(plot(&all, sizes))))
 }
 
 /// Errors against the compliance, of the runs that ended.
@@ -243,7 +215,7 @@ fn table(all: &[Run]) -> Table {
             ("stiffness, N/m", &|r| r.stiffness.into()),
             ("ending", &|r| r.course.ending.name().into()),
             ("factorisations per step", &|r| {
-                r.course.effort.factorisations_per_step().into()
+                r.course.factorisations().into()
             }),
             ("error", &|r| r.error.into()),
             ("message", &|r| r.course.ending.message().into()),
@@ -253,31 +225,21 @@ fn table(all: &[Run]) -> Table {
 }
 
 fn orders(all: &[Run], problems: &[Problem]) -> Table {
-    let mut table = Table::new("Errors (metres for ladders, relative for the elastica) and their fitted power of the compliance: 1 where the stretch decides, 0 where the mesh \
+    let error = |p: &[f64; 2]| p[1];
+    Table::of(
+        "Errors (metres for ladders, relative for the elastica) and their fitted power of the compliance: 1 where the stretch decides, 0 where the mesh \
          does, negative where the sheet locks",
+        problems.iter().map(|problem| (problem, points(all, *problem))),
         &[
-            "problem",
-            "runs",
-            "error at the softest",
-            "smallest error",
-            "error at the stiffest",
-            "power",
+            ("problem", &|(problem, _)| problem.name().into()),
+            ("runs", &|(_, p)| p.len().into()),
+            ("error at the softest", &|(_, p)| p.first().map(error).into()),
+            ("smallest error", &|(_, p)| p.iter().map(error).reduce(f64::min).into()),
+            ("error at the stiffest", &|(_, p)| p.last().map(error).into()),
+            ("power", &|(_, p)| order(p, FLOOR).into()),
         ],
-    ).named("compliance");
-    for &problem in problems {
-        let points = points(all, problem);
-        let error = |p: &[f64; 2]| p[1];
-        let smallest = points.iter().map(error).reduce(f64::min);
-        table.push(vec![
-            problem.name().into(),
-            points.len().into(),
-            points.first().map(error).into(),
-            smallest.into(),
-            points.last().map(error).into(),
-            order(&points, FLOOR).into(),
-        ]);
-    }
-    table
+    )
+    .named("compliance")
 }
 
 /// The errors against the compliance: the ladders and the elastic elastica on meshes of every size in the
@@ -288,29 +250,21 @@ fn plot(all: &[Run], sizes: &[usize]) -> Drawing {
     let errors = all.iter().filter(|r| !is_ladder(r)).filter_map(|r| r.error);
     let y = Axis::holding("relative error of the drop", errors);
     let of = LADDERS.map(|n| (Problem::Ladder(n), format!("ladder, {n} squares")));
-    let mut elastic = vec![panel(
-        (all, &of, 0),
-        "Ladders",
-        Axis::holding("distance from rods, m", ladder_errors),
-        Legend::Right,
-    )];
+    let distance = Axis::holding("distance from rods, m", ladder_errors);
+    let mut elastic = vec![panel((all, &of, 0), "Ladders", distance).draw()];
     let panels = |form: Form, name: &str, last: Legend| {
         let of_size = |(k, &across): (usize, &usize)| {
-            let of: Vec<(Problem, String)> = MESHES
-                .iter()
-                .enumerate()
-                .map(|(mesh, (p, d))| {
-                    let problem = Problem::Elastica { form, mesh, across };
-                    (problem, format!("{p}, {d}°"))
-                })
-                .collect();
-            let legend = if k + 1 == sizes.len() {
-                last
-            } else {
-                Legend::None
+            let meshes = MESHES.iter().enumerate();
+            let named = |(mesh, (p, d)): (usize, &(Pattern, f64))| {
+                let problem = Problem::Elastica { form, mesh, across };
+                (problem, format!("{p}, {d}°"))
             };
+            let of: Vec<(Problem, String)> = meshes.map(named).collect();
+            let is_last = k + 1 == sizes.len();
+            let legend = if is_last { last } else { Legend::None };
             let title = format!("{name}, {across} squares across");
-            panel((all, &of, 3), &title, y.clone(), legend)
+            let chart = panel((all, &of, 3), &title, y.clone());
+            chart.with_legend(legend).draw()
         };
         sizes.iter().enumerate().map(of_size).collect::<Vec<_>>()
     };
@@ -325,8 +279,7 @@ fn panel(
     (all, problems, style): (&[Run], &[(Problem, String)], usize),
     title: &str,
     y: Axis,
-    legend: Legend,
-) -> Drawing {
+) -> Chart {
     let styled = |(k, (problem, name)): (usize, &(Problem, String))| {
         Series::styled(style + k, name, points(all, *problem))
     };
@@ -340,25 +293,17 @@ fn panel(
             colour,
             marker,
         };
-        of.filter(|r| r.error.is_none())
-            .map(mark)
-            .collect::<Vec<_>>()
+        let lost = of.filter(|r| r.error.is_none());
+        lost.map(mark).collect::<Vec<_>>()
     };
     let missing = problems.iter().zip(&series).flat_map(not_ended).collect();
     if let (Problem::Ladder(_), [a, .., b]) = (problems[0].0, series[0].points.as_slice()) {
         let guide = vec![*a, [b[0], a[1] * b[0] / a[0]]];
         series.push(Series::guide("1 / (~Eh~)", guide));
     }
-    Chart {
-        title: title.to_owned(),
-        x: Axis::holding("compliance 1 / (~Eh~), m/N", [1e-7, 1e-3]),
-        y,
-        size: [120.0, 140.0],
-        series,
-        missing: Some(missing),
-        legend,
-    }
-    .draw()
+    let x = Axis::holding("compliance 1 / (~Eh~), m/N", [1e-7, 1e-3]);
+    let chart = Chart::new(x, y, [120.0, 140.0], series);
+    chart.titled(title).with_missing(missing)
 }
 
 #[cfg(test)]
@@ -368,12 +313,7 @@ mod tests {
     /// Ladders approach rods to first order in the compliance.
     #[test]
     fn ladders_approach_rods_to_first_order() {
-        let plan = Plan {
-            step: STEP,
-            duration: DURATION,
-            rest_speed: None,
-            patience: std::time::Duration::from_secs(60),
-        };
+        let plan = Plan::new(STEP, DURATION, std::time::Duration::from_secs(60));
         let run = |stiffness: f64| Problem::Ladder(3).measure(stiffness, &plan).unwrap();
         let all = [1e4, 1e5, 1e6].map(run);
         let power = order(&points(&all, Problem::Ladder(3)), FLOOR).unwrap();
@@ -385,28 +325,15 @@ mod tests {
     #[test]
     fn weak_equations_of_a_ladder_hold_its_lengths() {
         let sheet = generate::ladder(5, 0.1, 0.1).unwrap();
-        let material = Material {
-            mass: MASS,
-            rigidity: None,
-            clamped: &[],
-        };
+        let material = Material::limp(MASS);
         let model = weak(&sheet, material, 1.0)
             .unwrap()
             .with_acceleration([0.0, -9.8, 0.0])
             .with_pins(&[VertexId(0), VertexId(1)])
             .unwrap();
-        let plan = Plan {
-            step: STEP,
-            duration: DURATION,
-            rest_speed: None,
-            patience: std::time::Duration::from_secs(60),
-        };
-        let scene = Scene {
-            model,
-            start: tilted(&sheet),
-            method: Method::ImplicitEuler(ImplicitOptions::default()),
-            contacts: None,
-        };
+        let plan = Plan::new(STEP, DURATION, std::time::Duration::from_secs(60));
+        let method = Method::ImplicitEuler(ImplicitOptions::default());
+        let scene = Scene::flat(model, &sheet).from(tilted(&sheet)).by(method);
         let course = scene.run(&plan).unwrap();
         assert!(course.ending.is_good() && course.kept.violation <= 1e-12);
         assert!(course.strain < 1e-10, "{}", course.strain);

@@ -2,12 +2,13 @@
 
 use super::limit::{GivenUp, Guard, unless_given_up};
 use crate::interrupt::Interrupted;
-use crate::report::Effort;
+use crate::report::Cost;
 use anyhow::Result;
 use isosheet_collide::Contacts;
 use isosheet_dynamics::{
     Method, Reaction, RunEnd, SheetModel, Simulation, State, StepError, StepReport,
 };
+use isosheet_mesh::{Sheet, VertexId};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -26,13 +27,39 @@ pub(super) struct Plan {
     pub(super) patience: Duration,
 }
 
+impl Plan {
+    /// So many seconds in steps of so many, whatever the sheet does.
+    pub(super) fn new(step: f64, duration: f64, patience: Duration) -> Self {
+        Self {
+            step,
+            duration,
+            rest_speed: None,
+            patience,
+        }
+    }
+
+    /// The same, but the run ends when the sheet is at rest, see [`Plan::rest_speed`].
+    pub(super) fn until_rest(self, speed: f64) -> Self {
+        Self {
+            rest_speed: Some(speed),
+            ..self
+        }
+    }
+
+    /// The limit of wall time, seconds.
+    pub(super) fn limit(&self) -> f64 {
+        self.patience.as_secs_f64()
+    }
+}
+
 /// Steps below the bound of speed after which a sheet is called at rest: one alone may be a turning point.
 pub(super) const QUIET: usize = 5;
 
 /// How a run ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) enum Ending {
     /// The whole time was simulated.
+    #[default]
     Complete,
     /// The sheet came to rest.
     Rest,
@@ -86,7 +113,7 @@ impl Kept {
 }
 
 /// What happened in a run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Course {
     pub(super) ending: Ending,
     /// Positions at the end, metres; the start where no step was taken. They are not kept in records.
@@ -98,7 +125,7 @@ pub(super) struct Course {
     /// Time at the end, seconds.
     pub(super) t: f64,
     /// What the completed steps cost; wall time of the whole run.
-    pub(super) effort: Effort,
+    pub(super) cost: Cost,
     /// Most factorisations in one step.
     pub(super) worst: usize,
     /// Kinetic energy after the last complete step, joules.
@@ -113,21 +140,13 @@ pub(super) struct Course {
 impl Course {
     fn of(start: &[f64]) -> Self {
         Self {
-            ending: Ending::Complete,
             x: start.to_vec(),
-            reactions: Vec::new(),
-            t: 0.0,
-            effort: Effort::default(),
-            worst: 0,
-            kinetic: 0.0,
-            speed: 0.0,
-            strain: 0.0,
-            kept: Kept::default(),
+            ..Self::default()
         }
     }
 
     fn add(&mut self, state: &State, report: &StepReport) {
-        self.effort.add(report);
+        self.cost.add(report);
         self.worst = self.worst.max(report.factorisations);
         self.kinetic = report.kinetic;
         self.strain = self.strain.max(report.strain);
@@ -140,16 +159,28 @@ impl Course {
         self.speed = fastest.fold(0.0, f64::max).sqrt();
     }
 
-    /// Height of the lowest vertex at the end, metres.
-    pub(super) fn lowest(&self) -> f64 {
-        let heights = self.x.as_chunks::<3>().0.iter().map(|p| p[2]);
-        heights.fold(f64::INFINITY, f64::min)
+    /// Whether the run reached its end.
+    pub(super) fn is_good(&self) -> bool {
+        self.ending.is_good()
     }
 
-    /// Height of the highest vertex at the end, metres.
-    pub(super) fn highest(&self) -> f64 {
+    /// Mean factorisations in the steps that were completed; nothing where none was.
+    pub(super) fn factorisations(&self) -> Option<f64> {
+        self.cost.factorisations_per_step()
+    }
+
+    /// Heights of the lowest and the highest vertex at the end, metres.
+    pub(super) fn heights(&self) -> [f64; 2] {
         let heights = self.x.as_chunks::<3>().0.iter().map(|p| p[2]);
-        heights.fold(f64::NEG_INFINITY, f64::max)
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| {
+            [low.min(z), high.max(z)]
+        })
+    }
+
+    /// Mean of a coordinate of some vertices at the end, metres.
+    pub(super) fn mean(&self, vertices: &[VertexId], k: usize, of: fn(f64) -> f64) -> f64 {
+        let values = vertices.iter().map(|v| of(self.x[3 * v.index() + k]));
+        values.sum::<f64>() / vertices.len() as f64
     }
 }
 
@@ -164,6 +195,32 @@ pub(super) struct Scene {
 }
 
 impl Scene {
+    /// A flat sheet by the default method.
+    pub(super) fn flat(model: SheetModel, sheet: &Sheet) -> Self {
+        Self {
+            model,
+            start: sheet.positions().to_vec(),
+            method: Method::default(),
+            contacts: None,
+        }
+    }
+
+    /// The same by another method.
+    pub(super) fn by(self, method: Method) -> Self {
+        Self { method, ..self }
+    }
+
+    /// The same from other positions.
+    pub(super) fn from(self, start: Vec<f64>) -> Self {
+        Self { start, ..self }
+    }
+
+    /// The same with contact.
+    pub(super) fn touching(self, contacts: Contacts) -> Self {
+        let contacts = Some(contacts);
+        Self { contacts, ..self }
+    }
+
     /// Runs the scene. An error of the solver is an ending like others, and not an error of this function.
     ///
     /// # Errors
@@ -216,7 +273,7 @@ impl Scene {
         }
         course.x.copy_from_slice(&simulation.state().x);
         course.t = simulation.state().t;
-        course.effort.wall = clock.elapsed().as_secs_f64();
+        course.cost.wall = clock.elapsed().as_secs_f64();
         Ok(course)
     }
 }
@@ -254,18 +311,8 @@ mod tests {
 
     fn falling() -> Scene {
         let sheet = generate::isotropic_square(1, 1.0).unwrap();
-        let material = Material {
-            mass: 0.1,
-            rigidity: None,
-            clamped: &[],
-        };
-        let model = Isometry::Rods.model(&sheet, material).unwrap();
-        Scene {
-            model: model.with_gravity(),
-            start: sheet.positions().to_vec(),
-            method: Method::default(),
-            contacts: None,
-        }
+        let model = Isometry::Rods.model(&sheet, Material::limp(0.1)).unwrap();
+        Scene::flat(model.with_gravity(), &sheet)
     }
 
     const PLAN: Plan = Plan {
@@ -279,22 +326,19 @@ mod tests {
     fn runs_end_complete_at_rest_out_of_time_or_with_an_error() {
         let course = falling().run(&PLAN).unwrap();
         assert_eq!(
-            (course.ending.clone(), course.effort.steps),
+            (course.ending.clone(), course.cost.steps),
             (Ending::Complete, 10)
         );
         // Damped methods of first and second order fall by g t^2 / 2 to within the order of a step.
-        assert!(
-            (course.lowest() + 0.049).abs() < 0.006,
-            "{}",
-            course.lowest()
-        );
+        let [lowest, _] = course.heights();
+        assert!((lowest + 0.049).abs() < 0.006, "{lowest}");
         let fast = Plan {
             rest_speed: Some(100.0),
             ..PLAN
         };
         let course = falling().run(&fast).unwrap();
         assert_eq!(
-            (course.ending.clone(), course.effort.steps),
+            (course.ending.clone(), course.cost.steps),
             (Ending::Rest, QUIET)
         );
         let hurried = Plan {
@@ -303,7 +347,7 @@ mod tests {
         };
         let course = falling().run(&hurried).unwrap();
         assert_eq!(
-            (course.ending.name(), course.effort.steps),
+            (course.ending.name(), course.cost.steps),
             ("wall time over", 0)
         );
         let mut broken = falling();

@@ -1,16 +1,18 @@
 //! A square that clamps bend to a cylinder, with exact energy and moment.
 
+use super::Findings;
 use super::course::{Course, Plan, Scene};
-use super::findings::Findings;
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::{Pattern, vertices, with_line};
 use super::plot::{Dot, Figure, Panel, order};
 use super::records::Records;
-use super::targets::{Target, at_least, at_most, kept};
+use super::sample::{OfModel, Sample, requirements};
+use super::targets::{Target, at_least};
 use crate::draw::{Axis, Drawing};
+use crate::methods::implicit_euler;
 use crate::report::{Table, number};
 use anyhow::Result;
-use isosheet_dynamics::{Method, Profile, SheetModel, Support};
+use isosheet_dynamics::{Profile, SheetModel, Support};
 use isosheet_mesh::{Sheet, VertexId};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -79,11 +81,7 @@ fn place(k: f64, [x, y]: [f64; 2]) -> [f64; 3] {
 /// The sheet with the pins of the clamps, which move so that the exact cylinder fits between them at all
 /// times.
 fn model(isometry: Isometry, sheet: &Sheet, pins: &[VertexId]) -> Result<SheetModel> {
-    let material = Material {
-        mass: DENSITY * sheet.area(),
-        rigidity: Some(PAPER_RIGIDITY),
-        clamped: pins,
-    };
+    let material = Material::plate(sheet, DENSITY, PAPER_RIGIDITY, pins);
     let mut model = isometry.model(sheet, material)?.with_damping(DAMPING)?;
     let curvature = Profile::SmoothStep {
         from: 0.0,
@@ -106,13 +104,9 @@ fn model(isometry: Isometry, sheet: &Sheet, pins: &[VertexId]) -> Result<SheetMo
 /// A mesh: its pattern, squares along the side, and the angle of the axis against it, degrees.
 type Mesh = (Pattern, usize, f64);
 
-/// A square at rest between the clamps.
-#[derive(Serialize, Deserialize)]
-struct Bent {
-    isometry: Isometry,
-    mesh: Mesh,
-    vertices: usize,
-    course: Course,
+/// What is measured of a square at rest between the clamps.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Measured {
     /// Elastic energy, its part of bending, over that of the cylinder.
     energy: f64,
     bending: f64,
@@ -122,46 +116,43 @@ struct Bent {
     distance: f64,
 }
 
-impl Bent {
-    fn measure(isometry: Isometry, mesh: Mesh, plan: &Plan) -> Result<Self> {
-        let (pattern, cells, degrees) = mesh;
-        let sheet = square(pattern, cells, degrees)?;
-        let pins = clamped(&sheet);
-        let scene = Scene {
-            model: model(isometry, &sheet, &pins)?,
-            start: sheet.positions().to_vec(),
-            method: Method::ImplicitEuler(Default::default()),
-            contacts: None,
-        };
-        let course = scene.run(plan)?;
-        let elastic = model(isometry, &sheet, &pins)?.potential_energy(course.t, &course.x);
-        let exact = 0.5 * PAPER_RIGIDITY * CURVATURE * CURVATURE * SIDE * SIDE;
-        let bending = isometry.bending_energy(&sheet, (PAPER_RIGIDITY, &pins), &course.x)?;
-        Ok(Self {
-            isometry,
-            mesh,
-            vertices: sheet.topology().vertex_count(),
-            energy: elastic / exact,
-            bending: bending / exact,
-            moment: course.ending.is_good().then(|| moment(&sheet, &course)),
-            distance: distance(&sheet, &course.x),
-            course,
-        })
-    }
+type Bent = Sample<Mesh, Course, Measured>;
 
+fn measure(isometry: Isometry, mesh: Mesh, plan: &Plan) -> Result<(usize, Course, Measured)> {
+    let (pattern, cells, degrees) = mesh;
+    let sheet = square(pattern, cells, degrees)?;
+    let pins = clamped(&sheet);
+    let scene = Scene::flat(model(isometry, &sheet, &pins)?, &sheet);
+    let course = scene.by(implicit_euler()).run(plan)?;
+    let elastic = model(isometry, &sheet, &pins)?.potential_energy(course.t, &course.x);
+    let exact = 0.5 * PAPER_RIGIDITY * CURVATURE * CURVATURE * SIDE * SIDE;
+    let bending = isometry.bending_energy(&sheet, (PAPER_RIGIDITY, &pins), &course.x)?;
+    let measured = Measured {
+        energy: elastic / exact,
+        bending: bending / exact,
+        moment: course.is_good().then(|| moment(&sheet, &course)),
+        distance: distance(&sheet, &course.x),
+    };
+    Ok((sheet.topology().vertex_count(), course, measured))
+}
+
+impl Bent {
     fn spacing(&self) -> f64 {
-        SIDE / self.mesh.1 as f64
+        SIDE / self.job.1 as f64
     }
 
     /// The error of the bending energy plus the energy of the membrane, which is zero in the smooth sheet: of
     /// the sum of both energies the two errors would cancel on some meshes.
     fn energy_error(&self) -> Option<f64> {
-        let error = (self.bending - 1.0).abs() + (self.energy - self.bending).abs();
-        self.course.ending.is_good().then_some(error)
+        let Measured {
+            energy, bending, ..
+        } = self.measured;
+        let error = (bending - 1.0).abs() + (energy - bending).abs();
+        self.run.is_good().then_some(error)
     }
 
     fn moment_error(&self) -> Option<f64> {
-        Some((self.moment? - 1.0).abs())
+        Some((self.measured.moment? - 1.0).abs())
     }
 }
 
@@ -198,36 +189,24 @@ fn distance(sheet: &Sheet, x: &[f64]) -> f64 {
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
     let effort = records.effort;
-    let plan = Plan {
-        step: STEP,
-        duration: 6.0,
-        rest_speed: Some(REST),
-        patience: effort.patience(0.3, 4.0),
-    };
-    let sizes: &[usize] = effort.pick(&[4], &[4, 8, 16]);
-    let directions: &[f64] = effort.pick(&[0.0, 22.5, 45.0], &DIRECTIONS);
+    let plan = Plan::new(STEP, 6.0, effort.patience(0.3, 4.0)).until_rest(REST);
+    let sizes: &[usize] = effort.quick_or(&[4], &[4, 8, 16]);
+    let directions: &[f64] = effort.quick_or(&[0.0, 22.5, 45.0], &DIRECTIONS);
     let mut meshes: Vec<Mesh> = Vec::new();
     for pattern in Pattern::ALL {
         for &degrees in directions {
             meshes.extend(sizes.iter().map(|&cells| (pattern, cells, degrees)));
         }
     }
-    let all = records.of_models(
-        |_| meshes.clone(),
-        |isometry, mesh| Bent::measure(isometry, *mesh, &plan),
-    )?;
-    Ok((
-        Findings {
-            remarks: remarks(&all),
-            tables: vec![orders(&all, directions), table(&all, &plan)],
-            targets: Isometry::ALL
-                .iter()
-                .flat_map(|m| targets(*m, &all, directions))
-                .collect(),
-            files: Vec::new(),
-        },
-        Some(plot(&all, directions, sizes)),
-    ))
+    let run = |isometry, mesh: &Mesh| measure(isometry, *mesh, &plan);
+    let all = records.of_models(|_| meshes.clone(), run)?;
+    let findings = Findings {
+        remarks: Isometry::ALL.map(|m| remark(m, &all)).to_vec(),
+        tables: vec![orders(&all, directions), table(&all, &plan)],
+        targets: requirements(&all, |of| targets(of, &all, directions)),
+        files: Vec::new(),
+    };
+    Ok((findings, Some(plot(&all, directions, sizes))))
 }
 
 fn table(all: &[Bent], plan: &Plan) -> Table {
@@ -236,139 +215,117 @@ fn table(all: &[Bent], plan: &Plan) -> Table {
             "Squares bent by clamps: implicit Euler, steps of {STEP} s, until no vertex is faster than {REST} m/s or {} s are simulated; at most \
              {} s of wall time. Energies are over D κ² / 2 times the area, the moment is over D κ times the width",
             plan.duration,
-            plan.patience.as_secs_f64()
+            plan.limit()
         ),
         all,
         &[
-            ("mesh", &|b| b.mesh.0.to_string().into()),
-            ("axis, degrees", &|b| b.mesh.2.into()),
+            ("mesh", &|b| b.job.0.to_string().into()),
+            ("axis, degrees", &|b| b.job.2.into()),
             ("h, m", &|b| b.spacing().into()),
             ("V", &|b| b.vertices.into()),
             ("model", &|b| b.isometry.to_string().into()),
-            ("ending", &|b| b.course.ending.name().into()),
-            ("t at the end, s", &|b| b.course.t.into()),
-            ("factorisations per step", &|b| b.course.effort.factorisations_per_step().into()),
-            ("energy", &|b| b.energy.into()),
-            ("bending energy", &|b| b.bending.into()),
-            ("moment", &|b| b.moment.into()),
-            ("distance, m", &|b| b.distance.into()),
-            ("speed left, m/s", &|b| b.course.speed.into()),
-            ("message", &|b| b.course.ending.message().into()),
+            ("ending", &|b| b.run.ending.name().into()),
+            ("t at the end, s", &|b| b.run.t.into()),
+            ("factorisations per step", &|b| b.run.factorisations().into()),
+            ("energy", &|b| b.measured.energy.into()),
+            ("bending energy", &|b| b.measured.bending.into()),
+            ("moment", &|b| b.measured.moment.into()),
+            ("distance, m", &|b| b.measured.distance.into()),
+            ("speed left, m/s", &|b| b.run.speed.into()),
+            ("message", &|b| b.run.ending.message().into()),
         ],
     )
     .named("cylinder")
 }
 
+/// An error of a square that came to rest.
 type Measure = fn(&Bent) -> Option<f64>;
+
+/// The errors that are judged and drawn.
+const ERRORS: [(&str, Measure); 2] = [
+    ("energy", Bent::energy_error),
+    ("moment", Bent::moment_error),
+];
 
 /// Fitted order of an error; nothing unless every mesh came to rest.
 fn fitted(
     all: &[Bent],
     (isometry, pattern, degrees): (Isometry, Pattern, f64),
-    measure: Measure,
+    error: Measure,
 ) -> Option<f64> {
-    let of = all.iter().filter(|b| b.isometry == isometry);
-    let of = of.filter(|b| (b.mesh.0, b.mesh.2) == (pattern, degrees));
-    let points: Option<Vec<[f64; 2]>> = of.map(|b| Some([b.spacing(), measure(b)?])).collect();
-    order(&points?, FLOOR)
+    let of = OfModel::of(isometry, all).with(|job| (job.0, job.2) == (pattern, degrees));
+    let points = of.all.iter().map(|b| Some([b.spacing(), error(b)?]));
+    order(&points.collect::<Option<Vec<_>>>()?, FLOOR)
+}
+
+/// A model with every pattern in every direction.
+fn combinations(isometry: Isometry, directions: &[f64]) -> Vec<(Isometry, Pattern, f64)> {
+    let of = |p: Pattern| directions.iter().map(move |d| (isometry, p, *d));
+    Pattern::ALL.into_iter().flat_map(of).collect()
 }
 
 fn orders(all: &[Bent], directions: &[f64]) -> Table {
-    let mut table = Table::new("Fitted powers of h of the errors of energy and moment where all runs came to rest; values below 1e-5 are left out",
-        &["mesh", "axis, degrees", "model", "energy", "moment"],
-    ).named("cylinder-orders");
-    for isometry in Isometry::ALL {
-        for pattern in Pattern::ALL {
-            for &degrees in directions {
-                let of = |measure| fitted(all, (isometry, pattern, degrees), measure);
-                table.push(vec![
-                    pattern.to_string().into(),
-                    degrees.into(),
-                    isometry.to_string().into(),
-                    of(Bent::energy_error).into(),
-                    of(Bent::moment_error).into(),
-                ]);
-            }
-        }
-    }
-    table
+    let models = Isometry::ALL.into_iter();
+    Table::of(
+        "Fitted powers of h of the errors of energy and moment where all runs came to rest; values below 1e-5 are left out",
+        models.flat_map(|m| combinations(m, directions)),
+        &[
+            ("mesh", &|of| of.1.to_string().into()),
+            ("axis, degrees", &|of| of.2.into()),
+            ("model", &|of| of.0.to_string().into()),
+            ("energy", &|of| fitted(all, *of, ERRORS[0].1).into()),
+            ("moment", &|of| fitted(all, *of, ERRORS[1].1).into()),
+        ],
+    )
+    .named("cylinder-orders")
 }
 
-fn targets(isometry: Isometry, all: &[Bent], directions: &[f64]) -> Vec<Target> {
-    let measures: [(&str, Measure); 2] = [
-        ("energy", Bent::energy_error),
-        ("moment", Bent::moment_error),
-    ];
-    let mut targets = Vec::new();
-    for (name, measure) in measures {
-        let mut powers = Vec::new();
-        for pattern in Pattern::ALL {
-            let of = directions.iter();
-            powers.extend(of.map(|d| fitted(all, (isometry, pattern, *d), measure)));
-        }
-        let quantity = format!("order of the error of the {name}, every mesh and direction");
-        targets.push(at_least(isometry, &quantity, 1.5, &powers));
-        let judged = all.iter();
-        let judged = judged.filter(|b| b.isometry == isometry && b.mesh.1 == JUDGED);
-        let errors: Vec<_> = judged.map(measure).collect();
-        let quantity = format!("relative error of the {name} at M^3, every mesh and direction");
-        targets.push(at_most(isometry, &quantity, 0.05, &errors));
-    }
-    let runs = all.iter().filter(|b| b.isometry == isometry);
-    targets.extend(kept(isometry, runs.map(|b| b.course.kept)));
-    targets
-}
-
-fn remarks(all: &[Bent]) -> Vec<String> {
-    let of_model = |isometry: Isometry| {
-        let of: Vec<&Bent> = all.iter().filter(|b| b.isometry == isometry).collect();
-        let ended: Vec<&&Bent> = of.iter().filter(|b| b.course.ending.is_good()).collect();
-        let worst = ended.iter().max_by(|a, b| {
-            a.energy_error()
-                .partial_cmp(&b.energy_error())
-                .unwrap_or(std::cmp::Ordering::Equal)
-        });
-        let mut text = format!(
-            "{isometry}: {} of {} squares come to rest",
-            ended.len(),
-            of.len()
-        );
-        if let Some(b) = worst {
-            let (pattern, cells, degrees) = b.mesh;
-            text.push_str(&format!(
-                "; the worst energy is {} times the exact one ({pattern}, {cells} cells, axis at {degrees} degrees)",
-                number(b.energy)
-            ));
-        }
-        text + "."
+fn targets(
+    of: &OfModel<'_, Mesh, Course, Measured>,
+    all: &[Bent],
+    directions: &[f64],
+) -> Vec<Target> {
+    let judged = of.with(|job| job.1 == JUDGED);
+    let two = |(name, error): (&str, Measure)| {
+        let combinations = combinations(of.isometry, directions).into_iter();
+        let powers: Vec<_> = combinations.map(|key| fitted(all, key, error)).collect();
+        let order = format!("order of the error of the {name}, every mesh and direction");
+        let size = format!("relative error of the {name} at M^3, every mesh and direction");
+        [
+            at_least(of.isometry, &order, 1.5, &powers),
+            judged.at_most(&size, 0.05, error),
+        ]
     };
-    Isometry::ALL.map(of_model).to_vec()
+    ERRORS.into_iter().flat_map(two).collect()
+}
+
+fn remark(isometry: Isometry, all: &[Bent]) -> String {
+    let of = OfModel::of(isometry, all).all;
+    let ended: Vec<&&Bent> = of.iter().filter(|b| b.run.is_good()).collect();
+    let error = |b: &Bent| b.energy_error().unwrap_or(0.0);
+    let worst = ended.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
+    let worst = worst.map_or(String::new(), |b| {
+        let (pattern, cells, degrees) = b.job;
+        format!(
+            "; the worst energy is {} times the exact one ({pattern}, {cells} cells, axis at {degrees} degrees)",
+            number(b.measured.energy)
+        )
+    });
+    let (ended, all) = (ended.len(), of.len());
+    format!("{isometry}: {ended} of {all} squares come to rest{worst}.")
 }
 
 /// The errors of energy and moment against the spacing, a panel for every direction.
 fn plot(all: &[Bent], directions: &[f64], sizes: &[usize]) -> Drawing {
-    let measures: [(&str, Measure); 2] = [
-        ("error of the energy", Bent::energy_error),
-        ("error of the moment", Bent::moment_error),
-    ];
-    let rows = measures.map(|(name, measure)| {
+    let rows = ERRORS.map(|(name, error)| {
         let panel = |&degrees: &f64| {
-            let of = all.iter().filter(|b| b.mesh.2 == degrees);
-            let dots: Vec<Dot> = of
-                .map(|b| Dot {
-                    isometry: b.isometry,
-                    mesh: b.mesh.0.number(),
-                    x: b.spacing(),
-                    y: measure(b),
-                })
-                .collect();
-            Panel::of_second_order(format!("axis at {degrees}°"), dots)
+            let of = all.iter().filter(|b| b.job.2 == degrees);
+            let dots = of.map(|b| Dot::of(b, b.job.0.number(), b.spacing(), error(b)));
+            Panel::of_second_order(format!("axis at {degrees}°"), dots.collect())
         };
-        let values = all.iter().filter_map(measure).filter(|e| *e > FLOOR);
-        (
-            Axis::holding(name, values),
-            directions.iter().map(panel).collect(),
-        )
+        let values = all.iter().filter_map(error).filter(|e| *e > FLOOR);
+        let y = Axis::holding(&format!("error of the {name}"), values);
+        (y, directions.iter().map(panel).collect())
     });
     let spacings: Vec<f64> = sizes.iter().map(|&n| SIDE / n as f64).collect();
     Figure::of_spacings(&spacings, rows.to_vec()).draw()
@@ -426,15 +383,19 @@ mod tests {
     /// On mesh lines a coarse elastic sheet has the energy of the cylinder, and pulls with its moment.
     #[test]
     fn an_aligned_sheet_has_energy_and_moment_of_the_cylinder() {
-        let plan = Plan {
-            step: STEP,
-            duration: 4.0,
-            rest_speed: Some(REST),
-            patience: std::time::Duration::from_secs(60),
+        let plan = Plan::new(STEP, 4.0, std::time::Duration::from_secs(60)).until_rest(REST);
+        let job = (Pattern::UnionJack, 8, 0.0);
+        let (vertices, run, measured) = measure(Isometry::Soft, job, &plan).unwrap();
+        let isometry = Isometry::Soft;
+        let bent = Bent {
+            isometry,
+            job,
+            vertices,
+            run,
+            measured,
         };
-        let bent = Bent::measure(Isometry::Soft, (Pattern::UnionJack, 8, 0.0), &plan).unwrap();
-        assert!(bent.course.ending.is_good(), "{:?}", bent.course.ending);
-        assert!(bent.moment_error().unwrap() < 0.05, "{:?}", bent.moment);
-        assert!(bent.energy_error().unwrap() < 0.05, "{:?}", bent.energy);
+        assert!(bent.run.is_good(), "{:?}", bent.run.ending);
+        assert!(bent.moment_error().unwrap() < 0.05, "{bent:?}");
+        assert!(bent.energy_error().unwrap() < 0.05, "{bent:?}");
     }
 }

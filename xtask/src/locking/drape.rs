@@ -1,20 +1,20 @@
 //! A disk on a smaller round table, on several triangulations.
 
-use super::clamped::median;
 use super::course::{Course, Plan, Scene};
 use super::disk::{DISK, Mesh};
-use super::findings::Findings;
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
-use super::plot::{Dot, Figure, Joined, Panel};
+use super::plot::{Dot, Figure, Panel};
 use super::records::Records;
 use super::rim::{Rim, analyse};
-use super::targets::{Target, at_least, kept, strain};
+use super::sample::{OfModel, Sample, requirements};
+use super::targets::{Target, at_least};
+use super::{Findings, median};
 use crate::draw::{Axis, Drawing};
-use crate::report::Table;
+use crate::report::{Cell, Table};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
-use isosheet_dynamics::{Gravity, ImplicitOptions, Method};
-use isosheet_mesh::Sheet;
+use isosheet_dynamics::{Gravity, ImplicitOptions, Method, SheetModel};
+use isosheet_mesh::{Sheet, VertexId};
 use nalgebra::Isometry3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -47,15 +47,12 @@ const START: f64 = 0.95;
 /// Rings of the concentric mesh; the others have rods of about the same length.
 const RINGS: usize = 8;
 
-/// A drape.
-#[derive(Serialize, Deserialize)]
-struct Drape {
-    mesh: Mesh,
-    friction: f64,
-    seed: u64,
-    isometry: Isometry,
-    vertices: usize,
-    course: Course,
+/// Mesh, coefficient of friction and seed.
+type Job = (Mesh, f64, u64);
+
+/// What is measured of a drape.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Measured {
     rim: Option<Rim>,
     /// Weight and bending at the end, joules; the flat disk at the height of the table has none.
     energy: f64,
@@ -63,77 +60,66 @@ struct Drape {
     aside: f64,
 }
 
-impl Drape {
-    fn measure(
-        isometry: Isometry,
-        (mesh, rings): (Mesh, usize),
-        friction: f64,
-        seed: u64,
-        plan: &Plan,
-    ) -> Result<Self> {
-        let sheet = mesh.disk(rings, seed)?;
-        let material = Material {
-            mass: DENSITY * sheet.area(),
-            rigidity: Some(PAPER_RIGIDITY),
-            clamped: &[],
-        };
-        let model = isometry
-            .model(&sheet, material)?
-            .with_acceleration([0.0, 0.0, -GRAVITY])
-            .with_damping(DAMPING)?;
-        let weights = model.mass().row_sums(sheet.topology());
-        let model = model.with_potential(uneven(&sheet, &weights, seed));
-        let options = ContactOptions::for_sheet(&model);
-        let top = -START * options.activation;
-        let shape = Shape::Cylinder {
-            radius: TABLE[0],
-            half_height: 0.5 * TABLE[1],
-        };
-        let pose = Isometry3::translation(0.0, 0.0, top - 0.5 * TABLE[1]);
-        let table = Obstacle::fixed(shape, pose)?;
-        let coefficients = if friction > 0.0 {
-            Coefficients::equal(friction)
-        } else {
-            Coefficients::FRICTIONLESS
-        };
-        let contacts = Contacts::new(&model, options)?
-            .with_body(table, coefficients)?
-            .with_self_contact(coefficients)?;
-        let scene = Scene {
-            model,
-            start: sheet.positions().to_vec(),
-            method: Method::Bdf2(ImplicitOptions {
-                seed,
-                ..ImplicitOptions::default()
-            }),
-            contacts: Some(contacts),
-        };
-        let course = scene.run(plan)?;
-        let total: f64 = weights.iter().sum();
-        let places = || course.x.as_chunks::<3>().0.iter().zip(&weights);
-        let centre = |k: usize| places().map(|(p, w)| w * p[k]).sum::<f64>() / total;
-        let energy = total * GRAVITY * centre(2)
-            + isometry.bending_energy(&sheet, (PAPER_RIGIDITY, &[]), &course.x)?;
-        Ok(Self {
-            mesh,
-            friction,
-            seed,
-            isometry,
-            vertices: sheet.topology().vertex_count(),
-            rim: rim(&sheet, &course.x),
-            energy,
-            aside: centre(0).hypot(centre(1)),
-            course,
-        })
-    }
+type Drape = Sample<Job, Course, Measured>;
+
+fn measure(
+    isometry: Isometry,
+    &(mesh, friction, seed): &Job,
+    rings: usize,
+    plan: &Plan,
+) -> Result<(usize, Course, Measured)> {
+    let sheet = mesh.disk(rings, seed)?;
+    let material = Material::plate(&sheet, DENSITY, PAPER_RIGIDITY, &[]);
+    let model = isometry
+        .model(&sheet, material)?
+        .with_acceleration([0.0, 0.0, -GRAVITY])
+        .with_damping(DAMPING)?;
+    let weights = model.mass().row_sums(sheet.topology());
+    let model = model.with_potential(uneven(&sheet, &weights, seed));
+    let contacts = contacts(&model, friction)?;
+    let method = Method::Bdf2(ImplicitOptions {
+        seed,
+        ..ImplicitOptions::default()
+    });
+    let scene = Scene::flat(model, &sheet).by(method).touching(contacts);
+    let course = scene.run(plan)?;
+    let total: f64 = weights.iter().sum();
+    let places = || course.x.as_chunks::<3>().0.iter().zip(&weights);
+    let centre = |k: usize| places().map(|(p, w)| w * p[k]).sum::<f64>() / total;
+    let bending = isometry.bending_energy(&sheet, (PAPER_RIGIDITY, &[]), &course.x)?;
+    let measured = Measured {
+        rim: rim(&sheet, &course.x),
+        energy: total * GRAVITY * centre(2) + bending,
+        aside: centre(0).hypot(centre(1)),
+    };
+    Ok((sheet.topology().vertex_count(), course, measured))
+}
+
+/// The table, and contact of the disk with it and with itself.
+fn contacts(model: &SheetModel, friction: f64) -> Result<Contacts> {
+    let options = ContactOptions::for_sheet(model);
+    let (radius, half_height) = (TABLE[0], 0.5 * TABLE[1]);
+    let shape = Shape::Cylinder {
+        radius,
+        half_height,
+    };
+    let middle = -START * options.activation - half_height;
+    let table = Obstacle::fixed(shape, Isometry3::translation(0.0, 0.0, middle))?;
+    let coefficients = match friction {
+        0.0 => Coefficients::FRICTIONLESS,
+        _ => Coefficients::equal(friction),
+    };
+    Ok(Contacts::new(model, options)?
+        .with_body(table, coefficients)?
+        .with_self_contact(coefficients)?)
 }
 
 impl Drape {
     /// The number of folds at the end of a run that reached it with the disk on the table.
     fn folds(&self) -> Option<usize> {
-        let is_on_table = self.aside < TABLE[0];
-        let is_good = self.course.ending.is_good() && is_on_table;
-        Some(self.rim.filter(|_| is_good)?.folds)
+        let is_on_table = self.measured.aside < TABLE[0];
+        let is_good = self.run.is_good() && is_on_table;
+        Some(self.measured.rim.filter(|_| is_good)?.folds)
     }
 }
 
@@ -144,11 +130,8 @@ fn uneven(sheet: &Sheet, weights: &[f64], seed: u64) -> Gravity {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let waves: Vec<[f64; 3]> = WAVES
         .map(|k| {
-            [
-                f64::from(k),
-                rng.random_range(-1.0..1.0),
-                rng.random_range(0.0..TAU),
-            ]
+            let amplitude = rng.random_range(-1.0..1.0);
+            [f64::from(k), amplitude, rng.random_range(0.0..TAU)]
         })
         .collect();
     let norm: f64 = waves.iter().map(|w| w[1].abs()).sum();
@@ -164,14 +147,11 @@ fn uneven(sheet: &Sheet, weights: &[f64], seed: u64) -> Gravity {
 /// The rim at positions `x`, over the angle in the flat disk.
 fn rim(sheet: &Sheet, x: &[f64]) -> Option<Rim> {
     let loops = sheet.topology().boundary_loops();
-    let mut rim: Vec<[f64; 2]> = loops
-        .first()?
-        .iter()
-        .map(|v| {
-            let [a, b, _] = sheet.position(*v);
-            [b.atan2(a), x[3 * v.index() + 2]]
-        })
-        .collect();
+    let place = |v: &VertexId| {
+        let [a, b, _] = sheet.position(*v);
+        [b.atan2(a), x[3 * v.index() + 2]]
+    };
+    let mut rim: Vec<[f64; 2]> = loops.first()?.iter().map(place).collect();
     rim.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let (angles, heights): (Vec<f64>, Vec<f64>) = rim.iter().map(|[a, z]| (*a, *z)).unzip();
     analyse(&angles, &heights)
@@ -180,58 +160,40 @@ fn rim(sheet: &Sheet, x: &[f64]) -> Option<Rim> {
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
     let effort = records.effort;
-    let plan = Plan {
-        step: 1.0 / 60.0,
-        duration: effort.pick(0.3, 10.0),
-        rest_speed: Some(2e-3),
-        patience: effort.patience(0.5, 9.0),
-    };
-    let rings = effort.pick(3, RINGS);
-    let meshes: &[Mesh] = effort.pick(&Mesh::ALL[..1], &Mesh::ALL);
-    let frictions: &[f64] = effort.pick(&[0.3], &[0.0, 0.3]);
-    let seeds = effort.pick(1, 10);
-    let mut jobs: Vec<(Mesh, f64, u64)> = Vec::new();
+    let duration = effort.quick_or(0.3, 10.0);
+    let plan = Plan::new(1.0 / 60.0, duration, effort.patience(0.5, 9.0)).until_rest(2e-3);
+    let rings = effort.quick_or(3, RINGS);
+    let meshes: &[Mesh] = effort.quick_or(&Mesh::ALL[..1], &Mesh::ALL);
+    let frictions: &[f64] = effort.quick_or(&[0.3], &[0.0, 0.3]);
+    let seeds = effort.quick_or(1, 10);
+    let mut jobs: Vec<Job> = Vec::new();
     for &mesh in meshes {
         for &friction in frictions {
             jobs.extend((0..seeds).map(|seed| (mesh, friction, seed)));
         }
     }
-    let all = records.of_models(
-        |_| jobs.clone(),
-        |isometry, &(mesh, friction, seed)| {
-            Drape::measure(isometry, (mesh, rings), friction, seed, &plan)
-        },
-    )?;
-    let of = |isometry: &Isometry| {
-        let isometry = *isometry;
-        let all = &all;
-        frictions.iter().map(move |mu| target(isometry, all, *mu))
+    let run = |isometry, job: &Job| measure(isometry, job, rings, &plan);
+    let all = records.of_models(|_| jobs.clone(), run)?;
+    let mut targets = Vec::new();
+    for isometry in Isometry::ALL {
+        targets.extend(frictions.iter().map(|mu| target(isometry, &all, *mu)));
+    }
+    targets.extend(requirements(&all, |of| vec![of.strain()]));
+    let findings = Findings {
+        tables: vec![summary(&all, meshes, frictions, &plan)],
+        files: vec![runs(&all)],
+        targets,
+        remarks: Vec::new(),
     };
-    let general = |isometry: &Isometry| {
-        let isometry = *isometry;
-        let of = || all.iter().filter(|d| d.isometry == isometry);
-        let mut targets = vec![strain(isometry, of().map(|d| &d.course))];
-        targets.extend(kept(isometry, of().map(|d| d.course.kept)));
-        targets
-    };
-    let general = Isometry::ALL.iter().flat_map(general);
-    Ok((
-        Findings {
-            tables: vec![summary(&all, meshes, frictions, &plan)],
-            files: vec![runs(&all)],
-            targets: Isometry::ALL.iter().flat_map(of).chain(general).collect(),
-            remarks: Vec::new(),
-        },
-        Some(plot(&all, meshes, frictions)),
-    ))
+    Ok((findings, Some(plot(&all, meshes, frictions))))
 }
 
 /// The part of the seeds for which all meshes have the same number of folds.
 fn target(isometry: Isometry, all: &[Drape], friction: f64) -> Target {
     let mut folds: BTreeMap<u64, Vec<Option<usize>>> = BTreeMap::new();
-    let of = all.iter().filter(|d| d.isometry == isometry);
-    for d in of.filter(|d| d.friction == friction) {
-        folds.entry(d.seed).or_default().push(d.folds());
+    let of = OfModel::of(isometry, all).with(|job| job.1 == friction);
+    for d in of.all {
+        folds.entry(d.job.2).or_default().push(d.folds());
     }
     let agree = |f: &&Vec<Option<usize>>| f.iter().all(|n| n.is_some() && *n == f[0]);
     let share = folds.values().filter(agree).count() as f64 / folds.len() as f64;
@@ -243,24 +205,20 @@ fn target(isometry: Isometry, all: &[Drape], friction: f64) -> Target {
 
 /// Numbers of folds of every run, over the meshes.
 fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
-    let panel = |&friction: &f64| Panel {
-        title: format!("coefficient of friction {friction}"),
-        dots: all
-            .iter()
-            .filter(|d| d.friction == friction)
-            .filter_map(|d| {
-                let place = meshes.iter().position(|m| *m == d.mesh)? as f64;
-                // Models and seeds beside one another: numbers of folds are whole.
-                let aside = 0.22 * d.isometry.aside() + 0.017 * (d.seed as f64 - 4.5);
-                Some(Dot {
-                    isometry: d.isometry,
-                    mesh: d.mesh as usize,
-                    x: place + aside,
-                    y: d.folds().map(|n| n as f64),
-                })
-            })
-            .collect(),
-        guides: Vec::new(),
+    let dot = |d: &Drape| {
+        let (mesh, _, seed) = d.job;
+        let place = meshes.iter().position(|m| *m == mesh)? as f64;
+        // Models and seeds beside one another: numbers of folds are whole.
+        let aside = 0.22 * d.isometry.aside() + 0.017 * (seed as f64 - 4.5);
+        let folds = d.folds().map(|n| n as f64);
+        Some(Dot::of(d, mesh as usize, place + aside, folds))
+    };
+    let panel = |&friction: &f64| {
+        let dots = all.iter().filter(|d| d.job.1 == friction).filter_map(dot);
+        Panel::new(
+            format!("coefficient of friction {friction}"),
+            dots.collect(),
+        )
     };
     let ticks = meshes
         .iter()
@@ -275,108 +233,110 @@ fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
         .max(6);
     let folds = (0..=most).step_by(if most > 12 { 2 } else { 1 });
     let folds = folds.map(|n| (n as f64, n.to_string())).collect();
-    Figure {
-        x: Axis::linear("mesh", range, ticks.collect()),
-        rows: vec![(
-            Axis::linear("folds", [0.0, most as f64 + 0.5], folds),
-            frictions.iter().map(panel).collect(),
-        )],
-        meshes: Mesh::ALL.map(|m| m.name().to_owned()).to_vec(),
-        guide: String::new(),
-        joined: Joined::No,
-        size: [200.0, 150.0],
-    }
-    .draw()
+    let x = Axis::linear("mesh", range, ticks.collect());
+    let y = Axis::linear("folds", [0.0, most as f64 + 0.5], folds);
+    let names = Mesh::ALL.map(|m| m.name().to_owned()).to_vec();
+    let panels = frictions.iter().map(panel).collect();
+    Figure::of_row(x, y, panels, names, [200.0, 150.0]).draw()
 }
 
 fn runs(all: &[Drape]) -> Table {
+    let rim = |d: &Drape, of: fn(Rim) -> f64| Cell::from(d.measured.rim.map(of));
     Table::of(
         "Every drape",
         all,
         &[
-            ("mesh", &|d| d.mesh.name().into()),
-            ("friction", &|d| d.friction.into()),
-            ("seed", &|d| (d.seed as usize).into()),
+            ("mesh", &|d| d.job.0.name().into()),
+            ("friction", &|d| d.job.1.into()),
+            ("seed", &|d| (d.job.2 as usize).into()),
             ("V", &|d| d.vertices.into()),
             ("model", &|d| d.isometry.to_string().into()),
-            ("ending", &|d| d.course.ending.name().into()),
-            ("t at the end, s", &|d| d.course.t.into()),
+            ("ending", &|d| d.run.ending.name().into()),
+            ("t at the end, s", &|d| d.run.t.into()),
             ("factorisations per step", &|d| {
-                d.course.effort.factorisations_per_step().into()
+                d.run.factorisations().into()
             }),
-            ("folds", &|d| d.rim.map(|r| r.folds as f64).into()),
-            ("largest wave", &|d| d.rim.map(|r| r.wave as f64).into()),
-            ("its share", &|d| d.rim.map(|r| r.share).into()),
-            ("rim, m", &|d| d.rim.map(|r| r.mean).into()),
-            ("energy, J", &|d| d.energy.into()),
-            ("strain", &|d| d.course.strain.into()),
-            ("centre off by, m", &|d| d.aside.into()),
-            ("speed left, m/s", &|d| d.course.speed.into()),
-            ("message", &|d| d.course.ending.message().into()),
+            ("folds", &|d| rim(d, |r| r.folds as f64)),
+            ("largest wave", &|d| rim(d, |r| r.wave as f64)),
+            ("its share", &|d| rim(d, |r| r.share)),
+            ("rim, m", &|d| rim(d, |r| r.mean)),
+            ("energy, J", &|d| d.measured.energy.into()),
+            ("strain", &|d| d.run.strain.into()),
+            ("centre off by, m", &|d| d.measured.aside.into()),
+            ("speed left, m/s", &|d| d.run.speed.into()),
+            ("message", &|d| d.run.ending.message().into()),
         ],
     )
     .named("drape-runs")
 }
 
+/// Drapes that differ in the seed alone: all of them, and those that reached their end.
+struct Group<'a> {
+    all: Vec<&'a Drape>,
+    good: Vec<&'a Drape>,
+}
+
+impl Group<'_> {
+    /// A value of the drapes that reached their end, where they have one.
+    fn values(&self, value: impl Fn(&Drape) -> Option<f64>) -> Vec<f64> {
+        self.good.iter().filter_map(|d| value(d)).collect()
+    }
+
+    fn median(&self, value: impl Fn(&Drape) -> Option<f64>) -> Cell {
+        median(self.values(value)).into()
+    }
+
+    fn range(&self, value: impl Fn(&Drape) -> Option<f64>) -> Cell {
+        range(&self.values(value)).into()
+    }
+}
+
 fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Table {
-    let mut table = Table::new(format!(
-            "Disks on a round table: default method, steps of 1/60 s, {} s simulated, at most {} s of wall time. Numbers of folds with how often \
-             they occur, of the disks that are still on the table, medians and ranges (largest minus smallest) are of the runs that reached their end",
-            plan.duration,
-            plan.patience.as_secs_f64()
-        ),
-        &[
-            "mesh",
-            "friction",
-            "model",
-            "runs",
-            "reached their end",
-            "wall time over",
-            "folds",
-            "rim, m",
-            "range, m",
-            "energy, J",
-            "range, J",
-            "speed left, m/s",
-            "centre off by, m",
-        ],
-    ).named("drape");
+    let mut groups = Vec::new();
     for isometry in Isometry::ALL {
         for &mesh in meshes {
             for &friction in frictions {
-                let of: Vec<&Drape> = all
-                    .iter()
-                    .filter(|d| d.mesh == mesh && d.friction == friction && d.isometry == isometry)
-                    .collect();
-                let good: Vec<&Drape> = of
-                    .iter()
-                    .filter(|d| d.course.ending.is_good())
-                    .copied()
-                    .collect();
-                let over = of
-                    .iter()
-                    .filter(|d| d.course.ending.name() == "wall time over");
-                let rims: Vec<f64> = good.iter().filter_map(|d| Some(d.rim?.mean)).collect();
-                let energies: Vec<f64> = good.iter().map(|d| d.energy).collect();
-                table.push(vec![
-                    mesh.name().into(),
-                    friction.into(),
-                    isometry.to_string().into(),
-                    of.len().into(),
-                    good.len().into(),
-                    over.count().into(),
-                    folds(&good).into(),
-                    median(rims.clone()).into(),
-                    range(&rims).into(),
-                    median(energies.clone()).into(),
-                    range(&energies).into(),
-                    median(good.iter().map(|d| d.course.speed).collect()).into(),
-                    median(good.iter().map(|d| d.aside).collect()).into(),
-                ]);
+                let of = OfModel::of(isometry, all);
+                let all = of.with(|job| (job.0, job.1) == (mesh, friction)).all;
+                let good = all.iter().copied().filter(|d| d.run.is_good()).collect();
+                groups.push(Group { all, good });
             }
         }
     }
-    table
+    let over = |g: &Group<'_>| {
+        let over = g
+            .all
+            .iter()
+            .filter(|d| d.run.ending.name() == "wall time over");
+        over.count()
+    };
+    let rim = |d: &Drape| Some(d.measured.rim?.mean);
+    let energy = |d: &Drape| Some(d.measured.energy);
+    Table::of(
+        format!(
+            "Disks on a round table: default method, steps of 1/60 s, {} s simulated, at most {} s of wall time. Numbers of folds with how often \
+             they occur, of the disks that are still on the table, medians and ranges (largest minus smallest) are of the runs that reached their end",
+            plan.duration,
+            plan.limit()
+        ),
+        groups,
+        &[
+            ("mesh", &|g| g.all[0].job.0.name().into()),
+            ("friction", &|g| g.all[0].job.1.into()),
+            ("model", &|g| g.all[0].isometry.to_string().into()),
+            ("runs", &|g| g.all.len().into()),
+            ("reached their end", &|g| g.good.len().into()),
+            ("wall time over", &|g| over(g).into()),
+            ("folds", &|g| folds(&g.good).into()),
+            ("rim, m", &|g| g.median(rim)),
+            ("range, m", &|g| g.range(rim)),
+            ("energy, J", &|g| g.median(energy)),
+            ("range, J", &|g| g.range(energy)),
+            ("speed left, m/s", &|g| g.median(|d| Some(d.run.speed))),
+            ("centre off by, m", &|g| g.median(|d| Some(d.measured.aside))),
+        ],
+    )
+    .named("drape")
 }
 
 /// Numbers of folds with how often they occur, such as "4 x 7, 5 x 3".

@@ -1,17 +1,16 @@
 //! Single everyday scenes with paper.
 
+use super::Findings;
 use super::course::{Course, Plan, Scene};
-use super::effort::LockingEffort;
-use super::findings::Findings;
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::vertices;
-use super::plot::{Dot, Figure, Joined, Panel};
+use super::plot::{Dot, Figure, Panel};
 use super::records::Records;
-use super::targets::{at_least, kept, strain};
+use super::sample::{Sample, requirements};
 use crate::draw::{Axis, Drawing};
-use crate::report::Table;
+use crate::report::{Effort, Table};
 use anyhow::Result;
-use isosheet_dynamics::{Method, PointProfile, Profile, SheetModel};
+use isosheet_dynamics::{PointProfile, Profile, SheetModel};
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{Sheet, VertexId};
 use serde::{Deserialize, Serialize};
@@ -55,30 +54,39 @@ impl fmt::Display for Everyday {
 }
 
 impl Everyday {
-    fn all(effort: LockingEffort) -> Vec<Self> {
-        let mut all = vec![
-            Self::Pushed(2),
-            Self::Roll(2),
-            Self::Banner(1),
-            Self::Corners(1),
-        ];
-        if effort == LockingEffort::Full {
+    fn all(effort: Effort) -> Vec<Self> {
+        use Everyday::{Banner, Corners, Pushed, Roll};
+        let mut all = vec![Pushed(2), Roll(2), Banner(1), Corners(1)];
+        if effort != Effort::Quick {
             all.extend([
-                Self::Pushed(4),
-                Self::Roll(4),
-                Self::Banner(2),
-                Self::Banner(3),
-                Self::Corners(2),
-                Self::Corners(3),
+                Pushed(4),
+                Roll(4),
+                Banner(2),
+                Banner(3),
+                Corners(2),
+                Corners(3),
             ]);
         }
-        all.sort_by_key(|scene| match scene {
-            Self::Pushed(n) => (0, *n as u32),
-            Self::Roll(n) => (1, *n as u32),
-            Self::Banner(level) => (2, *level),
-            Self::Corners(level) => (3, *level),
-        });
+        all.sort_by_key(|scene| (scene.kind(), scene.size()));
         all
+    }
+
+    /// The number of its kind in the order of the report.
+    fn kind(self) -> usize {
+        match self {
+            Self::Pushed(_) => 0,
+            Self::Roll(_) => 1,
+            Self::Banner(_) => 2,
+            Self::Corners(_) => 3,
+        }
+    }
+
+    /// Squares across, or the level of the mesh.
+    fn size(self) -> u32 {
+        match self {
+            Self::Pushed(n) | Self::Roll(n) => n as u32,
+            Self::Banner(level) | Self::Corners(level) => level,
+        }
     }
 
     /// The flat sheet in its plane of reference, z = 0.
@@ -111,27 +119,20 @@ impl Everyday {
     }
 
     fn model(self, isometry: Isometry, sheet: &Sheet) -> Result<SheetModel> {
-        let material = Material {
-            mass: DENSITY * sheet.area(),
-            rigidity: Some(PAPER_RIGIDITY),
-            clamped: &self.clamp(sheet),
-        };
+        let clamp = self.clamp(sheet);
+        let material = Material::plate(sheet, DENSITY, PAPER_RIGIDITY, &clamp);
         let model = isometry
             .model(sheet, material)?
             .with_gravity()
             .with_damping(DAMPING)?;
+        let held = |x: f64, y: f64| match self {
+            Self::Banner(_) => y > 1.0 - 1e-9 && (x - 0.5).abs() > 0.5 - 1e-9,
+            _ => (x + y - 1.0).abs() > 1.0 - 1e-9,
+        };
         Ok(match self {
             Self::Pushed(_) => pushed(model, sheet)?,
-            Self::Roll(_) => {
-                let panel = sheet.position(VertexId(1))[0];
-                model.with_pins(&vertices(sheet, |[x, _, _]| x < panel + 1e-9))?
-            }
-            Self::Banner(_) => model.with_pins(&vertices(sheet, |[x, y, _]| {
-                y > 1.0 - 1e-9 && (x - 0.5).abs() > 0.5 - 1e-9
-            }))?,
-            Self::Corners(_) => model.with_pins(&vertices(sheet, |[x, y, _]| {
-                (x + y - 1.0).abs() > 1.0 - 1e-9
-            }))?,
+            Self::Roll(_) => model.with_pins(&clamp)?,
+            _ => model.with_pins(&vertices(sheet, |[x, y, _]| held(x, y)))?,
         })
     }
 }
@@ -179,77 +180,41 @@ fn rolled(sheet: &Sheet) -> Vec<f64> {
         .collect()
 }
 
-/// What happened in a scene.
-#[derive(Serialize, Deserialize)]
-struct Day {
-    isometry: Isometry,
-    scene: Everyday,
-    vertices: usize,
-    course: Course,
-    /// Heights of the lowest and the highest vertex at the end, metres.
-    heights: [f64; 2],
-    /// Energy of bending at the end, joules.
-    bending: f64,
-}
-
-impl Day {
-    fn measure(isometry: Isometry, scene: Everyday, plan: &Plan) -> Result<Self> {
-        let sheet = scene.sheet()?;
-        let course = Scene {
-            model: scene.model(isometry, &sheet)?,
-            start: scene.start(&sheet),
-            method: Method::default(),
-            contacts: None,
-        }
-        .run(plan)?;
-        let bending = (PAPER_RIGIDITY, scene.clamp(&sheet));
-        Ok(Self {
-            isometry,
-            scene,
-            vertices: sheet.topology().vertex_count(),
-            heights: [course.lowest(), course.highest()],
-            bending: isometry.bending_energy(&sheet, (bending.0, &bending.1), &course.x)?,
-            course,
-        })
-    }
-}
+/// Heights of the lowest and the highest vertex (metres), and energy of bending (joules) at the end.
+type Day = Sample<Everyday, Course, ([f64; 2], f64)>;
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
     let effort = records.effort;
-    let plan = Plan {
-        step: 1.0 / 60.0,
-        duration: effort.pick(0.5, 3.0),
-        rest_speed: None,
-        patience: effort.patience(0.3, 10.0),
-    };
+    let duration = effort.quick_or(0.5, 3.0);
+    let plan = Plan::new(1.0 / 60.0, duration, effort.patience(0.3, 10.0));
     let scenes = Everyday::all(effort);
     let all = records.of_models(
         |_| scenes.clone(),
-        |isometry, scene| Day::measure(isometry, *scene, &plan),
-    )?;
-    let targets = |isometry: &Isometry| {
-        let isometry = *isometry;
-        let of: Vec<&Day> = all.iter().filter(|d| d.isometry == isometry).collect();
-        let ended = of.iter().filter(|d| d.course.ending.is_good()).count();
-        let share = Some(ended as f64 / of.len() as f64);
-        let quantity = "part of the scenes that run to their end";
-        let mut targets = vec![
-            at_least(isometry, quantity, 1.0, &[share]),
-            strain(isometry, of.iter().map(|d| &d.course)),
-        ];
-        targets.extend(kept(isometry, of.iter().map(|d| d.course.kept)));
-        targets
-    };
-    let drawing = plot(&all, &scenes);
-    Ok((
-        Findings {
-            tables: vec![table(&all, &plan)],
-            targets: Isometry::ALL.iter().flat_map(targets).collect(),
-            ..Findings::default()
+        |isometry, scene| {
+            let sheet = scene.sheet()?;
+            let model = scene.model(isometry, &sheet)?;
+            let start = scene.start(&sheet);
+            let course = Scene::flat(model, &sheet).from(start).run(&plan)?;
+            let bending = (PAPER_RIGIDITY, &*scene.clamp(&sheet));
+            let bending = isometry.bending_energy(&sheet, bending, &course.x)?;
+            let measured = (course.heights(), bending);
+            Ok((sheet.topology().vertex_count(), course, measured))
         },
-        Some(drawing),
-    ))
+    )?;
+    let targets = requirements(&all, |of| {
+        let (quantity, share) = (
+            "part of the scenes that run to their end",
+            of.share_that_ends(),
+        );
+        vec![of.at_least(quantity, 1.0, Some(share)), of.strain()]
+    });
+    let findings = Findings {
+        tables: vec![table(&all, &plan)],
+        targets,
+        ..Findings::default()
+    };
+    Ok((findings, Some(plot(&all, &scenes))))
 }
 
 fn table(all: &[Day], plan: &Plan) -> Table {
@@ -257,23 +222,23 @@ fn table(all: &[Day], plan: &Plan) -> Table {
         format!(
             "Everyday scenes: {} s simulated, at most {} s of wall time. The energy of bending is that at the end",
             plan.duration,
-            plan.patience.as_secs_f64()
+            plan.limit()
         ),
         all,
         &[
-            ("scene", &|d| d.scene.to_string().into()),
+            ("scene", &|d| d.job.to_string().into()),
             ("V", &|d| d.vertices.into()),
             ("model", &|d| d.isometry.to_string().into()),
-            ("ending", &|d| d.course.ending.name().into()),
-            ("t at the end, s", &|d| d.course.t.into()),
-            ("factorisations per step", &|d| d.course.effort.factorisations_per_step().into()),
-            ("most in a step", &|d| d.course.worst.into()),
-            ("lowest vertex, m", &|d| d.heights[0].into()),
-            ("highest vertex, m", &|d| d.heights[1].into()),
-            ("energy of bending, J", &|d| d.bending.into()),
-            ("strain", &|d| d.course.strain.into()),
-            ("wall time, s", &|d| d.course.effort.wall.into()),
-            ("message", &|d| d.course.ending.message().into()),
+            ("ending", &|d| d.run.ending.name().into()),
+            ("t at the end, s", &|d| d.run.t.into()),
+            ("factorisations per step", &|d| d.run.factorisations().into()),
+            ("most in a step", &|d| d.run.worst.into()),
+            ("lowest vertex, m", &|d| d.measured.0[0].into()),
+            ("highest vertex, m", &|d| d.measured.0[1].into()),
+            ("energy of bending, J", &|d| d.measured.1.into()),
+            ("strain", &|d| d.run.strain.into()),
+            ("wall time, s", &|d| d.run.cost.wall.into()),
+            ("message", &|d| d.run.ending.message().into()),
         ],
     )
     .named("everyday")
@@ -282,56 +247,29 @@ fn table(all: &[Day], plan: &Plan) -> Table {
 /// Factorisations a step of every scene.
 fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
     let kinds = ["pushed together", "roll", "banner", "opposite corners"];
-    let kind = |scene: Everyday| match scene {
-        Everyday::Pushed(_) => 0,
-        Everyday::Roll(_) => 1,
-        Everyday::Banner(_) => 2,
-        Everyday::Corners(_) => 3,
-    };
-    let dots: Vec<Dot> = all
-        .iter()
-        .filter_map(|d| {
-            let cost = d
-                .course
-                .effort
-                .factorisations_per_step()
-                .filter(|_| d.course.ending.is_good());
-            Some(Dot {
-                isometry: d.isometry,
-                mesh: kind(d.scene),
-                x: scenes.iter().position(|s| *s == d.scene)? as f64,
-                y: cost,
-            })
-        })
-        .collect();
+    let dots = all.iter().filter_map(|d| {
+        let place = scenes.iter().position(|s| *s == d.job)?;
+        Some(Dot::of(d, d.job.kind(), place as f64, d.cost()))
+    });
     let ticks = scenes.iter().enumerate().map(|(k, scene)| {
-        let size = match scene {
-            Everyday::Pushed(n) | Everyday::Roll(n) => format!("{n}"),
-            Everyday::Banner(level) | Everyday::Corners(level) => format!("M^{{{level}}}"),
-        };
-        (k as f64, size)
+        let size = scene.size();
+        let is_level = scene.kind() > 1;
+        (
+            k as f64,
+            if is_level {
+                format!("M^{{{size}}}")
+            } else {
+                size.to_string()
+            },
+        )
     });
     let range = [-0.7, scenes.len() as f64 - 0.3];
     let x = Axis::linear("squares across, or mesh", range, ticks.collect());
-    let cost = all
-        .iter()
-        .filter_map(|d| d.course.effort.factorisations_per_step());
-    Figure {
-        x: (x),
-        rows: vec![(
-            Axis::holding("factorisations a step", cost),
-            vec![Panel {
-                title: "Everyday scenes".into(),
-                dots,
-                guides: Vec::new(),
-            }],
-        )],
-        meshes: kinds.map(str::to_owned).to_vec(),
-        guide: String::new(),
-        joined: Joined::No,
-        size: [260.0, 150.0],
-    }
-    .draw()
+    let costs = all.iter().filter_map(|d| d.run.factorisations());
+    let y = Axis::holding("factorisations a step", costs);
+    let panel = Panel::new("Everyday scenes", dots.collect());
+    let kinds = kinds.map(str::to_owned).to_vec();
+    Figure::of_row(x, y, vec![panel], kinds, [260.0, 150.0]).draw()
 }
 
 #[cfg(test)]
@@ -340,7 +278,7 @@ mod tests {
 
     #[test]
     fn every_scene_starts_with_its_lengths_and_pins() {
-        for everyday in Everyday::all(LockingEffort::Full) {
+        for everyday in Everyday::all(Effort::Full) {
             let sheet = everyday.sheet().unwrap();
             let model = everyday.model(Isometry::Rods, &sheet).unwrap();
             let start = everyday.start(&sheet);

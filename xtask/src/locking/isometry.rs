@@ -41,6 +41,31 @@ pub(super) struct Material<'a> {
     pub(super) clamped: &'a [VertexId],
 }
 
+impl<'a> Material<'a> {
+    /// A sheet with mass per area (kg/m2) and flexural rigidity (N m).
+    pub(super) fn plate(
+        sheet: &Sheet,
+        density: f64,
+        rigidity: f64,
+        clamped: &'a [VertexId],
+    ) -> Self {
+        Self {
+            mass: density * sheet.area(),
+            rigidity: Some(rigidity),
+            clamped,
+        }
+    }
+
+    /// A sheet of a mass (kilograms) without bending stiffness and clamps.
+    pub(super) fn limp(mass: f64) -> Self {
+        Self {
+            mass,
+            rigidity: None,
+            clamped: &[],
+        }
+    }
+}
+
 impl Isometry {
     /// The models that every table has rows for.
     pub(super) const ALL: [Self; 4] = [Self::Rods, Self::Paper, Self::Soft, Self::Weak];
@@ -159,11 +184,7 @@ mod tests {
             .iter()
             .flat_map(|p| [1.01 * p[0], p[1], p[2]])
             .collect();
-        let material = Material {
-            mass: 0.1,
-            rigidity: Some(PAPER_RIGIDITY),
-            clamped: &[],
-        };
+        let material = Material::plate(&sheet, 0.1, PAPER_RIGIDITY, &[]);
         let strain = 0.5 * (1.01 * 1.01 - 1.0);
         let soft = 100.0 * PAPER_RIGIDITY * 16.0;
         for (isometry, stiffness, poisson) in [

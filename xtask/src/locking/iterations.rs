@@ -1,18 +1,17 @@
 //! What a step costs where the sheet has to find a pattern of folds.
 
+use super::Findings;
 use super::course::{Course, Plan, Scene};
-use super::findings::Findings;
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::nearest;
 use super::plot::{Dot, Figure, Joined, Panel};
 use super::records::Records;
-use super::targets::{Target, at_most, kept, strain};
+use super::sample::{Sample, requirements};
 use crate::draw::{Axis, Drawing};
 use crate::report::Table;
 use anyhow::Result;
-use isosheet_dynamics::{Method, project_positions};
+use isosheet_dynamics::project_positions;
 use isosheet_mesh::{Sheet, VertexId, generate};
-use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 pub(super) const ABOUT: &str = "A square of 1 m and 0.1 kg, flat but for a bump of 1 mm, hangs by a corner (the hanging sheet of the other reports), with \
@@ -36,129 +35,77 @@ fn bumped(flat: &Sheet) -> Vec<f64> {
         .collect()
 }
 
-/// A hanging sheet.
-#[derive(Serialize, Deserialize)]
-struct Hanging {
-    isometry: Isometry,
-    level: u32,
-    vertices: usize,
-    rigidity: Option<f64>,
-    course: Course,
-}
-
-impl Hanging {
-    fn measure(isometry: Isometry, level: u32, rigidity: Option<f64>, plan: &Plan) -> Result<Self> {
-        let sheet = generate::isotropic_square(level, 1.0)?;
-        let corner = nearest(&sheet, [0.0, 1.0]);
-        Ok(Self {
-            isometry,
-            level,
-            vertices: sheet.topology().vertex_count(),
-            rigidity,
-            course: scene(isometry, &sheet, corner, rigidity)?.run(plan)?,
-        })
-    }
-
-    /// Factorisations a step of a run that reached its end.
-    fn cost(&self) -> Option<f64> {
-        let cost = self.course.effort.factorisations_per_step();
-        cost.filter(|_| self.course.ending.is_good())
-    }
-}
+/// A hanging sheet: level of its mesh, and flexural rigidity.
+type Hanging = Sample<(u32, Option<f64>), Course>;
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
     let effort = records.effort;
-    let plan = Plan {
-        step: 1.0 / 60.0,
-        duration: effort.pick(0.25, 1.0),
-        rest_speed: None,
-        patience: effort.patience(0.5, 60.0),
-    };
-    let levels: &[u32] = effort.pick(&[1, 2], &[2, 3, 4, 5]);
+    let duration = effort.quick_or(0.25, 1.0);
+    let plan = Plan::new(1.0 / 60.0, duration, effort.patience(0.5, 60.0));
+    let levels: &[u32] = effort.quick_or(&[1, 2], &[2, 3, 4, 5]);
     // The longest runs begin first, so that no core is left alone with one of them.
-    let jobs: Vec<(u32, Option<f64>)> = levels
-        .iter()
-        .rev()
-        .flat_map(|l| RIGIDITIES.map(|r| (*l, r)))
-        .collect();
+    let coarser = levels.iter().rev();
+    let jobs: Vec<_> = coarser.flat_map(|l| RIGIDITIES.map(|r| (*l, r))).collect();
     let mut all = records.of_models(
         |_| jobs.clone(),
-        |isometry, (level, rigidity)| Hanging::measure(isometry, *level, *rigidity, &plan),
-    )?;
-    all.sort_by_key(|h| (h.isometry, h.level));
-    Ok((
-        Findings {
-            tables: vec![table(&all, &plan)],
-            targets: Isometry::ALL
-                .iter()
-                .flat_map(|m| targets(*m, &all))
-                .collect(),
-            ..Findings::default()
+        |isometry, &(level, rigidity)| {
+            let sheet = generate::isotropic_square(level, 1.0)?;
+            let corner = nearest(&sheet, [0.0, 1.0]);
+            let course = scene(isometry, &sheet, corner, rigidity)?.run(&plan)?;
+            Ok((sheet.topology().vertex_count(), course, ()))
         },
-        Some(plot(&all, levels)),
-    ))
+    )?;
+    all.sort_by_key(|h| (h.isometry, h.job.0));
+    let targets = requirements(&all, |of| {
+        let mut targets = Vec::new();
+        for (level, bound) in [(4, 8.0), (5, 10.0)] {
+            for rigidity in RIGIDITIES {
+                let of = of.with(|job| *job == (level, rigidity));
+                let quantity = format!("factorisations a step at M^{level}, {}", bending(rigidity));
+                targets.push(of.at_most(&quantity, bound, Hanging::cost));
+            }
+        }
+        targets.push(of.strain());
+        targets
+    });
+    let findings = Findings {
+        tables: vec![table(&all, &plan)],
+        targets,
+        ..Findings::default()
+    };
+    Ok((findings, Some(plot(&all, levels))))
 }
 
 fn table(all: &[Hanging], plan: &Plan) -> Table {
-    let mut table = Table::new(format!(
+    let wall = |h: &Hanging| {
+        let cost = &h.run.cost;
+        (cost.steps > 0).then(|| cost.wall / cost.steps as f64)
+    };
+    Table::of(
+        format!(
             "The hanging sheet: {} s simulated, at most {} s of wall time. Counts belong to the steps that were completed, \
              the wall time per step includes the time of one that was not",
             plan.duration,
-            plan.patience.as_secs_f64()
+            plan.limit()
         ),
+        all,
         &[
-            "mesh",
-            "V",
-            "D, N m",
-            "model",
-            "ending",
-            "steps",
-            "iterations per step",
-            "factorisations per step",
-            "most in a step",
-            "wall time per step, s",
-            "strain",
-            "message",
+            ("mesh", &|h| format!("M^{}", h.job.0).into()),
+            ("V", &|h| h.vertices.into()),
+            ("D, N m", &|h| h.job.1.unwrap_or(0.0).into()),
+            ("model", &|h| h.isometry.to_string().into()),
+            ("ending", &|h| h.run.ending.name().into()),
+            ("steps", &|h| h.run.cost.steps.into()),
+            ("iterations per step", &|h| h.run.cost.iterations_per_step().into()),
+            ("factorisations per step", &|h| h.run.factorisations().into()),
+            ("most in a step", &|h| h.run.worst.into()),
+            ("wall time per step, s", &|h| wall(h).into()),
+            ("strain", &|h| h.run.strain.into()),
+            ("message", &|h| h.run.ending.message().into()),
         ],
-    ).named("iterations");
-    for h in all {
-        let course = &h.course;
-        let per_step =
-            (course.effort.steps > 0).then(|| course.effort.wall / course.effort.steps as f64);
-        table.push(vec![
-            format!("M^{}", h.level).into(),
-            h.vertices.into(),
-            h.rigidity.unwrap_or(0.0).into(),
-            h.isometry.to_string().into(),
-            course.ending.name().into(),
-            course.effort.steps.into(),
-            course.effort.iterations_per_step().into(),
-            course.effort.factorisations_per_step().into(),
-            course.worst.into(),
-            per_step.into(),
-            course.strain.into(),
-            course.ending.message().into(),
-        ]);
-    }
-    table
-}
-
-fn targets(isometry: Isometry, all: &[Hanging]) -> Vec<Target> {
-    let mut targets = Vec::new();
-    for (level, bound) in [(4, 8.0), (5, 10.0)] {
-        for rigidity in RIGIDITIES {
-            let of = all.iter().filter(|h| h.isometry == isometry);
-            let of = of.filter(|h| h.level == level && h.rigidity == rigidity);
-            let costs: Vec<Option<f64>> = of.map(Hanging::cost).collect();
-            let quantity = format!("factorisations a step at M^{level}, {}", bending(rigidity));
-            targets.push(at_most(isometry, &quantity, bound, &costs));
-        }
-    }
-    let of = || all.iter().filter(|h| h.isometry == isometry);
-    targets.push(strain(isometry, of().map(|h| &h.course)));
-    targets.extend(kept(isometry, of().map(|h| h.course.kept)));
-    targets
+    )
+    .named("iterations")
 }
 
 fn bending(rigidity: Option<f64>) -> String {
@@ -170,32 +117,22 @@ fn bending(rigidity: Option<f64>) -> String {
 
 /// Factorisations a step against the number of vertices.
 fn plot(all: &[Hanging], levels: &[u32]) -> Drawing {
-    let panel = |rigidity: Option<f64>| Panel {
-        title: bending(rigidity),
-        dots: all
-            .iter()
-            .filter(|h| h.rigidity == rigidity)
-            .map(|h| Dot {
-                isometry: h.isometry,
-                mesh: 0,
-                x: f64::from(1_u32 << (h.level + 1)),
-                y: h.cost(),
-            })
-            .collect(),
-        guides: Vec::new(),
+    let place = |level: u32| f64::from(1_u32 << (level + 1));
+    let panel = |rigidity: Option<f64>| {
+        let of = all.iter().filter(|h| h.job.1 == rigidity);
+        let dots = of.map(|h| Dot::of(h, 0, place(h.job.0), h.cost()));
+        Panel::new(bending(rigidity), dots.collect())
     };
-    let tick = |level: &u32| (f64::from(1_u32 << (level + 1)), format!("M^{{{level}}}"));
-    let costs = all.iter().filter_map(Hanging::cost);
+    let ticks = levels.iter().map(|l| (place(*l), format!("M^{{{l}}}")));
+    let x = Axis::at("mesh", ticks.collect());
+    let y = Axis::holding(
+        "factorisations a step",
+        all.iter().filter_map(Hanging::cost),
+    );
+    let (panels, names) = (RIGIDITIES.map(panel).to_vec(), vec!["union jack".into()]);
     Figure {
-        x: Axis::at("mesh", levels.iter().map(tick).collect()),
-        rows: vec![(
-            Axis::holding("factorisations a step", costs),
-            RIGIDITIES.map(panel).to_vec(),
-        )],
-        meshes: vec!["union jack".into()],
-        guide: String::new(),
         joined: Joined::Yes,
-        size: [140.0, 140.0],
+        ..Figure::of_row(x, y, panels, names, [140.0, 140.0])
     }
     .draw()
 }
@@ -215,12 +152,7 @@ fn scene(
     let model = model.with_gravity().with_pins(&[corner])?;
     let mut start = bumped(sheet);
     project_positions(&model, &mut start, TOLERANCE)?;
-    Ok(Scene {
-        model,
-        start,
-        method: Method::default(),
-        contacts: None,
-    })
+    Ok(Scene::flat(model, sheet).from(start))
 }
 
 #[cfg(test)]
@@ -230,21 +162,13 @@ mod tests {
     /// The iterations of the default method on a coarse mesh are counted, and the sheet hangs by its corner.
     #[test]
     fn a_small_sheet_is_measured() {
-        let plan = Plan {
-            step: 1.0 / 60.0,
-            duration: 0.1,
-            rest_speed: None,
-            patience: std::time::Duration::from_secs(60),
-        };
+        let plan = Plan::new(1.0 / 60.0, 0.1, std::time::Duration::from_secs(60));
         let sheet = generate::isotropic_square(1, 1.0).unwrap();
         let scene = scene(Isometry::Rods, &sheet, VertexId(20), Some(5e-4)).unwrap();
         assert_eq!(scene.model.pins(), [VertexId(20)]);
         let course = scene.run(&plan).unwrap();
-        assert!(
-            course.ending.is_good() && course.effort.steps == 6,
-            "{course:?}"
-        );
-        assert!(course.effort.factorisations >= 6 && course.effort.iterations >= 6);
-        assert!(course.lowest() < -0.01 && course.strain < 1e-11);
+        assert!(course.is_good() && course.cost.steps == 6, "{course:?}");
+        assert!(course.cost.factorisations >= 6 && course.cost.iterations >= 6);
+        assert!(course.heights()[0] < -0.01 && course.strain < 1e-11);
     }
 }

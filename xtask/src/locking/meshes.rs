@@ -3,9 +3,8 @@
 
 use anyhow::Result;
 use isosheet_mesh::generate::{self, Diagonals};
-use isosheet_mesh::{Sheet, VertexId};
+use isosheet_mesh::{FlatCut, Sheet, VertexId};
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 use std::fmt;
 
 /// A kind of triangulation.
@@ -30,7 +29,7 @@ impl Pattern {
     /// A flat rectangle (corners `low` and `high`, metres) with squares of the side `cell`, whose sides are
     /// turned by `angle` (radians) against the x axis; an irregular mesh has edges of the same mean length.
     ///
-    /// A turned grid is cut along the outline, see [`Flat::split`]. Of an irregular mesh `angle` is no more
+    /// A turned grid is cut along the outline, see [`FlatCut::split`]. Of an irregular mesh `angle` is no more
     /// than another seed.
     pub(super) fn rectangle(
         self,
@@ -65,7 +64,7 @@ impl Pattern {
             let (x, y) = (x - 0.5 * side, y - 0.5 * side);
             [c * x - s * y + middle[0], s * x + c * y + middle[1], z]
         })?;
-        let mut flat = Flat::of(&turned);
+        let mut flat = FlatCut::of(&turned);
         for (point, normal) in [
             (low, [1.0, 0.0]),
             (low, [0.0, 1.0]),
@@ -73,9 +72,9 @@ impl Pattern {
             (high, [0.0, -1.0]),
         ] {
             flat.split(point, normal, SNAP * cell);
-            flat.keep_left(point, normal);
+            flat.keep(point, normal);
         }
-        flat.sheet()
+        Ok(flat.sheet()?)
     }
 }
 
@@ -100,9 +99,9 @@ const SNAP: f64 = 0.25;
 /// The mesh cut along the line of the given `x` (metres), parallel to y: it gets vertices on the line and
 /// edges along it; vertices within a quarter of the cell are moved onto the line first.
 pub(super) fn with_line(sheet: &Sheet, x: f64, cell: f64) -> Result<Sheet> {
-    let mut flat = Flat::of(sheet);
+    let mut flat = FlatCut::of(sheet);
     flat.split([x, 0.0], [1.0, 0.0], SNAP * cell);
-    flat.sheet()
+    Ok(flat.sheet()?)
 }
 
 /// A strip along x, clamped over its part up to x = 0.
@@ -153,125 +152,6 @@ pub(crate) fn nearest(sheet: &Sheet, target: [f64; 2]) -> VertexId {
         .vertex_ids()
         .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
         .unwrap_or(VertexId(0))
-}
-
-/// A flat triangle mesh that is being cut.
-struct Flat {
-    points: Vec<[f64; 2]>,
-    faces: Vec<[u32; 3]>,
-}
-
-impl Flat {
-    fn of(sheet: &Sheet) -> Self {
-        let points = sheet.positions().as_chunks::<3>().0;
-        Self {
-            points: points.iter().map(|p| [p[0], p[1]]).collect(),
-            faces: sheet.face_indices(),
-        }
-    }
-
-    /// Cuts the triangles that the line through `point` with the unit `normal` crosses. Vertices nearer to
-    /// the line than `snap` (metres) are moved onto it first.
-    fn split(&mut self, point: [f64; 2], normal: [f64; 2], snap: f64) {
-        let side = |p: &[f64; 2]| {
-            let d = (p[0] - point[0]) * normal[0] + (p[1] - point[1]) * normal[1];
-            if d.abs() < snap { 0.0 } else { d }
-        };
-        let sides: Vec<f64> = self.points.iter().map(side).collect();
-        for (p, s) in self.points.iter_mut().zip(&sides) {
-            if *s == 0.0 {
-                let d = (p[0] - point[0]) * normal[0] + (p[1] - point[1]) * normal[1];
-                *p = [p[0] - d * normal[0], p[1] - d * normal[1]];
-            }
-        }
-        let mut crossings: HashMap<[u32; 2], u32> = HashMap::new();
-        let mut faces = Vec::with_capacity(self.faces.len());
-        for face in std::mem::take(&mut self.faces) {
-            let s = face.map(|v| sides[v as usize]);
-            // The corners in order, and a new one on every side of the triangle that the line crosses.
-            let mut corners = Vec::with_capacity(5);
-            for k in 0..3 {
-                let (a, b, sa, sb) = (face[k], face[(k + 1) % 3], s[k], s[(k + 1) % 3]);
-                corners.push((a, sa));
-                if sa * sb < 0.0 {
-                    let crossing = *crossings.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-                        let (p, q) = (self.points[a as usize], self.points[b as usize]);
-                        let w = sa / (sa - sb);
-                        self.points
-                            .push([0, 1].map(|i| (1.0 - w) * p[i] + w * q[i]));
-                        (self.points.len() - 1) as u32
-                    });
-                    corners.push((crossing, 0.0));
-                }
-            }
-            for sign in [1.0, -1.0] {
-                let part: Vec<u32> = corners
-                    .iter()
-                    .filter(|(_, s)| sign * s >= 0.0)
-                    .map(|(v, _)| *v)
-                    .collect();
-                let is_on_this_side = corners.iter().any(|(_, s)| sign * s > 0.0);
-                if is_on_this_side {
-                    self.triangulate(&part, &mut faces);
-                }
-            }
-        }
-        self.faces = faces;
-    }
-
-    /// A triangle as it is, a quadrilateral cut along its shorter diagonal.
-    fn triangulate(&self, corners: &[u32], faces: &mut Vec<[u32; 3]>) {
-        let distance = |a: u32, b: u32| {
-            let (p, q) = (self.points[a as usize], self.points[b as usize]);
-            (p[0] - q[0]).hypot(p[1] - q[1])
-        };
-        match *corners {
-            [a, b, c] => faces.push([a, b, c]),
-            [a, b, c, d] if distance(a, c) <= distance(b, d) => {
-                faces.extend([[a, b, c], [a, c, d]]);
-            }
-            [a, b, c, d] => faces.extend([[a, b, d], [b, c, d]]),
-            _ => {}
-        }
-    }
-
-    /// Drops the triangles on the other side of the line through `point` than `normal` points to.
-    fn keep_left(&mut self, point: [f64; 2], normal: [f64; 2]) {
-        let points = &self.points;
-        self.faces.retain(|face| {
-            let centre = [0, 1].map(|k| face.iter().map(|v| points[*v as usize][k]).sum::<f64>());
-            (centre[0] - 3.0 * point[0]) * normal[0] + (centre[1] - 3.0 * point[1]) * normal[1]
-                > 0.0
-        });
-    }
-
-    /// The mesh without vertices that are in no face, and without the triangles that two cuts next to one
-    /// another, at a corner, have left without an area.
-    fn sheet(&self) -> Result<Sheet> {
-        let mut welded: HashMap<[i64; 2], u32> = HashMap::new();
-        let mut positions: Vec<f64> = Vec::new();
-        let mut faces = Vec::new();
-        for face in &self.faces {
-            let [a, b, c] = face.map(|v| self.points[v as usize]);
-            let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-            let longest = [(a, b), (b, c), (c, a)]
-                .map(|(p, q)| (p[0] - q[0]).hypot(p[1] - q[1]))
-                .into_iter()
-                .fold(0.0, f64::max);
-            if twice <= 1e-9 * longest * longest {
-                continue;
-            }
-            faces.push([a, b, c].map(|p| {
-                // Places that differ by round-off only are one vertex.
-                let key = p.map(|x| (x * 1e9).round() as i64);
-                *welded.entry(key).or_insert_with(|| {
-                    positions.extend([p[0], p[1], 0.0]);
-                    (positions.len() / 3 - 1) as u32
-                })
-            }));
-        }
-        Ok(Sheet::new(positions, &faces)?)
-    }
 }
 
 #[cfg(test)]

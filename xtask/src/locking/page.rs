@@ -1,31 +1,30 @@
 //! The page: every yardstick with its figure and tables.
 
-use super::effort::LockingEffort;
-use super::findings::Findings;
 use super::targets::{self, Target};
-use crate::report::{Page, drawing, list, machine};
+use super::{Findings, Yardstick};
+use crate::report::{Effort, Page, drawing, list, machine};
 use crate::store::Store;
 use anyhow::Result;
 use maud::{Markup, html};
 
 /// A yardstick that was applied.
 pub(super) struct Section {
-    /// Name on the command line.
-    pub(super) name: String,
-    pub(super) title: &'static str,
-    /// The set-up in words.
-    pub(super) about: &'static str,
+    pub(super) yardstick: &'static Yardstick,
     pub(super) found: Findings,
 }
 
 /// Writes the page, `tables/targets.csv` and `targets.json`.
-pub(super) fn write(store: &Store, sections: &[Section], effort: LockingEffort) -> Result<()> {
+pub(super) fn write(store: &Store, sections: &[Section], effort: Effort) -> Result<()> {
     let named = |s: &'_ Section| {
-        let of = s.found.targets.iter().map(|t| (s.name.clone(), t.clone()));
+        let of = s
+            .found
+            .targets
+            .iter()
+            .map(|t| (s.yardstick.name, t.clone()));
         of.collect::<Vec<_>>()
     };
-    let targets: Vec<(String, Target)> = sections.iter().flat_map(named).collect();
-    let summary = targets::table(targets.iter().map(|(name, t)| (name.as_str(), t)));
+    let targets: Vec<(&str, Target)> = sections.iter().flat_map(named).collect();
+    let summary = targets::table(targets.iter().map(|(name, t)| (*name, t)));
     store.write("tables/targets.csv", &summary.csv()?)?;
     store.write_json("targets.json", &targets)?;
     let body = html! {
@@ -34,7 +33,7 @@ pub(super) fn write(store: &Store, sections: &[Section], effort: LockingEffort) 
             "SI units, z upwards. Times are wall times of runs on one core each, with other runs beside. Machine: "
             (machine()) "."
         }
-        @if effort == LockingEffort::Quick {
+        @if effort == Effort::Quick {
             p.note {
                 "Made with " code { "--quick" } ": few sheets on coarse meshes. They show that the command works, and no "
                 "result."
@@ -56,11 +55,14 @@ const INTRODUCTION: &str = "A triangle mesh whose edges are rigid rods has only 
     of D = 5e-4 N m.";
 
 fn section(store: &Store, s: &Section) -> Markup {
+    let Yardstick {
+        name, title, about, ..
+    } = s.yardstick;
     html! {
-        section id=(s.name) {
-            h2 { (s.title) }
-            p { (s.about) }
-            @if let Ok(svg) = store.read(&format!("plots/{}.svg", s.name)) { figure { (drawing(&svg)) } }
+        section id=(name) {
+            h2 { (title) }
+            p { (about) }
+            @if let Ok(svg) = store.read(&format!("plots/{name}.svg")) { figure { (drawing(&svg)) } }
             (list(&s.found.remarks))
             @for table in &s.found.tables { (table) }
         }

@@ -2,8 +2,9 @@
 
 use super::isometry::Isometry;
 use super::meshes::Pattern;
-use crate::draw::{Axis, Drawing, Legend, Line, Marker, Series, column, palette, row};
-use crate::report::{Chart, Missing, exponent, number, order_line};
+use super::sample::Sample;
+use crate::draw::{Axis, Chart, Drawing, Marker, Missing, Series, column, palette, row};
+use crate::report::{exponent, number, order_line};
 
 /// Symbols of the meshes of a figure, in order.
 const MARKERS: [Marker; 4] = [
@@ -25,6 +26,24 @@ pub(super) struct Dot {
     pub(super) x: f64,
     /// What was measured; nothing of a run that did not end.
     pub(super) y: Option<f64>,
+}
+
+impl Dot {
+    /// Of a sample.
+    pub(super) fn of<J, R, M>(
+        sample: &Sample<J, R, M>,
+        mesh: usize,
+        x: f64,
+        y: Option<f64>,
+    ) -> Self {
+        let isometry = sample.isometry;
+        Self {
+            isometry,
+            mesh,
+            x,
+            y,
+        }
+    }
 }
 
 /// Whether the points of a model on a mesh are joined by a line.
@@ -58,6 +77,15 @@ pub(super) struct Figure {
 }
 
 impl Panel {
+    /// Without lines for comparison.
+    pub(super) fn new(title: impl Into<String>, dots: Vec<Dot>) -> Self {
+        Self {
+            title: title.into(),
+            dots,
+            guides: Vec::new(),
+        }
+    }
+
     /// Errors against the spacing, with a line of the second order.
     pub(super) fn of_second_order(title: String, dots: Vec<Dot>) -> Self {
         Self {
@@ -69,6 +97,24 @@ impl Panel {
 }
 
 impl Figure {
+    /// One row of panels with single points, without lines for comparison.
+    pub(super) fn of_row(
+        x: Axis,
+        y: Axis,
+        panels: Vec<Panel>,
+        meshes: Vec<String>,
+        size: [f64; 2],
+    ) -> Self {
+        Self {
+            x,
+            rows: vec![(y, panels)],
+            meshes,
+            guide: String::new(),
+            joined: Joined::No,
+            size,
+        }
+    }
+
     /// Errors against the spacings (metres) of meshes by all patterns.
     pub(super) fn of_spacings(spacings: &[f64], rows: Vec<(Axis, Vec<Panel>)>) -> Self {
         let ticks = spacings.iter().map(|h| (*h, number(1e3 * h)));
@@ -84,28 +130,17 @@ impl Figure {
 
     /// The figure; the names of models, meshes and lines are to the right of the first row.
     pub(super) fn draw(&self) -> Drawing {
-        let rows: Vec<Drawing> = self
-            .rows
-            .iter()
-            .enumerate()
-            .map(|(k, (y, panels))| {
-                let last = panels.len().saturating_sub(1);
-                let drawings: Vec<Drawing> = panels
-                    .iter()
-                    .enumerate()
-                    .map(|(i, panel)| {
-                        let has_legend = k == 0 && i == last;
-                        let legend = if has_legend {
-                            self.legend()
-                        } else {
-                            Vec::new()
-                        };
-                        self.panel(panel, y, legend)
-                    })
-                    .collect();
-                row(&drawings, 12.0)
-            })
-            .collect();
+        let rows = self.rows.iter().enumerate().map(|(k, (y, panels))| {
+            let last = panels.len().saturating_sub(1);
+            let panel = |(i, panel)| {
+                let has_legend = k == 0 && i == last;
+                let legend = has_legend.then(|| self.legend());
+                self.panel(panel, y, legend.unwrap_or_default())
+            };
+            let panels = panels.iter().enumerate().map(panel);
+            row(&panels.collect::<Vec<_>>(), 12.0)
+        });
+        let rows: Vec<Drawing> = rows.collect();
         column(&rows, 14.0)
     }
 
@@ -118,31 +153,20 @@ impl Figure {
             }
         }
         series.extend(legend);
-        Chart {
-            title: panel.title.clone(),
-            x: self.x.clone(),
-            y: y.clone(),
-            size: self.size,
-            series,
-            missing: Some(self.missing(panel)),
-            legend: Legend::Right,
-        }
-        .draw()
+        let chart = Chart::new(self.x.clone(), y.clone(), self.size, series);
+        let chart = chart.titled(&panel.title);
+        chart.with_missing(self.missing(panel)).draw()
     }
 
     /// The runs of a model on a mesh that ended.
     fn series(&self, panel: &Panel, isometry: Isometry, mesh: usize) -> Series {
         let of = panel.dots.iter();
         let of = of.filter(|d| d.isometry == isometry && d.mesh == mesh);
-        Series {
-            name: String::new(),
-            points: of.filter_map(|d| Some([d.x, d.y?])).collect(),
-            colour: isometry.colour(),
-            marker: Some(MARKERS[mesh % MARKERS.len()]),
-            line: match self.joined {
-                Joined::Yes => Line::Solid,
-                Joined::No => Line::None,
-            },
+        let points = of.filter_map(|d| Some([d.x, d.y?])).collect();
+        let marker = MARKERS[mesh % MARKERS.len()];
+        match self.joined {
+            Joined::Yes => Series::line("", isometry.colour(), points).marked(marker),
+            Joined::No => Series::dots("", isometry.colour(), marker, points),
         }
     }
 
@@ -170,20 +194,12 @@ impl Figure {
 
     /// Series without points for the names of models, meshes and lines.
     fn legend(&self) -> Vec<Series> {
-        let named = |name: &str, colour, marker, line| Series {
-            name: name.to_owned(),
-            points: Vec::new(),
-            colour,
-            marker,
-            line,
-        };
-        let mut legend: Vec<Series> = Isometry::ALL
-            .iter()
-            .map(|m| named(&m.to_string(), m.colour(), None, Line::Solid))
-            .collect();
-        for (name, marker) in self.meshes.iter().zip(MARKERS) {
-            legend.push(named(name, palette::INK, Some(marker), Line::None));
-        }
+        let model = |m: &Isometry| Series::line(&m.to_string(), m.colour(), Vec::new());
+        let mut legend: Vec<Series> = Isometry::ALL.iter().map(model).collect();
+        let meshes = self.meshes.iter().zip(MARKERS);
+        let mesh =
+            |(name, marker): (&String, _)| Series::dots(name, palette::INK, marker, Vec::new());
+        legend.extend(meshes.map(mesh));
         if !self.guide.is_empty() {
             legend.push(Series::guide(&self.guide, Vec::new()));
         }
@@ -233,19 +249,13 @@ mod tests {
         for isometry in Isometry::ALL {
             dots.extend([0, 1].map(|mesh| dot(isometry, mesh, None)));
         }
+        let x = Axis::at("h", vec![(1.0, "1".into()), (4.0, "4".into())]);
+        let meshes = vec!["a".into(), "b".into()];
         let figure = Figure {
-            x: Axis::at("h", vec![(1.0, "1".into()), (4.0, "4".into())]),
-            rows: Vec::new(),
-            meshes: vec!["a".into(), "b".into()],
-            guide: String::new(),
             joined: Joined::Yes,
-            size: [100.0, 80.0],
+            ..Figure::of_row(x.clone(), x, Vec::new(), meshes, [100.0, 80.0])
         };
-        let marks = figure.missing(&Panel {
-            title: String::new(),
-            dots,
-            guides: Vec::new(),
-        });
+        let marks = figure.missing(&Panel::new("", dots));
         assert_eq!(marks.len(), 2 * Isometry::ALL.len());
         let mean = marks.iter().map(|m| m.beside).sum::<f64>() / marks.len() as f64;
         assert!(mean.abs() < 1e-9, "{mean}");

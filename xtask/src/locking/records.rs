@@ -1,9 +1,10 @@
 //! Runs that are computed on all cores and kept in the output folder, so that an interrupted report
 //! continues where it stopped.
 
-use super::effort::LockingEffort;
 use super::isometry::Isometry;
+use super::sample::Sample;
 use crate::progress::Progress;
+use crate::report::Effort;
 use crate::store::{Store, Unit};
 use anyhow::Result;
 use rayon::prelude::*;
@@ -17,24 +18,39 @@ pub(super) struct Records<'a> {
     pub(super) store: &'a Store,
     /// Its name.
     pub(super) part: String,
-    pub(super) effort: LockingEffort,
+    pub(super) effort: Effort,
 }
 
 impl Records<'_> {
-    /// The runs of all models, model by model in the order of [`Isometry::ALL`], each in the order of its
-    /// jobs. Those of a model are kept as soon as they are complete.
+    /// The samples of all models, model by model in the order of [`Isometry::ALL`], each in the order of its
+    /// jobs. Those of a model are kept as soon as they are complete. `run` gives the number of vertices, the
+    /// run and what was measured.
     ///
     /// # Errors
     /// Those of [`Records::runs`].
-    pub(super) fn of_models<J: Sync, T: Serialize + DeserializeOwned + Send>(
+    pub(super) fn of_models<J, R, M>(
         &self,
         jobs: impl Fn(Isometry) -> Vec<J>,
-        run: impl Fn(Isometry, &J) -> Result<T> + Sync,
-    ) -> Result<Vec<T>> {
+        run: impl Fn(Isometry, &J) -> Result<(usize, R, M)> + Sync,
+    ) -> Result<Vec<Sample<J, R, M>>>
+    where
+        J: Clone + Serialize + DeserializeOwned + Send + Sync,
+        R: Serialize + DeserializeOwned + Send,
+        M: Serialize + DeserializeOwned + Send,
+    {
         let mut all = Vec::new();
         for isometry in Isometry::ALL {
-            let jobs = jobs(isometry);
-            all.extend(self.runs(&isometry.to_string(), &jobs, |job| run(isometry, job))?);
+            let sample = |job: &J| {
+                let (vertices, run, measured) = run(isometry, job)?;
+                Ok(Sample {
+                    isometry,
+                    job: job.clone(),
+                    vertices,
+                    run,
+                    measured,
+                })
+            };
+            all.extend(self.runs(&isometry.to_string(), &jobs(isometry), sample)?);
         }
         Ok(all)
     }
@@ -110,7 +126,7 @@ mod tests {
         let records = Records {
             store: &store,
             part: "sliding".into(),
-            effort: LockingEffort::Quick,
+            effort: Effort::Quick,
         };
         let count = AtomicUsize::new(0);
         let run = || {

@@ -1,50 +1,46 @@
-//! What runs cost.
+//! How much work a report puts in.
 
-use isosheet_dynamics::StepReport;
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
 
-/// What steps cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Effort {
-    /// Steps as asked for that were completed.
-    pub(crate) steps: usize,
-    /// Sub-steps that they were made of.
-    pub(crate) substeps: usize,
-    /// Sub-steps that were rejected.
-    pub(crate) rejected: usize,
-    pub(crate) iterations: usize,
-    pub(crate) factorisations: usize,
-    /// Wall time, seconds.
-    pub(crate) wall: f64,
+/// How much work a report puts in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Effort {
+    /// Seconds: shows that everything works, and no result.
+    Quick,
+    /// Minutes.
+    Standard,
+    /// As long as it takes.
+    Full,
 }
 
 impl Effort {
-    /// Counts a step; its wall time is known to the caller alone.
-    pub(crate) fn add(&mut self, report: &StepReport) {
-        self.steps += 1;
-        self.substeps += report.substeps;
-        self.rejected += report.rejected;
-        self.iterations += report.iterations;
-        self.factorisations += report.factorisations;
+    /// The effort that the flags `--quick` and `--full` ask for.
+    pub(crate) fn of_flags([quick, full]: [bool; 2]) -> Self {
+        match (quick, full) {
+            (true, _) => Self::Quick,
+            (_, true) => Self::Full,
+            _ => Self::Standard,
+        }
     }
 
-    /// A count as a mean over the steps; nothing where no step was completed.
-    fn per_step(&self, count: usize) -> Option<f64> {
-        (self.steps > 0).then(|| count as f64 / self.steps as f64)
+    /// The value for this effort.
+    pub(crate) fn pick<T>(self, quick: T, standard: T, full: T) -> T {
+        match self {
+            Self::Quick => quick,
+            Self::Standard => standard,
+            Self::Full => full,
+        }
     }
 
-    /// Iterations of a step in the mean.
-    pub(crate) fn iterations_per_step(&self) -> Option<f64> {
-        self.per_step(self.iterations)
+    /// The value for quick runs, or that for all others.
+    pub(crate) fn quick_or<T>(self, quick: T, other: T) -> T {
+        if self == Self::Quick { quick } else { other }
     }
 
-    /// Factorisations of a step in the mean.
-    pub(crate) fn factorisations_per_step(&self) -> Option<f64> {
-        self.per_step(self.factorisations)
-    }
-
-    /// Wall seconds for a factorisation and all that belongs to it.
-    pub(crate) fn wall_per_factorisation(&self) -> Option<f64> {
-        (self.factorisations > 0).then(|| self.wall / self.factorisations as f64)
+    /// A limit of wall time (seconds) for quick runs and for all others.
+    pub(crate) fn patience(self, quick: f64, other: f64) -> Duration {
+        Duration::from_secs_f64(self.quick_or(quick, other))
     }
 }

@@ -1,6 +1,6 @@
 //! Pages: one HTML file each, pictures inside.
 
-use super::picture::PictureRef;
+use super::picture::Picture;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -88,8 +88,8 @@ pub(crate) fn drawing(svg: &[u8]) -> Markup {
     PreEscaped(out)
 }
 
-impl PictureRef {
-    /// The picture inside the page.
+impl Picture {
+    /// The picture inside the page, whose file has the given contents.
     pub(crate) fn inside(&self, bytes: &[u8]) -> Markup {
         if self.path.ends_with(".svg") {
             return drawing(bytes);

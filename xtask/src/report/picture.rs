@@ -5,42 +5,32 @@ use crate::store::Draft;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 
-/// A picture that has been made.
-#[derive(Clone, Debug)]
-pub(crate) struct Picture {
-    /// File name without folder.
-    pub(crate) file: String,
-    /// What it shows, in words.
-    pub(crate) alt: String,
-    pub(crate) bytes: Vec<u8>,
-}
-
-/// A picture as a record keeps it.
+/// A picture.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct PictureRef {
+pub(crate) struct Picture {
     /// Path relative to the output folder.
     pub(crate) path: String,
+    /// What it shows, in words.
     pub(crate) alt: String,
+    /// The file; it is not part of records.
+    #[serde(skip)]
+    pub(crate) bytes: Vec<u8>,
 }
 
 impl Picture {
     /// A drawing as the SVG file `name.svg`.
-    pub(crate) fn svg(name: &str, drawing: &Drawing, alt: &str) -> Result<Self> {
-        Ok(Self {
-            file: format!("{name}.svg"),
-            alt: alt.to_owned(),
-            bytes: drawing.to_svg(alt)?.into_bytes(),
-        })
+    pub(crate) fn svg(name: &str, drawing: &Drawing, alt: &str) -> Self {
+        let bytes = drawing.to_svg(alt).into_bytes();
+        Self::file(&format!("{name}.svg"), bytes, alt)
     }
 
-    /// Adds the picture to the files of a unit.
-    pub(crate) fn keep(&self, draft: &mut Draft) -> Result<PictureRef> {
-        let path = format!("figures/{}", self.file);
-        draft.write(&path, &self.bytes)?;
-        Ok(PictureRef {
-            path,
-            alt: self.alt.clone(),
-        })
+    /// A file in the folder of pictures.
+    pub(crate) fn file(file: &str, bytes: Vec<u8>, alt: &str) -> Self {
+        Self {
+            path: format!("figures/{file}"),
+            alt: alt.to_owned(),
+            bytes,
+        }
     }
 }
 
@@ -51,7 +41,7 @@ pub(crate) fn plot_files(
     drawing: &Drawing,
     alt: &str,
 ) -> Result<()> {
-    let svg = drawing.to_svg(alt)?;
+    let svg = drawing.to_svg(alt);
     draft.write(&format!("plots/{name}.svg"), svg.as_bytes())?;
     draft.write(&format!("plots/{name}.png"), &drawing.to_png(alt)?)?;
     Ok(())

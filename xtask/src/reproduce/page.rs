@@ -1,7 +1,7 @@
 //! The page of the figures and `summary.json`.
 
-use crate::figures::{PageRef, Record, RenderEffort};
-use crate::report::{Page, PictureRef};
+use crate::figures::{Made, Play};
+use crate::report::{Effort, Page, Picture};
 use crate::selection::PAPER;
 use crate::store::{Store, StoreError};
 use anyhow::Result;
@@ -9,18 +9,14 @@ use maud::{Markup, html};
 use serde_json::json;
 
 /// Writes `index.html` and `summary.json`.
-pub(super) fn write(
-    store: &Store,
-    effort: RenderEffort,
-    records: &[(Record, RenderEffort)],
-) -> Result<()> {
+pub(super) fn write(store: &Store, effort: Effort, records: &[(u8, Made, Effort)]) -> Result<()> {
     let page = page(records, &|path| store.read(path))?;
     store.write("index.html", page.to_html().as_bytes())?;
     let figures: Vec<_> = records
         .iter()
-        .map(|(r, effort)| {
+        .map(|(figure, r, effort)| {
             json!({
-                "figure": r.figure, "title": r.title, "effort": effort, "paper": r.paper, "measured": r.measured,
+                "figure": figure, "title": r.title, "effort": effort, "paper": r.paper, "measured": r.measured,
                 "pictures": r.pictures.iter().map(|p| &p.path).collect::<Vec<_>>(),
                 "pages": r.pages.iter().map(|p| &p.path).collect::<Vec<_>>(), "facts": r.facts,
             })
@@ -36,10 +32,10 @@ pub(super) fn write(
 /// Reads a picture.
 type Read<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, StoreError>;
 
-fn page(records: &[(Record, RenderEffort)], read: Read<'_>) -> Result<Page, StoreError> {
+fn page(records: &[(u8, Made, Effort)], read: Read<'_>) -> Result<Page, StoreError> {
     let sections = records
         .iter()
-        .map(|(record, effort)| section(record, *effort, read))
+        .map(|(figure, made, effort)| section(*figure, made, *effort, read))
         .collect::<Result<Vec<Markup>, _>>()?;
     let body = html! {
         p {
@@ -47,7 +43,7 @@ fn page(records: &[(Record, RenderEffort)], read: Read<'_>) -> Result<Page, Stor
             i { "Modeling dynamic developable meshes by the Hamilton principle" } ", Computer-Aided Design 39 (2007) "
             "719–731, and what is measured here. SI units, z upwards."
         }
-        @if records.iter().any(|(_, e)| *e == RenderEffort::Quick) {
+        @if records.iter().any(|(.., e)| *e == Effort::Quick) {
             p.note {
                 "Some figures below were made with " code { "--quick" } ": their runs are cut short and "
                 "show that the programs work, not what they find."
@@ -61,20 +57,19 @@ fn page(records: &[(Record, RenderEffort)], read: Read<'_>) -> Result<Page, Stor
     })
 }
 
-fn section(record: &Record, effort: RenderEffort, read: Read<'_>) -> Result<Markup, StoreError> {
-    let n = record.figure;
+fn section(n: u8, record: &Made, effort: Effort, read: Read<'_>) -> Result<Markup, StoreError> {
     let kind = if n > PAPER {
         "Beyond the paper,"
     } else {
         "Fig."
     };
-    let inside = |picture: &PictureRef| Ok(picture.inside(&read(&picture.path)?));
+    let inside = |picture: &Picture| Ok(picture.inside(&read(&picture.path)?));
     let pictures = record.pictures.iter().map(inside);
     let pictures: Vec<Markup> = pictures.collect::<Result<_, _>>()?;
     let plays = plays(record, read)?;
     Ok(html! {
         section id={ "fig" (n) } {
-            h2 { (kind) " " (n) ". " (record.title) @if effort == RenderEffort::Quick { " (quick)" } }
+            h2 { (kind) " " (n) ". " (record.title) @if effort == Effort::Quick { " (quick)" } }
             @for picture in &pictures { figure { (picture) } }
             @if !plays.is_empty() {
                 p { b { "Turn it round and play it:" } }
@@ -90,14 +85,10 @@ fn section(record: &Record, effort: RenderEffort, read: Read<'_>) -> Result<Mark
 }
 
 /// Links to the pages that play the runs of a figure.
-fn plays(record: &Record, read: Read<'_>) -> Result<Vec<Markup>, StoreError> {
-    let link = |page: &PageRef| {
-        let picture = PictureRef {
-            path: page.thumbnail.clone(),
-            alt: format!("Figure {}, {}, at the end", record.figure, page.label),
-        };
-        let picture = picture.inside(&read(&page.thumbnail)?);
-        Ok(html! { a href={ (page.path) (page.choices) } { (picture) (page.label) } })
+fn plays(record: &Made, read: Read<'_>) -> Result<Vec<Markup>, StoreError> {
+    let link = |play: &Play| {
+        let picture = play.thumbnail.inside(&read(&play.thumbnail.path)?);
+        Ok(html! { a href={ (play.path) (play.choices) } { (picture) (play.label) } })
     };
     record.pages.iter().map(link).collect()
 }
@@ -109,26 +100,18 @@ mod tests {
 
     #[test]
     fn the_page_holds_everything() {
-        let record = Record {
-            figure: 10,
+        let picture = |file: &str, alt: &str| Picture::file(file, Vec::new(), alt);
+        let made = Made {
             title: "A < B".into(),
             paper: "said".into(),
             measured: "seen".into(),
-            pictures: vec![
-                PictureRef {
-                    path: "figures/a.svg".into(),
-                    alt: "a".into(),
-                },
-                PictureRef {
-                    path: "figures/b.png".into(),
-                    alt: "b \"quoted\"".into(),
-                },
-            ],
-            pages: vec![PageRef {
+            pictures: vec![picture("a.svg", "a"), picture("b.png", "b \"quoted\"")],
+            pages: vec![Play {
                 path: "fig10-a.html".into(),
-                thumbnail: "figures/fig10-a-end.png".into(),
                 choices: "#bodies=glass".into(),
                 label: "M<2>".into(),
+                page: String::new(),
+                thumbnail: picture("fig10-a-end.png", "Figure 10, M<2>, at the end"),
             }],
             tables: vec![Table::new("t", &["x"]).with_texts([vec!["<1>".into()]])],
             facts: serde_json::Value::Null,
@@ -140,7 +123,7 @@ mod tests {
                 vec![1, 2, 3]
             })
         };
-        let html = page(&[(record, RenderEffort::Full)], &read).unwrap();
+        let html = page(&[(10, made, Effort::Full)], &read).unwrap();
         let html = html.to_html();
         for part in [
             "A &lt; B",

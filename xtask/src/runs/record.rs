@@ -27,7 +27,7 @@ const STRAIN: f64 = 1e-10;
 const REST: f64 = 1e-6;
 
 /// What a run did, as in its summary.json.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct RunSummary {
     /// The scene file.
     pub(crate) scene: String,
@@ -133,6 +133,13 @@ pub(crate) fn trajectory(store: &Store, scene: &FigureScene) -> Result<Trajector
     Ok(Trajectory::read(&path)?)
 }
 
+/// The positions (3V, metres) in the last frame of a run that [`ensure()`] has made.
+pub(crate) fn end(store: &Store, scene: &FigureScene) -> Result<Vec<f64>> {
+    let trajectory = trajectory(store, scene)?;
+    let last = trajectory.frame(trajectory.len() - 1);
+    Ok(last.context("last frame")?.to_vec())
+}
+
 /// The summary of a run that [`ensure()`] has made.
 pub(crate) fn summary(store: &Store, scene: &FigureScene) -> Result<RunSummary> {
     let path = store.root().join(folder(scene)).join("summary.json");
@@ -218,30 +225,30 @@ impl Recorder<'_> {
             &state.x,
         )?;
         let model = simulation.model();
-        let (kinetic, potential) = (
-            model.kinetic_energy(&state.v),
-            simulation.energy() - model.kinetic_energy(&state.v),
-        );
-        if report.is_none() {
-            self.start = kinetic + potential;
-        }
-        self.history.append(&HistoryRow {
+        let kinetic = model.kinetic_energy(&state.v);
+        let potential = simulation.energy() - kinetic;
+        let total = kinetic + potential;
+        let mut row = HistoryRow {
             t: state.t,
-            h: report.map_or(0.0, |r| r.h),
-            iterations: report.map_or(0, |r| r.iterations),
-            factorisations: report.map_or(0, |r| r.factorisations),
-            rejected: report.map_or(0, |r| r.rejected),
             kinetic,
             potential,
-            total: kinetic + potential,
-            drift: kinetic + potential - self.start,
-            strain: report.map_or(0.0, |r| r.strain),
-            // An infinite gap means that nothing is within reach.
-            gap: report.and_then(|r| r.gap).filter(|g| g.is_finite()),
-        })?;
+            total,
+            ..HistoryRow::default()
+        };
+        match report {
+            None => self.start = total,
+            Some(r) => {
+                (row.h, row.iterations, row.factorisations) = (r.h, r.iterations, r.factorisations);
+                (row.rejected, row.strain) = (r.rejected, r.strain);
+                // An infinite gap means that nothing is within reach.
+                row.gap = r.gap.filter(|g| g.is_finite());
+            }
+        }
+        row.drift = total - self.start;
+        self.history.append(&row)?;
         for (body, load) in simulation.body_loads().iter().enumerate() {
-            let ([fx, fy, fz], [mx, my, mz]): ([f64; 3], [f64; 3]) =
-                (load.force.into(), load.torque.into());
+            let [fx, fy, fz]: [f64; 3] = load.force.into();
+            let [mx, my, mz]: [f64; 3] = load.torque.into();
             let t = state.t;
             writeln!(self.loads, "{t},{body},{fx},{fy},{fz},{mx},{my},{mz}")?;
         }
@@ -331,24 +338,9 @@ impl RunSummary {
     fn start(scene: &FigureScene, sheet: &Sheet) -> Self {
         Self {
             scene: scene.text().to_owned(),
-            extent: Extent::Complete,
             vertices: sheet.topology().vertex_count(),
             faces: sheet.topology().face_count(),
-            frames: 0,
-            time: 0.0,
-            wall: 0.0,
-            frames_per_second: 0.0,
-            substeps: 0,
-            rejected: 0,
-            iterations: 0,
-            factorisations: 0,
-            step_range: None,
-            max_strain: 0.0,
-            paths: [0; 4],
-            motion_left: 0.0,
-            smallest_gap: None,
-            energy: Energy::default(),
-            at_rest_from: None,
+            ..Self::default()
         }
     }
 

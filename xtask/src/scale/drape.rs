@@ -1,15 +1,14 @@
 //! What a step with contact costs at one mesh size.
 
 use super::measure::{STEP, peak_memory};
-use super::timed::Timed;
+use super::timed::{Spent, Timed};
 use crate::interrupt;
-use crate::report::Effort;
-use crate::timing::bumped;
+use crate::report::Cost;
+use crate::timing::{Pairs, bumped, on_table};
 use anyhow::Result;
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_collide::ContactOptions;
 use isosheet_dynamics::{Method, RunEnd, SheetModel, Simulation, State, StepReport};
 use isosheet_mesh::{MassKind, VertexId};
-use nalgebra::Isometry3;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -25,21 +24,15 @@ const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
 /// the gap at which a contact carries its own vertex.
 const START: f64 = 0.95;
 
-/// A few steps of the draping sheet at one mesh size. Means are over the steps that were timed.
-#[derive(Clone, Debug)]
+/// A few steps of the draping sheet at one mesh size.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct DrapeRow {
     pub(crate) level: u32,
     pub(crate) vertices: usize,
-    /// Steps that were timed.
-    pub(crate) steps: usize,
-    /// Wall seconds per step.
-    pub(crate) per_step: f64,
-    /// Parts of it, seconds: finding pairs and safe motions; distances and normals of contacts.
-    pub(crate) detection: f64,
-    pub(crate) evaluation: f64,
-    pub(crate) iterations: f64,
-    pub(crate) factorisations: f64,
-    pub(crate) rejected: usize,
+    /// What the steps that were timed cost.
+    pub(crate) cost: Cost,
+    /// Parts of the wall time, seconds: finding pairs and safe motions; distances and normals of contacts.
+    pub(crate) contact: Spent,
     /// Contacts within reach at the end.
     pub(crate) contacts: usize,
     /// Pairs of vertices that contact couples at the end and the mesh does not: they would cost fill.
@@ -54,6 +47,36 @@ pub(crate) struct DrapeRow {
     pub(crate) stopped: Option<String>,
 }
 
+impl DrapeRow {
+    /// A number as a mean over the steps that were timed.
+    fn per_step(&self, all: f64) -> f64 {
+        all / self.cost.steps.max(1) as f64
+    }
+
+    /// Wall seconds of a step.
+    pub(crate) fn step(&self) -> f64 {
+        self.per_step(self.cost.wall)
+    }
+
+    /// Parts of it, seconds, see [`Spent`].
+    pub(crate) fn detection(&self) -> f64 {
+        self.per_step(self.contact.detection)
+    }
+
+    /// See [`DrapeRow::detection`].
+    pub(crate) fn evaluation(&self) -> f64 {
+        self.per_step(self.contact.evaluation)
+    }
+
+    pub(crate) fn iterations(&self) -> f64 {
+        self.per_step(self.cost.iterations as f64)
+    }
+
+    pub(crate) fn factorisations(&self) -> f64 {
+        self.per_step(self.cost.factorisations as f64)
+    }
+}
+
 /// Measures up to `steps` steps after a first one that is not timed, or as many as begin within `patience`
 /// seconds.
 pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRow> {
@@ -62,36 +85,20 @@ pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRo
     let options = ContactOptions::for_sheet(&model);
     // The bump is at half its height above the corners of the table, where the cloth is lowest.
     let top = 0.5 * BUMP - START * options.activation;
-    let pose = Isometry3::translation(0.5, 0.5, top - TABLE[2]);
-    let table = Obstacle::fixed(Shape::Cuboid { half: TABLE }, pose)?;
-    let contacts = Contacts::new(&model, options)?
-        .with_body(table, Coefficients::FRICTIONLESS)?
-        .with_self_contact(Coefficients::FRICTIONLESS)?;
+    let contacts = on_table(&model, options, (TABLE, top), Pairs::TableAndItself)?;
     let (contacts, watch) = Timed::new(contacts);
     let start = State::at_rest(sheet.positions().to_vec());
     let mut run = Simulation::new(model, start, Method::default())?.with_contact(contacts)?;
     let mut row = DrapeRow {
         level,
         vertices: sheet.topology().vertex_count(),
-        steps: 0,
-        per_step: 0.0,
-        detection: 0.0,
-        evaluation: 0.0,
-        iterations: 0.0,
-        factorisations: 0.0,
-        rejected: 0,
-        contacts: 0,
-        couplings: 0,
-        strain: 0.0,
         gap: f64::INFINITY,
-        peak: None,
-        stopped: None,
+        ..DrapeRow::default()
     };
-    let mut effort = Effort::default();
     let first = run.step(STEP);
     let (clock, before) = (Instant::now(), watch.read());
     let mut observe = |_: &Simulation, report: &StepReport| {
-        effort.add(report);
+        row.cost.add(report);
         row.strain = row.strain.max(report.strain);
         row.gap = row.gap.min(report.gap.unwrap_or(f64::INFINITY));
         if clock.elapsed().as_secs_f64() > patience {
@@ -109,14 +116,8 @@ pub(crate) fn measure(level: u32, steps: usize, patience: f64) -> Result<DrapeRo
         Ok(RunEnd::Complete | RunEnd::Taut) => None,
         Err(error) => Some(error.to_string()),
     };
-    (row.steps, row.rejected) = (effort.steps, effort.rejected);
-    let n = row.steps.max(1) as f64;
-    let spent = watch.read().since(before);
-    row.per_step = clock.elapsed().as_secs_f64() / n;
-    row.detection = spent.detection / n;
-    row.evaluation = spent.evaluation / n;
-    row.iterations = effort.iterations_per_step().unwrap_or(0.0);
-    row.factorisations = effort.factorisations_per_step().unwrap_or(0.0);
+    row.cost.wall = clock.elapsed().as_secs_f64();
+    row.contact = watch.read().since(before);
     row.peak = peak_memory();
     if let Some(active) = run.contacts() {
         row.contacts = active.list().len();
@@ -137,14 +138,14 @@ mod tests {
     #[test]
     fn a_small_cloth_is_measured() {
         let row = measure(1, 3, 10.0).expect("a small cloth moves");
-        assert_eq!((row.vertices, row.steps, row.couplings), (25, 3, 0));
+        assert_eq!((row.vertices, row.cost.steps, row.couplings), (25, 3, 0));
         assert!(
             row.contacts >= 4 && row.gap > 0.0 && row.strain < 1e-12,
             "{row:?}"
         );
-        let contact = row.detection + row.evaluation;
+        let contact = row.detection() + row.evaluation();
         assert!(
-            row.detection > 0.0 && row.evaluation > 0.0 && contact < row.per_step,
+            row.detection() > 0.0 && row.evaluation() > 0.0 && contact < row.step(),
             "{row:?}"
         );
         assert!(measure(1, 3, 0.0).expect("stopped").stopped.is_some());

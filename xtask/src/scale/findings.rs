@@ -1,8 +1,8 @@
 //! What the measurements of single steps say, in words.
 
+use super::Results;
 use super::drape::DrapeRow;
 use super::measure::Row;
-use super::results::Results;
 use crate::report::exponent;
 use crate::timing::OrderRow;
 use std::fmt::Write;
@@ -134,12 +134,12 @@ pub(super) fn draping_conclusion(results: &Results) -> String {
         |value: fn(&DrapeRow) -> f64| power(&points(rows, |r| [r.vertices as f64, value(r)]));
     let mut out = format!(
         "Fitted powers of V with contact: time per step {}, factorisations per step {}, detection {}, distances of contacts {}.",
-        power(|r| r.per_step),
-        power(|r| r.factorisations),
-        power(|r| r.detection),
-        power(|r| r.evaluation),
+        power(DrapeRow::step),
+        power(DrapeRow::factorisations),
+        power(DrapeRow::detection),
+        power(DrapeRow::evaluation),
     );
-    let shares = range(rows.iter().map(|r| r.detection / r.per_step)).unwrap_or_default();
+    let shares = range(rows.iter().map(|r| r.detection() / r.step())).unwrap_or_default();
     let couplings = rows.iter().map(|r| r.couplings).max().unwrap_or(0);
     let _ = write!(
         out,
@@ -156,7 +156,7 @@ pub(super) fn draping_conclusion(results: &Results) -> String {
     });
     let multiples = rows.iter().filter_map(|r| {
         let hanging = results.hanging.iter().find(|h| h.level == r.level)?;
-        Some(r.per_step / hanging.best().numeric)
+        Some(r.step() / hanging.best().numeric)
     });
     if let Some(words) = of_the_limit(multiples) {
         let _ = write!(out, " {words}");
@@ -166,7 +166,7 @@ pub(super) fn draping_conclusion(results: &Results) -> String {
             out,
             " M^{}: {} steps only ({}).",
             r.level,
-            r.steps,
+            r.cost.steps,
             r.stopped.as_deref().unwrap_or("")
         );
     }

@@ -1,13 +1,12 @@
 //! The plots of the scaling study.
 
+use super::Results;
 use super::drape::DrapeRow;
 use super::findings::points;
 use super::measure::Row;
-use super::results::Results;
 use super::tables::factor_bytes;
-use super::whole::{Damped, SCENES, name};
-use crate::draw::{Axis, Colour, Drawing, Line, Marker, Series, column, palette};
-use crate::report::Chart;
+use super::whole::{DEFAULT, SCENES, name};
+use crate::draw::{Chart, Colour, Drawing, Marker, Series, column, palette};
 
 /// A law through the last point of a series.
 fn law(name: &str, of: &[[f64; 2]], f: fn(f64) -> f64) -> Series {
@@ -30,23 +29,11 @@ const ORDER: Look = (palette::PURPLE, Marker::Diamond);
 const DETECTION: Look = (palette::VERMILION, Marker::Square);
 
 fn series(name: &str, points: &[[f64; 2]], (colour, marker): Look) -> Series {
-    Series {
-        name: name.into(),
-        points: points.to_vec(),
-        colour,
-        marker: Some(marker),
-        line: Line::Solid,
-    }
+    Series::line(name, colour, points.to_vec()).marked(marker)
 }
 
 fn panel(label: &str, series: Vec<Series>) -> Drawing {
-    let all = |k: usize| {
-        let of = move |s: &Series| s.points.iter().map(move |p| p[k]).collect::<Vec<_>>();
-        series.iter().flat_map(of)
-    };
-    let x = Axis::holding("vertices", all(0));
-    let y = Axis::holding(label, all(1));
-    Chart::new(x, y, [230.0, 130.0], series).draw()
+    Chart::log_log("vertices", label, [230.0, 130.0], series).draw()
 }
 
 /// Time, time with contact, memory and operations against the number of vertices.
@@ -68,19 +55,18 @@ fn of(rows: &[Row], value: fn(&Row) -> f64) -> Vec<[f64; 2]> {
 
 fn time(rows: &[Row]) -> Drawing {
     let step = of(rows, |r| r.per_step);
+    let [degree, dissection] = [0, 1].map(|k| {
+        let numeric = rows
+            .iter()
+            .map(|r| [r.vertices as f64, r.orders[k].numeric]);
+        numeric.collect::<Vec<_>>()
+    });
+    let order = of(rows, |r| r.orders[1].order);
     let all = vec![
         series("step", &step, STEP),
-        series(
-            "factor, min. degree",
-            &of(rows, |r| r.orders[0].numeric),
-            DEGREE,
-        ),
-        series(
-            "factor, dissection",
-            &of(rows, |r| r.orders[1].numeric),
-            DISSECTION,
-        ),
-        series("order, dissection", &of(rows, |r| r.orders[1].order), ORDER),
+        series("factor, min. degree", &degree, DEGREE),
+        series("factor, dissection", &dissection, DISSECTION),
+        series("order, dissection", &order, ORDER),
         power_law(&step),
     ];
     panel("seconds", all)
@@ -88,11 +74,11 @@ fn time(rows: &[Row]) -> Drawing {
 
 fn contact(rows: &[DrapeRow]) -> Drawing {
     let of = |value: fn(&DrapeRow) -> f64| points(rows, |r| [r.vertices as f64, value(r)]);
-    let step = of(|r| r.per_step);
+    let step = of(DrapeRow::step);
     let all = vec![
         series("step", &step, STEP),
-        series("contact, detection", &of(|r| r.detection), DETECTION),
-        series("contact, distances", &of(|r| r.evaluation), ORDER),
+        series("contact, detection", &of(DrapeRow::detection), DETECTION),
+        series("contact, distances", &of(DrapeRow::evaluation), ORDER),
         power_law(&step),
     ];
     panel("seconds, with contact", all)
@@ -126,10 +112,11 @@ fn operations(rows: &[Row]) -> Drawing {
 fn whole(results: &Results) -> Option<Drawing> {
     let of = |scene| -> Vec<[f64; 2]> {
         let mut runs = results.whole_of(scene);
-        runs.retain(|r| r.measured.run.ended() && r.method == Damped::Bdf2 && r.start == 1);
-        runs.iter()
-            .filter_map(|r| Some([r.vertices as f64, r.measured.run.rate()?]))
-            .collect()
+        runs.retain(|r| r.run.ended() && r.method == DEFAULT && r.start == 1);
+        let points = runs
+            .iter()
+            .filter_map(|r| Some([r.vertices as f64, r.run.rate()?]));
+        points.collect()
     };
     let [hanging, tablecloth] = SCENES.map(of);
     let mut all = vec![

@@ -1,10 +1,10 @@
 //! The page of the scaling study, its other files, and its text for a terminal.
 
+use super::Results;
 use super::drape;
 use super::findings::{conclusion, draping_conclusion, threads};
 use super::measure::STEP;
 use super::plot;
-use super::results::Results;
 use super::tables::{draping, draping_data, orders, steps, steps_data};
 use super::whole::{SCENES, name};
 use super::whole_report;
@@ -20,7 +20,7 @@ const PICTURE: &str = "Time, memory and fill of a step against the number of ver
 pub(super) fn files(results: &Results) -> Result<Vec<(&'static str, Vec<u8>)>> {
     let plot = plot::plot(results);
     Ok(vec![
-        ("scale.svg", plot.to_svg(PICTURE)?.into_bytes()),
+        ("scale.svg", plot.to_svg(PICTURE).into_bytes()),
         ("scale.png", plot.to_png(PICTURE)?),
         ("scale.csv", steps_data(&results.hanging).csv()?),
         ("draping.csv", draping_data(&results.draping).csv()?),
@@ -30,7 +30,7 @@ pub(super) fn files(results: &Results) -> Result<Vec<(&'static str, Vec<u8>)>> {
 
 /// The page.
 pub(super) fn page(results: &Results) -> Result<Page> {
-    let svg = plot::plot(results).to_svg(PICTURE)?;
+    let svg = plot::plot(results).to_svg(PICTURE);
     let body = html! {
         p {
             "A square sheet of 1 m and 0.1 kg hangs by a corner from a start that is flat but for a bump of 1 mm; steps of "

@@ -1,9 +1,9 @@
 //! Tables and words on whole runs.
 
 use super::findings::power;
-use super::whole::{Damped, NEIGHBOUR, WholeRun, methods, name};
+use super::whole::{are_neighbours, methods, name};
 use crate::report::{Cell, Table, short};
-use crate::timing::{self, COLUMNS, Entry, STEP, Timed, Work};
+use crate::timing::{self, COLUMNS, Entry, Measured, NEIGHBOUR, STEP, Timed, Work};
 use std::fmt::Write;
 
 /// What the runs are.
@@ -24,30 +24,23 @@ pub(super) const CHAOS: &str = "The motion of rods without bending stiffness on 
     methods by single runs, and powers fitted to a few meshes are uncertain by as much; how far the two starts are apart is stated for every mesh.";
 
 /// What the runs of one scene say.
-pub(super) fn findings(runs: &[&WholeRun]) -> Vec<String> {
+pub(super) fn findings(runs: &[&Measured]) -> Vec<String> {
     let Some(first) = runs.first() else {
         return Vec::new();
     };
-    let mut all: Vec<String> = methods(first.scene)
+    let mut all: Vec<String> = methods(first.work)
         .iter()
-        .map(|method| powers(runs, *method))
+        .map(|(method, _)| powers(runs, method))
         .collect();
     all.extend(apart(runs));
     for level in levels(runs) {
         let entries = entries(runs, level);
         all.push(timing::words(&format!("M^{level}"), &entries));
     }
-    let strain = runs
-        .iter()
-        .map(|r| r.measured.run.strain)
-        .fold(0.0, f64::max);
+    let strain = runs.iter().map(|r| r.run.strain).fold(0.0, f64::max);
     let mut extremes =
         format!("The largest strain of an edge in any of these runs is {strain:.0e}");
-    if let Some(gap) = runs
-        .iter()
-        .filter_map(|r| r.measured.run.gap)
-        .reduce(f64::min)
-    {
+    if let Some(gap) = runs.iter().filter_map(|r| r.run.gap).reduce(f64::min) {
         let _ = write!(extremes, ", the smallest gap {} µm", short(1e6 * gap));
     }
     all.push(extremes + ".");
@@ -59,96 +52,79 @@ pub(super) fn findings(runs: &[&WholeRun]) -> Vec<String> {
 }
 
 /// The fitted powers of a method.
-fn powers(runs: &[&WholeRun], method: Damped) -> String {
-    let ended: Vec<&&WholeRun> = runs
-        .iter()
-        .filter(|r| r.method == method && r.measured.run.ended())
-        .collect();
-    let fit = |value: &dyn Fn(&Timed) -> Option<f64>| {
-        let points: Vec<[f64; 2]> = ended
+fn powers(runs: &[&Measured], method: &str) -> String {
+    let ended = runs.iter().filter(|r| r.method == method && r.run.ended());
+    let ended: Vec<&&Measured> = ended.collect();
+    let fit = |value: fn(&Timed) -> Option<f64>| {
+        let points = ended
             .iter()
-            .filter_map(|r| Some([r.vertices as f64, value(&r.measured.run)?]))
-            .collect();
-        power(&points)
+            .filter_map(|r| Some([r.vertices as f64, value(&r.run)?]));
+        power(&points.collect::<Vec<_>>())
     };
+    let meshes = ended.chunk_by(|a, b| a.level == b.level).count();
     format!(
-        "{}, fitted powers of V from {} runs on {} meshes that ended: time per simulated second {}, time per factorisation {}, factorisations per step {}, \
+        "{method}, fitted powers of V from {} runs on {meshes} meshes that ended: time per simulated second {}, time per factorisation {}, factorisations per step {}, \
          iterations per step {}.",
-        method.name(),
         ended.len(),
-        ended
-            .chunk_by(|a, b| a.measured.level == b.measured.level)
-            .count(),
-        fit(&Timed::rate),
-        fit(&|run| run.effort.wall_per_factorisation()),
-        fit(&|run| run.effort.factorisations_per_step()),
-        fit(&|run| run.effort.iterations_per_step()),
+        fit(Timed::rate),
+        fit(|run| run.cost.wall_per_factorisation()),
+        fit(|run| run.cost.factorisations_per_step()),
+        fit(|run| run.cost.iterations_per_step()),
     )
 }
 
 /// How far the neighbouring starts are apart in cost, by the number of factorisations, which has no noise of
 /// the clock.
-fn apart(runs: &[&WholeRun]) -> Option<String> {
-    let mut parts = Vec::new();
-    for level in levels(runs) {
-        let largest = runs
-            .chunk_by(|a, b| a.is_neighbour(b))
-            .filter(|pair| {
-                pair[0].measured.level == level && pair.iter().all(|r| r.measured.run.ended())
-            })
-            .filter_map(difference)
-            .reduce(f64::max);
-        if let Some(part) = largest {
-            parts.push(format!("M^{level} {:.0} %", 100.0 * part));
-        }
-    }
-    (!parts.is_empty()).then(|| {
-        format!(
-            "Factorisations of neighbouring starts differ by at most: {}.",
-            parts.join(", ")
-        )
-    })
+fn apart(runs: &[&Measured]) -> Option<String> {
+    let of_level = |level: u32| {
+        let pairs = runs.chunk_by(|a, b| are_neighbours(a, b));
+        let pairs = pairs.filter(|p| p[0].level == level && p.iter().all(|r| r.run.ended()));
+        let part = pairs.filter_map(difference).reduce(f64::max)?;
+        Some(format!("M^{level} {:.0} %", 100.0 * part))
+    };
+    let parts: Vec<String> = levels(runs).into_iter().filter_map(of_level).collect();
+    let parts = (!parts.is_empty()).then(|| parts.join(", "))?;
+    Some(format!(
+        "Factorisations of neighbouring starts differ by at most: {parts}."
+    ))
 }
 
 /// The larger number of factorisations over the smaller one, less 1.
-fn difference(pair: &[&WholeRun]) -> Option<f64> {
-    let counts = pair
-        .iter()
-        .map(|r| r.measured.run.effort.factorisations as f64);
-    let [low, high] = counts
-        .map(|n| [n; 2])
-        .reduce(|[l, h], [a, b]| [l.min(a), h.max(b)])?;
+fn difference(pair: &[&Measured]) -> Option<f64> {
+    let counts = pair.iter().map(|r| [r.run.cost.factorisations as f64; 2]);
+    let [low, high] = counts.reduce(|[l, h], [a, b]| [l.min(a), h.max(b)])?;
     (pair.len() > 1 && low > 0.0).then(|| high / low - 1.0)
 }
 
-fn levels(runs: &[&WholeRun]) -> Vec<u32> {
-    let mut levels: Vec<u32> = runs.iter().map(|r| r.measured.level).collect();
+fn levels(runs: &[&Measured]) -> Vec<u32> {
+    let mut levels: Vec<u32> = runs.iter().map(|r| r.level).collect();
     levels.dedup();
     levels
 }
 
 /// The methods on one mesh: means over the starts, of methods that came to the end from all of them.
-fn entries(runs: &[&WholeRun], level: u32) -> Vec<Entry> {
-    runs.chunk_by(|a, b| a.is_neighbour(b))
-        .filter(|starts| starts[0].measured.level == level)
-        .map(|starts| {
-            let walls: Option<Vec<f64>> = starts.iter().map(|r| r.entry().wall).collect();
-            Entry {
-                wall: walls.map(|w| w.iter().sum::<f64>() / w.len() as f64),
-                strain: starts
-                    .iter()
-                    .map(|r| r.measured.run.strain)
-                    .fold(0.0, f64::max),
-                ..starts[0].entry()
-            }
-        })
+fn entries(runs: &[&Measured], level: u32) -> Vec<Entry> {
+    let of_starts = |starts: &[&Measured]| {
+        let first = starts[0].entry(starts[0].method.clone());
+        let walls = starts.iter().map(|r| r.entry(String::new()).wall);
+        let walls: Option<Vec<f64>> = walls.collect();
+        Entry {
+            wall: walls.map(|w| w.iter().sum::<f64>() / w.len() as f64),
+            strain: starts.iter().map(|r| r.run.strain).fold(0.0, f64::max),
+            ..first
+        }
+    };
+    let groups = runs.chunk_by(|a, b| are_neighbours(a, b));
+    groups
+        .filter(|starts| starts[0].level == level)
+        .map(of_starts)
         .collect()
 }
 
 /// How far a run came that did not come to the end.
-fn unfinished(r: &WholeRun) -> Option<String> {
-    let (mesh, method, remark) = (r.measured.mesh(), r.method.name(), r.measured.remark());
-    (!r.measured.run.ended()).then(|| format!("{mesh}, {method}, start {}: {remark}", r.start))
+fn unfinished(r: &Measured) -> Option<String> {
+    let (mesh, method, remark) = (r.mesh(), &r.method, r.remark());
+    (!r.run.ended()).then(|| format!("{mesh}, {method}, start {}: {remark}", r.start))
 }
 
 fn cell(value: Option<f64>) -> Cell {
@@ -156,14 +132,11 @@ fn cell(value: Option<f64>) -> Cell {
 }
 
 /// The runs of one scene.
-pub(super) fn table(scene: Work, runs: &[&WholeRun]) -> Table {
-    let with = |r: &&WholeRun| {
-        (
-            (*r).clone(),
-            r.entry().cells(&entries(runs, r.measured.level)),
-        )
+pub(super) fn table(scene: Work, runs: &[&Measured]) -> Table {
+    let with = |r: &&Measured| {
+        let entry = r.entry(r.method.clone());
+        ((*r).clone(), entry.cells(&entries(runs, r.level)))
     };
-    let run = |r: &(WholeRun, [String; 2])| r.0.measured.run.clone();
     Table::of(
         format!(
             "Whole runs of the {}: wall seconds for a simulated second, set-up left out, of runs that did not end up to the time they reached; \
@@ -172,58 +145,56 @@ pub(super) fn table(scene: Work, runs: &[&WholeRun]) -> Table {
         ),
         runs.iter().map(with),
         &[
-            ("mesh", &|(r, _)| r.measured.mesh().into()),
+            ("mesh", &|(r, _)| r.mesh().into()),
             ("V", &|(r, _)| r.vertices.into()),
-            ("method", &|(r, _)| r.method.name().into()),
+            ("method", &|(r, _)| r.method.as_str().into()),
             ("start", &|(r, _)| r.start.into()),
-            ("s/s", &|r| cell(run(r).rate())),
-            ("iterations per step", &|r| {
-                cell(run(r).effort.iterations_per_step())
+            ("s/s", &|(r, _)| r.rate().into()),
+            ("iterations per step", &|(r, _)| {
+                cell(r.run.cost.iterations_per_step())
             }),
-            ("factorisations per step", &|r| {
-                cell(run(r).effort.factorisations_per_step())
+            ("factorisations per step", &|(r, _)| {
+                cell(r.run.cost.factorisations_per_step())
             }),
-            ("ms per factorisation", &|r| {
-                cell(run(r).effort.wall_per_factorisation().map(|s| 1e3 * s))
+            ("ms per factorisation", &|(r, _)| {
+                let seconds = r.run.cost.wall_per_factorisation();
+                cell(seconds.map(|s| 1e3 * s))
             }),
             (COLUMNS[0], &|(_, c)| c[0].as_str().into()),
             (COLUMNS[1], &|(_, c)| c[1].as_str().into()),
-            ("rejected", &|r| run(r).effort.rejected.into()),
-            ("strain", &|r| format!("{:.0e}", run(r).strain).into()),
-            ("smallest gap, µm", &|r| {
-                cell(run(r).gap.map(|gap| 1e6 * gap))
+            ("rejected", &|(r, _)| r.run.cost.rejected.into()),
+            ("strain", &|(r, _)| format!("{:.0e}", r.run.strain).into()),
+            ("smallest gap, µm", &|(r, _)| {
+                cell(r.run.gap.map(|gap| 1e6 * gap))
             }),
-            ("remark", &|(r, _)| r.measured.remark().into()),
+            ("remark", &|(r, _)| r.remark().into()),
         ],
     )
 }
 
 /// All runs, for programs.
-pub(super) fn data(runs: &[WholeRun]) -> Table {
-    let of = |r: &WholeRun| (r.clone(), r.measured.run.clone());
+pub(super) fn data(runs: &[Measured]) -> Table {
     Table::of(
         "",
-        runs.iter().map(of),
+        runs,
         &[
-            ("scene", &|(r, _)| name(r.scene).into()),
-            ("level", &|(r, _)| r.measured.level.into()),
-            ("vertices", &|(r, _)| r.vertices.into()),
-            ("method", &|(r, _)| r.method.name().into()),
-            ("start", &|(r, _)| r.start.into()),
+            ("scene", &|r| name(r.work).into()),
+            ("level", &|r| r.level.into()),
+            ("vertices", &|r| r.vertices.into()),
+            ("method", &|r| r.method.as_str().into()),
+            ("start", &|r| r.start.into()),
             ("step_s", &|_| STEP.into()),
-            ("wall_s", &|(_, run)| run.effort.wall.into()),
-            ("repetitions", &|(_, run)| run.repetitions.into()),
-            ("reached_s", &|(_, run)| run.reached.into()),
-            ("steps", &|(_, run)| run.effort.steps.into()),
-            ("rejected", &|(_, run)| run.effort.rejected.into()),
-            ("iterations", &|(_, run)| run.effort.iterations.into()),
-            ("factorisations", &|(_, run)| {
-                run.effort.factorisations.into()
-            }),
-            ("factorisation_s", &|(r, _)| r.measured.factorisation.into()),
-            ("strain", &|(_, run)| run.strain.into()),
-            ("gap_m", &|(_, run)| run.gap.into()),
-            ("not_ended", &|(_, run)| run.failure.clone().into()),
+            ("wall_s", &|r| r.run.cost.wall.into()),
+            ("repetitions", &|r| r.run.repetitions.into()),
+            ("reached_s", &|r| r.run.reached.into()),
+            ("steps", &|r| r.run.cost.steps.into()),
+            ("rejected", &|r| r.run.cost.rejected.into()),
+            ("iterations", &|r| r.run.cost.iterations.into()),
+            ("factorisations", &|r| r.run.cost.factorisations.into()),
+            ("factorisation_s", &|r| r.factorisation.into()),
+            ("strain", &|r| r.run.strain.into()),
+            ("gap_m", &|r| r.run.gap.into()),
+            ("not_ended", &|r| r.run.failure.clone().into()),
         ],
     )
 }
@@ -231,53 +202,43 @@ pub(super) fn data(runs: &[WholeRun]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Effort;
-    use crate::timing::Measured;
+    use crate::report::Cost;
 
     /// A run of the hanging sheet with made-up numbers: `cost` times `V^2` seconds, `V^1.5` of them for each
     /// factorisation.
-    fn made_up(level: u32, method: Damped, start: usize, cost: f64) -> WholeRun {
+    fn made_up(level: u32, method: &str, start: usize, cost: f64) -> Measured {
         let vertices = (2_usize.pow(level + 1) + 1).pow(2);
         let v = vertices as f64;
-        let effort = Effort {
-            steps: 60,
-            substeps: 60,
-            rejected: 0,
-            iterations: 240,
-            factorisations: (1e6 * cost * v.sqrt()) as usize,
-            wall: cost * v * v,
-        };
-        WholeRun {
-            scene: Work::Hanging,
+        Measured {
+            work: Work::Hanging,
+            level,
             vertices,
-            method,
+            method: method.to_owned(),
             start,
-            measured: Measured {
-                level,
-                method: String::new(),
-                step: STEP,
-                factorisation: 1e-6 * v * v * STEP,
-                run: Timed {
-                    effort,
-                    strain: 1e-12,
-                    reached: 1.0,
-                    repetitions: 1,
-                    ..Timed::default()
+            step: STEP,
+            factorisation: 1e-6 * v * v * STEP,
+            run: Timed {
+                cost: Cost {
+                    steps: 60,
+                    substeps: 60,
+                    rejected: 0,
+                    iterations: 240,
+                    factorisations: (1e6 * cost * v.sqrt()) as usize,
+                    wall: cost * v * v,
                 },
+                strain: 1e-12,
+                reached: 1.0,
+                repetitions: 1,
+                ..Timed::default()
             },
         }
     }
 
-    fn made_up_runs() -> Vec<WholeRun> {
+    fn made_up_runs() -> Vec<Measured> {
         let mut runs = Vec::new();
         for level in 1..=3 {
-            for (method, cost) in [
-                (Damped::Bdf2, 4e-5),
-                (Damped::ImplicitEuler, 2e-5),
-                (Damped::Projection, 8e-5),
-            ] {
-                runs.push(made_up(level, method, 1, cost));
-                runs.push(made_up(level, method, 2, cost));
+            for ((method, _), cost) in methods(Work::Hanging).iter().zip([4e-5, 2e-5, 8e-5]) {
+                runs.extend([1, 2].map(|start| made_up(level, method, start, cost)));
             }
         }
         runs
@@ -286,29 +247,17 @@ mod tests {
     #[test]
     fn fitted_powers_are_those_of_the_numbers() {
         let runs = made_up_runs();
-        let all: Vec<&WholeRun> = runs.iter().collect();
+        let all: Vec<&Measured> = runs.iter().collect();
         let text = findings(&all).join("\n");
-        assert!(
-            text.contains(
-                "BDF2 (default), fitted powers of V from 6 runs on 3 meshes that ended: time per simulated second 2.00, time per factorisation 1.5"
-            ),
-            "{text}"
-        );
-        assert!(text.contains("iterations per step 0.00"), "{text}");
-        assert!(
-            text.contains("differ by at most: M^1 0 %, M^2 0 %, M^3 0 %"),
-            "{text}"
-        );
-        assert!(
-            text.contains("M^2: the fastest method that keeps lengths to 1e-9 is implicit Euler"),
-            "{text}"
-        );
-        assert!(
-            text.contains(
-                "BDF2 (default) takes 2.0 times as long, 40 times one factorisation a step"
-            ),
-            "{text}"
-        );
+        for part in [
+            "BDF2 (default), fitted powers of V from 6 runs on 3 meshes that ended: time per simulated second 2.00, time per factorisation 1.5",
+            "iterations per step 0.00",
+            "differ by at most: M^1 0 %, M^2 0 %, M^3 0 %",
+            "M^2: the fastest method that keeps lengths to 1e-9 is implicit Euler",
+            "BDF2 (default) takes 2.0 times as long, 40 times one factorisation a step",
+        ] {
+            assert!(text.contains(part), "{part} is missing in {text}");
+        }
         assert!(!text.contains("Not ended"), "{text}");
     }
 
@@ -317,25 +266,20 @@ mod tests {
         let mut runs = made_up_runs();
         let lost = runs
             .iter_mut()
-            .find(|r| r.measured.level == 3)
-            .map(|r| &mut r.measured.run)
+            .find(|r| r.level == 3)
+            .map(|r| &mut r.run)
             .expect("a run of M^3");
-        (lost.effort.wall, lost.reached) = (1e9, 0.25);
+        (lost.cost.wall, lost.reached) = (1e9, 0.25);
         lost.failure = Some("600 s of wall time were over".into());
-        let all: Vec<&WholeRun> = runs.iter().collect();
+        let all: Vec<&Measured> = runs.iter().collect();
         let text = findings(&all).join("\n");
-        assert!(
-            text.contains("from 5 runs on 3 meshes that ended: time per simulated second 2.00"),
-            "{text}"
-        );
-        assert!(
-            text.contains("Not ended: M^3, BDF2 (default), start 1: stopped at 0.25 s: 600 s"),
-            "{text}"
-        );
-        assert!(
-            text.contains("BDF2 (default) did not come to the end"),
-            "{text}"
-        );
+        for part in [
+            "from 5 runs on 3 meshes that ended: time per simulated second 2.00",
+            "Not ended: M^3, BDF2 (default), start 1: stopped at 0.25 s: 600 s",
+            "BDF2 (default) did not come to the end",
+        ] {
+            assert!(text.contains(part), "{part} is missing in {text}");
+        }
         let table = table(Work::Hanging, &all);
         let says = |c: &Cell| matches!(c, Cell::Text(t) if t.starts_with("stopped at 0.25 s"));
         let marked = table.rows.iter().filter(|r| r.last().is_some_and(says));
@@ -345,9 +289,9 @@ mod tests {
     #[test]
     fn neighbouring_starts_are_compared_by_their_factorisations() {
         let mut runs = made_up_runs();
-        let first = runs[0].measured.run.effort.factorisations;
-        runs[1].measured.run.effort.factorisations = first * 4 / 3;
-        let all: Vec<&WholeRun> = runs.iter().collect();
+        let first = runs[0].run.cost.factorisations;
+        runs[1].run.cost.factorisations = first * 4 / 3;
+        let all: Vec<&Measured> = runs.iter().collect();
         let text = apart(&all).expect("pairs of runs");
         assert!(text.contains("M^1 33 %, M^2 0 %"), "{text}");
     }

@@ -167,7 +167,6 @@ pub(crate) fn first_clause(message: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Effort;
 
     fn point(scheme: &str, step: f64, wall: f64, position: f64) -> Point {
         Point {
@@ -176,16 +175,13 @@ mod tests {
             step,
             uniform: true,
             wall,
-            repetitions: 1,
-            effort: Effort::default(),
             errors: Some(Errors {
                 position,
                 energy: position,
                 strain: 0.0,
             }),
-            partial: None,
             reached: 1.0,
-            failure: None,
+            ..Point::default()
         }
     }
 

@@ -1,12 +1,10 @@
 //! A work that other programs have been measured on as well: the hanging sheet.
 
-use super::effort::StudyEffort;
 use super::scheme::DEFAULT;
+use crate::methods::{Named, energy_momentum};
 use crate::progress::Progress;
-use crate::report::{Table, percent, short};
-use crate::timing::{
-    self, BUMP, COLUMNS, Entry, Measured, Work, bumped, factorisation_time, repeated,
-};
+use crate::report::{Effort, Table, percent};
+use crate::timing::{self, COLUMNS, Entry, Measured, Mesh, Work};
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method, ProjectionStepOptions};
 use std::fmt::Write;
@@ -20,7 +18,7 @@ pub(crate) const ABOUT: &str = "Square sheet, side 1 m, union-jack mesh M^k, mas
 const CONSERVATIVE: &str = "energy-momentum";
 
 /// The methods and steps of the work.
-fn methods() -> [(&'static str, Method, f64); 6] {
+fn methods() -> [(Named, f64); 6] {
     // For those who look at the sheet and do not compute with it.
     let quick = Method::Bdf2(ImplicitOptions {
         tolerance: 1e-3,
@@ -31,33 +29,27 @@ fn methods() -> [(&'static str, Method, f64); 6] {
         strain_tolerance: 1e-9,
         ..Default::default()
     });
+    let loose_bdf2 = "BDF2, lengths to 1e-9, decrement to 1e-3";
+    let loose_projection = "projection, lengths to 1e-9";
     [
-        (DEFAULT, Method::default(), 1.0 / 60.0),
-        (DEFAULT, Method::default(), 5e-3),
-        (
-            "BDF2, lengths to 1e-9, decrement to 1e-3",
-            quick,
-            1.0 / 60.0,
-        ),
-        ("projection, lengths to 1e-9", loose.clone(), 1.0 / 60.0),
-        ("projection, lengths to 1e-9", loose, 5e-3),
-        (
-            CONSERVATIVE,
-            Method::EnergyMomentum(Default::default()),
-            2e-3,
-        ),
+        ((DEFAULT, Method::default()), 1.0 / 60.0),
+        ((DEFAULT, Method::default()), 5e-3),
+        ((loose_bdf2, quick), 1.0 / 60.0),
+        ((loose_projection, loose.clone()), 1.0 / 60.0),
+        ((loose_projection, loose), 5e-3),
+        ((CONSERVATIVE, energy_momentum()), 2e-3),
     ]
 }
 
 /// Runs the work on all meshes.
-pub(crate) fn make(effort: StudyEffort) -> Result<Vec<Measured>> {
+pub(crate) fn make(effort: Effort) -> Result<Vec<Measured>> {
     let levels = 1..=effort.hanging_level();
     let bar = Progress::start("hanging sheet", levels.clone().count() * methods().len());
     let mut rows = Vec::new();
     for level in levels {
-        let factorisation = factorisation_time(&bumped(level, BUMP)?)?;
+        let mesh = Mesh::measured(level)?;
         for method in methods() {
-            rows.push(measure(level, method, factorisation, effort.hanging())?);
+            rows.push(measure(mesh, method, effort.hanging())?);
             bar.step();
         }
     }
@@ -65,22 +57,16 @@ pub(crate) fn make(effort: StudyEffort) -> Result<Vec<Measured>> {
     Ok(rows)
 }
 
-fn measure(
-    level: u32,
-    (name, method, step): (&str, Method, f64),
-    factorisation: f64,
-    patience: f64,
-) -> Result<Measured> {
-    let start = || Work::Hanging.start(level, BUMP, method.clone());
-    let span = [Work::Hanging.duration(), step];
-    let run = repeated(&start, span, [patience, 0.1 * patience], &mut |_, _| {})?;
-    Ok(Measured {
-        level,
-        method: name.into(),
-        step,
-        factorisation,
-        run,
-    })
+fn measure(mesh: Mesh, (method, step): (Named, f64), patience: f64) -> Result<Measured> {
+    let limits = [patience, 0.1 * patience];
+    Measured::of(
+        Work::Hanging,
+        mesh,
+        method,
+        (1, step),
+        limits,
+        &mut |_, _| {},
+    )
 }
 
 /// All runs, for programs.
@@ -96,20 +82,15 @@ pub(crate) fn data(rows: &[Measured]) -> Table {
             ("strain", &|r| r.run.strain.into()),
             ("energy_balance", &|r| r.run.balance().into()),
             ("largest_energy_change", &|r| r.run.relative_drift().into()),
-            ("factorisations", &|r| r.run.effort.factorisations.into()),
-            ("steps", &|r| r.run.effort.substeps.into()),
-            ("rejected", &|r| r.run.effort.rejected.into()),
+            ("factorisations", &|r| r.run.cost.factorisations.into()),
+            ("steps", &|r| r.run.cost.substeps.into()),
+            ("rejected", &|r| r.run.cost.rejected.into()),
             ("factorisation_s", &|r| r.factorisation.into()),
             ("reached_s", &|r| r.run.reached.into()),
             ("repetitions", &|r| r.run.repetitions.into()),
             ("failure", &|r| r.run.failure.clone().into()),
         ],
     )
-}
-
-/// Wall seconds for a simulated second.
-fn rate(r: &Measured) -> String {
-    r.run.rate().map_or("–".into(), short)
 }
 
 /// The table for people.
@@ -128,7 +109,7 @@ pub(crate) fn table(rows: &[Measured]) -> Table {
             ("mesh", &|(r, _)| r.mesh().into()),
             ("method", &|(r, _)| r.method.as_str().into()),
             ("step (ms)", &|(r, _)| format!("{:.1}", 1e3 * r.step).into()),
-            ("s/s", &|(r, _)| rate(r).into()),
+            ("s/s", &|(r, _)| r.rate().into()),
             (COLUMNS[0], &|(_, c)| c[0].as_str().into()),
             (COLUMNS[1], &|(_, c)| c[1].as_str().into()),
             ("strain", &|(r, _)| format!("{:.0e}", r.run.strain).into()),
@@ -136,11 +117,9 @@ pub(crate) fn table(rows: &[Measured]) -> Table {
             ("largest change", &|(r, _)| {
                 percent(r.run.relative_drift()).into()
             }),
-            ("factorisations", &|(r, _)| {
-                r.run.effort.factorisations.into()
-            }),
-            ("steps", &|(r, _)| r.run.effort.substeps.into()),
-            ("rejected", &|(r, _)| r.run.effort.rejected.into()),
+            ("factorisations", &|(r, _)| r.run.cost.factorisations.into()),
+            ("steps", &|(r, _)| r.run.cost.substeps.into()),
+            ("rejected", &|(r, _)| r.run.cost.rejected.into()),
             ("remark", &|(r, _)| r.remark().into()),
         ],
     )
@@ -163,13 +142,13 @@ pub(crate) fn conclusions(rows: &[Measured]) -> Vec<String> {
         let here = || finished.iter().filter(|r| r.level == level);
         let damped = here()
             .filter(|r| r.method != CONSERVATIVE)
-            .min_by(|a, b| a.run.effort.wall.total_cmp(&b.run.effort.wall));
+            .min_by(|a, b| a.run.cost.wall.total_cmp(&b.run.cost.wall));
         let mut text = match damped {
             Some(r) => format!(
                 "M^{level}: the cheapest damped run is {} at {:.1} ms, {} s/s with strain {:.0e}",
                 r.method,
                 1e3 * r.step,
-                rate(r),
+                r.rate(),
                 r.run.strain
             ),
             None => format!("M^{level}: no damped run came to the end"),
@@ -179,7 +158,7 @@ pub(crate) fn conclusions(rows: &[Measured]) -> Vec<String> {
                 let _ = write!(
                     text,
                     "; the conservative one takes {} s/s and keeps the energy to {:.0e}.",
-                    rate(r),
+                    r.rate(),
                     r.run.relative_drift()
                 );
             }
@@ -187,19 +166,15 @@ pub(crate) fn conclusions(rows: &[Measured]) -> Vec<String> {
         }
         all.push(text);
     }
-    let gains: Vec<String> = finished
-        .iter()
-        .filter(|r| r.run.balance() > GAIN)
-        .map(|r| {
-            format!(
-                "{} on M^{} at {:.1} ms by {}",
-                r.method,
-                r.level,
-                1e3 * r.step,
-                percent(r.run.balance())
-            )
-        })
-        .collect();
+    let gain = |r: &&Measured| {
+        let (method, mesh, step) = (&r.method, r.mesh(), 1e3 * r.step);
+        format!(
+            "{method} on {mesh} at {step:.1} ms by {}",
+            percent(r.run.balance())
+        )
+    };
+    let gains = finished.iter().filter(|r| r.run.balance() > GAIN).map(gain);
+    let gains: Vec<String> = gains.collect();
     if !gains.is_empty() {
         all.push(format!(
             "These runs end with more energy than they started with, as part of the energy released: {}.",
@@ -237,44 +212,34 @@ mod tests {
 
     #[test]
     fn the_coarsest_mesh_hangs() {
-        let row = measure(1, methods()[0].clone(), 1e-4, 1.0).unwrap();
+        let row = measure(Mesh::measured(1).unwrap(), methods()[0].clone(), 1.0).unwrap();
         assert_eq!(row.run.failure, None);
         assert!((row.run.reached - 1.0).abs() < 1e-9);
-        assert!(row.run.strain < 1e-11 && row.run.effort.factorisations > 60);
-        let csv = data(std::slice::from_ref(&row)).csv().unwrap();
-        assert!(
-            String::from_utf8(csv)
-                .unwrap()
-                .contains("M^1,BDF2 (default),")
-        );
+        assert!(row.run.strain < 1e-11 && row.run.cost.factorisations > 60);
+        let csv = String::from_utf8(data(std::slice::from_ref(&row)).csv().unwrap()).unwrap();
+        assert!(csv.contains("M^1,BDF2 (default),"), "{csv}");
         assert!(conclusions(&[row])[1].starts_with("M^1: the cheapest damped run is BDF2"));
     }
 
     #[test]
     fn comparisons_follow_the_numbers() {
-        let mut row = measure(1, methods()[0].clone(), 1e-4, 1.0).unwrap();
-        row.run.effort.wall = 0.6 * row.run.reached;
+        let mut row = measure(Mesh::measured(1).unwrap(), methods()[0].clone(), 1.0).unwrap();
+        row.run.cost.wall = 0.6 * row.run.reached;
         row.factorisation = 0.1 * row.step;
         let mut other = row.clone();
         other.method = CONSERVATIVE.into();
-        other.run.effort.wall *= 3.0;
+        other.run.cost.wall *= 3.0;
         let mut finer = row.clone();
         finer.level = 2;
         let all = [row, other, finer];
         let text = comparisons(&all);
         assert_eq!(text.len(), 2, "one for each mesh");
-        assert!(
-            text[0].contains(
-                "BDF2 (default) at 16.7 ms: 0.60 s/s, 6.0 times the 0.10 s/s of one factorisation"
-            ),
-            "{text:?}"
-        );
-        assert!(
-            text[0].contains(
-                "energy-momentum at 16.7 ms takes 3.0 times as long, 18 times one factorisation"
-            ),
-            "{text:?}"
-        );
+        for part in [
+            "BDF2 (default) at 16.7 ms: 0.60 s/s, 6.0 times the 0.10 s/s of one factorisation",
+            "energy-momentum at 16.7 ms takes 3.0 times as long, 18 times one factorisation",
+        ] {
+            assert!(text[0].contains(part), "{part} is missing in {text:?}");
+        }
         let row = &table(&all).rows[1];
         assert_eq!(row[4..6], [Cell::from("3.0"), Cell::from("18")]);
     }

@@ -4,7 +4,7 @@ use super::problem::Problem;
 use super::reference::Reference;
 use super::scheme::{Fineness, Scheme};
 use crate::interrupt;
-use crate::report::Effort;
+use crate::report::Cost;
 use anyhow::Result;
 use isosheet_dynamics::{Observer, Simulation, StepReport};
 use isosheet_tests::max_difference;
@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// What one run of a method gave.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Point {
     /// Name of the method.
     pub(crate) scheme: String,
@@ -29,7 +29,7 @@ pub(crate) struct Point {
     pub(crate) repetitions: usize,
     /// What the run cost; up to the last checkpoint where it did not come to the end, but for counts other
     /// than those of sub-steps.
-    pub(crate) effort: Effort,
+    pub(crate) cost: Cost,
     /// Errors, of runs that came to the end.
     pub(crate) errors: Option<Errors>,
     /// Errors up to the last checkpoint that was reached, of runs that did not come to the end.
@@ -42,7 +42,7 @@ pub(crate) struct Point {
 }
 
 /// Largest errors over a run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Errors {
     /// Distance of a vertex from the reference at the checkpoints, metres.
     pub(crate) position: f64,
@@ -53,8 +53,9 @@ pub(crate) struct Errors {
 }
 
 /// One pass over the checkpoints.
+#[derive(Default)]
 struct Pass {
-    effort: Effort,
+    cost: Cost,
     errors: Errors,
     failure: Option<String>,
     reached: f64,
@@ -91,10 +92,7 @@ pub(crate) fn point(
         let pass = run(&mut simulation, reference, pieces, patience)?;
         repetitions += 1;
         let stop = pass.failure.is_some();
-        if best
-            .as_ref()
-            .is_none_or(|b| pass.effort.wall < b.effort.wall)
-        {
+        if best.as_ref().is_none_or(|b| pass.cost.wall < b.cost.wall) {
             best = Some(pass);
         }
         if stop || clock.elapsed().as_secs_f64() > 0.1 * patience {
@@ -114,15 +112,8 @@ fn refused(scheme: &Scheme, fineness: f64, failure: String) -> Point {
     Point {
         scheme: scheme.name.clone(),
         fineness,
-        step: 0.0,
-        uniform: false,
-        wall: 0.0,
-        repetitions: 0,
-        effort: Effort::default(),
-        errors: None,
-        partial: None,
-        reached: 0.0,
         failure: Some(failure),
+        ..Point::default()
     }
 }
 
@@ -143,7 +134,7 @@ fn of_pass(
     let finished = pass.failure.is_none();
     let expected = match asked {
         Asked::Steps(n) => n * reference.usable(),
-        Asked::Tolerance(_) => pass.effort.substeps,
+        Asked::Tolerance(_) => pass.cost.substeps,
     };
     // Round-off may leave a rest of a step at every checkpoint.
     let rests = if scheme.steps_itself() {
@@ -152,23 +143,23 @@ fn of_pass(
         0
     };
     let as_asked =
-        (expected..=expected + rests).contains(&pass.effort.substeps) && pass.effort.rejected == 0;
+        (expected..=expected + rests).contains(&pass.cost.substeps) && pass.cost.rejected == 0;
     let partial = !finished && pass.checkpoints > 0 && energy <= BLOWN_UP;
     Point {
         scheme: scheme.name.clone(),
         fineness: asked.value(reference),
         step: match asked.fineness(reference) {
             Fineness::Step(h) if rests > 0 => h,
-            _ => pass.reached / pass.effort.substeps.max(1) as f64,
+            _ => pass.reached / pass.cost.substeps.max(1) as f64,
         },
         uniform: finished && as_asked,
         wall: if pass.reached > 0.0 {
-            pass.effort.wall / pass.reached
+            pass.cost.wall / pass.reached
         } else {
             0.0
         },
         repetitions,
-        effort: pass.effort,
+        cost: pass.cost,
         errors: finished.then_some(pass.errors),
         partial: partial.then_some(pass.errors),
         reached: pass.reached,
@@ -209,24 +200,14 @@ fn run(
     pieces: usize,
     patience: f64,
 ) -> Result<Pass> {
-    let mut pass = Pass {
-        effort: Effort::default(),
-        errors: Errors {
-            position: 0.0,
-            energy: 0.0,
-            strain: 0.0,
-        },
-        failure: None,
-        reached: 0.0,
-        checkpoints: 0,
-    };
+    let mut pass = Pass::default();
     let h = reference.interval() / pieces as f64;
     let clock = Instant::now();
     let mut comparing = 0.0;
     let mut at_last_checkpoint = None;
     for want in reference.positions() {
         let mut watch = |_: &Simulation, report: &StepReport| {
-            pass.effort.add(report);
+            pass.cost.add(report);
             let e = &mut pass.errors;
             e.energy = e.energy.max(report.energy_drift.abs() / reference.energy);
             e.strain = e.strain.max(report.strain);
@@ -249,14 +230,14 @@ fn run(
         pass.errors.position = pass.errors.position.max(error);
         pass.checkpoints += 1;
         let wall = clock.elapsed().as_secs_f64() - comparing;
-        at_last_checkpoint = Some((wall, simulation.state().t, pass.effort.substeps));
+        at_last_checkpoint = Some((wall, simulation.state().t, pass.cost.substeps));
         comparing += before.elapsed().as_secs_f64();
     }
-    pass.effort.wall = clock.elapsed().as_secs_f64() - comparing;
+    pass.cost.wall = clock.elapsed().as_secs_f64() - comparing;
     pass.reached = simulation.state().t;
     // What a run spent on its way from the last checkpoint to its failure is not counted.
     if let (Some(_), Some(before)) = (&pass.failure, at_last_checkpoint) {
-        (pass.effort.wall, pass.reached, pass.effort.substeps) = before;
+        (pass.cost.wall, pass.reached, pass.cost.substeps) = before;
     }
     Ok(pass)
 }
@@ -299,7 +280,7 @@ pub(crate) fn sweep(
         } else {
             failures + 1
         };
-        let refused = point.effort.substeps == 0;
+        let refused = point.cost.substeps == 0;
         // Below the doubt of the reference nothing is learnt.
         let settled = point
             .errors

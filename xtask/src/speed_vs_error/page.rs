@@ -1,12 +1,12 @@
 //! The page: conclusions first, then every part with its plot and tables.
 
 use super::analysis::Measure;
-use super::effort::StudyEffort;
 use super::scheme::DEFAULT;
 use super::solvers::{self, SolverRow};
 use super::study::Study;
 use super::tablecloth::{self, Tablecloth};
 use super::{hanging, verdict};
+use crate::report::Effort;
 use crate::report::{Page, drawing, list, machine};
 use crate::store::{Store, StoreError};
 use crate::timing::Measured;
@@ -36,7 +36,7 @@ pub(super) struct Results {
 }
 
 /// Writes the page.
-pub(super) fn write(store: &Store, results: &Results, effort: StudyEffort) -> Result<()> {
+pub(super) fn write(store: &Store, results: &Results, effort: Effort) -> Result<()> {
     let studies = results.studies.iter().map(|s| problem(store, s));
     let studies = studies.collect::<Result<Vec<Markup>, _>>()?;
     let solvers = match &results.solvers {
@@ -45,7 +45,7 @@ pub(super) fn write(store: &Store, results: &Results, effort: StudyEffort) -> Re
     };
     let body = html! {
         p { (intro()) }
-        @if effort == StudyEffort::Quick {
+        @if effort == Effort::Quick {
             p.note {
                 "Made with " code { "--quick" } ": the runs are far too short to conclude anything from them. They show "
                 "that the command works."

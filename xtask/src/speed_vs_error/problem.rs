@@ -1,14 +1,13 @@
 //! The problems of the study.
 
 use super::barrier::Barrier;
-use crate::timing::{bumped, corner};
+use crate::timing::{Pairs, bumped, corner, on_table};
 use anyhow::{Result, bail};
-use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
+use isosheet_collide::{ContactOptions, Contacts};
 use isosheet_dynamics::contact::ContactError;
 use isosheet_dynamics::{Method, SheetModel, Simulation, SimulationError, State};
 use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId};
 use isosheet_tests::{FreeTriangle, Pendulum};
-use nalgebra::{Isometry3, Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -145,10 +144,13 @@ impl Problem {
             return Ok(None);
         }
         let model = self.without_contact()?;
-        let pose = Isometry3::translation(0.5, 0.5, TABLE_TOP - TABLE[2]);
-        let table = Obstacle::fixed(Shape::Cuboid { half: TABLE }, pose)?;
-        let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?;
-        Ok(Some(contacts.with_body(table, Coefficients::FRICTIONLESS)?))
+        let options = ContactOptions::for_sheet(&model);
+        Ok(Some(on_table(
+            &model,
+            options,
+            (TABLE, TABLE_TOP),
+            Pairs::Table,
+        )?))
     }
 
     /// The mechanical system as methods without a place for contact see it: the barrier is a potential.
@@ -195,7 +197,7 @@ impl Problem {
                 let problem = Pendulum::default();
                 Some(times.iter().map(|t| problem.exact(*t)).collect())
             }
-            Self::Triangle => Some(tumbling(times)),
+            Self::Triangle => Some(FreeTriangle::default().positions(times)),
             Self::Strip(_) | Self::Sheet(_) | Self::Cloth(_) => None,
         }
     }
@@ -228,42 +230,6 @@ fn strip(links: u32) -> Result<Sheet> {
         })
         .collect();
     Ok(Sheet::new(positions, &faces)?)
-}
-
-/// Positions of the free triangle: the attitude R follows from the exact spin w in body axes by `R' = R [w]`.
-fn tumbling(times: &[f64]) -> Vec<Vec<f64>> {
-    let problem = FreeTriangle::default();
-    let body = problem.start().x;
-    // Classical Runge-Kutta; at 2e-4 of a period its error is about (2 pi 2e-4)^4 / 120, below 1e-13.
-    let longest = 2e-4 * problem.period();
-    let rate = |r: &Matrix3<f64>, t: f64| r * Vector3::from(problem.spin_at(t)).cross_matrix();
-    let mut attitude = Matrix3::identity();
-    let mut now = 0.0;
-    let mut states = Vec::new();
-    for &t in times {
-        let steps = ((t - now) / longest).ceil().max(1.0);
-        let h = (t - now) / steps;
-        for k in 0..steps as usize {
-            let at = now + k as f64 * h;
-            let k1 = rate(&attitude, at);
-            let k2 = rate(&(attitude + 0.5 * h * k1), at + 0.5 * h);
-            let k3 = rate(&(attitude + 0.5 * h * k2), at + 0.5 * h);
-            let k4 = rate(&(attitude + h * k3), at + h);
-            attitude += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
-        }
-        now = t;
-        let corners = body.as_chunks::<3>().0;
-        states.push(
-            corners
-                .iter()
-                .flat_map(|c| {
-                    let p = attitude * Vector3::from(*c);
-                    [p.x, p.y, p.z]
-                })
-                .collect(),
-        );
-    }
-    states
 }
 
 impl fmt::Display for Problem {

@@ -92,9 +92,8 @@ struct Track {
 /// Neither the reference nor the time over which it is trusted depends on the clock: the work is counted.
 pub(crate) fn compute(problem: Problem, budget: Work) -> Result<Reference> {
     let duration = problem.duration();
-    let times: Vec<f64> = (1..=CHECKPOINTS)
-        .map(|k| duration * k as f64 / CHECKPOINTS as f64)
-        .collect();
+    let times = (1..=CHECKPOINTS).map(|k| duration * k as f64 / CHECKPOINTS as f64);
+    let times: Vec<f64> = times.collect();
     let (fine, second) = rayon::join(
         || refine(problem, &Scheme::reference(), budget, None),
         || second_opinion(problem, budget),
@@ -120,11 +119,8 @@ pub(crate) fn compute(problem: Problem, budget: Work) -> Result<Reference> {
             (fine.states, second.states, source)
         }
     };
-    let doubts: Vec<f64> = states
-        .iter()
-        .zip(&other)
-        .map(|(a, b)| max_difference(a, b))
-        .collect();
+    let pairs = states.iter().zip(&other);
+    let doubts: Vec<f64> = pairs.map(|(a, b)| max_difference(a, b)).collect();
     let usable = doubts.iter().take_while(|d| **d <= TRUST).count();
     // Without a trusted checkpoint there is nothing to compare with.
     anyhow::ensure!(
@@ -228,9 +224,8 @@ fn second_opinion(problem: Problem, budget: Work) -> Result<(&'static str, Track
 }
 
 fn distance(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
-    a.iter()
-        .zip(b)
-        .fold(0.0, |m: f64, (a, b)| m.max(max_difference(a, b)))
+    let pairs = a.iter().zip(b);
+    pairs.fold(0.0, |m, (a, b)| m.max(max_difference(a, b)))
 }
 
 /// A run and its work; no run if it failed or its work exceeded the limit.

@@ -1,6 +1,7 @@
 //! The methods that are compared.
 
 use super::problem::Problem;
+use crate::methods::{conservative, damped, energy_momentum, rattle_composition};
 use anyhow::Result;
 use isosheet_coords::assignment::Degenerate;
 use isosheet_coords::{
@@ -104,18 +105,12 @@ impl Scheme {
 
     /// The fourth-order composition of RATTLE, by which references are computed.
     pub(crate) fn reference() -> Self {
-        Self::free(
-            "RATTLE composition",
-            Method::RattleComposition(Default::default()),
-        )
+        Self::free("RATTLE composition", rattle_composition())
     }
 
     /// The energy-momentum method, the second opinion on references where charts end.
     pub(crate) fn energy_momentum() -> Self {
-        Self::free(
-            "energy-momentum",
-            Method::EnergyMomentum(Default::default()),
-        )
+        Self::free("energy-momentum", energy_momentum())
     }
 
     /// Runge-Kutta in a chart, the second opinion on references.
@@ -129,39 +124,22 @@ impl Scheme {
 
     /// All methods: chart-free ones, the published scheme, and every method in every chart with every solver.
     pub(crate) fn all() -> Vec<Self> {
-        let mut all = vec![
-            Self::free("implicit Euler", Method::ImplicitEuler(Default::default())),
-            Self::free(DEFAULT, Method::default()),
-            Self::free("projection", Method::Projection(Default::default())),
-            Self::energy_momentum(),
-            Self::free("RATTLE", Method::Rattle(Default::default())),
-            Self::reference(),
+        let [_, euler, projection] = damped();
+        let mut all: Vec<Self> = [euler, (DEFAULT, Method::default()), projection]
+            .into_iter()
+            .chain(conservative())
+            .map(|(name, method)| Self::free(name, method))
+            .collect();
+        let creases = "published scheme, free creases";
+        let fixed = "published scheme, free creases, fixed steps";
+        all.extend([
             paper("published scheme", Degenerate::Carry, Stepping::Adaptive),
-            paper(
-                "published scheme, free creases",
-                Degenerate::Assign,
-                Stepping::Adaptive,
-            ),
-            paper(
-                "published scheme, free creases, fixed steps",
-                Degenerate::Assign,
-                Stepping::Fixed,
-            ),
-        ];
-        for kind in [ChartKind::Cartesian, ChartKind::Front] {
-            for method in [
-                ChartMethod::RungeKutta4,
-                ChartMethod::SymplecticEuler,
-                ChartMethod::ForwardEuler,
-            ] {
-                for solver in [
-                    MassSolverKind::Saddle,
-                    MassSolverKind::Cholesky,
-                    MassSolverKind::DenseLu,
-                    MassSolverKind::Cramer,
-                ] {
-                    all.push(chart(kind, method, solver));
-                }
+            paper(creases, Degenerate::Assign, Stepping::Adaptive),
+            paper(fixed, Degenerate::Assign, Stepping::Fixed),
+        ]);
+        for (kind, _) in CHARTS {
+            for (method, _) in METHODS {
+                all.extend(SOLVERS.map(|(solver, _)| chart(kind, method, solver)));
             }
         }
         all
@@ -265,14 +243,11 @@ fn build(
     degenerate: Degenerate,
     x: &[f64],
 ) -> Result<Result<Box<dyn Chart>, StartError>> {
-    let sheet = problem.sheet()?;
-    let pins = problem.pins();
-    Ok(match kind {
+    let (sheet, pins) = (problem.sheet()?, problem.pins());
+    let chart: Result<Box<dyn Chart>, ChartError> = match kind {
         ChartKind::Cartesian => {
             let system = RodSystem::new(&sheet, &pins)?;
-            CartesianChart::new(system, Choice::Auto, x)
-                .map(|c| Box::new(c) as Box<dyn Chart>)
-                .map_err(Into::into)
+            CartesianChart::new(system, Choice::Auto, x).map(|c| Box::new(c) as _)
         }
         ChartKind::Front => {
             let options = AssignmentOptions {
@@ -280,11 +255,10 @@ fn build(
                 degenerate,
                 ..Default::default()
             };
-            FrontChart::new(&sheet, &options, x)
-                .map(|c| Box::new(c) as Box<dyn Chart>)
-                .map_err(Into::into)
+            FrontChart::new(&sheet, &options, x).map(|c| Box::new(c) as _)
         }
-    })
+    };
+    Ok(chart.map_err(Into::into))
 }
 
 fn paper(name: &str, degenerate: Degenerate, stepping: Stepping) -> Scheme {
@@ -297,22 +271,32 @@ fn paper(name: &str, degenerate: Degenerate, stepping: Stepping) -> Scheme {
     }
 }
 
+/// The charts, methods and mass-matrix solvers with their names.
+const CHARTS: [(ChartKind, &str); 2] = [
+    (ChartKind::Cartesian, "Cartesian chart"),
+    (ChartKind::Front, "front chart"),
+];
+const METHODS: [(ChartMethod, &str); 3] = [
+    (ChartMethod::RungeKutta4, "Runge-Kutta 4"),
+    (ChartMethod::SymplecticEuler, "symplectic Euler"),
+    (ChartMethod::ForwardEuler, "forward Euler"),
+];
+const SOLVERS: [(MassSolverKind, &str); 4] = [
+    (MassSolverKind::Saddle, "saddle"),
+    (MassSolverKind::Cholesky, "Cholesky"),
+    (MassSolverKind::DenseLu, "dense LU"),
+    (MassSolverKind::Cramer, "Cramer"),
+];
+
+/// The name of something that has one.
+fn named<T: PartialEq>(all: &[(T, &'static str)], one: &T) -> &'static str {
+    let found = all.iter().find(|(other, _)| other == one);
+    found.map_or("", |(_, name)| name)
+}
+
 fn chart(chart: ChartKind, method: ChartMethod, solver: MassSolverKind) -> Scheme {
-    let steps = match method {
-        ChartMethod::RungeKutta4 => "Runge-Kutta 4",
-        ChartMethod::SymplecticEuler => "symplectic Euler",
-        ChartMethod::ForwardEuler => "forward Euler",
-    };
-    let coordinates = match chart {
-        ChartKind::Front => "front chart",
-        ChartKind::Cartesian => "Cartesian chart",
-    };
-    let solve = match solver {
-        MassSolverKind::Saddle => "saddle",
-        MassSolverKind::Cholesky => "Cholesky",
-        MassSolverKind::DenseLu => "dense LU",
-        MassSolverKind::Cramer => "Cramer",
-    };
+    let (steps, coordinates) = (named(&METHODS, &method), named(&CHARTS, &chart));
+    let solve = named(&SOLVERS, &solver);
     Scheme {
         name: format!("{steps}, {coordinates}, {solve}"),
         kind: Kind::Chart {

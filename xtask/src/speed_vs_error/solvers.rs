@@ -7,10 +7,10 @@ mod row;
 pub(crate) use report::{conclusions, data, plot, table};
 pub(crate) use row::SolverRow;
 
-use super::effort::StudyEffort;
-use super::matrices::{Body, STIFFNESS, Sparse};
 use crate::interrupt;
 use crate::progress::Progress;
+use crate::report::Effort;
+use crate::timing::{Body, STIFFNESS, Sparse};
 use anyhow::Result;
 use elimination::elimination;
 use isosheet_coords::linalg::{LinalgError, SparseLdlt, SparseLlt, SparseLu, norm_inf};
@@ -31,7 +31,7 @@ pub(crate) const ABOUT: &str = "Free, bent sheets: two triangles (n = 7), then t
     Two at once: how much more is done when two cores factorise one matrix each.";
 
 /// Runs all solvers on all sizes.
-pub(crate) fn make(effort: StudyEffort) -> Result<Vec<SolverRow>> {
+pub(crate) fn make(effort: Effort) -> Result<Vec<SolverRow>> {
     let bar = Progress::start("linear solvers", effort.solver_level() as usize + 2);
     let limit = effort.solver();
     let mut rows: Vec<SolverRow> = Vec::new();
@@ -118,18 +118,8 @@ impl<'a> Task<'a> {
 
     fn row(&self, solver: &str, order: usize) -> SolverRow {
         SolverRow {
-            solver: solver.into(),
-            mesh: self.body.name.clone(),
-            n: self.body.system.dof(),
             order,
-            form: 0.0,
-            first: 0.0,
-            again: 0.0,
-            solve: 0.0,
-            backward: None,
-            velocity: None,
-            two: None,
-            failure: None,
+            ..SolverRow::new(solver, &self.body.name, self.body.system.dof())
         }
     }
 
@@ -385,7 +375,7 @@ mod tests {
     /// All solvers give the same velocities, whatever system they solve.
     #[test]
     fn the_solvers_agree() {
-        let rows = make(StudyEffort::Quick).unwrap();
+        let rows = make(Effort::Quick).unwrap();
         for solver in SOLVERS {
             let here: Vec<&SolverRow> = rows.iter().filter(|r| r.solver == solver).collect();
             assert!(here.len() >= 2, "{solver} ran on {} sizes", here.len());
@@ -399,7 +389,7 @@ mod tests {
         }
         assert_eq!(rows[0].n, 7);
         assert!(conclusions(&rows).len() >= 5);
-        assert!(plot(&rows).to_svg("t").unwrap().contains("dense Cholesky"));
+        assert!(plot(&rows).to_svg("t").contains("dense Cholesky"));
         let csv = String::from_utf8(data(&rows).csv().unwrap()).unwrap();
         assert!(!csv.contains("inf"));
     }

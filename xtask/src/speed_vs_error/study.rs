@@ -1,14 +1,14 @@
 //! The study of one problem: all methods, all steps; its table, its plot, its words.
 
 use super::analysis::{Measure, advice, cheapest, first_clause, on_front, order};
-use super::effort::StudyEffort;
 use super::measure::{Point, sweep};
 use super::problem::{CHECKPOINTS, Problem};
 use super::reference::{self, Reference};
 use super::scheme::{DEFAULT, ROBUST, Scheme, is_paper};
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
+use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Marker, Series, palette, row};
 use crate::progress::Progress;
-use crate::report::{Cell, Chart, Table, rounded, short};
+use crate::report::Effort;
+use crate::report::{Cell, Table, rounded, short};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
@@ -22,7 +22,7 @@ pub(crate) struct Study {
 }
 
 /// Runs all methods on a problem.
-pub(crate) fn make(problem: Problem, effort: StudyEffort) -> Result<Study> {
+pub(crate) fn make(problem: Problem, effort: Effort) -> Result<Study> {
     let schemes = Scheme::all();
     let bar = Progress::start(problem.to_string(), schemes.len() + 1);
     let reference = reference::compute(problem, effort.reference(problem))?;
@@ -64,9 +64,9 @@ impl Study {
                 ("position_error_m", &|p| error(p, Measure::Position)),
                 ("relative_energy_error", &|p| error(p, Measure::Energy)),
                 ("strain", &|p| error(p, Measure::Strain)),
-                ("steps", &|p| p.effort.substeps.into()),
-                ("rejected", &|p| p.effort.rejected.into()),
-                ("factorisations", &|p| p.effort.factorisations.into()),
+                ("steps", &|p| p.cost.substeps.into()),
+                ("rejected", &|p| p.cost.rejected.into()),
+                ("factorisations", &|p| p.cost.factorisations.into()),
                 ("repetitions", &|p| p.repetitions.into()),
                 ("failure", &|p| p.failure.clone().into()),
             ],
@@ -264,80 +264,67 @@ impl Study {
     /// Three log-log panels: time against each error.
     pub(crate) fn plot(&self) -> Drawing {
         let drawn = self.drawn();
-        let finished = || self.points.iter().filter(|p| p.errors.is_some());
+        let walls = || self.points.iter().filter_map(|p| p.errors.map(|_| p.wall));
         let error = |measure: Measure, p: &Point| Some(measure.of(&p.errors?).max(CLIP));
         let panel = |measure: Measure| {
-            let errors = drawn
-                .iter()
-                .flat_map(|(name, ..)| self.of(name))
-                .filter_map(|p| Some(error(measure, p)?.min(LARGEST)));
-            let series = drawn.iter().map(|(name, colour, marker, line)| Series {
-                name: (*name).to_owned(),
-                points: self
+            let points = |name: &str| -> Vec<[f64; 2]> {
+                let of = self
                     .of(name)
-                    .filter_map(|p| Some([p.wall, error(measure, p)?]))
-                    .collect(),
-                colour: *colour,
-                marker: *marker,
-                line: *line,
+                    .filter_map(|p| Some([p.wall, error(measure, p)?]));
+                of.collect()
+            };
+            let all = drawn.iter().flat_map(|look| points(&look.name));
+            let errors = all.map(|p| p[1].min(LARGEST)).collect::<Vec<_>>();
+            let series = drawn.iter().map(|look| Series {
+                points: points(&look.name),
+                ..look.clone()
             });
             let (label, legend) = match measure {
                 Measure::Position => ("position error (m)", Legend::None),
                 Measure::Energy => ("energy error / largest kinetic energy", Legend::None),
                 Measure::Strain => ("largest edge strain", Legend::Right),
             };
-            Chart {
-                legend,
-                ..Chart::new(
-                    Axis::holding("wall time / simulated time", finished().map(|p| p.wall)),
-                    Axis::holding(label, errors),
-                    [150.0, 160.0],
-                    series.collect(),
-                )
-            }
-            .draw()
+            let x = Axis::holding("wall time / simulated time", walls());
+            let y = Axis::holding(label, errors);
+            let chart = Chart::new(x, y, [150.0, 160.0], series.collect());
+            chart.with_legend(legend).draw()
         };
         row(&Measure::ALL.map(panel), 18.0)
     }
 
-    /// The methods that are drawn, and how: those in charts in one chart with one solver only.
-    fn drawn(&self) -> Vec<(&str, Colour, Option<Marker>, Line)> {
-        let mut drawn: Vec<(&str, Colour, Option<Marker>, Line)> = [
+    /// How the methods are drawn that are: of those in charts, those in one chart with one solver only.
+    fn drawn(&self) -> Vec<Series> {
+        let look = |(name, colour, marker): (&str, Colour, Marker)| {
+            Series::line(name, colour, Vec::new()).marked(marker)
+        };
+        let free = [
             ("implicit Euler", palette::SKY, Marker::Disc),
             (DEFAULT, palette::BLUE, Marker::Disc),
             ("projection", palette::GREEN, Marker::Square),
             ("energy-momentum", palette::ORANGE, Marker::Triangle),
             ("RATTLE", palette::VERMILION, Marker::Diamond),
             ("RATTLE composition", palette::PURPLE, Marker::Diamond),
-        ]
-        .into_iter()
-        .map(|(name, colour, marker)| (name, colour, Some(marker), Line::Solid))
-        .collect();
+        ];
+        let mut drawn: Vec<Series> = free.map(look).to_vec();
         for name in self.names() {
-            if is_paper(name) {
-                let colour = if name.ends_with("creases") {
-                    palette::GREY
-                } else {
-                    palette::BLACK
-                };
-                let marker = if name.ends_with("fixed steps") {
-                    Marker::Diamond
-                } else {
-                    Marker::Square
-                };
-                drawn.push((name, colour, Some(marker), Line::Dashed));
-            } else if name.ends_with("Cartesian chart, saddle") {
-                let (colour, marker) = if name.starts_with("Runge") {
-                    (palette::INK, Marker::Triangle)
-                } else if name.starts_with("symplectic") {
-                    (palette::GREY, Marker::Disc)
-                } else {
-                    (palette::GREY, Marker::Diamond)
-                };
-                drawn.push((name, colour, Some(marker), Line::Dashed));
-            }
+            let (colour, marker) = if name.ends_with("fixed steps") {
+                (palette::BLACK, Marker::Diamond)
+            } else if name.ends_with("free creases") {
+                (palette::GREY, Marker::Square)
+            } else if is_paper(name) {
+                (palette::BLACK, Marker::Square)
+            } else if !name.ends_with("Cartesian chart, saddle") {
+                continue;
+            } else if name.starts_with("Runge") {
+                (palette::INK, Marker::Triangle)
+            } else if name.starts_with("symplectic") {
+                (palette::GREY, Marker::Disc)
+            } else {
+                (palette::GREY, Marker::Diamond)
+            };
+            drawn.push(look((name, colour, marker)).dashed());
         }
-        drawn.retain(|(name, ..)| self.of(name).any(|p| p.errors.is_some()));
+        drawn.retain(|look| self.of(&look.name).any(|p| p.errors.is_some()));
         drawn
     }
 
@@ -385,12 +372,12 @@ mod tests {
 
     #[test]
     fn a_quick_study_of_the_pendulum_holds_together() {
-        let study = make(Problem::Pendulum, StudyEffort::Quick).unwrap();
+        let study = make(Problem::Pendulum, Effort::Quick).unwrap();
         let csv = String::from_utf8(study.data().csv().unwrap()).unwrap();
         assert_eq!(csv.lines().count(), 1 + study.points.len());
         assert!(csv.contains("pendulum,BDF2 (default),"), "{csv}");
         assert!(!csv.contains(",NaN") && !csv.contains(",inf"), "{csv}");
-        let svg = study.plot().to_svg("t").unwrap();
+        let svg = study.plot().to_svg("t");
         assert!(svg.contains("RATTLE composition"));
         assert_eq!(study.table().rows.len(), Scheme::all().len());
         assert_eq!(study.solver_table().rows.len(), 6);

@@ -2,13 +2,11 @@
 
 mod penetration;
 
-use super::effort::StudyEffort;
 use super::scheme::DEFAULT;
+use crate::methods::{Named, implicit_euler};
 use crate::progress::Progress;
-use crate::report::{Table, percent, rounded, short};
-use crate::timing::{
-    self, BUMP, COLUMNS, Entry, Measured, Pairs, STEP, Work, bumped, factorisation_time, repeated,
-};
+use crate::report::{Effort, Table, percent, rounded, short};
+use crate::timing::{self, BUMP, COLUMNS, Entry, Measured, Mesh, Pairs, STEP, Timed, Work, bumped};
 use anyhow::Result;
 use isosheet_dynamics::{Method, Simulation, StepReport};
 use penetration::{Checker, depth};
@@ -36,9 +34,13 @@ pub(crate) struct Tablecloth {
 }
 
 impl Tablecloth {
+    fn run(&self) -> &Timed {
+        &self.measured.run
+    }
+
     /// Part of the wall time that the factorisations take, if each costs as much as without contact.
     fn factorising(&self) -> f64 {
-        let effort = &self.measured.run.effort;
+        let effort = &self.measured.run.cost;
         self.measured.factorisation * effort.factorisations as f64 / effort.wall
     }
 
@@ -53,24 +55,23 @@ impl Tablecloth {
 }
 
 /// The methods that take contact.
-fn methods() -> [(&'static str, Method); 2] {
+fn methods() -> [Named; 2] {
     [
         (DEFAULT, Method::default()),
-        ("implicit Euler", Method::ImplicitEuler(Default::default())),
+        ("implicit Euler", implicit_euler()),
     ]
 }
 
 /// Runs the work on all meshes.
-pub(crate) fn make(effort: StudyEffort) -> Result<Vec<Tablecloth>> {
+pub(crate) fn make(effort: Effort) -> Result<Vec<Tablecloth>> {
     let levels = effort.tablecloth_levels();
     let bar = Progress::start("tablecloth", 4 * levels.clone().count());
     let mut rows = Vec::new();
     for level in levels {
-        let factorisation = factorisation_time(&bumped(level, BUMP)?)?;
+        let mesh = Mesh::measured(level)?;
         for pairs in [Pairs::Table, Pairs::TableAndItself] {
             for method in methods() {
-                let row = measure(level, pairs, method, [factorisation, effort.tablecloth()])?;
-                rows.push(row);
+                rows.push(measure(mesh, pairs, method, effort.tablecloth())?);
                 bar.step();
             }
         }
@@ -79,13 +80,8 @@ pub(crate) fn make(effort: StudyEffort) -> Result<Vec<Tablecloth>> {
     Ok(rows)
 }
 
-fn measure(
-    level: u32,
-    pairs: Pairs,
-    (name, method): (&str, Method),
-    [factorisation, patience]: [f64; 2],
-) -> Result<Tablecloth> {
-    let checker = Checker::new(&bumped(level, BUMP)?)?;
+fn measure(mesh: Mesh, pairs: Pairs, method: Named, patience: f64) -> Result<Tablecloth> {
+    let checker = Checker::new(&bumped(mesh.level, BUMP)?)?;
     let (mut count, mut deepest, mut crossings) = (0_usize, 0.0_f64, 0);
     let mut check = |simulation: &Simulation, _: &StepReport| {
         count += 1;
@@ -95,19 +91,11 @@ fn measure(
             crossings += checker.crossings(x, pairs);
         }
     };
-    let work = Work::Tablecloth(pairs);
-    let start = || work.start(level, BUMP, method.clone());
-    let limits = [patience, 0.1 * patience];
-    let run = repeated(&start, [work.duration(), STEP], limits, &mut check)?;
+    let (work, limits) = (Work::Tablecloth(pairs), [patience, 0.1 * patience]);
+    let measured = Measured::of(work, mesh, method, (1, STEP), limits, &mut check)?;
     Ok(Tablecloth {
         pairs,
-        measured: Measured {
-            level,
-            method: name.into(),
-            step: STEP,
-            factorisation,
-            run,
-        },
+        measured,
         depth: deepest,
         crossings,
     })
@@ -128,10 +116,9 @@ fn gap(r: &Tablecloth) -> String {
 
 /// All runs, for programs.
 pub(crate) fn data(rows: &[Tablecloth]) -> Table {
-    let of = |r: &Tablecloth| (r.clone(), r.measured.clone(), r.measured.run.clone());
     Table::of(
         "",
-        rows.iter().map(of),
+        rows.iter().map(|r| (r, &r.measured, &r.measured.run)),
         &[
             ("mesh", &|(_, m, _)| m.mesh().into()),
             ("contact", &|(r, ..)| pairs(r).into()),
@@ -143,10 +130,10 @@ pub(crate) fn data(rows: &[Tablecloth]) -> Table {
             ("smallest_gap_m", &|(.., r)| r.gap.into()),
             ("depth_m", &|(r, ..)| r.depth.into()),
             ("crossings", &|(r, ..)| r.crossings.into()),
-            ("iterations", &|(.., r)| r.effort.iterations.into()),
-            ("factorisations", &|(.., r)| r.effort.factorisations.into()),
-            ("steps", &|(.., r)| r.effort.substeps.into()),
-            ("rejected", &|(.., r)| r.effort.rejected.into()),
+            ("iterations", &|(.., r)| r.cost.iterations.into()),
+            ("factorisations", &|(.., r)| r.cost.factorisations.into()),
+            ("steps", &|(.., r)| r.cost.substeps.into()),
+            ("rejected", &|(.., r)| r.cost.rejected.into()),
             ("factorisation_s", &|(_, m, _)| m.factorisation.into()),
             ("reached_s", &|(.., r)| r.reached.into()),
             ("repetitions", &|(.., r)| r.repetitions.into()),
@@ -159,8 +146,7 @@ pub(crate) fn data(rows: &[Tablecloth]) -> Table {
 pub(crate) fn table(rows: &[Tablecloth]) -> Table {
     let rows = scenes(rows).flat_map(|scene| {
         let entries = entries(scene);
-        let with =
-            move |r: &Tablecloth| (r.clone(), r.measured.run.clone(), r.entry().cells(&entries));
+        let with = move |r: &Tablecloth| (r.clone(), r.entry().cells(&entries));
         scene.iter().map(with)
     });
     Table::of(
@@ -169,28 +155,24 @@ pub(crate) fn table(rows: &[Tablecloth]) -> Table {
          energy released (negative: lost), smallest gap and deepest vertex in the table",
         rows,
         &[
-            ("mesh", &|(r, ..)| r.measured.mesh().into()),
-            ("contact", &|(r, ..)| pairs(r).into()),
-            ("method", &|(r, ..)| r.measured.method.as_str().into()),
-            ("s/s", &|(_, run, _)| {
-                run.rate().map_or("–".into(), short).into()
+            ("mesh", &|(r, _)| r.measured.mesh().into()),
+            ("contact", &|(r, _)| pairs(r).into()),
+            ("method", &|(r, _)| r.measured.method.as_str().into()),
+            ("s/s", &|(r, _)| r.measured.rate().into()),
+            (COLUMNS[0], &|(_, c)| c[0].as_str().into()),
+            (COLUMNS[1], &|(_, c)| c[1].as_str().into()),
+            ("strain", &|(r, _)| format!("{:.0e}", r.run().strain).into()),
+            ("energy", &|(r, _)| percent(r.run().balance()).into()),
+            ("gap (µm)", &|(r, _)| gap(r).into()),
+            ("depth (µm)", &|(r, _)| short(1e6 * r.depth).into()),
+            ("crossings", &|(r, _)| r.crossings.into()),
+            ("iterations", &|(r, _)| r.run().cost.iterations.into()),
+            ("factorisations", &|(r, _)| {
+                r.run().cost.factorisations.into()
             }),
-            (COLUMNS[0], &|(.., c)| c[0].as_str().into()),
-            (COLUMNS[1], &|(.., c)| c[1].as_str().into()),
-            ("strain", &|(_, run, _)| {
-                format!("{:.0e}", run.strain).into()
-            }),
-            ("energy", &|(_, run, _)| percent(run.balance()).into()),
-            ("gap (µm)", &|(r, ..)| gap(r).into()),
-            ("depth (µm)", &|(r, ..)| short(1e6 * r.depth).into()),
-            ("crossings", &|(r, ..)| r.crossings.into()),
-            ("iterations", &|(_, run, _)| run.effort.iterations.into()),
-            ("factorisations", &|(_, run, _)| {
-                run.effort.factorisations.into()
-            }),
-            ("steps", &|(_, run, _)| run.effort.substeps.into()),
-            ("rejected", &|(_, run, _)| run.effort.rejected.into()),
-            ("remark", &|(r, ..)| r.measured.remark().into()),
+            ("steps", &|(r, _)| r.run().cost.substeps.into()),
+            ("rejected", &|(r, _)| r.run().cost.rejected.into()),
+            ("remark", &|(r, _)| r.measured.remark().into()),
         ],
     )
 }
@@ -198,12 +180,9 @@ pub(crate) fn table(rows: &[Tablecloth]) -> Table {
 /// What the rows say.
 pub(crate) fn conclusions(rows: &[Tablecloth]) -> Vec<String> {
     let mut all = Vec::new();
-    let finished = rows.iter().filter(|r| r.measured.run.ended()).count();
+    let finished = rows.iter().filter(|r| r.run().ended()).count();
     let clean = rows.iter().filter(|r| r.clean()).count();
-    let strain = rows
-        .iter()
-        .map(|r| r.measured.run.strain)
-        .fold(0.0, f64::max);
+    let strain = rows.iter().map(|r| r.run().strain).fold(0.0, f64::max);
     all.push(format!(
         "{finished} of {} runs of the tablecloth came to the end; in {clean} of {} nothing penetrates; the largest strain is {strain:.0e}.",
         rows.len(),
@@ -241,7 +220,7 @@ fn entries(scene: &[Tablecloth]) -> Vec<Entry> {
 
 /// Where the time of a run goes.
 fn effort(r: &Tablecloth) -> String {
-    let (run, effort) = (&r.measured.run, &r.measured.run.effort);
+    let (run, effort) = (&r.measured.run, &r.measured.run.cost);
     let mut text = format!("{}, {}", r.measured.mesh(), pairs(r));
     if let Some(failure) = &run.failure {
         let _ = write!(
@@ -275,51 +254,46 @@ mod tests {
 
     #[test]
     fn a_coarse_cloth_comes_to_the_end_without_penetration() {
-        let row = measure(1, Pairs::TableAndItself, methods()[0].clone(), [1e-4, 4.0]).unwrap();
+        let (mesh, method) = (Mesh::measured(1).unwrap(), methods()[0].clone());
+        let row = measure(mesh, Pairs::TableAndItself, method, 4.0).unwrap();
         let run = &row.measured.run;
         assert_eq!(run.failure, None);
         assert!((run.reached - 1.5).abs() < 1e-9 && run.gap.is_some());
         assert!(run.strain < 1e-10 && row.clean(), "{row:?}");
-        assert!(run.effort.factorisations >= run.effort.substeps, "{row:?}");
+        assert!(run.cost.factorisations >= run.cost.substeps, "{row:?}");
     }
 
     #[test]
     fn words_follow_the_numbers() {
-        let mut row = measure(1, Pairs::Table, methods()[0].clone(), [3e-3, 0.0]).unwrap();
+        let mut mesh = Mesh::measured(1).unwrap();
+        mesh.factorisation = 3e-3;
+        let mut row = measure(mesh, Pairs::Table, methods()[0].clone(), 0.0).unwrap();
         let run = &mut row.measured.run;
         (run.failure, run.reached, run.gap) = (None, 1.5, Some(1e-4));
-        (run.effort.wall, run.effort.factorisations) = (0.75, 100);
+        (run.cost.wall, run.cost.factorisations) = (0.75, 100);
         let mut faster = row.clone();
         faster.measured.method = "implicit Euler".into();
-        faster.measured.run.effort.wall = 0.375;
+        faster.measured.run.cost.wall = 0.375;
         let mut rows = [row, faster];
         let text = conclusions(&rows).join(" ");
-        assert!(
-            text.contains(
-                "implicit Euler: 0.25 s/s, 1.4 times the 0.18 s/s of one factorisation a step"
-            ),
-            "{text}"
-        );
-        assert!(
-            text.contains(
-                "BDF2 (default) takes 2.0 times as long, 2.8 times one factorisation a step"
-            ),
-            "{text}"
-        );
-        assert!(
-            text.contains("which makes 40 % of the time. Smallest gap 100 µm"),
-            "{text}"
-        );
-        assert!(text.contains("in 2 of 2 nothing penetrates"), "{text}");
+        for part in [
+            "implicit Euler: 0.25 s/s, 1.4 times the 0.18 s/s of one factorisation a step",
+            "BDF2 (default) takes 2.0 times as long, 2.8 times one factorisation a step",
+            "which makes 40 % of the time. Smallest gap 100 µm",
+            "in 2 of 2 nothing penetrates",
+        ] {
+            assert!(text.contains(part), "{part} is missing in {text}");
+        }
         let cells = &table(&rows).rows[0];
         assert_eq!(cells[4..6], [Cell::from("2.0"), Cell::from("2.8")]);
         rows[0].depth = 1e-9;
         rows[1].measured.run.failure = Some("lost".into());
         let text = conclusions(&rows).join(" ");
-        assert!(text.contains("in 1 of 2 nothing penetrates"), "{text}");
-        assert!(
-            text.contains("implicit Euler did not come to the end"),
-            "{text}"
-        );
+        for part in [
+            "in 1 of 2 nothing penetrates",
+            "implicit Euler did not come to the end",
+        ] {
+            assert!(text.contains(part), "{part} is missing in {text}");
+        }
     }
 }

@@ -24,7 +24,7 @@ fn matches(study: &Study) -> Vec<Match<'_>> {
             let theirs = paper
                 .errors
                 .or(paper.partial)
-                .filter(|_| paper.effort.substeps >= FEWEST)?;
+                .filter(|_| paper.cost.substeps >= FEWEST)?;
             let ours = study
                 .points
                 .iter()
@@ -142,19 +142,19 @@ pub(crate) fn concerns(problem: Problem) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::speed_vs_error::effort::StudyEffort;
+    use crate::report::Effort;
     use crate::speed_vs_error::study;
 
     /// Made-up points in a real study: the words follow the numbers.
     #[test]
     fn words_follow_the_numbers() {
-        let mut study = study::make(Problem::Triangle, StudyEffort::Quick).unwrap();
+        let mut study = study::make(Problem::Triangle, Effort::Quick).unwrap();
         let mut one = study.points[0].clone();
         one.failure = None;
         let mut at = |scheme: &str, wall, energy, strain| {
             one.scheme = scheme.into();
             one.wall = wall;
-            one.effort.substeps = 100;
+            one.cost.substeps = 100;
             one.errors = Some(Errors {
                 position: 1.0,
                 energy,

@@ -1,6 +1,6 @@
 //! Units in the making.
 
-use super::error::StoreError;
+use super::error::{StoreError, writing};
 use std::fs;
 use std::path::PathBuf;
 use tempfile::TempDir;
@@ -17,14 +17,11 @@ impl Draft {
     /// Adds a file, given relative to the output folder.
     pub(crate) fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let target = self.folder.path().join(path);
-        let failed = |source| StoreError::Write {
-            path: target.clone(),
-            source,
-        };
+        let failed = writing(&target);
         if let Some(parent) = target.parent() {
-            fs::create_dir_all(parent).map_err(failed)?;
+            fs::create_dir_all(parent).map_err(&failed)?;
         }
-        fs::write(&target, bytes).map_err(failed)?;
+        fs::write(&target, bytes).map_err(&failed)?;
         self.entries.push(path.to_owned());
         Ok(())
     }
@@ -32,10 +29,7 @@ impl Draft {
     /// Adds a folder, given relative to the output folder, and returns where to fill it.
     pub(crate) fn folder(&mut self, path: &str) -> Result<PathBuf, StoreError> {
         let target = self.folder.path().join(path);
-        fs::create_dir_all(&target).map_err(|source| StoreError::Write {
-            path: target.clone(),
-            source,
-        })?;
+        fs::create_dir_all(&target).map_err(writing(&target))?;
         self.entries.push(path.to_owned());
         Ok(target)
     }

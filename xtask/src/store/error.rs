@@ -1,6 +1,6 @@
 //! Why the output folder cannot be used.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why the output folder cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -26,4 +26,22 @@ pub(crate) enum StoreError {
         path: PathBuf,
         source: std::io::Error,
     },
+}
+
+/// The error of a file that cannot be written.
+pub(super) fn writing(path: &Path) -> impl Fn(std::io::Error) -> StoreError {
+    let path = path.to_owned();
+    move |source| StoreError::Write {
+        path: path.clone(),
+        source,
+    }
+}
+
+/// The error of a file or folder that cannot be read.
+pub(super) fn reading(path: &Path) -> impl Fn(std::io::Error) -> StoreError {
+    let path = path.to_owned();
+    move |source| StoreError::Read {
+        path: path.clone(),
+        source,
+    }
 }

@@ -1,14 +1,11 @@
 //! What the factorisation of the matrix of a step costs.
 
+use super::matrices::{Body, Sparse};
 use anyhow::Result;
-use isosheet_coords::linalg::{Fill, Ordering, Pattern, SparseLlt, elimination_order};
-use isosheet_dynamics::SheetModel;
-use isosheet_mesh::{MassKind, Sheet};
+use isosheet_coords::linalg::{Fill, Ordering, SparseLlt, elimination_order};
+use isosheet_mesh::Sheet;
 use std::num::NonZeroUsize;
 use std::time::Instant;
-
-/// Stiffness of the rods relative to the masses in the matrices that the orders are compared on.
-const STIFFNESS: f64 = 1e4;
 
 const TWO: NonZeroUsize = NonZeroUsize::new(2).expect("two");
 
@@ -31,7 +28,9 @@ pub(crate) struct OrderRow {
 
 /// Measures an elimination order on the matrix `M + r G^T G` of the whole sheet.
 pub(crate) fn order(sheet: &Sheet, ordering: Ordering) -> Result<OrderRow> {
-    let (pattern, values) = stiff_sheet(sheet)?;
+    let Sparse {
+        pattern, values, ..
+    } = Body::new(String::new(), sheet.clone())?.primal();
     let clock = Instant::now();
     let order = elimination_order(&pattern, 3, ordering);
     let found = clock.elapsed().as_secs_f64();
@@ -78,39 +77,4 @@ pub(crate) fn factorisation_time(sheet: &Sheet) -> Result<f64> {
     let degree = order(sheet, Ordering::MinimumDegree)?;
     let dissection = order(sheet, Ordering::NestedDissection)?;
     Ok(degree.numeric.min(dissection.numeric))
-}
-
-/// Pattern and values of `M + r G^T G`, lower triangle.
-fn stiff_sheet(sheet: &Sheet) -> Result<(Pattern, Vec<f64>)> {
-    let model = SheetModel::new(sheet, 0.1, MassKind::Lumped)?;
-    let x = sheet.positions();
-    let (mut entries, mut terms) = (Vec::new(), Vec::new());
-    for (v, m) in model.mass().vertex.iter().enumerate() {
-        for r in 0..3 {
-            for c in 0..=r {
-                entries.push((3 * v as u32 + r, 3 * v as u32 + c));
-                terms.push(if r == c { *m } else { 0.0 });
-            }
-        }
-    }
-    for (&[a, b], l) in model.rods().edges().iter().zip(model.rods().lengths()) {
-        let mass = &model.mass().vertex;
-        let stiffness = STIFFNESS / ((1.0 / mass[a] + 1.0 / mass[b]) * l * l);
-        let d: [f64; 3] = std::array::from_fn(|k| x[3 * a + k] - x[3 * b + k]);
-        for (i, j, sign) in [(a, a, 1.0), (b, b, 1.0), (a.max(b), a.min(b), -1.0)] {
-            for r in 0..3 {
-                for c in 0..(if i == j { r + 1 } else { 3 }) {
-                    entries.push(((3 * i + r) as u32, (3 * j + c) as u32));
-                    terms.push(sign * stiffness * d[r] * d[c]);
-                }
-            }
-        }
-    }
-    let n = x.len();
-    let (pattern, slots) = Pattern::from_entries(n, n, &entries);
-    let mut values = vec![0.0; pattern.len()];
-    for (slot, term) in slots.iter().zip(terms) {
-        values[*slot as usize] += term;
-    }
-    Ok((pattern, values))
 }

@@ -1,8 +1,11 @@
 //! Runs with a limit of wall time.
 
 use super::comparison::Entry;
+use super::factorisation::factorisation_time;
+use super::scene::{BUMP, Work, bumped};
 use crate::interrupt::{self, Interrupted};
-use crate::report::{Effort, rounded, short};
+use crate::methods::Named;
+use crate::report::{Cost, rounded, short};
 use anyhow::Result;
 use isosheet_dynamics::{RunEnd, Simulation, StepReport};
 use serde::{Deserialize, Serialize};
@@ -12,7 +15,7 @@ use std::time::{Duration, Instant};
 /// A run from start to end, or as far as it came.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Timed {
-    pub(crate) effort: Effort,
+    pub(crate) cost: Cost,
     /// Largest relative edge length error.
     pub(crate) strain: f64,
     /// Change of the energy at the end, and its largest change on the way, joules.
@@ -33,7 +36,7 @@ pub(crate) struct Timed {
 impl Timed {
     /// Wall seconds for a simulated second; nothing if not a single step was completed.
     pub(crate) fn rate(&self) -> Option<f64> {
-        (self.reached > 0.0).then(|| self.effort.wall / self.reached)
+        (self.reached > 0.0).then(|| self.cost.wall / self.reached)
     }
 
     /// Change of the energy at the end, as part of the potential energy released; 0 if none was.
@@ -60,12 +63,16 @@ impl Timed {
     }
 }
 
-/// A run on a mesh, to be compared with others.
+/// A run of a scene, to be compared with others.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Measured {
-    /// The mesh `M^level`.
+    pub(crate) work: Work,
+    /// The mesh `M^level`, and its number of vertices.
     pub(crate) level: u32,
+    pub(crate) vertices: usize,
     pub(crate) method: String,
+    /// Which of some neighbouring starts, from 1.
+    pub(crate) start: usize,
     /// Step asked for, seconds.
     pub(crate) step: f64,
     /// Seconds for one Cholesky factorisation of the matrix of a damped step without contact.
@@ -73,7 +80,63 @@ pub(crate) struct Measured {
     pub(crate) run: Timed,
 }
 
+/// A mesh, and what a factorisation of its matrix takes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mesh {
+    pub(crate) level: u32,
+    pub(crate) vertices: usize,
+    /// See [`factorisation_time`].
+    pub(crate) factorisation: f64,
+}
+
+impl Mesh {
+    /// Measures the factorisation of `M^level`.
+    pub(crate) fn measured(level: u32) -> Result<Self> {
+        let sheet = bumped(level, BUMP)?;
+        Ok(Self {
+            level,
+            vertices: sheet.topology().vertex_count(),
+            factorisation: factorisation_time(&sheet)?,
+        })
+    }
+}
+
+/// Height by which the bumps of two neighbouring starts differ, metres.
+pub(crate) const NEIGHBOUR: f64 = 1e-9;
+
 impl Measured {
+    /// Runs a scene by a method with steps of `step` seconds from a start, within limits as [`repeated`]
+    /// has them.
+    ///
+    /// # Errors
+    /// Those of [`repeated`].
+    pub(crate) fn of(
+        work: Work,
+        mesh: Mesh,
+        (name, method): Named,
+        (start, step): (usize, f64),
+        limits: [f64; 2],
+        look: &mut dyn FnMut(&Simulation, &StepReport),
+    ) -> Result<Self> {
+        let bump = BUMP + NEIGHBOUR * (start - 1) as f64;
+        let begin = || work.start(mesh.level, bump, method.clone());
+        Ok(Self {
+            work,
+            level: mesh.level,
+            vertices: mesh.vertices,
+            method: name.to_owned(),
+            start,
+            step,
+            factorisation: mesh.factorisation,
+            run: repeated(&begin, [work.duration(), step], limits, look)?,
+        })
+    }
+
+    /// Wall seconds for a simulated second, for people.
+    pub(crate) fn rate(&self) -> String {
+        self.run.rate().map_or("–".into(), short)
+    }
+
     /// What a comparison needs; `name` tells the run from the others.
     pub(crate) fn entry(&self, name: String) -> Entry {
         Entry {
@@ -103,18 +166,18 @@ impl Measured {
 ///
 /// # Errors
 /// Those of `start`; [`Interrupted`].
-pub(crate) fn repeated(
+fn repeated(
     start: &dyn Fn() -> Result<Simulation>,
     span: [f64; 2],
     [patience, short]: [f64; 2],
     look: &mut dyn FnMut(&Simulation, &StepReport),
 ) -> Result<Timed> {
     let mut run = timed(&mut start()?, span, patience, look)?;
-    let mut spent = run.effort.wall;
+    let mut spent = run.cost.wall;
     while run.ended() && run.repetitions < REPETITIONS && spent < short {
         let again = timed(&mut start()?, span, patience, &mut |_, _| {})?;
-        spent += again.effort.wall;
-        run.effort.wall = run.effort.wall.min(again.effort.wall);
+        spent += again.cost.wall;
+        run.cost.wall = run.cost.wall.min(again.cost.wall);
         run.repetitions += 1;
     }
     Ok(run)
@@ -144,7 +207,7 @@ fn timed(
     let mut looking = Duration::ZERO;
     let mut watch = |simulation: &Simulation, report: &StepReport| {
         let before = Instant::now();
-        run.effort.add(report);
+        run.cost.add(report);
         run.strain = run.strain.max(report.strain);
         run.drift = run.drift.max(report.energy_drift.abs());
         run.gap = [run.gap, report.gap].into_iter().flatten().reduce(f64::min);
@@ -157,7 +220,7 @@ fn timed(
         ControlFlow::Continue(())
     };
     let end = simulation.run(duration, step, &mut [&mut watch, &mut interrupt::observe]);
-    run.effort.wall = (clock.elapsed() - looking).as_secs_f64();
+    run.cost.wall = (clock.elapsed() - looking).as_secs_f64();
     interrupt::check()?;
     run.gained = simulation.energy() - energy;
     run.released = height - potential(simulation);
@@ -173,7 +236,7 @@ fn timed(
 
 #[cfg(test)]
 mod tests {
-    use super::super::scene::{STEP, Work};
+    use super::super::scene::STEP;
     use super::*;
 
     #[test]
@@ -182,13 +245,13 @@ mod tests {
         let run = |limits| repeated(&start, [1.0, STEP], limits, &mut |_, _| {}).unwrap();
         let cut = run([0.0, 1.0]);
         assert!(
-            !cut.ended() && (cut.effort.steps, cut.repetitions) == (1, 1),
+            !cut.ended() && (cut.cost.steps, cut.repetitions) == (1, 1),
             "{cut:?}"
         );
         assert!((cut.reached - STEP).abs() < 1e-12, "{cut:?}");
-        assert_eq!(cut.rate(), Some(cut.effort.wall / cut.reached));
+        assert_eq!(cut.rate(), Some(cut.cost.wall / cut.reached));
         let whole = run([60.0, 60.0]);
-        assert!(whole.ended() && (whole.effort.steps, whole.repetitions) == (60, 3));
+        assert!(whole.ended() && (whole.cost.steps, whole.repetitions) == (60, 3));
         assert!((-0.9..0.01).contains(&whole.balance()) && whole.strain < 1e-11);
     }
 }

@@ -85,13 +85,25 @@ pub(crate) fn hanging(level: u32, bump: f64, method: Method) -> Result<Simulatio
 /// The sheet above the table.
 fn tablecloth(sheet: &Sheet, pairs: Pairs, method: Method) -> Result<Simulation> {
     let model = SheetModel::new(sheet, MASS, MassKind::Lumped)?.with_gravity();
-    let pose = Isometry3::translation(0.5, 0.5, -TABLE[2] - CLEARANCE);
-    let table = Obstacle::fixed(Shape::Cuboid { half: TABLE }, pose)?;
-    let mut contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))?
-        .with_body(table, Coefficients::FRICTIONLESS)?;
-    if pairs == Pairs::TableAndItself {
-        contacts = contacts.with_self_contact(Coefficients::FRICTIONLESS)?;
-    }
+    let options = ContactOptions::for_sheet(&model);
+    let contacts = on_table(&model, options, (TABLE, -CLEARANCE), pairs)?;
     let start = State::at_rest(sheet.positions().to_vec());
     Ok(Simulation::new(model, start, method)?.with_contact(contacts)?)
+}
+
+/// Frictionless contact of a sheet with a box under the middle of the square `[0, 1]^2`: half of its
+/// sides, and the height of its top, metres.
+pub(crate) fn on_table(
+    model: &SheetModel,
+    options: ContactOptions,
+    (half, top): ([f64; 3], f64),
+    pairs: Pairs,
+) -> Result<Contacts> {
+    let pose = Isometry3::translation(0.5, 0.5, top - half[2]);
+    let table = Obstacle::fixed(Shape::Cuboid { half }, pose)?;
+    let contacts = Contacts::new(model, options)?.with_body(table, Coefficients::FRICTIONLESS)?;
+    Ok(match pairs {
+        Pairs::Table => contacts,
+        Pairs::TableAndItself => contacts.with_self_contact(Coefficients::FRICTIONLESS)?,
+    })
 }

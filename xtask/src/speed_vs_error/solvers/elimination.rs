@@ -1,6 +1,6 @@
 //! An elimination order for saddle-point matrices.
 
-use super::super::matrices::Body;
+use crate::timing::Body;
 use isosheet_coords::linalg::delay_multipliers;
 use isosheet_mesh::VertexId;
 

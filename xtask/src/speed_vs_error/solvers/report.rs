@@ -1,8 +1,8 @@
 //! What the rows of the solver study say: tables, plot, words.
 
 use super::row::{CHOLESKY, CRAMER, LDLT, MINORS, SCHUR, SOLVERS, SPARSE_LU, SolverRow};
-use crate::draw::{Axis, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
-use crate::report::{Cell, Chart, Table, exponent, short};
+use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
+use crate::report::{Cell, Table, exponent, short};
 
 /// All rows, for programs.
 pub(crate) fn data(rows: &[SolverRow]) -> Table {
@@ -113,44 +113,29 @@ pub(crate) fn conclusions(rows: &[SolverRow]) -> Vec<String> {
     if !crossings.is_empty() {
         all.push(format!("Cross-over points: {}.", crossings.join("; ")));
     }
-    let analysis: Vec<String> = SOLVERS[4..]
-        .iter()
-        .filter_map(|s| {
-            let last = of(rows, s).last()?;
-            Some(format!("{s} {}", short(last.first / last.again)))
-        })
-        .collect();
+    let of_sparse = |words: &dyn Fn(&SolverRow) -> Option<String>| {
+        let last = |s: &&str| Some(format!("{s} {}", words(of(rows, s).last()?)?));
+        let all = SOLVERS[4..].iter().filter_map(last);
+        all.collect::<Vec<_>>().join("; ")
+    };
     all.push(format!(
         "A first factorisation, analysis included, takes so many times a later one, at the largest size of each: {}.",
-        analysis.join("; ")
+        of_sparse(&|last| Some(short(last.first / last.again)))
     ));
     all.push(format!(
         "Largest backward error / error of the velocities: {}.",
         worst_errors(rows).join("; ")
     ));
-    let two: Vec<String> = SOLVERS[4..]
-        .iter()
-        .filter_map(|s| {
-            let last = of(rows, s).last()?;
-            Some(format!("{s} {:.1}", last.two?))
-        })
-        .collect();
     all.push(format!(
         "Two cores with one factorisation each do so many times the work of one, at the largest size of each: {}. That means \
          something only on a machine with two idle cores. Within one factorisation one core is used.",
-        two.join("; ")
+        of_sparse(&|last| Some(format!("{:.1}", last.two?)))
     ));
-    let failed: Vec<String> = rows
-        .iter()
-        .filter_map(|r| {
-            Some(format!(
-                "{} on {}: {}",
-                r.solver,
-                r.mesh,
-                r.failure.as_ref()?
-            ))
-        })
-        .collect();
+    let failed = |r: &SolverRow| {
+        let why = r.failure.as_ref()?;
+        Some(format!("{} on {}: {why}", r.solver, r.mesh))
+    };
+    let failed: Vec<String> = rows.iter().filter_map(failed).collect();
     if !failed.is_empty() {
         all.push(format!("Failed: {}.", failed.join("; ")));
     }
@@ -230,47 +215,21 @@ pub(crate) fn plot(rows: &[SolverRow]) -> Drawing {
         (palette::BLUE, Marker::Disc, Line::Solid),
         (palette::GREEN, Marker::Square, Line::Solid),
     ];
-    let panel = |label: &str, value: fn(&SolverRow) -> Option<f64>, legend| {
+    let panel = |label: &str, value: fn(&SolverRow) -> Option<f64>| {
         let good = || rows.iter().filter(|r| r.failure.is_none());
-        let series = SOLVERS
-            .iter()
-            .zip(looks)
-            .map(|(s, (colour, marker, line))| Series {
-                name: (*s).to_owned(),
-                points: of(rows, s)
-                    .filter_map(|r| Some([r.n as f64, value(r)?]))
-                    .collect(),
-                colour,
-                marker: Some(marker),
-                line,
-            })
-            .collect();
-        Chart {
-            legend,
-            ..Chart::new(
-                Axis::holding("degrees of freedom ~n~", rows.iter().map(|r| r.n as f64)),
-                Axis::holding(label, good().filter_map(value)),
-                [150.0, 160.0],
-                series,
-            )
-        }
-        .draw()
+        let look = |(name, (colour, marker, line)): (&&str, (Colour, Marker, Line))| {
+            let points = of(rows, name).filter_map(|r| Some([r.n as f64, value(r)?]));
+            let series = Series::line(name, colour, points.collect()).marked(marker);
+            Series { line, ..series }
+        };
+        let series = SOLVERS.iter().zip(looks).map(look).collect();
+        let x = Axis::holding("degrees of freedom ~n~", rows.iter().map(|r| r.n as f64));
+        let y = Axis::holding(label, good().filter_map(value));
+        Chart::new(x, y, [150.0, 160.0], series)
     };
-    row(
-        &[
-            panel(
-                "form ~C~, factorise again, solve (s)",
-                |r| Some(r.step()),
-                Legend::None,
-            ),
-            panel(
-                "velocity error",
-                |r| r.velocity.map(|v| v.max(1e-17)),
-                Legend::Right,
-            ),
-        ],
-        18.0,
-    )
+    let time = panel("form ~C~, factorise again, solve (s)", |r| Some(r.step()));
+    let error = panel("velocity error", |r| r.velocity.map(|v| v.max(1e-17)));
+    row(&[time.with_legend(Legend::None).draw(), error.draw()], 18.0)
 }
 
 #[cfg(test)]
@@ -280,18 +239,9 @@ mod tests {
     #[test]
     fn crossings_are_interpolated() {
         let row = |solver: &str, n: usize, again: f64| SolverRow {
-            solver: solver.into(),
-            mesh: String::new(),
             n,
-            order: n,
-            form: 0.0,
-            first: again,
             again,
-            solve: 0.0,
-            backward: None,
-            velocity: None,
-            two: None,
-            failure: None,
+            ..SolverRow::new(solver, "", n)
         };
         let mut rows = Vec::new();
         for n in [10, 40, 160, 640] {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// One solver on one matrix. Times in seconds.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct SolverRow {
     pub(crate) solver: String,
     pub(crate) mesh: String,
@@ -25,6 +25,16 @@ pub(crate) struct SolverRow {
 }
 
 impl SolverRow {
+    /// A solver on a mesh, of which nothing is measured yet.
+    pub(super) fn new(solver: &str, mesh: &str, n: usize) -> Self {
+        Self {
+            solver: solver.to_owned(),
+            mesh: mesh.to_owned(),
+            n,
+            ..Self::default()
+        }
+    }
+
     /// What a step pays: forming, factorising again, solving.
     pub(super) fn step(&self) -> f64 {
         self.form + self.again + self.solve

@@ -3,13 +3,13 @@
 
 /// A heavy strip, for each metre of its width.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Elastica {
+pub struct Elastica {
     /// Free length, metres.
-    pub(super) length: f64,
+    pub length: f64,
     /// Flexural rigidity, newton metres.
-    pub(super) rigidity: f64,
+    pub rigidity: f64,
     /// Weight per area, newtons per square metre.
-    pub(super) weight: f64,
+    pub weight: f64,
 }
 
 /// Slope (radians, downwards), curvature (1/m), horizontal and downward place (metres) at an arc length.
@@ -30,7 +30,7 @@ impl Elastica {
     /// at the clamp is found by bisection: the end slope of the elastica that hangs by its weight alone grows
     /// with it, and the moment at the clamp is at most `q L^2 / 2`. The equations are integrated by the
     /// classical Runge-Kutta method with step control by doubling.
-    pub(super) fn drop(&self) -> f64 {
+    pub fn drop(&self) -> f64 {
         let (mut low, mut high) = (
             0.0,
             0.5 * self.weight * self.length * self.length / self.rigidity,

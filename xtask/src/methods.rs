@@ -1,0 +1,44 @@
+//! The methods without a chart, with their default options, and their names.
+
+use isosheet_dynamics::Method;
+
+/// A method with its name.
+pub(crate) type Named = (&'static str, Method);
+
+/// The damped methods, the default first.
+pub(crate) fn damped() -> [Named; 3] {
+    [
+        ("BDF2", Method::Bdf2(Default::default())),
+        ("implicit Euler", Method::ImplicitEuler(Default::default())),
+        ("projection", Method::Projection(Default::default())),
+    ]
+}
+
+/// The conservative methods.
+pub(crate) fn conservative() -> [Named; 3] {
+    [
+        ("energy-momentum", energy_momentum()),
+        ("RATTLE", Method::Rattle(Default::default())),
+        ("RATTLE composition", rattle_composition()),
+    ]
+}
+
+/// All of them.
+pub(crate) fn methods() -> impl Iterator<Item = Named> {
+    damped().into_iter().chain(conservative())
+}
+
+/// The energy-momentum method.
+pub(crate) fn energy_momentum() -> Method {
+    Method::EnergyMomentum(Default::default())
+}
+
+/// The fourth-order composition of RATTLE.
+pub(crate) fn rattle_composition() -> Method {
+    Method::RattleComposition(Default::default())
+}
+
+/// Implicit Euler.
+pub(crate) fn implicit_euler() -> Method {
+    Method::ImplicitEuler(Default::default())
+}

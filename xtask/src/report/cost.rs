@@ -1,0 +1,50 @@
+//! What runs cost.
+
+use isosheet_dynamics::StepReport;
+use serde::{Deserialize, Serialize};
+
+/// What steps cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Cost {
+    /// Steps as asked for that were completed.
+    pub(crate) steps: usize,
+    /// Sub-steps that they were made of.
+    pub(crate) substeps: usize,
+    /// Sub-steps that were rejected.
+    pub(crate) rejected: usize,
+    pub(crate) iterations: usize,
+    pub(crate) factorisations: usize,
+    /// Wall time, seconds.
+    pub(crate) wall: f64,
+}
+
+impl Cost {
+    /// Counts a step; its wall time is known to the caller alone.
+    pub(crate) fn add(&mut self, report: &StepReport) {
+        self.steps += 1;
+        self.substeps += report.substeps;
+        self.rejected += report.rejected;
+        self.iterations += report.iterations;
+        self.factorisations += report.factorisations;
+    }
+
+    /// A count as a mean over the steps; nothing where no step was completed.
+    fn per_step(&self, count: usize) -> Option<f64> {
+        (self.steps > 0).then(|| count as f64 / self.steps as f64)
+    }
+
+    /// Iterations of a step in the mean.
+    pub(crate) fn iterations_per_step(&self) -> Option<f64> {
+        self.per_step(self.iterations)
+    }
+
+    /// Factorisations of a step in the mean.
+    pub(crate) fn factorisations_per_step(&self) -> Option<f64> {
+        self.per_step(self.factorisations)
+    }
+
+    /// Wall seconds for a factorisation and all that belongs to it.
+    pub(crate) fn wall_per_factorisation(&self) -> Option<f64> {
+        (self.factorisations > 0).then(|| self.wall / self.factorisations as f64)
+    }
+}
