@@ -1,8 +1,7 @@
 //! Text with subscripts, superscripts and slanted letters.
 //!
-//! `_{..}` lowers, `^{..}` raises, `~..~` slants.
-
-use maud::{Markup, html};
+//! `_{..}` lowers, `^{..}` raises, `~..~` slants. The SVG backend knows none of these, so they travel through
+//! it as private characters ([`encode`]) and become `<tspan>` elements in the file ([`decode`]).
 
 /// Size of ordinary text in drawings, points.
 pub(crate) const TEXT: f64 = 9.0;
@@ -16,100 +15,103 @@ const SCRIPT: f64 = 0.72;
 /// Shift of the baseline of subscripts and superscripts, em of the text.
 const SHIFT: [f64; 2] = [0.22, 0.38];
 
-/// Where a piece of text stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Script {
-    #[default]
-    Base,
-    Lowered,
-    Raised,
-}
+const SUB: char = '\u{e000}';
+const SUPER: char = '\u{e001}';
+const END_SUB: char = '\u{e002}';
+const END_SUPER: char = '\u{e003}';
+const SLANT: char = '\u{e004}';
+const END_SLANT: char = '\u{e005}';
 
-impl Script {
-    /// Size, and height above the baseline in em of the text.
-    fn size_and_height(self) -> [f64; 2] {
-        match self {
-            Self::Base => [1.0, 0.0],
-            Self::Lowered => [SCRIPT, -SHIFT[0]],
-            Self::Raised => [SCRIPT, SHIFT[1]],
-        }
-    }
-}
-
-/// Letters of one look.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct Piece {
-    letters: String,
-    script: Script,
-    slanted: bool,
-}
-
-impl Piece {
-    /// Estimated width, em of the text.
-    fn width(&self) -> f64 {
-        let [size, _] = self.script.size_and_height();
-        size * self.letters.chars().map(advance).sum::<f64>()
-    }
-}
-
-/// The pieces that the mark-up separates; a brace that closes nothing is a letter.
-fn pieces(text: &str) -> Vec<Piece> {
-    let mut pieces = vec![Piece::default()];
+/// Replaces the mark-up by private characters.
+pub(super) fn encode(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut open = Vec::new();
+    let mut slanted = false;
     let mut chars = text.chars().peekable();
     while let Some(c) = chars.next() {
-        let now = &pieces[pieces.len() - 1];
-        let (mut script, mut slanted) = (now.script, now.slanted);
         match c {
-            '_' | '^' if chars.next_if_eq(&'{').is_some() => {
-                script = if c == '_' {
-                    Script::Lowered
-                } else {
-                    Script::Raised
-                };
+            '_' | '^' if chars.peek() == Some(&'{') => {
+                chars.next();
+                out.push(if c == '_' { SUB } else { SUPER });
+                open.push(if c == '_' { END_SUB } else { END_SUPER });
             }
-            '}' if script != Script::Base => script = Script::Base,
-            '~' => slanted = !slanted,
-            _ => {
-                let last = pieces.len() - 1;
-                pieces[last].letters.push(c);
-                continue;
+            '}' => match open.pop() {
+                Some(end) => out.push(end),
+                None => out.push(c),
+            },
+            '~' => {
+                out.push(if slanted { END_SLANT } else { SLANT });
+                slanted = !slanted;
             }
+            _ => out.push(c),
         }
-        pieces.push(Piece {
-            letters: String::new(),
-            script,
-            slanted,
-        });
     }
-    pieces.retain(|p| !p.letters.is_empty());
-    pieces
+    out
 }
 
-/// The contents of a text element of the given size (points). A raised piece right after a lowered one stands
-/// above it.
-pub(super) fn markup(text: &str, size: f64) -> Markup {
-    let pieces = pieces(text);
-    let mut before = &Piece::default();
-    let mut spans = Vec::new();
-    for piece in &pieces {
-        let [scale, height] = piece.script.size_and_height();
-        let rise = height - before.script.size_and_height()[1];
-        let stacked = (before.script, piece.script) == (Script::Lowered, Script::Raised);
-        let shift = |by: f64| (by != 0.0).then(|| format!("{by:.2}"));
-        let dx = shift(if stacked { -size * before.width() } else { 0.0 });
-        let font = (scale < 1.0).then(|| format!("{:.2}", size * scale));
-        spans.push(html! {
-            tspan dx=[dx] dy=[shift(-size * rise)] font-size=[font]
-                font-style=[piece.slanted.then_some("italic")] { (piece.letters) }
-        });
-        before = piece;
+/// Replaces the private characters in an SVG file by elements.
+pub(super) fn decode(svg: &str) -> String {
+    let mut out = String::with_capacity(svg.len());
+    // Shift that a raised piece right after a lowered one has to take back, em of the text.
+    let mut back = 0.0;
+    // Width of the last lowered piece, em of its own size: a raised piece right after it stands above it.
+    let mut lowered = 0.0;
+    let mut chars = svg.chars().peekable();
+    while let Some(c) = chars.next() {
+        match c {
+            SUB | SUPER => {
+                let shift = if c == SUB { SHIFT[0] } else { -SHIFT[1] } + back;
+                let dx = if back == 0.0 {
+                    String::new()
+                } else {
+                    format!(" dx=\"{:.3}em\"", -lowered)
+                };
+                back = 0.0;
+                lowered = 0.0;
+                out.push_str(&format!(
+                    "<tspan dy=\"{:.3}em\"{dx} font-size=\"{:.0}%\">",
+                    shift / SCRIPT,
+                    100.0 * SCRIPT
+                ));
+            }
+            END_SUB | END_SUPER => {
+                out.push_str("</tspan>");
+                let shift = if c == END_SUB { -SHIFT[0] } else { SHIFT[1] };
+                match chars.peek() {
+                    // The text ends here: nothing to take back.
+                    Some('<' | '\n') | None => back = 0.0,
+                    Some(&SUB | &SUPER) => back = shift,
+                    Some(_) => {
+                        // A zero-width piece carries the shift, so that slanted text may follow.
+                        out.push_str(&format!("<tspan dy=\"{shift:.3}em\">\u{200b}</tspan>"));
+                        back = 0.0;
+                    }
+                }
+            }
+            SLANT => out.push_str("<tspan font-style=\"italic\">"),
+            END_SLANT => out.push_str("</tspan>"),
+            _ => {
+                lowered += advance(c);
+                out.push(c);
+            }
+        }
     }
-    html! { @for span in &spans { (span) } }
+    out
 }
 
 /// Estimated width in points: enough for whichever font the viewer has.
 pub(super) fn width(text: &str, size: f64) -> f64 {
-    size * pieces(text).iter().map(Piece::width).sum::<f64>()
+    let mut scale = 1.0;
+    let mut sum = 0.0;
+    for c in encode(text).chars() {
+        match c {
+            SUB | SUPER => scale = SCRIPT,
+            END_SUB | END_SUPER => scale = 1.0,
+            SLANT | END_SLANT => {}
+            _ => sum += scale * advance(c),
+        }
+    }
+    sum * size
 }
 
 /// How far the text reaches below and above its baseline, points.
@@ -140,16 +142,13 @@ mod tests {
 
     #[test]
     fn scripts_return_to_the_baseline() {
-        let svg = markup("~v~_{I}^{t} = 2", 10.0).into_string();
+        let svg = decode(&encode("~v~_{I}^{t} = 2"));
         assert_eq!(
             svg,
-            "<tspan font-style=\"italic\">v</tspan><tspan dy=\"2.20\" font-size=\"7.20\">I</tspan>\
-             <tspan dx=\"-2.02\" dy=\"-6.00\" font-size=\"7.20\">t</tspan><tspan dy=\"3.80\"> = 2</tspan>"
+            "<tspan font-style=\"italic\">v</tspan><tspan dy=\"0.306em\" font-size=\"72%\">I</tspan>\
+             <tspan dy=\"-0.833em\" dx=\"-0.280em\" font-size=\"72%\">t</tspan><tspan dy=\"0.380em\">\u{200b}</tspan> = 2"
         );
-        assert_eq!(
-            markup("a + b}", 10.0).into_string(),
-            "<tspan>a + b}</tspan>"
-        );
+        assert_eq!(decode(&encode("a + b}")), "a + b}");
     }
 
     #[test]
