@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use isosheet_mesh::{Sheet, VertexId};
+use isosheet_mesh::{Advice, Sheet, VertexId};
 use npyz::WriterBuilder;
 use npyz::npz::{NpzArchive, NpzWriter};
 use npyz::zip::DateTime;
@@ -51,7 +51,7 @@ pub enum TrajectoryError {
         vertices: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("coordinate {} of {vertex} in frame {frame} is {value}; the frame was not recorded", ["x", "y", "z"][*axis])]
+    #[error("coordinate {} of {vertex} in frame {frame} is {value}, and the frame was not recorded", ["x", "y", "z"][*axis])]
     NotFinite {
         /// The frame.
         frame: usize,
@@ -63,9 +63,7 @@ pub enum TrajectoryError {
         value: f64,
     },
     /// Time does not go forward.
-    #[error(
-        "frame {frame} has the time {t} s after {before} s; frames must be recorded in the order of time"
-    )]
+    #[error("frame {frame} has the time {t} s after {before} s")]
     Time {
         /// The frame.
         frame: usize,
@@ -78,7 +76,7 @@ pub enum TrajectoryError {
     #[error(transparent)]
     File(#[from] WriteError),
     /// The file could not be opened or is not an archive.
-    #[error("cannot read {}: {source}; check that it is an .npz file", path.display())]
+    #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -86,7 +84,7 @@ pub enum TrajectoryError {
         source: io::Error,
     },
     /// An array is missing or of another type or shape.
-    #[error("array `{array}` of {}: {problem}; the file is not a trajectory of this program", path.display())]
+    #[error("array `{array}` of {}: {problem}", path.display())]
     Array {
         /// The file.
         path: PathBuf,
@@ -95,6 +93,19 @@ pub enum TrajectoryError {
         /// What is wrong.
         problem: String,
     },
+}
+
+impl Advice for TrajectoryError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NotFinite { .. } => Some("go back to the last state that was finite"),
+            Self::Time { .. } => Some("record frames in the order of time"),
+            Self::File(error) => error.advice(),
+            Self::Read { .. } => Some("check that it is an .npz file"),
+            Self::Array { .. } => Some("give a trajectory that this program wrote"),
+            Self::WrongLength { .. } => None,
+        }
+    }
 }
 
 impl Trajectory {

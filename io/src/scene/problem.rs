@@ -1,5 +1,6 @@
 //! What is wrong with a scene, and where.
 
+use isosheet_mesh::Advice;
 use std::fmt;
 use std::ops::Range;
 
@@ -58,7 +59,7 @@ impl fmt::Display for Key {
     }
 }
 
-/// Something that is wrong with a scene.
+/// Something that is wrong with a scene. Shown as key and message, without the remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// Where, as far as known.
@@ -82,12 +83,12 @@ impl Problem {
         }
     }
 
-    /// A problem that another error describes together with its remedy.
-    pub(crate) fn from_error(key: Key, error: &impl fmt::Display) -> Self {
+    /// A problem that another error describes; its advice is the remedy.
+    pub(crate) fn from_error(key: Key, error: &impl Advice) -> Self {
         Self {
             key,
             message: error.to_string(),
-            remedy: None,
+            remedy: error.advice().map(str::to_owned),
             span: None,
         }
     }
@@ -98,11 +99,7 @@ impl fmt::Display for Problem {
         if !self.key.parts().is_empty() {
             write!(f, "{}: ", self.key)?;
         }
-        f.write_str(&self.message)?;
-        match &self.remedy {
-            Some(remedy) => write!(f, "; {remedy}"),
-            None => Ok(()),
-        }
+        f.write_str(&self.message)
     }
 }
 

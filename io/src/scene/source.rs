@@ -4,7 +4,7 @@ use super::edit::{self, EditError};
 use super::error::{SceneError, SceneText};
 use super::problem::{Key, Problem};
 use super::{Scene, Setup};
-use isosheet_mesh::generate::FoldAssignment;
+use isosheet_mesh::{Advice, generate::FoldAssignment};
 use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -22,7 +22,7 @@ pub struct SceneFile {
 #[derive(Debug, Error)]
 pub enum SceneFileError {
     /// The file cannot be read.
-    #[error("cannot read the scene {}: {source}; check the path", path.display())]
+    #[error("cannot read the scene {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -35,6 +35,16 @@ pub enum SceneFileError {
     /// The scene is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
+}
+
+impl Advice for SceneFileError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Read { .. } => Some("check the path"),
+            Self::Edit(error) => error.advice(),
+            Self::Scene(error) => error.advice(),
+        }
+    }
 }
 
 impl SceneFile {

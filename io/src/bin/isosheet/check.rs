@@ -7,7 +7,9 @@ use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::mesh::Sheet;
 use isosheet_io::scene::SceneFile;
-use isosheet_io::{MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with, write_mesh};
+use isosheet_io::{
+    Advice, MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with, write_mesh,
+};
 use std::path::{Path, PathBuf};
 
 /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
@@ -26,8 +28,8 @@ impl Check {
             return self.check_mesh();
         }
         if self.fix.is_some() {
-            let message = "--fix repairs mesh files; correct a scene by hand";
-            return Err(Failure::new(Code::Input, message));
+            let message = "--fix repairs mesh files, and this is a scene";
+            return Err(Failure::new(Code::Input, message).remedy("correct a scene by hand"));
         }
         let scene = SceneFile::read(&self.file, &[])?;
         let setup = scene.build()?;
@@ -51,10 +53,10 @@ impl Check {
                 counts(&sheet),
                 what_merging_does(mesh)
             )),
-            Err(error) => Err(Failure::new(
-                Code::Input,
-                format!("{error}\n{}", what_repair_does(mesh, &self.file)),
-            )),
+            Err(error) => {
+                let remedy = what_repair_does(mesh, &self.file);
+                Err(Failure::new(Code::Input, error).remedy(remedy))
+            }
         }
     }
 
@@ -64,7 +66,7 @@ impl Check {
         let mut mesh = given.clone();
         let repair = mesh
             .repair()
-            .map_err(|e| format!("{name}: {e}; edit the mesh there"));
+            .map_err(|e| format!("{name}: {}", e.with_advice()));
         let polygons = match mesh.polygons {
             0 => String::new(),
             n => format!("{n} polygons cut into triangles, "),
@@ -80,9 +82,12 @@ impl Check {
                 let done = "valid as it was; parts that touch stay apart";
                 (given, sheet, done.to_owned())
             }
-            (Err(message), Err(_)) => return Err(Failure::new(Code::Input, message)),
+            (Err(message), Err(_)) => {
+                let remedy = "edit the mesh there";
+                return Err(Failure::new(Code::Input, message).remedy(remedy));
+            }
         };
-        write_mesh(fixed, &mesh).map_err(|e| Failure::new(Code::Output, e))?;
+        write_mesh(fixed, &mesh).map_err(|e| Failure::of(Code::Output, &e))?;
         to_stdout(&format!(
             "{}: a sheet of {} ({polygons}{done})\n",
             fixed.display(),
@@ -107,28 +112,33 @@ fn read(path: &Path, polygons: Polygons) -> Result<MeshFile, Failure> {
         ..MeshOptions::default()
     };
     read_mesh_with(path, &options).map_err(|error| {
-        let remedy = match error.problem {
-            MeshFileProblem::Polygon { .. } => {
-                "\nhelp: `--fix FILE2` cuts polygons into triangles: their new edges are lines along which \
-                 the sheet can fold"
-            }
-            _ => "",
-        };
-        Failure::new(Code::Input, format!("{error}{remedy}"))
+        let failure = Failure::of(Code::Input, &error);
+        match error.problem {
+            MeshFileProblem::Polygon { .. } => failure.remedy(
+                "`--fix FILE2` cuts polygons into triangles: their new edges are lines along which the sheet can \
+                 fold",
+            ),
+            _ => failure,
+        }
     })
 }
 
 fn what_repair_does(mut mesh: MeshFile, path: &Path) -> String {
     let repair = match mesh.repair() {
         Ok(repair) => repair,
-        Err(error) => return format!("help: this cannot be repaired automatically: {error}"),
+        Err(error) => {
+            return format!(
+                "this cannot be repaired automatically: {}",
+                error.with_advice()
+            );
+        }
     };
     match mesh.into_sheet() {
         Ok(_) => format!(
-            "help: `isosheet check {} --fix FILE2` repairs this: {repair}",
+            "`isosheet check {} --fix FILE2` repairs this: {repair}",
             path.display()
         ),
-        Err(error) => format!("help: repair is not enough ({repair}): {error}"),
+        Err(error) => format!("repair is not enough ({repair}): {}", error.with_advice()),
     }
 }
 

@@ -29,11 +29,11 @@ impl Info {
             return to_stdout(&describe_scene(&setup));
         }
         let sheet = read_sheet(&self.file).map_err(|e| {
-            let remedy = format!("help: `isosheet check {}` says more", self.file.display());
-            Failure::new(Code::Input, format!("{e}\n{remedy}"))
+            let remedy = format!("`isosheet check {}` says more", self.file.display());
+            Failure::new(Code::Input, e).remedy(remedy)
         })?;
         let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped)
-            .map_err(|e| Failure::new(Code::Input, e))?;
+            .map_err(|e| Failure::of(Code::Input, &e))?;
         to_stdout(&describe_sheet(&sheet, &model, sheet.positions()))
     }
 }
