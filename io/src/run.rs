@@ -50,7 +50,7 @@ use crate::scene::{SceneFile, Setup, SupportForces};
 use crate::view::PageOptions;
 use checkpoint::Progress;
 use folder::{Contents, Material, RunFolder};
-use frames::{FrameFile, read_frames};
+use frames::{FrameFile, FrameShape, read_frames};
 use page::write_page_of;
 use recording::{open_scene, trajectory_of};
 use std::io::ErrorKind;
@@ -158,6 +158,7 @@ pub fn simulate(
         hash: material.hash,
         modelled,
         sheet: setup.sheet.clone(),
+        frame: FrameShape::of(&setup),
     };
     let mut stepping = match saved {
         None => start(file, &open, setup, facts.hash, clock)?,
@@ -212,6 +213,7 @@ struct Facts {
     hash: SceneHash,
     modelled: Vec<String>,
     sheet: isosheet_mesh::Sheet,
+    frame: FrameShape,
 }
 
 fn start<'a>(
@@ -268,8 +270,7 @@ fn resume<'a>(
 ) -> Result<Stepping<'a>, RunError> {
     let origins = setup.origins.clone();
     let path = folder.path(RunFolder::FRAMES);
-    let coordinates = setup.start.x.len();
-    let frames = FrameFile::resume(&path, progress.frames, coordinates);
+    let frames = FrameFile::resume(&path, progress.frames, FrameShape::of(&setup));
     let frames = frames.map_err(|e| RunError::Damaged {
         path,
         problem: e.to_string(),
@@ -302,7 +303,7 @@ fn finish(
     let clock = Instant::now();
     let topology = facts.sheet.topology();
     let path = folder.path(RunFolder::FRAMES);
-    let frames = read_frames(&path, 3 * topology.vertex_count());
+    let frames = read_frames(&path, facts.frame);
     let frames = frames.map_err(|source| RunError::Read {
         path: path.clone(),
         source,

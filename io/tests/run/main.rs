@@ -7,6 +7,7 @@ mod folders;
 #[path = "../shared/headless.rs"]
 mod headless;
 mod pages;
+mod rod_forces;
 mod sweeps;
 mod tools;
 
