@@ -19,6 +19,7 @@
 //! lost ([`Output::checkpoint_interval`](crate::scene::Output::checkpoint_interval)).
 //!
 //! A [`Sweep`] makes many runs of one scene, and [`Collection`] makes one table of their summaries.
+//! With the feature `picture` a `Gallery` is one page of many runs.
 
 mod checkpoint;
 mod collect;
@@ -28,6 +29,8 @@ mod error;
 mod film;
 mod folder;
 mod frames;
+#[cfg(feature = "picture")]
+mod gallery;
 mod page;
 mod recording;
 mod replay;
@@ -40,6 +43,8 @@ pub use error::RunError;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
 pub use folder::SceneHash;
+#[cfg(feature = "picture")]
+pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Summary};

@@ -82,7 +82,10 @@ fn rods_of_a_strip_at_rest_carry_what_hangs_below() {
 fn runs_without_rods_or_their_multipliers_have_no_forces() {
     let dir = tempfile::tempdir().unwrap();
     for (out, edits) in [
-        ("weak", vec!["sheet.isometry={ weak = { stiffness = 100 } }"]),
+        (
+            "weak",
+            vec!["sheet.isometry={ weak = { stiffness = 100 } }"],
+        ),
         (
             "membrane",
             vec!["sheet.isometry={ membrane = { stiffness = 1e4 } }"],
