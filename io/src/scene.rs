@@ -11,6 +11,7 @@ mod edit;
 mod engine_problem;
 mod error;
 mod forces;
+mod form;
 mod mesh;
 mod method;
 mod obstacles;
@@ -29,6 +30,7 @@ mod starting_point;
 mod stop;
 mod support_forces;
 mod supports;
+mod toml_problem;
 
 pub use chart::{
     Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,

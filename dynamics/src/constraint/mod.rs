@@ -22,7 +22,7 @@ use nalgebra::{Matrix2x3, Matrix3, Vector3};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ConstraintError {
     /// A number is not finite, or not positive where it has to be.
-    #[error("{what} is {value}, and not a finite number{condition}")]
+    #[error("{what} is {value}")]
     Number {
         /// Which one.
         what: &'static str,
@@ -73,7 +73,8 @@ pub enum ConstraintError {
 impl Advice for ConstraintError {
     fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::Number { .. } => Some("give such a number"),
+            Self::Number { condition: "", .. } => Some("give a finite number"),
+            Self::Number { .. } => Some("give a finite number above 0"),
             Self::NoDirection { .. } => Some("give a vector that is not zero"),
             Self::TooFewPoints { .. } => Some("give more points"),
             Self::Coincident { .. } => Some("leave one out"),
