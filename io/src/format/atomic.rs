@@ -128,7 +128,10 @@ pub fn write_atomically<T>(
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let file = builder
         .tempfile_in(&folder)
-        .map_err(|source| WriteError::CreateFile { folder, source })?;
+        .map_err(|e| WriteError::CreateFile {
+            folder,
+            source: without_path(e),
+        })?;
     let value = {
         let mut buffered = BufWriter::new(file.as_file());
         let value = write(&mut buffered).map_err(failed)?;
@@ -141,6 +144,14 @@ pub fn write_atomically<T>(
             path: path.to_owned(),
             source: e.error,
         }),
+    }
+}
+
+/// The error of the system without the name of the temporary file.
+fn without_path(error: io::Error) -> io::Error {
+    match error.kind() {
+        io::ErrorKind::Other => error,
+        kind => kind.into(),
     }
 }
 

@@ -2,13 +2,14 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use crate::info::{describe_scene, is_scene};
+use crate::info::{describe_scene, is_scene, refuse_folder};
 use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::mesh::Sheet;
 use isosheet_io::scene::SceneFile;
 use isosheet_io::{
-    Advice, MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with, write_mesh,
+    Advice, MeshFile, MeshFileError, MeshFileProblem, MeshOptions, Polygons, read_mesh_with,
+    write_mesh,
 };
 use std::path::{Path, PathBuf};
 
@@ -42,6 +43,7 @@ impl Check {
     }
 
     fn check_mesh(&self) -> Done {
+        refuse_folder(&self.file)?;
         let name = self.file.display();
         if let Some(fixed) = &self.fix {
             return self.fix_mesh(fixed);
@@ -54,7 +56,7 @@ impl Check {
                 what_merging_does(mesh)
             )),
             Err(error) => {
-                let remedy = what_repair_does(mesh, &self.file);
+                let remedy = what_repair_does(mesh, &error, &self.file);
                 Err(Failure::new(Code::Input, error).remedy(remedy))
             }
         }
@@ -66,14 +68,17 @@ impl Check {
         let mut mesh = given.clone();
         let repair = mesh
             .repair()
-            .map_err(|e| format!("{name}: {}", e.with_advice()));
+            .map_err(|e| (format!("{name}: {e}"), e.advice()));
         let polygons = match mesh.polygons {
             0 => String::new(),
             n => format!("{n} polygons cut into triangles, "),
         };
         let repaired = repair.and_then(|repair| match mesh.clone().into_sheet() {
             Ok(sheet) => Ok((mesh, sheet, repair.to_string())),
-            Err(error) => Err(format!("{error}\n(after the repair: {repair})")),
+            Err(error) => Err((
+                format!("{error} (after the repair: {repair})"),
+                error.advice(),
+            )),
         });
         // Where parts of a valid sheet touch, merging their vertices may join more than two faces.
         let (mesh, sheet, done) = match (repaired, given.clone().into_sheet()) {
@@ -82,8 +87,8 @@ impl Check {
                 let done = "valid as it was; parts that touch stay apart";
                 (given, sheet, done.to_owned())
             }
-            (Err(message), Err(_)) => {
-                let remedy = "edit the mesh there";
+            (Err((message, advice)), Err(_)) => {
+                let remedy = advice.unwrap_or("edit the mesh there");
                 return Err(Failure::new(Code::Input, message).remedy(remedy));
             }
         };
@@ -123,14 +128,16 @@ fn read(path: &Path, polygons: Polygons) -> Result<MeshFile, Failure> {
     })
 }
 
-fn what_repair_does(mut mesh: MeshFile, path: &Path) -> String {
+fn what_repair_does(mut mesh: MeshFile, problem: &MeshFileError, path: &Path) -> String {
     let repair = match mesh.repair() {
         Ok(repair) => repair,
         Err(error) => {
-            return format!(
-                "this cannot be repaired automatically: {}",
-                error.with_advice()
-            );
+            // What is in the way of a repair is often the problem itself.
+            let reason = match problem.to_string().ends_with(&error.to_string()) {
+                true => error.advice().unwrap_or("edit the mesh there").to_owned(),
+                false => error.with_advice(),
+            };
+            return format!("this cannot be repaired automatically: {reason}");
         }
     };
     match mesh.into_sheet() {
@@ -138,7 +145,10 @@ fn what_repair_does(mut mesh: MeshFile, path: &Path) -> String {
             "`isosheet check {} --fix FILE2` repairs this: {repair}",
             path.display()
         ),
-        Err(error) => format!("repair is not enough ({repair}): {}", error.with_advice()),
+        Err(error) => {
+            let error = error.problem.with_advice();
+            format!("repair is not enough ({repair}): {error}")
+        }
     }
 }
 
