@@ -89,6 +89,30 @@ pub const VERSION: u32 = 1;
 /// # Ok(())
 /// # }
 /// ```
+///
+/// The names are those of the file, so that a scene reads in the same way in both. This one is that of
+/// [`StartingPoint::Drape`]:
+///
+/// ```
+/// use isosheet_io::scene::*;
+/// # use std::path::Path;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut cloth = Sheet::new(Mesh::Square { side: 1.0, level: 2 });
+/// cloth.density = 0.2;
+/// cloth.damping = 2.0;
+/// cloth.placement = Pose::at([-0.5, -0.5, 0.0]);
+/// let table = Obstacle::new(Shape::Box { size: [0.5, 0.5, 0.3] });
+/// let mut scene = Scene::new(cloth);
+/// scene.obstacle = vec![Obstacle { pose: Pose::at([0.0, 0.0, -0.16]), friction: 0.3, ..table }];
+/// scene.contact = Contact { self_contact: true, friction: 0.3, ..Contact::default() };
+/// scene.forces.gravity = Some([0.0, 0.0, -9.81]);
+/// scene.stop.time = 1.0;
+/// # let file = SceneFile::parse(StartingPoint::Drape.text().into(), Path::new("cloth.toml"), &[])?;
+/// # assert_eq!(&scene, file.scene());
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
