@@ -4,17 +4,17 @@ use crate::history::Multipliers;
 use crate::{Isometry, Method, SheetModel};
 
 impl Method {
-    /// Whether the method solves for the forces of rigid rods: all but projection, which corrects positions and
-    /// velocities and has no multipliers that would balance the other forces.
+    /// Whether the method solves for the forces of rigid rods: all but projection, which corrects positions
+    /// and velocities and has no multipliers that would balance the other forces.
     pub fn solves_for_rod_forces(&self) -> bool {
         !matches!(self, Self::Projection(_))
     }
 
     /// Force densities (force over length, tension positive, N/m) of multipliers with the value 1.
     ///
-    /// Minimising methods have `h^2` times the density as multipliers, with the effective step `h`. Conservative
-    /// ones have impulses that push the ends of a rod apart: energy-momentum over the whole step, RATTLE at each
-    /// of its ends over half of it (the one at the start is kept).
+    /// Minimising methods have `h^2` times the density as multipliers, with the effective step `h`.
+    /// Conservative ones have impulses that push the ends of a rod apart: energy-momentum over the whole
+    /// step, RATTLE at each of its ends over half of it (the one at the start is kept).
     fn density_of_multipliers(&self, h: f64) -> f64 {
         match self {
             Self::ImplicitEuler(_) | Self::Bdf2(_) => 1.0 / (h * h),

@@ -32,8 +32,8 @@ fn point(x: &[f64], v: usize) -> Vector3<f64> {
     Vector3::new(x[3 * v], x[3 * v + 1], x[3 * v + 2])
 }
 
-/// A triangle that turns about the side between its pins, the y axis: its third vertex, 0.3 m from the axis and
-/// in the middle between the pins, 0.4 m apart, is `angle` away from hanging.
+/// A triangle that turns about the side between its pins, the y axis: its third vertex, 0.3 m from the axis
+/// and in the middle between the pins, 0.4 m apart, is `angle` away from hanging.
 fn pendulum(angle: f64) -> Sheet {
     let (r, half) = (0.3, 0.2);
     let tip = [r * angle.sin(), 0.0, -r * angle.cos()];
@@ -87,8 +87,8 @@ fn rods_of_a_hanging_triangle_carry_its_tip() {
     }
 }
 
-/// The forces are known at the end of a step, over it in the mean, or at its start: the errors there are at most of
-/// first order in the step, which shows as the ratio of the errors of two steps.
+/// The forces are known at the end of a step, over it in the mean, or at its start: the errors there are at
+/// most of first order in the step, which shows as the ratio of the errors of two steps.
 #[test]
 fn rods_of_a_pendulum_carry_weight_and_centripetal_force() {
     for method in methods() {
@@ -130,7 +130,8 @@ fn rods_of_a_pendulum_carry_weight_and_centripetal_force() {
     }
 }
 
-/// Across each horizontal cut through a vertical strip that hangs by its upper corners the rods carry what is below.
+/// Across each horizontal cut through a vertical strip that hangs by its upper corners the rods carry what is
+/// below.
 #[test]
 fn rods_of_a_hanging_strip_carry_what_is_below_each_cut() {
     let rows = 6;

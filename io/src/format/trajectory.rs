@@ -162,7 +162,8 @@ impl Trajectory {
     /// trajectory have, or none.
     ///
     /// # Errors
-    /// As [`Self::push`]; [`TrajectoryError::ForceCount`] for another number of forces than the frames before have.
+    /// As [`Self::push`]; [`TrajectoryError::ForceCount`] for another number of forces than the frames before
+    /// have.
     pub fn push_with_forces(
         &mut self,
         t: f64,
@@ -263,8 +264,8 @@ impl Trajectory {
         &self.rest_lengths
     }
 
-    /// The force of each edge in a frame (newtons, tension positive); `None` when the trajectory has no forces or
-    /// no such frame.
+    /// The force of each edge in a frame (newtons, tension positive); `None` when the trajectory has no
+    /// forces or no such frame.
     pub fn rod_forces(&self, k: usize) -> Option<&[f64]> {
         let n = self.edges.len();
         self.rod_forces.get(n * k..n * (k + 1))

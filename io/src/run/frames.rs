@@ -6,8 +6,8 @@ use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// A file of frames of equal length: time (seconds), positions (`3V`, metres) and, of runs that have them, the forces
-/// of the rods (newtons, tension positive), little-endian `f64`.
+/// A file of frames of equal length: time (seconds), positions (`3V`, metres) and, of runs that have them,
+/// the forces of the rods (newtons, tension positive), little-endian `f64`.
 #[derive(Debug)]
 pub(crate) struct FrameFile {
     path: PathBuf,

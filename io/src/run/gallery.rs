@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
 /// Height of the pictures, pixels.
 const PICTURE_HEIGHT: usize = 300;
 
-/// A folder with one page that shows many runs: of each a picture, its name, what its scene says of itself, the key
-/// numbers, and a link to the page that plays it.
+/// A folder with one page that shows many runs: of each a picture, its name, what its scene says of itself,
+/// the key numbers, and a link to the page that plays it.
 ///
 /// | file | what |
 /// |---|---|
@@ -46,7 +46,8 @@ pub struct GalleryEntry {
     pub folder: PathBuf,
     /// The name of the run: that of its folder without `-run` at its end.
     pub title: String,
-    /// The comment at the top of the scene, up to the first line that ends with a full stop; empty without one.
+    /// The comment at the top of the scene, up to the first line that ends with a full stop; empty without
+    /// one.
     pub caption: String,
     /// The time that was reached, seconds.
     pub t: f64,
@@ -61,8 +62,8 @@ impl Gallery {
     const DATA: &'static str = "gallery.json";
     const RUNS: &'static str = "runs";
 
-    /// Makes the gallery of all runs in `folders` and beneath them, in the order of `folders` and, beneath each, of
-    /// names. Links to other folders are not followed.
+    /// Makes the gallery of all runs in `folders` and beneath them, in the order of `folders` and, beneath
+    /// each, of names. Links to other folders are not followed.
     ///
     /// # Errors
     /// [`GalleryError::NoRuns`] if there are none, [`GalleryError::Foreign`] if `out` holds other files,

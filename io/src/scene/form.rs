@@ -1,4 +1,5 @@
-//! Lists where the scene has tables: the structs of a scene can be read of lists of their values, which nobody means.
+//! Lists where the scene has tables: the structs of a scene can be read of lists of their values, which
+//! nobody means.
 
 use super::problem::{Key, Problem};
 use super::reference::schema;

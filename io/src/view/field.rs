@@ -25,9 +25,9 @@ pub enum Scale {
     Linear,
     /// By logarithm: no value is negative. Zeros are shown as zeros in colours and left out of plots.
     Logarithmic,
-    /// By value, with colours that have zero in the middle and reach as far to both sides; for forces, which are
-    /// of either sign and differ by orders of magnitude. A page keeps values to 0.02 %, and those below a millionth of
-    /// the largest as zero. In plots as [`Scale::Linear`].
+    /// By value, with colours that have zero in the middle and reach as far to both sides; for forces, which
+    /// are of either sign and differ by orders of magnitude. A page keeps values to 0.02 %, and those below a
+    /// millionth of the largest as zero. In plots as [`Scale::Linear`].
     Signed,
 }
 
@@ -102,7 +102,8 @@ impl Field {
         })
     }
 
-    /// The force of the rod along each edge in each frame (newtons, tension positive), if the trajectory has forces.
+    /// The force of the rod along each edge in each frame (newtons, tension positive), if the trajectory has
+    /// forces.
     pub fn rod_forces(trajectory: &Trajectory) -> Option<Self> {
         let frames = 0..trajectory.len();
         let values: Option<Vec<_>> = frames

@@ -7,11 +7,11 @@ const LARGEST: f64 = 65535.0;
 /// The number of steps between the smallest and the largest logarithm: bytes 1 to 255, and 0 for zero.
 const LOG_STEPS: f64 = 254.0;
 
-/// The number of sizes that numbers of either sign are rounded to, which zero is not among: two signs of these and
-/// zero are the 16-bit integers but one.
+/// The number of sizes that numbers of either sign are rounded to, which zero is not among: two signs of
+/// these and zero are the 16-bit integers but one.
 const SIZES: f64 = 32767.0;
-/// Of numbers of either sign, what is smaller than this part of the largest is zero: six decades in 32766 steps are
-/// steps of 0.04 %.
+/// Of numbers of either sign, what is smaller than this part of the largest is zero: six decades in 32766
+/// steps are steps of 0.04 %.
 const NEGLIGIBLE: f64 = 1e-6;
 
 /// Integers `q` that stand for numbers, row by row.
@@ -41,8 +41,8 @@ fn step(low: f64, high: f64, count: f64) -> f64 {
 }
 
 /// The values of a field. On a linear scale a value is `low + q step` with 16 bits; on a logarithmic one it
-/// is `10^(low + (q - 1) step)` with 8 bits, and `q = 0` is zero. Signed values have 16 bits: up to 32767 as on a
-/// logarithmic scale, and the negative of `q - 32768` from 32768 on.
+/// is `10^(low + (q - 1) step)` with 8 bits, and `q = 0` is zero. Signed values have 16 bits: up to 32767 as
+/// on a logarithmic scale, and the negative of `q - 32768` from 32768 on.
 pub(super) fn quantise_field(rows: &[&Vec<f64>], scale: Scale) -> Quantised {
     let all = || rows.iter().flat_map(|row| row.iter().copied());
     match scale {

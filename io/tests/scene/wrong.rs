@@ -1,6 +1,6 @@
-//! Wrong scenes that are derived from the reference: each key misspelled, left out, of every type that it must not
-//! have, and out of range; each path to a file that cannot be read. A key that is added to scenes is tried, too: a
-//! test of the reference demands that it is in the scenes that these are made of.
+//! Wrong scenes that are derived from the reference: each key misspelled, left out, of every type that it
+//! must not have, and out of range; each path to a file that cannot be read. A key that is added to scenes is
+//! tried, too: a test of the reference demands that it is in the scenes that these are made of.
 
 use crate::complete::{Place, Step, places, scenes};
 use crate::parse;
@@ -284,8 +284,8 @@ fn numbers(value: &Value, way: &mut Vec<Step>, found: &mut Vec<Vec<Step>>) {
     }
 }
 
-/// No number may be infinite or none at all, and whole numbers may not be negative; other values are accepted, or
-/// refused in the same way.
+/// Every number that is infinite or NaN is refused at its place; other values are accepted, or refused with
+/// place and remedy, too.
 #[test]
 fn every_number_out_of_range_is_refused_at_its_place() {
     let scenes = scenes();

@@ -55,8 +55,9 @@ pub struct SeriesField {
     pub values: Vec<f64>,
 }
 
-/// Frames of a moving sheet that are to be written, with what is known of its edges: strains, fold angles and, where
-/// the trajectory has them, the forces of the rods as the field `rod_force` (newtons, tension positive).
+/// Frames of a moving sheet that are to be written, with what is known of its edges: strains, fold angles
+/// and, where the trajectory has them, the forces of the rods as the field `rod_force` (newtons, tension
+/// positive).
 ///
 /// Of frames at the same time only the first is written: most formats cannot hold two.
 #[derive(Clone, Debug)]
