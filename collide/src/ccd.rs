@@ -18,6 +18,7 @@
 //! inexact closest point costs progress, never safety. Round-off is subtracted from each gap.
 
 use crate::distance::{edge_edge, point_edge, point_point, point_triangle};
+use isosheet_mesh::Advice;
 use nalgebra::Vector3;
 use thiserror::Error;
 
@@ -50,14 +51,24 @@ impl Default for CcdOptions {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CcdOptionsError {
     /// The separation is negative or not a number.
-    #[error("separation {0} m: give zero or a positive length")]
+    #[error("the separation is {0} m")]
     Separation(f64),
     /// The remainder is not a proper fraction.
-    #[error("remainder {0}: give a number between 0 and 1, for instance 0.1")]
+    #[error("the remainder is {0}")]
     Remainder(f64),
     /// No iterations at all.
-    #[error("max_iterations is 0: give at least 1")]
+    #[error("max_iterations is 0")]
     Iterations,
+}
+
+impl Advice for CcdOptionsError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Separation(..) => Some("give zero or a positive length"),
+            Self::Remainder(..) => Some("give a number between 0 and 1, for instance 0.1"),
+            Self::Iterations => Some("give at least 1"),
+        }
+    }
 }
 
 impl CcdOptions {

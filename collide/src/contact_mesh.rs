@@ -1,6 +1,6 @@
 //! What of a mesh can touch: its vertices, edges and faces.
 
-use isosheet_mesh::Topology;
+use isosheet_mesh::{Advice, Topology};
 use std::collections::HashMap;
 use thiserror::Error;
 
@@ -50,7 +50,7 @@ impl Owned {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ContactMeshError {
     /// A face names a vertex that does not exist.
-    #[error("face {face} names vertex {vertex} of {vertex_count}: number vertices from 0")]
+    #[error("face {face} names vertex {vertex} of {vertex_count}")]
     FaceVertex {
         /// The face.
         face: usize,
@@ -60,7 +60,7 @@ pub enum ContactMeshError {
         vertex_count: usize,
     },
     /// A face names a vertex twice.
-    #[error("face {face} names vertex {vertex} twice: remove the face")]
+    #[error("face {face} names vertex {vertex} twice")]
     RepeatedVertex {
         /// The face.
         face: usize,
@@ -68,11 +68,21 @@ pub enum ContactMeshError {
         vertex: u32,
     },
     /// More vertices, edges or faces than 32-bit indices can number.
-    #[error("{count} primitives: the limit is 2^32 - 1")]
+    #[error("{count} primitives are more than the limit of 2^32 - 1")]
     TooMany {
         /// How many.
         count: usize,
     },
+}
+
+impl Advice for ContactMeshError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::FaceVertex { .. } => Some("number vertices from 0"),
+            Self::RepeatedVertex { .. } => Some("remove the face"),
+            Self::TooMany { .. } => Some("use a coarser mesh"),
+        }
+    }
 }
 
 impl ContactMesh {

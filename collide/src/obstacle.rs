@@ -4,6 +4,7 @@ use crate::contact_mesh::ContactMesh;
 use crate::signed_distance::{self, SignedDistance};
 use crate::surface::TriangleSurface;
 use isosheet_dynamics::{MotionError, RigidMotion, RigidProfile};
+use isosheet_mesh::Advice;
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -49,7 +50,7 @@ pub enum Shape {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ObstacleError {
     /// A length is not positive.
-    #[error("{shape}: {name} is {value} m, give a positive length")]
+    #[error("{shape}: {name} is {value} m")]
     Length {
         /// The shape.
         shape: &'static str,
@@ -62,8 +63,18 @@ pub enum ObstacleError {
     #[error(transparent)]
     Motion(#[from] MotionError),
     /// Too few sides for a solid.
-    #[error("a round body needs at least 3 segments, not {0}")]
+    #[error("a round body cannot have {0} segments")]
     Segments(usize),
+}
+
+impl Advice for ObstacleError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Length { .. } => Some("give a positive length"),
+            Self::Motion(error) => error.advice(),
+            Self::Segments(..) => Some("give at least 3"),
+        }
+    }
 }
 
 /// Primitives whose distance, less a radius, is the distance from a body.

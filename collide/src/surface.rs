@@ -3,6 +3,7 @@
 use crate::contact_mesh::{ContactMesh, ContactMeshError};
 use crate::distance::{Closest, Feature, point_triangle};
 use crate::signed_distance::SignedDistance;
+use isosheet_mesh::Advice;
 use nalgebra::{Matrix3, Vector3};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
@@ -47,7 +48,7 @@ pub enum SurfaceError {
     #[error("the surface has no faces")]
     Empty,
     /// The positions are no list of points.
-    #[error("{0} coordinates: give three per vertex")]
+    #[error("{0} coordinates are not three for each vertex")]
     Coordinates(usize),
     /// A coordinate is not finite.
     #[error("coordinate {axis} (0 = x) of vertex {vertex} is {value}")]
@@ -63,13 +64,13 @@ pub enum SurfaceError {
     #[error(transparent)]
     Faces(#[from] ContactMeshError),
     /// A face has no area.
-    #[error("face {face} has no area: remove it or merge its vertices")]
+    #[error("face {face} has no area")]
     NoArea {
         /// The face.
         face: usize,
     },
     /// A length of a surface made by formula is not positive.
-    #[error("{name} is {value} m; give a positive length")]
+    #[error("{name} is {value} m")]
     Length {
         /// The length.
         name: &'static str,
@@ -85,11 +86,26 @@ pub enum SurfaceError {
         problem: &'static str,
     },
     /// A closed surface is inside out.
-    #[error("the faces of the closed surface point inwards (volume {volume} m^3): reverse them")]
+    #[error("the faces of the closed surface point inwards (volume {volume} m^3)")]
     Inward {
         /// Signed volume.
         volume: f64,
     },
+}
+
+impl Advice for SurfaceError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Empty => Some("give at least one face"),
+            Self::Coordinates(..) => Some("give three for each vertex"),
+            Self::NotFinite { .. } => Some("give finite coordinates"),
+            Self::Faces(error) => error.advice(),
+            Self::NoArea { .. } => Some("remove it or merge its vertices"),
+            Self::Length { .. } => Some("give a positive length"),
+            Self::Inward { .. } => Some("reverse them"),
+            Self::Line { .. } => None,
+        }
+    }
 }
 
 /// Sine of the smallest angle below which a face has no usable normal: 1e4 units of round-off.

@@ -24,7 +24,7 @@ mod rules;
 pub use options::{AssignmentOptions, Degenerate};
 pub use rules::{Assignment, Closure, Placing, Rule};
 
-use isosheet_mesh::{Sheet, VertexId};
+use isosheet_mesh::{Advice, Sheet, VertexId};
 use propagation::Propagation;
 use thiserror::Error;
 
@@ -49,13 +49,13 @@ pub enum AssignmentError {
         count: usize,
     },
     /// A vertex is listed twice among pins and starts.
-    #[error("{vertex} is listed twice among pins and starts; list it once")]
+    #[error("{vertex} is listed twice among pins and starts")]
     Repeated {
         /// The vertex.
         vertex: VertexId,
     },
     /// A start vertex lies in a component that already has a pin or a start.
-    #[error("start {vertex} lies in a component that has a pin or another start; remove it")]
+    #[error("start {vertex} lies in a component that has a pin or another start")]
     UnusedStart {
         /// The vertex.
         vertex: VertexId,
@@ -69,13 +69,24 @@ pub enum AssignmentError {
         expected: usize,
     },
     /// An option is out of range.
-    #[error(
-        "option volume is {volume}; give a value from 0 to 1, the volumes that three unit vectors can span"
-    )]
+    #[error("option volume is {volume}")]
     Volume {
         /// Its value.
         volume: f64,
     },
+}
+
+impl Advice for AssignmentError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Repeated { .. } => Some("list it once"),
+            Self::UnusedStart { .. } => Some("remove it"),
+            Self::Volume { .. } => {
+                Some("give a value from 0 to 1, the volumes that three unit vectors can span")
+            }
+            Self::NoSuchVertex { .. } | Self::StateLength { .. } => None,
+        }
+    }
 }
 
 /// `sys_coord_assnmt_single`: assign system coordinates from one start vertex

@@ -13,7 +13,7 @@ use crate::placement_error::PlacementError;
 use crate::realise::RealiseError;
 use crate::row_pattern::RowPattern;
 use crate::system::{RodSystem, SystemError};
-use isosheet_mesh::{MeshError, VertexId};
+use isosheet_mesh::{Advice, MeshError, VertexId};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
@@ -37,13 +37,15 @@ pub enum ChartError {
     Generate(#[from] isosheet_mesh::generate::GenerateError),
     /// A sparse factorisation failed.
     #[error(
-        "the linearised chart [G; S] cannot be factorised: {0}; the state is flat or the chart has left its domain, rebase it or perturb the state"
+        "the linearised chart [G; S] cannot be factorised (the state is flat, or the chart has left \
+         its domain): {0}"
     )]
     Linalg(#[from] LinalgError),
     /// The length equations are dependent, as in every flat state with interior vertices: no
     /// choice of n coordinates is a chart.
     #[error(
-        "the {equations} length equations have rank {rank} only at this state (flat sheet or branch point): perturb it, or use a chart-free integrator"
+        "the {equations} length equations have rank {rank} only at this state (flat sheet or branch \
+         point)"
     )]
     RankDeficient {
         /// Number of length equations.
@@ -63,7 +65,8 @@ pub enum ChartError {
     },
     /// Newton's method for positions did not converge.
     #[error(
-        "positions were not found in {iterations} Newton steps: residual {residual:e} (relative), tolerance {tolerance:e}; take a smaller step"
+        "positions were not found in {iterations} Newton steps: residual {residual:e} (relative), \
+         tolerance {tolerance:e}"
     )]
     NotConverged {
         /// Steps taken.
@@ -75,7 +78,8 @@ pub enum ChartError {
     },
     /// The chart is too ill-conditioned to give digits.
     #[error(
-        "the mass matrix of the chart has condition number {condition:e}, above the limit {limit:e}: the answer would be noise; use a better conditioned chart or a coarser mesh"
+        "the mass matrix of the chart has condition number {condition:e}, above the limit {limit:e}: \
+         the answer would be noise"
     )]
     IllConditioned {
         /// Condition number of C.
@@ -83,6 +87,23 @@ pub enum ChartError {
         /// The limit.
         limit: f64,
     },
+}
+
+impl Advice for ChartError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Realise(error) => error.advice(),
+            Self::System(error) => error.advice(),
+            Self::Assignment(error) => error.advice(),
+            Self::Mesh(error) => error.advice(),
+            Self::Generate(error) => error.advice(),
+            Self::Linalg(..) => Some("rebase the chart or perturb the state"),
+            Self::RankDeficient { .. } => Some("perturb the state, or use a chart-free integrator"),
+            Self::Row { source, .. } => source.advice(),
+            Self::NotConverged { .. } => Some("take a smaller step"),
+            Self::IllConditioned { .. } => Some("use a better conditioned chart or a coarser mesh"),
+        }
+    }
 }
 
 /// System coordinates of a rod system (Liu, Tang and Joneja 2007, Sec. 2.1).

@@ -1,5 +1,6 @@
 //! Why a frame has no angle, or a vertex no position.
 
+use isosheet_mesh::Advice;
 use thiserror::Error;
 
 /// Why a vertex cannot be placed, or a coordinate is not defined.
@@ -12,15 +13,13 @@ pub enum PlacementError {
         distance: f64,
     },
     /// The edge points along the polar axis of its spherical frame.
-    #[error("the edge points at the pole of its spherical frame (sine {sine:e}); rebase the chart")]
+    #[error("the edge points at the pole of its spherical frame (sine {sine:e})")]
     Pole {
         /// Sine of the angle to the polar axis.
         sine: f64,
     },
     /// The edge points against the reference edge of its frame.
-    #[error(
-        "the edge is antiparallel to its reference edge (1 + cosine {one_plus_cosine:e}); rebase the chart"
-    )]
+    #[error("the edge is antiparallel to its reference edge (1 + cosine {one_plus_cosine:e})")]
     Antiparallel {
         /// One plus the cosine of the angle between the two.
         one_plus_cosine: f64,
@@ -52,4 +51,17 @@ pub enum PlacementError {
         "the placement has no derivative here: the vertex is in the plane of its known neighbours"
     )]
     Flat,
+}
+
+impl Advice for PlacementError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Pole { .. } | Self::Antiparallel { .. } => Some("rebase the chart"),
+            Self::Coincident { .. }
+            | Self::OnAxis { .. }
+            | Self::OutOfReach { .. }
+            | Self::Collinear { .. }
+            | Self::Flat => None,
+        }
+    }
 }

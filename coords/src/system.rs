@@ -1,7 +1,7 @@
 //! The length equations on the free unknowns: pinned vertices are eliminated.
 
 use crate::vec3::{at, dot, norm, sub};
-use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId};
+use isosheet_mesh::{Advice, EdgeId, Sheet, Topology, VertexId};
 use thiserror::Error;
 
 /// Why a [`RodSystem`] cannot be built.
@@ -17,7 +17,7 @@ pub enum SystemError {
     },
     /// More length equations than unknowns are left; or as many, where coordinates are wanted.
     #[error(
-        "{equations} length equations for {unknowns} unknowns: the pins leave no degree of freedom; remove some"
+        "{equations} length equations for {unknowns} unknowns: the pins leave no degree of freedom"
     )]
     NoFreedom {
         /// Number of equations.
@@ -25,6 +25,15 @@ pub enum SystemError {
         /// Number of unknowns.
         unknowns: usize,
     },
+}
+
+impl Advice for SystemError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoFreedom { .. } => Some("remove some pins"),
+            Self::NoSuchVertex { .. } => None,
+        }
+    }
 }
 
 /// An edge with at least one free end.

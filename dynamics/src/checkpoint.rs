@@ -6,6 +6,7 @@ use crate::energy_account::EnergyAccount;
 use crate::integrator::Moment;
 use crate::{Isometry, Method, SheetModel, StepControl};
 use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
+use isosheet_mesh::Advice;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -237,9 +238,7 @@ pub enum CheckpointError {
         length: usize,
     },
     /// The checkpoint has another version.
-    #[error(
-        "the checkpoint has version {found}, this program reads version {supported}: run it with the program that wrote it"
-    )]
+    #[error("the checkpoint has version {found}, this program reads version {supported}")]
     Version {
         /// Version of the checkpoint.
         found: u32,
@@ -247,9 +246,7 @@ pub enum CheckpointError {
         supported: u32,
     },
     /// The file is damaged.
-    #[error(
-        "the checkpoint is damaged: its checksum is {found:08x} instead of {expected:08x}; use an earlier one"
-    )]
+    #[error("the checkpoint is damaged: its checksum is {found:08x} instead of {expected:08x}")]
     Damaged {
         /// Checksum in the file.
         expected: u32,
@@ -264,7 +261,7 @@ pub enum CheckpointError {
     Encode(String),
     /// The sheet has another size.
     #[error(
-        "the checkpoint is of a sheet of {} vertices and {} edges, the model has {} and {}: supply the model that it was made with",
+        "the checkpoint is of a sheet of {} vertices and {} edges, the model has {} and {}",
         expected[0], expected[1], found[0], found[1]
     )]
     OtherSize {
@@ -274,9 +271,7 @@ pub enum CheckpointError {
         found: [usize; 2],
     },
     /// The sheet is another one.
-    #[error(
-        "the {what} of the model are not those of the checkpoint: supply the model that it was made with"
-    )]
+    #[error("the {what} of the model are not those of the checkpoint")]
     OtherSheet {
         /// What differs.
         what: &'static str,
@@ -293,7 +288,8 @@ pub enum CheckpointError {
     },
     /// A number of the state is not finite.
     #[error(
-        "{what} of the checkpoint have the value {value} at index {index}: the checkpoint was changed from outside; use an earlier one"
+        "{what} of the checkpoint have the value {value} at index {index}: the checkpoint was \
+         changed from outside"
     )]
     NotFinite {
         /// Which array.
@@ -314,20 +310,38 @@ pub enum CheckpointError {
         vertices: usize,
     },
     /// Contact is missing or was not expected.
-    #[error("the checkpoint was made {} contact and is resumed {} it: supply the contact that it was made with",
+    #[error("the checkpoint was made {} contact and is resumed {} it",
         if *.expected { "with" } else { "without" }, if *.expected { "without" } else { "with" })]
     Contact {
         /// Whether the checkpoint has contact.
         expected: bool,
     },
     /// A chart is missing or was not expected.
-    #[error("the checkpoint is of a simulation {}: use `{}`",
-        if *.in_chart { "in a chart" } else { "without a chart" },
-        if *.in_chart { "Simulation::resume_in_chart" } else { "Simulation::resume" })]
+    #[error("the checkpoint is of a simulation {}",
+        if *.in_chart { "in a chart" } else { "without a chart" })]
     Chart {
         /// Whether the checkpoint is of a simulation in a chart.
         in_chart: bool,
     },
+}
+
+impl Advice for CheckpointError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoCheckpoint { .. } => Some("give the bytes of a checkpoint"),
+            Self::Version { .. } => Some("continue with the program that wrote it"),
+            Self::Damaged { .. } | Self::NotFinite { .. } | Self::NoSuchVertex { .. } => {
+                Some("use an earlier checkpoint")
+            }
+            Self::OtherSize { .. } | Self::OtherSheet { .. } => {
+                Some("supply the model that the checkpoint was made with")
+            }
+            Self::Contact { .. } => Some("supply the contact that the checkpoint was made with"),
+            Self::Chart { in_chart: true } => Some("use `Simulation::resume_in_chart`"),
+            Self::Chart { in_chart: false } => Some("use `Simulation::resume`"),
+            Self::Decode(..) | Self::Encode(..) | Self::Length { .. } => None,
+        }
+    }
 }
 
 impl Checkpoint {

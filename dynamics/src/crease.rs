@@ -3,7 +3,7 @@
 
 use crate::profile::{Profile, ProfileError};
 use crate::{HessianSink, Potential};
-use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId};
+use isosheet_mesh::{Advice, EdgeId, Sheet, Topology, VertexId};
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -101,13 +101,13 @@ pub struct CreaseSpring {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CreaseError {
     /// An edge does not exist or has one face only.
-    #[error("{edge} has no fold angle: springs belong on edges between two faces")]
+    #[error("{edge} has no fold angle")]
     NotInterior {
         /// The edge.
         edge: EdgeId,
     },
     /// A stiffness is negative or not finite.
-    #[error("the spring at {edge} has stiffness {stiffness} N m; give a finite one of at least 0")]
+    #[error("the spring at {edge} has stiffness {stiffness} N m")]
     Stiffness {
         /// The edge.
         edge: EdgeId,
@@ -123,7 +123,7 @@ pub enum CreaseError {
         source: ProfileError,
     },
     /// A constant rest angle is beyond a fold that is shut.
-    #[error("the spring at {edge} rests at {angle} rad; give an angle from -pi to pi")]
+    #[error("the spring at {edge} rests at {angle} rad")]
     Angle {
         /// The edge.
         edge: EdgeId,
@@ -131,11 +131,24 @@ pub enum CreaseError {
         angle: f64,
     },
     /// A flexural rigidity is negative or not finite.
-    #[error("the flexural rigidity is {rigidity} N m; give a finite one of at least 0")]
+    #[error("the flexural rigidity is {rigidity} N m")]
     Rigidity {
         /// The rigidity given, N m.
         rigidity: f64,
     },
+}
+
+impl Advice for CreaseError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NotInterior { .. } => Some("put springs on edges between two faces"),
+            Self::Stiffness { .. } | Self::Rigidity { .. } => {
+                Some("give a finite one of at least 0")
+            }
+            Self::RestAngle { source, .. } => source.advice(),
+            Self::Angle { .. } => Some("give an angle from -pi to pi"),
+        }
+    }
 }
 
 /// Torsion springs at edges, with the energy

@@ -13,6 +13,7 @@ use crate::integrator::{
 use crate::rank::rod_rank;
 use crate::reaction::Balance;
 use crate::report::{StepError, StepOutcome, StepTotals};
+use crate::rod_forces::rod_forces;
 use crate::subdivision::Subdivision;
 use crate::{
     Fallback, Isometry, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
@@ -134,7 +135,11 @@ impl Engine {
         self.contact.as_ref().zip(self.moment.contacts.as_ref())
     }
 
-    /// Where the sheet is.
+    /// Forces of the rods in the last accepted sub-step; `None` where the method does not solve for them.
+    pub(crate) fn rod_forces(&self) -> Option<Vec<f64>> {
+        rod_forces(&self.model, &self.method, &self.moment.history.multipliers)
+    }
+
     /// Vertices that became pins at the start because they cannot move.
     pub(crate) fn immobile(&self) -> &[VertexId] {
         &self.fixed

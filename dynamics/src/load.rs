@@ -2,7 +2,7 @@
 
 use crate::potential::Force;
 use crate::profile::{Profile, ProfileError};
-use isosheet_mesh::{Topology, VertexId};
+use isosheet_mesh::{Advice, Topology, VertexId};
 use nalgebra::Vector3;
 
 /// Why a load cannot be made.
@@ -12,7 +12,7 @@ pub enum LoadError {
     #[error("the size of the load cannot be used: {0}")]
     Profile(#[from] ProfileError),
     /// The direction is zero or not finite.
-    #[error("the direction of the load is [{x}, {y}, {z}]; give finite numbers, not all zero")]
+    #[error("the direction of the load is [{x}, {y}, {z}]")]
     Direction {
         /// Along x.
         x: f64,
@@ -30,13 +30,24 @@ pub enum LoadError {
         vertex_count: usize,
     },
     /// A weight is not finite.
-    #[error("vertex {vertex} has the weight {weight} kg; give finite weights")]
+    #[error("vertex {vertex} has the weight {weight} kg")]
     Weight {
         /// The vertex, from 0.
         vertex: usize,
         /// Its weight, kilograms.
         weight: f64,
     },
+}
+
+impl Advice for LoadError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Profile(error) => error.advice(),
+            Self::Direction { .. } => Some("give finite numbers, not all zero"),
+            Self::Weight { .. } => Some("give finite weights"),
+            Self::NoSuchVertex { .. } => None,
+        }
+    }
 }
 
 fn direction(direction: [f64; 3]) -> Result<Vector3<f64>, LoadError> {

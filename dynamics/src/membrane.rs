@@ -2,24 +2,33 @@
 
 use crate::constraint::rows::point;
 use crate::{HessianSink, Potential};
-use isosheet_mesh::{EdgeId, Sheet, VertexId};
+use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
 /// Why the membrane of a sheet cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MembraneError {
     /// The stiffness is not positive or not finite.
-    #[error("the membrane stiffness is {stiffness} N/m; give a finite one above 0")]
+    #[error("the membrane stiffness is {stiffness} N/m")]
     Stiffness {
         /// The stiffness given, N/m.
         stiffness: f64,
     },
     /// Poisson's ratio is out of range.
-    #[error("Poisson's ratio is {ratio}; give a value from 0 to 0.5")]
+    #[error("Poisson's ratio is {ratio}")]
     Poisson {
         /// The ratio given.
         ratio: f64,
     },
+}
+
+impl Advice for MembraneError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Stiffness { .. } => Some("give a finite one above 0"),
+            Self::Poisson { .. } => Some("give a value from 0 to 0.5"),
+        }
+    }
 }
 
 /// Elastic energy of a sheet that stretches in its plane (St. Venant and Kirchhoff, plane stress, one

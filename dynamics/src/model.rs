@@ -9,7 +9,7 @@ use crate::motion::MotionError;
 use crate::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
 use crate::weak_isometry::{WeakIsometry, WeakRows};
 use isosheet_mesh::{
-    LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
+    Advice, LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
 };
 use supports::MovingPin;
 
@@ -20,10 +20,7 @@ pub enum ModelError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// The mass matrix belongs to another sheet.
-    #[error(
-        "the mass matrix is for {masses} vertices, the sheet has {vertex_count}; build it for \
-         this sheet"
-    )]
+    #[error("the mass matrix is for {masses} vertices, the sheet has {vertex_count}")]
     MassLength {
         /// Vertices of the mass matrix.
         masses: usize,
@@ -31,7 +28,7 @@ pub enum ModelError {
         vertex_count: usize,
     },
     /// A vertex has no mass.
-    #[error("{vertex} has mass {mass} kg; every vertex that is not pinned needs a positive mass")]
+    #[error("{vertex} has mass {mass} kg")]
     Mass {
         /// The vertex.
         vertex: VertexId,
@@ -55,9 +52,7 @@ pub enum ModelError {
         source: MotionError,
     },
     /// The isometry in weak form belongs to another sheet.
-    #[error(
-        "the isometry in weak form is for {found} vertices, the sheet has {vertex_count}; build it for this sheet"
-    )]
+    #[error("the isometry in weak form is for {found} vertices, the sheet has {vertex_count}")]
     WeakIsometry {
         /// Vertices that it was built for.
         found: usize,
@@ -65,11 +60,24 @@ pub enum ModelError {
         vertex_count: usize,
     },
     /// The damping rate is negative or not finite.
-    #[error("damping rate is {rate}; give a finite rate of at least 0 per second")]
+    #[error("damping rate is {rate}")]
     Damping {
         /// The rate given, 1/s.
         rate: f64,
     },
+}
+
+impl Advice for ModelError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Mesh(error) => error.advice(),
+            Self::MassLength { .. } | Self::WeakIsometry { .. } => Some("build it for this sheet"),
+            Self::Mass { .. } => Some("give every vertex that is not pinned a positive mass"),
+            Self::Motion { source, .. } => source.advice(),
+            Self::Damping { .. } => Some("give a finite rate of at least 0 per second"),
+            Self::NoSuchVertex { .. } => None,
+        }
+    }
 }
 
 /// What keeps the lengths of a sheet.

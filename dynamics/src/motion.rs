@@ -7,6 +7,7 @@ mod tests;
 pub use rigid::{AxisRotation, Keyframe, Kinematics, RigidDisplacement, RigidMotion, RigidProfile};
 
 use crate::profile::{Profile, ProfileError};
+use isosheet_mesh::Advice;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MotionError {
     /// A number is not finite.
-    #[error("{name} has the component {value}; give finite numbers")]
+    #[error("{name} has the component {value}")]
     NotFinite {
         /// The vector or rotation.
         name: &'static str,
@@ -32,15 +33,13 @@ pub enum MotionError {
         source: ProfileError,
     },
     /// The axis of a rotation has no direction.
-    #[error("the axis of the rotation is zero; give a direction")]
+    #[error("the axis of the rotation is zero")]
     NoAxis,
     /// There are no keyframes.
-    #[error("the motion has no keyframes; give at least one")]
+    #[error("the motion has no keyframes")]
     Empty,
     /// A time or pose is not finite.
-    #[error(
-        "keyframe {index} at t = {t} s has a time or pose that is not finite; give finite numbers"
-    )]
+    #[error("keyframe {index} at t = {t} s has a time or pose that is not finite")]
     Keyframe {
         /// The keyframe, from 0.
         index: usize,
@@ -48,7 +47,7 @@ pub enum MotionError {
         t: f64,
     },
     /// Times do not increase.
-    #[error("keyframe {index} at t = {t} s does not come after t = {previous} s; sort by time")]
+    #[error("keyframe {index} at t = {t} s does not come after t = {previous} s")]
     Order {
         /// The keyframe, from 0.
         index: usize,
@@ -58,16 +57,26 @@ pub enum MotionError {
         previous: f64,
     },
     /// The sense of a rotation is ambiguous.
-    #[error(
-        "the body turns by half a turn up to keyframe {index} at t = {t} s; add a keyframe between \
-         that says which way"
-    )]
+    #[error("the body turns by half a turn up to keyframe {index} at t = {t} s")]
     HalfTurn {
         /// The keyframe, from 0.
         index: usize,
         /// Its time, seconds.
         t: f64,
     },
+}
+
+impl Advice for MotionError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NotFinite { .. } | Self::Keyframe { .. } => Some("give finite numbers"),
+            Self::Profile { source, .. } => source.advice(),
+            Self::NoAxis => Some("give a direction"),
+            Self::Empty => Some("give at least one"),
+            Self::Order { .. } => Some("sort the keyframes by time"),
+            Self::HalfTurn { .. } => Some("add a keyframe between that says which way"),
+        }
+    }
 }
 
 /// The prescribed motion of a point as data: `offset + (x(t), y(t), z(t))`.

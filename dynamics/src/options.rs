@@ -1,8 +1,10 @@
 //! Options that are out of range.
 
+use isosheet_mesh::Advice;
+
 /// An option that makes no sense.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("option {name} is {value}; give a value from {min} to {max}")]
+#[error("option {name} is {value}, outside the range from {min} to {max}")]
 pub struct OptionsError {
     /// Name of the option.
     pub name: &'static str,
@@ -12,6 +14,12 @@ pub struct OptionsError {
     pub min: f64,
     /// Largest value that makes sense.
     pub max: f64,
+}
+
+impl Advice for OptionsError {
+    fn advice(&self) -> Option<&'static str> {
+        Some("give a value in this range")
+    }
 }
 
 impl OptionsError {

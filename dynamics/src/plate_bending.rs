@@ -5,7 +5,7 @@ mod stencil;
 mod tests;
 
 use crate::{HessianSink, Potential};
-use isosheet_mesh::{EdgeId, Sheet, VertexId};
+use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
 use nalgebra::Matrix3;
 use std::collections::BTreeMap;
 use stencil::Stencils;
@@ -14,7 +14,7 @@ use stencil::Stencils;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlateBendingError {
     /// The flexural rigidity is negative or not finite.
-    #[error("the flexural rigidity is {rigidity} N m; give a finite one of at least 0")]
+    #[error("the flexural rigidity is {rigidity} N m")]
     Rigidity {
         /// The rigidity given, N m.
         rigidity: f64,
@@ -27,6 +27,15 @@ pub enum PlateBendingError {
         /// Number of vertices.
         count: usize,
     },
+}
+
+impl Advice for PlateBendingError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Rigidity { .. } => Some("give a finite one of at least 0"),
+            Self::NoVertex { .. } => None,
+        }
+    }
 }
 
 /// Bending energy of a thin plate that is flat at rest,

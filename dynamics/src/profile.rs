@@ -1,5 +1,6 @@
 //! Scalar functions of time as data: what prescribed motions, driven creases and loads are made of.
 
+use isosheet_mesh::Advice;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -108,7 +109,7 @@ pub enum Interpolation {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ProfileError {
     /// A parameter is not finite.
-    #[error("`{name}` is {value}; give a finite number")]
+    #[error("`{name}` is {value}")]
     NotFinite {
         /// The parameter.
         name: &'static str,
@@ -116,7 +117,7 @@ pub enum ProfileError {
         value: f64,
     },
     /// A change takes no time.
-    #[error("the change begins at {begin} s and ends at {end} s; let it end later than it begins")]
+    #[error("the change begins at {begin} s and ends at {end} s")]
     Duration {
         /// The beginning, seconds.
         begin: f64,
@@ -124,10 +125,10 @@ pub enum ProfileError {
         end: f64,
     },
     /// There are no keyframes.
-    #[error("the profile has no keyframes; give at least one pair [time, value]")]
+    #[error("the profile has no keyframes")]
     NoKeyframes,
     /// A keyframe is not finite.
-    #[error("keyframe {index} is [{t}, {value}]; give a finite time and a finite value")]
+    #[error("keyframe {index} is [{t}, {value}]")]
     Keyframe {
         /// The keyframe, from 0.
         index: usize,
@@ -137,10 +138,7 @@ pub enum ProfileError {
         value: f64,
     },
     /// The times of the keyframes do not increase.
-    #[error(
-        "keyframe {index} at t = {t} s does not come after the one before at t = {previous} s; sort \
-         the keyframes by time, one for each time"
-    )]
+    #[error("keyframe {index} at t = {t} s does not come after the one before at t = {previous} s")]
     Order {
         /// The later keyframe, from 0.
         index: usize,
@@ -149,6 +147,18 @@ pub enum ProfileError {
         /// The time of the keyframe before, seconds.
         previous: f64,
     },
+}
+
+impl Advice for ProfileError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NotFinite { .. } => Some("give a finite number"),
+            Self::Duration { .. } => Some("let it end later than it begins"),
+            Self::NoKeyframes => Some("give at least one pair [time, value]"),
+            Self::Keyframe { .. } => Some("give a finite time and a finite value"),
+            Self::Order { .. } => Some("sort the keyframes by time, one for each time"),
+        }
+    }
 }
 
 impl Default for Profile {

@@ -5,7 +5,7 @@ use crate::contact::BodyMotionError;
 use crate::feasibility::Excess;
 use crate::support::Support;
 use isosheet_coords::linalg::LinalgError;
-use isosheet_mesh::{EdgeId, VertexId};
+use isosheet_mesh::{Advice, EdgeId, VertexId};
 
 /// How a step was obtained.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -92,7 +92,7 @@ impl StepReport {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// The step size makes no sense.
-    #[error("step size {h} s at t = {t} s; give a positive finite step")]
+    #[error("the step size is {h} s at t = {t} s")]
     StepSize {
         /// The step size given, seconds.
         h: f64,
@@ -100,13 +100,13 @@ pub enum StepError {
         t: f64,
     },
     /// The time of the state is not finite.
-    #[error("the state is at t = {t} s; start at a finite time")]
+    #[error("the time of the state is {t} s")]
     Time {
         /// The time given, seconds.
         t: f64,
     },
     /// An energy or the work of a force is not finite.
-    #[error("{quantity} is {value} J at t = {t} s; check the user-supplied potentials and forces")]
+    #[error("{quantity} is {value} J at t = {t} s")]
     NonFiniteEnergy {
         /// Which one.
         quantity: &'static str,
@@ -118,8 +118,7 @@ pub enum StepError {
     /// No positions with the rest lengths were found.
     #[error(
         "no positions with the rest lengths were found near the ones given: the best have edge \
-         strain {strain:e} after {iterations} iterations, {tolerance:e} was asked for; start \
-         closer to the rest lengths or raise the tolerance"
+         strain {strain:e} after {iterations} iterations, {tolerance:e} was asked for"
     )]
     Projection {
         /// Relative edge length error reached.
@@ -130,9 +129,7 @@ pub enum StepError {
         iterations: usize,
     },
     /// A position or velocity of the state is not finite.
-    #[error(
-        "{vertex} has position or velocity {value} at t = {t} s; the state was changed from outside"
-    )]
+    #[error("{vertex} has position or velocity {value} at t = {t} s")]
     NonFiniteState {
         /// The vertex.
         vertex: VertexId,
@@ -142,7 +139,7 @@ pub enum StepError {
         t: f64,
     },
     /// A prescribed motion is not finite.
-    #[error("the prescribed motion of {support} gives {value} at t = {t} s; check the function")]
+    #[error("the prescribed motion of {support} gives {value} at t = {t} s")]
     NonFiniteMotion {
         /// What moves.
         support: Support,
@@ -155,9 +152,7 @@ pub enum StepError {
     #[error(transparent)]
     Body(#[from] BodyMotionError),
     /// The start state is not where a support has it.
-    #[error(
-        "{support} is {distance} m away from its vertex at t = {t} s; start with the vertex in place"
-    )]
+    #[error("{support} is {distance} m away from its vertex at t = {t} s")]
     OffSupport {
         /// The support.
         support: Support,
@@ -167,9 +162,7 @@ pub enum StepError {
         t: f64,
     },
     /// A potential or force returned a value that is not finite.
-    #[error(
-        "a potential or force is {value} at {vertex}, t = {t} s; check the user-supplied functions"
-    )]
+    #[error("a potential or force is {value} at {vertex}, t = {t} s")]
     NonFiniteForce {
         /// The vertex.
         vertex: VertexId,
@@ -179,10 +172,7 @@ pub enum StepError {
         t: f64,
     },
     /// The start state does not have the rest lengths.
-    #[error(
-        "{edge} is {length} m long at t = {t} s, its rest length is {rest} m; start from a \
-         state on the constraints (see `project_positions`)"
-    )]
+    #[error("{edge} is {length} m long at t = {t} s, its rest length is {rest} m")]
     OffConstraints {
         /// The worst edge.
         edge: EdgeId,
@@ -195,8 +185,8 @@ pub enum StepError {
     },
     /// The start state of a sheet that is isometric in weak form does not satisfy its equations.
     #[error(
-        "the strain around {vertex} is {strain:e} in the mean at t = {t} s, which the isometry in weak form does \
-         not allow; start from a state that satisfies it (see `project_positions`)"
+        "the strain around {vertex} is {strain:e} in the mean at t = {t} s, which the isometry in \
+         weak form does not allow"
     )]
     OffWeakIsometry {
         /// The worst vertex.
@@ -208,8 +198,8 @@ pub enum StepError {
     },
     /// Newton's method did not converge.
     #[error(
-        "Newton's method stopped at residual {residual:e}, edge strain {strain:e} after \
-         {iterations} iterations at t = {t} s, h = {h} s; take a smaller step"
+        "Newton's method stopped at residual {residual:e}, edge strain {strain:e} after {iterations} \
+         iterations at t = {t} s, h = {h} s"
     )]
     NotConverged {
         /// Time at the start of the step, seconds.
@@ -226,7 +216,7 @@ pub enum StepError {
     /// A damped step would have created energy.
     #[error(
         "a step of {h} s at t = {t} s would create {gain} J (kinetic energy {kinetic} J): rods in \
-         compression snap through faster than the step resolves; take a smaller step"
+         compression snap through faster than the step resolves"
     )]
     EnergyGain {
         /// Time at the start of the step, seconds.
@@ -239,9 +229,7 @@ pub enum StepError {
         kinetic: f64,
     },
     /// A step would have ended in contact.
-    #[error(
-        "a step of {h} s at t = {t} s would close the smallest gap to {gap} m; take a smaller step"
-    )]
+    #[error("a step of {h} s at t = {t} s would close the smallest gap to {gap} m")]
     Contact {
         /// Time at the start of the step, seconds.
         t: f64,
@@ -254,8 +242,7 @@ pub enum StepError {
     #[error(
         "the length constraints are dependent or nearly so at t = {t} s ({rank_deficiency} \
          redundant, smallest singular value of the rigidity matrix with unit rods \
-         {smallest_singular_value:e}): this integrator has no unique rod forces there. Start from a \
-         folded state, displace the sheet with `leave_flat`, allow a `Fallback`, or use BDF2"
+         {smallest_singular_value:e}): this integrator has no unique rod forces there"
     )]
     RankDeficient {
         /// Time, seconds.
@@ -268,8 +255,7 @@ pub enum StepError {
     },
     /// Moving supports ask for more than the rods allow.
     #[error(
-        "{} asks for {} m more than the rods allow at t = {} s; the taut state at t = {t} s is kept. Stop its \
-         motion before that, or allow `Unsatisfiable::StopTaut`",
+        "{} asks for {} m more than the rods allow at t = {} s (the taut state at t = {t} s is kept)",
         excess.support, excess.distance, excess.t
     )]
     Unsatisfiable {
@@ -310,6 +296,51 @@ pub enum StepError {
         /// The reason.
         source: LinalgError,
     },
+}
+
+impl Advice for StepError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::StepSize { .. } => Some("give a positive finite step"),
+            Self::Time { .. } => Some("start at a finite time"),
+            Self::NonFiniteEnergy { .. } => Some("check the user-supplied potentials and forces"),
+            Self::Projection { .. } => {
+                Some("start closer to the rest lengths or raise the tolerance")
+            }
+            Self::NonFiniteState { .. } => Some("set finite positions and velocities"),
+            Self::NonFiniteMotion { .. } => Some("check the function"),
+            Self::Body(error) => error.advice(),
+            Self::OffSupport { .. } => Some("start with the vertex in place"),
+            Self::NonFiniteForce { .. } => Some("check the user-supplied functions"),
+            Self::OffConstraints { .. } => {
+                Some("start from a state on the constraints (see `project_positions`)")
+            }
+            Self::OffWeakIsometry { .. } => {
+                Some("start from a state that satisfies it (see `project_positions`)")
+            }
+            Self::NotConverged { .. } | Self::EnergyGain { .. } | Self::Contact { .. } => {
+                Some("take a smaller step")
+            }
+            Self::RankDeficient { .. } => Some(
+                "start from a folded state, displace the sheet with `leave_flat`, allow a `Fallback`, or use \
+                 BDF2",
+            ),
+            Self::Unsatisfiable { .. } => {
+                Some("stop the motion before that, or allow `Unsatisfiable::StopTaut`")
+            }
+            Self::StepTooSmall {
+                dependent_rods: 0,
+                cause,
+                ..
+            } => cause.advice(),
+            Self::StepTooSmall { .. } => Some(
+                "model the sheet as elastic (`SheetModel::with_membrane`) or as isometric in weak form \
+                 (`SheetModel::with_weak_isometry`)",
+            ),
+            Self::Chart { source, .. } => source.advice(),
+            Self::Linalg { source, .. } => source.advice(),
+        }
+    }
 }
 
 /// Counters of attempted sub-steps, filled also when they fail.
@@ -368,13 +399,10 @@ pub(crate) fn not_converged(
     }
 }
 
-/// What to do about sheets whose rods may lock.
+/// How many rods depend on others, where some do.
 fn locking(dependent_rods: usize) -> String {
     if dependent_rods == 0 {
         return String::new();
     }
-    format!(
-        ", where {dependent_rods} rods depend on others and may lock: model the sheet as elastic \
-         (SheetModel::with_membrane) or as isometric in weak form (SheetModel::with_weak_isometry)"
-    )
+    format!(", where {dependent_rods} rods depend on others and may lock")
 }

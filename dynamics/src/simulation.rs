@@ -278,6 +278,32 @@ impl Simulation {
         }
     }
 
+    /// Force of each rod in the last accepted sub-step, newtons, tension positive, in the order of the edges:
+    /// the multiplier of its length equation times its length.
+    ///
+    /// `None` where the method does not solve for these forces: in charts, for sheets without rigid rods
+    /// (elastic ones, and those that are isometric in weak form) and in projection
+    /// ([`Method::solves_for_rod_forces`]).
+    ///
+    /// | method | the forces are those |
+    /// |---|---|
+    /// | BDF2, implicit Euler | at the end of the sub-step |
+    /// | energy-momentum | over the sub-step, in the mean |
+    /// | RATTLE | at the start of the sub-step, in compositions of the last of its parts |
+    ///
+    /// All forces are zero before the first step, after a sub-step of the [`Fallback`](crate::Fallback) and
+    /// in free fall under the energy-momentum method. The force of a rod between two vertices that cannot
+    /// move is zero, since nothing determines it. Where rods depend on each other, as in a flat sheet, they
+    /// can share a load in many ways, and these forces are one of them; their sums at each free vertex are
+    /// unique. Without the share of the projection that ends a damped step, which is of the size of the
+    /// tolerances.
+    pub fn rod_forces(&self) -> Option<Vec<f64>> {
+        match &self.engine {
+            Engine::Free(engine) => engine.rod_forces(),
+            Engine::Chart(_) => None,
+        }
+    }
+
     /// The model.
     pub fn model(&self) -> &SheetModel {
         match &self.engine {

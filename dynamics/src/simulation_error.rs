@@ -6,6 +6,7 @@ use crate::contact::ContactError;
 use crate::options::OptionsError;
 use crate::report::StepError;
 use isosheet_coords::linalg::LinalgError;
+use isosheet_mesh::Advice;
 
 /// Why a simulation cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -40,8 +41,8 @@ pub enum SimulationError {
     Contact(#[from] ContactError),
     /// A one-sided constraint is in a scene of a conservative method.
     #[error(
-        "vertex constraint {index} is one-sided, which the conservative methods have no place for: an \
-         impact loses energy. Use BDF2, implicit Euler or projection"
+        "vertex constraint {index} is one-sided, which the conservative methods have no place for \
+         (an impact loses energy)"
     )]
     OneSided {
         /// Place in the order in which the constraints were added.
@@ -49,15 +50,31 @@ pub enum SimulationError {
     },
     /// An elastic sheet, or one that is isometric in weak form, is in a scene of a method that needs rods.
     #[error(
-        "the sheet has no rigid rods (it is elastic, or isometric in weak form), and the method needs them; use BDF2 or implicit Euler"
+        "the sheet has no rigid rods (it is elastic, or isometric in weak form), and the method \
+         needs them"
     )]
     Elastic,
     /// The checkpoint does not belong to the model or cannot be resumed this way.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
     /// Step control by subdivision was asked for a chart, which has its own.
-    #[error(
-        "a simulation in a chart controls its steps by `ChartOptions::control`; leave `StepControl` out"
-    )]
+    #[error("a simulation in a chart controls its steps by `ChartOptions::control`")]
     ChartControl,
+}
+
+impl Advice for SimulationError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Options(error) => error.advice(),
+            Self::Start(error) => error.advice(),
+            Self::Linalg(error) => error.advice(),
+            Self::Chart(error) => error.advice(),
+            Self::Contact(error) => error.advice(),
+            Self::OneSided { .. } => Some("use BDF2, implicit Euler or projection"),
+            Self::Elastic => Some("use BDF2 or implicit Euler"),
+            Self::Checkpoint(error) => error.advice(),
+            Self::ChartControl => Some("leave `StepControl` out"),
+            Self::StateLength { .. } => None,
+        }
+    }
 }

@@ -11,7 +11,7 @@ pub(crate) use blocks::{Block, BlockRows, RingBlocks};
 pub(crate) use rows::WeakRows;
 
 use crate::membrane::{Membrane, MembraneError};
-use isosheet_mesh::{FaceId, Sheet, VertexId};
+use isosheet_mesh::{Advice, FaceId, Sheet, VertexId};
 use plane::RestPlane;
 
 /// Stiffness of the membrane in units of `D / h^2`, with the flexural rigidity `D` and the size `h` of the
@@ -30,8 +30,7 @@ const MEMBRANE_PER_BENDING: f64 = 100.0;
 pub enum WeakIsometryError {
     /// The rest shape is not flat.
     #[error(
-        "the rest shape is not a plane: {vertex} is {distance} m away from the plane of the others. Build the \
-         sheet from flat positions, and start the simulation from the bent ones"
+        "the rest shape is not a plane: {vertex} is {distance} m away from the plane of the others"
     )]
     NotFlat {
         /// The vertex furthest from the plane.
@@ -40,9 +39,7 @@ pub enum WeakIsometryError {
         distance: f64,
     },
     /// The rest shape is folded over.
-    #[error(
-        "the rest shape lies in a plane, but {face} is turned over in it; build the sheet from unfolded positions"
-    )]
+    #[error("the rest shape lies in a plane, but {face} is turned over in it")]
     Folded {
         /// The face.
         face: FaceId,
@@ -51,14 +48,26 @@ pub enum WeakIsometryError {
     #[error(transparent)]
     Membrane(#[from] MembraneError),
     /// The flexural rigidity is not positive or not finite.
-    #[error(
-        "the flexural rigidity is {rigidity} N m; give a finite one above 0, or the stiffness of the membrane \
-         with `WeakIsometry::new`"
-    )]
+    #[error("the flexural rigidity is {rigidity} N m")]
     Rigidity {
         /// The rigidity given, N m.
         rigidity: f64,
     },
+}
+
+impl Advice for WeakIsometryError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NotFlat { .. } => Some(
+                "build the sheet from flat positions, and start the simulation from the bent ones",
+            ),
+            Self::Folded { .. } => Some("build the sheet from unfolded positions"),
+            Self::Membrane(error) => error.advice(),
+            Self::Rigidity { .. } => Some(
+                "give a finite one above 0, or the stiffness of the membrane with `WeakIsometry::new`",
+            ),
+        }
+    }
 }
 
 /// Isometry in weak form: lengths are kept in the mean over the faces around each vertex, to the tolerance of

@@ -27,6 +27,7 @@ mod format;
 
 pub use format::*;
 pub use isosheet_mesh as mesh;
+pub use isosheet_mesh::Advice;
 
 #[cfg(feature = "scene")]
 pub mod scene;

@@ -19,6 +19,7 @@
 //! lost ([`Output::checkpoint_interval`](crate::scene::Output::checkpoint_interval)).
 //!
 //! A [`Sweep`] makes many runs of one scene, and [`Collection`] makes one table of their summaries.
+//! With the feature `picture` a `Gallery` is one page of many runs.
 
 mod checkpoint;
 mod collect;
@@ -28,6 +29,8 @@ mod error;
 mod film;
 mod folder;
 mod frames;
+#[cfg(feature = "picture")]
+mod gallery;
 mod page;
 mod recording;
 mod replay;
@@ -40,6 +43,8 @@ pub use error::RunError;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
 pub use folder::SceneHash;
+#[cfg(feature = "picture")]
+pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Summary};
@@ -50,7 +55,7 @@ use crate::scene::{SceneFile, Setup, SupportForces};
 use crate::view::PageOptions;
 use checkpoint::Progress;
 use folder::{Contents, Material, RunFolder};
-use frames::{FrameFile, read_frames};
+use frames::{FrameFile, FrameShape, read_frames};
 use page::write_page_of;
 use recording::{open_scene, trajectory_of};
 use std::io::ErrorKind;
@@ -158,6 +163,7 @@ pub fn simulate(
         hash: material.hash,
         modelled,
         sheet: setup.sheet.clone(),
+        frame: FrameShape::of(&setup),
     };
     let mut stepping = match saved {
         None => start(file, &open, setup, facts.hash, clock)?,
@@ -212,6 +218,7 @@ struct Facts {
     hash: SceneHash,
     modelled: Vec<String>,
     sheet: isosheet_mesh::Sheet,
+    frame: FrameShape,
 }
 
 fn start<'a>(
@@ -268,8 +275,7 @@ fn resume<'a>(
 ) -> Result<Stepping<'a>, RunError> {
     let origins = setup.origins.clone();
     let path = folder.path(RunFolder::FRAMES);
-    let coordinates = setup.start.x.len();
-    let frames = FrameFile::resume(&path, progress.frames, coordinates);
+    let frames = FrameFile::resume(&path, progress.frames, FrameShape::of(&setup));
     let frames = frames.map_err(|e| RunError::Damaged {
         path,
         problem: e.to_string(),
@@ -302,7 +308,7 @@ fn finish(
     let clock = Instant::now();
     let topology = facts.sheet.topology();
     let path = folder.path(RunFolder::FRAMES);
-    let frames = read_frames(&path, 3 * topology.vertex_count());
+    let frames = read_frames(&path, facts.frame);
     let frames = frames.map_err(|source| RunError::Read {
         path: path.clone(),
         source,

@@ -1,5 +1,6 @@
 //! Angles at edges and vertices: fold angles, angle triples, the compatibility condition, flatness.
 
+use crate::Advice;
 use std::f64::consts::{PI, TAU};
 
 use thiserror::Error;
@@ -214,7 +215,9 @@ fn continued_angle(a: f64, b: f64, c: f64) -> f64 {
 pub enum AngleError {
     /// The angles violate the compatibility condition (Eq. 10 with both triangle inequalities).
     #[error(
-        "{edge} between {} and {} cannot fold so: its opposite vertices are {distance:.9e} m apart, but a fold reaches {:.9e} to {:.9e} m; at {} alpha = {:.9}, beta = {:.9} and gamma = {:.9} rad, and gamma must lie between {:.9} and {:.9} (Liu, Tang and Joneja 2007, Eq. 10); project the state onto the edge lengths first",
+        "{edge} between {} and {} cannot fold so: its opposite vertices are {distance:.9e} m apart, \
+         but a fold reaches {:.9e} to {:.9e} m; at {} alpha = {:.9}, beta = {:.9} and gamma = {:.9} \
+         rad, and gamma must lie between {:.9} and {:.9} (Liu, Tang and Joneja 2007, Eq. 10)",
         ends[0], ends[1], range[0], range[1], ends[*worse],
         triples[*worse].alpha, triples[*worse].beta, triples[*worse].gamma, triples[*worse].shut(), triples[*worse].flat()
     )]
@@ -232,6 +235,14 @@ pub enum AngleError {
         /// The distances that a fold reaches, in metres.
         range: [f64; 2],
     },
+}
+
+impl Advice for AngleError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Incompatible { .. } => Some("project the state onto the edge lengths first"),
+        }
+    }
 }
 
 /// Relative tolerance of [`check_compatibility`] that suits states computed in `f64`: exactly flat and shut

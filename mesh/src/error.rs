@@ -1,5 +1,6 @@
 //! What can be wrong with a mesh: each error names the element, the value and the remedy.
 
+use crate::Advice;
 use thiserror::Error;
 
 use crate::{EdgeId, FaceId, VertexId};
@@ -9,12 +10,10 @@ use crate::{EdgeId, FaceId, VertexId};
 #[non_exhaustive]
 pub enum TopologyError {
     /// The face list is empty.
-    #[error("the mesh has no faces; a sheet needs at least one triangle")]
+    #[error("the mesh has no faces")]
     NoFaces,
     /// More vertices or faces than 32-bit ids can count.
-    #[error(
-        "the mesh has {count} {what}, more than the {limit} that 32-bit ids can number; split it into several sheets"
-    )]
+    #[error("the mesh has {count} {what}, more than the {limit} that 32-bit ids can number")]
     TooLarge {
         /// "vertices" or "faces".
         what: &'static str,
@@ -25,7 +24,8 @@ pub enum TopologyError {
     },
     /// A corner refers to a vertex that does not exist.
     #[error(
-        "{face} refers to vertex {vertex}, but there are only {vertex_count} vertices (indices start at 0); correct the index or add the vertex"
+        "{face} refers to vertex {vertex}, but there are only {vertex_count} vertices (indices start \
+         at 0)"
     )]
     IndexOutOfRange {
         /// The face.
@@ -36,7 +36,7 @@ pub enum TopologyError {
         vertex_count: usize,
     },
     /// A face uses one vertex twice.
-    #[error("{face} uses {vertex} more than once, so it is not a triangle; remove the face")]
+    #[error("{face} uses {vertex} more than once, so it is not a triangle")]
     RepeatedVertex {
         /// The face.
         face: FaceId,
@@ -44,7 +44,7 @@ pub enum TopologyError {
         vertex: VertexId,
     },
     /// Two faces have the same three corners.
-    #[error("{first} and {second} have the same three corners {corners:?}; remove one of them")]
+    #[error("{first} and {second} have the same three corners {corners:?}")]
     DuplicateFace {
         /// The first of the two.
         first: FaceId,
@@ -55,7 +55,8 @@ pub enum TopologyError {
     },
     /// More than two faces meet at an edge.
     #[error(
-        "{count} faces meet at the edge between {a} and {b} (among them {}, {} and {}); a surface has at most two: separate the sheets there by duplicating the edge's vertices",
+        "{count} faces meet at the edge between {a} and {b} (among them {}, {} and {}), and a \
+         surface has at most two",
         faces[0], faces[1], faces[2]
     )]
     NonManifoldEdge {
@@ -69,9 +70,7 @@ pub enum TopologyError {
         faces: [FaceId; 3],
     },
     /// Two neighbouring faces run along their common edge in the same direction.
-    #[error(
-        "{first} and {second} both run from {a} to {b}, so their windings disagree; reverse the corners of one, or pass the faces through `orient_consistently`"
-    )]
+    #[error("{first} and {second} both run from {a} to {b}, so their windings disagree")]
     InconsistentWinding {
         /// Tail of the edge as both faces see it.
         a: VertexId,
@@ -84,7 +83,8 @@ pub enum TopologyError {
     },
     /// The faces around a vertex form more than one fan.
     #[error(
-        "the {degree} faces at {vertex} form more than one fan ({reached} of them are connected through edges): a bow tie; duplicate the vertex, one copy per fan"
+        "the {degree} faces at {vertex} form more than one fan ({reached} of them are connected \
+         through edges): a bow tie"
     )]
     BowTieVertex {
         /// The vertex.
@@ -95,19 +95,43 @@ pub enum TopologyError {
         reached: usize,
     },
     /// No face uses a vertex.
-    #[error("{vertex} belongs to no face; remove it (and renumber), or add the missing face")]
+    #[error("{vertex} belongs to no face")]
     UnreferencedVertex {
         /// The vertex.
         vertex: VertexId,
     },
     /// The surface has only one side.
     #[error(
-        "the surface is not orientable (a Moebius band): going round it, {face} would have to be wound both ways; cut it open along some edges"
+        "the surface is not orientable (a Moebius band): going round it, {face} would have to be \
+         wound both ways"
     )]
     NonOrientable {
         /// A face at which the two windings meet.
         face: FaceId,
     },
+}
+
+impl Advice for TopologyError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoFaces => Some("give at least one triangle"),
+            Self::TooLarge { .. } => Some("split it into several sheets"),
+            Self::IndexOutOfRange { .. } => Some("correct the index or add the vertex"),
+            Self::RepeatedVertex { .. } => Some("remove the face"),
+            Self::DuplicateFace { .. } => Some("remove one of them"),
+            Self::NonManifoldEdge { .. } => {
+                Some("separate the sheets there by duplicating the edge's vertices")
+            }
+            Self::InconsistentWinding { .. } => {
+                Some("reverse the corners of one, or pass the faces through `orient_consistently`")
+            }
+            Self::BowTieVertex { .. } => Some("duplicate the vertex, one copy per fan"),
+            Self::UnreferencedVertex { .. } => {
+                Some("remove it (and renumber), or add the missing face")
+            }
+            Self::NonOrientable { .. } => Some("cut it open along some edges"),
+        }
+    }
 }
 
 /// A mesh that cannot be a sheet of rigid triangles.
@@ -118,9 +142,7 @@ pub enum MeshError {
     #[error(transparent)]
     Topology(#[from] TopologyError),
     /// The position array has the wrong length.
-    #[error(
-        "the position array has {got} numbers, but three per vertex are needed ({expected}); pass x0 y0 z0 x1 y1 z1 and so on"
-    )]
+    #[error("the position array has {got} numbers, but three per vertex are needed ({expected})")]
     WrongLength {
         /// Its length.
         got: usize,
@@ -128,7 +150,7 @@ pub enum MeshError {
         expected: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("coordinate {} of {vertex} is {value}; every coordinate must be a finite number", ["x", "y", "z"][*axis])]
+    #[error("coordinate {} of {vertex} is {value}", ["x", "y", "z"][*axis])]
     NonFinite {
         /// The vertex.
         vertex: VertexId,
@@ -139,7 +161,8 @@ pub enum MeshError {
     },
     /// The corners of a face lie on a line, or at one point.
     #[error(
-        "{face} has no area: its altitude over its longest edge is {relative_altitude:e} of that edge ({longest:e} long), less than {limit:e}; remove the face or move its corners apart"
+        "{face} has no area: its altitude over its longest edge is {relative_altitude:e} of that \
+         edge ({longest:e} long), less than {limit:e}"
     )]
     ZeroAreaFace {
         /// The face.
@@ -153,7 +176,8 @@ pub enum MeshError {
     },
     /// A length or area over- or underflows.
     #[error(
-        "{edge} has length {length:e} m, outside the range 1e-70 to 1e70 m in which squared areas can be formed; change the unit"
+        "{edge} has length {length:e} m, outside the range 1e-70 to 1e70 m in which squared areas \
+         can be formed"
     )]
     LengthOutOfRange {
         /// The edge.
@@ -163,7 +187,8 @@ pub enum MeshError {
     },
     /// The angles about an interior vertex do not add up to a full turn.
     #[error(
-        "the angles about {vertex} add up to 2 pi minus {defect:.3e} rad, more than {tolerance:e} from a full turn, so the sheet cannot be laid flat there; flatten it, or cut it open at this vertex"
+        "the angles about {vertex} add up to 2 pi minus {defect:.3e} rad, more than {tolerance:e} \
+         from a full turn, so the sheet cannot be laid flat there"
     )]
     NotDevelopable {
         /// The vertex.
@@ -174,11 +199,25 @@ pub enum MeshError {
         tolerance: f64,
     },
     /// A mass or density is not a positive number.
-    #[error("the {what} is {value}; it must be a positive, finite number")]
+    #[error("the {what} is {value}")]
     NotPositive {
         /// Which quantity.
         what: &'static str,
         /// The value found.
         value: f64,
     },
+}
+
+impl Advice for MeshError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Topology(error) => error.advice(),
+            Self::WrongLength { .. } => Some("pass x0 y0 z0 x1 y1 z1 and so on"),
+            Self::NonFinite { .. } => Some("give finite coordinates"),
+            Self::ZeroAreaFace { .. } => Some("remove the face or move its corners apart"),
+            Self::LengthOutOfRange { .. } => Some("change the unit"),
+            Self::NotDevelopable { .. } => Some("flatten it, or cut it open at this vertex"),
+            Self::NotPositive { .. } => Some("give a positive, finite number"),
+        }
+    }
 }

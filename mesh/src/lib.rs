@@ -17,6 +17,7 @@
 //! The model is that of Y.-J. Liu, K. Tang and A. Joneja, "Modeling dynamic developable meshes by the
 //! Hamilton principle", Computer-Aided Design 39 (2007) 719-731.
 
+mod advice;
 mod angles;
 mod area;
 mod build;
@@ -38,6 +39,7 @@ mod testing;
 mod topology;
 mod vec3;
 
+pub use advice::Advice;
 pub use angles::{
     AngleError, AngleTriple, COMPATIBILITY_TOLERANCE, EdgeAngles, angle_from_lengths,
     check_compatibility, fold_angle,

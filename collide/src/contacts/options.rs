@@ -5,7 +5,7 @@ use isosheet_dynamics::SheetModel;
 use isosheet_dynamics::contact::{
     BarrierError, BarrierPotential, ContactLaws, FrictionError, Stiffness,
 };
-use isosheet_mesh::area_from_lengths;
+use isosheet_mesh::{Advice, area_from_lengths};
 use thiserror::Error;
 
 /// Options of [`super::Contacts`]. Start from [`ContactOptions::for_sheet`].
@@ -40,11 +40,12 @@ pub enum ContactsError {
     #[error(transparent)]
     Barrier(#[from] BarrierError),
     /// The thickness is negative or not finite.
-    #[error("thickness {0} m: give zero or a positive length")]
+    #[error("the thickness is {0} m")]
     Thickness(f64),
     /// The activation distance is lost in the round-off of distances.
     #[error(
-        "activation distance {activation} m with thickness {thickness} m: distances cannot tell them apart, choose lengths closer to each other"
+        "distances cannot tell the activation distance {activation} m from the thickness {thickness} \
+         m"
     )]
     Resolution {
         /// The activation distance.
@@ -53,9 +54,7 @@ pub enum ContactsError {
         thickness: f64,
     },
     /// The speed that counts as rest is not positive.
-    #[error(
-        "rest_speed {0} m/s: give a positive speed, for instance 1 % of a rod length per second"
-    )]
+    #[error("rest_speed is {0} m/s")]
     RestSpeed(f64),
     /// An option of the collision detection makes no sense.
     #[error(transparent)]
@@ -68,7 +67,8 @@ pub enum ContactsError {
     Friction(#[from] FrictionError),
     /// Neighbouring parts of a flat sheet would repel each other.
     #[error(
-        "face {face} is only {height} m high, and the sheet repels itself up to {reach} m (activation and thickness): choose them below that height, or merge the short edges"
+        "face {face} is only {height} m high, and the sheet repels itself up to {reach} m \
+         (activation and thickness)"
     )]
     Reach {
         /// The face.
@@ -78,6 +78,23 @@ pub enum ContactsError {
         /// Activation distance plus thickness, metres.
         reach: f64,
     },
+}
+
+impl Advice for ContactsError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Barrier(error) => error.advice(),
+            Self::Thickness(..) => Some("give zero or a positive length"),
+            Self::Resolution { .. } => Some("choose lengths closer to each other"),
+            Self::RestSpeed(..) => {
+                Some("give a positive speed, for instance 1 % of a rod length per second")
+            }
+            Self::Ccd(error) => error.advice(),
+            Self::Obstacle(error) => error.advice(),
+            Self::Friction(error) => error.advice(),
+            Self::Reach { .. } => Some("choose them below that height, or merge the short edges"),
+        }
+    }
 }
 
 /// Activation distance over the mean rod length.

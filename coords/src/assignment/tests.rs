@@ -273,5 +273,6 @@ fn volumes_are_those_of_unit_vectors() {
     }
     let error = ask(f64::NAN).unwrap_err();
     assert!(matches!(error, AssignmentError::Volume { volume } if volume.is_nan()));
-    assert!(error.to_string().contains("from 0 to 1"), "{error}");
+    let advice = error.advice().expect("there is a range");
+    assert!(advice.contains("from 0 to 1"), "{advice}");
 }

@@ -1,5 +1,7 @@
 //! Why a sparse direct solver fails.
 
+use isosheet_mesh::Advice;
+
 /// Why a sparse factorisation or solve failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LinalgError {
@@ -31,4 +33,10 @@ pub enum LinalgError {
         /// The reason that faer gives.
         reason: String,
     },
+}
+
+impl Advice for LinalgError {
+    fn advice(&self) -> Option<&'static str> {
+        None
+    }
 }

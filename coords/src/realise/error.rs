@@ -2,7 +2,7 @@
 
 use crate::assignment::Closure;
 use crate::placement_error::PlacementError;
-use isosheet_mesh::{AngleTriple, EdgeId, VertexId};
+use isosheet_mesh::{Advice, AngleTriple, EdgeId, VertexId};
 use thiserror::Error;
 
 /// Why a state cannot be realised, or coordinates cannot be read from it.
@@ -35,7 +35,8 @@ pub enum RealiseError {
         source: PlacementError,
     },
     /// The coordinates do not satisfy the closure equations.
-    #[error("{count} closure edges do not have their lengths; the worst is {} with strain {strain:e} (tolerance {tolerance:e})", worst.edge)]
+    #[error("{count} closure edges do not have their lengths: the worst is {} with strain {strain:e} \
+         (tolerance {tolerance:e})", worst.edge)]
     Closure {
         /// Number of closure edges.
         count: usize,
@@ -68,7 +69,8 @@ pub enum RealiseError {
     },
     /// A tolerance is out of range.
     #[error(
-        "option {name} is {value:e}; give a value from 2.2e-16, the round-off of a length, to {max:e}"
+        "option {name} is {value:e}, outside the range from 2.2e-16, the round-off of a length, to \
+         {max:e}"
     )]
     Tolerance {
         /// Name of the option.
@@ -78,4 +80,17 @@ pub enum RealiseError {
         /// Largest value that makes sense.
         max: f64,
     },
+}
+
+impl Advice for RealiseError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Placement { source, .. } => source.advice(),
+            Self::Tolerance { .. } => Some("give a value in this range"),
+            Self::Incompatible { .. }
+            | Self::Closure { .. }
+            | Self::WrongLength { .. }
+            | Self::NotFinite { .. } => None,
+        }
+    }
 }

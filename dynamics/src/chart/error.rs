@@ -3,7 +3,7 @@
 use crate::contact::BodyMotionError;
 use crate::support::Support;
 use isosheet_coords::ChartError;
-use isosheet_mesh::VertexId;
+use isosheet_mesh::{Advice, VertexId};
 use thiserror::Error;
 
 /// Why a step in a chart is refused.
@@ -13,7 +13,7 @@ pub enum ChartDynamicsError {
     #[error(transparent)]
     Chart(#[from] ChartError),
     /// An option is out of range.
-    #[error("{option} is {value}: {remedy}")]
+    #[error("{option} is {value}")]
     Option {
         /// Name of the option.
         option: &'static str,
@@ -32,7 +32,8 @@ pub enum ChartDynamicsError {
     },
     /// Too many coordinates for Cramer's rule.
     #[error(
-        "{dimension} coordinates are too many for Cramer's rule, whose cost grows with the fifth power; the limit is {limit}, use another solver"
+        "{dimension} coordinates are too many for Cramer's rule, whose cost grows with the fifth \
+         power (the limit is {limit})"
     )]
     TooManyCoordinates {
         /// Number of coordinates.
@@ -42,16 +43,14 @@ pub enum ChartDynamicsError {
     },
     /// The dense mass matrix is singular to working precision.
     #[error(
-        "the {dimension} x {dimension} mass matrix of the chart is singular to working precision; use the saddle-point solver or another chart"
+        "the {dimension} x {dimension} mass matrix of the chart is singular to working precision"
     )]
     SingularMass {
         /// Number of coordinates.
         dimension: usize,
     },
     /// The position given at the start has the wrong lengths.
-    #[error(
-        "the largest edge strain of the initial state is {strain:e}, above {limit:e}: start from a state with the rest lengths"
-    )]
+    #[error("the largest edge strain of the initial state is {strain:e}, above {limit:e}")]
     Strained {
         /// Largest strain.
         strain: f64,
@@ -70,36 +69,34 @@ pub enum ChartDynamicsError {
     },
     /// The chart pins a vertex that the model leaves free.
     #[error(
-        "the chart was built for other pins than the model's: {vertex} is pinned in the chart and free in the model; build the chart with some or all of the pins of the model"
+        "the chart was built for other pins than the model's: {vertex} is pinned in the chart and \
+         free in the model"
     )]
     OtherPins {
         /// The first such vertex.
         vertex: VertexId,
     },
     /// The chart pins a vertex that the model moves.
-    #[error(
-        "the chart pins {vertex} where it is, and the model moves it: build the chart with that vertex free"
-    )]
+    #[error("the chart pins {vertex} where it is, and the model moves it")]
     MovingPin {
         /// The vertex.
         vertex: VertexId,
     },
     /// The sheet is elastic, or isometric in weak form.
     #[error(
-        "the sheet has no rigid rods (it is elastic, or isometric in weak form), and charts need them; use BDF2 or implicit Euler without a chart"
+        "the sheet has no rigid rods (it is elastic, or isometric in weak form), and charts need them"
     )]
     Elastic,
     /// A one-sided constraint makes no closure equation.
-    #[error(
-        "vertex constraint {index} is one-sided; a chart takes two-sided constraints only. Use contact with a body, or a damped method without a chart"
-    )]
+    #[error("vertex constraint {index} is one-sided, and a chart takes two-sided constraints only")]
     OneSided {
         /// Place in the order in which the constraints were added.
         index: usize,
     },
     /// Closure equations cannot be met.
     #[error(
-        "at t = {t} s {support} is {distance} m off: the {equations} closure equations, of rank {rank}, cannot be met together with the edge lengths. Start closer to them, remove or move one, or take a smaller step"
+        "at t = {t} s {support} is {distance} m off: the {equations} closure equations, of rank \
+         {rank}, cannot be met together with the edge lengths"
     )]
     Closure {
         /// Time, seconds.
@@ -115,7 +112,8 @@ pub enum ChartDynamicsError {
     },
     /// The way on is closed by contact.
     #[error(
-        "at t = {t} s no step above {h:e} s keeps the sheet out of contact: it is caught between bodies or pins that move into each other, or the explicit scheme has become unstable; take smaller steps"
+        "at t = {t} s no step above {h:e} s keeps the sheet out of contact: it is caught between \
+         bodies or pins that move into each other, or the explicit scheme has become unstable"
     )]
     Contact {
         /// Time, seconds.
@@ -125,7 +123,8 @@ pub enum ChartDynamicsError {
     },
     /// One call of [`Simulation::step`](crate::Simulation::step) takes too long.
     #[error(
-        "{limit} steps, with those rejected, went no further than t = {t} s (near a singularity of the chart a step control crawls); ask for less time at once, take longer steps, loosen the tolerance or use a method without a chart"
+        "{limit} steps, with those rejected, went no further than t = {t} s (near a singularity of \
+         the chart a step control crawls)"
     )]
     TooManySteps {
         /// Time reached, seconds.
@@ -151,7 +150,8 @@ pub enum ChartDynamicsError {
     },
     /// The implicit equation for the momenta did not converge.
     #[error(
-        "the momenta of the symplectic Euler step did not converge (change {change:e}) at step {h:e} s: take a smaller step"
+        "the momenta of the symplectic Euler step did not converge (change {change:e}) at step {h:e} \
+         s"
     )]
     Momenta {
         /// Step, seconds.
@@ -161,7 +161,7 @@ pub enum ChartDynamicsError {
     },
     /// The edge lengths have drifted too far.
     #[error(
-        "at t = {t} s the largest edge strain is {strain:e}, above {limit:e}: the scheme has diverged; take smaller steps, exact positions or other equations of motion"
+        "at t = {t} s the largest edge strain is {strain:e}, above {limit:e}: the scheme has diverged"
     )]
     Diverged {
         /// Time, seconds.
@@ -175,7 +175,7 @@ pub enum ChartDynamicsError {
     #[error(transparent)]
     Body(#[from] BodyMotionError),
     /// A prescribed motion of a support is not finite.
-    #[error("the prescribed motion of {support} gives {value} at t = {t} s; check the function")]
+    #[error("the prescribed motion of {support} gives {value} at t = {t} s")]
     Motion {
         /// What moves.
         support: Support,
@@ -190,6 +190,45 @@ pub enum ChartDynamicsError {
         /// Time, seconds.
         t: f64,
     },
+}
+
+impl Advice for ChartDynamicsError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Chart(error) => error.advice(),
+            Self::Option { remedy, .. } => Some(remedy),
+            Self::TooManyCoordinates { .. } => Some("use another solver"),
+            Self::SingularMass { .. } => Some("use the saddle-point solver or another chart"),
+            Self::Strained { .. } => Some("start from a state with the rest lengths"),
+            Self::OtherPins { .. } => {
+                Some("build the chart with some or all of the pins of the model")
+            }
+            Self::MovingPin { .. } => Some("build the chart with that vertex free"),
+            Self::Elastic => Some("use BDF2 or implicit Euler without a chart"),
+            Self::OneSided { .. } => {
+                Some("use contact with a body, or a damped method without a chart")
+            }
+            Self::Closure { .. } => {
+                Some("start closer to them, remove or move one, or take a smaller step")
+            }
+            Self::Contact { .. } | Self::NotFinite { .. } => Some("take smaller steps"),
+            Self::TooManySteps { .. } => Some(
+                "ask for less time at once, take longer steps, loosen the tolerance or use a method without \
+                 a chart",
+            ),
+            Self::StepTooSmall { .. } => Some(
+                "loosen the tolerance, stay away from singularities of the chart, or use a method without a \
+                 chart",
+            ),
+            Self::Momenta { .. } => Some("take a smaller step"),
+            Self::Diverged { .. } => {
+                Some("take smaller steps, exact positions or other equations of motion")
+            }
+            Self::Body(error) => error.advice(),
+            Self::Motion { .. } => Some("check the function"),
+            Self::Combination { .. } | Self::WrongLength { .. } => None,
+        }
+    }
 }
 
 impl From<isosheet_coords::linalg::LinalgError> for ChartDynamicsError {

@@ -15,14 +15,14 @@ pub use spline::Spline;
 pub use surface::{Cylinder, Plane, SignedDistanceField, Sphere, Surface, SurfacePoint};
 
 use crate::motion::{MotionError, RigidMotion};
-use isosheet_mesh::VertexId;
+use isosheet_mesh::{Advice, VertexId};
 use nalgebra::{Matrix2x3, Matrix3, Vector3};
 
 /// Why a curve or surface cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ConstraintError {
     /// A number is not finite, or not positive where it has to be.
-    #[error("{what} is {value}; give a finite number{condition}")]
+    #[error("{what} is {value}")]
     Number {
         /// Which one.
         what: &'static str,
@@ -32,13 +32,13 @@ pub enum ConstraintError {
         condition: &'static str,
     },
     /// A direction has no length.
-    #[error("{what} has no direction; give a vector that is not zero")]
+    #[error("{what} has no direction")]
     NoDirection {
         /// Which one.
         what: &'static str,
     },
     /// Too few points.
-    #[error("{found} points make no {what}; give at least {needed}")]
+    #[error("{found} points make no {what}, which needs at least {needed}")]
     TooFewPoints {
         /// The curve.
         what: &'static str,
@@ -48,7 +48,7 @@ pub enum ConstraintError {
         needed: usize,
     },
     /// Two neighbouring points coincide.
-    #[error("points {first} and {second} coincide; leave one out")]
+    #[error("points {first} and {second} coincide")]
     Coincident {
         /// The first.
         first: usize,
@@ -68,6 +68,19 @@ pub enum ConstraintError {
         /// The largest that fits, metres.
         largest: f64,
     },
+}
+
+impl Advice for ConstraintError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Number { condition: "", .. } => Some("give a finite number"),
+            Self::Number { .. } => Some("give a finite number above 0"),
+            Self::NoDirection { .. } => Some("give a vector that is not zero"),
+            Self::TooFewPoints { .. } => Some("give more points"),
+            Self::Coincident { .. } => Some("leave one out"),
+            Self::Corner { .. } => Some("give a smaller radius"),
+        }
+    }
 }
 
 impl ConstraintError {

@@ -2,6 +2,7 @@
 
 use super::ContactLaws;
 use crate::{PAPER_GRAVITY, SheetModel, State};
+use isosheet_mesh::Advice;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -49,14 +50,24 @@ pub struct BarrierPotential {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum BarrierError {
     /// The activation distance is not a positive length.
-    #[error("activation distance {0} m: give a positive length, for instance 1e-3 of the sheet")]
+    #[error("the activation distance is {0} m")]
     Activation(f64),
     /// Powers of the activation distance are too small (or too large) for floating-point numbers.
-    #[error("activation distance {0} m: its fourth power cannot be represented, give a larger one")]
+    #[error("the fourth power of the activation distance {0} m cannot be represented")]
     Range(f64),
     /// The stiffness is not a positive energy.
-    #[error("stiffness {0} J: give a positive energy, or Stiffness::Automatic")]
+    #[error("the stiffness of the barrier is {0} J")]
     Stiffness(f64),
+}
+
+impl Advice for BarrierError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Activation(..) => Some("give a positive length, for instance 1e-3 of the sheet"),
+            Self::Range(..) => Some("give a larger one"),
+            Self::Stiffness(..) => Some("give a positive energy, or `Stiffness::Automatic`"),
+        }
+    }
 }
 
 impl BarrierPotential {

@@ -1,6 +1,7 @@
 //! Why contact cannot start.
 
 use super::BarrierError;
+use isosheet_mesh::Advice;
 use std::fmt;
 
 /// Two things that touch, by name.
@@ -36,8 +37,8 @@ impl fmt::Display for ContactPair {
 /// The prescribed motion of a body is not finite.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
-    "the prescribed motion of body {body} gives {value} at t = {t} s (a component of its pose, or of a velocity \
-     by differences about that time); check the function"
+    "the prescribed motion of body {body} gives {value} at t = {t} s (a component of its pose, \
+         or of a velocity by differences about that time)"
 )]
 pub struct BodyMotionError {
     /// The body, in the order in which they were added.
@@ -48,6 +49,12 @@ pub struct BodyMotionError {
     pub t: f64,
 }
 
+impl Advice for BodyMotionError {
+    fn advice(&self) -> Option<&'static str> {
+        Some("check the function")
+    }
+}
+
 /// Why contact cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ContactError {
@@ -55,9 +62,7 @@ pub enum ContactError {
     #[error(transparent)]
     Motion(#[from] BodyMotionError),
     /// Something touches or passes through.
-    #[error(
-        "{pair} touch at t = {t} s (gap {gap} m): move them apart; contact keeps a gap, it does not make one"
-    )]
+    #[error("{pair} touch at t = {t} s (gap {gap} m)")]
     Touching {
         /// What touches.
         pair: ContactPair,
@@ -67,9 +72,7 @@ pub enum ContactError {
         t: f64,
     },
     /// The contact belongs to another sheet.
-    #[error(
-        "contact was set up for {expected} vertices, the sheet has {found}: set it up for this sheet"
-    )]
+    #[error("contact was set up for {expected} vertices, the sheet has {found}")]
     Sheet {
         /// Vertices it was made for.
         expected: usize,
@@ -80,8 +83,20 @@ pub enum ContactError {
     #[error(transparent)]
     Barrier(#[from] BarrierError),
     /// The method has no place for contact.
-    #[error(
-        "this method has no place for contact: use BDF2 or implicit Euler, or a chart simulation with impulses"
-    )]
+    #[error("this method has no place for contact")]
     Method,
+}
+
+impl Advice for ContactError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Motion(error) => error.advice(),
+            Self::Touching { .. } => {
+                Some("move them apart: contact keeps a gap, it does not make one")
+            }
+            Self::Sheet { .. } => Some("set it up for this sheet"),
+            Self::Barrier(error) => error.advice(),
+            Self::Method => Some("use BDF2 or implicit Euler, or a chart simulation with impulses"),
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Smoothed Coulomb friction.
 
+use isosheet_mesh::Advice;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -70,7 +71,10 @@ const PASSAGE: f64 = 2.0;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FrictionError {
     /// A coefficient is negative or not a number.
-    #[error("friction coefficients {rest} (static) and {sliding} (kinetic): give numbers >= 0")]
+    #[error(
+        "the friction coefficients {rest} (static) and {sliding} (kinetic) are not both numbers of \
+         at least 0"
+    )]
     Coefficient {
         /// Static coefficient.
         rest: f64,
@@ -78,7 +82,7 @@ pub enum FrictionError {
         sliding: f64,
     },
     /// The kinetic coefficient exceeds the static one.
-    #[error("kinetic coefficient {sliding} above the static coefficient {rest}: swap them")]
+    #[error("the kinetic coefficient {sliding} is above the static coefficient {rest}")]
     Order {
         /// Static coefficient.
         rest: f64,
@@ -86,10 +90,20 @@ pub enum FrictionError {
         sliding: f64,
     },
     /// The smoothing distance is not positive.
-    #[error(
-        "smoothing distance {0} m: give a positive length, the speed that counts as rest times the step"
-    )]
+    #[error("the smoothing distance is {0} m")]
     Smoothing(f64),
+}
+
+impl Advice for FrictionError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Coefficient { .. } => Some("give numbers of at least 0"),
+            Self::Order { .. } => Some("swap them"),
+            Self::Smoothing(..) => {
+                Some("give a positive length, the speed that counts as rest times the step")
+            }
+        }
+    }
 }
 
 impl Friction {

@@ -1,5 +1,6 @@
 //! Files that appear only when they are complete.
 
+use isosheet_mesh::Advice;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -14,19 +15,19 @@ pub type FileWriter<'a> = BufWriter<&'a File>;
 #[non_exhaustive]
 pub enum WriteError {
     /// The path does not end in a file name.
-    #[error("{} does not name a file; give a path that ends in a file name", path.display())]
+    #[error("{} does not name a file", path.display())]
     NoFileName {
         /// The path.
         path: PathBuf,
     },
     /// There is a folder of that name.
-    #[error("{} is a folder; choose another file name or move the folder away", path.display())]
+    #[error("{} is a folder", path.display())]
     IsFolder {
         /// The path.
         path: PathBuf,
     },
     /// The folder of the file could not be made.
-    #[error("cannot create the folder {}: {source}; check the name and the permissions", folder.display())]
+    #[error("cannot create the folder {}: {source}", folder.display())]
     CreateFolder {
         /// The folder.
         folder: PathBuf,
@@ -34,7 +35,7 @@ pub enum WriteError {
         source: io::Error,
     },
     /// The folder does not take a new file.
-    #[error("cannot create a file in {}: {source}; check the permissions and the free space", folder.display())]
+    #[error("cannot create a file in {}: {source}", folder.display())]
     CreateFile {
         /// The folder.
         folder: PathBuf,
@@ -42,7 +43,7 @@ pub enum WriteError {
         source: io::Error,
     },
     /// Writing failed half way.
-    #[error("cannot write {}: {source}; check the free space", path.display())]
+    #[error("cannot write {}: {source}", path.display())]
     Write {
         /// The file.
         path: PathBuf,
@@ -50,13 +51,26 @@ pub enum WriteError {
         source: io::Error,
     },
     /// The complete file could not be given its name.
-    #[error("cannot put the finished file in place as {}: {source}; check that no other program holds it", path.display())]
+    #[error("cannot put the finished file in place as {}: {source}", path.display())]
     Persist {
         /// The file.
         path: PathBuf,
         /// What the system said.
         source: io::Error,
     },
+}
+
+impl Advice for WriteError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoFileName { .. } => Some("give a path that ends in a file name"),
+            Self::IsFolder { .. } => Some("choose another file name or move the folder away"),
+            Self::CreateFolder { .. } => Some("check the name and the permissions"),
+            Self::CreateFile { .. } => Some("check the permissions and the free space"),
+            Self::Write { .. } => Some("check the free space"),
+            Self::Persist { .. } => Some("check that no other program holds it"),
+        }
+    }
 }
 
 /// Creates the missing parent folders of `path` and returns the folder.
@@ -114,7 +128,10 @@ pub fn write_atomically<T>(
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let file = builder
         .tempfile_in(&folder)
-        .map_err(|source| WriteError::CreateFile { folder, source })?;
+        .map_err(|e| WriteError::CreateFile {
+            folder,
+            source: without_path(e),
+        })?;
     let value = {
         let mut buffered = BufWriter::new(file.as_file());
         let value = write(&mut buffered).map_err(failed)?;
@@ -127,6 +144,14 @@ pub fn write_atomically<T>(
             path: path.to_owned(),
             source: e.error,
         }),
+    }
+}
+
+/// The error of the system without the name of the temporary file.
+fn without_path(error: io::Error) -> io::Error {
+    match error.kind() {
+        io::ErrorKind::Other => error,
+        kind => kind.into(),
     }
 }
 

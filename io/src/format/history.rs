@@ -1,5 +1,6 @@
 //! The history of a run: one row per step.
 
+use isosheet_mesh::Advice;
 use std::fs::File;
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -62,9 +63,7 @@ pub enum HistoryError {
     #[error(transparent)]
     File(#[from] WriteError),
     /// A value is NaN or infinite.
-    #[error(
-        "{column} at t = {t} s is {value}; the row was not written, so the history ends with the last good step"
-    )]
+    #[error("{column} at t = {t} s is {value}, and the row was not written")]
     NotFinite {
         /// The column.
         column: &'static str,
@@ -74,7 +73,7 @@ pub enum HistoryError {
         value: f64,
     },
     /// A file could not be read.
-    #[error("cannot read {}: {source}; check the path", path.display())]
+    #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -83,7 +82,7 @@ pub enum HistoryError {
     },
     /// A history that is to be continued has lost rows.
     #[error(
-        "{} has {found} bytes, {length} were written: it was cut or replaced; start the run anew in another folder",
+        "{} has {found} bytes, {length} were written: it was cut or replaced",
         path.display()
     )]
     Shorter {
@@ -95,7 +94,7 @@ pub enum HistoryError {
         length: u64,
     },
     /// The first line is not the expected one.
-    #[error("{} does not start with the columns {}, but with {found:?}; it is not a history of a run", path.display(), COLUMNS.join(","))]
+    #[error("{} does not start with the columns {}, but with {found:?}", path.display(), COLUMNS.join(","))]
     Header {
         /// The file.
         path: PathBuf,
@@ -103,7 +102,7 @@ pub enum HistoryError {
         found: String,
     },
     /// A row is not readable.
-    #[error("row {row} of {}: {problem}; correct or remove the row", path.display())]
+    #[error("row {row} of {}: {problem}", path.display())]
     Row {
         /// The file.
         path: PathBuf,
@@ -112,6 +111,21 @@ pub enum HistoryError {
         /// What is wrong.
         problem: String,
     },
+}
+
+impl Advice for HistoryError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::File(error) => error.advice(),
+            Self::NotFinite { .. } => {
+                Some("go back to the last good step, with which the history ends")
+            }
+            Self::Read { .. } => Some("check the path"),
+            Self::Shorter { .. } => Some("start the run anew in another folder"),
+            Self::Header { .. } => Some("name the file history.csv of a run"),
+            Self::Row { .. } => Some("correct or remove the row"),
+        }
+    }
 }
 
 /// Writes a history row by row: every row is on disk when [`HistoryWriter::append`] returns, so that the file

@@ -1,5 +1,6 @@
 //! JSON files such as a run's summary.
 
+use isosheet_mesh::Advice;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -18,7 +19,7 @@ pub enum JsonError {
     #[error(transparent)]
     File(#[from] WriteError),
     /// A number is NaN or infinite, which JSON cannot hold.
-    #[error("{field} is {value}, which cannot be written to {}; leave it out (`None`) or find where it comes from", path.display())]
+    #[error("{field} is {value}, which cannot be written to {}", path.display())]
     NotFinite {
         /// The file.
         path: PathBuf,
@@ -36,7 +37,7 @@ pub enum JsonError {
         problem: String,
     },
     /// The file could not be opened.
-    #[error("cannot read {}: {source}; check the path", path.display())]
+    #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -44,13 +45,25 @@ pub enum JsonError {
         source: std::io::Error,
     },
     /// The content is not what was expected.
-    #[error("{}: {source}; correct the file or write it anew", path.display())]
+    #[error("{}: {source}", path.display())]
     Parse {
         /// The file.
         path: PathBuf,
         /// What is wrong, with line and column.
         source: serde_json::Error,
     },
+}
+
+impl Advice for JsonError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::File(error) => error.advice(),
+            Self::NotFinite { .. } => Some("leave it out (`None`) or find where it comes from"),
+            Self::Read { .. } => Some("check the path"),
+            Self::Parse { .. } => Some("correct the file or write it anew"),
+            Self::Form { .. } => None,
+        }
+    }
 }
 
 /// Writes `value` as indented JSON, atomically. Numbers keep all their digits.

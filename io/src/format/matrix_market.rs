@@ -1,5 +1,6 @@
 //! Sparse matrices as Matrix Market files, for other programs to solve.
 
+use isosheet_mesh::Advice;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
@@ -23,8 +24,8 @@ pub enum MatrixSymmetry {
 pub enum MatrixMarketError {
     /// An entry lies outside the matrix, or above the diagonal of a symmetric one.
     #[error(
-        "entry {index} is at row {row}, column {column} of a {rows} x {columns} {symmetry:?} matrix; nothing was written: give entries \
-         inside, and only those on and below the diagonal of a symmetric matrix"
+        "entry {index} is at row {row}, column {column} of a {rows} x {columns} {symmetry:?} matrix, \
+         and nothing was written"
     )]
     Place {
         /// Position in the list of entries.
@@ -41,7 +42,7 @@ pub enum MatrixMarketError {
         symmetry: MatrixSymmetry,
     },
     /// An entry is NaN or infinite.
-    #[error("entry {index} (row {row}, column {column}) is {value}; nothing was written")]
+    #[error("entry {index} (row {row}, column {column}) is {value}, and nothing was written")]
     NotFinite {
         /// Position in the list of entries.
         index: usize,
@@ -55,6 +56,18 @@ pub enum MatrixMarketError {
     /// The file could not be written.
     #[error(transparent)]
     File(#[from] WriteError),
+}
+
+impl Advice for MatrixMarketError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Place { .. } => Some(
+                "give entries inside, and only those on and below the diagonal of a symmetric matrix",
+            ),
+            Self::NotFinite { .. } => Some("give finite entries"),
+            Self::File(error) => error.advice(),
+        }
+    }
 }
 
 /// Writes the `rows` x `columns` matrix of the given `(row, column, value)` entries (indices from zero, each

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use isosheet_mesh::{Topology, VertexId};
+use isosheet_mesh::{Advice, Topology, VertexId};
 use thiserror::Error;
 
 use crate::format::atomic::{WriteError, write_atomically};
@@ -23,7 +23,7 @@ pub enum ObjWriteError {
         vertices: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("coordinate {} of {vertex} is {value}; the file was not written: go back to the last state that was finite", ["x", "y", "z"][*axis])]
+    #[error("coordinate {} of {vertex} is {value}, and the file was not written", ["x", "y", "z"][*axis])]
     NotFinite {
         /// The vertex.
         vertex: VertexId,
@@ -35,6 +35,16 @@ pub enum ObjWriteError {
     /// The file could not be written.
     #[error(transparent)]
     File(#[from] WriteError),
+}
+
+impl Advice for ObjWriteError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NotFinite { .. } => Some("go back to the last state that was finite"),
+            Self::File(error) => error.advice(),
+            Self::WrongLength { .. } => None,
+        }
+    }
 }
 
 /// Writes the mesh at positions `x` (length 3V, metres) as an OBJ file, atomically.

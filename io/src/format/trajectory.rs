@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use isosheet_mesh::{Sheet, VertexId};
+use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
 use npyz::WriterBuilder;
 use npyz::npz::{NpzArchive, NpzWriter};
 use npyz::zip::DateTime;
@@ -22,6 +22,7 @@ use crate::format::atomic::{WriteError, write_atomically};
 /// | `faces` | u32 | F x 3 | corners, counter-clockwise, from 0 |
 /// | `edges` | u32 | E x 2 | ends, from 0 |
 /// | `rest_lengths` | f64 | E | in metres |
+/// | `rod_forces` | f64 | T x E | forces of the rods, in newtons, tension positive; of runs that have them |
 ///
 /// In Python: `data = numpy.load("trajectory.npz"); data["x"][-1]` are the last positions.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +33,8 @@ pub struct Trajectory {
     faces: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
     rest_lengths: Vec<f64>,
+    /// Those of each frame, or none at all.
+    rod_forces: Vec<f64>,
 }
 
 /// A trajectory that cannot be recorded, written or read.
@@ -51,7 +54,7 @@ pub enum TrajectoryError {
         vertices: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("coordinate {} of {vertex} in frame {frame} is {value}; the frame was not recorded", ["x", "y", "z"][*axis])]
+    #[error("coordinate {} of {vertex} in frame {frame} is {value}, and the frame was not recorded", ["x", "y", "z"][*axis])]
     NotFinite {
         /// The frame.
         frame: usize,
@@ -62,10 +65,28 @@ pub enum TrajectoryError {
         /// The value.
         value: f64,
     },
+    /// A frame has not as many forces as the frames before it: one for each edge, or none.
+    #[error("frame {frame} has {got} forces of rods where {expected} are needed")]
+    ForceCount {
+        /// The frame.
+        frame: usize,
+        /// The number of forces given.
+        got: usize,
+        /// The number of edges; zero if the frames before have no forces.
+        expected: usize,
+    },
+    /// The force of a rod is NaN or infinite.
+    #[error("the force of {edge} in frame {frame} is {value}, and the frame was not recorded")]
+    ForceNotFinite {
+        /// The frame.
+        frame: usize,
+        /// The edge.
+        edge: EdgeId,
+        /// The value.
+        value: f64,
+    },
     /// Time does not go forward.
-    #[error(
-        "frame {frame} has the time {t} s after {before} s; frames must be recorded in the order of time"
-    )]
+    #[error("frame {frame} has the time {t} s after {before} s")]
     Time {
         /// The frame.
         frame: usize,
@@ -78,7 +99,7 @@ pub enum TrajectoryError {
     #[error(transparent)]
     File(#[from] WriteError),
     /// The file could not be opened or is not an archive.
-    #[error("cannot read {}: {source}; check that it is an .npz file", path.display())]
+    #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -86,7 +107,7 @@ pub enum TrajectoryError {
         source: io::Error,
     },
     /// An array is missing or of another type or shape.
-    #[error("array `{array}` of {}: {problem}; the file is not a trajectory of this program", path.display())]
+    #[error("array `{array}` of {}: {problem}", path.display())]
     Array {
         /// The file.
         path: PathBuf,
@@ -95,6 +116,22 @@ pub enum TrajectoryError {
         /// What is wrong.
         problem: String,
     },
+}
+
+impl Advice for TrajectoryError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NotFinite { .. } | Self::ForceNotFinite { .. } => {
+                Some("go back to the last state that was finite")
+            }
+            Self::Time { .. } => Some("record frames in the order of time"),
+            Self::File(error) => error.advice(),
+            Self::Read { .. } => Some("check that it is an .npz file"),
+            Self::Array { .. } => Some("give a trajectory that this program wrote"),
+            Self::ForceCount { .. } => Some("give forces in all frames or in none"),
+            Self::WrongLength { .. } => None,
+        }
+    }
 }
 
 impl Trajectory {
@@ -108,15 +145,31 @@ impl Trajectory {
             faces: sheet.face_indices(),
             edges: t.edges().iter().map(|e| e.map(|v| v.0)).collect(),
             rest_lengths: sheet.lengths().to_vec(),
+            rod_forces: Vec::new(),
         }
     }
 
     /// Adds a frame: time in seconds and positions (length 3V, metres).
     ///
     /// # Errors
-    /// [`TrajectoryError`] for a wrong length, a number that is not finite, or a time before the last;
-    /// nothing is added then.
+    /// [`TrajectoryError`] for a wrong length, a number that is not finite, a time before the last, or if the
+    /// frames before have forces of the rods; nothing is added then.
     pub fn push(&mut self, t: f64, x: &[f64]) -> Result<(), TrajectoryError> {
+        self.push_with_forces(t, x, &[])
+    }
+
+    /// Adds a frame with the forces of its rods (length E, newtons, tension positive), which all frames of a
+    /// trajectory have, or none.
+    ///
+    /// # Errors
+    /// As [`Self::push`]; [`TrajectoryError::ForceCount`] for another number of forces than the frames before
+    /// have.
+    pub fn push_with_forces(
+        &mut self,
+        t: f64,
+        x: &[f64],
+        forces: &[f64],
+    ) -> Result<(), TrajectoryError> {
         let frame = self.t.len();
         if x.len() != 3 * self.vertex_count {
             return Err(TrajectoryError::WrongLength {
@@ -138,9 +191,36 @@ impl Trajectory {
         if !t.is_finite() || t < before {
             return Err(TrajectoryError::Time { frame, t, before });
         }
+        self.check_forces(forces)?;
+        self.rod_forces.extend_from_slice(forces);
         self.t.push(t);
         self.x.extend_from_slice(x);
         Ok(())
+    }
+
+    fn check_forces(&self, forces: &[f64]) -> Result<(), TrajectoryError> {
+        let (frame, got) = (self.t.len(), forces.len());
+        let edges = self.edges.len();
+        let expected = match (frame, got) {
+            (0, 0) => 0,
+            (0, _) => edges,
+            _ => self.rod_forces.len() / frame,
+        };
+        if got != expected {
+            return Err(TrajectoryError::ForceCount {
+                frame,
+                got,
+                expected,
+            });
+        }
+        match forces.iter().position(|f| !f.is_finite()) {
+            None => Ok(()),
+            Some(e) => Err(TrajectoryError::ForceNotFinite {
+                frame,
+                edge: EdgeId::from_index(e),
+                value: forces[e],
+            }),
+        }
     }
 
     /// The number of frames T.
@@ -184,6 +264,13 @@ impl Trajectory {
         &self.rest_lengths
     }
 
+    /// The force of each edge in a frame (newtons, tension positive); `None` when the trajectory has no
+    /// forces or no such frame.
+    pub fn rod_forces(&self, k: usize) -> Option<&[f64]> {
+        let n = self.edges.len();
+        self.rod_forces.get(n * k..n * (k + 1))
+    }
+
     /// Writes the `.npz` file, atomically. Equal trajectories give equal bytes.
     ///
     /// # Errors
@@ -217,6 +304,15 @@ impl Trajectory {
                 &[self.rest_lengths.len() as u64],
                 self.rest_lengths.iter().copied(),
             )?;
+            if !self.rod_forces.is_empty() {
+                let shape = [frames, self.edges.len() as u64];
+                put(
+                    &mut npz,
+                    "rod_forces",
+                    &shape,
+                    self.rod_forces.iter().copied(),
+                )?;
+            }
             npz.zip_writer().finish()?;
             Ok(())
         })?)
@@ -243,37 +339,21 @@ impl Trajectory {
         let (faces_shape, faces) = get::<u32>(&mut npz, path, "faces", 2)?;
         let (edges_shape, edges) = get::<u32>(&mut npz, path, "edges", 2)?;
         let (lengths_shape, rest_lengths) = get::<f64>(&mut npz, path, "rest_lengths", 1)?;
-        if x_shape[0] != t_shape[0] || x_shape[2] != 3 {
-            return Err(array(
-                "x",
-                format!(
-                    "its shape is {x_shape:?}, with {} times and 3 coordinates expected",
-                    t.len()
-                ),
-            ));
+        let (forces_shape, rod_forces) =
+            get_if_there::<f64>(&mut npz, path, "rod_forces", 2)?.unwrap_or_default();
+        let (frames, vertices, rods) = (t_shape[0], x_shape[1], edges_shape[0]);
+        for (name, shape, expected) in [
+            ("x", &x_shape, vec![frames, vertices, 3]),
+            ("faces", &faces_shape, vec![faces_shape[0], 3]),
+            ("edges", &edges_shape, vec![rods, 2]),
+            ("rest_lengths", &lengths_shape, vec![rods]),
+            ("rod_forces", &forces_shape, vec![frames, rods]),
+        ] {
+            if *shape != expected && !shape.is_empty() {
+                let problem = format!("its shape is {shape:?}, {expected:?} expected");
+                return Err(array(name, problem));
+            }
         }
-        if faces_shape[1] != 3 {
-            return Err(array(
-                "faces",
-                format!("its shape is {faces_shape:?}, with 3 columns expected"),
-            ));
-        }
-        if edges_shape[1] != 2 {
-            return Err(array(
-                "edges",
-                format!("its shape is {edges_shape:?}, with 2 columns expected"),
-            ));
-        }
-        if lengths_shape[0] != edges_shape[0] {
-            return Err(array(
-                "rest_lengths",
-                format!(
-                    "it has {} entries for {} edges",
-                    lengths_shape[0], edges_shape[0]
-                ),
-            ));
-        }
-        let vertices = x_shape[1];
         let outside = |v: &&u32| u64::from(**v) >= vertices;
         for (name, list) in [("faces", &faces), ("edges", &edges)] {
             if let Some(v) = list.iter().find(outside) {
@@ -283,7 +363,12 @@ impl Trajectory {
                 ));
             }
         }
-        for (name, list) in [("t", &t), ("x", &x), ("rest_lengths", &rest_lengths)] {
+        for (name, list) in [
+            ("t", &t),
+            ("x", &x),
+            ("rest_lengths", &rest_lengths),
+            ("rod_forces", &rod_forces),
+        ] {
             if let Some(v) = list.iter().find(|v| !v.is_finite()) {
                 return Err(array(name, format!("it contains {v}")));
             }
@@ -295,6 +380,7 @@ impl Trajectory {
             faces: faces.chunks_exact(3).map(|f| [f[0], f[1], f[2]]).collect(),
             edges: edges.chunks_exact(2).map(|e| [e[0], e[1]]).collect(),
             rest_lengths,
+            rod_forces,
         })
     }
 }
@@ -324,13 +410,28 @@ fn get<T: npyz::Deserialize>(
     name: &'static str,
     dimensions: usize,
 ) -> Result<Shaped<T>, TrajectoryError> {
+    let found = get_if_there(npz, path, name, dimensions)?;
+    found.ok_or_else(|| TrajectoryError::Array {
+        path: path.to_owned(),
+        array: name,
+        problem: "it is missing".to_owned(),
+    })
+}
+
+fn get_if_there<T: npyz::Deserialize>(
+    npz: &mut NpzArchive<io::BufReader<File>>,
+    path: &Path,
+    name: &'static str,
+    dimensions: usize,
+) -> Result<Option<Shaped<T>>, TrajectoryError> {
     let error = |problem: String| TrajectoryError::Array {
         path: path.to_owned(),
         array: name,
         problem,
     };
-    let npy = npz.by_name(name).map_err(|e| error(e.to_string()))?;
-    let npy = npy.ok_or_else(|| error("it is missing".to_owned()))?;
+    let Some(npy) = npz.by_name(name).map_err(|e| error(e.to_string()))? else {
+        return Ok(None);
+    };
     let shape = npy.shape().to_vec();
     if shape.len() != dimensions {
         return Err(error(format!(
@@ -357,7 +458,7 @@ fn get<T: npyz::Deserialize>(
             values.len()
         )));
     }
-    Ok((shape, values))
+    Ok(Some((shape, values)))
 }
 
 #[cfg(test)]

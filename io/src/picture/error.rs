@@ -1,16 +1,14 @@
 //! Why a picture cannot be made.
 
 use isosheet_collide::ObstacleError;
-use isosheet_mesh::VertexId;
+use isosheet_mesh::{Advice, VertexId};
 
 /// Why a picture cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureError {
     /// The picture has no pixels.
-    #[error(
-        "the picture has {width} x {height} pixels; give at least one each way, and no more than memory holds"
-    )]
+    #[error("the picture has {width} x {height} pixels")]
     Size {
         /// Width, pixels.
         width: usize,
@@ -18,11 +16,11 @@ pub enum PictureError {
         height: usize,
     },
     /// There is no frame to draw.
-    #[error("there is no such frame; choose frames that the run has")]
+    #[error("there is no such frame")]
     NoFrames,
     /// A picture of an animation has another size than the animation.
     #[error(
-        "picture {frame} has {} x {} pixels, the animation {} x {}; draw all pictures in one size",
+        "picture {frame} has {} x {} pixels, the animation {} x {}",
         found[0], found[1], size[0], size[1]
     )]
     FrameSize {
@@ -34,7 +32,7 @@ pub enum PictureError {
         size: [usize; 2],
     },
     /// An angle of the viewer is out of range.
-    #[error("the {name} is {value} degrees; give a finite one, and an elevation from -90 to 90")]
+    #[error("the {name} is {value} degrees")]
     Angle {
         /// Which angle.
         name: &'static str,
@@ -42,13 +40,13 @@ pub enum PictureError {
         value: f64,
     },
     /// The wires have no width.
-    #[error("wires have the width {width}; give a finite one of at least 0 pixels")]
+    #[error("wires have the width {width}")]
     Wire {
         /// The width given, pixels.
         width: f64,
     },
     /// The positions do not belong to the sheet.
-    #[error("{count} coordinates for {vertices} vertices; give three for each vertex")]
+    #[error("there are {count} coordinates for {vertices} vertices")]
     Coordinates {
         /// Coordinates given.
         count: usize,
@@ -56,7 +54,7 @@ pub enum PictureError {
         vertices: usize,
     },
     /// A coordinate is not finite.
-    #[error("{vertex} is at {value}; draw finite positions")]
+    #[error("{vertex} is at {value}")]
     NotFinite {
         /// The vertex.
         vertex: VertexId,
@@ -64,7 +62,7 @@ pub enum PictureError {
         value: f64,
     },
     /// A pin is no vertex of the sheet.
-    #[error("the pin {vertex} is none of the {vertices} vertices of the sheet; name one of them")]
+    #[error("the pin {vertex} is none of the {vertices} vertices of the sheet")]
     Pin {
         /// The vertex given.
         vertex: VertexId,
@@ -72,15 +70,34 @@ pub enum PictureError {
         vertices: usize,
     },
     /// A body has no faces.
-    #[error("a {0} has no faces to draw; leave it out or draw a triangle surface instead")]
+    #[error("a {0} has no faces to draw")]
     NoFaces(&'static str),
     /// A body has no geometry.
     #[error(transparent)]
     Body(#[from] ObstacleError),
     /// A vector drawing cannot be read.
-    #[error("cannot read the vector drawing: {0}; give an SVG document")]
+    #[error("cannot read the vector drawing: {0}")]
     Svg(#[from] resvg::usvg::Error),
     /// A PNG file cannot be made.
     #[error("cannot write the PNG file: {0}")]
     Png(#[from] png::EncodingError),
+}
+
+impl Advice for PictureError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Size { .. } => Some("give at least one each way, and no more than memory holds"),
+            Self::NoFrames => Some("choose frames that the run has"),
+            Self::FrameSize { .. } => Some("draw all pictures in one size"),
+            Self::Angle { .. } => Some("give a finite one, and an elevation from -90 to 90"),
+            Self::Wire { .. } => Some("give a finite one of at least 0 pixels"),
+            Self::Coordinates { .. } => Some("give three for each vertex"),
+            Self::NotFinite { .. } => Some("draw finite positions"),
+            Self::Pin { .. } => Some("name one of them"),
+            Self::NoFaces(..) => Some("leave it out or draw a triangle surface instead"),
+            Self::Body(error) => error.advice(),
+            Self::Svg(..) => Some("give an SVG document"),
+            Self::Png(..) => None,
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use crate::format::{HistoryError, JsonError, ObjWriteError, TrajectoryError, WriteError};
 use crate::scene::{SceneError, SceneFileError};
 use crate::view::ViewError;
+use isosheet_mesh::Advice;
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -22,7 +23,7 @@ pub enum RunError {
     SceneFile(#[from] SceneFileError),
     /// The folder holds the run of another scene.
     #[error(
-        "{} holds a run of another scene (see {}); choose another folder with --out", folder.display(),
+        "{} holds a run of another scene (see {})", folder.display(),
         folder.join("scene.toml").display()
     )]
     OtherScene {
@@ -31,7 +32,7 @@ pub enum RunError {
     },
     /// The folder holds other files.
     #[error(
-        "{} holds files and is not the folder of a run; choose an empty or a new folder with --out",
+        "{} holds files and is not the folder of a run",
         folder.display()
     )]
     Foreign {
@@ -40,7 +41,7 @@ pub enum RunError {
     },
     /// Another process works in the folder.
     #[error(
-        "another process is writing to {}; wait for it or choose another folder with --out", folder.display()
+        "another process is writing to {}", folder.display()
     )]
     Busy {
         /// The folder.
@@ -48,8 +49,7 @@ pub enum RunError {
     },
     /// The folder cannot be made or written to.
     #[error(
-        "cannot write to the folder {}: {source}; check the permissions and the free space, or choose another \
-         folder with --out", folder.display()
+        "cannot write to the folder {}: {source}", folder.display()
     )]
     Unwritable {
         /// The folder.
@@ -59,7 +59,7 @@ pub enum RunError {
     },
     /// There is no run in the folder.
     #[error(
-        "{} is not the folder of a run: it has no scene.toml; name the folder that `isosheet simulate` wrote",
+        "{} is not the folder of a run: it has no scene.toml",
         folder.display()
     )]
     NoRun {
@@ -67,7 +67,7 @@ pub enum RunError {
         folder: PathBuf,
     },
     /// A file of the run cannot be read or is damaged.
-    #[error("{}: {problem}; delete the folder and run the scene again", path.display())]
+    #[error("{}: {problem}", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -76,8 +76,7 @@ pub enum RunError {
     },
     /// The run was begun by another version of the program, which does not compute the same bits.
     #[error(
-        "the run in {} was begun by version {begun} of the program, this is {}; continue it with that version, or \
-         run the scene in another folder with --out", folder.display(), env!("CARGO_PKG_VERSION")
+        "the run in {} was begun by version {begun} of the program, this is {}", folder.display(), env!("CARGO_PKG_VERSION")
     )]
     OtherVersion {
         /// The folder.
@@ -86,7 +85,7 @@ pub enum RunError {
         begun: String,
     },
     /// A file of the run cannot be read.
-    #[error("cannot read {}: {source}; check the path", path.display())]
+    #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -111,4 +110,32 @@ pub enum RunError {
     /// An OBJ file cannot be written.
     #[error(transparent)]
     Obj(#[from] ObjWriteError),
+}
+
+impl Advice for RunError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Scene(error) => error.advice(),
+            Self::Step(error) => error.advice(),
+            Self::SceneFile(error) => error.advice(),
+            Self::OtherScene { .. } => Some("choose another folder with --out"),
+            Self::Foreign { .. } => Some("choose an empty or a new folder with --out"),
+            Self::Busy { .. } => Some("wait for it or choose another folder with --out"),
+            Self::Unwritable { .. } => Some(
+                "check the permissions and the free space, or choose another folder with --out",
+            ),
+            Self::NoRun { .. } => Some("name the folder that `isosheet simulate` wrote"),
+            Self::Damaged { .. } => Some("delete the folder and run the scene again"),
+            Self::OtherVersion { .. } => {
+                Some("continue it with that version, or run the scene in another folder with --out")
+            }
+            Self::Read { .. } => Some("check the path"),
+            Self::Write(error) => error.advice(),
+            Self::History(error) => error.advice(),
+            Self::Trajectory(error) => error.advice(),
+            Self::Json(error) => error.advice(),
+            Self::Page(error) => error.advice(),
+            Self::Obj(error) => error.advice(),
+        }
+    }
 }

@@ -113,6 +113,12 @@ impl RunFolder {
     pub(crate) const PAGE: &'static str = "index.html";
     pub(crate) const OBJ: &'static str = "obj";
 
+    /// Whether a folder is that of a run, complete or not.
+    #[cfg(feature = "picture")]
+    pub(crate) fn is_run(root: &Path) -> bool {
+        root.join(Self::SCENE).is_file() && root.join(LOCK).is_file()
+    }
+
     /// Whether the folder holds a complete run of the scene. A complete run is not touched: its folder may be
     /// read-only.
     pub(crate) fn is_complete(root: &Path, material: &Material<'_>) -> Result<bool, RunError> {

@@ -1,11 +1,13 @@
 //! The frames of a run while it goes on: one file that grows.
 
 use crate::format::WriteError;
+use crate::scene::Setup;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// A file of frames of equal length: time (seconds) and positions (`3V`, metres), little-endian `f64`.
+/// A file of frames of equal length: time (seconds), positions (`3V`, metres) and, of runs that have them,
+/// the forces of the rods (newtons, tension positive), little-endian `f64`.
 #[derive(Debug)]
 pub(crate) struct FrameFile {
     path: PathBuf,
@@ -20,11 +22,36 @@ pub(crate) struct FrameFile {
 pub(crate) struct Frame {
     pub(crate) t: f64,
     pub(crate) x: Vec<f64>,
+    /// Empty in runs without them.
+    pub(crate) forces: Vec<f64>,
 }
 
-/// Bytes of a frame of some coordinates.
-fn record_length(coordinates: usize) -> usize {
-    8 * (coordinates + 1)
+/// How many numbers a frame has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrameShape {
+    /// `3V`.
+    pub(crate) coordinates: usize,
+    /// One for each rod, or zero.
+    pub(crate) forces: usize,
+}
+
+impl FrameShape {
+    /// That of the frames of a run.
+    pub(crate) fn of(setup: &Setup) -> Self {
+        let has_forces = setup.has_rod_forces();
+        Self {
+            coordinates: setup.start.x.len(),
+            forces: if has_forces {
+                setup.model.rods().len()
+            } else {
+                0
+            },
+        }
+    }
+
+    fn bytes(self) -> usize {
+        8 * (1 + self.coordinates + self.forces)
+    }
 }
 
 impl FrameFile {
@@ -46,9 +73,9 @@ impl FrameFile {
     ///
     /// # Errors
     /// [`io::Error`] if the file cannot be opened or has fewer frames.
-    pub(crate) fn resume(path: &Path, count: u64, coordinates: usize) -> io::Result<Self> {
+    pub(crate) fn resume(path: &Path, count: u64, shape: FrameShape) -> io::Result<Self> {
         let mut file = File::options().write(true).open(path)?;
-        let length = count * record_length(coordinates) as u64;
+        let length = count * shape.bytes() as u64;
         let found = file.metadata()?.len();
         if found < length {
             let problem = format!("it has {found} bytes, {length} were written");
@@ -70,10 +97,11 @@ impl FrameFile {
     }
 
     /// Adds a frame.
-    pub(crate) fn append(&mut self, t: f64, x: &[f64]) -> Result<(), WriteError> {
+    pub(crate) fn append(&mut self, t: f64, x: &[f64], forces: &[f64]) -> Result<(), WriteError> {
         self.record.clear();
         self.record.extend(t.to_le_bytes());
-        self.record.extend(x.iter().flat_map(|c| c.to_le_bytes()));
+        let numbers = x.iter().chain(forces);
+        self.record.extend(numbers.flat_map(|c| c.to_le_bytes()));
         let written = self.file.write_all(&self.record);
         written.map_err(|source| self.failed(source))?;
         self.count += 1;
@@ -94,7 +122,7 @@ impl FrameFile {
 }
 
 /// Reads all whole frames.
-pub(crate) fn read_frames(path: &Path, coordinates: usize) -> io::Result<Vec<Frame>> {
+pub(crate) fn read_frames(path: &Path, shape: FrameShape) -> io::Result<Vec<Frame>> {
     let bytes = std::fs::read(path)?;
     let frame = |record: &[u8]| {
         let mut numbers = record
@@ -104,10 +132,11 @@ pub(crate) fn read_frames(path: &Path, coordinates: usize) -> io::Result<Vec<Fra
             .map(|b| f64::from_le_bytes(*b));
         Frame {
             t: numbers.next().unwrap_or_default(),
-            x: numbers.collect(),
+            x: numbers.by_ref().take(shape.coordinates).collect(),
+            forces: numbers.collect(),
         }
     };
-    let records = bytes.chunks_exact(record_length(coordinates));
+    let records = bytes.chunks_exact(shape.bytes());
     Ok(records.map(frame).collect())
 }
 
@@ -119,17 +148,23 @@ mod tests {
     fn frames_come_back_and_continue_where_they_are_told() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("frames.bin");
+        let shape = FrameShape {
+            coordinates: 6,
+            forces: 2,
+        };
         let x = |k: usize| -> Vec<f64> { (0..6).map(|i| (k * 6 + i) as f64 / 7.0).collect() };
+        let forces = |k: usize| vec![k as f64, -0.5];
         let mut file = FrameFile::create(&path).unwrap();
         for k in 0..4 {
-            file.append(k as f64 / 3.0, &x(k)).unwrap();
+            file.append(k as f64 / 3.0, &x(k), &forces(k)).unwrap();
         }
         file.sync().unwrap();
-        let frames = read_frames(&path, 6).unwrap();
+        let frames = read_frames(&path, shape).unwrap();
         assert_eq!(frames.len(), 4);
         for (k, frame) in frames.iter().enumerate() {
             let t = k as f64 / 3.0;
-            assert_eq!(*frame, Frame { t, x: x(k) });
+            let (x, forces) = (x(k), forces(k));
+            assert_eq!(*frame, Frame { t, x, forces });
         }
         // Half a frame, as a full disk leaves it.
         File::options()
@@ -138,11 +173,11 @@ mod tests {
             .unwrap()
             .write_all(&[1; 20])
             .unwrap();
-        assert_eq!(read_frames(&path, 6).unwrap(), frames);
-        let mut resumed = FrameFile::resume(&path, 2, 6).unwrap();
-        resumed.append(2.0 / 3.0, &x(2)).unwrap();
+        assert_eq!(read_frames(&path, shape).unwrap(), frames);
+        let mut resumed = FrameFile::resume(&path, 2, shape).unwrap();
+        resumed.append(2.0 / 3.0, &x(2), &forces(2)).unwrap();
         assert_eq!(resumed.count(), 3);
-        assert_eq!(read_frames(&path, 6).unwrap(), frames[..3]);
-        assert!(FrameFile::resume(&path, 4, 6).is_err());
+        assert_eq!(read_frames(&path, shape).unwrap(), frames[..3]);
+        assert!(FrameFile::resume(&path, 4, shape).is_err());
     }
 }

@@ -45,7 +45,7 @@ impl Recording {
         }
         rows.add(
             "not recorded",
-            "forces in the rods, gaps of the sheet to itself by vertex".into(),
+            "gaps of the sheet to itself by vertex".into(),
         );
         rows.0
     }

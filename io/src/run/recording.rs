@@ -1,7 +1,7 @@
 //! What a run recorded, complete or not.
 
 use super::folder::RunFolder;
-use super::frames::{Frame, read_frames};
+use super::frames::{Frame, FrameShape, read_frames};
 use super::{RunError, Summary};
 use crate::format::{HistoryRow, Trajectory, read_history, read_json};
 use crate::scene::SceneFile;
@@ -47,7 +47,7 @@ impl Recording {
             Trajectory::read(&complete)?
         } else {
             let path = folder.join(RunFolder::FRAMES);
-            let frames = read_frames(&path, setup.start.x.len());
+            let frames = read_frames(&path, FrameShape::of(&setup));
             let frames = frames.map_err(|source| RunError::Read { path, source })?;
             trajectory_of(&setup.sheet, &frames)?
         };
@@ -95,7 +95,7 @@ pub(crate) fn open_scene(folder: &Path) -> Result<SceneFile, RunError> {
 pub(crate) fn trajectory_of(sheet: &Sheet, frames: &[Frame]) -> Result<Trajectory, RunError> {
     let mut trajectory = Trajectory::new(sheet);
     for frame in frames {
-        trajectory.push(frame.t, &frame.x)?;
+        trajectory.push_with_forces(frame.t, &frame.x, &frame.forces)?;
     }
     Ok(trajectory)
 }

@@ -9,12 +9,13 @@ use nalgebra::{Isometry3, Point3};
 impl Replay {
     /// The page of a recorded motion: the sheet, the bodies in their poses, and
     ///
-    /// - the fields "strain" ([`Field::edge_strain`]) and, where there are bodies, "distance to obstacles"
-    ///   (see [`Field::obstacle_distance`]),
+    /// - the field "strain" ([`Field::edge_strain`]), where there are bodies "distance to obstacles" (see
+    ///   [`Field::obstacle_distance`]), and the forces of the rods ([`Field::rod_forces`]) where the
+    ///   trajectory has them,
     /// - the series of the history (see [`Series::of_history`]).
     ///
-    /// Titles, pins and texts are left to the caller. Forces in the rods and the gaps of the sheet to itself
-    /// are in no recording, and therefore in no field.
+    /// Titles, pins and texts are left to the caller. The gaps of the sheet to itself are in no recording,
+    /// and therefore in no field.
     ///
     /// # Errors
     /// [`ViewError`] if the trajectory is not one of this sheet.
@@ -32,6 +33,7 @@ impl Replay {
         if !obstacles.is_empty() {
             fields.push(Field::obstacle_distance(obstacles, &times, &positions));
         }
+        fields.extend(Field::rod_forces(trajectory));
         let bodies = obstacles.iter().enumerate();
         let bodies =
             bodies.map(|(k, body)| Body::of_obstacle(&format!("obstacle[{k}]"), body, &times));

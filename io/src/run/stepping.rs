@@ -60,8 +60,14 @@ impl Stepping<'_> {
             strain: self.simulation.model().rods().max_strain(&state.x),
             ..HistoryRow::default()
         })?;
-        self.frames.append(state.t, &state.x)?;
+        self.record_frame()?;
         self.save()
+    }
+
+    fn record_frame(&mut self) -> Result<(), RunError> {
+        let state = self.simulation.state();
+        let forces = self.simulation.rod_forces().unwrap_or_default();
+        Ok(self.frames.append(state.t, &state.x, &forces)?)
     }
 
     /// Takes and records a step. Says what has been reached.
@@ -79,8 +85,7 @@ impl Stepping<'_> {
         let reason = self.end_reason(&report);
         let frame = scene.output.steps_per_frame(scene.method.step);
         if number.is_multiple_of(frame) || reason.is_some() {
-            let state = self.simulation.state();
-            self.frames.append(state.t, &state.x)?;
+            self.record_frame()?;
         }
         if let Some(reason) = reason {
             self.progress.ending = Some(self.ending(reason, &report));

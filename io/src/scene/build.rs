@@ -13,9 +13,8 @@ use isosheet_dynamics::{
     RigidProfile, SheetModel, SimulationError, State, VertexConstraint, VertexLoad, WeakIsometry,
     leave_flat,
 };
-use isosheet_mesh::{MassKind, Sheet, VertexId};
+use isosheet_mesh::{Advice, MassKind, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3};
-use std::fmt::Display;
 use std::path::Path;
 
 impl Scene {
@@ -54,7 +53,7 @@ struct Builder<'a> {
 }
 
 /// An error of the engine at a key.
-fn at<E: Display>(key: &Key) -> impl Fn(E) -> SceneError {
+fn at<E: Advice>(key: &Key) -> impl Fn(E) -> SceneError {
     let key = key.clone();
     move |error| Problem::from_error(key.clone(), &error).into()
 }

@@ -1,5 +1,6 @@
 //! Edits of a scene by `key=value`.
 
+use isosheet_mesh::Advice;
 use thiserror::Error;
 use toml_edit::{DocumentMut, Item, Value};
 
@@ -7,22 +8,30 @@ use toml_edit::{DocumentMut, Item, Value};
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum EditError {
     /// There is no equals sign, or no key before it.
-    #[error("`{edit}` is not of the form key=value; write for example `stop.time=0.5`")]
+    #[error("`{edit}` is not of the form key=value")]
     Form {
         /// The edit.
         edit: String,
     },
     /// A key on the way is a value that has no keys, or a list that has no such entry.
-    #[error(
-        "`{edit}`: the scene has no place `{place}`; entries of lists have numbers from 0, for example \
-         `obstacle[0].friction=0.3`"
-    )]
+    #[error("`{edit}`: the scene has no place `{place}`")]
     Place {
         /// The edit.
         edit: String,
         /// The key up to where it fails.
         place: String,
     },
+}
+
+impl Advice for EditError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Form { .. } => Some("write for example `stop.time=0.5`"),
+            Self::Place { .. } => {
+                Some("count the entries of lists from 0, for example `obstacle[0].friction=0.3`")
+            }
+        }
+    }
 }
 
 /// The document with all edits made, in their order. A value that is not TOML is taken as a string, so that

@@ -47,10 +47,18 @@ impl Origins {
     pub fn of_step(&self, error: &StepError) -> Problem {
         let root = Key::root();
         let (key, remedy) = match error {
-            StepError::StepTooSmall { cause, .. } => {
+            StepError::StepTooSmall {
+                cause,
+                dependent_rods,
+                ..
+            } => {
                 let inner = self.of_step(cause);
-                let remedy =
-                    "take a smaller `method.step`, more damping, or another `sheet.isometry`";
+                let remedy = match dependent_rods {
+                    0 => "take a smaller `method.step`, more damping, or another `sheet.isometry`",
+                    _ => {
+                        "choose `sheet.isometry` weak or membrane, more damping, or another `method.step`"
+                    }
+                };
                 return Problem::new(inner.key, error.to_string(), remedy);
             }
             StepError::OffSupport { support, .. } => (

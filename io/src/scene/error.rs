@@ -2,6 +2,7 @@
 
 use super::problem::{Key, KeyPart, Problem};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use isosheet_mesh::Advice;
 use serde::Serialize;
 use std::fmt;
 use std::ops::Range;
@@ -139,7 +140,7 @@ impl SceneError {
     /// The message.
     pub fn render(&self, colours: Colours) -> String {
         let Some(SceneText { path, text }) = &self.text else {
-            let lines: Vec<String> = self.problems.iter().map(Problem::to_string).collect();
+            let lines: Vec<String> = self.problems.iter().map(without_place).collect();
             return lines.join("\n");
         };
         let renderer = match colours {
@@ -152,6 +153,14 @@ impl SceneError {
             shown.push(renderer.render(&[group(problem, path, text, span.unwrap_or(0..0))]));
         }
         shown.join("\n\n")
+    }
+}
+
+/// A problem of a scene that is no text.
+fn without_place(problem: &Problem) -> String {
+    match &problem.remedy {
+        Some(remedy) => format!("{problem}\n  = help: {remedy}"),
+        None => problem.to_string(),
     }
 }
 
@@ -185,3 +194,10 @@ impl fmt::Display for SceneError {
 }
 
 impl std::error::Error for SceneError {}
+
+impl Advice for SceneError {
+    /// Always `None`: each problem has its own [remedy](Problem::remedy), which the text shows below it.
+    fn advice(&self) -> Option<&'static str> {
+        None
+    }
+}

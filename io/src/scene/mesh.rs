@@ -5,7 +5,10 @@ use super::pattern::{
     DegreeFour, EdgeRoles, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
 };
 use super::problem::{Checks, Key, Problem};
-use crate::format::{self, MeshOptions, Polygons, SeparateBuffers, read_mesh_with};
+use crate::format::{
+    self, MeshFileError, MeshFileProblem, MeshOptions, Polygons, SeparateBuffers, read_mesh_with,
+};
+use isosheet_mesh::Advice;
 use isosheet_mesh::Sheet;
 use isosheet_mesh::generate::{self, FoldPattern, GenerateError};
 use schemars::JsonSchema;
@@ -182,10 +185,8 @@ impl MeshFile {
             ..MeshOptions::default()
         };
         let path = folder.join(&self.path);
-        let mut mesh = read_mesh_with(&path, &options).map_err(|error| {
-            let remedy = "`isosheet check` says what is wrong with a mesh file; paths are relative to the scene";
-            Problem::new(key.name("path"), error.to_string(), remedy)
-        })?;
+        let mut mesh = read_mesh_with(&path, &options)
+            .map_err(|e| Problem::new(key.name("path"), e.to_string(), file_remedy(&e)))?;
         for p in mesh.positions.as_chunks_mut::<3>().0 {
             let [x, y, z] = p.map(|c| self.scale * c);
             *p = match self.up {
@@ -364,6 +365,23 @@ fn read_sheet(file: &MeshFile, key: &Key, folder: &Path) -> Result<RestMesh, Pro
         }),
         sheet,
     })
+}
+
+/// What to do about a mesh file that cannot be read, in words of scenes.
+fn file_remedy(error: &MeshFileError) -> String {
+    match &error.problem {
+        MeshFileProblem::Polygon { .. } => {
+            "triangulate the file as the sheet is meant to fold, or write `polygons = \"triangulate\"` beside \
+             `path`"
+                .to_owned()
+        }
+        MeshFileProblem::Read(_) => "check the path, which is relative to the scene".to_owned(),
+        problem => {
+            let advice = problem.advice().map(|advice| format!("{advice}; "));
+            let advice = advice.unwrap_or_default();
+            format!("{advice}`isosheet check` says more about a mesh file")
+        }
+    }
 }
 
 /// The problem at the argument that a generator names.

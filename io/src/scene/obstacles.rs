@@ -154,7 +154,8 @@ impl Obstacle {
             } => {
                 length("outer", *outer);
                 length("opening", *opening);
-                checks.finite(shape.clone(), &[*bottom, *top]);
+                checks.number(shape.name("bottom"), *bottom);
+                checks.number(shape.name("top"), *top);
             }
             Shape::Wall(wall) => {
                 length("width", wall.width);

@@ -49,7 +49,7 @@ impl Pose {
         checks.finite(key.name("position"), &self.position);
         if let Some(turn) = &self.turn {
             checks.direction(key.name("turn.axis"), &turn.axis);
-            checks.finite(key.name("turn.angle"), &[turn.angle]);
+            checks.number(key.name("turn.angle"), turn.angle);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What is wrong with a scene, and where.
 
+use isosheet_mesh::Advice;
 use std::fmt;
 use std::ops::Range;
 
@@ -58,7 +59,7 @@ impl fmt::Display for Key {
     }
 }
 
-/// Something that is wrong with a scene.
+/// Something that is wrong with a scene. Shown as key and message, without the remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// Where, as far as known.
@@ -82,12 +83,12 @@ impl Problem {
         }
     }
 
-    /// A problem that another error describes together with its remedy.
-    pub(crate) fn from_error(key: Key, error: &impl fmt::Display) -> Self {
+    /// A problem that another error describes; its advice is the remedy.
+    pub(crate) fn from_error(key: Key, error: &impl Advice) -> Self {
         Self {
             key,
             message: error.to_string(),
-            remedy: None,
+            remedy: error.advice().map(str::to_owned),
             span: None,
         }
     }
@@ -98,11 +99,23 @@ impl fmt::Display for Problem {
         if !self.key.parts().is_empty() {
             write!(f, "{}: ", self.key)?;
         }
-        f.write_str(&self.message)?;
-        match &self.remedy {
-            Some(remedy) => write!(f, "; {remedy}"),
-            None => Ok(()),
-        }
+        f.write_str(&self.message)
+    }
+}
+
+/// A number with its unit, if it has one.
+fn quantity(value: f64, unit: &str) -> String {
+    match unit {
+        "" => value.to_string(),
+        unit => format!("{value} {unit}"),
+    }
+}
+
+/// A remedy that names the unit, if there is one.
+fn in_unit(remedy: &str, unit: &str) -> String {
+    match unit {
+        "" => remedy.to_owned(),
+        unit => format!("{remedy}, in {unit}"),
     }
 }
 
@@ -125,20 +138,20 @@ impl Checks {
     /// A finite number above zero.
     pub(crate) fn positive(&mut self, key: Key, value: f64, unit: &str) {
         if !(value.is_finite() && value > 0.0) {
-            let message = format!("`{key}` is {value} {unit}, which is not a positive number");
-            self.report(key, message, format!("give a number above 0, in {unit}"));
+            let message = format!(
+                "`{key}` is {}, which is not a positive number",
+                quantity(value, unit)
+            );
+            self.report(key, message, in_unit("give a number above 0", unit));
         }
     }
 
     /// A finite number of at least zero.
     pub(crate) fn not_negative(&mut self, key: Key, value: f64, unit: &str) {
         if !(value.is_finite() && value >= 0.0) {
-            let message = format!("`{key}` is {value} {unit}, which is less than 0 or not finite");
-            self.report(
-                key,
-                message,
-                format!("give 0 or a positive number, in {unit}"),
-            );
+            let value = quantity(value, unit);
+            let message = format!("`{key}` is {value}, which is less than 0 or not finite");
+            self.report(key, message, in_unit("give 0 or a positive number", unit));
         }
     }
 
@@ -164,6 +177,14 @@ impl Checks {
             return;
         };
         self.report(key.clone(), format!("`{key}` is {value}"), remedy);
+    }
+
+    /// A finite number.
+    pub(crate) fn number(&mut self, key: Key, value: f64) {
+        if !value.is_finite() {
+            let message = format!("`{key}` is {value}");
+            self.report(key, message, "give a finite number");
+        }
     }
 
     /// Finite components.

@@ -3,6 +3,7 @@
 use super::problem::{Checks, Key};
 use isosheet_dynamics as engine;
 use isosheet_dynamics::ProfileError;
+use isosheet_mesh::Advice;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
@@ -209,7 +210,7 @@ impl Profile {
         checks.problems.push(super::Problem {
             key: place,
             message,
-            remedy: None,
+            remedy: error.advice().map(str::to_owned),
             span: None,
         });
     }

@@ -8,7 +8,7 @@ use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
 use isosheet_dynamics::contact::Contact;
 use isosheet_dynamics::{
-    Checkpoint, Method, SheetModel, Simulation, SimulationError, State, StepControl,
+    Checkpoint, Isometry, Method, SheetModel, Simulation, SimulationError, State, StepControl,
 };
 use isosheet_mesh::Sheet;
 
@@ -50,6 +50,15 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// Whether the simulation gives the forces of the rods ([`Simulation::rod_forces`]).
+    pub fn has_rod_forces(&self) -> bool {
+        let solves = match &self.integration {
+            Integration::Free { method, .. } => method.solves_for_rod_forces(),
+            Integration::InChart(_) => false,
+        };
+        solves && self.model.isometry() == Isometry::Rods
+    }
+
     /// The simulation at the start.
     ///
     /// # Errors

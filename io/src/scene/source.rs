@@ -2,9 +2,11 @@
 
 use super::edit::{self, EditError};
 use super::error::{SceneError, SceneText};
+use super::form::misplaced_lists;
 use super::problem::{Key, Problem};
+use super::toml_problem::{syntax_problem, toml_problem};
 use super::{Scene, Setup};
-use isosheet_mesh::generate::FoldAssignment;
+use isosheet_mesh::{Advice, generate::FoldAssignment};
 use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -22,7 +24,7 @@ pub struct SceneFile {
 #[derive(Debug, Error)]
 pub enum SceneFileError {
     /// The file cannot be read.
-    #[error("cannot read the scene {}: {source}; check the path", path.display())]
+    #[error("cannot read the scene {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -35,6 +37,16 @@ pub enum SceneFileError {
     /// The scene is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
+}
+
+impl Advice for SceneFileError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Read { .. } => Some("check the path"),
+            Self::Edit(error) => error.advice(),
+            Self::Scene(error) => error.advice(),
+        }
+    }
 }
 
 impl SceneFile {
@@ -68,6 +80,9 @@ impl SceneFile {
         }
         let scene: Scene = toml::from_str(&text.text)
             .map_err(|e| SceneError::from(toml_problem(&e)).in_text(&text))?;
+        if let Ok(value) = toml::from_str(&text.text) {
+            SceneError::of(misplaced_lists(&value)).map_err(|e| e.in_text(&text))?;
+        }
         scene.validate().map_err(|e| e.in_text(&text))?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         Ok(Self {
@@ -155,93 +170,5 @@ impl SceneFile {
             })
             .collect();
         Self::parse(self.text.text.clone(), &self.text.path, &edits)
-    }
-}
-
-fn syntax_problem(error: &toml_edit::TomlError) -> Problem {
-    Problem {
-        key: Key::root(),
-        message: error.message().to_owned(),
-        remedy: Some("correct the syntax; https://toml.io describes it".into()),
-        span: error.span(),
-    }
-}
-
-fn toml_problem(error: &toml::de::Error) -> Problem {
-    let full = error.message();
-    let message = full.lines().next().unwrap_or_default();
-    if let Some((bad, known)) = unexpected_keys(message) {
-        return Problem {
-            span: error.span(),
-            ..Problem::new(
-                Key::root(),
-                format!("unknown key `{bad}`"),
-                suggestion(bad, &known),
-            )
-        };
-    }
-    let names: Vec<&str> = full.split('`').skip(1).step_by(2).collect();
-    let (message, remedy) = match names.split_first() {
-        Some((bad, known)) if message.starts_with("unknown field") => {
-            (format!("unknown key `{bad}`"), suggestion(bad, known))
-        }
-        Some((bad, known)) if message.starts_with("unknown variant") => {
-            (format!("unknown choice `{bad}`"), suggestion(bad, known))
-        }
-        Some((missing, _)) if message.starts_with("missing field") => (
-            format!("the key `{missing}` is missing here"),
-            "add it; docs/scene.md describes all keys".to_owned(),
-        ),
-        _ if message.starts_with("invalid type") => (
-            in_plain_words(message),
-            "write a value of the expected type; numbers have no quotes".to_owned(),
-        ),
-        _ => (
-            message.to_owned(),
-            "docs/scene.md describes all keys, https://toml.io the syntax".to_owned(),
-        ),
-    };
-    Problem {
-        key: Key::root(),
-        message,
-        remedy: Some(remedy),
-        span: error.span(),
-    }
-}
-
-/// The first unknown key and all known ones of the other form of that message, which the choices of an
-/// enumeration have.
-fn unexpected_keys(message: &str) -> Option<(&str, Vec<&str>)> {
-    let names = message.strip_prefix("unexpected keys in table: ")?;
-    let (bad, known) = names.split_once(", available keys: ")?;
-    Some((bad.split(", ").next()?, known.split(", ").collect()))
-}
-
-/// A message with the names of types as a stranger to Rust reads them.
-fn in_plain_words(message: &str) -> String {
-    let (start, expected) = message.rsplit_once("expected ").unwrap_or((message, ""));
-    let plain = match expected {
-        "f64" => "a number",
-        "u32" | "u64" | "usize" => "a whole number of at least 0",
-        other => other,
-    };
-    format!("{start}expected {plain}")
-}
-
-/// The nearest known name, and all of them.
-fn suggestion(bad: &str, known: &[&str]) -> String {
-    let all = known.iter().map(|k| format!("`{k}`")).collect::<Vec<_>>();
-    let all = all.join(", ");
-    let nearest = known
-        .iter()
-        .map(|k| (strsim::damerau_levenshtein(bad, k), k))
-        .min();
-    match nearest {
-        // As many wrong letters as a word of this length has by accident: one, and one more for every three.
-        Some((distance, k)) if distance <= 1 + k.len() / 3 => {
-            format!("did you mean `{k}`? Known here: {all}")
-        }
-        Some(_) => format!("known here: {all}"),
-        None => "no key is known here".to_owned(),
     }
 }

@@ -92,6 +92,51 @@ pub enum Curve {
     },
 }
 
+impl Curve {
+    fn check(&self, key: &Key, checks: &mut Checks) {
+        let before = checks.problems.len();
+        match self {
+            Self::Line { point, direction } => {
+                checks.finite(key.name("point"), point);
+                checks.direction(key.name("direction"), direction);
+            }
+            Self::Circle {
+                centre,
+                normal,
+                radius,
+            } => {
+                checks.finite(key.name("centre"), centre);
+                checks.direction(key.name("normal"), normal);
+                checks.positive(key.name("radius"), *radius, "m");
+            }
+            Self::Polyline {
+                points,
+                corner_radius,
+            } => {
+                check_points(points, key, checks);
+                checks.positive(key.name("corner_radius"), *corner_radius, "m");
+            }
+            Self::Spline { points } | Self::ClosedSpline { points } => {
+                check_points(points, key, checks);
+            }
+        }
+        // What no number alone is to blame for.
+        if checks.problems.len() == before
+            && let Err(error) = self.constrain(VertexId(0))
+        {
+            checks
+                .problems
+                .push(Problem::from_error(key.clone(), &error));
+        }
+    }
+}
+
+fn check_points(points: &[[f64; 3]], key: &Key, checks: &mut Checks) {
+    for (k, point) in points.iter().enumerate() {
+        checks.finite(key.name("points").entry(k), point);
+    }
+}
+
 /// A surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -119,6 +164,39 @@ pub enum Surface {
         /// Radius, metres.
         radius: f64,
     },
+}
+
+impl Surface {
+    fn check(&self, key: &Key, checks: &mut Checks) {
+        let before = checks.problems.len();
+        match self {
+            Self::Plane { point, normal } => {
+                checks.finite(key.name("point"), point);
+                checks.direction(key.name("normal"), normal);
+            }
+            Self::Sphere { centre, radius } => {
+                checks.finite(key.name("centre"), centre);
+                checks.positive(key.name("radius"), *radius, "m");
+            }
+            Self::Cylinder {
+                point,
+                axis,
+                radius,
+            } => {
+                checks.finite(key.name("point"), point);
+                checks.direction(key.name("axis"), axis);
+                checks.positive(key.name("radius"), *radius, "m");
+            }
+        }
+        // What no number alone is to blame for.
+        if checks.problems.len() == before
+            && let Err(error) = self.constrain(VertexId(0), Side::On)
+        {
+            checks
+                .problems
+                .push(Problem::from_error(key.clone(), &error));
+        }
+    }
 }
 
 /// On which side of a surface vertices may be.
@@ -152,18 +230,12 @@ impl Support {
             Hold::Curve { shape, motion } => {
                 let key = hold.name("curve");
                 motion.check(&key.name("motion"), checks);
-                if let Err(error) = shape.constrain(VertexId(0)) {
-                    let place = key.name("shape").name(shape.name());
-                    checks.problems.push(Problem::from_error(place, &error));
-                }
+                shape.check(&key.name("shape").name(shape.name()), checks);
             }
             Hold::Surface { shape, motion, .. } => {
                 let key = hold.name("surface");
                 motion.check(&key.name("motion"), checks);
-                if let Err(error) = shape.constrain(VertexId(0), Side::On) {
-                    let place = key.name("shape").name(shape.name());
-                    checks.problems.push(Problem::from_error(place, &error));
-                }
+                shape.check(&key.name("shape").name(shape.name()), checks);
             }
         }
     }

@@ -190,7 +190,10 @@ fn series_data(series: &Series) -> SeriesData<'_> {
     SeriesData {
         name: &series.name,
         unit: &series.unit,
-        scale: scale_name(series.scale),
+        scale: match series.scale {
+            Scale::Linear | Scale::Signed => "linear",
+            Scale::Logarithmic => "logarithmic",
+        },
         times: pack_doubles(series.times.iter().copied()),
         values: pack_doubles(series.values.iter().copied()),
     }
@@ -200,5 +203,6 @@ fn scale_name(scale: Scale) -> &'static str {
     match scale {
         Scale::Linear => "linear",
         Scale::Logarithmic => "logarithmic",
+        Scale::Signed => "signed",
     }
 }

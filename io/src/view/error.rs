@@ -1,6 +1,6 @@
 //! What makes a replay or its options unusable.
 
-use isosheet_mesh::TopologyError;
+use isosheet_mesh::{Advice, TopologyError};
 use thiserror::Error;
 
 /// Why no page could be made of a [`Replay`](super::Replay).
@@ -8,10 +8,10 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum ViewError {
     /// There is no frame.
-    #[error("the replay has no frames; give the positions at one time at least")]
+    #[error("the replay has no frames")]
     NoFrames,
     /// There is no face.
-    #[error("the replay has no faces; give the triangles of the sheet")]
+    #[error("the replay has no faces")]
     NoFaces,
     /// The triangles are not an oriented manifold.
     #[error("the triangles of the sheet: {0}")]
@@ -27,7 +27,7 @@ pub enum ViewError {
         expected: usize,
     },
     /// A number is NaN or infinite, or so large that differences of such numbers are infinite.
-    #[error("{what}: entry {index} is {value}; give finite numbers below 1e300 in size")]
+    #[error("{what}: entry {index} is {value}")]
     NotFinite {
         /// The list that has the number.
         what: String,
@@ -37,9 +37,7 @@ pub enum ViewError {
         value: f64,
     },
     /// Times go backwards.
-    #[error(
-        "{what}: entry {index} is {time} s after {before} s; give the times in ascending order"
-    )]
+    #[error("{what}: entry {index} is {time} s after {before} s")]
     Time {
         /// The list of times.
         what: String,
@@ -65,7 +63,7 @@ pub enum ViewError {
         vertices: usize,
     },
     /// A length of a body is not positive.
-    #[error("{what}: {name} is {value} m; give a positive length")]
+    #[error("{what}: {name} is {value} m")]
     BodyLength {
         /// The body.
         what: String,
@@ -75,15 +73,13 @@ pub enum ViewError {
         value: f64,
     },
     /// A body made of triangles has none.
-    #[error("{what}: the mesh has no triangles; give at least one")]
+    #[error("{what}: the mesh has no triangles")]
     NoBodyFaces {
         /// The body.
         what: String,
     },
     /// A quaternion does not have the length 1.
-    #[error(
-        "{what}: the quaternion of pose {index} has the length {norm}; give a quaternion of length 1"
-    )]
+    #[error("{what}: the quaternion of pose {index} has the length {norm}")]
     Rotation {
         /// The body.
         what: String,
@@ -93,9 +89,7 @@ pub enum ViewError {
         norm: f64,
     },
     /// A logarithmic scale has no place for a negative number.
-    #[error(
-        "{what}: entry {index} is {value}, which has no logarithm; use a linear scale or sizes"
-    )]
+    #[error("{what}: entry {index} is {value}, which has no logarithm")]
     Negative {
         /// The list that has the number.
         what: String,
@@ -105,9 +99,7 @@ pub enum ViewError {
         value: f64,
     },
     /// The size that a page may have is too small for any page.
-    #[error(
-        "the budget is {budget} bytes, but the program of the page alone has {least} bytes; raise the budget"
-    )]
+    #[error("the budget is {budget} bytes, but the program of the page alone has {least} bytes")]
     Budget {
         /// The size that the page may have.
         budget: usize,
@@ -116,8 +108,7 @@ pub enum ViewError {
     },
     /// The page is too large even with two frames.
     #[error(
-        "the page has {bytes} bytes with {frames} frames left, but the budget is {budget} bytes; raise the \
-         budget, or leave out fields or series"
+        "the page has {bytes} bytes with {frames} frames left, but the budget is {budget} bytes"
     )]
     TooLarge {
         /// The size of the page.
@@ -127,4 +118,23 @@ pub enum ViewError {
         /// The size that it may have.
         budget: usize,
     },
+}
+
+impl Advice for ViewError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoFrames => Some("give the positions at one time at least"),
+            Self::NoFaces => Some("give the triangles of the sheet"),
+            Self::Topology(error) => error.advice(),
+            Self::NotFinite { .. } => Some("give finite numbers below 1e300 in size"),
+            Self::Time { .. } => Some("give the times in ascending order"),
+            Self::BodyLength { .. } => Some("give a positive length"),
+            Self::NoBodyFaces { .. } => Some("give at least one"),
+            Self::Rotation { .. } => Some("give a quaternion of length 1"),
+            Self::Negative { .. } => Some("use a linear scale or sizes"),
+            Self::Budget { .. } => Some("raise the budget"),
+            Self::TooLarge { .. } => Some("raise the budget, or leave out fields or series"),
+            Self::Length { .. } | Self::Vertex { .. } => None,
+        }
+    }
 }

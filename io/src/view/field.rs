@@ -1,5 +1,6 @@
 //! Values on the sheet, and quantities over time.
 
+use crate::format::Trajectory;
 use isosheet_mesh::Topology;
 
 use super::check;
@@ -24,6 +25,10 @@ pub enum Scale {
     Linear,
     /// By logarithm: no value is negative. Zeros are shown as zeros in colours and left out of plots.
     Logarithmic,
+    /// By value, with colours that have zero in the middle and reach as far to both sides; for forces, which
+    /// are of either sign and differ by orders of magnitude. A page keeps values to 0.02 %, and those below a
+    /// millionth of the largest as zero. In plots as [`Scale::Linear`].
+    Signed,
 }
 
 /// A quantity on the sheet, such as the strain of the edges or the gap of the vertices.
@@ -94,6 +99,22 @@ impl Field {
             place: Place::Edge,
             scale: Scale::Logarithmic,
             values,
+        })
+    }
+
+    /// The force of the rod along each edge in each frame (newtons, tension positive), if the trajectory has
+    /// forces.
+    pub fn rod_forces(trajectory: &Trajectory) -> Option<Self> {
+        let frames = 0..trajectory.len();
+        let values: Option<Vec<_>> = frames
+            .map(|k| trajectory.rod_forces(k).map(<[f64]>::to_vec))
+            .collect();
+        Some(Self {
+            name: "rod force (tension +)".into(),
+            unit: "N".into(),
+            place: Place::Edge,
+            scale: Scale::Signed,
+            values: values?,
         })
     }
 

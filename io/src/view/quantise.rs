@@ -7,6 +7,13 @@ const LARGEST: f64 = 65535.0;
 /// The number of steps between the smallest and the largest logarithm: bytes 1 to 255, and 0 for zero.
 const LOG_STEPS: f64 = 254.0;
 
+/// The number of sizes that numbers of either sign are rounded to, which zero is not among: two signs of
+/// these and zero are the 16-bit integers but one.
+const SIZES: f64 = 32767.0;
+/// Of numbers of either sign, what is smaller than this part of the largest is zero: six decades in 32766
+/// steps are steps of 0.04 %.
+const NEGLIGIBLE: f64 = 1e-6;
+
 /// Integers `q` that stand for numbers, row by row.
 pub(super) struct Quantised {
     /// The number that the smallest integer stands for; a decimal logarithm on a logarithmic scale.
@@ -34,7 +41,8 @@ fn step(low: f64, high: f64, count: f64) -> f64 {
 }
 
 /// The values of a field. On a linear scale a value is `low + q step` with 16 bits; on a logarithmic one it
-/// is `10^(low + (q - 1) step)` with 8 bits, and `q = 0` is zero.
+/// is `10^(low + (q - 1) step)` with 8 bits, and `q = 0` is zero. Signed values have 16 bits: up to 32767 as
+/// on a logarithmic scale, and the negative of `q - 32768` from 32768 on.
 pub(super) fn quantise_field(rows: &[&Vec<f64>], scale: Scale) -> Quantised {
     let all = || rows.iter().flat_map(|row| row.iter().copied());
     match scale {
@@ -42,6 +50,28 @@ pub(super) fn quantise_field(rows: &[&Vec<f64>], scale: Scale) -> Quantised {
             let (low, high) = range(all());
             let step = step(low, high, LARGEST);
             let integer = |v: &f64| ((v - low) / step).round() as u16;
+            Quantised {
+                low,
+                step,
+                bytes: 2,
+                rows: rows
+                    .iter()
+                    .map(|row| row.iter().map(integer).collect())
+                    .collect(),
+            }
+        }
+        Scale::Signed => {
+            let largest = all().fold(0.0, |largest: f64, v| largest.max(v.abs()));
+            let least = NEGLIGIBLE * largest;
+            let is_zero = |v: f64| v.abs() <= least;
+            let sizes = all().filter(|&v| !is_zero(v)).map(|v| v.abs().log10());
+            let (low, high) = range(sizes);
+            let step = step(low, high, SIZES - 1.0);
+            let integer = |v: &f64| match ((v.abs().log10() - low) / step).round() {
+                _ if is_zero(*v) => 0,
+                size if *v < 0.0 => 32769 + size as u16,
+                size => 1 + size as u16,
+            };
             Quantised {
                 low,
                 step,

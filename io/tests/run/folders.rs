@@ -33,6 +33,22 @@ fn a_folder_in_use_a_foreign_one_and_one_of_another_scene_are_refused() {
     fs::write(dir.join("mine/letter.txt"), "dear").unwrap();
     let foreign = run(dir, &["simulate", "scene.toml", "--out", "mine"]);
     assert_eq!(code(&foreign), Some(4), "{}", stderr(&foreign));
+    assert_eq!(
+        stderr(&foreign),
+        "error: mine holds files and is not the folder of a run\n  \
+         = help: choose an empty or a new folder with --out\n"
+    );
+    let foreign = run(dir, &["simulate", "scene.toml", "--out", "mine", "--json"]);
+    let line: Value = serde_json::from_slice(&foreign.stdout).unwrap();
+    let problem = &line["problems"][0];
+    assert_eq!(
+        problem["message"],
+        "mine holds files and is not the folder of a run"
+    );
+    assert_eq!(
+        problem["remedy"],
+        "choose an empty or a new folder with --out"
+    );
     assert_eq!(fs::read_dir(dir.join("mine")).unwrap().count(), 1);
 }
 

@@ -4,9 +4,11 @@ mod continuing;
 mod convert;
 mod ends;
 mod folders;
+mod gallery;
 #[path = "../shared/headless.rs"]
 mod headless;
 mod pages;
+mod rod_forces;
 mod sweeps;
 mod tools;
 

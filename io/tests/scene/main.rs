@@ -2,12 +2,14 @@
 
 mod book;
 mod charts;
+mod complete;
 mod files;
 mod formulas;
 mod keys;
 mod meaning;
 mod messages;
 mod values;
+mod wrong;
 
 use isosheet_io::dynamics::Simulation;
 use isosheet_io::scene::{SceneFile, SceneFileError};

@@ -66,9 +66,15 @@ const WRONG: [Wrong<'_>; 20] = [
         "density = \"x\"",
         [4, 11],
         "expected a number",
-        "numbers have no quotes",
+        "without quotes",
     ),
-    ("level = 1", "level = -1", [3, 41], "-1", "docs/scene.md"),
+    (
+        "level = 1",
+        "level = -1",
+        [3, 41],
+        "found the number `-1`",
+        "of at least 0",
+    ),
     (
         "density = 0.1",
         "density = -1",
@@ -135,7 +141,13 @@ const WRONG: [Wrong<'_>; 20] = [
         "touches the sheet at vertex",
         "move the obstacle",
     ),
-    ("[0, 0, -1]", "[0, 0]", [9, 21], "length 2", "docs/scene.md"),
+    (
+        "[0, 0, -1]",
+        "[0, 0]",
+        [9, 21],
+        "expected a list of length 3, found a list of length 2",
+        "in brackets",
+    ),
     (
         "vertices = [0] }",
         "vertices = [0] }\nhold = { moving_pin = { x = { ramp = { to = 1, end = -1 } } } }",

@@ -105,6 +105,7 @@ pub(crate) fn field(data: &Value, index: usize) -> Vec<Vec<f64>> {
     let value = |&q: &i64| match (field["scale"].as_str().unwrap(), q) {
         ("linear", q) => low + step * q as f64,
         (_, 0) => 0.0,
+        ("signed", q) if q > 32767 => -10_f64.powf(low + step * (q - 32769) as f64),
         (_, q) => 10_f64.powf(low + step * (q - 1) as f64),
     };
     let table = rows(&field["values"], frames(data));

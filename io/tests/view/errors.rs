@@ -1,6 +1,7 @@
 //! Bad input is an error that says what is wrong and where.
 
 use super::scenes::every_body;
+use isosheet_io::Advice;
 use isosheet_io::view::{BodyShape, Replay, ViewError};
 
 /// The error that a change of a good replay leads to.
@@ -16,7 +17,7 @@ fn error(change: impl FnOnce(&mut Replay)) -> ViewError {
 
 #[track_caller]
 fn says(change: impl FnOnce(&mut Replay), parts: &[&str]) {
-    let text = error(change).to_string();
+    let text = error(change).with_advice();
     for part in parts {
         assert!(text.contains(part), "{text:?} does not say {part:?}");
     }

@@ -8,6 +8,15 @@ pub(crate) fn scattered(k: usize) -> f64 {
     (k as f64 * 0.618_033_988_749_894_9).fract()
 }
 
+/// Numbers of both signs over ten decades, and zeros.
+fn forces(edges: usize, frame: usize) -> Vec<f64> {
+    let force = |e: usize| match (e + frame) % 7 {
+        0 => 0.0,
+        k => (-1.0_f64).powi(k as i32) * 10.0_f64.powf(10.0 * scattered(e + 97 * frame) - 6.0),
+    };
+    (0..edges).map(force).collect()
+}
+
 /// A sheet with sides of 1 m that waves: smooth motion of every coordinate, with some noise of 10
 /// micrometres.
 pub(crate) fn waving(level: u32, frames: usize) -> Replay {
@@ -28,6 +37,15 @@ pub(crate) fn waving(level: u32, frames: usize) -> Replay {
             place: Place::Vertex,
             scale: Scale::Linear,
             values: positions.iter().map(depths).collect(),
+        },
+        Field {
+            name: "rod force".into(),
+            unit: "N".into(),
+            place: Place::Edge,
+            scale: Scale::Signed,
+            values: (0..frames)
+                .map(|k| forces(sheet.topology().edge_count(), k))
+                .collect(),
         },
     ];
     let series = |name: &str, unit: &str, scale, f: fn(f64) -> f64| Series {

@@ -153,6 +153,7 @@ function heightQuantity(replay) {
 }
 
 function fieldQuantity(replay, field, k) {
+  if (field.scale === "signed") return signedQuantity(replay, field, k);
   const { low, step, values } = field;
   const width = values.length / replay.frames;
   const logarithmic = field.scale === "logarithmic";
@@ -170,6 +171,47 @@ function fieldQuantity(replay, field, k) {
     leavesOut: Number.isNaN,
     value: (index) => decode(values[replay.frame * width + index]),
   };
+}
+
+/** The share of the values that are not zero that is inside the range of colours. */
+const SIGNED_IN_RANGE = 0.98;
+/** Integers from here on stand for negative values. */
+const NEGATIVE = 32768;
+
+/** A field with values of either sign, such as forces. */
+function signedQuantity(replay, field, k) {
+  const { low, step, values } = field;
+  const width = values.length / replay.frames;
+  const size = (q) => (q === 0 ? 0 : 10 ** (low + step * (q - 1)));
+  const decode = (q) => (q < NEGATIVE ? size(q) : -size(q - NEGATIVE));
+  let found = null;
+  return {
+    key: `field-${k}`,
+    label: field.name,
+    unit: field.unit,
+    place: field.place,
+    map: DIVERGING,
+    scale: "linear",
+    open: () => (found ??= signedRange(values, size)).open,
+    range: () => (found ??= signedRange(values, size)).range,
+    leavesOut: Number.isNaN,
+    value: (index) => decode(values[replay.frame * width + index]),
+  };
+}
+
+/** A range to both sides of zero that has most of the values in all frames, and whether there are others. */
+function signedRange(values, size) {
+  const histogram = new Uint32Array(NEGATIVE);
+  let largest = 0;
+  for (const q of values) {
+    const k = q % NEGATIVE;
+    histogram[k]++;
+    if (k > largest) largest = k;
+  }
+  const count = values.length - histogram[0];
+  let last = 0;
+  for (let within = 0; within < SIGNED_IN_RANGE * count;) within += histogram[++last];
+  return { range: [-size(last), size(last)], open: largest > last };
 }
 
 /** The function from values to places in [0, 1]; zeros of a logarithmic scale are at its low end. */

@@ -1,5 +1,6 @@
 //! Arguments that no sheet can be made from.
 
+use crate::Advice;
 use thiserror::Error;
 
 use crate::MeshError;
@@ -9,7 +10,7 @@ use crate::MeshError;
 #[non_exhaustive]
 pub enum GenerateError {
     /// A count is out of range.
-    #[error("{name} is {value}; it must be between {min} and {max}")]
+    #[error("{name} is {value}, which is not between {min} and {max}")]
     Count {
         /// The name of the argument.
         name: &'static str,
@@ -21,7 +22,7 @@ pub enum GenerateError {
         max: usize,
     },
     /// A length is not a positive number.
-    #[error("{name} is {value}; it must be a positive, finite number of metres")]
+    #[error("{name} is {value}")]
     Size {
         /// The name of the argument.
         name: &'static str,
@@ -29,7 +30,7 @@ pub enum GenerateError {
         value: f64,
     },
     /// An angle is out of range.
-    #[error("{name} is {value} rad; it must lie between {min} and {max}")]
+    #[error("{name} is {value} rad, which is not between {min} and {max}")]
     Angle {
         /// The name of the argument.
         name: &'static str,
@@ -47,7 +48,7 @@ pub enum GenerateError {
         problem: &'static str,
     },
     /// Two lengths are in the wrong order.
-    #[error("{small} is {small_value} and {large} is {large_value}; the first must be smaller")]
+    #[error("{small} is {small_value} and {large} is {large_value}")]
     Order {
         /// The name of the argument that must be smaller.
         small: &'static str,
@@ -59,9 +60,7 @@ pub enum GenerateError {
         large_value: f64,
     },
     /// An outline does not bound a simple polygon.
-    #[error(
-        "the outline is unusable at point {corner} of its boundary: {problem}; give the corners of a simple polygon in order"
-    )]
+    #[error("the outline is unusable at point {corner} of its boundary: {problem}")]
     Outline {
         /// Which point.
         corner: usize,
@@ -69,9 +68,7 @@ pub enum GenerateError {
         problem: &'static str,
     },
     /// The result would be too large to handle.
-    #[error(
-        "the sheet would have {faces} faces, more than the {limit} that are allowed; use fewer cells or a lower level"
-    )]
+    #[error("the sheet would have {faces} faces, more than the {limit} that are allowed")]
     TooManyFaces {
         /// The number of faces asked for.
         faces: u128,
@@ -81,6 +78,20 @@ pub enum GenerateError {
     /// The result is not a valid mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+}
+
+impl Advice for GenerateError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Count { .. } | Self::Angle { .. } => Some("give a value in this range"),
+            Self::Size { .. } => Some("give a positive, finite number of metres"),
+            Self::Order { .. } => Some("give a smaller value for the first"),
+            Self::Outline { .. } => Some("give the corners of a simple polygon in order"),
+            Self::TooManyFaces { .. } => Some("use fewer cells or a lower level"),
+            Self::Mesh(error) => error.advice(),
+            Self::Assignment { .. } => None,
+        }
+    }
 }
 
 /// Sixteen million faces, twice those of M^10. A larger number is taken for a mistake.

@@ -149,21 +149,6 @@ pub(crate) fn advice(points: &[Point], measure: Measure) -> String {
     text
 }
 
-/// The first clause of an error message, without what to do about it: up to the first semicolon outside
-/// brackets.
-pub(crate) fn first_clause(message: &str) -> &str {
-    let mut depth = 0;
-    let end = message.find(|c| {
-        match c {
-            '[' | '(' => depth += 1,
-            ']' | ')' => depth -= 1,
-            _ => {}
-        }
-        c == ';' && depth == 0
-    });
-    &message[..end.unwrap_or(message.len())]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -226,14 +211,5 @@ mod tests {
             "{words}"
         );
         assert_eq!(advice(&[], Measure::Energy), "no method reaches 1e-1");
-    }
-
-    #[test]
-    fn clauses_end_at_semicolons_outside_brackets() {
-        assert_eq!(
-            first_clause("[G; S] is singular; move it"),
-            "[G; S] is singular"
-        );
-        assert_eq!(first_clause("no advice"), "no advice");
     }
 }

@@ -1,6 +1,6 @@
 //! The study of one problem: all methods, all steps; its table, its plot, its words.
 
-use super::analysis::{Measure, advice, cheapest, first_clause, on_front, order};
+use super::analysis::{Measure, advice, cheapest, on_front, order};
 use super::measure::{Point, sweep};
 use super::problem::{CHECKPOINTS, Problem};
 use super::reference::{self, Reference};
@@ -250,8 +250,6 @@ impl Study {
             None => String::new(),
             Some(p) => {
                 let reason = p.failure.as_deref().unwrap_or("not finished");
-                // What to do about it is not asked here.
-                let reason = first_clause(reason);
                 format!(
                     "{} of {runs} runs not finished, the last: {}",
                     failed.len(),

@@ -1,6 +1,5 @@
 //! The default against the published scheme at equal wall time.
 
-use super::analysis::first_clause;
 use super::measure::{Errors, Point};
 use super::problem::Problem;
 use super::scheme::{DEFAULT, is_paper};
@@ -124,7 +123,7 @@ fn reasons(paper: &[&Point]) -> String {
     let mut last: Vec<(&str, String)> = Vec::new();
     for p in paper {
         let Some(failure) = &p.failure else { continue };
-        let reason = rounded(first_clause(failure));
+        let reason = rounded(failure);
         match last.last_mut() {
             Some((name, text)) if *name == p.scheme => *text = reason,
             _ => last.push((&p.scheme, reason)),

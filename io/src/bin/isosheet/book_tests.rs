@@ -16,14 +16,23 @@ fn lines(page: &str) -> Vec<String> {
             .filter(|&k| k == 0 || l[..k].ends_with(' '))?;
         let whole = !l[..at].contains("cargo");
         whole.then(|| {
-            l[at..]
-                .split([';', '#', '|'])
-                .next()
-                .unwrap_or_default()
-                .to_owned()
+            let command = l[at..].split([';', '#', '|']).next();
+            with_first_value(&l[..at], command.unwrap_or_default())
         })
     });
     commands.collect()
+}
+
+/// A command line with the first value of the variable of the loop that it is in: `for d in 1 2; do ...`.
+fn with_first_value(before: &str, command: &str) -> String {
+    let list = before
+        .strip_prefix("for ")
+        .and_then(|l| l.split_once(" in "));
+    let first = list.and_then(|(name, values)| Some((name, values.split([' ', ';']).next()?)));
+    match first {
+        Some((name, value)) => command.replace(&format!("${name}"), value),
+        None => command.to_owned(),
+    }
 }
 
 /// The words of a command line; single quotes keep blanks together.

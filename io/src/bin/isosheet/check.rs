@@ -2,12 +2,15 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use crate::info::{describe_scene, is_scene};
+use crate::info::{describe_scene, is_scene, refuse_folder};
 use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::mesh::Sheet;
 use isosheet_io::scene::SceneFile;
-use isosheet_io::{MeshFile, MeshFileProblem, MeshOptions, Polygons, read_mesh_with, write_mesh};
+use isosheet_io::{
+    Advice, MeshFile, MeshFileError, MeshFileProblem, MeshOptions, Polygons, read_mesh_with,
+    write_mesh,
+};
 use std::path::{Path, PathBuf};
 
 /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
@@ -26,8 +29,8 @@ impl Check {
             return self.check_mesh();
         }
         if self.fix.is_some() {
-            let message = "--fix repairs mesh files; correct a scene by hand";
-            return Err(Failure::new(Code::Input, message));
+            let message = "--fix repairs mesh files, and this is a scene";
+            return Err(Failure::new(Code::Input, message).remedy("correct a scene by hand"));
         }
         let scene = SceneFile::read(&self.file, &[])?;
         let setup = scene.build()?;
@@ -40,6 +43,7 @@ impl Check {
     }
 
     fn check_mesh(&self) -> Done {
+        refuse_folder(&self.file)?;
         let name = self.file.display();
         if let Some(fixed) = &self.fix {
             return self.fix_mesh(fixed);
@@ -51,10 +55,10 @@ impl Check {
                 counts(&sheet),
                 what_merging_does(mesh)
             )),
-            Err(error) => Err(Failure::new(
-                Code::Input,
-                format!("{error}\n{}", what_repair_does(mesh, &self.file)),
-            )),
+            Err(error) => {
+                let remedy = what_repair_does(mesh, &error, &self.file);
+                Err(Failure::new(Code::Input, error).remedy(remedy))
+            }
         }
     }
 
@@ -64,14 +68,17 @@ impl Check {
         let mut mesh = given.clone();
         let repair = mesh
             .repair()
-            .map_err(|e| format!("{name}: {e}; edit the mesh there"));
+            .map_err(|e| (format!("{name}: {e}"), e.advice()));
         let polygons = match mesh.polygons {
             0 => String::new(),
             n => format!("{n} polygons cut into triangles, "),
         };
         let repaired = repair.and_then(|repair| match mesh.clone().into_sheet() {
             Ok(sheet) => Ok((mesh, sheet, repair.to_string())),
-            Err(error) => Err(format!("{error}\n(after the repair: {repair})")),
+            Err(error) => Err((
+                format!("{error} (after the repair: {repair})"),
+                error.advice(),
+            )),
         });
         // Where parts of a valid sheet touch, merging their vertices may join more than two faces.
         let (mesh, sheet, done) = match (repaired, given.clone().into_sheet()) {
@@ -80,9 +87,12 @@ impl Check {
                 let done = "valid as it was; parts that touch stay apart";
                 (given, sheet, done.to_owned())
             }
-            (Err(message), Err(_)) => return Err(Failure::new(Code::Input, message)),
+            (Err((message, advice)), Err(_)) => {
+                let remedy = advice.unwrap_or("edit the mesh there");
+                return Err(Failure::new(Code::Input, message).remedy(remedy));
+            }
         };
-        write_mesh(fixed, &mesh).map_err(|e| Failure::new(Code::Output, e))?;
+        write_mesh(fixed, &mesh).map_err(|e| Failure::of(Code::Output, &e))?;
         to_stdout(&format!(
             "{}: a sheet of {} ({polygons}{done})\n",
             fixed.display(),
@@ -107,28 +117,38 @@ fn read(path: &Path, polygons: Polygons) -> Result<MeshFile, Failure> {
         ..MeshOptions::default()
     };
     read_mesh_with(path, &options).map_err(|error| {
-        let remedy = match error.problem {
-            MeshFileProblem::Polygon { .. } => {
-                "\nhelp: `--fix FILE2` cuts polygons into triangles: their new edges are lines along which \
-                 the sheet can fold"
-            }
-            _ => "",
-        };
-        Failure::new(Code::Input, format!("{error}{remedy}"))
+        let failure = Failure::of(Code::Input, &error);
+        match error.problem {
+            MeshFileProblem::Polygon { .. } => failure.remedy(
+                "`--fix FILE2` cuts polygons into triangles: their new edges are lines along which the sheet can \
+                 fold",
+            ),
+            _ => failure,
+        }
     })
 }
 
-fn what_repair_does(mut mesh: MeshFile, path: &Path) -> String {
+fn what_repair_does(mut mesh: MeshFile, problem: &MeshFileError, path: &Path) -> String {
     let repair = match mesh.repair() {
         Ok(repair) => repair,
-        Err(error) => return format!("help: this cannot be repaired automatically: {error}"),
+        Err(error) => {
+            // What is in the way of a repair is often the problem itself.
+            let reason = match problem.to_string().ends_with(&error.to_string()) {
+                true => error.advice().unwrap_or("edit the mesh there").to_owned(),
+                false => error.with_advice(),
+            };
+            return format!("this cannot be repaired automatically: {reason}");
+        }
     };
     match mesh.into_sheet() {
         Ok(_) => format!(
-            "help: `isosheet check {} --fix FILE2` repairs this: {repair}",
+            "`isosheet check {} --fix FILE2` repairs this: {repair}",
             path.display()
         ),
-        Err(error) => format!("help: repair is not enough ({repair}): {error}"),
+        Err(error) => {
+            let error = error.problem.with_advice();
+            format!("repair is not enough ({repair}): {error}")
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use crate::message::print_message;
+use crate::message::{counted, print_message};
 use crate::write::bytes_to_stdout;
 use clap::Args;
 use isosheet_io::run::Collection;
@@ -32,19 +32,18 @@ impl Collect {
         }
         let missing = collection.incomplete().len();
         if missing > 0 && !self.allow_incomplete {
-            let message = format!(
-                "{missing} of {} runs are not complete; run them, or leave them out with --allow-incomplete",
-                missing + collection.row_count()
-            );
-            return Err(Failure::new(Code::Input, message));
+            let count = missing + collection.row_count();
+            let message = format!("{missing} of {count} runs are not complete");
+            return Err(Failure::new(Code::Input, message)
+                .remedy("run them, or leave them out with --allow-incomplete"));
         }
         match &self.out {
             Some(path) => {
                 collection.write(path)?;
                 print_message(format_args!(
-                    "{}: {} runs",
+                    "{}: {}",
                     path.display(),
-                    collection.row_count()
+                    counted(collection.row_count(), "run", "runs")
                 ));
                 Ok(())
             }

@@ -2,12 +2,13 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::message::counted;
 use crate::pictures::{self, FrameChoice, PictureFormat};
 use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::run::Recording;
 use isosheet_io::{
-    ExportError, Exported, MOST_KEY_FRAMES, MeshFile, MeshOptions, Series, SeriesOptions,
+    Advice, ExportError, Exported, MOST_KEY_FRAMES, MeshFile, MeshOptions, Series, SeriesOptions,
     Trajectory, read_mesh_with, write_mesh, write_series,
 };
 use std::path::{Path, PathBuf};
@@ -62,7 +63,9 @@ impl Convert {
             let assignments = recording.scene.fold_assignments()?;
             let series = self.series(&recording.trajectory)?;
             let series = match assignments {
-                Some(assignments) => series.with_assignments(assignments).map_err(input)?,
+                Some(assignments) => series
+                    .with_assignments(assignments)
+                    .map_err(|e| input(&e))?,
                 None => series,
             };
             return self.write_run(&series);
@@ -73,40 +76,38 @@ impl Convert {
             .is_some_and(|e| e.eq_ignore_ascii_case("npz"))
         {
             if PictureFormat::of(&self.output).is_some() {
-                return Err(input(
-                    "pictures need the folder of the run, which has its bodies and supports",
-                ));
+                let message = "pictures need the bodies and supports of the run";
+                return Err(wrong(message, "name the folder of the run"));
             }
-            let trajectory = Trajectory::read(&self.input).map_err(input)?;
+            let trajectory = Trajectory::read(&self.input).map_err(|e| input(&e))?;
             return self.write_run(&self.series(&trajectory)?);
         }
         if self.every.is_some() {
-            return Err(input(
-                "--every chooses frames of a run; a mesh file has none",
-            ));
+            let message = "--every chooses frames of a run, and a mesh file has none";
+            return Err(wrong(message, "leave it out"));
         }
         let options = MeshOptions {
             weld: self.weld,
             frame: self.frame,
             ..MeshOptions::default()
         };
-        let mesh = read_mesh_with(&self.input, &options).map_err(input)?;
+        let mesh = read_mesh_with(&self.input, &options).map_err(|e| input(&e))?;
         self.write_mesh(&mesh)
     }
 
     fn series<'a>(&self, trajectory: &'a Trajectory) -> Result<Series<'a>, Failure> {
         if self.weld.is_some() {
-            return Err(input("--weld is for mesh files; a run has shared vertices"));
+            return Err(weld_of_run());
         }
         let every = self
             .every
             .map_or(1, |n| usize::try_from(n).unwrap_or(usize::MAX));
-        Series::new(trajectory, &SeriesOptions { every }).map_err(input)
+        Series::new(trajectory, &SeriesOptions { every }).map_err(|e| input(&e))
     }
 
     fn write_pictures(&self, recording: &Recording, format: PictureFormat) -> Done {
         if self.weld.is_some() {
-            return Err(input("--weld is for mesh files; a run has shared vertices"));
+            return Err(weld_of_run());
         }
         let choice = FrameChoice {
             frame: self.frame,
@@ -117,18 +118,20 @@ impl Convert {
 
     fn write_run(&self, series: &Series<'_>) -> Done {
         if let Some(frame) = self.frame {
-            return self.write_mesh(&series.mesh(frame).map_err(input)?);
+            return self.write_mesh(&series.mesh(frame).map_err(|e| input(&e))?);
         }
         let Exported { files, frames } = write_series(&self.output, series).map_err(|error| {
-            let remedy = match error {
-                ExportError::Extension { .. } => "\nhelp: mesh formats take one frame: `--frame K`",
-                _ => "",
-            };
-            output(format!("{error}{remedy}"))
+            let failure = output(&error);
+            match error {
+                ExportError::Extension { .. } => failure.remedy(
+                    "choose a known format; formats of meshes take one frame, with `--frame K`",
+                ),
+                _ => failure,
+            }
         })?;
         let more = match files.len() {
             1 => String::new(),
-            n => format!(" and {} more files", n - 1),
+            n => format!(" and {}", counted(n - 1, "more file", "more files")),
         };
         let chosen = match series.frames().len() {
             all if all > frames.len() => {
@@ -137,11 +140,12 @@ impl Convert {
             _ => String::new(),
         };
         let name = last(&files).display();
-        to_stdout(&format!("{name}{more}: {} frames{chosen}\n", frames.len()))
+        let count = counted(frames.len(), "frame", "frames");
+        to_stdout(&format!("{name}{more}: {count}{chosen}\n"))
     }
 
     fn write_mesh(&self, mesh: &MeshFile) -> Done {
-        write_mesh(&self.output, mesh).map_err(output)?;
+        write_mesh(&self.output, mesh).map_err(|e| output(&e))?;
         let changes = mesh.changes;
         let notes = [
             (mesh.polygons, "polygons cut into triangles"),
@@ -168,10 +172,19 @@ fn last(files: &[PathBuf]) -> &Path {
     files.last().map_or(Path::new(""), PathBuf::as_path)
 }
 
-fn input(error: impl ToString) -> Failure {
-    Failure::new(Code::Input, error)
+fn weld_of_run() -> Failure {
+    let message = "--weld is for mesh files, and the vertices of a run are shared already";
+    wrong(message, "leave it out")
 }
 
-fn output(error: impl ToString) -> Failure {
-    Failure::new(Code::Output, error)
+fn wrong(message: &str, remedy: &str) -> Failure {
+    Failure::new(Code::Input, message).remedy(remedy)
+}
+
+fn input(error: &impl Advice) -> Failure {
+    Failure::of(Code::Input, error)
+}
+
+fn output(error: &impl Advice) -> Failure {
+    Failure::of(Code::Output, error)
 }

@@ -1,6 +1,7 @@
 //! How the command ends.
 
 use crate::message::print_message;
+use isosheet_io::Advice;
 use isosheet_io::run::{RunError, SweepError};
 use isosheet_io::scene::{Colours, SceneError, SceneFileError};
 use serde_json::json;
@@ -68,6 +69,8 @@ pub(crate) enum Format {
 pub(crate) struct Failure {
     pub(crate) code: Code,
     message: Message,
+    /// What to do, where the message does not say it.
+    remedy: Option<String>,
     format: Format,
 }
 
@@ -82,7 +85,24 @@ impl Failure {
         Self {
             code,
             message: Message::Text(message.to_string()),
+            remedy: None,
             format: Format::Text,
+        }
+    }
+
+    /// The failure that an error describes, with its advice.
+    pub(crate) fn of(code: Code, error: &impl Advice) -> Self {
+        Self {
+            remedy: error.advice().map(str::to_owned),
+            ..Self::new(code, error)
+        }
+    }
+
+    /// The same failure with what to do about it.
+    pub(crate) fn remedy(self, remedy: impl Into<String>) -> Self {
+        Self {
+            remedy: Some(remedy.into()),
+            ..self
         }
     }
 
@@ -103,10 +123,13 @@ impl Failure {
                     Message::Scene(error) => error.render(Colours::Plain),
                 };
                 print_message(format_args!("{text}"));
+                if let Some(remedy) = &self.remedy {
+                    print_message(format_args!("  = help: {remedy}"));
+                }
             }
             Format::Json => {
                 let problems = match &self.message {
-                    Message::Text(text) => json!([{ "message": text }]),
+                    Message::Text(text) => json!([{ "message": text, "remedy": self.remedy }]),
                     Message::Scene(error) => json!(error.placed()),
                 };
                 let line = json!({ "event": "error", "code": code, "problems": problems });
@@ -140,9 +163,10 @@ impl From<RunError> for Failure {
             | RunError::SceneFile(SceneFileError::Scene(error)) => Self {
                 code,
                 message: Message::Scene(error),
+                remedy: None,
                 format: Format::Text,
             },
-            error => Self::new(code, error),
+            error => Self::of(code, &error),
         }
     }
 }
@@ -158,7 +182,7 @@ impl From<SweepError> for Failure {
             SweepError::Write(_) => Code::Output,
             _ => Code::Input,
         };
-        Self::new(code, error)
+        Self::of(code, &error)
     }
 }
 

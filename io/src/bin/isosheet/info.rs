@@ -6,14 +6,14 @@ use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::dynamics::{SheetModel, rod_rank};
 use isosheet_io::mesh::{Dof, MassKind, Sheet};
-use isosheet_io::read_sheet;
 use isosheet_io::scene::{SceneFile, Setup};
+use isosheet_io::{MeshFileProblem, read_sheet};
 use std::path::{Path, PathBuf};
 
 /// Print counts, degrees of freedom, boundary loops and sizes
 #[derive(Debug, Args)]
 pub(crate) struct Info {
-    /// A scene (.toml) or a mesh (OBJ, OFF, STL, PLY, FOLD, glTF)
+    /// A scene (.toml), a mesh (OBJ, OFF, STL, PLY, FOLD, glTF) or the folder of a run
     file: PathBuf,
 }
 
@@ -22,18 +22,35 @@ pub(crate) fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|e| e == "toml")
 }
 
+/// Refuses a folder where a file is needed.
+pub(crate) fn refuse_folder(path: &Path) -> Done {
+    if !path.is_dir() {
+        return Ok(());
+    }
+    let message = format!("{} is a folder", path.display());
+    Err(Failure::new(Code::Input, message).remedy("name a scene or a mesh file"))
+}
+
 impl Info {
     pub(crate) fn run(&self) -> Done {
-        if is_scene(&self.file) {
-            let setup = SceneFile::read(&self.file, &[])?.build()?;
+        let scene = match self.file.join("scene.toml") {
+            scene if scene.is_file() => scene,
+            _ => self.file.clone(),
+        };
+        if is_scene(&scene) {
+            let setup = SceneFile::read(&scene, &[])?.build()?;
             return to_stdout(&describe_scene(&setup));
         }
-        let sheet = read_sheet(&self.file).map_err(|e| {
-            let remedy = format!("help: `isosheet check {}` says more", self.file.display());
-            Failure::new(Code::Input, format!("{e}\n{remedy}"))
+        refuse_folder(&self.file)?;
+        let sheet = read_sheet(&self.file).map_err(|e| match e.problem {
+            MeshFileProblem::Mesh(_) => {
+                let remedy = format!("`isosheet check {}` says more", self.file.display());
+                Failure::new(Code::Input, e).remedy(remedy)
+            }
+            _ => Failure::of(Code::Input, &e),
         })?;
         let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped)
-            .map_err(|e| Failure::new(Code::Input, e))?;
+            .map_err(|e| Failure::of(Code::Input, &e))?;
         to_stdout(&describe_sheet(&sheet, &model, sheet.positions()))
     }
 }
@@ -45,7 +62,8 @@ pub(crate) fn describe_scene(setup: &Setup) -> String {
     let mass = setup.model.mass().total();
     let modelled = setup.modelled.join(", ");
     format!(
-        "{sheet}mass             {mass:.6} kg\npinned vertices  {pins}\nmodelled         {modelled}\n"
+        "{sheet}mass             {} kg\npinned vertices  {pins}\nmodelled         {modelled}\n",
+        number(mass)
     )
 }
 
@@ -72,22 +90,24 @@ fn describe_sheet(sheet: &Sheet, model: &SheetModel, x: &[f64]) -> String {
             .fold(f64::INFINITY, f64::min),
         sheet.lengths().iter().copied().fold(0.0, f64::max),
     ];
-    let [low, high] = bounds(x);
+    let [low, high] = bounds(x).map(|corner| corner.map(number));
     format!(
         "vertices         {}, of these {} on the boundary\n\
-         edges            {}, {shortest:.4} to {longest:.4} m long, {:.4} m in the mean\n\
-         faces            {}, together {:.6} m2\n\
+         edges            {}, {} to {} m long, {} m in the mean\n\
+         faces            {}, together {} m2\n\
          components       {}, Euler characteristic {}\n\
          boundary loops   {}{}\n\
          degrees of freedom {total} = 3V - E, {internal} besides rigid motions\n\
          dependent rods   {} in a flat state, {rank}\n\
-         bounds           x {:.4} to {:.4}, y {:.4} to {:.4}, z {:.4} to {:.4} m\n",
+         bounds           x {} to {}, y {} to {}, z {} to {} m\n",
         t.vertex_count(),
         t.boundary_vertex_count(),
         t.edge_count(),
-        sheet.mean_length(),
+        number(shortest),
+        number(longest),
+        number(sheet.mean_length()),
         t.face_count(),
-        sheet.area(),
+        number(sheet.area()),
         t.component_count(),
         t.euler_characteristic(),
         loops.len(),
@@ -104,6 +124,14 @@ fn describe_sheet(sheet: &Sheet, model: &SheetModel, x: &[f64]) -> String {
         low[2],
         high[2],
     )
+}
+
+/// A number with four digits after the point, or with an exponent where these say too little.
+fn number(value: f64) -> String {
+    match value.abs() {
+        size if size == 0.0 || (1e-2..1e5).contains(&size) => format!("{value:.4}"),
+        _ => format!("{value:.4e}"),
+    }
 }
 
 /// Smallest and largest coordinates, metres.

@@ -6,6 +6,7 @@ mod check;
 mod collect;
 mod convert;
 mod exit;
+mod gallery;
 mod info;
 mod interrupt;
 mod message;
@@ -43,6 +44,8 @@ enum Command {
     Collect(collect::Collect),
     /// Make the 3D page of a run, complete or not
     Page(page::Page),
+    /// Make one page of many runs: pictures, key numbers and links to the pages that play them
+    Gallery(gallery::GalleryArgs),
     /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
     Check(check::Check),
     /// Print counts, degrees of freedom, boundary loops and sizes of the sheet of a scene or a mesh file
@@ -71,6 +74,7 @@ fn main() -> ExitCode {
         Command::Sweep(sweep) => sweep.run(),
         Command::Collect(collect) => collect.run(),
         Command::Page(page) => page.run(),
+        Command::Gallery(gallery) => gallery.run(),
         Command::Check(check) => check.run(),
         Command::Info(info) => info.run(),
         Command::Convert(convert) => convert.run(),

@@ -2,8 +2,9 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use crate::message::print_message;
+use crate::message::{counted, print_message};
 use crate::write::to_stdout;
+use isosheet_io::Advice;
 use isosheet_io::run::{Film, FilmOptions, Recording};
 use isosheet_io::write_atomically;
 use std::io::Write;
@@ -49,12 +50,12 @@ pub(crate) fn write(
     let count = recording.trajectory.len();
     let frames: Vec<usize> = match (format, choice) {
         (PictureFormat::Png, FrameChoice { every: Some(_), .. }) => {
-            return Err(input(
-                "a .png file has one frame (--frame K); --every is for .apng",
-            ));
+            let message = "--every is for .apng: a .png file has one frame";
+            return Err(wrong(message, "choose the frame with --frame K"));
         }
         (PictureFormat::AnimatedPng, FrameChoice { frame: Some(_), .. }) => {
-            return Err(input("an .apng file has all frames; --frame K is for .png"));
+            let message = "--frame is for .png: an .apng file has many frames";
+            return Err(wrong(message, "choose frames with --every N"));
         }
         (PictureFormat::Png, FrameChoice { frame, .. }) => {
             vec![frame.unwrap_or(count.saturating_sub(1))]
@@ -64,10 +65,12 @@ pub(crate) fn write(
         }
     };
     if let Some(frame) = frames.iter().find(|frame| **frame >= count) {
-        let message = format!("the run has {count} frames, from 0, and no frame {frame}");
-        return Err(input(message));
+        let count = counted(count, "frame", "frames");
+        let message = format!("the run has {count}, counted from 0, and no frame {frame}");
+        return Err(wrong(&message, "choose one of them"));
     }
-    let film = Film::new(recording, frames.clone(), &FilmOptions::default()).map_err(input)?;
+    let film =
+        Film::new(recording, frames.clone(), &FilmOptions::default()).map_err(|e| input(&e))?;
     for body in film.undrawn() {
         print_message(format_args!(
             "not drawn: obstacle[{body}], since pictures have no half-spaces, balls and capsules"
@@ -77,16 +80,17 @@ pub(crate) fn write(
         PictureFormat::Png => film.picture(0).and_then(|image| image.to_png()),
         PictureFormat::AnimatedPng => film.animation(),
     };
-    let bytes = bytes.map_err(input)?;
+    let bytes = bytes.map_err(|e| input(&e))?;
     let written = write_atomically(path, |w| w.write_all(&bytes));
-    written.map_err(|e| Failure::new(Code::Output, e))?;
-    let count = match frames.len() {
-        1 => "1 frame".to_owned(),
-        n => format!("{n} frames"),
-    };
+    written.map_err(|e| Failure::of(Code::Output, &e))?;
+    let count = counted(frames.len(), "frame", "frames");
     to_stdout(&format!("{}: {count}\n", path.display()))
 }
 
-fn input(error: impl ToString) -> Failure {
-    Failure::new(Code::Input, error)
+fn wrong(message: &str, remedy: &str) -> Failure {
+    Failure::new(Code::Input, message).remedy(remedy)
+}
+
+fn input(error: &impl Advice) -> Failure {
+    Failure::of(Code::Input, error)
 }

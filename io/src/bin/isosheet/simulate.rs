@@ -3,7 +3,7 @@
 use crate::Done;
 use crate::exit::{Code, Failure, Format};
 use crate::interrupt;
-use crate::message::print_message;
+use crate::message::{counted, print_message};
 use crate::progress::{Progress, event};
 use clap::Args;
 use isosheet_io::run::{Outcome, RunError, Summary, resume_folder, simulate};
@@ -80,8 +80,8 @@ impl How {
             Outcome::AlreadyComplete(summary) => ("already complete", summary),
             Outcome::Complete(summary) => ("complete", summary),
             Outcome::Interrupted => {
-                let message = "stopped by Ctrl-C; the same command continues";
-                return Err(Failure::new(Code::Interrupted, message));
+                let failure = Failure::new(Code::Interrupted, "stopped by Ctrl-C");
+                return Err(failure.remedy("the same command continues"));
             }
         };
         if self.json {
@@ -111,8 +111,8 @@ fn sentence(what: &str, folder: &Path, summary: &Summary) -> String {
         None => String::new(),
     };
     format!(
-        "{what}: {} steps to t = {:.4} s in {:.1} s, largest strain {:.1e}{gap}; see {}",
-        summary.steps,
+        "{what}: {} to t = {:.4} s in {:.1} s, largest strain {:.1e}{gap}; see {}",
+        counted(summary.steps as usize, "step", "steps"),
         summary.ending.t,
         summary.wall_time,
         summary.largest_strain,

@@ -40,8 +40,8 @@ impl New {
             path.as_mut_os_string().push(".toml");
         }
         if path.exists() {
-            let message = format!("{} exists; choose another name", path.display());
-            return Err(Failure::new(Code::Output, message));
+            let message = format!("{} exists", path.display());
+            return Err(Failure::new(Code::Output, message).remedy("choose another name"));
         }
         let text = match self.kind {
             Kind::Hanging => StartingPoint::Hanging,
@@ -52,7 +52,7 @@ impl New {
         }
         .text();
         write_atomically(&path, |w| w.write_all(text.as_bytes()))
-            .map_err(|e| Failure::new(Code::Output, e))?;
+            .map_err(|e| Failure::of(Code::Output, &e))?;
         print_message(format_args!(
             "wrote {path}; run it with `isosheet simulate {path}`",
             path = path.display()

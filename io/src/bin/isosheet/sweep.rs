@@ -2,7 +2,7 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use crate::message::print_message;
+use crate::message::{counted, print_message};
 use crate::workers;
 use crate::write::to_stdout;
 use clap::{Args, ValueEnum};
@@ -74,7 +74,8 @@ impl SweepArgs {
         sweep.check()?;
         let program = this_program()?;
         sweep.write(&word_for(&program)?)?;
-        print_message(format_args!("{} runs in {}", sweep.len(), folder.display()));
+        let count = counted(sweep.len(), "run", "runs");
+        print_message(format_args!("{count} in {}", folder.display()));
         match (self.jobs, self.engine) {
             (Some(jobs), _) => workers::run(&sweep, &program, jobs),
             (None, Some(engine)) => to_stdout(&engine.engine().text(&sweep)),
@@ -103,8 +104,8 @@ fn default_folder(scene: &Path) -> PathBuf {
 /// The program that is running.
 fn this_program() -> Result<PathBuf, Failure> {
     std::env::current_exe().map_err(|e| {
-        let message = format!("cannot find the program that is running: {e}; reinstall it");
-        Failure::new(Code::Input, message)
+        let message = format!("cannot find the program that is running: {e}");
+        Failure::new(Code::Input, message).remedy("reinstall it")
     })
 }
 
@@ -123,6 +124,6 @@ fn word_for(program: &Path) -> Result<String, Failure> {
             "the path {} of the program is not valid UTF-8",
             program.display()
         );
-        Failure::new(Code::Input, format!("{message}; install it elsewhere"))
+        Failure::new(Code::Input, message).remedy("install it elsewhere")
     })
 }

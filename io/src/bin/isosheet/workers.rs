@@ -4,7 +4,7 @@
 use crate::Done;
 use crate::exit::{Code, Failure};
 use crate::interrupt;
-use crate::message::print_message;
+use crate::message::{counted, print_message};
 use isosheet_io::run::{Sweep, SweepRun};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -61,13 +61,13 @@ fn ending(sweep: &Sweep, done: usize, mut failed: Vec<Failed>) -> Done {
     failed.sort_by_key(|f| f.run.number);
     let stopped = failed.iter().any(|f| f.code == Code::Interrupted);
     if done < sweep.len() || stopped {
-        let message = "the sweep was stopped, or a run of it was; the same command continues";
-        return Err(Failure::new(Code::Interrupted, message));
+        let message = "the sweep was stopped, or a run of it was";
+        return Err(Failure::new(Code::Interrupted, message).remedy("the same command continues"));
     }
     let Some(first) = failed.first() else {
         print_message(format_args!(
-            "complete: {} runs in {}",
-            sweep.len(),
+            "complete: {} in {}",
+            counted(sweep.len(), "run", "runs"),
             sweep.folder().display()
         ));
         return Ok(());

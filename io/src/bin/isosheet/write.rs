@@ -24,9 +24,8 @@ pub(crate) fn bytes_to_stdout(bytes: &[u8]) -> Done {
 
 /// Writes the reference of scene files.
 pub(crate) fn reference(dir: &Path) -> Done {
-    let failed = |e: &dyn std::fmt::Display| Failure::new(Code::Output, e);
     let page = dir.join("scene.md");
     write_atomically(&page, |w| w.write_all(reference_page().as_bytes()))
-        .map_err(|e| failed(&e))?;
-    write_json(&dir.join("scene.schema.json"), &schema()).map_err(|e| failed(&e))
+        .map_err(|e| Failure::of(Code::Output, &e))?;
+    write_json(&dir.join("scene.schema.json"), &schema()).map_err(|e| Failure::of(Code::Output, &e))
 }

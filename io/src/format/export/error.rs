@@ -1,7 +1,7 @@
 //! What can be wrong with a mesh or a series that is to be written.
 
 use crate::format::WriteError;
-use isosheet_mesh::{TopologyError, VertexId};
+use isosheet_mesh::{Advice, TopologyError, VertexId};
 use thiserror::Error;
 
 /// A mesh or a series of frames that cannot be written.
@@ -10,7 +10,7 @@ use thiserror::Error;
 pub enum ExportError {
     /// The extension is not that of a format that is written.
     #[error(
-        "{} is no format that can be written here; known are {}: choose one of these",
+        "{} is no format that can be written here (known are {})",
         if extension.is_empty() { "a name without extension".to_owned() } else { format!(".{extension}") },
         known.join(", ")
     )]
@@ -21,10 +21,10 @@ pub enum ExportError {
         known: Vec<String>,
     },
     /// The trajectory has no frames.
-    #[error("the trajectory has no frames; let the run take a step, or record a state")]
+    #[error("the trajectory has no frames")]
     NoFrames,
     /// There is no such frame.
-    #[error("there is no frame {frame}; the trajectory has {count} frames, counted from 0")]
+    #[error("there is no frame {frame}: the trajectory has {count} frames, counted from 0")]
     NoFrame {
         /// The frame.
         frame: usize,
@@ -32,14 +32,15 @@ pub enum ExportError {
         count: usize,
     },
     /// The option `every` is 0.
-    #[error("every 0th frame was asked for; give 1 for all frames, 2 for every second one")]
+    #[error("every 0th frame was asked for")]
     Every,
     /// The faces of the trajectory are no surface.
     #[error(transparent)]
     Topology(#[from] TopologyError),
     /// The edges of the trajectory are not those of its faces.
     #[error(
-        "the trajectory has no rest length of the edge between {a} and {b}; its edges do not belong to its faces"
+        "the trajectory has no rest length of the edge between {a} and {b}: its edges do not belong \
+         to its faces"
     )]
     MissingEdge {
         /// One end.
@@ -48,7 +49,7 @@ pub enum ExportError {
         b: VertexId,
     },
     /// A rest length is not positive.
-    #[error("the edge between {a} and {b} has the rest length {length} m; it has to be positive")]
+    #[error("the edge between {a} and {b} has the rest length {length} m")]
     RestLength {
         /// One end.
         a: VertexId,
@@ -68,7 +69,7 @@ pub enum ExportError {
         expected: usize,
     },
     /// A value of a field is NaN or infinite.
-    #[error("value {index} of the field {name:?} is {value}; every value must be finite")]
+    #[error("value {index} of the field {name:?} is {value}")]
     FieldNotFinite {
         /// The field.
         name: String,
@@ -78,15 +79,13 @@ pub enum ExportError {
         value: f64,
     },
     /// Two fields have one name.
-    #[error(
-        "there are two fields with the name {name:?}; rename one (strain, fold_angle and TimeValue are taken)"
-    )]
+    #[error("there are two fields with the name {name:?}")]
     FieldName {
         /// The name.
         name: String,
     },
     /// A coordinate is not finite.
-    #[error("coordinate {} of {vertex} is {value}; the file was not written", ["x", "y", "z"][*axis])]
+    #[error("coordinate {} of {vertex} is {value}, and the file was not written", ["x", "y", "z"][*axis])]
     NotFinite {
         /// The vertex.
         vertex: VertexId,
@@ -96,7 +95,7 @@ pub enum ExportError {
         value: f64,
     },
     /// A coordinate is too large for the 32-bit floats of the format.
-    #[error("coordinate {} of {vertex} is {value}, too large for the 32-bit floats of this format; scale the mesh, or use a format with 64 bits", ["x", "y", "z"][*axis])]
+    #[error("coordinate {} of {vertex} is {value}, too large for the 32-bit floats of this format", ["x", "y", "z"][*axis])]
     SinglePrecision {
         /// The vertex.
         vertex: VertexId,
@@ -106,7 +105,7 @@ pub enum ExportError {
         value: f64,
     },
     /// A face refers to a vertex that does not exist.
-    #[error("face {face} refers to vertex {vertex} of {count}, counted from 0; correct the mesh")]
+    #[error("face {face} refers to vertex {vertex} of {count}, counted from 0")]
     IndexOutOfRange {
         /// The face.
         face: usize,
@@ -116,9 +115,7 @@ pub enum ExportError {
         count: usize,
     },
     /// The format cannot hold so much.
-    #[error(
-        "the file would have {count} {what}, more than the {limit} of this format; write fewer frames, or use another format"
-    )]
+    #[error("the file would have {count} {what}, more than the {limit} of this format")]
     TooLarge {
         /// What there is too much of.
         what: &'static str,
@@ -130,6 +127,29 @@ pub enum ExportError {
     /// The file could not be written.
     #[error(transparent)]
     File(#[from] WriteError),
+}
+
+impl Advice for ExportError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Extension { .. } => Some("choose a known format"),
+            Self::NoFrames => Some("let the run take a step, or record a state"),
+            Self::NoFrame { .. } => Some("name one of these"),
+            Self::Every => Some("give 1 for all frames, 2 for every second one"),
+            Self::Topology(error) => error.advice(),
+            Self::RestLength { .. } => Some("give a positive length"),
+            Self::FieldNotFinite { .. } => Some("give finite values"),
+            Self::FieldName { .. } => {
+                Some("rename one (strain, fold_angle, rod_force and TimeValue are taken)")
+            }
+            Self::NotFinite { .. } => Some("go back to the last state that was finite"),
+            Self::SinglePrecision { .. } => Some("scale the mesh, or use a format with 64 bits"),
+            Self::IndexOutOfRange { .. } => Some("correct the mesh"),
+            Self::TooLarge { .. } => Some("write fewer frames, or use another format"),
+            Self::File(error) => error.advice(),
+            Self::MissingEdge { .. } | Self::Count { .. } => None,
+        }
+    }
 }
 
 /// Checks that coordinates are finite and that faces refer to vertices.

@@ -55,7 +55,9 @@ pub struct SeriesField {
     pub values: Vec<f64>,
 }
 
-/// Frames of a moving sheet that are to be written, with what is known of its edges.
+/// Frames of a moving sheet that are to be written, with what is known of its edges: strains, fold angles
+/// and, where the trajectory has them, the forces of the rods as the field `rod_force` (newtons, tension
+/// positive).
 ///
 /// Of frames at the same time only the first is written: most formats cannot hold two.
 #[derive(Clone, Debug)]
@@ -81,8 +83,7 @@ impl<'a> Series<'a> {
         let topology = Topology::from_faces(trajectory.vertex_count(), trajectory.faces())?;
         let mut rest_lengths = vec![f64::NAN; topology.edge_count()];
         for (ends, &length) in trajectory.edges().iter().zip(trajectory.rest_lengths()) {
-            let [a, b] = ends.map(VertexId);
-            if let Some(e) = (a != b).then(|| topology.find_edge(a, b)).flatten() {
+            if let Some(e) = edge_between(&topology, *ends) {
                 rest_lengths[e.index()] = length;
             }
         }
@@ -97,13 +98,14 @@ impl<'a> Series<'a> {
         let times = trajectory.times();
         let mut frames: Vec<usize> = (0..times.len()).step_by(options.every).collect();
         frames.dedup_by(|later, first| times[*later] == times[*first]);
+        let fields = rod_forces(trajectory, &topology).into_iter().collect();
         Ok(Self {
             trajectory,
             topology,
             rest_lengths,
             frames,
             assignments: None,
-            fields: Vec::new(),
+            fields,
         })
     }
 
@@ -271,4 +273,30 @@ impl<'a> Series<'a> {
             FieldSupport::Faces => self.topology.face_count(),
         }
     }
+}
+
+fn edge_between(topology: &Topology, ends: [u32; 2]) -> Option<EdgeId> {
+    let [a, b] = ends.map(VertexId);
+    (a != b).then(|| topology.find_edge(a, b)).flatten()
+}
+
+/// The forces of the rods as a field, in the order of the edges of the topology.
+fn rod_forces(trajectory: &Trajectory, topology: &Topology) -> Option<SeriesField> {
+    trajectory.rod_forces(0)?;
+    let edges = trajectory.edges().iter();
+    let order: Vec<Option<EdgeId>> = edges.map(|ends| edge_between(topology, *ends)).collect();
+    let count = topology.edge_count();
+    let mut values = vec![0.0; count * trajectory.len()];
+    for (frame, values) in values.chunks_exact_mut(count).enumerate() {
+        for (edge, force) in order.iter().zip(trajectory.rod_forces(frame)?) {
+            if let Some(edge) = edge {
+                values[edge.index()] = *force;
+            }
+        }
+    }
+    Some(SeriesField {
+        name: "rod_force".to_owned(),
+        support: FieldSupport::Edges,
+        values,
+    })
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use isosheet_mesh::MeshError;
+use isosheet_mesh::{Advice, MeshError};
 use thiserror::Error;
 
 use super::MeshFormat;
@@ -48,13 +48,19 @@ pub struct MeshFileError {
     pub problem: MeshFileProblem,
 }
 
+impl Advice for MeshFileError {
+    fn advice(&self) -> Option<&'static str> {
+        self.problem.advice()
+    }
+}
+
 /// What is wrong with a mesh file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MeshFileProblem {
     /// The extension is not that of a format that is read.
     #[error(
-        "{} is no known format of meshes; known are {}: convert the file to one of these",
+        "{} is no known format of meshes (known are {})",
         if extension.is_empty() { "a name without extension".to_owned() } else { format!(".{extension}") },
         known_extensions()
     )]
@@ -63,30 +69,27 @@ pub enum MeshFileProblem {
         extension: String,
     },
     /// The option `weld` is not a length.
-    #[error(
-        "the tolerance for welding vertices is {tolerance}; give a length of 0 or more in the unit of the file"
-    )]
+    #[error("the tolerance for welding vertices is {tolerance}")]
     WeldTolerance {
         /// The value.
         tolerance: f64,
     },
     /// The file could not be opened or read.
-    #[error("cannot read the file: {0}; check the path")]
+    #[error("cannot read the file: {0}")]
     Read(std::io::Error),
     /// There is nothing in it but comments.
-    #[error("the file has no vertices and no faces; it is empty, or was cut short")]
+    #[error("the file has no vertices and no faces: it is empty, or was cut short")]
     Empty,
     /// Other lines, no vertices.
-    #[error(
-        "the file has no vertices; its first unknown word is {word:?}, so it may not be an OBJ file"
-    )]
+    #[error("the file has no vertices, and its first unknown word is {word:?}")]
     NotObj {
         /// The first word that no OBJ line starts with.
         word: String,
     },
     /// Vertices, no faces.
     #[error(
-        "the file has {vertices} vertices, {lines} line elements and {points} point elements, but no faces; export it with its faces"
+        "the file has {vertices} vertices, {lines} line elements and {points} point elements, but no \
+         faces"
     )]
     NoFaces {
         /// The number of vertices.
@@ -97,19 +100,19 @@ pub enum MeshFileProblem {
         points: usize,
     },
     /// Faces, no vertices.
-    #[error("the file has {faces} faces but no vertices; export it with its vertices")]
+    #[error("the file has {faces} faces but no vertices")]
     NoVertices {
         /// The number of faces.
         faces: usize,
     },
     /// A vertex line of an OBJ file does not hold three or more numbers.
-    #[error("a vertex needs three numbers, found {found:?}; write `v x y z`")]
+    #[error("a vertex needs three numbers, found {found:?}")]
     BadVertex {
         /// The rest of the line.
         found: String,
     },
     /// A coordinate is NaN or infinite.
-    #[error("coordinate {} of vertex {vertex} is {value}; every coordinate must be finite", ["x", "y", "z"][*axis])]
+    #[error("coordinate {} of vertex {vertex} is {value}", ["x", "y", "z"][*axis])]
     NonFinite {
         /// The vertex, counted as the file does: from 1 in OBJ, from 0 in all others.
         vertex: usize,
@@ -120,7 +123,8 @@ pub enum MeshFileProblem {
     },
     /// A weight other than 1.
     #[error(
-        "vertex {vertex} has the weight {weight}; weights belong to curves and are not supported: write the point itself"
+        "vertex {vertex} has the weight {weight}, and weights, which belong to curves, are not \
+         supported"
     )]
     Weight {
         /// The vertex, counted from 1.
@@ -129,14 +133,14 @@ pub enum MeshFileProblem {
         weight: f64,
     },
     /// A corner of a face of an OBJ file is not an index.
-    #[error("{found:?} is not a vertex index; write `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`")]
+    #[error("{found:?} is not a vertex index")]
     BadIndex {
         /// The text found.
         found: String,
     },
     /// A corner of a face refers to a vertex that does not exist.
     #[error(
-        "a face refers to vertex {index}, but there are {count} vertices, counted from {first}; the file is damaged or incomplete"
+        "a face refers to vertex {index}, but there are {count} vertices, counted from {first}"
     )]
     IndexOutOfRange {
         /// The index as written.
@@ -147,35 +151,34 @@ pub enum MeshFileProblem {
         first: i64,
     },
     /// A face with fewer than three corners.
-    #[error("a face has {corners} corners; it needs at least three: remove it or complete it")]
+    #[error("a face has {corners} corners, and needs at least three")]
     TooFewCorners {
         /// How many.
         corners: usize,
     },
     /// A face with more than three corners.
-    #[error(
-        "a face has {corners} corners; a rigid sheet is made of triangles, and a diagonal is a new crease: triangulate the file, or ask for `Polygons::Triangulate`"
-    )]
+    #[error("a face has {corners} corners, and a rigid sheet is made of triangles")]
     Polygon {
         /// How many.
         corners: usize,
     },
     /// A polygon that cannot be cut into triangles from one corner.
     #[error(
-        "a face of {corners} corners cannot be cut into triangles from any one of its corners (it is too concave, or repeats a point); triangulate the file first"
+        "a face of {corners} corners cannot be cut into triangles from any one of its corners (it is \
+         too concave, or repeats a point)"
     )]
     ConcavePolygon {
         /// How many.
         corners: usize,
     },
     /// More vertices than 32-bit numbers can count.
-    #[error("the file has {vertices} vertices, more than 32-bit numbers can count; split it")]
+    #[error("the file has {vertices} vertices, more than 32-bit numbers can count")]
     TooManyVertices {
         /// How many.
         vertices: usize,
     },
     /// A word of a text file is not what the format has there.
-    #[error("expected {expected}, found {found:?}; correct the file or export it again")]
+    #[error("expected {expected}, found {found:?}")]
     Syntax {
         /// What the format has there.
         expected: String,
@@ -183,14 +186,14 @@ pub enum MeshFileProblem {
         found: String,
     },
     /// The file ends too early.
-    #[error("the file ends before {missing}; it was cut short: copy or export it again")]
+    #[error("the file ends before {missing}: it was cut short")]
     Truncated {
         /// What is missing.
         missing: String,
     },
     /// The header announces more than the file can hold.
     #[error(
-        "the header announces {count} {what}, which need {needed} bytes, but {available} bytes follow; the file is damaged or was cut short"
+        "the header announces {count} {what}, which need {needed} bytes, but {available} bytes follow"
     )]
     Announced {
         /// What is announced.
@@ -203,10 +206,10 @@ pub enum MeshFileProblem {
         available: u64,
     },
     /// A PLY file that breaks the rules of its format.
-    #[error("{0}; correct the file or export it again")]
+    #[error("{0}")]
     Ply(String),
     /// A facet of an STL file that breaks the rules of the format.
-    #[error("facet {facet} (from 0): {problem}; correct the file or export it again")]
+    #[error("facet {facet} (from 0): {problem}")]
     Stl {
         /// The facet.
         facet: usize,
@@ -214,7 +217,7 @@ pub enum MeshFileProblem {
         problem: String,
     },
     /// A FOLD file is no JSON, or its arrays are not what the format has.
-    #[error("{0}; correct the file or export it again")]
+    #[error("{0}")]
     Json(serde_json::Error),
     /// What a FOLD file says does not fit together.
     #[error(transparent)]
@@ -225,6 +228,44 @@ pub enum MeshFileProblem {
     /// The vertices and faces are not a sheet.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+}
+
+impl Advice for MeshFileProblem {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Extension { .. } => Some("convert the file to a known format"),
+            Self::WeldTolerance { .. } => {
+                Some("give a length of 0 or more in the unit of the file")
+            }
+            Self::Read(..) => Some("check the path"),
+            Self::Empty | Self::Truncated { .. } => Some("copy or export it again"),
+            Self::NotObj { .. } => Some("check that it is an OBJ file"),
+            Self::NoFaces { .. } => Some("export it with its faces"),
+            Self::NoVertices { .. } => Some("export it with its vertices"),
+            Self::BadVertex { .. } => Some("write `v x y z`"),
+            Self::NonFinite { .. } => Some("export it with finite coordinates"),
+            Self::Weight { .. } => Some("write the point itself"),
+            Self::BadIndex { .. } => Some("write `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`"),
+            Self::IndexOutOfRange { .. } => {
+                Some("the file is damaged or incomplete: copy or export it again")
+            }
+            Self::TooFewCorners { .. } => Some("remove it or complete it"),
+            Self::Polygon { .. } => Some(
+                "triangulate the file, or ask for `Polygons::Triangulate` (each diagonal is a new crease)",
+            ),
+            Self::ConcavePolygon { .. } => Some("triangulate the file first"),
+            Self::TooManyVertices { .. } => Some("split it"),
+            Self::Syntax { .. } | Self::Ply(..) | Self::Stl { .. } | Self::Json(..) => {
+                Some("correct the file or export it again")
+            }
+            Self::Announced { .. } => {
+                Some("the file is damaged or was cut short: copy or export it again")
+            }
+            Self::Fold(error) => error.advice(),
+            Self::Gltf(error) => error.advice(),
+            Self::Mesh(error) => error.advice(),
+        }
+    }
 }
 
 fn known_extensions() -> String {

@@ -30,16 +30,38 @@ impl Repair {
 impl fmt::Display for Repair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts = [
-            (self.merged_vertices, "coincident vertices merged"),
-            (self.degenerate_faces, "faces without area removed"),
-            (self.duplicate_faces, "duplicate faces removed"),
-            (self.unused_vertices, "unused vertices removed"),
-            (self.reversed_faces, "faces reversed"),
+            (
+                self.merged_vertices,
+                "coincident vertex",
+                "coincident vertices",
+                "merged",
+            ),
+            (
+                self.degenerate_faces,
+                "face without area",
+                "faces without area",
+                "removed",
+            ),
+            (
+                self.duplicate_faces,
+                "duplicate face",
+                "duplicate faces",
+                "removed",
+            ),
+            (
+                self.unused_vertices,
+                "unused vertex",
+                "unused vertices",
+                "removed",
+            ),
+            (self.reversed_faces, "face", "faces", "reversed"),
         ];
         let done: Vec<String> = parts
             .iter()
-            .filter(|(count, _)| *count > 0)
-            .map(|(count, what)| format!("{count} {what}"))
+            .filter(|(count, ..)| *count > 0)
+            .map(|(count, one, more, done)| {
+                format!("{count} {} {done}", if *count == 1 { one } else { more })
+            })
             .collect();
         if done.is_empty() {
             return f.write_str("nothing to repair");

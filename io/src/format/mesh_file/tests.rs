@@ -2,6 +2,7 @@
 
 use super::*;
 use MeshFileProblem as P;
+use isosheet_mesh::Advice;
 use proptest::prelude::*;
 
 pub(super) fn parse(format: MeshFormat, bytes: &[u8]) -> Result<MeshFile, MeshFileError> {
@@ -11,7 +12,7 @@ pub(super) fn parse(format: MeshFormat, bytes: &[u8]) -> Result<MeshFile, MeshFi
 
 pub(super) fn problem(format: MeshFormat, bytes: &[u8]) -> (Option<Place>, MeshFileProblem) {
     let error = parse(format, bytes).expect_err("should be refused");
-    let text = error.to_string();
+    let text = error.with_advice();
     assert!(text.starts_with("test.") && text.len() > 40, "{text}");
     (error.place, error.problem)
 }

@@ -12,7 +12,10 @@ fn sample() -> (Sheet, Trajectory) {
             .enumerate()
             .map(|(i, c)| c + (k as f64 * i as f64).sin() / 3.0)
             .collect();
-        run.push(0.1 * k as f64, &x).unwrap();
+        let forces: Vec<f64> = (0..sheet.lengths().len())
+            .map(|e| (e as f64 - 9.5) * 10.0_f64.powi(k))
+            .collect();
+        run.push_with_forces(0.1 * k as f64, &x, &forces).unwrap();
     }
     (sheet, run)
 }
@@ -33,7 +36,15 @@ fn comes_back_bit_for_bit() {
     assert_eq!(back.faces(), sheet.face_indices());
     assert_eq!(back.edges().len(), sheet.lengths().len());
     assert_eq!(back.rest_lengths(), sheet.lengths());
-    // No frames: still a file.
+    let last = back.rod_forces(4).unwrap();
+    assert_eq!((last.len(), last[3]), (sheet.lengths().len(), -6.5e4));
+    assert_eq!(back.rod_forces(5), None);
+    // Without forces, and without frames: still a file.
+    let mut run = Trajectory::new(&sheet);
+    run.push(0.0, sheet.positions()).unwrap();
+    run.write(&path).unwrap();
+    let back = Trajectory::read(&path).unwrap();
+    assert_eq!((back.rod_forces(0), &back), (None, &run));
     Trajectory::new(&sheet).write(&path).unwrap();
     assert!(Trajectory::read(&path).unwrap().is_empty());
 }
@@ -50,7 +61,7 @@ fn equal_trajectories_are_equal_files() {
     let entries: Vec<usize> = (0..bytes.len() - 46)
         .filter(|k| bytes[*k..].starts_with(b"PK\x01\x02"))
         .collect();
-    assert_eq!(entries.len(), 5);
+    assert_eq!(entries.len(), 6);
     for k in entries {
         assert_eq!(bytes[k + 12..k + 16], [0, 0, 0x21, 0]);
     }
@@ -68,7 +79,14 @@ fn arrays_have_the_documented_names_types_and_shapes() {
     let mut npz = NpzArchive::open(&path).unwrap();
     let mut names: Vec<String> = npz.array_names().map(str::to_owned).collect();
     names.sort();
-    assert_eq!(names, ["edges", "faces", "rest_lengths", "t", "x"]);
+    assert_eq!(
+        names,
+        ["edges", "faces", "rest_lengths", "rod_forces", "t", "x"]
+    );
+    let forces = npz.by_name("rod_forces").unwrap().unwrap();
+    assert_eq!(forces.shape(), [5, sheet.lengths().len() as u64]);
+    assert_eq!(forces.dtype().descr(), "'<f8'");
+    drop(forces);
     let x = npz.by_name("x").unwrap().unwrap();
     assert_eq!(x.shape(), [5, 21, 3]);
     assert_eq!(x.dtype().descr(), "'<f8'");
@@ -120,7 +138,41 @@ fn bad_frames_are_refused() {
             .contains("coordinate y of vertex 1 in frame 5 is NaN"),
         "{error}"
     );
-    assert_eq!(run.len(), 5, "nothing was added");
+    x[4] = 0.0;
+    let edges = sheet.lengths().len();
+    for (mut run, got, expected) in [
+        (run.clone(), 0, edges),
+        (run.clone(), 3, edges),
+        (Trajectory::new(&sheet), 3, edges),
+    ] {
+        let frame = run.len();
+        match run.push_with_forces(1.0, &x, &vec![0.0; got]) {
+            Err(TrajectoryError::ForceCount {
+                frame: f,
+                got: g,
+                expected: e,
+            }) => assert_eq!((f, g, e), (frame, got, expected)),
+            other => panic!("{other:?}"),
+        }
+        assert_eq!(run.len(), frame, "nothing was added");
+    }
+    let mut forces = vec![0.0; edges];
+    forces[7] = f64::NEG_INFINITY;
+    assert!(matches!(
+        run.push_with_forces(1.0, &x, &forces),
+        Err(TrajectoryError::ForceNotFinite {
+            frame: 5,
+            edge: EdgeId(7),
+            ..
+        })
+    ));
+    let mut without = Trajectory::new(&sheet);
+    without.push(0.0, &x).unwrap();
+    assert!(matches!(
+        without.push_with_forces(1.0, &x, &vec![0.0; edges]),
+        Err(TrajectoryError::ForceCount { expected: 0, .. })
+    ));
+    assert_eq!((run.len(), without.len()), (5, 1), "nothing was added");
 }
 
 #[test]
@@ -156,6 +208,7 @@ fn other_files_are_refused() {
     broken(&|r| r.rest_lengths[0] = f64::NAN, "rest_lengths");
     broken(&|r| r.rest_lengths.truncate(3), "rest_lengths");
     broken(&|r| r.t[0] = f64::INFINITY, "t");
+    broken(&|r| r.rod_forces[1] = f64::NAN, "rod_forces");
 
     // A missing array.
     let file = File::create(&path).unwrap();

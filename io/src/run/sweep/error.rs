@@ -3,6 +3,7 @@
 use super::{Sweep, SweepRun};
 use crate::format::{JsonError, WriteError};
 use crate::scene::SceneFileError;
+use isosheet_mesh::Advice;
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -12,12 +13,10 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum SweepError {
     /// There is no key.
-    #[error("a sweep needs a key with values, for example `stop.time=0.5,1,2`")]
+    #[error("a sweep needs a key with values")]
     NoKeys,
     /// Two keys are the same, or one contains the other.
-    #[error(
-        "`{first}` and `{second}` change the same part of the scene; give one key with all its values"
-    )]
+    #[error("`{first}` and `{second}` change the same part of the scene")]
     SameKey {
         /// The first key.
         first: String,
@@ -25,16 +24,13 @@ pub enum SweepError {
         second: String,
     },
     /// There are too many runs.
-    #[error(
-        "these are {count} runs, more than {}; give fewer values, or make several sweeps",
-        Sweep::MOST_RUNS
-    )]
+    #[error("these are {count} runs, more than {}", Sweep::MOST_RUNS)]
     TooMany {
         /// The number of runs.
         count: usize,
     },
     /// A path cannot be part of a line of text.
-    #[error("{} is not valid UTF-8 or has a control character; rename it or choose another --out", path.display())]
+    #[error("{} is not valid UTF-8 or has a control character", path.display())]
     Path {
         /// The path.
         path: PathBuf,
@@ -47,8 +43,7 @@ pub enum SweepError {
     Refused(Vec<RefusedRuns>),
     /// The folder has another sweep.
     #[error(
-        "{} holds another sweep (see {}); choose another folder with --out. Values can be added to a sweep in its \
-         folder at the end of the list of its first key", folder.display(), folder.join("runs.csv").display()
+        "{} holds another sweep (see {})", folder.display(), folder.join("runs.csv").display()
     )]
     OtherSweep {
         /// The folder.
@@ -56,7 +51,7 @@ pub enum SweepError {
     },
     /// The folder has other files.
     #[error(
-        "{} holds files and is not the folder of a sweep; choose an empty or a new folder with --out",
+        "{} holds files and is not the folder of a sweep",
         folder.display()
     )]
     Foreign {
@@ -64,7 +59,7 @@ pub enum SweepError {
         folder: PathBuf,
     },
     /// A file or a folder cannot be read.
-    #[error("cannot read {}: {source}; check the path and the permissions", path.display())]
+    #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The path.
         path: PathBuf,
@@ -72,7 +67,7 @@ pub enum SweepError {
         source: io::Error,
     },
     /// The table is not one of a sweep.
-    #[error("{}: {problem}; make the sweep anew in another folder", path.display())]
+    #[error("{}: {problem}", path.display())]
     Table {
         /// The file.
         path: PathBuf,
@@ -84,8 +79,7 @@ pub enum SweepError {
     Summary(#[from] JsonError),
     /// A folder has neither a sweep nor a run.
     #[error(
-        "{} is the folder neither of a sweep (with runs.csv) nor of a run (with scene.toml); name folders that \
-         `isosheet sweep` or `isosheet simulate` wrote", folder.display()
+        "{} is the folder neither of a sweep (with runs.csv) nor of a run (with scene.toml)", folder.display()
     )]
     NothingToCollect {
         /// The folder.
@@ -94,6 +88,30 @@ pub enum SweepError {
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+}
+
+impl Advice for SweepError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoKeys => Some("name one, for example `stop.time=0.5,1,2`"),
+            Self::SameKey { .. } => Some("give one key with all its values"),
+            Self::TooMany { .. } => Some("give fewer values, or make several sweeps"),
+            Self::Path { .. } => Some("rename it or choose another --out"),
+            Self::Scene(error) => error.advice(),
+            Self::OtherSweep { .. } => Some(
+                "choose another folder with --out, or add values at the end of the list of its first key",
+            ),
+            Self::Foreign { .. } => Some("choose an empty or a new folder with --out"),
+            Self::Read { .. } => Some("check the path and the permissions"),
+            Self::Table { .. } => Some("make the sweep anew in another folder"),
+            Self::Summary(error) => error.advice(),
+            Self::NothingToCollect { .. } => {
+                Some("name folders that `isosheet sweep` or `isosheet simulate` wrote")
+            }
+            Self::Write(error) => error.advice(),
+            Self::Refused(..) => None,
+        }
+    }
 }
 
 /// Runs of a sweep that cannot start for the same reason.

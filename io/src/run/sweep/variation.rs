@@ -1,5 +1,6 @@
 //! A key of a scene and the values that a sweep gives it.
 
+use isosheet_mesh::Advice;
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -27,15 +28,13 @@ pub struct Variation {
 #[non_exhaustive]
 pub enum VariationError {
     /// There is no equals sign, or no key before it.
-    #[error("`{text}` is not of the form key=a,b,c; write for example `stop.time=0.5,1,2`")]
+    #[error("`{text}` is not of the form key=a,b,c")]
     Form {
         /// The text.
         text: String,
     },
     /// A value is empty.
-    #[error(
-        "value {number} of `{key}` is empty; take out the comma, or write \"\" for an empty text"
-    )]
+    #[error("value {number} of `{key}` is empty")]
     Empty {
         /// The key.
         key: String,
@@ -43,15 +42,13 @@ pub enum VariationError {
         number: usize,
     },
     /// A quote, bracket or brace has no partner.
-    #[error("the values of `{key}` end inside of a quote, bracket or brace; close it")]
+    #[error("the values of `{key}` end inside of a quote, bracket or brace")]
     Open {
         /// The key.
         key: String,
     },
     /// A value is given twice.
-    #[error(
-        "`{key}` takes the value {value} twice; give it once, since both runs would be the same"
-    )]
+    #[error("`{key}` takes the value {value} twice")]
     Twice {
         /// The key.
         key: String,
@@ -59,13 +56,25 @@ pub enum VariationError {
         value: String,
     },
     /// A line break or another control character, which a line of a table cannot hold.
-    #[error(
-        "`{key}` has a control character; write values on one line, and \\n in quotes for a line break"
-    )]
+    #[error("`{key}` has a control character")]
     Control {
         /// The key.
         key: String,
     },
+}
+
+impl Advice for VariationError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Form { .. } => Some("write for example `stop.time=0.5,1,2`"),
+            Self::Empty { .. } => Some("take out the comma, or write \"\" for an empty text"),
+            Self::Open { .. } => Some("close it"),
+            Self::Twice { .. } => Some("give it once, since both runs would be the same"),
+            Self::Control { .. } => {
+                Some("write values on one line, and \\n in quotes for a line break")
+            }
+        }
+    }
 }
 
 impl Variation {

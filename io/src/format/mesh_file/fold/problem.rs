@@ -1,5 +1,6 @@
 //! What can be wrong with a FOLD file.
 
+use isosheet_mesh::Advice;
 use thiserror::Error;
 
 /// What a FOLD file says does not fit together.
@@ -7,7 +8,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum FoldProblem {
     /// There is no such frame.
-    #[error("there is no frame {frame}; the file has the frames 0 to {last}")]
+    #[error("there is no frame {frame}: the file has the frames 0 to {last}")]
     NoFrame {
         /// The frame that was asked for.
         frame: usize,
@@ -16,7 +17,8 @@ pub enum FoldProblem {
     },
     /// A frame inherits from one that does not exist, from itself in a circle, or over too many frames.
     #[error(
-        "frame {frame} inherits from frame {parent}, which does not exist, inherits from it in turn, or has too many ancestors; correct `frame_parent`"
+        "frame {frame} inherits from frame {parent}, which does not exist, inherits from it in turn, \
+         or has too many ancestors"
     )]
     Parent {
         /// The frame.
@@ -25,16 +27,16 @@ pub enum FoldProblem {
         parent: usize,
     },
     /// No frame has vertices.
-    #[error("no frame has `vertices_coords`; the file has no shape: export it with coordinates")]
+    #[error("no frame has `vertices_coords`, so the file has no shape")]
     NoCoordinates,
     /// The unit is unknown.
-    #[error("the unit {found:?} is unknown; the format has unit, in, pt, m, cm, mm, um and nm")]
+    #[error("the unit {found:?} is unknown")]
     Unit {
         /// The text found.
         found: String,
     },
     /// A vertex with fewer than two coordinates.
-    #[error("vertex {vertex} has {count} coordinates; give two or three")]
+    #[error("vertex {vertex} has {count} coordinates")]
     Coordinates {
         /// The vertex, from 0.
         vertex: usize,
@@ -42,15 +44,13 @@ pub enum FoldProblem {
         count: usize,
     },
     /// A vertex with a fourth coordinate.
-    #[error(
-        "vertex {vertex} has a fourth coordinate; only the space of three dimensions is supported"
-    )]
+    #[error("vertex {vertex} has a fourth coordinate")]
     Dimension {
         /// The vertex, from 0.
         vertex: usize,
     },
     /// An array of edges has another length than `edges_vertices`.
-    #[error("`{array}` has {got} entries for {edges} edges; it needs one for each edge")]
+    #[error("`{array}` has {got} entries for {edges} edges")]
     Length {
         /// The array.
         array: &'static str,
@@ -61,7 +61,7 @@ pub enum FoldProblem {
     },
     /// An edge refers to a vertex that does not exist.
     #[error(
-        "edge {edge} refers to vertex {vertex}, but there are {count} vertices, counted from 0; correct `edges_vertices`"
+        "edge {edge} refers to vertex {vertex}, but there are {count} vertices, counted from 0"
     )]
     EdgeVertex {
         /// The edge, from 0.
@@ -72,7 +72,7 @@ pub enum FoldProblem {
         count: usize,
     },
     /// An assignment that the format does not have.
-    #[error("edge {edge} has the assignment {found:?}; the format has B, M, V, F, U, C and J")]
+    #[error("edge {edge} has the assignment {found:?}")]
     Assignment {
         /// The edge, from 0.
         edge: usize,
@@ -80,7 +80,7 @@ pub enum FoldProblem {
         found: String,
     },
     /// A fold angle out of range.
-    #[error("edge {edge} has the fold angle {degrees} degrees; give -180 to 180")]
+    #[error("edge {edge} has the fold angle {degrees} degrees")]
     Angle {
         /// The edge, from 0.
         edge: usize,
@@ -89,12 +89,14 @@ pub enum FoldProblem {
     },
     /// There are no faces, and the vertices are not those of a flat crease pattern.
     #[error(
-        "the file has no `faces_vertices`, and its vertices do not lie in the plane z = 0; faces are made of flat crease patterns only: export the file with its faces"
+        "the file has no `faces_vertices`, and its vertices do not lie in the plane z = 0, in which \
+         alone faces can be made"
     )]
     NoFacesInSpace,
     /// Two edges of a crease pattern without faces meet where there is no vertex.
     #[error(
-        "the file has no `faces_vertices`, and its edges {first} and {second} meet where they have no vertex in common; add the vertex, or export the file with its faces"
+        "the file has no `faces_vertices`, and its edges {first} and {second} meet where they have \
+         no vertex in common"
     )]
     Crossing {
         /// The first edge, from 0.
@@ -104,31 +106,28 @@ pub enum FoldProblem {
     },
     /// An edge of a crease pattern without faces has no length, or is there twice.
     #[error(
-        "the file has no `faces_vertices`, and its edge {edge} has no length or is there twice; remove it, or export the file with its faces"
+        "the file has no `faces_vertices`, and its edge {edge} has no length or is there twice"
     )]
     UselessEdge {
         /// The edge, from 0.
         edge: usize,
     },
     /// A crease of a pattern without faces ends inside of a face.
-    #[error(
-        "the file has no `faces_vertices`, and vertex {vertex} is an end of one edge only; connect it to the other edges, or export the file with its faces"
-    )]
+    #[error("the file has no `faces_vertices`, and vertex {vertex} is an end of one edge only")]
     LooseEnd {
         /// The vertex, from 0.
         vertex: usize,
     },
     /// A crease pattern without faces is in pieces.
-    #[error(
-        "the file has no `faces_vertices`, and its edges make {pieces} separate pieces; split the file, or export it with its faces"
-    )]
+    #[error("the file has no `faces_vertices`, and its edges make {pieces} separate pieces")]
     Pieces {
         /// How many.
         pieces: usize,
     },
     /// A crease pattern without faces is too large.
     #[error(
-        "the file has no `faces_vertices`, and its {edges} edges are more than the {limit} of which faces are made; export it with its faces"
+        "the file has no `faces_vertices`, and its {edges} edges are more than the {limit} of which \
+         faces are made"
     )]
     TooManyEdges {
         /// The number of edges.
@@ -136,4 +135,31 @@ pub enum FoldProblem {
         /// The limit.
         limit: usize,
     },
+}
+
+impl Advice for FoldProblem {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoFrame { .. } => Some("name one of these"),
+            Self::Parent { .. } => Some("correct `frame_parent`"),
+            Self::NoCoordinates => Some("export it with coordinates"),
+            Self::Unit { .. } => Some("use unit, in, pt, m, cm, mm, um or nm"),
+            Self::Coordinates { .. } => Some("give two or three"),
+            Self::Dimension { .. } => {
+                Some("give two or three: only the space of three dimensions is supported")
+            }
+            Self::Length { .. } => Some("give one for each edge"),
+            Self::EdgeVertex { .. } => Some("correct `edges_vertices`"),
+            Self::Assignment { .. } => Some("use B, M, V, F, U, C or J"),
+            Self::Angle { .. } => Some("give -180 to 180"),
+            Self::NoFacesInSpace => Some("export the file with its faces"),
+            Self::Crossing { .. } => Some("add the vertex, or export the file with its faces"),
+            Self::UselessEdge { .. } => Some("remove it, or export the file with its faces"),
+            Self::LooseEnd { .. } => {
+                Some("connect it to the other edges, or export the file with its faces")
+            }
+            Self::Pieces { .. } => Some("split the file, or export it with its faces"),
+            Self::TooManyEdges { .. } => Some("export it with its faces"),
+        }
+    }
 }

@@ -1,0 +1,276 @@
+//! One page of many runs.
+
+mod error;
+mod page;
+
+pub use error::GalleryError;
+
+use super::folder::RunFolder;
+use super::{Film, FilmOptions, Recording, Summary};
+use crate::format::{read_json, write_atomically, write_json};
+use crate::picture::PictureError;
+use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Height of the pictures, pixels.
+const PICTURE_HEIGHT: usize = 300;
+
+/// A folder with one page that shows many runs: of each a picture, its name, what its scene says of itself,
+/// the key numbers, and a link to the page that plays it.
+///
+/// | file | what |
+/// |---|---|
+/// | `index.html` | the gallery |
+/// | `runs/NAME.html` | the 3D page of a run |
+/// | `runs/NAME.png` | its last frame |
+/// | `gallery.json` | the entries as data ([`GalleryEntry`]), written last |
+///
+/// The folder refers to nothing outside of it and can be moved or sent. Making the gallery again replaces it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gallery {
+    /// The runs that are shown, in the order in which they were found.
+    pub entries: Vec<GalleryEntry>,
+    /// Folders of runs that cannot be shown, with the reason: runs without a frame yet, damaged files.
+    pub left_out: Vec<(PathBuf, String)>,
+}
+
+/// A run in a gallery.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GalleryEntry {
+    /// The name of its files, made of ASCII letters, digits, `-`, `_` and `.`.
+    pub name: String,
+    /// The folder of the run, as it was found.
+    pub folder: PathBuf,
+    /// The name of the run: that of its folder without `-run` at its end.
+    pub title: String,
+    /// The comment at the top of the scene, up to the first line that ends with a full stop; empty without
+    /// one.
+    pub caption: String,
+    /// The time that was reached, seconds.
+    pub t: f64,
+    /// Number of vertices.
+    pub vertices: usize,
+    /// What came of the run, if it is complete.
+    pub summary: Option<Summary>,
+}
+
+impl Gallery {
+    const INDEX: &'static str = "index.html";
+    const DATA: &'static str = "gallery.json";
+    const RUNS: &'static str = "runs";
+
+    /// Makes the gallery of all runs in `folders` and beneath them, in the order of `folders` and, beneath
+    /// each, of names. Links to other folders are not followed.
+    ///
+    /// # Errors
+    /// [`GalleryError::NoRuns`] if there are none, [`GalleryError::Foreign`] if `out` holds other files,
+    /// [`GalleryError`] if a folder cannot be read or written.
+    pub fn make(folders: &[PathBuf], out: &Path) -> Result<Self, GalleryError> {
+        let mut found = Vec::new();
+        for root in folders {
+            find(root, &mut found)?;
+        }
+        let mut seen = HashSet::new();
+        found.retain(|folder: &PathBuf| seen.insert(folder.canonicalize().ok()));
+        if found.is_empty() {
+            let folders = folders.to_vec();
+            return Err(GalleryError::NoRuns { folders });
+        }
+        let before = Self::before(out)?;
+        let mut gallery = Self {
+            entries: Vec::new(),
+            left_out: Vec::new(),
+        };
+        let mut names = HashSet::new();
+        for folder in found {
+            match Shown::read(&folder) {
+                Ok(shown) => {
+                    let name = unused(&file_name(&folder), &mut names);
+                    let [page, picture] = files(&name).map(|file| out.join(file));
+                    write_atomically(&page, |w| w.write_all(shown.page.as_bytes()))?;
+                    write_atomically(&picture, |w| w.write_all(&shown.picture))?;
+                    gallery.entries.push(entry(name, folder, &shown.recording));
+                }
+                Err(reason) => gallery.left_out.push((folder, reason)),
+            }
+        }
+        let page = page::page(&gallery.entries);
+        write_atomically(&out.join(Self::INDEX), |w| w.write_all(page.as_bytes()))?;
+        write_json(&out.join(Self::DATA), &gallery.entries)?;
+        for old in before.iter().filter(|old| !names.contains(&old.name)) {
+            for file in files(&old.name) {
+                // What is left of an earlier gallery is in nobody's way.
+                let _ = fs::remove_file(out.join(file));
+            }
+        }
+        Ok(gallery)
+    }
+
+    /// The entries of the gallery that is in a folder already.
+    fn before(out: &Path) -> Result<Vec<GalleryEntry>, GalleryError> {
+        let data = out.join(Self::DATA);
+        if data.is_file() {
+            return Ok(read_json(&data)?);
+        }
+        let is_empty = match fs::read_dir(out) {
+            Ok(mut entries) => entries.next().is_none(),
+            Err(_) => true,
+        };
+        if is_empty || is_begun(out) {
+            return Ok(Vec::new());
+        }
+        Err(GalleryError::Foreign {
+            folder: out.to_owned(),
+        })
+    }
+}
+
+/// Whether a folder has what the begin of a gallery leaves, which was stopped.
+fn is_begun(out: &Path) -> bool {
+    let known = [Gallery::RUNS, Gallery::INDEX].map(std::ffi::OsString::from);
+    let entries = fs::read_dir(out).into_iter().flatten();
+    entries.flatten().all(|e| known.contains(&e.file_name()))
+}
+
+/// Page and picture of a run, relative to the gallery.
+fn files(name: &str) -> [PathBuf; 2] {
+    ["html", "png"].map(|extension| Path::new(Gallery::RUNS).join(format!("{name}.{extension}")))
+}
+
+/// Adds the folders of runs at and beneath a folder.
+fn find(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), GalleryError> {
+    if RunFolder::is_run(folder) {
+        found.push(folder.to_owned());
+        return Ok(());
+    }
+    let unreadable = |source| GalleryError::Read {
+        path: folder.to_owned(),
+        source,
+    };
+    let mut folders = Vec::new();
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let entry = entry.map_err(unreadable)?;
+        if entry.file_type().map_err(unreadable)?.is_dir() {
+            folders.push(entry.path());
+        }
+    }
+    folders.sort();
+    folders.iter().try_for_each(|folder| find(folder, found))
+}
+
+fn entry(name: String, folder: PathBuf, recording: &Recording) -> GalleryEntry {
+    let trajectory = &recording.trajectory;
+    GalleryEntry {
+        name,
+        title: recording.name.clone(),
+        caption: caption(&recording.scene.text().text),
+        t: trajectory.times().last().copied().unwrap_or_default(),
+        vertices: trajectory.vertex_count(),
+        summary: recording.summary.clone(),
+        folder,
+    }
+}
+
+/// A run with its page and its picture.
+struct Shown {
+    recording: Recording,
+    page: String,
+    picture: Vec<u8>,
+}
+
+impl Shown {
+    /// Reads a run and makes both, or says why that cannot be done.
+    fn read(folder: &Path) -> Result<Self, String> {
+        let recording = Recording::read(folder).map_err(|e| e.to_string())?;
+        let Some(last) = recording.trajectory.len().checked_sub(1) else {
+            return Err("it has no frame yet".into());
+        };
+        let replay = recording.replay().map_err(|e| e.to_string())?;
+        let page = replay.to_html().map_err(|e| e.to_string())?;
+        let picture = picture(&recording, last).map_err(|e| e.to_string())?;
+        Ok(Self {
+            recording,
+            page,
+            picture,
+        })
+    }
+}
+
+/// A frame as a PNG file.
+fn picture(recording: &Recording, frame: usize) -> Result<Vec<u8>, PictureError> {
+    let options = FilmOptions {
+        height: PICTURE_HEIGHT,
+        ..FilmOptions::default()
+    };
+    let film = Film::new(recording, vec![frame], &options)?;
+    film.picture(0)?.to_png()
+}
+
+/// The name of the folder of a run, without `-run`, as the name of a file.
+fn file_name(folder: &Path) -> String {
+    let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let name = whole.file_name().unwrap_or_default().to_string_lossy();
+    let plain = |c: char| match c {
+        'a'..='z' | 'A'..='Z' | '0'..='9' | '-' | '_' | '.' => c,
+        _ => '-',
+    };
+    name.strip_suffix("-run")
+        .unwrap_or(&name)
+        .chars()
+        .map(plain)
+        .collect()
+}
+
+/// A name that no other run of the gallery has.
+fn unused(name: &str, names: &mut HashSet<String>) -> String {
+    let name = match name.trim_matches('.') {
+        "" => "run",
+        name => name,
+    };
+    let numbered = (2..).map(|k| format!("{name}-{k}"));
+    let mut candidates = std::iter::once(name.to_owned()).chain(numbered);
+    let free = candidates.find(|candidate| !names.contains(&candidate.to_lowercase()));
+    let free = free.expect("there are more numbers than runs");
+    names.insert(free.to_lowercase());
+    free
+}
+
+/// What a scene says of itself: its first comment, up to the first line that ends with a full stop.
+fn caption(scene: &str) -> String {
+    let comment = scene.lines().map_while(|line| line.strip_prefix('#'));
+    let mut lines = Vec::new();
+    for line in comment.map(str::trim) {
+        lines.push(line);
+        if line.ends_with('.') {
+            break;
+        }
+    }
+    lines.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn captions_are_first_sentences() {
+        let scene = "# A cloth on\n# a table. It is round.\n# Lengths in metres.\nversion = 1\n";
+        assert_eq!(caption(scene), "A cloth on a table. It is round.");
+        assert_eq!(caption("version = 1\n# no caption.\n"), "");
+        assert_eq!(caption("# without a stop\n\n# further"), "without a stop");
+    }
+
+    #[test]
+    fn names_are_plain_and_differ() {
+        let mut names = HashSet::new();
+        let mut name = |folder: &str| unused(&file_name(Path::new(folder)), &mut names);
+        assert_eq!(name("/none/a b\u{e4}<-run"), "a-b--");
+        assert_eq!(name("/none/x/a b\u{e4}<"), "a-b---2");
+        assert_eq!(name("/none/Cloth-run"), "Cloth");
+        assert_eq!(name("/none/y/cloth"), "cloth-2");
+        assert_eq!(name("/none/..."), "run");
+    }
+}

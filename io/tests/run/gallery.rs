@@ -1,0 +1,157 @@
+//! Galleries of runs.
+
+use crate::{code, run, started, stderr};
+use isosheet_io::read_json;
+use isosheet_io::run::GalleryEntry;
+use isosheet_io::scene::StartingPoint;
+use std::fs;
+use std::path::Path;
+
+fn write_scene(folder: &Path, kind: StartingPoint) {
+    fs::create_dir_all(folder).unwrap();
+    fs::write(folder.join("scene.toml"), kind.text()).unwrap();
+}
+
+/// The places that a page refers to.
+fn references(page: &str) -> Vec<String> {
+    let quoted = |attribute: &str| {
+        let parts = page.split(attribute).skip(1);
+        let values = parts.map(|rest| rest.split('"').next().unwrap().to_owned());
+        values.collect::<Vec<_>>()
+    };
+    [quoted(" href=\""), quoted(" src=\"")].concat()
+}
+
+#[test]
+fn a_gallery_shows_every_run_beneath_its_folders_and_needs_nothing_else() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    // A scene beside its run, and one further down whose run is not complete.
+    write_scene(&dir.join("a"), StartingPoint::Fold);
+    let done = run(&dir.join("a"), &["simulate", "scene.toml"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    write_scene(&dir.join("b/c"), StartingPoint::Drape);
+    let part = [
+        "simulate",
+        "b/c/scene.toml",
+        "--out",
+        "b/c/scene-run",
+        "--set",
+        "stop.time=30",
+    ];
+    let mut child = started(dir, &part, "b/c/scene-run", 20);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    // A run whose history is damaged.
+    write_scene(&dir.join("d"), StartingPoint::Fold);
+    let done = run(
+        &dir.join("d"),
+        &["simulate", "scene.toml", "--out", "broken"],
+    );
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    fs::write(dir.join("d/broken/history.csv"), "t,h\n").unwrap();
+
+    let made = run(dir, &["gallery", "b", ".", "--out", "shown"]);
+    assert_eq!(code(&made), Some(0), "{}", stderr(&made));
+    let said = stderr(&made);
+    assert!(
+        said.contains("left out: ./d/broken: ") && said.contains("shown/index.html: 2 runs"),
+        "{said}"
+    );
+
+    let entries: Vec<GalleryEntry> = read_json(&dir.join("shown/gallery.json")).unwrap();
+    let [drape, fold] = &entries[..] else {
+        panic!("two runs: {entries:?}");
+    };
+    // The folders in the order of the command line; a run that is found twice is shown once.
+    assert_eq!(
+        (drape.name.as_str(), fold.name.as_str()),
+        ("scene", "scene-2")
+    );
+    assert_eq!(
+        drape.caption,
+        "A cloth that falls on a box and drapes over its edges."
+    );
+    assert!(drape.summary.is_none() && drape.t > 0.0 && drape.t < 30.0);
+    let summary = fold.summary.as_ref().unwrap();
+    assert_eq!((summary.steps, fold.vertices), (90, 25));
+
+    let moved = dir.join("elsewhere");
+    fs::rename(dir.join("shown"), &moved).unwrap();
+    let page = fs::read_to_string(moved.join("index.html")).unwrap();
+    for part in [
+        "<dd>90</dd>",
+        &format!("<dd>{:.1e}</dd>", summary.largest_strain),
+        "<dd>not complete: up to ",
+    ] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+    let references = references(&page);
+    assert_eq!(references.len(), 6);
+    for file in references {
+        let start = fs::read(moved.join(&file)).unwrap();
+        let expected: &[u8] = if file.ends_with(".png") {
+            b"\x89PNG"
+        } else {
+            b"<!doctype html>"
+        };
+        assert!(
+            start
+                .to_ascii_lowercase()
+                .starts_with(&expected.to_ascii_lowercase()),
+            "{file}"
+        );
+    }
+}
+
+#[test]
+fn a_gallery_is_replaced_and_other_folders_are_not() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    for name in ["one", "two"] {
+        write_scene(dir, StartingPoint::Fold);
+        let out = format!("runs/{name}");
+        let done = run(dir, &["simulate", "scene.toml", "--out", &out]);
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    }
+    let gallery = |folders: &[&str]| run(dir, &[&["gallery"], folders].concat());
+    let made = gallery(&["runs"]);
+    assert_eq!(code(&made), Some(0), "{}", stderr(&made));
+    let files = || {
+        let entries = fs::read_dir(dir.join("gallery/runs")).unwrap();
+        let mut names: Vec<_> = entries
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    };
+    assert_eq!(files(), ["one.html", "one.png", "two.html", "two.png"]);
+    let index = fs::read(dir.join("gallery/index.html")).unwrap();
+    assert_eq!(code(&gallery(&["runs"])), Some(0));
+    assert_eq!(
+        fs::read(dir.join("gallery/index.html")).unwrap(),
+        index,
+        "the same again"
+    );
+    assert_eq!(code(&gallery(&["runs/two"])), Some(0));
+    assert_eq!(files(), ["two.html", "two.png"]);
+
+    for (arguments, expected, part) in [
+        (
+            vec!["gallery", "runs", "--out", "runs"],
+            4,
+            "not the folder of a gallery",
+        ),
+        (
+            vec!["gallery", "gallery"],
+            3,
+            "no folder of a run in gallery",
+        ),
+        (vec!["gallery", "none"], 3, "cannot read none"),
+        (vec!["gallery"], 2, "DIR"),
+    ] {
+        let refused = run(dir, &arguments);
+        assert_eq!(code(&refused), Some(expected), "{}", stderr(&refused));
+        assert!(stderr(&refused).contains(part), "{}", stderr(&refused));
+    }
+}

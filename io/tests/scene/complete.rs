@@ -1,0 +1,293 @@
+//! Scenes that have every key of the reference between them, and the places of the keys in them.
+
+use crate::parse;
+use isosheet_io::scene::{SceneFile, schema};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Every key of the reference, in scenes that are accepted.
+const ALL_KEYS: [&str; 4] = [
+    r#"version = 1
+    [sheet]
+    mesh = { square = { side = 0.2, level = 1 } }
+    density = 0.1
+    mass = 0.01
+    thickness = 1e-4
+    isometry = { weak = { stiffness = 100.0 } }
+    bending = { plate = { rigidity = 1e-3 } }
+    damping = 1.0
+    placement = { position = [0, 0, 1], turn = { axis = [0, 0, 1], angle = 45 } }
+    start = { perturbation = 0.01, seed = 3, file = { path = "a.obj", scale = 1.0, up = "y", polygons = "refuse" } }
+    [[crease]]
+    at = { ends = [[0, 1]] }
+    stiffness = 0.1
+    angle = { sine = { mean = 1, amplitude = 2, frequency = 3, phase = 4 } }
+    [[crease]]
+    at = { line = { from = [0, 0, 0], to = [1, 1, 0] } }
+    stiffness = 0.1
+    angle = { keyframes = { interpolation = "monotone_cubic", keys = [[0, 0], [1, 90]] } }
+    [[support]]
+    at = { nearest = [[0, 0, 0]] }
+    hold = { curve = { shape = { line = { point = [0, 0, 0], direction = [1, 0, 0] } }, motion = { x = 1.0 } } }
+    [[support]]
+    at = { vertices = [1] }
+    hold = { surface = { shape = { plane = { point = [0, 0, 0], normal = [0, 0, 1] } }, side = "outside",
+        motion = { y = 1, z = { ramp = { from = 0, to = 1, begin = 0, end = 1 } } } } }
+    [[support]]
+    at = { box = { min = [0, 0, 0], max = [1, 1, 1] } }
+    hold = { moving_pin = { rotation = { centre = [0, 0, 0], axis = [0, 0, 1], angle = 5 } } }
+    [[support]]
+    at = { half_space = { point = [0, 0, 0], normal = [0, 0, 1] } }
+    hold = "pin"
+    [[support]]
+    at = "boundary"
+    hold = { surface = { shape = { sphere = { centre = [0, 0, 0], radius = 1 } }, side = "inside" } }
+    [[support]]
+    at = "all"
+    hold = { surface = { shape = { cylinder = { point = [0, 0, 0], axis = [0, 0, 1], radius = 1 } }, side = "on" } }
+    [[obstacle]]
+    shape = { box = { size = [1, 1, 1] } }
+    pose = { position = [0, 0, -3] }
+    motion = { x = { run_up = { from = 0, rate = 0.1, begin = 0, end = 1 } }, z = { smooth_step = { to = 1, end = 1 } } }
+    friction = 0.1
+    [[obstacle]]
+    shape = { sphere = { radius = 1 } }
+    [[obstacle]]
+    shape = { cylinder = { radius = 1, height = 1 } }
+    [[obstacle]]
+    shape = { capsule = { radius = 1, length = 1 } }
+    [[obstacle]]
+    shape = { prism = { outline = { regular = { sides = 6, radius = 1 } }, height = 1 } }
+    [[obstacle]]
+    shape = { frame = { outer = 2, opening = 1, bottom = 0, top = 0.1 } }
+    [[obstacle]]
+    shape = { wall = { line = [[0, 0], [1, 0], [1, 1]], corner_radius = 0.1, width = 1 } }
+    [[obstacle]]
+    shape = { file = { path = "b.obj" } }
+    [[obstacle]]
+    shape = "half_space"
+    [forces]
+    gravity = [0, 0, -9.81]
+    [[forces.load]]
+    at = "all"
+    direction = [1, 0, 0]
+    size = 1.0
+    [[forces.acceleration]]
+    direction = [1, 0, 0]
+    size = 1
+    [contact]
+    self_contact = true
+    friction = 0.2
+    activation = 1e-3
+    stiffness = 1e-3
+    rest_speed = 1e-3
+    [method]
+    integrator = "implicit_euler"
+    step = 0.01
+    strain_tolerance = 1e-10
+    max_iterations = 50
+    rod_stiffness = 1e5
+    min_fraction = 0.1
+    fallback = "implicit_euler"
+    taut = "stop"
+    [stop]
+    time = 2
+    rest = { speed = 1e-3, duration = 0.1 }
+    support_force = 10
+    [output]
+    frames_per_second = 25
+    checkpoint_interval = 1
+    trajectory = false
+    obj = true
+    page = false"#,
+    r#"version = 1
+    [sheet]
+    mesh = { rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = "union_jack" } }
+    isometry = { membrane = { stiffness = 1e5, poisson = 0.3 } }
+    bending = { hinges = { rigidity = 1e-3 } }
+    [[crease]]
+    at = { pattern = "assigned" }
+    stiffness = 1
+    [[crease]]
+    at = { pattern = "mountains" }
+    stiffness = 1
+    angle = { keyframes = { interpolation = "linear", keys = [[0, 0]] } }
+    [[crease]]
+    at = { pattern = "valleys" }
+    stiffness = 1
+    [[crease]]
+    at = { pattern = "flat" }
+    stiffness = 1
+    [[crease]]
+    at = { pattern = "zigzags" }
+    stiffness = 1
+    [[support]]
+    at = "all"
+    hold = { curve = { shape = { circle = { centre = [0, 0, 0], normal = [0, 0, 1], radius = 1 } } } }
+    [[support]]
+    at = "all"
+    hold = { curve = { shape = { polyline = { points = [[0, 0, 0], [1, 0, 0], [1, 1, 0]], corner_radius = 0.1 } } } }
+    [[support]]
+    at = "all"
+    hold = { curve = { shape = { spline = { points = [[0, 0, 0], [1, 0, 0], [1, 1, 0]] } } } }
+    [[support]]
+    at = "all"
+    hold = { curve = { shape = { closed_spline = { points = [[0, 0, 0], [1, 0, 0], [1, 1, 0]] } } } }
+    [method]
+    integrator = "bdf2"
+    fallback = "refuse"
+    taut = "refuse""#,
+    r#"version = 1
+    [sheet]
+    mesh = { file = { path = "a.obj", up = "z", polygons = "triangulate" } }
+    isometry = "rods"
+    bending = "none"
+    [method]
+    integrator = "rattle""#,
+    r#"version = 1
+    [sheet]
+    mesh = { square = { side = 1, level = 1 } }
+    [method]
+    integrator = "chart"
+    [method.chart]
+    coordinates = "front"
+    scheme = "forward_euler"
+    equations = "published"
+    positions = "linear"
+    solver = "cramer"
+    substep = { adaptive = { tolerance = 1e-6, min = 1e-6, max = 0.1 } }
+    singular = "refuse""#,
+];
+
+/// Scenes that have every key of the reference between them.
+pub(crate) fn scenes() -> Vec<SceneFile> {
+    let meshes = [
+        "{ disk = { radius = 1, rings = 2 } }",
+        "{ annulus = { inner = 1, outer = 2, segments = 5, rings = 1 } }",
+        "{ polygon = { outline = [[0, 0], [1, 0], [0, 1]], spacing = 0.2, seed = 1 } }",
+        "{ polygon_rings = { outline = [[1, 0], [0, 1], [-1, -1]], rings = 2 } }",
+        "{ octagon = { radius = 1 } }",
+        "{ degree_four = { sectors = [60, 80], radius = 0.1, alike = \"odd\" } }",
+        "{ degree_four = { sectors = [60, 80], radius = 0.1, alike = \"even\" } }",
+        "{ waterbomb = { columns = 2, rows = 2, side = 0.1 } }",
+        "{ yoshimura = { columns = 2, rows = 2, base = 0.1, height = 0.1 } }",
+        "{ kresling = { columns = 2, rows = 2, base = 0.1, side = 0.1, angle = 60 } }",
+        "{ hypar = { rings = 2, side = 0.1 } }",
+        "{ square_twist = { side = 0.2, square = 0.1, angle = 45 } }",
+        "{ miura = { columns = 2, rows = 2, straight = 1, zigzag = 1, angle = 60 } }",
+        "{ rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = \"falling\" } }",
+        "{ rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = \"rising\" } }",
+    ];
+    let with = |key: &str, value: &str| format!("{key}={value}");
+    let integrators = ["projection", "energy_momentum", "rattle_composition"];
+    let edits = meshes.iter().map(|m| with("sheet.mesh", m));
+    let edits = edits.chain(integrators.iter().map(|i| with("method.integrator", i)));
+    let charts = [
+        "{ coordinates = \"cartesian\", substep = { fixed = 1e-3 }, singular = \"rebase\" }",
+        "{ coordinates = \"front_with_straight_creases\", scheme = \"runge_kutta4\", equations = \"full\" }",
+        "{ scheme = \"symplectic_euler\", equations = \"reformed\", positions = \"projected\" }",
+        "{ positions = \"exact\", solver = \"sparse\" }",
+        "{ solver = \"dense_lu\" }",
+        "{ solver = \"cholesky\" }",
+    ];
+    let charts = charts.iter().map(|c| with("method.chart", c));
+    let charts =
+        charts.map(|edit| SceneFile::parse(ALL_KEYS[3].into(), Path::new("test.toml"), &[edit]));
+    let mut scenes: Vec<SceneFile> = ALL_KEYS
+        .iter()
+        .map(|text| parse(text).unwrap_or_else(|e| panic!("{e}")))
+        .collect();
+    for edit in edits {
+        let scene = SceneFile::parse(ALL_KEYS[2].into(), Path::new("test.toml"), &[edit]);
+        scenes.push(scene.unwrap_or_else(|e| panic!("{e}")));
+    }
+    scenes.extend(charts.map(|scene| scene.unwrap_or_else(|e| panic!("{e}"))));
+    scenes
+}
+
+/// A step on the way to a value.
+#[derive(Clone, Debug)]
+pub(crate) enum Step {
+    Key(String),
+    Entry(usize),
+}
+
+/// Where a key of the reference is in one of the scenes.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    pub(crate) scene: usize,
+    /// The way to the value; the last step that is a name is the key.
+    pub(crate) way: Vec<Step>,
+    /// What its values may be.
+    pub(crate) schemas: Vec<Value>,
+}
+
+/// The first place of every key, by its name in the reference: `Part.key`, and `Part.name` of a choice.
+pub(crate) fn places(scenes: &[SceneFile]) -> BTreeMap<String, Place> {
+    let schema = schema();
+    let mut walk = Walk {
+        root: &schema,
+        scene: 0,
+        way: Vec::new(),
+        found: BTreeMap::new(),
+    };
+    for (k, scene) in scenes.iter().enumerate() {
+        walk.scene = k;
+        let value: Value = toml::from_str(&scene.text().text).unwrap();
+        walk.visit(&schema, "", &value);
+    }
+    walk.found
+}
+
+struct Walk<'a> {
+    root: &'a Value,
+    scene: usize,
+    way: Vec<Step>,
+    found: BTreeMap<String, Place>,
+}
+
+impl Walk<'_> {
+    fn visit(&mut self, schema: &Value, part: &str, value: &Value) {
+        if let Some(reference) = schema["$ref"].as_str() {
+            let name = reference.rsplit('/').next().unwrap();
+            return self.visit(&self.root["$defs"][name], name, value);
+        }
+        for options in [&schema["anyOf"], &schema["oneOf"]] {
+            for option in options.as_array().into_iter().flatten() {
+                self.visit(option, part, value);
+            }
+        }
+        if let (Some(name), Some(found)) = (schema["const"].as_str(), value.as_str())
+            && name == found
+        {
+            self.note(format!("{part}.{name}"), schema);
+        }
+        for (k, entry) in value.as_array().into_iter().flatten().enumerate() {
+            self.way.push(Step::Entry(k));
+            self.visit(&schema["items"], part, entry);
+            self.way.pop();
+        }
+        for (key, inner) in value.as_object().into_iter().flatten() {
+            let property = &schema["properties"][key];
+            if property.is_object() {
+                let name = format!("{part}.{key}");
+                self.way.push(Step::Key(key.clone()));
+                self.note(name.clone(), property);
+                self.visit(property, &name, inner);
+                self.way.pop();
+            }
+        }
+    }
+
+    fn note(&mut self, name: String, schema: &Value) {
+        let place = self.found.entry(name).or_insert_with(|| Place {
+            scene: self.scene,
+            way: self.way.clone(),
+            schemas: Vec::new(),
+        });
+        if !place.schemas.contains(schema) {
+            place.schemas.push(schema.clone());
+        }
+    }
+}
