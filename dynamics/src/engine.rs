@@ -45,10 +45,7 @@ impl Engine {
         method: Method,
         mut state: State,
     ) -> Result<Self, SimulationError> {
-        let fixed = match model.isometry() {
-            Isometry::Rods => immobile_vertices(&model, &state.x),
-            Isometry::Elastic | Isometry::Weak => Vec::new(),
-        };
+        let fixed = immobile_vertices(&model, &state.x);
         model.fix(&fixed);
         model.clear_velocities(&fixed, &mut state.v);
         Self::with_fixed(model, method, state, fixed)

@@ -1,7 +1,7 @@
 //! Vertices that cannot move because rods to fixed ones hold them.
 
-use crate::SheetModel;
 use crate::model::PINNED;
+use crate::{Isometry, SheetModel};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 
@@ -29,6 +29,9 @@ const OFF_LINE: f64 = 1e-3;
 ///
 /// `x`: positions, `3V`, metres.
 pub(crate) fn immobile_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
+    if model.isometry() != Isometry::Rods {
+        return Vec::new();
+    }
     let mut search = Search::new(model, x);
     loop {
         let before = search.found.len();

@@ -207,10 +207,8 @@ impl Simulation {
         Ok(self)
     }
 
-    /// Free vertices that became pins at the start because rods to fixed vertices hold them in place: those
-    /// with three fixed neighbours that are not on a line, those on straight lines of rods between fixed
-    /// vertices, and those at the end of such a line which could only turn about other fixed ones. Empty in
-    /// charts, for elastic sheets and in weak form.
+    /// Free vertices that became pins at the start because rods to fixed vertices hold them in place (see
+    /// [`SheetModel::immobile_vertices`]). Empty in charts.
     pub fn immobile_vertices(&self) -> &[VertexId] {
         match &self.engine {
             Engine::Free(engine) => engine.immobile(),

@@ -15,6 +15,7 @@
 //!     topology: sheet.topology(),
 //!     positions: sheet.positions(),
 //!     pins: &[],
+//!     immobile: &[],
 //!     solids: &[],
 //! };
 //! let image = render(&picture, &camera, &Look { size: [80, 80], ..Look::default() })?;

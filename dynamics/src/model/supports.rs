@@ -3,6 +3,7 @@
 use super::{ModelError, PINNED, SheetModel};
 use crate::constraint::rows::point;
 use crate::constraint::{ConstrainedVertex, VertexConstraint};
+use crate::immobile::immobile_vertices;
 use crate::motion::PointMotion;
 use crate::support::Support;
 use isosheet_mesh::VertexId;
@@ -222,5 +223,17 @@ impl SheetModel {
             .vertex_ids()
             .filter(|&v| self.is_pinned(v))
             .collect()
+    }
+
+    /// Free vertices that rods to pins at rest hold in place at positions `x` (`3V`, metres): those with three
+    /// fixed neighbours that are not on a line, those on straight lines of rods between fixed vertices, and
+    /// those at the end of such a line which could only turn about other fixed ones. Not all are found; flat
+    /// patches may be immobile as a whole. Empty for elastic sheets and in weak form.
+    ///
+    /// # Panics
+    /// If the length of `x` is not three times the number of vertices.
+    pub fn immobile_vertices(&self, x: &[f64]) -> Vec<VertexId> {
+        assert_eq!(x.len(), self.coordinate_count(), "length of the positions");
+        immobile_vertices(self, x)
     }
 }

@@ -22,9 +22,10 @@ const GRAIN: f64 = 0.15;
 /// How far lines are drawn in front of what they lie on, as part of the extent of the sheet.
 const LIFT: f64 = 0.004;
 
-/// sRGB colours of lines and of pins.
+/// sRGB colours of lines, of pins and of immobile vertices.
 const INK: [u8; 3] = [38, 42, 48];
 const PIN: [u8; 3] = [213, 94, 0];
+const IMMOBILE: [u8; 3] = [240, 228, 66];
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +36,8 @@ pub struct SheetPicture<'a> {
     pub positions: &'a [f64],
     /// Vertices marked with a dot.
     pub pins: &'a [VertexId],
+    /// Vertices marked with a dot of another colour.
+    pub immobile: &'a [VertexId],
     /// Bodies that the sheet meets.
     pub solids: &'a [Solid],
 }
@@ -51,7 +54,12 @@ impl SheetPicture<'_> {
                 value: self.positions[k],
             });
         }
-        match self.pins.iter().find(|v| v.index() >= vertices) {
+        match self
+            .pins
+            .iter()
+            .chain(self.immobile)
+            .find(|v| v.index() >= vertices)
+        {
             Some(&vertex) => Err(PictureError::Pin { vertex, vertices }),
             None => Ok(()),
         }
@@ -123,8 +131,10 @@ pub fn render(
     let mut scene = Scene::of(picture);
     drawing.faces(&mut scene);
     drawing.wires(picture.topology, &scene);
-    for pin in picture.pins {
-        drawing.pin(&scene.x[pin.index()]);
+    for (vertices, colour) in [(picture.immobile, IMMOBILE), (picture.pins, PIN)] {
+        for v in vertices {
+            drawing.dot(&scene.x[v.index()], colour);
+        }
     }
     Ok(drawing.depth.image.reduced(SUPERSAMPLING))
 }
@@ -266,13 +276,13 @@ impl Drawing<'_> {
     }
 
     /// A dot with a rim.
-    fn pin(&mut self, p: &[f64; 3]) {
+    fn dot(&mut self, p: &[f64; 3], colour: [u8; 3]) {
         let c = self.raised(p, 3.0 * LIFT);
         let nearer = Corner {
             nearness: c.nearness + LIFT * self.extent,
             ..c
         };
-        for (at, width, colour) in [(c, 9.0, INK), (nearer, 6.0, PIN)] {
+        for (at, width, colour) in [(c, 9.0, INK), (nearer, 6.0, colour)] {
             let width = width * SUPERSAMPLING as f64;
             self.depth.line(&at, &at, width, light(colour), 1.0);
         }
@@ -332,6 +342,7 @@ mod tests {
             topology: sheet.topology(),
             positions: sheet.positions(),
             pins: &[],
+            immobile: &[],
             solids: &[],
         };
         let middle = |elevation: f64| {
@@ -354,6 +365,7 @@ mod tests {
                 topology: sheet.topology(),
                 positions,
                 pins,
+                immobile: &[],
                 solids: &[],
             };
             render(&picture, &camera, &look).map(|image| image.size())

@@ -140,6 +140,7 @@ impl<'a> Film<'a> {
             topology: self.recording.sheet.topology(),
             positions,
             pins: &self.recording.pins,
+            immobile: &self.recording.immobile,
             solids: &solids,
         };
         render(&picture, &self.camera, &self.look)

@@ -8,7 +8,7 @@ use std::io::Write;
 use std::path::Path;
 
 impl Recording {
-    /// What the page of the run shows: [`Replay::of_motion`] with the pins, the curves and surfaces that hold
+    /// What the page of the run shows: [`Replay::of_motion`] with the pins and immobile vertices, the curves and surfaces that hold
     /// vertices, a summary, the scene and how to make the run again.
     ///
     /// # Errors
@@ -25,6 +25,7 @@ impl Recording {
         Ok(Replay {
             title: self.name.clone(),
             pins: self.pins.iter().map(|v| v.0).collect(),
+            immobile: self.immobile.iter().map(|v| v.0).collect(),
             summary: self.rows(),
             scene: self.scene.text().text.clone(),
             reproduce: self.reproduce(),

@@ -23,6 +23,8 @@ pub struct Recording {
     pub modelled: Vec<String>,
     /// Vertices that are pinned, at rest or in motion.
     pub pins: Vec<VertexId>,
+    /// Vertices that rods to pins keep in place ([`SheetModel::immobile_vertices`]).
+    pub immobile: Vec<VertexId>,
     /// The bodies, in the order of the scene.
     pub obstacles: Vec<Obstacle>,
     /// The frames with the mesh.
@@ -55,6 +57,7 @@ impl Recording {
         let summary = summary.is_file().then(|| read_json(&summary)).transpose()?;
         Ok(Self {
             name: name_of(folder),
+            immobile: setup.model.immobile_vertices(&setup.start.x),
             pins: setup.model.pins(),
             modelled: setup.modelled,
             sheet: setup.sheet,

@@ -41,6 +41,8 @@ pub struct Replay {
     pub bodies: Vec<Body>,
     /// Vertices that are held.
     pub pins: Vec<u32>,
+    /// Vertices that rods to held ones keep in place.
+    pub immobile: Vec<u32>,
     /// Values at vertices, edges or faces, to colour the sheet by.
     pub fields: Vec<Field>,
     /// Quantities over time, to plot.
@@ -82,6 +84,7 @@ impl Replay {
             check::finite_of(x, || positions_of(frame, *t))?;
         }
         check::vertices("the pins", &self.pins, vertices)?;
+        check::vertices("the immobile vertices", &self.immobile, vertices)?;
         for (index, body) in self.bodies.iter().enumerate() {
             body.validate(index, frames)?;
         }

@@ -178,6 +178,37 @@ pose = { position = [2.2, 0.0, 0.7] }
 time = 0.1
 "#;
 
+/// The first row of a square of rods and the next vertex of its side are pinned: three more vertices cannot
+/// move.
+const CLAMPED: &str = r#"version = 1
+[sheet]
+mesh = { square = { level = 1, side = 1.0 } }
+[[support]]
+at = { vertices = [0, 1, 2, 3, 4, 5] }
+[stop]
+time = 0.02
+"#;
+
+#[test]
+fn vertices_that_rods_keep_in_place_are_on_the_page() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::write(dir.join("clamped.toml"), CLAMPED).unwrap();
+    let done = run(dir, &["simulate", "clamped.toml"]);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let shown = replay(&dir.join("clamped-run"));
+    assert_eq!(shown.immobile.len(), 3, "{:?}", shown.immobile);
+    for v in &shown.immobile {
+        let at = |x: &[f64]| x[3 * *v as usize..][..3].to_vec();
+        assert!(
+            shown
+                .positions
+                .iter()
+                .all(|x| at(x) == at(&shown.positions[0]))
+        );
+    }
+}
+
 #[test]
 fn bodies_curves_and_surfaces_are_on_the_page() {
     let dir = tempfile::tempdir().unwrap();

@@ -69,6 +69,15 @@ fn of_the_mesh() {
         |r| r.pins.push(81),
         &["the pins", "entry 2", "vertex 81", "81 vertices"],
     );
+    says(
+        |r| r.immobile.push(90),
+        &[
+            "the immobile vertices",
+            "entry 0",
+            "vertex 90",
+            "81 vertices",
+        ],
+    );
 }
 
 #[test]

@@ -2,6 +2,11 @@
 
 import { number, withUnit } from "./format.js";
 
+function held({ pins, immobile }, vertex) {
+  if (pins.includes(vertex)) return ", pinned";
+  return immobile.includes(vertex) ? ", kept in place by its rods" : "";
+}
+
 /** The lines of the text for what Stage.pick found. */
 export function describe(replay, found) {
   if (found.body !== undefined) return [`Body ${found.body}`];
@@ -11,7 +16,7 @@ export function describe(replay, found) {
   const position = [0, 1, 2].map((k) => number(x[3 * vertex + k])).join(", ");
   const fold = replay.folds[edge] * (180 / Math.PI);
   const lines = [
-    `Vertex ${vertex} at (${position}) m${replay.data.pins.includes(vertex) ? ", pinned" : ""}`,
+    `Vertex ${vertex} at (${position}) m${held(replay.data, vertex)}`,
     `Edge ${edge}, vertices ${edges[2 * edge]} and ${edges[2 * edge + 1]}`,
     Number.isNaN(fold) ? "No fold angle: boundary" : `Fold angle ${number(fold)}°`,
     `Face ${face}`,

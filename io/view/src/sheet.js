@@ -5,6 +5,7 @@ import {
   BackSide,
   BufferAttribute,
   BufferGeometry,
+  Color,
   FrontSide,
   Group,
   InstancedMesh,
@@ -84,7 +85,7 @@ export class SheetObjects {
     this.pins = new InstancedMesh(
       ball,
       new MeshStandardMaterial({ roughness: 0.6 }),
-      replay.data.pins.length,
+      replay.data.pins.length + replay.data.immobile.length,
     );
     this.pins.frustumCulled = false;
     for (const object of this.surfaces) object.frustumCulled = false;
@@ -99,7 +100,10 @@ export class SheetObjects {
     this.colours = colours;
     this.ghost.material.color.set(colours.ghost);
     this.mark.material.color.set(colours.mark);
-    this.pins.material.color.set(colours.pin);
+    const { pins, immobile } = this.replay.data;
+    const [pin, locked] = [new Color(colours.pin), new Color(colours.locked)];
+    [...pins, ...immobile].forEach((_, k) => this.pins.setColorAt(k, k < pins.length ? pin : locked));
+    if (this.pins.instanceColor) this.pins.instanceColor.needsUpdate = true;
     this.setQuantity(this.quantity);
   }
 
@@ -138,7 +142,7 @@ export class SheetObjects {
     this.corners.needsUpdate = true;
     this.copyEnds(x, this.lines);
     const place = new Matrix4();
-    this.replay.data.pins.forEach((v, k) =>
+    [...this.replay.data.pins, ...this.replay.data.immobile].forEach((v, k) =>
       this.pins.setMatrixAt(k, place.makeTranslation(x[3 * v], x[3 * v + 1], x[3 * v + 2])),
     );
     this.pins.instanceMatrix.needsUpdate = true;

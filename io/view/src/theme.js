@@ -9,6 +9,7 @@ const NAMES = [
   "ghost",
   "mark",
   "pin",
+  "locked",
   "body",
   "outline",
   "floor",

@@ -14,10 +14,12 @@ impl Shown<'_> {
         let trajectory = runs::trajectory(store, scene)?;
         let history = runs::history(store, scene)?;
         let setup = scene.setup()?;
+        let immobile = setup.model.immobile_vertices(&setup.start.x);
         let (pins, bodies) = (setup.model.pins(), setup.obstacles);
         let quick = self.context.effort.quick_or(" --quick", "");
         let replay = Replay {
             title: format!("Figure {figure}: {label}"),
+            immobile: immobile.iter().map(|v| v.0).collect(),
             pins: pins.iter().map(|v| v.0).collect(),
             summary: rows(&summary),
             scene: scene.text().to_owned(),

@@ -121,6 +121,7 @@ fn pictures(
             topology: sheet.topology(),
             positions: x,
             pins: &view.pins,
+            immobile: &[],
             solids,
         };
         images.push(render(&picture, &camera, &look)?);

@@ -107,6 +107,7 @@ fn fall() -> Result<Picture> {
             topology: sheet.topology(),
             positions: x,
             pins: &[corner(2)],
+            immobile: &[],
             solids: &[],
         };
         frames.push(Labelled {

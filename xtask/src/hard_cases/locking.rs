@@ -239,6 +239,7 @@ fn picture(ends: &[End<'_>]) -> Result<Picture> {
             topology: end.mesh.1.topology(),
             positions: &end.x,
             pins: &end.pins,
+            immobile: &[],
             solids: &solids,
         };
         frames.push(Labelled {
