@@ -5,7 +5,7 @@ use super::pattern::{
     DegreeFour, EdgeRoles, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
 };
 use super::problem::{Checks, Key, Problem};
-use crate::format::{self, MeshOptions, Polygons, SeparateBuffers, read_mesh_with};
+use crate::format::{self, MeshFileError, MeshOptions, Polygons, SeparateBuffers, read_mesh_with};
 use isosheet_mesh::Sheet;
 use isosheet_mesh::generate::{self, FoldPattern, GenerateError};
 use schemars::JsonSchema;
@@ -172,6 +172,26 @@ impl MeshFile {
 
     /// Reads the file, in metres and with z upwards; relative paths are relative to `folder`.
     pub(crate) fn read(&self, key: &Key, folder: &Path) -> Result<format::MeshFile, Problem> {
+        self.read_with(None, folder).map_err(|error| {
+            let remedy = "`isosheet check` says what is wrong with a mesh file; paths are relative to the scene";
+            Problem::new(key.name("path"), error.to_string(), remedy)
+        })
+    }
+
+    /// Reads a frame of a FOLD file, from 0, in the same way.
+    pub(crate) fn read_frame(
+        &self,
+        frame: usize,
+        folder: &Path,
+    ) -> Result<format::MeshFile, MeshFileError> {
+        self.read_with(Some(frame), folder)
+    }
+
+    fn read_with(
+        &self,
+        frame: Option<usize>,
+        folder: &Path,
+    ) -> Result<format::MeshFile, MeshFileError> {
         let options = MeshOptions {
             polygons: match self.polygons {
                 PolygonFaces::Refuse => Polygons::Refuse,
@@ -179,13 +199,11 @@ impl MeshFile {
             },
             // The folder of a run keeps a copy of one file for each mesh.
             buffers: SeparateBuffers::Refuse,
+            frame,
             ..MeshOptions::default()
         };
         let path = folder.join(&self.path);
-        let mut mesh = read_mesh_with(&path, &options).map_err(|error| {
-            let remedy = "`isosheet check` says what is wrong with a mesh file; paths are relative to the scene";
-            Problem::new(key.name("path"), error.to_string(), remedy)
-        })?;
+        let mut mesh = read_mesh_with(&path, &options)?;
         for p in mesh.positions.as_chunks_mut::<3>().0 {
             let [x, y, z] = p.map(|c| self.scale * c);
             *p = match self.up {

@@ -3,6 +3,7 @@
 mod continuing;
 mod convert;
 mod ends;
+mod folding;
 mod folders;
 #[path = "../shared/headless.rs"]
 mod headless;

@@ -143,6 +143,12 @@ const ALL_KEYS: [&str; 4] = [
     mesh = { file = { path = "a.obj", up = "z", polygons = "triangulate" } }
     isometry = "rods"
     bending = "none"
+    [folding]
+    time = 1
+    stiffness = 0.01
+    flat_stiffness = 0.5
+    part = 0.75
+    frame = 1
     [method]
     integrator = "rattle""#,
     r#"version = 1

@@ -3,6 +3,7 @@
 mod book;
 mod charts;
 mod files;
+mod folding;
 mod formulas;
 mod keys;
 mod meaning;
