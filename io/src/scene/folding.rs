@@ -4,7 +4,7 @@ use super::Mesh;
 use super::mesh::MeshFile;
 use super::problem::{Checks, Key, Problem};
 use super::profile::Profile;
-use crate::format::{self, EdgeAssignment};
+use crate::format::EdgeAssignment;
 use isosheet_dynamics::CreaseSpring;
 use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, fold_angle};
 use schemars::JsonSchema;
@@ -49,9 +49,9 @@ fn whole() -> f64 {
 /// creases of a panel together turn one of its flat edges by a few degrees at most.
 const FLAT_STIFFNESS: f64 = 50.0;
 
-/// Part of the extent of a frame by which its vertices may be beside a plane z = constant: above the
-/// round-off of coordinates of seven digits.
-const IN_PLANE: f64 = 1e-6;
+/// Sine of the fold angles up to which a frame is in a plane: above the round-off of coordinates of seven
+/// digits in faces that are a hundredth of the sheet, below any fold that is seen.
+const IN_PLANE: f64 = 1e-4;
 
 /// Where the edges of a sheet are driven.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -146,7 +146,7 @@ impl Folding {
             return Err(Problem::new(key.name("frame"), message, remedy));
         }
         let mut targets = FoldTargets::default();
-        let shape = (!is_plane(&frame)).then_some(&frame.positions[..]);
+        let shape = (!is_plane(t, &frame.positions)).then_some(&frame.positions[..]);
         for crease in &frame.creases {
             let [a, b] = crease.ends.map(VertexId);
             let Some(e) = t.find_edge(a, b).filter(|&e| !t.is_boundary_edge(e)) else {
@@ -201,14 +201,8 @@ impl Folding {
     }
 }
 
-/// Whether all vertices have the same z within round-off.
-fn is_plane(mesh: &format::MeshFile) -> bool {
-    let extent = |k: usize| {
-        let of = mesh.positions.iter().skip(k).step_by(3);
-        let bounds = of.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &c| {
-            (low.min(c), high.max(c))
-        });
-        bounds.1 - bounds.0
-    };
-    extent(2) <= IN_PLANE * extent(0).max(extent(1))
+/// Whether the sheet is in a plane at positions `x`: every edge is flat or folded shut.
+fn is_plane(t: &Topology, x: &[f64]) -> bool {
+    let mut angles = t.edge_ids().filter_map(|e| fold_angle(t, x, e));
+    angles.all(|angle| angle.sin().abs() < IN_PLANE)
 }

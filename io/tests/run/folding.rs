@@ -30,16 +30,32 @@ fn a_sheet_of_others_is_folded_by_one_command() {
     let output = run(dir, &["simulate", "scene.toml"]);
     assert_eq!(code(&output), Some(0), "{}", stderr(&output));
     let said = stderr(&output);
-    assert!(said.contains("fold angles differ from their targets by 8.15 degrees"), "{said}");
+    assert!(
+        said.contains("fold angles differ from their targets by 8.15 degrees"),
+        "{said}"
+    );
     let folder = dir.join("scene-run");
     let residual = summary(&folder).ending.folding.expect("the scene folds");
     assert_eq!(residual.creases, 120);
     // With 180 degrees, which do close, nothing is left.
-    let whole = ["simulate", "scene.toml", "--out", "whole", "--set", "folding.part=1.0"];
+    let whole = [
+        "simulate",
+        "scene.toml",
+        "--out",
+        "whole",
+        "--set",
+        "folding.part=1.0",
+    ];
     assert_eq!(code(&run(dir, &whole)), Some(0));
     let whole = summary(&dir.join("whole")).ending.folding.unwrap();
-    assert!(whole.largest < 0.01 && residual.largest > 5.0, "{whole:?}, {residual:?}");
-    assert_eq!(code(&run(dir, &["collect", "whole", "--out", "all.csv"])), Some(0));
+    assert!(
+        whole.largest < 0.01 && residual.largest > 5.0,
+        "{whole:?}, {residual:?}"
+    );
+    assert_eq!(
+        code(&run(dir, &["collect", "whole", "--out", "all.csv"])),
+        Some(0)
+    );
     let table = fs::read_to_string(dir.join("all.csv")).unwrap();
     assert!(table.contains("ending.folding.largest_flat"), "{table}");
     let page = fs::read_to_string(folder.join("index.html")).unwrap();

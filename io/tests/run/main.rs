@@ -3,8 +3,8 @@
 mod continuing;
 mod convert;
 mod ends;
-mod folding;
 mod folders;
+mod folding;
 #[path = "../shared/headless.rs"]
 mod headless;
 mod pages;

@@ -14,6 +14,8 @@ use std::path::Path;
 pub(crate) enum PictureFormat {
     /// One frame.
     Png,
+    /// One frame as a vector drawing.
+    Svg,
     /// All frames, animated.
     AnimatedPng,
 }
@@ -24,6 +26,7 @@ impl PictureFormat {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         match extension.as_str() {
             "png" => Some(Self::Png),
+            "svg" => Some(Self::Svg),
             "apng" => Some(Self::AnimatedPng),
             _ => None,
         }
@@ -48,15 +51,17 @@ pub(crate) fn write(
 ) -> Done {
     let count = recording.trajectory.len();
     let frames: Vec<usize> = match (format, choice) {
-        (PictureFormat::Png, FrameChoice { every: Some(_), .. }) => {
+        (PictureFormat::Png | PictureFormat::Svg, FrameChoice { every: Some(_), .. }) => {
             return Err(input(
-                "a .png file has one frame (--frame K); --every is for .apng",
+                "a .png or .svg file has one frame (--frame K); --every is for .apng",
             ));
         }
         (PictureFormat::AnimatedPng, FrameChoice { frame: Some(_), .. }) => {
-            return Err(input("an .apng file has all frames; --frame K is for .png"));
+            return Err(input(
+                "an .apng file has all frames; --frame K is for .png and .svg",
+            ));
         }
-        (PictureFormat::Png, FrameChoice { frame, .. }) => {
+        (PictureFormat::Png | PictureFormat::Svg, FrameChoice { frame, .. }) => {
             vec![frame.unwrap_or(count.saturating_sub(1))]
         }
         (PictureFormat::AnimatedPng, FrameChoice { every, .. }) => {
@@ -75,6 +80,7 @@ pub(crate) fn write(
     }
     let bytes = match format {
         PictureFormat::Png => film.picture(0).and_then(|image| image.to_png()),
+        PictureFormat::Svg => film.svg(0).map(String::into_bytes),
         PictureFormat::AnimatedPng => film.animation(),
     };
     let bytes = bytes.map_err(input)?;
