@@ -34,6 +34,7 @@ mod sheet;
 mod solid;
 mod vector;
 mod vector_drawing;
+mod vector_picture;
 
 pub use animation::animated_png;
 pub use camera::Camera;
@@ -43,3 +44,4 @@ pub use montage::{Labelled, montage};
 pub use sheet::{Look, SheetPicture, render};
 pub use solid::Solid;
 pub use vector_drawing::svg_to_png;
+pub use vector_picture::render_svg;

@@ -228,13 +228,14 @@ fn start<'a>(
     hash: SceneHash,
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
-    let origins = setup.origins.clone();
+    let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
     let simulation = setup.start()?;
     let count = file.scene().support.len();
     let mut stepping = Stepping {
         file,
         folder,
         supports: SupportForces::new(origins.clone(), &simulation, count),
+        folding,
         simulation,
         origins,
         history: HistoryWriter::create(&folder.path(RunFolder::HISTORY))?,
@@ -273,7 +274,7 @@ fn resume<'a>(
     (progress, checkpoint): (Progress, isosheet_dynamics::Checkpoint),
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
-    let origins = setup.origins.clone();
+    let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
     let path = folder.path(RunFolder::FRAMES);
     let frames = FrameFile::resume(&path, progress.frames, FrameShape::of(&setup));
     let frames = frames.map_err(|e| RunError::Damaged {
@@ -286,6 +287,7 @@ fn resume<'a>(
         file,
         folder,
         supports: SupportForces::new(origins.clone(), &simulation, count),
+        folding,
         simulation,
         origins,
         history: HistoryWriter::resume(&folder.path(RunFolder::HISTORY), progress.history)?,

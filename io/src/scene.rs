@@ -10,6 +10,7 @@ mod creases;
 mod edit;
 mod engine_problem;
 mod error;
+mod folding;
 mod forces;
 mod form;
 mod mesh;
@@ -41,6 +42,7 @@ pub use creases::{Crease, CreaseEdges, PatternEdges};
 pub use edit::EditError;
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
+pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use forces::{Acceleration, Forces, Load};
 pub use mesh::{Diagonals, Mesh, MeshFile, PolygonFaces, UpAxis};
 pub use method::{Fallback, Integrator, Method, Taut};
@@ -123,6 +125,9 @@ pub struct Scene {
     /// Creases with rest angles.
     #[serde(default)]
     pub crease: Vec<Crease>,
+    /// Folding to the angles of the FOLD file that is the mesh.
+    #[serde(default)]
+    pub folding: Option<Folding>,
     /// What holds the sheet.
     #[serde(default)]
     pub support: Vec<Support>,
@@ -153,6 +158,7 @@ impl Scene {
             version: VERSION,
             sheet,
             crease: Vec::new(),
+            folding: None,
             support: Vec::new(),
             obstacle: Vec::new(),
             forces: Forces::default(),
@@ -176,6 +182,9 @@ impl Scene {
         self.sheet.check(&root.name("sheet"), &mut checks);
         for (k, crease) in self.crease.iter().enumerate() {
             crease.check(&root.name("crease").entry(k), &mut checks);
+        }
+        if let Some(folding) = &self.folding {
+            folding.check(&self.sheet.mesh, &root.name("folding"), &mut checks);
         }
         for (k, support) in self.support.iter().enumerate() {
             support.check(&root.name("support").entry(k), &mut checks);

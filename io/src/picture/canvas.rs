@@ -17,7 +17,8 @@ pub(super) fn light(rgb: [u8; 3]) -> Light {
     })
 }
 
-fn srgb(c: f32) -> u8 {
+/// The sRGB value of a component of linear light.
+pub(super) fn srgb(c: f32) -> u8 {
     let c = c.clamp(0.0, 1.0);
     let s = if c <= 0.003_130_8 {
         12.92 * c

@@ -20,12 +20,12 @@ const REACH: f64 = 0.35;
 const GRAIN: f64 = 0.15;
 
 /// How far lines are drawn in front of what they lie on, as part of the extent of the sheet.
-const LIFT: f64 = 0.004;
+pub(super) const LIFT: f64 = 0.004;
 
 /// sRGB colours of lines, of pins and of immobile vertices.
-const INK: [u8; 3] = [38, 42, 48];
-const PIN: [u8; 3] = [213, 94, 0];
-const IMMOBILE: [u8; 3] = [240, 228, 66];
+pub(super) const INK: [u8; 3] = [38, 42, 48];
+pub(super) const PIN: [u8; 3] = [213, 94, 0];
+pub(super) const IMMOBILE: [u8; 3] = [240, 228, 66];
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +43,7 @@ pub struct SheetPicture<'a> {
 }
 
 impl SheetPicture<'_> {
-    fn validate(&self) -> Result<(), PictureError> {
+    pub(super) fn validate(&self) -> Result<(), PictureError> {
         let (count, vertices) = (self.positions.len(), self.topology.vertex_count());
         if count != 3 * vertices {
             return Err(PictureError::Coordinates { count, vertices });
@@ -128,7 +128,7 @@ pub fn render(
         extent: extent(picture.positions.as_chunks::<3>().0),
         depth: Depth::new(width, height),
     };
-    let mut scene = Scene::of(picture);
+    let mut scene = Triangles::of(picture);
     drawing.faces(&mut scene);
     drawing.wires(picture.topology, &scene);
     for (vertices, colour) in [(picture.immobile, IMMOBILE), (picture.pins, PIN)] {
@@ -140,17 +140,17 @@ pub fn render(
 }
 
 /// The triangles of the sheet and of bodies, the sheet first.
-struct Scene {
-    x: Vec<[f64; 3]>,
-    faces: Vec<[usize; 3]>,
+pub(super) struct Triangles {
+    pub(super) x: Vec<[f64; 3]>,
+    pub(super) faces: Vec<[usize; 3]>,
     /// Faces of the sheet.
-    own: usize,
+    pub(super) own: usize,
     /// Edges of bodies.
-    ridges: Vec<[usize; 2]>,
+    pub(super) ridges: Vec<[usize; 2]>,
 }
 
-impl Scene {
-    fn of(picture: &SheetPicture<'_>) -> Self {
+impl Triangles {
+    pub(super) fn of(picture: &SheetPicture<'_>) -> Self {
         let own = picture.topology.faces().iter();
         let mut scene = Self {
             x: picture.positions.as_chunks::<3>().0.to_vec(),
@@ -203,7 +203,7 @@ impl Drawing<'_> {
 
     /// The faces of the sheet as they are; those of bodies are large, and are cut as their shade changes
     /// within.
-    fn pieces(&self, scene: &mut Scene) -> Vec<Piece> {
+    fn pieces(&self, scene: &mut Triangles) -> Vec<Piece> {
         let mut pieces: Vec<Piece> = Vec::new();
         let mut halves = BTreeMap::new();
         for (face, corners) in scene.faces.iter().enumerate() {
@@ -226,7 +226,7 @@ impl Drawing<'_> {
     }
 
     /// All faces: a key light from the upper left, and the surroundings, brighter from above.
-    fn faces(&mut self, scene: &mut Scene) {
+    fn faces(&mut self, scene: &mut Triangles) {
         let pieces = self.pieces(scene);
         let mut open = openness(&pieces, &scene.faces, &scene.x, REACH * self.extent);
         smooth(&pieces[scene.own..], &scene.x, &mut open[scene.own..]);
@@ -256,7 +256,7 @@ impl Drawing<'_> {
     }
 
     /// Edges of bodies and of the sheet, a little nearer than the faces that they bound.
-    fn wires(&mut self, topology: &Topology, scene: &Scene) {
+    fn wires(&mut self, topology: &Topology, scene: &Triangles) {
         let wire = self.look.wire * SUPERSAMPLING as f64;
         let ends = |drawing: &Self, e: [usize; 2]| e.map(|v| drawing.raised(&scene.x[v], LIFT));
         for ridge in &scene.ridges {
@@ -312,12 +312,13 @@ fn smooth(pieces: &[Piece], x: &[[f64; 3]], open: &mut [[f64; 3]]) {
     }
 }
 
-fn centre(corners: &[[f64; 3]; 3]) -> [f64; 3] {
+/// The centre of gravity of a triangle.
+pub(super) fn centre(corners: &[[f64; 3]; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0)
 }
 
 /// Largest side of the box around the points.
-fn extent(x: &[[f64; 3]]) -> f64 {
+pub(super) fn extent(x: &[[f64; 3]]) -> f64 {
     (0..3)
         .map(|k| {
             let low = x.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);

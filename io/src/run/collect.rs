@@ -171,6 +171,7 @@ fn add_ending(row: &mut Row, ending: &Ending) {
         largest_speed,
         supports,
         obstacles,
+        folding,
     } = ending;
     let mut cell = |name: &str, value: String| row.push((format!("ending.{name}"), value));
     cell("reason", reason.name().to_owned());
@@ -179,6 +180,12 @@ fn add_ending(row: &mut Row, ending: &Ending) {
     cell("potential", number(*potential));
     cell("energy_drift", number(*energy_drift));
     cell("largest_speed", number(*largest_speed));
+    if let Some(folding) = folding {
+        cell("folding.creases", folding.creases.to_string());
+        cell("folding.largest", number(folding.largest));
+        cell("folding.rms", number(folding.rms));
+        cell("folding.largest_flat", number(folding.largest_flat));
+    }
     for (list, forces) in [("supports", supports), ("obstacles", obstacles)] {
         for (k, force) in forces.iter().enumerate() {
             for (axis, component) in ["x", "y", "z"].into_iter().zip(force) {

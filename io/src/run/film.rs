@@ -2,7 +2,7 @@
 
 use super::Recording;
 use crate::picture::{
-    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render,
+    Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render, render_svg,
 };
 
 /// How a run is shown.
@@ -130,6 +130,22 @@ impl<'a> Film<'a> {
     /// # Errors
     /// [`PictureError::NoFrames`] if there is none, [`PictureError`] if it cannot be drawn.
     pub fn picture(&self, place: usize) -> Result<Image, PictureError> {
+        self.draw(place, render)
+    }
+
+    /// One of the frames as an SVG document ([`render_svg`]), by its place among them.
+    ///
+    /// # Errors
+    /// As [`picture`](Self::picture).
+    pub fn svg(&self, place: usize) -> Result<String, PictureError> {
+        self.draw(place, render_svg)
+    }
+
+    fn draw<T>(
+        &self,
+        place: usize,
+        draw: impl Fn(&SheetPicture<'_>, &Camera, &Look) -> Result<T, PictureError>,
+    ) -> Result<T, PictureError> {
         let frame = *self.frames.get(place).ok_or(PictureError::NoFrames)?;
         let trajectory = &self.recording.trajectory;
         let positions = trajectory.frame(frame).ok_or(PictureError::NoFrames)?;
@@ -143,7 +159,7 @@ impl<'a> Film<'a> {
             immobile: &self.recording.immobile,
             solids: &solids,
         };
-        render(&picture, &self.camera, &self.look)
+        draw(&picture, &self.camera, &self.look)
     }
 
     /// All pictures as an animated PNG file, in real time.

@@ -23,7 +23,7 @@ pub struct Recording {
     pub modelled: Vec<String>,
     /// Vertices that are pinned, at rest or in motion.
     pub pins: Vec<VertexId>,
-    /// Vertices that rods to pins keep in place ([`SheetModel::immobile_vertices`]).
+    /// Vertices that rods to pins keep in place ([`SheetModel::immobile_vertices`](isosheet_dynamics::SheetModel::immobile_vertices)).
     pub immobile: Vec<VertexId>,
     /// The bodies, in the order of the scene.
     pub obstacles: Vec<Obstacle>,

@@ -6,7 +6,7 @@ use super::frames::FrameFile;
 use super::summary::{EndReason, Ending};
 use super::{RunError, Tick};
 use crate::format::{HistoryRow, HistoryWriter};
-use crate::scene::{Origins, Scene, SceneError, SceneFile, SupportForces};
+use crate::scene::{FoldTargets, Origins, Scene, SceneError, SceneFile, SupportForces};
 use isosheet_dynamics::{Simulation, StepReport};
 use nalgebra::Vector3;
 use std::time::Instant;
@@ -18,6 +18,7 @@ pub(crate) struct Stepping<'a> {
     pub(crate) simulation: Simulation,
     pub(crate) origins: Origins,
     pub(crate) supports: SupportForces,
+    pub(crate) folding: Option<FoldTargets>,
     pub(crate) history: HistoryWriter,
     pub(crate) frames: FrameFile,
     pub(crate) progress: Progress,
@@ -172,6 +173,10 @@ impl Stepping<'_> {
             largest_speed: self.largest_speed(),
             supports: self.support_forces(),
             obstacles: loads.iter().map(|load| load.force.into()).collect(),
+            folding: self.folding.as_ref().map(|targets| {
+                let topology = self.simulation.model().topology();
+                targets.residual(topology, &self.simulation.state().x)
+            }),
         }
     }
 

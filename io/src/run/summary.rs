@@ -1,5 +1,6 @@
 //! What a complete run says of itself.
 
+use crate::scene::FoldResidual;
 use serde::{Deserialize, Serialize};
 
 /// The contents of `summary.json`.
@@ -59,6 +60,9 @@ pub struct Ending {
     pub supports: Vec<[f64; 3]>,
     /// Force of the sheet on each obstacle of the scene, newtons.
     pub obstacles: Vec<[f64; 3]>,
+    /// Differences of the fold angles from their targets, if the scene folds to the angles of a FOLD file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub folding: Option<FoldResidual>,
 }
 
 /// Why a run ended.

@@ -1,7 +1,8 @@
 //! From a scene to a simulation.
 
 use super::error::SceneError;
-use super::mesh::RestMesh;
+use super::folding::FoldTargets;
+use super::mesh::{Mesh, RestMesh};
 use super::pose::{Motion, Pose};
 use super::problem::{Key, Problem};
 use super::sheet::{Bending, Isometry};
@@ -30,6 +31,7 @@ impl Scene {
         builder.add_supports()?;
         builder.add_bending()?;
         builder.add_creases()?;
+        builder.add_folding(folder)?;
         builder.add_isometry()?;
         builder.perturb()?;
         let (contacts, obstacles) = builder.contacts(folder)?;
@@ -50,6 +52,7 @@ struct Builder<'a> {
     model: Option<SheetModel>,
     origins: Origins,
     modelled: Vec<String>,
+    folding: Option<FoldTargets>,
 }
 
 /// An error of the engine at a key.
@@ -101,6 +104,7 @@ impl<'a> Builder<'a> {
             model: Some(model),
             origins: Origins::default(),
             modelled,
+            folding: None,
         })
     }
 
@@ -291,6 +295,25 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
+    fn add_folding(&mut self, folder: &Path) -> Result<(), SceneError> {
+        let (Some(folding), Mesh::File(file)) = (&self.scene.folding, &self.scene.sheet.mesh)
+        else {
+            return Ok(());
+        };
+        let key = Key::root().name("folding");
+        let targets = folding.targets(&key, file, &self.unplaced, folder)?;
+        let springs = folding.springs(&targets, &self.rest.sheet);
+        let springs = CreaseSprings::new(self.rest.sheet.topology(), springs);
+        let springs = springs.map_err(at(&key))?;
+        self.change(
+            |m| Ok(m.with_potential(springs)),
+            at::<SimulationError>(&key),
+        )?;
+        self.modelled.push("folding to given angles".into());
+        self.folding = Some(targets);
+        Ok(())
+    }
+
     fn add_isometry(&mut self) -> Result<(), SceneError> {
         let key = Key::root().name("sheet.isometry");
         let sheet = &self.rest.sheet;
@@ -341,6 +364,7 @@ impl<'a> Builder<'a> {
             obstacles,
             integration: self.scene.method.build(),
             modelled: self.modelled,
+            folding: self.folding,
             origins: self.origins,
             text: None,
         }

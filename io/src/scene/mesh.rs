@@ -175,6 +175,24 @@ impl MeshFile {
 
     /// Reads the file, in metres and with z upwards; relative paths are relative to `folder`.
     pub(crate) fn read(&self, key: &Key, folder: &Path) -> Result<format::MeshFile, Problem> {
+        self.read_with(None, folder)
+            .map_err(|e| Problem::new(key.name("path"), e.to_string(), file_remedy(&e)))
+    }
+
+    /// Reads a frame of a FOLD file, from 0, in the same way.
+    pub(crate) fn read_frame(
+        &self,
+        frame: usize,
+        folder: &Path,
+    ) -> Result<format::MeshFile, MeshFileError> {
+        self.read_with(Some(frame), folder)
+    }
+
+    fn read_with(
+        &self,
+        frame: Option<usize>,
+        folder: &Path,
+    ) -> Result<format::MeshFile, MeshFileError> {
         let options = MeshOptions {
             polygons: match self.polygons {
                 PolygonFaces::Refuse => Polygons::Refuse,
@@ -182,11 +200,11 @@ impl MeshFile {
             },
             // The folder of a run keeps a copy of one file for each mesh.
             buffers: SeparateBuffers::Refuse,
+            frame,
             ..MeshOptions::default()
         };
         let path = folder.join(&self.path);
-        let mut mesh = read_mesh_with(&path, &options)
-            .map_err(|e| Problem::new(key.name("path"), e.to_string(), file_remedy(&e)))?;
+        let mut mesh = read_mesh_with(&path, &options)?;
         for p in mesh.positions.as_chunks_mut::<3>().0 {
             let [x, y, z] = p.map(|c| self.scale * c);
             *p = match self.up {

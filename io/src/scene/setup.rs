@@ -3,6 +3,7 @@
 use super::Origins;
 use super::chart::Chart;
 use super::error::{SceneError, SceneText};
+use super::folding::FoldTargets;
 use super::problem::{Key, Problem};
 use isosheet_collide::{Contacts, Obstacle};
 use isosheet_coords::ChartError;
@@ -43,6 +44,8 @@ pub struct Setup {
     pub integration: Integration,
     /// What is modelled, in words.
     pub modelled: Vec<String>,
+    /// Where the creases are driven, if the scene folds to the angles of a FOLD file.
+    pub folding: Option<FoldTargets>,
     /// Which entry of the scene made what.
     pub origins: Origins,
     /// The text of the scene, if it is a file.

@@ -200,6 +200,23 @@ fn frames_of_runs_become_pictures() {
     let number = |at: usize| u32::from_be_bytes(all[at..at + 4].try_into().unwrap());
     assert_eq!((number(control) as usize, number(control + 4)), (count, 0));
     let none = count.to_string();
+    let end = (count - 1).to_string();
+    for (name, frame) in [("last.svg", end.as_str()), ("first.svg", "0")] {
+        let said = done(dir, &["convert", "run", name, "--frame", frame]);
+        assert_eq!(said, format!("{name}: 1 frame\n"));
+    }
+    done(dir, &["convert", "run", "same.svg"]);
+    let [last, same, first] =
+        ["last.svg", "same.svg", "first.svg"].map(|f| fs::read_to_string(dir.join(f)).unwrap());
+    assert_eq!(last, same);
+    assert_ne!(last, first);
+    let faces = Recording::read(&dir.join("run"))
+        .unwrap()
+        .sheet
+        .topology()
+        .face_count();
+    assert!(first.matches("<path").count() >= faces && !first.contains("NaN"));
+    refused(dir, &["convert", "run", "x.svg", "--every", "2"], 3);
     let said = refused(dir, &["convert", "run", "x.png", "--frame", &none], 3);
     assert!(said.contains(&format!("{count} frames")), "{said}");
     refused(dir, &["convert", "run", "x.png", "--every", "2"], 3);

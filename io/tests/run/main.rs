@@ -4,6 +4,7 @@ mod continuing;
 mod convert;
 mod ends;
 mod folders;
+mod folding;
 mod gallery;
 #[path = "../shared/headless.rs"]
 mod headless;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Every key of the reference, in scenes that are accepted.
-const ALL_KEYS: [&str; 4] = [
+const ALL_KEYS: [&str; 5] = [
     r#"version = 1
     [sheet]
     mesh = { square = { side = 0.2, level = 1 } }
@@ -158,6 +158,15 @@ const ALL_KEYS: [&str; 4] = [
     solver = "cramer"
     substep = { adaptive = { tolerance = 1e-6, min = 1e-6, max = 0.1 } }
     singular = "refuse""#,
+    r#"version = 1
+    [sheet]
+    mesh = { file = { path = "a.fold" } }
+    [folding]
+    time = 1
+    stiffness = 0.01
+    flat_stiffness = 0.5
+    part = 0.75
+    frame = 1"#,
 ];
 
 /// Scenes that have every key of the reference between them.

@@ -4,6 +4,7 @@ mod book;
 mod charts;
 mod complete;
 mod files;
+mod folding;
 mod formulas;
 mod keys;
 mod meaning;

@@ -30,6 +30,7 @@ Files that are written of a run:
   .obj    one file for each frame in a folder of that name
   .csv    a line for each vertex of each frame
   .png    a shaded picture of one frame (--frame K, the last one without it)
+  .svg    the same as a vector drawing
   .apng   shaded pictures of all frames as an animation in real time (browsers)
 docs/formats.md says more.";
 

@@ -15,6 +15,8 @@ use std::path::Path;
 pub(crate) enum PictureFormat {
     /// One frame.
     Png,
+    /// One frame as a vector drawing.
+    Svg,
     /// All frames, animated.
     AnimatedPng,
 }
@@ -25,6 +27,7 @@ impl PictureFormat {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         match extension.as_str() {
             "png" => Some(Self::Png),
+            "svg" => Some(Self::Svg),
             "apng" => Some(Self::AnimatedPng),
             _ => None,
         }
@@ -49,15 +52,15 @@ pub(crate) fn write(
 ) -> Done {
     let count = recording.trajectory.len();
     let frames: Vec<usize> = match (format, choice) {
-        (PictureFormat::Png, FrameChoice { every: Some(_), .. }) => {
-            let message = "--every is for .apng: a .png file has one frame";
+        (PictureFormat::Png | PictureFormat::Svg, FrameChoice { every: Some(_), .. }) => {
+            let message = "--every is for .apng: a .png or .svg file has one frame";
             return Err(wrong(message, "choose the frame with --frame K"));
         }
         (PictureFormat::AnimatedPng, FrameChoice { frame: Some(_), .. }) => {
-            let message = "--frame is for .png: an .apng file has many frames";
+            let message = "--frame is for .png and .svg: an .apng file has many frames";
             return Err(wrong(message, "choose frames with --every N"));
         }
-        (PictureFormat::Png, FrameChoice { frame, .. }) => {
+        (PictureFormat::Png | PictureFormat::Svg, FrameChoice { frame, .. }) => {
             vec![frame.unwrap_or(count.saturating_sub(1))]
         }
         (PictureFormat::AnimatedPng, FrameChoice { every, .. }) => {
@@ -78,6 +81,7 @@ pub(crate) fn write(
     }
     let bytes = match format {
         PictureFormat::Png => film.picture(0).and_then(|image| image.to_png()),
+        PictureFormat::Svg => film.svg(0).map(String::into_bytes),
         PictureFormat::AnimatedPng => film.animation(),
     };
     let bytes = bytes.map_err(|e| input(&e))?;

@@ -110,8 +110,15 @@ fn sentence(what: &str, folder: &Path, summary: &Summary) -> String {
         Some(gap) => format!(", smallest gap {gap:.1e} m"),
         None => String::new(),
     };
+    let folding = match summary.ending.folding {
+        Some(f) => format!(
+            ", fold angles differ from their targets by {:.2} degrees at most and {:.2} rms",
+            f.largest, f.rms
+        ),
+        None => String::new(),
+    };
     format!(
-        "{what}: {} to t = {:.4} s in {:.1} s, largest strain {:.1e}{gap}; see {}",
+        "{what}: {} to t = {:.4} s in {:.1} s, largest strain {:.1e}{gap}{folding}; see {}",
         counted(summary.steps as usize, "step", "steps"),
         summary.ending.t,
         summary.wall_time,

@@ -1,0 +1,208 @@
+//! Folding to the angles of a FOLD file.
+
+use super::Mesh;
+use super::mesh::MeshFile;
+use super::problem::{Checks, Key, Problem};
+use super::profile::Profile;
+use crate::format::EdgeAssignment;
+use isosheet_dynamics::CreaseSpring;
+use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, fold_angle};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+/// Folding to the angles of the FOLD file that is the mesh of the sheet.
+///
+/// A torsion spring at each crease drives it from flat to its angle, and a stiffer one keeps each edge inside a
+/// panel flat. Angles that no shape of rigid panels has are approached as far as the springs come to an
+/// equilibrium: the summary of the run says how large the differences are at the end.
+///
+/// Mountains and valleys are driven to the angles that `edges_foldAngle` gives them; edges of the kinds `F`
+/// and `J` and the cuts of polygons stay flat; `U`, and `B` inside the sheet, are driven where their angle is
+/// not 0 and move freely elsewhere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Folding {
+    /// When the angles of the springs have reached their targets, seconds. They begin at 0 and change smoothly.
+    pub time: f64,
+    /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre).
+    pub stiffness: f64,
+    /// Torsional stiffness of a metre of the edges that stay flat, N; if left out, 50 times that of the creases.
+    #[serde(default)]
+    pub flat_stiffness: Option<f64>,
+    /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on each
+    /// other, which cross without self-contact: take less than 1.
+    #[serde(default = "whole")]
+    pub part: f64,
+    /// The frame of the file that has the angles, from 0. If its vertices are not in a plane, the creases are
+    /// driven to the angles that they have there, and otherwise to its `edges_foldAngle`.
+    #[serde(default)]
+    pub frame: usize,
+}
+
+fn whole() -> f64 {
+    1.0
+}
+
+/// Stiffness of the edges that stay flat beside that of the creases, if the scene does not say it: the
+/// creases of a panel together turn one of its flat edges by a few degrees at most.
+const FLAT_STIFFNESS: f64 = 50.0;
+
+/// Sine of the fold angles up to which a frame is in a plane: above the round-off of coordinates of seven
+/// digits in faces that are a hundredth of the sheet, below any fold that is seen.
+const IN_PLANE: f64 = 1e-4;
+
+/// Where the edges of a sheet are driven.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FoldTargets {
+    /// The driven creases with their fold angles at the end, radians, positive for a valley.
+    pub creases: Vec<(EdgeId, f64)>,
+    /// The edges that stay flat.
+    pub flat: Vec<EdgeId>,
+}
+
+/// How far the fold angles of a shape are from their targets, degrees.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FoldResidual {
+    /// Number of driven creases.
+    pub creases: usize,
+    /// Largest difference at a driven crease.
+    pub largest: f64,
+    /// Root of the mean square of the differences at the driven creases.
+    pub rms: f64,
+    /// Largest fold angle of an edge that should stay flat.
+    pub largest_flat: f64,
+}
+
+impl FoldTargets {
+    /// The differences at positions `x` (`3V`, metres), taken the short way round as the springs do.
+    ///
+    /// # Panics
+    /// If `x` is not of length `3V`.
+    pub fn residual(&self, t: &Topology, x: &[f64]) -> FoldResidual {
+        let difference = |e: EdgeId, target: f64| {
+            let angle = fold_angle(t, x, e).unwrap_or(0.0) - target;
+            (angle - TAU * (angle / TAU).round()).abs().to_degrees()
+        };
+        let mut residual = FoldResidual {
+            creases: self.creases.len(),
+            ..FoldResidual::default()
+        };
+        let mut squares = 0.0;
+        for &(e, target) in &self.creases {
+            let d = difference(e, target);
+            residual.largest = residual.largest.max(d);
+            squares += d * d;
+        }
+        residual.rms = (squares / self.creases.len().max(1) as f64).sqrt();
+        for &e in &self.flat {
+            residual.largest_flat = residual.largest_flat.max(difference(e, 0.0));
+        }
+        residual
+    }
+}
+
+impl Folding {
+    pub(crate) fn check(&self, mesh: &Mesh, key: &Key, checks: &mut Checks) {
+        checks.positive(key.name("time"), self.time, "s");
+        checks.positive(key.name("stiffness"), self.stiffness, "N");
+        if let Some(stiffness) = self.flat_stiffness {
+            checks.positive(key.name("flat_stiffness"), stiffness, "N");
+        }
+        checks.within(key.name("part"), self.part, [-1.0, 1.0]);
+        if !matches!(mesh, Mesh::File(_)) {
+            let message = "the angles are those of a FOLD file, and `sheet.mesh` is no file";
+            let remedy = "write `mesh = { file = { path = ... } }`, or fold by `[[crease]]`";
+            checks.report(key.clone(), message, remedy);
+        }
+    }
+
+    /// Where the edges of the sheet are driven, which was read from the first frame of `file`.
+    pub(crate) fn targets(
+        &self,
+        key: &Key,
+        file: &MeshFile,
+        sheet: &Sheet,
+        folder: &Path,
+    ) -> Result<FoldTargets, Problem> {
+        let t = sheet.topology();
+        let mesh_key = Key::root().name("sheet.mesh.file");
+        let first = file.read(&mesh_key, folder)?;
+        let frame = match self.frame {
+            0 => first.clone(),
+            k => file
+                .read_frame(k, folder)
+                .map_err(|e| Problem::from_error(key.name("frame"), &e))?,
+        };
+        if frame.vertex_count() != t.vertex_count() {
+            let message = format!(
+                "frame {} has {} vertices, and the sheet has {}",
+                self.frame,
+                frame.vertex_count(),
+                t.vertex_count()
+            );
+            let remedy = "choose a frame of the same vertices";
+            return Err(Problem::new(key.name("frame"), message, remedy));
+        }
+        let mut targets = FoldTargets::default();
+        let shape = (!is_plane(t, &frame.positions)).then_some(&frame.positions[..]);
+        for crease in &frame.creases {
+            let [a, b] = crease.ends.map(VertexId);
+            let Some(e) = t.find_edge(a, b).filter(|&e| !t.is_boundary_edge(e)) else {
+                continue;
+            };
+            let angle = match shape {
+                Some(x) => fold_angle(t, x, e),
+                None => crease.angle,
+            };
+            match (crease.assignment, angle) {
+                (EdgeAssignment::Flat | EdgeAssignment::Join, _) => targets.flat.push(e),
+                (EdgeAssignment::Mountain | EdgeAssignment::Valley, Some(angle)) => {
+                    targets.creases.push((e, self.part * angle));
+                }
+                (_, Some(angle)) if angle != 0.0 => targets.creases.push((e, self.part * angle)),
+                _ => {}
+            }
+        }
+        if targets.creases.is_empty() {
+            let message = format!(
+                "frame {} of {} gives no crease inside the sheet a fold angle",
+                self.frame,
+                file.path.display()
+            );
+            let remedy = "take a FOLD file with `edges_foldAngle`, or fold by \
+                `[[crease]]` with `at = { pattern = \"assigned\" }`";
+            return Err(Problem::new(key.clone(), message, remedy));
+        }
+        Ok(targets)
+    }
+
+    /// The springs that drive a sheet to targets.
+    pub(crate) fn springs(&self, targets: &FoldTargets, sheet: &Sheet) -> Vec<CreaseSpring> {
+        let length = |e: EdgeId| sheet.lengths()[e.index()];
+        let flat_stiffness = self
+            .flat_stiffness
+            .unwrap_or(FLAT_STIFFNESS * self.stiffness);
+        let driven = targets.creases.iter().map(|&(edge, target)| CreaseSpring {
+            edge,
+            stiffness: self.stiffness * length(edge),
+            // A target that is a last digit above pi because of rounding would be refused.
+            rest: Profile::smooth_step(target.clamp(-PI, PI), self.time)
+                .as_given()
+                .into(),
+        });
+        let flat = targets.flat.iter().map(|&edge| CreaseSpring {
+            edge,
+            stiffness: flat_stiffness * length(edge),
+            rest: 0.0.into(),
+        });
+        driven.chain(flat).collect()
+    }
+}
+
+/// Whether the sheet is in a plane at positions `x`: every edge is flat or folded shut.
+fn is_plane(t: &Topology, x: &[f64]) -> bool {
+    let mut angles = t.edge_ids().filter_map(|e| fold_angle(t, x, e));
+    angles.all(|angle| angle.sin().abs() < IN_PLANE)
+}

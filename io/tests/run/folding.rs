@@ -1,0 +1,63 @@
+//! Folding to the angles of a FOLD file from the book's scene to the page.
+
+use crate::headless::self_test;
+use crate::{code, run, stderr, summary};
+use std::fs;
+use std::path::Path;
+
+/// The scene of the book that has a table of folding.
+fn scene_of_the_book() -> String {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/own-scene.md");
+    let page = fs::read_to_string(page).unwrap();
+    let blocks = page.split("```toml\n").skip(1);
+    let mut blocks = blocks.map(|b| b.split("```").next().unwrap());
+    let scene = blocks.find(|b| b.contains("[folding]"));
+    scene.expect("a scene with folding").to_owned()
+}
+
+/// Somebody else's sheet is folded by one command, its page plays, and the summary says what the text does.
+#[test]
+fn a_sheet_of_others_is_folded_by_one_command() {
+    let Some(data) = std::env::var_os("ISOSHEET_DATA") else {
+        eprintln!("skipped: ISOSHEET_DATA is not set");
+        return;
+    };
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let file = Path::new(&data).join("fold/miura_herringbone_8x8_tri.fold");
+    fs::copy(file, dir.join("miura.fold")).unwrap();
+    fs::write(dir.join("scene.toml"), scene_of_the_book()).unwrap();
+    let output = run(dir, &["simulate", "scene.toml"]);
+    assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(
+        said.contains("fold angles differ from their targets by 8.15 degrees"),
+        "{said}"
+    );
+    let folder = dir.join("scene-run");
+    let residual = summary(&folder).ending.folding.expect("the scene folds");
+    assert_eq!(residual.creases, 120);
+    // With 180 degrees, which do close, nothing is left.
+    let whole = [
+        "simulate",
+        "scene.toml",
+        "--out",
+        "whole",
+        "--set",
+        "folding.part=1.0",
+    ];
+    assert_eq!(code(&run(dir, &whole)), Some(0));
+    let whole = summary(&dir.join("whole")).ending.folding.unwrap();
+    assert!(
+        whole.largest < 0.01 && residual.largest > 5.0,
+        "{whole:?}, {residual:?}"
+    );
+    assert_eq!(
+        code(&run(dir, &["collect", "whole", "--out", "all.csv"])),
+        Some(0)
+    );
+    let table = fs::read_to_string(dir.join("all.csv")).unwrap();
+    assert!(table.contains("ending.folding.largest_flat"), "{table}");
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    self_test(&page, "1100,800");
+}

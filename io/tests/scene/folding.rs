@@ -1,0 +1,198 @@
+//! Folding to the angles of FOLD files.
+
+use isosheet_io::mesh::generate::{FoldAssignment, FoldPattern, miura, miura_zigzags};
+use isosheet_io::mesh::{fold_angle, origami};
+use isosheet_io::scene::{FoldResidual, SceneFile};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+
+const MIURA: origami::Miura = origami::Miura {
+    straight: 0.05,
+    zigzag: 0.05,
+    angle: 1.0,
+};
+
+fn pattern() -> FoldPattern {
+    miura(4, 4, MIURA.straight, MIURA.zigzag, MIURA.angle).unwrap()
+}
+
+/// A FOLD file of the pattern with the angles (degrees) of mountains and valleys that are given.
+fn fold_file(pattern: &FoldPattern, angle: impl Fn(usize) -> f64) -> Value {
+    let t = pattern.sheet.topology();
+    let letter = |a: &FoldAssignment| match a {
+        FoldAssignment::Boundary => "B",
+        FoldAssignment::Mountain => "M",
+        FoldAssignment::Valley => "V",
+        FoldAssignment::Flat => "F",
+    };
+    let letters: Vec<&str> = pattern.assignments.iter().map(letter).collect();
+    let angles: Vec<f64> = (0..letters.len())
+        .map(|e| match letters[e] {
+            "M" | "V" => angle(e),
+            _ => 0.0,
+        })
+        .collect();
+    let ends: Vec<[u32; 2]> = t.edges().iter().map(|e| e.map(|v| v.0)).collect();
+    json!({
+        "file_spec": 1.2, "frame_unit": "m", "frame_classes": ["creasePattern"],
+        "vertices_coords": pattern.sheet.positions().as_chunks::<3>().0,
+        "edges_vertices": ends, "edges_assignment": letters, "edges_foldAngle": angles,
+        "faces_vertices": pattern.sheet.face_indices(),
+    })
+}
+
+/// Fold angles of the rigid Miura sheet, degrees.
+fn exact_angle(pattern: &FoldPattern, theta: f64, e: usize) -> f64 {
+    let t = pattern.sheet.topology();
+    let x = MIURA.positions(4, 4, theta);
+    let edge = t.edge_ids().nth(e).unwrap();
+    fold_angle(t, &x, edge).unwrap().to_degrees()
+}
+
+/// Writes the file, folds it with the keys of `[folding]`, and gives what is left.
+fn folded(folder: &Path, fold: &Value, keys: &str) -> FoldResidual {
+    fs::write(folder.join("sheet.fold"), fold.to_string()).unwrap();
+    let text = format!(
+        "version = 1
+        [sheet]
+        mesh = {{ file = {{ path = \"sheet.fold\" }} }}
+        density = 0.1
+        damping = 5.0
+        [folding]
+        time = 1.0
+        stiffness = 0.01
+        {keys}"
+    );
+    let scene = SceneFile::parse(text, &folder.join("scene.toml"), &[]).unwrap();
+    let setup = scene.build().unwrap_or_else(|e| panic!("{e}"));
+    let targets = setup.folding.clone().unwrap();
+    let mut simulation = setup.start().unwrap();
+    for _ in 0..180 {
+        simulation.step(1.0 / 60.0).unwrap();
+    }
+    targets.residual(simulation.model().topology(), &simulation.state().x)
+}
+
+fn refused(folder: &Path, fold: &Value, keys: &str) -> String {
+    fs::write(folder.join("sheet.fold"), fold.to_string()).unwrap();
+    let text = format!(
+        "version = 1
+        [sheet]
+        mesh = {{ file = {{ path = \"sheet.fold\" }} }}
+        [folding]
+        time = 1.0
+        stiffness = 0.01
+        {keys}"
+    );
+    let scene = SceneFile::parse(text, &folder.join("scene.toml"), &[]);
+    match scene {
+        Err(e) => e.to_string(),
+        Ok(scene) => scene.build().unwrap_err().to_string(),
+    }
+}
+
+/// Angles of a rigid folding are reached; so are half of them only as far as rigid panels allow.
+#[test]
+fn angles_that_close_are_reached() {
+    let dir = tempfile::tempdir().unwrap();
+    let pattern = pattern();
+    let fold = fold_file(&pattern, |e| exact_angle(&pattern, 0.8, e));
+    let residual = folded(dir.path(), &fold, "");
+    assert_eq!(residual.creases, 24);
+    // 1e-3 degrees are some 1e-5 rad; the sheet has come to rest up to exp(-5 * 2).
+    assert!(
+        residual.largest < 1e-3 && residual.rms <= residual.largest,
+        "{residual:?}"
+    );
+    assert!(residual.largest_flat < 1e-3, "{residual:?}");
+}
+
+/// Angles that do not close end at the minimum of the energy of the creases over the rigid foldings, which
+/// a search along the one degree of freedom finds as well.
+#[test]
+fn angles_that_do_not_close_are_approached() {
+    let dir = tempfile::tempdir().unwrap();
+    let pattern = pattern();
+    let t = pattern.sheet.topology();
+    let creases: Vec<usize> = (0..t.edge_count())
+        .filter(|&e| {
+            let a = pattern.assignments[e];
+            a == FoldAssignment::Mountain || a == FoldAssignment::Valley
+        })
+        .collect();
+    let target = |e: usize| 90.0_f64.copysign(exact_angle(&pattern, 0.5, e));
+    let differences = |theta: f64| -> Vec<(f64, f64)> {
+        let of = |&e: &usize| {
+            let d = exact_angle(&pattern, theta, e) - target(e);
+            (pattern.sheet.lengths()[e], d.abs())
+        };
+        creases.iter().map(of).collect()
+    };
+    let energy = |theta: f64| {
+        differences(theta)
+            .iter()
+            .map(|(l, d)| l * d * d)
+            .sum::<f64>()
+    };
+    let best = (1..1500).map(|k| 1e-3 * f64::from(k));
+    let best = best
+        .min_by(|a, b| energy(*a).total_cmp(&energy(*b)))
+        .unwrap();
+    let expected = differences(best);
+    let largest = expected.iter().map(|d| d.1).fold(0.0, f64::max);
+    let rms = (expected.iter().map(|d| d.1 * d.1).sum::<f64>() / creases.len() as f64).sqrt();
+    assert!(rms > 5.0, "the angles do not close: {rms}");
+
+    let fold = fold_file(&pattern, target);
+    let residual = folded(dir.path(), &fold, "flat_stiffness = 100.0");
+    // The search is by 1e-3 rad, which is 0.06 degrees; zigzags turn by twice as much.
+    assert!(
+        (residual.largest - largest).abs() < 0.12,
+        "{residual:?}, {largest}"
+    );
+    assert!((residual.rms - rms).abs() < 0.12, "{residual:?}, {rms}");
+    let zigzag = miura_zigzags(&pattern)[0].index();
+    assert!(creases.contains(&zigzag));
+}
+
+/// The shape of another frame is a target as its angles are.
+#[test]
+fn a_frame_in_space_is_a_target() {
+    let dir = tempfile::tempdir().unwrap();
+    let pattern = pattern();
+    let mut fold = fold_file(&pattern, |_| 0.0);
+    let x = MIURA.positions(4, 4, 0.6);
+    fold["file_frames"] = json!([{
+        "frame_inherit": true, "frame_parent": 0, "frame_classes": ["foldedForm"],
+        "vertices_coords": x.as_chunks::<3>().0,
+    }]);
+    let residual = folded(dir.path(), &fold, "frame = 1");
+    assert!(residual.largest < 1e-3, "{residual:?}");
+    assert_eq!(residual.creases, 24);
+}
+
+#[test]
+fn what_cannot_be_folded_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let pattern = pattern();
+    let mut fold = fold_file(&pattern, |_| 30.0);
+    let said = refused(dir.path(), &fold, "frame = 7");
+    assert!(said.contains("no frame 7"), "{said}");
+    let said = refused(dir.path(), &fold, "part = 1.5");
+    assert!(said.contains("`folding.part` is 1.5"), "{said}");
+    fold.as_object_mut().unwrap().remove("edges_foldAngle");
+    let said = refused(dir.path(), &fold, "");
+    assert!(
+        said.contains("no crease") && said.contains("edges_foldAngle"),
+        "{said}"
+    );
+    let text = "version = 1
+        [sheet]
+        mesh = { square = { side = 0.2, level = 1 } }
+        [folding]
+        time = 1.0
+        stiffness = 0.01";
+    let said = crate::parse(text).unwrap_err().to_string();
+    assert!(said.contains("`sheet.mesh` is no file"), "{said}");
+}
