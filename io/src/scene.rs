@@ -2,6 +2,30 @@
 //!
 //! A scene is a TOML file ([`SceneFile`]) or is put together in a program ([`Scene`]). Lengths are in metres,
 //! times in seconds, masses in kilograms, **angles in degrees**. `docs/scene.md` lists all keys.
+//!
+//! The names are those of the file, so that a scene reads in the same way in both. This one is that of
+//! [`StartingPoint::Drape`]:
+//!
+//! ```
+//! use isosheet_io::scene::*;
+//! # use std::path::Path;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut cloth = Sheet::new(Mesh::Square { side: 1.0, level: 2 });
+//! cloth.density = 0.2;
+//! cloth.damping = 2.0;
+//! cloth.placement = Pose::at([-0.5, -0.5, 0.0]);
+//! let table = Obstacle::new(Shape::Box { size: [0.5, 0.5, 0.3] });
+//! let mut scene = Scene::new(cloth);
+//! scene.obstacle = vec![Obstacle { pose: Pose::at([0.0, 0.0, -0.16]), friction: 0.3, ..table }];
+//! scene.contact = Contact { self_contact: true, friction: 0.3, ..Contact::default() };
+//! scene.forces.gravity = Some([0.0, 0.0, -9.81]);
+//! scene.stop.time = 1.0;
+//! # let file = SceneFile::parse(StartingPoint::Drape.text().into(), Path::new("cloth.toml"), &[])?;
+//! # assert_eq!(&scene, file.scene());
+//! # Ok(())
+//! # }
+//! ```
 
 mod build;
 mod chart;
@@ -88,30 +112,6 @@ pub const VERSION: u32 = 1;
 /// scene.forces.gravity = Some([0.0, 0.0, -9.81]);
 /// let mut simulation = scene.build(Path::new("."))?.start()?;
 /// assert!(simulation.step(scene.method.step)?.strain < 1e-12);
-/// # Ok(())
-/// # }
-/// ```
-///
-/// The names are those of the file, so that a scene reads in the same way in both. This one is that of
-/// [`StartingPoint::Drape`]:
-///
-/// ```
-/// use isosheet_io::scene::*;
-/// # use std::path::Path;
-///
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let mut cloth = Sheet::new(Mesh::Square { side: 1.0, level: 2 });
-/// cloth.density = 0.2;
-/// cloth.damping = 2.0;
-/// cloth.placement = Pose::at([-0.5, -0.5, 0.0]);
-/// let table = Obstacle::new(Shape::Box { size: [0.5, 0.5, 0.3] });
-/// let mut scene = Scene::new(cloth);
-/// scene.obstacle = vec![Obstacle { pose: Pose::at([0.0, 0.0, -0.16]), friction: 0.3, ..table }];
-/// scene.contact = Contact { self_contact: true, friction: 0.3, ..Contact::default() };
-/// scene.forces.gravity = Some([0.0, 0.0, -9.81]);
-/// scene.stop.time = 1.0;
-/// # let file = SceneFile::parse(StartingPoint::Drape.text().into(), Path::new("cloth.toml"), &[])?;
-/// # assert_eq!(&scene, file.scene());
 /// # Ok(())
 /// # }
 /// ```

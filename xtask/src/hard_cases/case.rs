@@ -401,7 +401,7 @@ mod tests {
     #[test]
     fn a_declared_error_has_to_come_in_its_time() {
         let mut f = Findings::default();
-        let declared = Shortfall::stops([1.0, 2.0], "step size 0.5 s");
+        let declared = Shortfall::stops([1.0, 2.0], "step size is 0.5 s");
         let mut stopped = |t: Option<f64>, value: f64, h: f64| {
             let course = Course {
                 end: t.unwrap_or(3.0),
