@@ -21,7 +21,6 @@ mod ordering;
 mod pattern;
 mod separator;
 mod symbolic;
-mod triangular;
 
 pub use error::LinalgError;
 pub use ldlt::SparseLdlt;
