@@ -24,8 +24,8 @@ pub(super) const LIFT: f64 = 0.004;
 
 /// sRGB colours of lines, of pins and of immobile vertices.
 pub(super) const INK: [u8; 3] = [38, 42, 48];
-pub(super) const PIN: [u8; 3] = [213, 94, 0];
-pub(super) const IMMOBILE: [u8; 3] = [240, 228, 66];
+const PIN: [u8; 3] = [213, 94, 0];
+const IMMOBILE: [u8; 3] = [240, 228, 66];
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +43,12 @@ pub struct SheetPicture<'a> {
 }
 
 impl SheetPicture<'_> {
+    /// The vertices that are marked with dots, and their colours; pins come last, on top of the others.
+    pub(super) fn dots(&self) -> impl Iterator<Item = (VertexId, [u8; 3])> {
+        let immobile = self.immobile.iter().map(|&v| (v, IMMOBILE));
+        immobile.chain(self.pins.iter().map(|&v| (v, PIN)))
+    }
+
     pub(super) fn validate(&self) -> Result<(), PictureError> {
         let (count, vertices) = (self.positions.len(), self.topology.vertex_count());
         if count != 3 * vertices {
@@ -131,10 +137,8 @@ pub fn render(
     let mut scene = Triangles::of(picture);
     drawing.faces(&mut scene);
     drawing.wires(picture.topology, &scene);
-    for (vertices, colour) in [(picture.immobile, IMMOBILE), (picture.pins, PIN)] {
-        for v in vertices {
-            drawing.dot(&scene.x[v.index()], colour);
-        }
+    for (v, colour) in picture.dots() {
+        drawing.dot(&scene.x[v.index()], colour);
     }
     Ok(drawing.depth.image.reduced(SUPERSAMPLING))
 }
@@ -168,6 +172,17 @@ impl Triangles {
         }
         scene
     }
+}
+
+/// The light on a face with the unit normal `n` towards the viewer: that of the surroundings, which are
+/// brighter above, and that of a key light at the upper left.
+pub(super) fn light_on(camera: &Camera, n: &[f64; 3], corners: &[[f64; 3]; 3]) -> [f64; 2] {
+    let facing = dot(n, &camera.viewer(&centre(corners)));
+    let key = camera.direction([-0.55, 0.75, 0.65]);
+    [
+        0.56 + 0.10 * n[2] + 0.12 * facing,
+        0.42 * dot(n, &key).max(0.0),
+    ]
 }
 
 /// A picture in the making.
@@ -225,18 +240,16 @@ impl Drawing<'_> {
         pieces
     }
 
-    /// All faces: a key light from the upper left, and the surroundings, brighter from above.
+    /// All faces.
     fn faces(&mut self, scene: &mut Triangles) {
         let pieces = self.pieces(scene);
         let mut open = openness(&pieces, &scene.faces, &scene.x, REACH * self.extent);
         smooth(&pieces[scene.own..], &scene.x, &mut open[scene.own..]);
-        let key = self.camera.direction([-0.55, 0.75, 0.65]);
         for (piece, open) in pieces.iter().zip(&open) {
             let corners = piece.corners.map(|v| scene.x[v]);
             let n = normal(&corners);
             let n = if piece.back { n.map(|c| -c) } else { n };
-            let sky = 0.56 + 0.10 * n[2] + 0.12 * dot(&n, &self.camera.viewer(&centre(&corners)));
-            let sun = 0.42 * dot(&n, &key).max(0.0);
+            let [sky, sun] = light_on(self.camera, &n, &corners);
             let shaded = [0, 1, 2].map(|i| {
                 let o = open[i];
                 self.place(&corners[i], sky * o + sun * (0.4 + 0.6 * o))

@@ -4,7 +4,7 @@ use super::camera::{Camera, normal};
 use super::canvas::{light, srgb};
 use super::error::PictureError;
 use super::pieces::{Piece, cut};
-use super::sheet::{IMMOBILE, INK, LIFT, Look, PIN, SheetPicture, Triangles, centre, extent};
+use super::sheet::{INK, LIFT, Look, SheetPicture, Triangles, centre, extent, light_on};
 use super::vector::{axpy, dot};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -48,10 +48,8 @@ pub fn render_svg(
         let ends = ridge.map(|v| triangles.x[v]);
         marks.extend(painter.ridge(&ends, GRAIN * extent, LIFT * extent));
     }
-    for (vertices, colour) in [(picture.immobile, IMMOBILE), (picture.pins, PIN)] {
-        for v in vertices {
-            marks.push(painter.dot(&raised(&triangles.x[v.index()], 3.0 * LIFT), colour));
-        }
+    for (v, colour) in picture.dots() {
+        marks.push(painter.dot(&raised(&triangles.x[v.index()], 3.0 * LIFT), colour));
     }
     // The sort is stable: marks of equal depth stay in the order of the sheet.
     marks.sort_by(|a, b| a.nearness.total_cmp(&b.nearness));
@@ -139,12 +137,10 @@ impl Painter<'_> {
         marks
     }
 
-    /// A key light from the upper left, and the surroundings, brighter from above.
+    /// The colour of a face in its light.
     fn shaded(&self, colour: [u8; 3], n: &[f64; 3], corners: &[[f64; 3]; 3]) -> String {
-        let key = self.camera.direction([-0.55, 0.75, 0.65]);
-        let facing = dot(n, &self.camera.viewer(&centre(corners)));
-        let shade = 0.56 + 0.10 * n[2] + 0.12 * facing + 0.42 * dot(n, &key).max(0.0);
-        hex(light(colour).map(|c| srgb(c * shade as f32)))
+        let [sky, sun] = light_on(self.camera, n, corners);
+        hex(light(colour).map(|c| srgb(c * (sky + sun) as f32)))
     }
 
     /// An edge of a body in pieces, a little nearer than the faces that it bounds.

@@ -127,10 +127,8 @@ impl Folding {
         folder: &Path,
     ) -> Result<FoldTargets, Problem> {
         let t = sheet.topology();
-        let mesh_key = Key::root().name("sheet.mesh.file");
-        let first = file.read(&mesh_key, folder)?;
         let frame = match self.frame {
-            0 => first.clone(),
+            0 => file.read(&Key::root().name("sheet.mesh.file"), folder)?,
             k => file
                 .read_frame(k, folder)
                 .map_err(|e| Problem::from_error(key.name("frame"), &e))?,

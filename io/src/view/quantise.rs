@@ -26,6 +26,24 @@ pub(super) struct Quantised {
     pub(super) rows: Vec<Vec<u16>>,
 }
 
+impl Quantised {
+    fn of(
+        rows: &[&Vec<f64>],
+        low: f64,
+        step: f64,
+        bytes: usize,
+        integer: impl Fn(&f64) -> u16,
+    ) -> Self {
+        let rows = rows.iter().map(|row| row.iter().map(&integer).collect());
+        Self {
+            low,
+            step,
+            bytes,
+            rows: rows.collect(),
+        }
+    }
+}
+
 /// The smallest and the largest of the numbers; zeros when there are none.
 pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
@@ -50,15 +68,7 @@ pub(super) fn quantise_field(rows: &[&Vec<f64>], scale: Scale) -> Quantised {
             let (low, high) = range(all());
             let step = step(low, high, LARGEST);
             let integer = |v: &f64| ((v - low) / step).round() as u16;
-            Quantised {
-                low,
-                step,
-                bytes: 2,
-                rows: rows
-                    .iter()
-                    .map(|row| row.iter().map(integer).collect())
-                    .collect(),
-            }
+            Quantised::of(rows, low, step, 2, integer)
         }
         Scale::Signed => {
             let largest = all().fold(0.0, |largest: f64, v| largest.max(v.abs()));
@@ -72,15 +82,7 @@ pub(super) fn quantise_field(rows: &[&Vec<f64>], scale: Scale) -> Quantised {
                 size if *v < 0.0 => 32769 + size as u16,
                 size => 1 + size as u16,
             };
-            Quantised {
-                low,
-                step,
-                bytes: 2,
-                rows: rows
-                    .iter()
-                    .map(|row| row.iter().map(integer).collect())
-                    .collect(),
-            }
+            Quantised::of(rows, low, step, 2, integer)
         }
         Scale::Logarithmic => {
             let (low, high) = range(all().filter(|&v| v > 0.0).map(f64::log10));
@@ -89,15 +91,7 @@ pub(super) fn quantise_field(rows: &[&Vec<f64>], scale: Scale) -> Quantised {
                 true => 1 + ((v.log10() - low) / step).round() as u16,
                 false => 0,
             };
-            Quantised {
-                low,
-                step,
-                bytes: 1,
-                rows: rows
-                    .iter()
-                    .map(|row| row.iter().map(integer).collect())
-                    .collect(),
-            }
+            Quantised::of(rows, low, step, 1, integer)
         }
     }
 }
