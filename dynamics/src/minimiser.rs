@@ -16,7 +16,7 @@ use crate::integrator::Attempt;
 use crate::primal::strain_floor;
 use crate::reaction::{Balance, ForceTime};
 use crate::report::{self, SolverEffort, StepError, StepOutcome};
-use crate::restoration::{Restoration, RestorationContact, RestorationGoal};
+use crate::restoration::{FirstMatrix, Restoration, RestorationContact, RestorationGoal};
 use crate::{Isometry, SheetModel};
 use augmented_lagrangian::{AugmentedLagrangian, Rounds};
 use isosheet_coords::linalg::LinalgError;
@@ -111,6 +111,15 @@ pub(crate) struct Minimum {
     pub(crate) residual: f64,
     /// What it took.
     pub(crate) outcome: StepOutcome,
+}
+
+/// What a restoration of the lengths is to reach.
+#[derive(Debug, Clone, Copy)]
+struct LengthGoal {
+    /// Largest strain of the isometry.
+    strain: f64,
+    max_iterations: usize,
+    matrix: FirstMatrix,
 }
 
 /// A strategy of the table at [`Minimiser`].
@@ -307,28 +316,28 @@ impl Minimiser {
         }
     }
 
-    /// Restores the lengths at the iterate to `tolerance` in at most `most` iterations, against the given
-    /// loads of the supports and the contact forces. Returns the strain reached. The forces of the supports
-    /// are those before, with their share in the restoration.
+    /// Restores the lengths at the iterate against the given loads of the supports and the contact forces.
+    /// Returns the strain reached. The forces of the supports are those before, with their share in the
+    /// restoration.
     fn restore(
         &mut self,
         problem: &mut StepProblem<'_>,
-        tolerance: f64,
-        most: usize,
+        to: LengthGoal,
         effort: &mut SolverEffort,
     ) -> f64 {
         let per = 1.0 / (problem.h * problem.h);
-        let is_last = tolerance <= self.strain_tolerance(problem);
+        let is_last = to.strain <= self.strain_tolerance(problem);
         if is_last {
             self.set_balance(problem);
         }
         let (model, t) = (problem.model, problem.t());
         let lagrangian = &mut self.lagrangian;
         let goal = RestorationGoal {
-            tolerance,
-            max_iterations: most.min(self.options.max_projections),
+            tolerance: to.strain,
+            max_iterations: to.max_iterations.min(self.options.max_projections),
             t,
             loads: &lagrangian.vertex_rows.multipliers,
+            matrix: to.matrix,
         };
         let contact = problem.contact_mut().map(|contact| RestorationContact {
             contact,

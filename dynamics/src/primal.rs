@@ -36,6 +36,19 @@ pub(crate) struct PrimalMatrix {
     /// sorted.
     extra: Vec<[u32; 2]>,
     couplings: Vec<[u32; 2]>,
+    /// Positions at the last assembly (`3V`, metres) and the penalties of the equations.
+    x: Vec<f64>,
+    axial: Vec<f64>,
+    /// Whether the matrix of the last assembly is factorised.
+    is_factorised: bool,
+}
+
+/// Of a matrix `H + G^T r G` the positions at which the equations were linearised (`3V`, metres) and the
+/// penalties `r`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Linearisation<'a> {
+    pub(crate) x: &'a [f64],
+    pub(crate) penalties: &'a [f64],
 }
 
 impl PrimalMatrix {
@@ -85,6 +98,9 @@ impl PrimalMatrix {
             rhs: vec![0.0; n],
             extra,
             couplings: Vec::new(),
+            x: vec![0.0; model.coordinate_count()],
+            axial: vec![0.0; model.isometry_rows().len()],
+            is_factorised: false,
         })
     }
 
@@ -163,6 +179,9 @@ impl PrimalMatrix {
         axial: &[f64],
         transverse: &[f64],
     ) {
+        self.x.copy_from_slice(x);
+        self.axial.copy_from_slice(axial);
+        self.is_factorised = false;
         let values = self.llt.values_mut();
         values.fill(0.0);
         for (slots, mass) in self.vertex_slots.iter().zip(&model.mass().vertex) {
@@ -259,7 +278,17 @@ impl PrimalMatrix {
     }
 
     pub(crate) fn factorize(&mut self) -> Result<(), LinalgError> {
-        self.llt.factorize()
+        self.llt.factorize()?;
+        self.is_factorised = true;
+        Ok(())
+    }
+
+    /// Of the matrix that is factorised; nothing before the first factorisation and after a failed one.
+    pub(crate) fn linearisation(&self) -> Option<Linearisation<'_>> {
+        self.is_factorised.then_some(Linearisation {
+            x: &self.x,
+            penalties: &self.axial,
+        })
     }
 
     /// `K v` with the values assembled last, zero at pinned vertices.

@@ -9,7 +9,7 @@ use crate::options::OptionsError;
 use crate::primal::{PrimalMatrix, strain_floor};
 use crate::reaction::{Balance, ForceTime};
 use crate::report::{SolverEffort, StepError, StepOutcome, not_converged};
-use crate::restoration::{Restoration, RestorationGoal};
+use crate::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use serde::{Deserialize, Serialize};
@@ -257,6 +257,7 @@ impl ProjectionStep {
                 max_iterations: self.options.max_projections,
                 t: state.t + h,
                 loads: &[],
+                matrix: FirstMatrix::Assembled,
             },
             effort,
         );

@@ -1,5 +1,7 @@
 //! Projection of positions onto the rest lengths and of velocities onto their rates.
 
+mod correction;
+
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
 use crate::contact::StepContact;
@@ -87,6 +89,16 @@ pub(crate) struct RestorationGoal<'a> {
     /// What loads the vertex constraints already: one-sided ones under load are kept as equalities. May be
     /// empty.
     pub(crate) loads: &'a [Vector3<f64>],
+    pub(crate) matrix: FirstMatrix,
+}
+
+/// The matrix that a projection begins with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FirstMatrix {
+    /// One that is assembled at the positions given.
+    Assembled,
+    /// That which is factorised, of positions nearby. (Not used where there are vertex constraints.)
+    Factorised,
 }
 
 /// Contact that a projection has to keep.
@@ -147,6 +159,9 @@ impl Restoration {
         };
         let (mut penalty, mut opening, mut slow) = (FIRST_PENALTY, 1.0, 0_usize);
         self.begin(model, &goal, iterate);
+        if goal.matrix == FirstMatrix::Factorised && model.constraints().is_empty() {
+            self.correct(model, matrix, contact.as_mut(), iterate, target);
+        }
         let mut strain = self.worst(model, iterate.x());
         for _ in 0..goal.max_iterations {
             if strain <= target || strain.is_nan() {
@@ -172,7 +187,7 @@ impl Restoration {
             }
             let linear = self.linearised_error(model, iterate.x());
             let (length, after) = self.line_search(model, goal.t, iterate, limit, before);
-            self.keep_momentum(model, contact.as_ref(), iterate);
+            self.keep_momentum(model, contact.as_ref(), iterate, None);
             if after > RESERVE * before && self.worst(model, iterate.x()) <= tolerance {
                 return self.worst(model, iterate.x());
             }
@@ -246,15 +261,12 @@ impl Restoration {
         self.rhs.fill(0.0);
         self.vertex_rows
             .add_projection(penalty, &mut matrix.sink(model), &mut self.rhs);
-        if let Some(contact) = contact
+        if let Some(contact) = &contact
             && let Some(terms) = iterate.terms(Some(contact.contact))
         {
             matrix.add_contact(model, &terms, contact.scale);
-            if self.unassigned.has_room() {
-                self.contact_start.fill(0.0);
-                terms.add_gradient(-contact.scale, &mut self.contact_start);
-            }
         }
+        self.keep_contact_forces(contact.as_deref(), iterate);
         if matrix.factorize().is_err() {
             return Solved::PenaltyTooLarge;
         }
@@ -333,12 +345,29 @@ impl Restoration {
         }
     }
 
+    /// Keeps the forces of contact at the iterate, where an iteration starts.
+    fn keep_contact_forces(
+        &mut self,
+        contact: Option<&RestorationContact<'_, '_>>,
+        iterate: &mut Iterate,
+    ) {
+        if let Some(RestorationContact { contact, scale }) = contact
+            && self.unassigned.has_room()
+            && let Some(terms) = iterate.terms(Some(contact))
+        {
+            self.contact_start.fill(0.0);
+            terms.add_gradient(-scale, &mut self.contact_start);
+        }
+    }
+
     /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to the iterate.
+    /// The rods have the directions of the positions `rods_at`, those of `start` if none are given.
     fn keep_momentum(
         &mut self,
         model: &SheetModel,
         contact: Option<&RestorationContact<'_, '_>>,
         iterate: &mut Iterate,
+        rods_at: Option<&[f64]>,
     ) {
         if !self.unassigned.has_room() {
             return;
@@ -350,9 +379,11 @@ impl Restoration {
             .mass()
             .apply(model.topology(), &self.dx, &mut self.rhs);
         let active = &self.vertex_rows.active;
-        let sum = self
-            .unassigned
-            .push(&self.start, active, self.rhs.iter().copied());
+        let sum = self.unassigned.push(
+            rods_at.unwrap_or(&self.start),
+            active,
+            self.rhs.iter().copied(),
+        );
         if let Some(RestorationContact { contact, scale }) = contact
             && let Some(terms) = iterate.terms(Some(contact))
         {

@@ -5,7 +5,7 @@ use crate::iterate::Iterate;
 use crate::options::OptionsError;
 use crate::primal::PrimalMatrix;
 use crate::report::{SolverEffort, StepError};
-use crate::restoration::{Restoration, RestorationGoal};
+use crate::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::support::Support;
 use crate::{SheetModel, SimulationError, State};
 use isosheet_mesh::{EdgeId, VertexId};
@@ -46,6 +46,7 @@ pub fn project_positions(
             max_iterations: MAX_ITERATIONS,
             t: 0.0,
             loads: &[],
+            matrix: FirstMatrix::Assembled,
         },
         &mut effort,
     );

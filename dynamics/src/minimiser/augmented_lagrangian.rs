@@ -3,9 +3,10 @@
 
 use super::lagrangian::{Definiteness, Merit, RodLoad};
 use super::problem::StepProblem;
-use super::{FRICTION_SETTLED, Minimiser, Minimum, not_converged};
+use super::{FRICTION_SETTLED, LengthGoal, Minimiser, Minimum, not_converged};
 use crate::constraint::rows::HessianPart;
 use crate::report::{SolverEffort, StepError, StepOutcome};
+use crate::restoration::FirstMatrix;
 
 /// Part of the promised decrease that has to come true (Armijo's condition).
 const ARMIJO: f64 = 1e-4;
@@ -105,10 +106,12 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
                 self.stiffness *= GROWTH;
                 continue;
             }
-            let most = self.minimiser.options.max_projections;
-            strain = self
-                .minimiser
-                .restore(self.problem, tolerance, most, self.effort);
+            let to = LengthGoal {
+                strain: tolerance,
+                max_iterations: self.minimiser.options.max_projections,
+                matrix: FirstMatrix::Assembled,
+            };
+            strain = self.minimiser.restore(self.problem, to, self.effort);
             if strain <= tolerance {
                 return Ok(Minimum {
                     residual: self.residual,

@@ -2,11 +2,12 @@
 
 use super::lagrangian::{Definiteness, Merit, RodLoad};
 use super::problem::StepProblem;
-use super::{FRICTION_SETTLED, Minimiser, Strategy};
+use super::{FRICTION_SETTLED, LengthGoal, Minimiser, Strategy};
 use crate::Isometry;
 use crate::constraint::rows::HessianPart;
 use crate::multipliers::MultiplierGoal;
 use crate::report::SolverEffort;
+use crate::restoration::FirstMatrix;
 
 /// Stiffnesses of the rods in the linear systems, in units of that of the masses. The systems are
 /// regularised saddle-point systems `[H G^T; G -1/r]` with penalties `r`, solved by elimination of the
@@ -324,11 +325,13 @@ impl<'a, 'b> Sqp<'a, 'b> {
         let mut length = limit;
         for _ in 0..=self.limits.halvings {
             self.minimiser.lagrangian.move_along(length);
-            let (most_strain, most) = (self.limits.iterate_strain, MAX_RESTORATION);
-            let strain = self
-                .minimiser
-                .restore(self.problem, most_strain, most, self.effort);
-            if strain <= most_strain {
+            let to = LengthGoal {
+                strain: self.limits.iterate_strain,
+                max_iterations: MAX_RESTORATION,
+                matrix: FirstMatrix::Assembled,
+            };
+            let strain = self.minimiser.restore(self.problem, to, self.effort);
+            if strain <= to.strain {
                 let Direction { before, slope, .. } = direction;
                 let now = self.minimiser.lagrangian.merit(self.problem);
                 let promised = before.value + ARMIJO * length * slope;
@@ -388,10 +391,11 @@ impl<'a, 'b> Sqp<'a, 'b> {
 
     /// Restores the lengths exactly; whether that succeeds.
     fn restore_lengths(&mut self) -> bool {
-        let tolerance = self.minimiser.strain_tolerance(self.problem);
-        let most = MAX_LAST_RESTORATION;
-        self.minimiser
-            .restore(self.problem, tolerance, most, self.effort)
-            <= tolerance
+        let to = LengthGoal {
+            strain: self.minimiser.strain_tolerance(self.problem),
+            max_iterations: MAX_LAST_RESTORATION,
+            matrix: FirstMatrix::Factorised,
+        };
+        self.minimiser.restore(self.problem, to, self.effort) <= to.strain
     }
 }

@@ -6,7 +6,7 @@ use crate::constraint::rows::HessianPart;
 use crate::iterate::Iterate;
 use crate::primal::PrimalMatrix;
 use crate::report::SolverEffort;
-use crate::restoration::{Restoration, RestorationGoal};
+use crate::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::{CreaseSprings, SheetModel, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 
@@ -210,6 +210,7 @@ fn a_restoration_is_a_projection_to_first_order() {
             max_iterations: 30,
             t: 0.0,
             loads: &[],
+            matrix: FirstMatrix::Assembled,
         };
         let strain = Restoration::new(model).positions(
             model,
