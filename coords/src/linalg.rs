@@ -21,6 +21,7 @@ mod ordering;
 mod pattern;
 mod separator;
 mod symbolic;
+mod triangular;
 
 pub use error::LinalgError;
 pub use ldlt::SparseLdlt;

@@ -5,7 +5,13 @@ use super::pattern::Pattern;
 use faer::Side;
 use faer::perm::PermRef;
 use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::{SupernodalThreshold, cholesky as ch};
+use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams, cholesky as ch};
+
+/// Adjacent supernodes are merged up to so many columns in all, if so large a part of the entries of both is
+/// zero. With faer's limits (4, 16, 48 and any number of columns; 1, 0.8, 0.1 and 0.05) factorisations of 243
+/// and 867 unknowns take 6 to 8 % longer, of 3267 and 12 675 unknowns as long as with these; solves are 5 %
+/// faster.
+const MERGED: [(usize, f64); 4] = [(18, 1.0), (36, 0.5), (72, 0.2), (usize::MAX, 0.1)];
 
 /// The pattern as faer sees it.
 pub(super) fn view(p: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
@@ -22,6 +28,9 @@ pub(super) fn analyse(
     let params = ch::CholeskySymbolicParams {
         // faer's automatic choice takes the simplicial code too often: up to five times slower.
         supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+        supernodal_params: SymbolicSupernodalParams {
+            relax: Some(&MERGED),
+        },
         ..Default::default()
     };
     let inverse: Vec<usize>;
