@@ -56,66 +56,86 @@ fn rest_stays_rest_and_translation_goes_on() {
     }
 }
 
+/// The share of the largest kinetic energy that a method has lost after 30 steps from exactly flat, held at
+/// a corner, in a sheet of the shape of `M^1` with one side of the given width, metres. The masses of the
+/// vertices are the given two in turns, kilograms. No step creates energy.
+fn energy_lost(name: &str, method: Method, width: f64, masses: [f64; 2]) -> f64 {
+    let what = format!("{name}, width {width} m, masses {masses:?} kg");
+    let square = generate::isotropic_square(1, 1.0).expect("valid");
+    let positions = square
+        .positions()
+        .chunks(3)
+        .flat_map(|p| [p[0], width * p[1], 0.0])
+        .collect();
+    let sheet = Sheet::new(positions, &square.face_indices()).expect("valid");
+    let masses = (0..25).map(|i| masses[i % 2]).collect();
+    let mass = MassMatrix::from_vertex_masses(masses).expect("positive");
+    let weight = 9.8 * mass.total();
+    let model = SheetModel::with_mass(&sheet, mass)
+        .expect("valid")
+        .with_gravity()
+        .with_pins(&[VertexId(0)])
+        .expect("exists");
+    let start = State::at_rest(sheet.positions().to_vec());
+    let mut run = Simulation::new(model, start, method).expect("valid");
+    let (mut last, mut kinetic) = (0.0, 0.0_f64);
+    for k in 0..30 {
+        let report = run
+            .step(1.0 / 60.0)
+            .unwrap_or_else(|e| panic!("{what}: {e}"));
+        // The bound that every sub-step keeps: a tenth of the kinetic energy.
+        let energy = report.hamiltonian();
+        let slack = 0.1 * report.substeps as f64 * report.kinetic;
+        assert!(
+            energy < last + slack + 1e-9 * weight,
+            "{what}, step {k}: {energy} J after {last} J"
+        );
+        // And all steps together: a fiftieth.
+        kinetic = kinetic.max(report.kinetic);
+        assert!(
+            energy < 0.02 * kinetic + 1e-9 * weight,
+            "{what}, step {k}: {energy} J from rest"
+        );
+        last = energy;
+    }
+    -last / kinetic
+}
+
 #[test]
 fn damped_methods_do_not_create_energy() {
-    // Strips far from square and checkerboard masses, from exactly flat, step by step. The last column
-    // bounds the shares of the largest kinetic energy that implicit Euler, BDF2 and the projection have
-    // lost after 30 steps. Measured: 0.237, 0.031, 0.164 for the first scene; 0.254, 0.021, 0.205 for the
-    // second; 0.245 and 0.029 for the third, where the result of the projection depends on random
-    // displacements off flat patches: -0.006 to 0.644 for twelve scenes whose light masses differ by half a
-    // percent each.
-    for (width, ratio, shares) in [
-        (0.02, 1.0, [0.2..0.27, 0.025..0.04, 0.14..0.19]),
-        (0.005, 1.0, [0.21..0.3, 0.015..0.03, 0.17..0.24]),
-        (1.0, 1e4, [0.2..0.29, 0.02..0.04, -0.02..0.7]),
+    // Strips far from square, step by step. The last column bounds the shares that implicit Euler, BDF2 and
+    // the projection lose. Measured: 0.237, 0.031, 0.164 for the first strip; 0.254, 0.021, 0.205 for the
+    // second.
+    for (width, shares) in [
+        (0.02, [0.2..0.27, 0.025..0.04, 0.14..0.19]),
+        (0.005, [0.21..0.3, 0.015..0.03, 0.17..0.24]),
     ] {
-        let square = generate::isotropic_square(1, 1.0).expect("valid");
-        let positions = square
-            .positions()
-            .chunks(3)
-            .flat_map(|p| [p[0], width * p[1], 0.0])
-            .collect();
-        let sheet = Sheet::new(positions, &square.face_indices()).expect("valid");
-        let masses = (0..25)
-            .map(|i| if i % 2 == 0 { 0.004 } else { 0.004 * ratio })
-            .collect();
-        let mass = MassMatrix::from_vertex_masses(masses).expect("positive");
         for ((name, method), share) in methods().into_iter().zip(shares) {
-            let model = SheetModel::with_mass(&sheet, mass.clone())
-                .expect("valid")
-                .with_gravity()
-                .with_pins(&[VertexId(0)])
-                .expect("exists");
-            let weight = 9.8 * mass.total();
-            let start = State::at_rest(sheet.positions().to_vec());
-            let mut run = Simulation::new(model, start, method).expect("valid");
-            let (mut last, mut kinetic) = (0.0, 0.0_f64);
-            for k in 0..30 {
-                let what = format!("{name}, width {width}, mass ratio {ratio}, step {k}");
-                let report = run
-                    .step(1.0 / 60.0)
-                    .unwrap_or_else(|e| panic!("{what}: {e}"));
-                // The bound that every sub-step keeps: a tenth of the kinetic energy.
-                let energy = report.hamiltonian();
-                let slack = 0.1 * report.substeps as f64 * report.kinetic;
-                assert!(
-                    energy < last + slack + 1e-9 * weight,
-                    "{what}: {energy} J after {last} J"
-                );
-                // And all steps together: a fiftieth.
-                kinetic = kinetic.max(report.kinetic);
-                assert!(
-                    energy < 0.02 * kinetic + 1e-9 * weight,
-                    "{what}: {energy} J from rest"
-                );
-                last = energy;
-            }
-            let lost = -last / kinetic;
-            assert!(
-                share.contains(&lost),
-                "{name}, width {width}, mass ratio {ratio}: {lost} of {kinetic} J lost"
-            );
+            let lost = energy_lost(name, method, width, [0.004; 2]);
+            assert!(share.contains(&lost), "{name}, width {width}: {lost} lost");
         }
+    }
+}
+
+#[test]
+fn damped_methods_do_not_create_energy_in_checkerboards_of_masses() {
+    // The result of single sheets depends on random displacements off flat patches. Measured from 128 sheets
+    // whose light masses differ by half a percent each: implicit Euler loses 0.240 to 0.246, BDF2 0.023 to
+    // 0.38 (mean 0.031) and the projection -0.02 to 1.08 (mean 0.38, standard deviation 0.25; of means of
+    // twelve sheets 0.07).
+    let sheets = 12;
+    for ((name, method), share) in methods()
+        .into_iter()
+        .zip([0.23..0.26, 0.02..0.08, 0.15..0.65])
+    {
+        let lost: f64 = (0..sheets)
+            .map(|k| {
+                let light = 0.004 * (1.0 + 0.005 * f64::from(k));
+                energy_lost(name, method.clone(), 1.0, [light, 40.0])
+            })
+            .sum();
+        let mean = lost / f64::from(sheets);
+        assert!(share.contains(&mean), "{name}: {mean} lost");
     }
 }
 

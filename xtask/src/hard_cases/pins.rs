@@ -1,7 +1,7 @@
 //! Too many pins, and sheets pulled taut.
 
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook};
-use super::scenes::{FRAME, apart, at_rest, go, pinned, released, top_row, upright};
+use super::scenes::{FRAME, apart, at_rest, go, pinned, released, stopped, top_row, upright};
 use super::{Case, Findings, Shortfall};
 use crate::methods::{damped, methods};
 use crate::report::{Effort, number};
@@ -9,7 +9,7 @@ use crate::timing::bumped;
 use anyhow::Result;
 use isosheet_coords::{BentState, bent_square};
 use isosheet_dynamics::{Potential, PotentialShape, SheetModel};
-use isosheet_mesh::{MassMatrix, Sheet, VertexId, generate};
+use isosheet_mesh::{MassKind, MassMatrix, Sheet, VertexId, generate};
 
 pub(crate) const OVER_PINNED: Case = Case {
     name: "over-pinned",
@@ -18,10 +18,6 @@ pub(crate) const OVER_PINNED: Case = Case {
                lengths apart; pins that leave room act as such. Nothing blows up, and a refusal names its reason.",
     run: over_pinned,
 };
-
-/// What two taut pins do to every method here.
-const NO_ROOM: &str = "The two halves of the sheet fall shut on each other and hang taut, in a state without room: displacements d across \
-                    taut rods change lengths by d² only, and the iteration closes in linearly.";
 
 fn over_pinned(effort: Effort) -> Result<Findings> {
     let mut f = Findings::default();
@@ -34,13 +30,14 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
     let steps = effort.pick(15, 60, 240);
     let flat = bumped(1, 0.0)?;
     held_all_around(&mut f, &flat, &boundary, steps)?;
+    held_at_opposite_corners(&mut f, &flat, [corners[0], corners[3]])?;
     // Sheets with exact room, and flat ones without any.
     let bump = bumped(1, 0.1)?;
     let cylinder = bent_square(&flat, 1, BentState::Cylinder);
     let bent = Sheet::new(cylinder, &flat.face_indices())?;
-    let (three, opposite) = (&corners[..3], &[corners[0], corners[3]]);
+    let three = &corners[..3];
     // What is held, the sheet and its pins.
-    let scenes: [(&str, &Sheet, &[VertexId]); 9] = [
+    let scenes: [(&str, &Sheet, &[VertexId]); 8] = [
         ("everything held", &flat, &all),
         ("bumped, held all around", &bump, &boundary),
         ("bent to a cylinder, held at three corners", &bent, three),
@@ -60,7 +57,6 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
             &flat,
             &corners[..2],
         ),
-        ("flat, held at two opposite corners", &flat, opposite),
         ("flat, held all around", &flat, &boundary),
     ];
     for (what, sheet, pins) in scenes {
@@ -68,14 +64,7 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
             let mut run = released(sheet, pins, method)?;
             let c = go(&mut run, FRAME, steps)?;
             let mut judge = f.of(&c, format!("{what}, {name}"));
-            let check = judge.strain(&format!("edge strain in {steps} steps"));
-            if what == "flat, held at two opposite corners" {
-                // Measured: BDF2 0.140 s, implicit Euler 0.181 s, projection 0.134 s.
-                check.limited(
-                    NO_ROOM,
-                    Shortfall::stops([0.08, 0.4], "no step of at least"),
-                );
-            }
+            judge.strain(&format!("edge strain in {steps} steps"));
             let moved = apart(&run.state().x, sheet.positions());
             match what {
                 "everything held" => judge.at_most("largest displacement, m", moved, 0.0),
@@ -87,6 +76,32 @@ fn over_pinned(effort: Effort) -> Result<Findings> {
     f.here = "Pinned vertices have no unknowns and never move by a bit; vertices on a straight line of rods between two pins are held as they are."
         .into();
     Ok(f)
+}
+
+/// What two taut pins do to the damped methods.
+const NO_ROOM: &str = "The two halves of the sheet fall shut on each other and hang taut, in a state without room: displacements d across \
+                    taut rods change lengths by d² only, and the iteration closes in linearly.";
+
+/// Number of flat sheets at two opposite corners, whose masses differ by half a percent each.
+const SHEETS: u32 = 12;
+
+/// A flat sheet held at two opposite corners, many times. Measured: of 24 sheets implicit Euler stops at 15
+/// to 17 within 1 s, BDF2 at 23 or 24, the projection at all.
+fn held_at_opposite_corners(f: &mut Findings, flat: &Sheet, pins: [VertexId; 2]) -> Result<()> {
+    for (name, method) in damped() {
+        let stopped = stopped(SHEETS, 60, |k| {
+            let mass = 0.1 * (1.0 + 0.005 * f64::from(k));
+            let model = SheetModel::new(flat, mass, MassKind::Lumped)?.with_gravity();
+            at_rest(model.with_pins(&pins)?, flat.positions(), method.clone())
+        })?;
+        let least = if name == "implicit Euler" { 3.0 } else { 9.0 };
+        let what = format!(
+            "{SHEETS} sheets, flat, held at two opposite corners, {name}: how many stop within 1 s"
+        );
+        f.at_most(what, f64::from(stopped), 0.0)
+            .limited(NO_ROOM, Shortfall::Value([least, f64::from(SHEETS)]));
+    }
+    Ok(())
 }
 
 /// What naive methods do to a flat sheet that is held all around.

@@ -48,6 +48,20 @@ pub(super) fn released(sheet: &Sheet, pins: &[VertexId], method: Method) -> Resu
     at_rest(pinned(sheet, pins)?, sheet.positions(), method)
 }
 
+/// How many of some simulations that differ a little stop before the end of their steps of [`FRAME`]. Whether
+/// a chaotic run gets through is a matter of chance; how many of them do is not.
+pub(super) fn stopped(
+    runs: u32,
+    steps: usize,
+    build: impl Fn(u32) -> Result<Simulation>,
+) -> Result<u32> {
+    let mut stopped = 0;
+    for k in 0..runs {
+        stopped += u32::from(go(&mut build(k)?, FRAME, steps)?.steps < steps);
+    }
+    Ok(stopped)
+}
+
 /// The top row of `M^1`.
 pub(super) fn top_row() -> Vec<VertexId> {
     (20..25).map(VertexId).collect()

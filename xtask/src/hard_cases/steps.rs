@@ -129,14 +129,15 @@ fn bumped_sheet(f: &mut Findings, (name, method): Named, (h, steps): (f64, usize
 /// `M^1` hanging by a corner from exactly flat.
 fn flat_sheet(f: &mut Findings, (name, method): &Named, effort: Effort) -> Result<()> {
     for h in [1e-6, 0.1] {
-        let steps = effort.pick(30, if h < 1e-3 { 2000 } else { 30 }, 2000);
+        let steps = effort.pick(30, if h < 1e-3 { 4000 } else { 30 }, 4000);
         let c = go(&mut hanging(1, 0.0, method.clone())?, h, steps)?;
         let what = format!("M^1 from exactly flat, {name}, steps of {} s", number(h));
         let mut judge = f.of(&c, what);
         let check = judge.strain("edge strain");
-        // Measured: 1.3e-3 s, 1.8e-4 s, 4.7e-4 s; the quick run ends after 1e-4 s.
+        // Measured from twelve sheets whose masses differ by half a percent each: BDF2 3.9e-4 to 1.9e-3 s,
+        // implicit Euler 2.2e-4 s, projection 4.7e-4 s. The quick run ends after 3e-5 s.
         let stops = match *name {
-            "BDF2" => Shortfall::stops([2e-4, 1.9e-3], "would create"),
+            "BDF2" => Shortfall::stops([2e-4, 3.9e-3], "would create"),
             "implicit Euler" => Shortfall::stops([6e-5, 6e-4], "would create"),
             _ => Shortfall::stops([1.5e-4, 1.5e-3], "Newton's method stopped"),
         };
