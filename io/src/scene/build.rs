@@ -75,7 +75,7 @@ impl<'a> Builder<'a> {
             Some(file) => {
                 let key = key.name("start.file");
                 let start = file.read(&key, folder)?;
-                if start.faces != placed.face_indices() {
+                if triangles(&start.faces) != triangles(&placed.face_indices()) {
                     let message = "the file does not have the vertices and faces of `sheet.mesh`";
                     let remedy = "export both shapes from the same mesh, without reordering";
                     return Err(Problem::new(key.name("path"), message, remedy).into());
@@ -402,6 +402,16 @@ fn self_contact_problem(error: &ContactsError) -> Problem {
     let key = Key::root().name("contact.self_contact");
     let remedy = "choose a smaller `sheet.thickness` or `contact.activation`, or a mesh without narrow faces";
     Problem::new(key, error.to_string(), remedy)
+}
+
+/// The triangles without order and orientation: frames of a FOLD file may list the same faces in other ways.
+fn triangles(faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut triangles = faces.to_vec();
+    for corners in &mut triangles {
+        corners.sort_unstable();
+    }
+    triangles.sort_unstable();
+    triangles
 }
 
 /// A point of the mesh in space.

@@ -4,7 +4,7 @@ use crate::{code, run, stderr};
 use isosheet_io::run::Recording;
 use isosheet_io::scene::StartingPoint;
 use isosheet_io::{
-    EdgeAssignment, ExportMeshFormat, MeshFormat, MeshOptions, SeriesFormat, read_mesh,
+    EdgeAssignment, ExportMeshFormat, FoldFrame, MeshFormat, MeshOptions, SeriesFormat, read_mesh,
     read_mesh_with,
 };
 use std::fs;
@@ -88,7 +88,7 @@ fn runs_are_converted() {
         assert!(said.contains(&format!(": {frames} frames")), "{said}");
     }
     let last = MeshOptions {
-        frame: Some(frames - 1),
+        frame: Some(FoldFrame::Number(frames - 1)),
         ..MeshOptions::default()
     };
     let mesh = read_mesh_with(&dir.join("out.fold"), &last).unwrap();

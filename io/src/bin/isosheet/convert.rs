@@ -8,8 +8,8 @@ use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::run::Recording;
 use isosheet_io::{
-    Advice, ExportError, Exported, MOST_KEY_FRAMES, MeshFile, MeshOptions, Series, SeriesOptions,
-    Trajectory, read_mesh_with, write_mesh, write_series,
+    Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshOptions, Series,
+    SeriesOptions, Trajectory, read_mesh_with, write_mesh, write_series,
 };
 use std::path::{Path, PathBuf};
 
@@ -89,7 +89,7 @@ impl Convert {
         }
         let options = MeshOptions {
             weld: self.weld,
-            frame: self.frame,
+            frame: self.frame.map(FoldFrame::Number),
             ..MeshOptions::default()
         };
         let mesh = read_mesh_with(&self.input, &options).map_err(|e| input(&e))?;

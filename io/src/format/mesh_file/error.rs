@@ -74,6 +74,9 @@ pub enum MeshFileProblem {
         /// The value.
         tolerance: f64,
     },
+    /// A frame was asked for in a file that is no FOLD file.
+    #[error("a frame is asked for, and only FOLD files have frames")]
+    NoFrames,
     /// The file could not be opened or read.
     #[error("cannot read the file: {0}")]
     Read(std::io::Error),
@@ -237,6 +240,7 @@ impl Advice for MeshFileProblem {
             Self::WeldTolerance { .. } => {
                 Some("give a length of 0 or more in the unit of the file")
             }
+            Self::NoFrames => Some("leave the frame out"),
             Self::Read(..) => Some("check the path"),
             Self::Empty | Self::Truncated { .. } => Some("copy or export it again"),
             Self::NotObj { .. } => Some("check that it is an OBJ file"),
