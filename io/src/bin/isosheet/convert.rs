@@ -125,7 +125,8 @@ impl Convert {
             let failure = output(&error);
             match error {
                 ExportError::Extension { .. } => failure.remedy(
-                    "choose a known format; formats of meshes take one frame, with `--frame K`",
+                    "choose a known format, or .png, .svg or .apng for pictures of the folder of a run; formats \
+                     of meshes take one frame, with `--frame K`",
                 ),
                 _ => failure,
             }
@@ -146,7 +147,15 @@ impl Convert {
     }
 
     fn write_mesh(&self, mesh: &MeshFile) -> Done {
-        write_mesh(&self.output, mesh).map_err(|e| output(&e))?;
+        write_mesh(&self.output, mesh).map_err(|error| {
+            let failure = output(&error);
+            match error {
+                ExportError::Extension { .. } => failure.remedy(
+                    "choose a known format; pictures and the formats of moving sheets are made of the folder of a run",
+                ),
+                _ => failure,
+            }
+        })?;
         let changes = mesh.changes;
         let notes = [
             (mesh.polygons, "polygons cut into triangles"),

@@ -220,7 +220,7 @@ pub enum MeshFileProblem {
         problem: String,
     },
     /// A FOLD file is no JSON, or its arrays are not what the format has.
-    #[error("{0}")]
+    #[error("the file is not valid FOLD: {0}")]
     Json(serde_json::Error),
     /// What a FOLD file says does not fit together.
     #[error(transparent)]
@@ -262,9 +262,9 @@ impl Advice for MeshFileProblem {
             Self::Syntax { .. } | Self::Ply(..) | Self::Stl { .. } | Self::Json(..) => {
                 Some("correct the file or export it again")
             }
-            Self::Announced { .. } => {
-                Some("the file is damaged or was cut short: copy or export it again")
-            }
+            Self::Announced { .. } => Some(
+                "the file is damaged, was cut short or has another format than its name says: copy or export it again",
+            ),
             Self::Fold(error) => error.advice(),
             Self::Gltf(error) => error.advice(),
             Self::Mesh(error) => error.advice(),
