@@ -398,7 +398,9 @@ fn file_remedy(error: &MeshFileError) -> String {
              `path`"
                 .to_owned()
         }
-        MeshFileProblem::Read(_) => "check the path, which is relative to the scene".to_owned(),
+        MeshFileProblem::Read(_) => {
+            "check the path, which is relative to the scene, and the permissions".to_owned()
+        }
         problem @ (MeshFileProblem::NoFrames | MeshFileProblem::Fold(FoldProblem::Choice { .. })) => {
             problem.advice().unwrap_or_default().to_owned()
         }

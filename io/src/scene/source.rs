@@ -49,7 +49,7 @@ pub enum SceneFileError {
 impl Advice for SceneFileError {
     fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::Read { .. } => Some("check the path"),
+            Self::Read { .. } => Some("check the path and the permissions"),
             Self::Mesh { .. } => Some(
                 "name it in a scene, `mesh = { file = { path = ... } }`: `isosheet new` writes a scene to start from",
             ),

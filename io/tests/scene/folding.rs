@@ -2,7 +2,7 @@
 
 use isosheet_io::mesh::generate::{FoldAssignment, FoldPattern, miura, miura_zigzags};
 use isosheet_io::mesh::{VertexId, fold_angle, origami};
-use isosheet_io::scene::{FoldResidual, SceneFile};
+use isosheet_io::scene::{FoldResidual, SceneFile, Setup};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -234,6 +234,48 @@ fn rest_shape_and_start_are_frames_of_one_file() {
     let t = setup.sheet.topology();
     assert!((crease(setup.sheet.positions(), t).abs() - 60.0).abs() < 1e-9);
     assert_eq!(crease(&setup.start.x, t), 0.0);
+}
+
+/// A folded form in a file of six digits has the rest lengths up to rounding, and gets them; other lengths
+/// are refused.
+#[test]
+fn rounded_starts_are_corrected_and_stretched_ones_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = of_frames(dir.path(), "", ", frame = 1", "").unwrap();
+    let built = |digits: f64| {
+        let mut fold = bent_strip();
+        let points = fold["file_frames"][0]["vertices_coords"].as_array_mut();
+        for c in points
+            .unwrap()
+            .iter_mut()
+            .flat_map(|p| p.as_array_mut().unwrap())
+        {
+            *c = json!((c.as_f64().unwrap() * digits).round() / digits);
+        }
+        fs::write(dir.path().join("strip.fold"), fold.to_string()).unwrap();
+        scene.build().unwrap()
+    };
+    let strain = |setup: &Setup| {
+        let (t, x) = (setup.sheet.topology(), &setup.start.x);
+        let length = |[a, b]: [VertexId; 2]| {
+            let d = |k: usize| x[3 * a.index() + k] - x[3 * b.index() + k];
+            (d(0) * d(0) + d(1) * d(1) + d(2) * d(2)).sqrt()
+        };
+        let errors = t.edges().iter().zip(setup.sheet.lengths());
+        errors
+            .map(|(&e, l)| (length(e) / l - 1.0).abs())
+            .fold(0.0, f64::max)
+    };
+    let setup = built(1e6);
+    assert!(strain(&setup) < 1e-12, "{}", strain(&setup));
+    // Vertices move by as much as they were rounded, about.
+    let exact = 0.2 * 0.75_f64.sqrt();
+    assert!((setup.start.x[3 * 2 + 2] - exact).abs() < 2e-6);
+    setup.start().unwrap();
+    let setup = built(1e2);
+    assert!(strain(&setup) > 1e-3);
+    let said = setup.start().err().unwrap().to_string();
+    assert!(said.contains("its rest length is"), "{said}");
 }
 
 /// Without a frame of its own, folding takes the angles of the frame that is the mesh.

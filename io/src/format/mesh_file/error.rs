@@ -241,7 +241,7 @@ impl Advice for MeshFileProblem {
                 Some("give a length of 0 or more in the unit of the file")
             }
             Self::NoFrames => Some("leave the frame out"),
-            Self::Read(..) => Some("check the path"),
+            Self::Read(..) => Some("check the path and the permissions"),
             Self::Empty | Self::Truncated { .. } => Some("copy or export it again"),
             Self::NotObj { .. } => Some("check that it is an OBJ file"),
             Self::NoFaces { .. } => Some("export it with its faces"),

@@ -103,11 +103,17 @@ fn number_of(frames: &[Frame], wanted: &FoldFrame) -> Result<usize, FoldProblem>
 /// Most frames that an error lists: they fit on a screen.
 const MOST_LISTED: usize = 12;
 
+/// Characters of a title that an error shows.
+const LONGEST_TITLE: usize = 80;
+
 /// The frames of a file, with titles and classes, for an error.
 fn listed(frames: &[Frame]) -> String {
     let name = |(k, frame): (usize, &Frame)| {
         let title = frame.frame_title.as_deref();
-        let title = title.map_or(String::new(), |title| format!(" {:?}", excerpt(title)));
+        let title = title.map_or(String::new(), |title| {
+            let short: String = title.chars().take(LONGEST_TITLE).collect();
+            format!(" {short:?}")
+        });
         let classes: Vec<String> = frame
             .frame_classes
             .iter()
