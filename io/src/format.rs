@@ -22,9 +22,9 @@ pub use history::{HistoryError, HistoryRow, HistoryWriter, read_history};
 pub use json::{JsonError, read_json, write_json};
 pub use matrix_market::{MatrixMarketError, MatrixSymmetry, write_matrix_market};
 pub use mesh_file::{
-    EdgeAssignment, FileCrease, FoldProblem, GltfProblem, MeshFile, MeshFileError, MeshFileProblem,
-    MeshFormat, MeshOptions, Place, Polygons, ReadingChanges, Repair, SeparateBuffers, parse_mesh,
-    read_mesh, read_mesh_with, read_sheet,
+    EdgeAssignment, FileCrease, FoldFrame, FoldProblem, GltfProblem, MeshFile, MeshFileError,
+    MeshFileProblem, MeshFormat, MeshOptions, Place, Polygons, ReadingChanges, Repair,
+    SeparateBuffers, parse_mesh, read_mesh, read_mesh_with, read_sheet,
 };
 pub use obj_write::{ObjWriteError, frame_path, write_obj, write_obj_to};
 pub use trajectory::{Trajectory, TrajectoryError};

@@ -73,6 +73,19 @@ impl Advice for WriteError {
     }
 }
 
+/// How the names of temporary files begin.
+const PREFIX: &str = ".";
+
+/// How the names of temporary files end.
+const SUFFIX: &str = ".part";
+
+/// Whether a file is what [`write_atomically`] leaves when the process is killed.
+#[cfg(feature = "run")]
+pub(crate) fn is_unfinished(name: &std::ffi::OsStr) -> bool {
+    let name = name.to_string_lossy();
+    name.starts_with(PREFIX) && name.ends_with(SUFFIX)
+}
+
 /// Creates the missing parent folders of `path` and returns the folder.
 pub(crate) fn prepare_folder(path: &Path) -> Result<PathBuf, WriteError> {
     if path.file_name().is_none() {
@@ -122,7 +135,7 @@ pub fn write_atomically<T>(
         source,
     };
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".").suffix(".part");
+    builder.prefix(PREFIX).suffix(SUFFIX);
     // Temporary files are private by default; a result should be as readable as any other new file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

@@ -15,7 +15,7 @@ mod tests;
 mod weld;
 
 pub use error::{MeshFileError, MeshFileProblem, Place};
-pub use fold::FoldProblem;
+pub use fold::{FoldFrame, FoldProblem};
 pub use gltf::GltfProblem;
 pub use repair::Repair;
 
@@ -108,8 +108,9 @@ pub struct MeshOptions {
     /// vertices and glTF none between faces with different normals, but programs that write them give each
     /// copy of a vertex the same digits.
     pub weld: Option<f64>,
-    /// Of FOLD files: the frame, 0 for the key frame. `None` (the default) is the first with vertices.
-    pub frame: Option<usize>,
+    /// Of FOLD files: the frame. `None` (the default) is the first with vertices. Other files have no frames
+    /// and are refused with this option.
+    pub frame: Option<FoldFrame>,
     /// Of glTF files: the name of the mesh. `None` (the default) is the first of the file.
     pub mesh: Option<String>,
     /// Of glTF files: buffers in files of their own, which are read unless asked otherwise.
@@ -386,6 +387,9 @@ fn parse(
     options: &MeshOptions,
 ) -> Result<MeshFile, Located> {
     options.validate().map_err(|problem| (None, problem))?;
+    if options.frame.is_some() && format != MeshFormat::Fold {
+        return Err((None, MeshFileProblem::NoFrames));
+    }
     let mut mesh = match format {
         MeshFormat::Obj => obj::parse(bytes)?.assemble(options)?,
         MeshFormat::Off => off::parse(bytes)?.assemble(options)?,

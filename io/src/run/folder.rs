@@ -1,12 +1,13 @@
 //! The folder of a run.
 
 use super::RunError;
+use crate::format::atomic::is_unfinished;
 use crate::format::write_atomically;
 use crate::scene::{Problem, Scene, SceneError, SceneFile};
 use crc::{CRC_64_XZ, Crc};
 use std::fmt;
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Locked while a process works in the folder; also marks a folder as that of a run.
@@ -136,7 +137,7 @@ impl RunFolder {
             source,
         };
         fs::create_dir_all(root).map_err(unwritable)?;
-        if !root.join(LOCK).is_file() && fs::read_dir(root).map_err(unwritable)?.next().is_some() {
+        if holds_other_files(root, &[LOCK]).map_err(unwritable)? && !root.join(LOCK).is_file() {
             return Err(RunError::Foreign {
                 folder: root.to_owned(),
             });
@@ -176,20 +177,10 @@ impl RunFolder {
 
     /// Removes the unfinished files that a killed process left.
     fn remove_parts(&self) -> io::Result<()> {
-        for folder in [self.root.clone(), self.path(MESHES), self.path(Self::OBJ)] {
-            if !folder.is_dir() {
-                continue;
-            }
-            for entry in fs::read_dir(folder)? {
-                let entry = entry?;
-                let name = entry.file_name();
-                let name = name.to_string_lossy();
-                if name.starts_with('.') && name.ends_with(".part") {
-                    fs::remove_file(entry.path())?;
-                }
-            }
-        }
-        Ok(())
+        let folders = [self.root.clone(), self.path(MESHES), self.path(Self::OBJ)];
+        folders
+            .iter()
+            .try_for_each(|folder| remove_unfinished(folder))
     }
 
     pub(crate) fn root(&self) -> &Path {
@@ -199,6 +190,39 @@ impl RunFolder {
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.root.join(name)
     }
+}
+
+/// Whether a folder holds anything besides `own` files and unfinished ones, which killed processes leave. A
+/// folder that does not exist holds nothing, and what is no folder is left to the error of writing to it.
+pub(crate) fn holds_other_files(folder: &Path, own: &[&str]) -> io::Result<bool> {
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(e) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&e.kind()) => {
+            return Ok(false);
+        }
+        Err(error) => return Err(error),
+    };
+    for entry in entries {
+        let name = entry?.file_name();
+        if !is_unfinished(&name) && !own.iter().any(|own| name == *own) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Removes the unfinished files that killed processes left in a folder, if it exists.
+pub(crate) fn remove_unfinished(folder: &Path) -> io::Result<()> {
+    if !folder.is_dir() {
+        return Ok(());
+    }
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        if is_unfinished(&entry.file_name()) {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
 }
 
 /// Refuses a folder with a run of another scene.

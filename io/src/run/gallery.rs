@@ -5,7 +5,7 @@ mod page;
 
 pub use error::GalleryError;
 
-use super::folder::RunFolder;
+use super::folder::{RunFolder, holds_other_files, remove_unfinished};
 use super::{Film, FilmOptions, Recording, Summary};
 use crate::format::{read_json, write_atomically, write_json};
 use crate::picture::PictureError;
@@ -63,7 +63,8 @@ impl Gallery {
     const RUNS: &'static str = "runs";
 
     /// Makes the gallery of all runs in `folders` and beneath them, in the order of `folders` and, beneath
-    /// each, of names. Links to other folders are not followed.
+    /// each, of names. Links to other folders are not followed. After a kill the same call makes the gallery
+    /// anew and removes what the killed process left unfinished.
     ///
     /// # Errors
     /// [`GalleryError::NoRuns`] if there are none, [`GalleryError::Foreign`] if `out` holds other files,
@@ -80,6 +81,10 @@ impl Gallery {
             return Err(GalleryError::NoRuns { folders });
         }
         let before = Self::before(out)?;
+        for folder in [out.to_owned(), out.join(Self::RUNS)] {
+            // Files that cannot be removed are in nobody's way.
+            let _ = remove_unfinished(&folder);
+        }
         let mut gallery = Self {
             entries: Vec::new(),
             left_out: Vec::new(),
@@ -115,24 +120,16 @@ impl Gallery {
         if data.is_file() {
             return Ok(read_json(&data)?);
         }
-        let is_empty = match fs::read_dir(out) {
-            Ok(mut entries) => entries.next().is_none(),
-            Err(_) => true,
-        };
-        if is_empty || is_begun(out) {
-            return Ok(Vec::new());
+        let path = || out.to_owned();
+        match holds_other_files(out, &[Self::RUNS, Self::INDEX]) {
+            Ok(false) => Ok(Vec::new()),
+            Ok(true) => Err(GalleryError::Foreign { folder: path() }),
+            Err(source) => Err(GalleryError::Read {
+                path: path(),
+                source,
+            }),
         }
-        Err(GalleryError::Foreign {
-            folder: out.to_owned(),
-        })
     }
-}
-
-/// Whether a folder has what the begin of a gallery leaves, which was stopped.
-fn is_begun(out: &Path) -> bool {
-    let known = [Gallery::RUNS, Gallery::INDEX].map(std::ffi::OsString::from);
-    let entries = fs::read_dir(out).into_iter().flatten();
-    entries.flatten().all(|e| known.contains(&e.file_name()))
 }
 
 /// Page and picture of a run, relative to the gallery.

@@ -23,11 +23,12 @@ pub use variation::{Variation, VariationError};
 
 pub(crate) use table::SweepTable;
 
+use super::folder::holds_other_files;
 use crate::format::write_atomically;
 use crate::scene::{SceneFile, SceneFileError};
 use engine::shell_word;
 use std::fs;
-use std::io::{self, ErrorKind, Write};
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// A sweep: all combinations of the values of some keys of a scene.
@@ -237,25 +238,15 @@ impl Sweep {
 
     /// Refuses a folder with other files than the unfinished ones of a sweep that was killed at once.
     fn refuse_other_files(&self) -> Result<(), SweepError> {
-        let entries = match fs::read_dir(self.folder()) {
-            Ok(entries) => entries,
-            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(()),
-            Err(source) => return Err(self.unreadable(source)),
-        };
-        for entry in entries {
-            let name = entry.map_err(|e| self.unreadable(e))?.file_name();
-            let name = name.to_string_lossy();
-            if !(name.starts_with('.') && name.ends_with(".part")) {
-                let folder = self.folder().to_owned();
-                return Err(SweepError::Foreign { folder });
-            }
+        let path = || self.folder().to_owned();
+        match holds_other_files(self.folder(), &[]) {
+            Ok(false) => Ok(()),
+            Ok(true) => Err(SweepError::Foreign { folder: path() }),
+            Err(source) => Err(SweepError::Read {
+                path: path(),
+                source,
+            }),
         }
-        Ok(())
-    }
-
-    fn unreadable(&self, source: io::Error) -> SweepError {
-        let path = self.folder().to_owned();
-        SweepError::Read { path, source }
     }
 
     /// The table of the sweep in a folder; none if there is no sweep.

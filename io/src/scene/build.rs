@@ -12,7 +12,7 @@ use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::{
     AccelerationField, CreaseSprings, Membrane, PlateBending, PointMotion, PointProfile,
     RigidProfile, SheetModel, SimulationError, State, VertexConstraint, VertexLoad, WeakIsometry,
-    leave_flat,
+    leave_flat, project_positions,
 };
 use isosheet_mesh::{Advice, MassKind, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3};
@@ -33,11 +33,19 @@ impl Scene {
         builder.add_creases()?;
         builder.add_folding(folder)?;
         builder.add_isometry()?;
+        builder.mend_lengths();
         builder.perturb()?;
         let (contacts, obstacles) = builder.contacts(folder)?;
         Ok(builder.finish(contacts, obstacles))
     }
 }
+
+/// Relative error of edge lengths to which positions are projected: that of accepted steps.
+const EXACT: f64 = 1e-12;
+
+/// Largest relative error of an edge length that is taken for rounding. A file of six digits rounds the
+/// coordinates of a sheet of size 1 by 5e-7, and edges of a hundredth of the sheet by 1e-4 of their length.
+const ROUNDING: f64 = 1e-4;
 
 /// A model on its way.
 struct Builder<'a> {
@@ -75,7 +83,7 @@ impl<'a> Builder<'a> {
             Some(file) => {
                 let key = key.name("start.file");
                 let start = file.read(&key, folder)?;
-                if start.faces != placed.face_indices() {
+                if triangles(&start.faces) != triangles(&placed.face_indices()) {
                     let message = "the file does not have the vertices and faces of `sheet.mesh`";
                     let remedy = "export both shapes from the same mesh, without reordering";
                     return Err(Problem::new(key.name("path"), message, remedy).into());
@@ -340,6 +348,29 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
+    /// Gives the positions of a start file the rest lengths that the few digits of the file have rounded.
+    /// What is further off, or has no such positions nearby, stays as it is, and the engine says what is
+    /// wrong with it.
+    fn mend_lengths(&mut self) {
+        let is_rigid = self.scene.sheet.isometry == Isometry::Rods;
+        if !is_rigid || self.scene.sheet.start.file.is_none() {
+            return;
+        }
+        let t = self.rest.sheet.topology();
+        let (points, rest) = (self.x.as_chunks::<3>().0, self.rest.sheet.lengths());
+        let strain = |(edge, rest): (&[VertexId; 2], &f64)| {
+            let [a, b] = edge.map(|v| Point3::from(points[v.index()]));
+            ((a - b).norm() / rest - 1.0).abs()
+        };
+        let largest = t.edges().iter().zip(rest).map(strain).fold(0.0, f64::max);
+        if (EXACT..=ROUNDING).contains(&largest) {
+            let mut mended = self.x.clone();
+            if project_positions(self.model(), &mut mended, EXACT).is_ok() {
+                self.x = mended;
+            }
+        }
+    }
+
     fn perturb(&mut self) -> Result<(), SceneError> {
         let start = &self.scene.sheet.start;
         if start.perturbation > 0.0 {
@@ -402,6 +433,16 @@ fn self_contact_problem(error: &ContactsError) -> Problem {
     let key = Key::root().name("contact.self_contact");
     let remedy = "choose a smaller `sheet.thickness` or `contact.activation`, or a mesh without narrow faces";
     Problem::new(key, error.to_string(), remedy)
+}
+
+/// The triangles without order and orientation: frames of a FOLD file may list the same faces in other ways.
+fn triangles(faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut triangles = faces.to_vec();
+    for corners in &mut triangles {
+        corners.sort_unstable();
+    }
+    triangles.sort_unstable();
+    triangles
 }
 
 /// A point of the mesh in space.

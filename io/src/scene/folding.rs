@@ -4,7 +4,7 @@ use super::Mesh;
 use super::mesh::MeshFile;
 use super::problem::{Checks, Key, Problem};
 use super::profile::Profile;
-use crate::format::EdgeAssignment;
+use crate::format::{EdgeAssignment, FoldFrame};
 use isosheet_dynamics::CreaseSpring;
 use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, fold_angle};
 use schemars::JsonSchema;
@@ -35,10 +35,11 @@ pub struct Folding {
     /// other, which cross without self-contact: take less than 1.
     #[serde(default = "whole")]
     pub part: f64,
-    /// The frame of the file that has the angles, from 0. If its vertices are not in a plane, the creases are
-    /// driven to the angles that they have there, and otherwise to its `edges_foldAngle`.
+    /// The frame of the file that has the angles, by its number from 0 or by its title; if left out, the one
+    /// that is the mesh of the sheet. If its vertices are not in a plane, the creases are driven to the
+    /// angles that they have there, and otherwise to its `edges_foldAngle`.
     #[serde(default)]
-    pub frame: usize,
+    pub frame: Option<FoldFrame>,
 }
 
 fn whole() -> f64 {
@@ -118,7 +119,7 @@ impl Folding {
         }
     }
 
-    /// Where the edges of the sheet are driven, which was read from the first frame of `file`.
+    /// Where the edges of the sheet are driven, which was read from `file`.
     pub(crate) fn targets(
         &self,
         key: &Key,
@@ -127,16 +128,23 @@ impl Folding {
         folder: &Path,
     ) -> Result<FoldTargets, Problem> {
         let t = sheet.topology();
-        let frame = match self.frame {
-            0 => file.read(&Key::root().name("sheet.mesh.file"), folder)?,
-            k => file
-                .read_frame(k, folder)
-                .map_err(|e| Problem::from_error(key.name("frame"), &e))?,
+        let (frame, name) = match &self.frame {
+            None => {
+                let key = Key::root().name("sheet.mesh.file");
+                (
+                    file.read(&key, folder)?,
+                    "the frame of the sheet".to_owned(),
+                )
+            }
+            Some(frame) => {
+                let read = file.read_frame(Some(frame), folder);
+                let read = read.map_err(|e| Problem::from_error(key.name("frame"), &e))?;
+                (read, format!("frame {frame}"))
+            }
         };
         if frame.vertex_count() != t.vertex_count() {
             let message = format!(
-                "frame {} has {} vertices, and the sheet has {}",
-                self.frame,
+                "{name} has {} vertices, and the sheet has {}",
                 frame.vertex_count(),
                 t.vertex_count()
             );
@@ -165,8 +173,7 @@ impl Folding {
         }
         if targets.creases.is_empty() {
             let message = format!(
-                "frame {} of {} gives no crease inside the sheet a fold angle",
-                self.frame,
+                "{name} in {} gives no crease inside the sheet a fold angle",
                 file.path.display()
             );
             let remedy = "take a FOLD file with `edges_foldAngle`, or fold by \

@@ -6,7 +6,8 @@ use super::pattern::{
 };
 use super::problem::{Checks, Key, Problem};
 use crate::format::{
-    self, MeshFileError, MeshFileProblem, MeshOptions, Polygons, SeparateBuffers, read_mesh_with,
+    self, FoldFrame, FoldProblem, MeshFileError, MeshFileProblem, MeshOptions, Polygons,
+    SeparateBuffers, read_mesh_with,
 };
 use isosheet_mesh::Advice;
 use isosheet_mesh::Sheet;
@@ -115,6 +116,11 @@ pub struct MeshFile {
     /// What to do with faces of more than three corners.
     #[serde(default)]
     pub polygons: PolygonFaces,
+    /// Of a FOLD file: the frame whose vertices are taken, by its number from 0 or by its title; if left out,
+    /// the first one with vertices. Frame 0 is the key frame of the file. One file can give the flat crease
+    /// pattern to `sheet.mesh` and a folded form of it to `sheet.start.file`.
+    #[serde(default)]
+    pub frame: Option<FoldFrame>,
 }
 
 fn one() -> f64 {
@@ -175,22 +181,21 @@ impl MeshFile {
 
     /// Reads the file, in metres and with z upwards; relative paths are relative to `folder`.
     pub(crate) fn read(&self, key: &Key, folder: &Path) -> Result<format::MeshFile, Problem> {
-        self.read_with(None, folder)
-            .map_err(|e| Problem::new(key.name("path"), e.to_string(), file_remedy(&e)))
+        self.read_frame(self.frame.as_ref(), folder).map_err(|e| {
+            let name = match e.problem {
+                MeshFileProblem::NoFrames | MeshFileProblem::Fold(FoldProblem::Choice { .. }) => {
+                    "frame"
+                }
+                _ => "path",
+            };
+            Problem::new(key.name(name), e.to_string(), file_remedy(&e))
+        })
     }
 
-    /// Reads a frame of a FOLD file, from 0, in the same way.
+    /// Reads another frame in the same way.
     pub(crate) fn read_frame(
         &self,
-        frame: usize,
-        folder: &Path,
-    ) -> Result<format::MeshFile, MeshFileError> {
-        self.read_with(Some(frame), folder)
-    }
-
-    fn read_with(
-        &self,
-        frame: Option<usize>,
+        frame: Option<&FoldFrame>,
         folder: &Path,
     ) -> Result<format::MeshFile, MeshFileError> {
         let options = MeshOptions {
@@ -200,7 +205,7 @@ impl MeshFile {
             },
             // The folder of a run keeps a copy of one file for each mesh.
             buffers: SeparateBuffers::Refuse,
-            frame,
+            frame: frame.cloned(),
             ..MeshOptions::default()
         };
         let path = folder.join(&self.path);
@@ -393,7 +398,12 @@ fn file_remedy(error: &MeshFileError) -> String {
              `path`"
                 .to_owned()
         }
-        MeshFileProblem::Read(_) => "check the path, which is relative to the scene".to_owned(),
+        MeshFileProblem::Read(_) => {
+            "check the path, which is relative to the scene, and the permissions".to_owned()
+        }
+        problem @ (MeshFileProblem::NoFrames | MeshFileProblem::Fold(FoldProblem::Choice { .. })) => {
+            problem.advice().unwrap_or_default().to_owned()
+        }
         problem => {
             let advice = problem.advice().map(|advice| format!("{advice}; "));
             let advice = advice.unwrap_or_default();

@@ -10,7 +10,8 @@ use isosheet_mesh::origami;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Miura's crease pattern, with mountains and valleys.
+/// Miura's crease pattern, with mountains and valleys (K. Miura, *Method of packaging and deployment of large
+/// membranes in space*, 1985).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Miura {
@@ -51,7 +52,8 @@ pub enum AlikeCreases {
 }
 
 /// The waterbomb tessellation: a rectangle of squares whose diagonals are valleys and whose sides and middle
-/// lines are mountains. Odd rows are moved by half a square.
+/// lines are mountains. Odd rows are moved by half a square. The pattern is that of Y. Chen, H. Feng, J. Ma,
+/// R. Peng and Z. You, *Symmetric waterbomb origami*, Proc. R. Soc. A 472, 2016.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Waterbomb {
@@ -63,7 +65,9 @@ pub struct Waterbomb {
     pub side: f64,
 }
 
-/// Yoshimura's pattern: bands of isosceles triangles, whose bases are valleys and whose sides are mountains.
+/// Yoshimura's pattern: bands of isosceles triangles, whose bases are valleys and whose sides are mountains
+/// (Y. Yoshimura, *On the mechanism of buckling of a circular cylindrical shell under axial compression*,
+/// NACA TM 1390, 1955).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Yoshimura {
@@ -77,7 +81,8 @@ pub struct Yoshimura {
     pub height: f64,
 }
 
-/// Kresling's pattern: parallelograms whose sides are mountains and whose longer diagonals are valleys.
+/// Kresling's pattern: parallelograms whose sides are mountains and whose longer diagonals are valleys (B.
+/// Kresling, *Natural twist buckling in shells*, IASS-IACM 2008).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Kresling {
@@ -93,7 +98,9 @@ pub struct Kresling {
     pub angle: f64,
 }
 
-/// The pleated hyperbolic paraboloid: concentric squares about the origin, mountains and valleys in turn.
+/// The pleated hyperbolic paraboloid: concentric squares about the origin, mountains and valleys in turn. The
+/// trapezoids between them are cut as in E. Demaine, M. Demaine, V. Hart, G. Price and T. Tachi,
+/// *(Non)existence of pleated folds*, Graphs and Combinatorics 27, 2011.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hypar {

@@ -95,7 +95,8 @@ pub enum Bending {
 #[serde(default, deny_unknown_fields)]
 pub struct Start {
     /// A mesh file with the vertices and faces of `mesh` in the same order, whose positions are those at the
-    /// start. It is placed as the rest shape is.
+    /// start. It is placed as the rest shape is. With rigid rods, lengths that differ from the rest lengths
+    /// by up to 1e-4 of these, as in files of six digits, are corrected by moving the vertices.
     pub file: Option<MeshFile>,
     /// Size of a random displacement of all free vertices, as a part of the mean edge length, from 0 to 1:
     /// conservative methods cannot start from a flat sheet under load.

@@ -6,6 +6,7 @@ use super::form::misplaced_lists;
 use super::problem::{Key, Problem};
 use super::toml_problem::{syntax_problem, toml_problem};
 use super::{Scene, Setup};
+use crate::format::MeshFormat;
 use isosheet_mesh::{Advice, generate::FoldAssignment};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -31,6 +32,12 @@ pub enum SceneFileError {
         /// What the system said.
         source: io::Error,
     },
+    /// The file is a mesh file by its name.
+    #[error("{} is a mesh file and no scene", path.display())]
+    Mesh {
+        /// The file.
+        path: PathBuf,
+    },
     /// An edit cannot be made.
     #[error(transparent)]
     Edit(#[from] EditError),
@@ -42,10 +49,23 @@ pub enum SceneFileError {
 impl Advice for SceneFileError {
     fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::Read { .. } => Some("check the path"),
+            Self::Read { .. } => Some("check the path and the permissions"),
+            Self::Mesh { .. } => Some(
+                "name it in a scene, `mesh = { file = { path = ... } }`: `isosheet new` writes a scene to start from",
+            ),
             Self::Edit(error) => error.advice(),
             Self::Scene(error) => error.advice(),
         }
+    }
+}
+
+/// Refuses what is a mesh file by its name: as TOML it is wrong in a way that helps nobody.
+fn refuse_mesh(path: &Path) -> Result<(), SceneFileError> {
+    match MeshFormat::of(path) {
+        None => Ok(()),
+        Some(_) => Err(SceneFileError::Mesh {
+            path: path.to_owned(),
+        }),
     }
 }
 
@@ -55,6 +75,7 @@ impl SceneFile {
     /// # Errors
     /// [`SceneFileError`], with all problems that were found.
     pub fn read(path: &Path, edits: &[String]) -> Result<Self, SceneFileError> {
+        refuse_mesh(path)?;
         let text = std::fs::read_to_string(path).map_err(|source| SceneFileError::Read {
             path: path.to_owned(),
             source,
@@ -67,6 +88,7 @@ impl SceneFile {
     /// # Errors
     /// As [`SceneFile::read`].
     pub fn parse(text: String, path: &Path, edits: &[String]) -> Result<Self, SceneFileError> {
+        refuse_mesh(path)?;
         let mut text = SceneText {
             path: path.to_owned(),
             text,

@@ -7,7 +7,9 @@
 use isosheet_io::dynamics::{Checkpoint, Method, SheetModel, Simulation, State};
 use isosheet_io::mesh::{MassKind, VertexId, generate};
 use isosheet_io::scene::{Mesh, Outline, OutlineShape, Scene, SceneFile};
-use isosheet_io::{MeshFile, MeshFormat, MeshOptions, Polygons, SeparateBuffers, parse_mesh};
+use isosheet_io::{
+    FoldFrame, MeshFile, MeshFormat, MeshOptions, Polygons, SeparateBuffers, parse_mesh,
+};
 use std::path::Path;
 
 /// A reader under test.
@@ -66,7 +68,7 @@ fn mesh(data: &[u8], format: MeshFormat) {
     let other = MeshOptions {
         polygons: Polygons::Refuse,
         weld: Some(1e-3),
-        frame: Some(1),
+        frame: (format == MeshFormat::Fold).then_some(FoldFrame::Number(1)),
         mesh: None,
         buffers: SeparateBuffers::Refuse,
     };
@@ -157,6 +159,11 @@ fn is_small(scene: &Scene) -> bool {
             rings.saturating_mul(*rings).saturating_mul(sides)
         }
         Mesh::DegreeFour(_) => 4,
+        Mesh::Waterbomb(pattern) => pattern.columns.saturating_mul(pattern.rows),
+        Mesh::Yoshimura(pattern) => pattern.columns.saturating_mul(pattern.rows),
+        Mesh::Kresling(pattern) => pattern.columns.saturating_mul(pattern.rows),
+        Mesh::Hypar(pattern) => pattern.rings.saturating_mul(4),
+        Mesh::SquareTwist(_) => 13,
         _ => usize::MAX,
     };
     cells <= MOST && scene.files().is_empty()

@@ -4,7 +4,7 @@ use crate::{code, run, stderr};
 use isosheet_io::run::Recording;
 use isosheet_io::scene::StartingPoint;
 use isosheet_io::{
-    EdgeAssignment, ExportMeshFormat, MeshFormat, MeshOptions, SeriesFormat, read_mesh,
+    EdgeAssignment, ExportMeshFormat, FoldFrame, MeshFormat, MeshOptions, SeriesFormat, read_mesh,
     read_mesh_with,
 };
 use std::fs;
@@ -61,6 +61,69 @@ fn mesh_files_are_converted() {
     assert!(!dir.join("g.ply").exists());
 }
 
+/// A file whose name says another format than it has, and mesh files where scenes are meant.
+#[test]
+fn files_of_the_wrong_kind_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    for name in [
+        "a.obj", "a.off", "a.stl", "a.ply", "a.fold", "a.glb", "a.gltf",
+    ] {
+        fs::write(dir.join(name), square).unwrap();
+    }
+    for (arguments, exit, parts) in [
+        (
+            ["convert", "a.off", "b.obj"],
+            3,
+            ["keyword OFF", "found \"v\""],
+        ),
+        (["convert", "a.stl", "b.obj"], 3, ["cut short", "a.stl"]),
+        (
+            ["convert", "a.ply", "b.obj"],
+            3,
+            ["line 1: expected the word ply", "found \"v 0 0 0\""],
+        ),
+        (
+            ["convert", "a.fold", "b.obj"],
+            3,
+            ["not valid FOLD", "line 1"],
+        ),
+        (
+            ["convert", "a.glb", "b.obj"],
+            3,
+            ["not valid glTF", "line 1"],
+        ),
+        (
+            ["convert", "a.gltf", "b.obj"],
+            3,
+            ["not valid glTF", "line 1"],
+        ),
+        (
+            ["convert", "a.obj", "b.png"],
+            6,
+            [".png is no format", "the folder of a run"],
+        ),
+        (
+            ["simulate", "--out=r", "a.obj"],
+            3,
+            ["a.obj is a mesh file and no scene", "mesh = { file"],
+        ),
+    ] {
+        let said = refused(dir, &arguments, exit);
+        for part in parts {
+            assert!(said.contains(part), "{arguments:?}: {part}: {said}");
+        }
+    }
+    let sweep = ["sweep", "a.obj", "--over", "stop.time=1,2"];
+    assert!(refused(dir, &sweep, 3).contains("a mesh file and no scene"));
+    let said = refused(dir, &["info", "a.obj"], 3);
+    assert!(
+        said.contains("isosheet convert") && !said.contains("Polygons"),
+        "{said}"
+    );
+}
+
 #[test]
 fn runs_are_converted() {
     let dir = tempfile::tempdir().unwrap();
@@ -88,7 +151,7 @@ fn runs_are_converted() {
         assert!(said.contains(&format!(": {frames} frames")), "{said}");
     }
     let last = MeshOptions {
-        frame: Some(frames - 1),
+        frame: Some(FoldFrame::Number(frames - 1)),
         ..MeshOptions::default()
     };
     let mesh = read_mesh_with(&dir.join("out.fold"), &last).unwrap();

@@ -1,6 +1,6 @@
 //! Galleries of runs.
 
-use crate::{code, run, started, stderr};
+use crate::{code, isosheet, run, started, stderr};
 use isosheet_io::read_json;
 use isosheet_io::run::GalleryEntry;
 use isosheet_io::scene::StartingPoint;
@@ -102,6 +102,50 @@ fn a_gallery_shows_every_run_beneath_its_folders_and_needs_nothing_else() {
             "{file}"
         );
     }
+}
+
+/// A process that is killed leaves pages without a list of them, and an unfinished file wherever it was
+/// writing.
+#[test]
+fn a_killed_gallery_is_made_by_the_same_command() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    write_scene(dir, StartingPoint::Fold);
+    for k in 0..4 {
+        let out = format!("runs/{k}");
+        let arguments = ["simulate", "scene.toml", "--out", &out];
+        let done = run(dir, &[&arguments[..], &["--set", "stop.time=0.1"]].concat());
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    }
+    let command = ["gallery", "runs", "--out", "shown"];
+    let shown = dir.join("shown");
+    let mut child = isosheet(dir).args(command).spawn().unwrap();
+    while !shown.join("runs/0.html").is_file() {
+        assert!(child.try_wait().unwrap().is_none(), "four runs take longer");
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(!shown.join("gallery.json").exists());
+    // Where the kill came while the list was written.
+    fs::write(shown.join(".tmpA1b2C3.part"), "<!doctype html>").unwrap();
+    fs::write(shown.join("runs/.tmpD4e5F6.part"), "<!doctype html>").unwrap();
+
+    let made = run(dir, &command);
+    assert_eq!(code(&made), Some(0), "{}", stderr(&made));
+    let entries: Vec<GalleryEntry> = read_json(&shown.join("gallery.json")).unwrap();
+    assert_eq!(entries.len(), 4);
+    let count = |folder: &Path| fs::read_dir(folder).unwrap().count();
+    assert_eq!(
+        (count(&shown), count(&shown.join("runs"))),
+        (3, 8),
+        "index, data and folder; two files a run"
+    );
+
+    // Hidden files of other programs are nobody's unfinished ones.
+    fs::create_dir(dir.join("other")).unwrap();
+    fs::write(dir.join("other/.profile"), "").unwrap();
+    let refused = run(dir, &["gallery", "runs", "--out", "other"]);
+    assert_eq!(code(&refused), Some(4), "{}", stderr(&refused));
 }
 
 #[test]

@@ -18,7 +18,7 @@ const ALL_KEYS: [&str; 5] = [
     bending = { plate = { rigidity = 1e-3 } }
     damping = 1.0
     placement = { position = [0, 0, 1], turn = { axis = [0, 0, 1], angle = 45 } }
-    start = { perturbation = 0.01, seed = 3, file = { path = "a.obj", scale = 1.0, up = "y", polygons = "refuse" } }
+    start = { perturbation = 0.01, seed = 3, file = { path = "a.obj", scale = 1.0, up = "y", polygons = "refuse", frame = "folded" } }
     [[crease]]
     at = { ends = [[0, 1]] }
     stiffness = 0.1

@@ -1,8 +1,8 @@
 //! Folding to the angles of FOLD files.
 
 use isosheet_io::mesh::generate::{FoldAssignment, FoldPattern, miura, miura_zigzags};
-use isosheet_io::mesh::{fold_angle, origami};
-use isosheet_io::scene::{FoldResidual, SceneFile};
+use isosheet_io::mesh::{VertexId, fold_angle, origami};
+use isosheet_io::scene::{FoldResidual, SceneFile, Setup};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -170,6 +170,191 @@ fn a_frame_in_space_is_a_target() {
     let residual = folded(dir.path(), &fold, "frame = 1");
     assert!(residual.largest < 1e-3, "{residual:?}");
     assert_eq!(residual.creases, 24);
+}
+
+/// A file with a crease pattern of quads and its folded form. Each quad is a rectangle in the flat and a rectangle in
+/// the folded frame, and the faces of the flat frame are clockwise, as some programs write them.
+fn bent_strip() -> Value {
+    let (c, s) = (0.5, 0.75_f64.sqrt());
+    json!({
+        "file_spec": 1.1, "frame_title": "flat", "frame_classes": ["creasePattern"],
+        "vertices_coords": [[0, 0], [0.2, 0], [0.4, 0], [0, 0.1], [0.2, 0.1], [0.4, 0.1]],
+        "faces_vertices": [[3, 4, 1, 0], [4, 5, 2, 1]],
+        "edges_vertices": [[0, 1], [1, 2], [2, 5], [5, 4], [4, 3], [3, 0], [1, 4]],
+        "edges_assignment": ["B", "B", "B", "B", "B", "B", "V"],
+        "edges_foldAngle": [0, 0, 0, 0, 0, 0, 30],
+        "file_frames": [{
+            "frame_title": "folded", "frame_classes": ["foldedForm"],
+            "frame_inherit": true, "frame_parent": 0,
+            "vertices_coords": [
+                [0, 0, 0], [0.2, 0, 0], [0.2 + 0.2 * c, 0, 0.2 * s],
+                [0, 0.1, 0], [0.2, 0.1, 0], [0.2 + 0.2 * c, 0.1, 0.2 * s],
+            ],
+        }],
+    })
+}
+
+fn of_frames(folder: &Path, mesh: &str, start: &str, more: &str) -> Result<SceneFile, String> {
+    fs::write(folder.join("strip.fold"), bent_strip().to_string()).unwrap();
+    let file = "path = \"strip.fold\", polygons = \"triangulate\"";
+    let text = format!(
+        "version = 1
+        [sheet]
+        mesh = {{ file = {{ {file} {mesh} }} }}
+        start = {{ file = {{ {file} {start} }} }}
+        {more}"
+    );
+    SceneFile::parse(text, &folder.join("scene.toml"), &[]).map_err(|e| e.to_string())
+}
+
+/// One file has the rest shape in a frame and the start in another one, by number or by title.
+#[test]
+fn rest_shape_and_start_are_frames_of_one_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let crease = |x: &[f64], t: &isosheet_io::mesh::Topology| {
+        let e = t.find_edge(VertexId(1), VertexId(4)).unwrap();
+        fold_angle(t, x, e).unwrap().to_degrees()
+    };
+    for (mesh, start) in [
+        ("", ", frame = 1"),
+        (", frame = 0", ", frame = \"folded\""),
+        (", frame = \"flat\"", ", frame = \"folded\""),
+    ] {
+        let scene = of_frames(dir.path(), mesh, start, "").unwrap();
+        let setup = scene.build().unwrap_or_else(|e| panic!("{e}"));
+        let t = setup.sheet.topology();
+        assert_eq!(crease(setup.sheet.positions(), t), 0.0);
+        let angle = crease(&setup.start.x, t);
+        assert!((angle - 60.0).abs() < 1e-9, "{angle}");
+        setup.start().unwrap();
+    }
+    // The other way round: a sheet that is at rest in the folded form.
+    let scene = of_frames(dir.path(), ", frame = 1", ", frame = 0", "").unwrap();
+    let setup = scene.build().unwrap();
+    let t = setup.sheet.topology();
+    assert!((crease(setup.sheet.positions(), t).abs() - 60.0).abs() < 1e-9);
+    assert_eq!(crease(&setup.start.x, t), 0.0);
+}
+
+/// A folded form in a file of six digits has the rest lengths up to rounding, and gets them; other lengths
+/// are refused.
+#[test]
+fn rounded_starts_are_corrected_and_stretched_ones_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = of_frames(dir.path(), "", ", frame = 1", "").unwrap();
+    let built = |digits: f64| {
+        let mut fold = bent_strip();
+        let points = fold["file_frames"][0]["vertices_coords"].as_array_mut();
+        for c in points
+            .unwrap()
+            .iter_mut()
+            .flat_map(|p| p.as_array_mut().unwrap())
+        {
+            *c = json!((c.as_f64().unwrap() * digits).round() / digits);
+        }
+        fs::write(dir.path().join("strip.fold"), fold.to_string()).unwrap();
+        scene.build().unwrap()
+    };
+    let strain = |setup: &Setup| {
+        let (t, x) = (setup.sheet.topology(), &setup.start.x);
+        let length = |[a, b]: [VertexId; 2]| {
+            let d = |k: usize| x[3 * a.index() + k] - x[3 * b.index() + k];
+            (d(0) * d(0) + d(1) * d(1) + d(2) * d(2)).sqrt()
+        };
+        let errors = t.edges().iter().zip(setup.sheet.lengths());
+        errors
+            .map(|(&e, l)| (length(e) / l - 1.0).abs())
+            .fold(0.0, f64::max)
+    };
+    let setup = built(1e6);
+    assert!(strain(&setup) < 1e-12, "{}", strain(&setup));
+    // Vertices move by as much as they were rounded, about.
+    let exact = 0.2 * 0.75_f64.sqrt();
+    assert!((setup.start.x[3 * 2 + 2] - exact).abs() < 2e-6);
+    setup.start().unwrap();
+    let setup = built(1e2);
+    assert!(strain(&setup) > 1e-3);
+    let said = setup.start().err().unwrap().to_string();
+    assert!(said.contains("its rest length is"), "{said}");
+}
+
+/// Without a frame of its own, folding takes the angles of the frame that is the mesh.
+#[test]
+fn folding_takes_the_frame_of_the_mesh() {
+    let dir = tempfile::tempdir().unwrap();
+    let folding = "[folding]\ntime = 1.0\nstiffness = 0.01\n";
+    let angle = |mesh: &str, frame: &str| {
+        let scene = of_frames(
+            dir.path(),
+            mesh,
+            ", frame = 1",
+            &format!("{folding}{frame}"),
+        );
+        let setup = scene.unwrap().build().unwrap_or_else(|e| panic!("{e}"));
+        let targets = setup.folding.unwrap().creases;
+        assert_eq!(targets.len(), 1);
+        targets[0].1.to_degrees()
+    };
+    for (mesh, frame, expected) in [
+        ("", "", 30.0),
+        ("", "frame = \"flat\"", 30.0),
+        ("", "frame = \"folded\"", 60.0),
+        (", frame = \"flat\"", "", 30.0),
+    ] {
+        let angle = angle(mesh, frame);
+        assert!((angle - expected).abs() < 1e-9, "{mesh} {frame}: {angle}");
+    }
+}
+
+#[test]
+fn frames_that_do_not_exist_are_answered_with_those_that_do() {
+    let dir = tempfile::tempdir().unwrap();
+    let frames = "the frames of the file are 0 \"flat\" (creasePattern), 1 \"folded\" (foldedForm)";
+    let said = |mesh: &str, start: &str, more: &str| {
+        let scene = of_frames(dir.path(), mesh, start, more);
+        match scene.map(|scene| scene.build()) {
+            Err(said) => (said, String::new()),
+            Ok(Err(error)) => (error.to_string(), error.placed()[0].key.to_string()),
+            Ok(Ok(_)) => panic!("{mesh} {start} {more} is accepted"),
+        }
+    };
+    let folding = "[folding]\ntime = 1.0\nstiffness = 0.01\nframe = \"shut\"";
+    for ((said, place), key, wanted) in [
+        (
+            said(", frame = 2", "", ""),
+            "sheet.mesh.file.frame",
+            "no frame 2",
+        ),
+        (
+            said("", ", frame = \"Folded\"", ""),
+            "sheet.start.file.frame",
+            "no frame \"Folded\"",
+        ),
+        (said("", "", folding), "folding.frame", "no frame \"shut\""),
+    ] {
+        assert_eq!(place, key);
+        assert!(said.contains(wanted) && said.contains(frames), "{said}");
+    }
+    for wrong in [", frame = -1", ", frame = true", ", frame = 0.5"] {
+        let (said, _) = said(wrong, "", "");
+        assert!(
+            said.contains("the number of a frame of a FOLD file, from 0, or its title"),
+            "{said}"
+        );
+    }
+    let text = "version = 1\n[sheet]\nmesh = { file = { path = \"a.obj\", frame = 0 } }";
+    fs::write(
+        dir.path().join("a.obj"),
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+    )
+    .unwrap();
+    let scene = SceneFile::parse(text.into(), &dir.path().join("scene.toml"), &[]).unwrap();
+    let error = scene.build().unwrap_err();
+    assert_eq!(error.placed()[0].key, "sheet.mesh.file.frame");
+    assert!(
+        error.to_string().contains("only FOLD files have frames"),
+        "{error}"
+    );
 }
 
 #[test]

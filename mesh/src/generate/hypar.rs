@@ -14,11 +14,12 @@ use crate::Sheet;
 /// corner 2, since two straight creases that cross cannot fold together.
 ///
 /// The trapezoids between two squares are cut in two, in one sense of rotation between even squares and in
-/// the other one between odd ones, and these cuts are flat edges: a sheet whose trapezoids stay flat does
-/// not fold at all (Demaine, Demaine, Hart, Price and Tachi, *(Non)existence of pleated folds*, Graphs and
-/// Combinatorics 27, 2011, which has the pattern and the alternating triangulation). At every corner of the
-/// squares 2 to `rings - 1` the sectors are 45, 45, 135 and 135 degrees, and the corner can be folded flat;
-/// the corners 1 and 3 of the innermost square cannot, since they have three creases.
+/// the other one between odd ones, and these cuts are flat edges: a sheet whose trapezoids stay flat does not
+/// fold at all (Demaine, Demaine, Hart, Price and Tachi, *(Non)existence of pleated folds: how paper folds
+/// between creases*, Graphs and Combinatorics 27, 2011, 377-397, which has the pattern and the alternating
+/// triangulation). At every corner of the squares 2 to `rings - 1` the sectors are 45, 45, 135 and 135
+/// degrees, and the corner can be folded flat; the corners 1 and 3 of the innermost square cannot, since they
+/// have three creases.
 ///
 /// # Errors
 /// [`GenerateError`] for no ring, a length that is not positive, or too many faces.

@@ -8,12 +8,13 @@ use std::f64::consts::FRAC_PI_2;
 /// Kresling's pattern, flat: `columns` x `rows` parallelograms with sides `base` along x and `side`
 /// (metres) and the acute angle `angle` (radians) between them, each cut in two along its longer diagonal.
 ///
-/// Vertex (i, j) has the index `i + j (columns + 1)` and lies at `x = base i + side cos(angle) j` and
-/// `y = side sin(angle) j`. The diagonals, from (i, j) to (i + 1, j + 1), are valleys; bases and sides are
-/// mountains (Kresling, *Natural twist buckling in shells*, IASS-IACM 2008; Guest and Pellegrino, *The
-/// folding of triangulated cylinders*, J. Appl. Mech. 61, 1994). All triangles are congruent: the sectors
-/// at an inner vertex are the three angles of a triangle, twice in the same order, so that every inner
-/// vertex can be folded flat.
+/// Vertex (i, j) has the index `i + j (columns + 1)` and lies at `x = base i + side cos(angle) j` and `y =
+/// side sin(angle) j`. The diagonals, from (i, j) to (i + 1, j + 1), are valleys; bases and sides are
+/// mountains (Kresling, *Natural twist buckling in shells: from the hawkmoth's bellows to the deployable
+/// Kresling-pattern and cylindrical Miura-ori*, Proceedings of IASS-IACM 2008; Guest and Pellegrino, *The
+/// folding of triangulated cylinders*, J. Appl. Mech. 61, 1994). All triangles are congruent: the sectors at
+/// an inner vertex are the three angles of a triangle, twice in the same order, so that every inner vertex
+/// can be folded flat.
 ///
 /// # Errors
 /// [`GenerateError`] for a count of zero, a length that is not positive, an angle that is not between 0

@@ -83,7 +83,7 @@ impl FoldPattern {
 /// 1), its zigzag creases from (i, j) to (i + 1, j), where odd i lie `zigzag cos(angle)` further along y.
 /// Zigzag j is a valley for even j and a mountain for odd j; the straight crease from (i, j) folds like
 /// zigzag j if i is odd and the other way if i is even (Miura, *Method of packaging and deployment of large
-/// membranes in space*, 1985).
+/// membranes in space*, Report 618 of the Institute of Space and Astronautical Science, Tokyo, 1985).
 ///
 /// # Errors
 /// [`GenerateError`] for a count of zero, a length that is not positive, an angle that is not between 0 and

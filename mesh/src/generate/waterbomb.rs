@@ -7,12 +7,12 @@ use crate::Sheet;
 /// The waterbomb tessellation, flat: a rectangle of `rows` rows with `columns` squares each, of the given
 /// side (metres). Odd rows are moved by half a square, and have half a square at either end.
 ///
-/// The creases of a square are its sides, its two diagonals and its middle line along y. Vertex (i, j) of
-/// the corners and ends of middle lines has the index `i + j (2 columns + 1)` and lies at
-/// `x = side i / 2`, `y = side j`; the centres of the squares follow, row by row. Diagonals are valleys,
-/// all other creases mountains (Chen, Feng, Ma, Peng and You, *Symmetric waterbomb origami*, Proc. R. Soc.
-/// A 472, 2016). The sectors at a centre are 45, 90, 45, 45, 90, 45 degrees, those at any other inner
-/// vertex 90, 90 and four times 45 degrees: every inner vertex can be folded flat.
+/// The creases of a square are its sides, its two diagonals and its middle line along y. Vertex (i, j) of the
+/// corners and ends of middle lines has the index `i + j (2 columns + 1)` and lies at `x = side i / 2`, `y =
+/// side j`; the centres of the squares follow, row by row. Diagonals are valleys, all other creases mountains
+/// (Chen, Feng, Ma, Peng and You, *Symmetric waterbomb origami*, Proc. R. Soc. A 472, 2016, 20150846). The
+/// sectors at a centre are 45, 90, 45, 45, 90, 45 degrees, those at any other inner vertex 90, 90 and four
+/// times 45 degrees: every inner vertex can be folded flat.
 ///
 /// # Errors
 /// [`GenerateError`] for a count of zero, a length that is not positive, or too many faces.

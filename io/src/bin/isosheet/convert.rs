@@ -8,8 +8,8 @@ use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::run::Recording;
 use isosheet_io::{
-    Advice, ExportError, Exported, MOST_KEY_FRAMES, MeshFile, MeshOptions, Series, SeriesOptions,
-    Trajectory, read_mesh_with, write_mesh, write_series,
+    Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshOptions, Series,
+    SeriesOptions, Trajectory, read_mesh_with, write_mesh, write_series,
 };
 use std::path::{Path, PathBuf};
 
@@ -89,7 +89,7 @@ impl Convert {
         }
         let options = MeshOptions {
             weld: self.weld,
-            frame: self.frame,
+            frame: self.frame.map(FoldFrame::Number),
             ..MeshOptions::default()
         };
         let mesh = read_mesh_with(&self.input, &options).map_err(|e| input(&e))?;
@@ -125,7 +125,8 @@ impl Convert {
             let failure = output(&error);
             match error {
                 ExportError::Extension { .. } => failure.remedy(
-                    "choose a known format; formats of meshes take one frame, with `--frame K`",
+                    "choose a known format, or .png, .svg or .apng for pictures of the folder of a run; formats \
+                     of meshes take one frame, with `--frame K`",
                 ),
                 _ => failure,
             }
@@ -146,7 +147,15 @@ impl Convert {
     }
 
     fn write_mesh(&self, mesh: &MeshFile) -> Done {
-        write_mesh(&self.output, mesh).map_err(|e| output(&e))?;
+        write_mesh(&self.output, mesh).map_err(|error| {
+            let failure = output(&error);
+            match error {
+                ExportError::Extension { .. } => failure.remedy(
+                    "choose a known format; pictures and the formats of moving sheets are made of the folder of a run",
+                ),
+                _ => failure,
+            }
+        })?;
         let changes = mesh.changes;
         let notes = [
             (mesh.polygons, "polygons cut into triangles"),

@@ -47,6 +47,10 @@ impl Info {
                 let remedy = format!("`isosheet check {}` says more", self.file.display());
                 Failure::new(Code::Input, e).remedy(remedy)
             }
+            MeshFileProblem::Polygon { .. } => {
+                let remedy = "`isosheet convert` cuts polygons into triangles";
+                Failure::new(Code::Input, e).remedy(remedy)
+            }
             _ => Failure::of(Code::Input, &e),
         })?;
         let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped)

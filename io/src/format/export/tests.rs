@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::format::Trajectory;
-use crate::{EdgeAssignment, MeshFormat, MeshOptions, parse_mesh, read_mesh, read_mesh_with};
+use crate::{
+    EdgeAssignment, FoldFrame, MeshFormat, MeshOptions, parse_mesh, read_mesh, read_mesh_with,
+};
 use isosheet_mesh::generate::{self, Diagonals, FoldAssignment};
 use isosheet_mesh::{Sheet, Topology, fold_angle};
 use std::fs;
@@ -159,7 +161,7 @@ fn fold_series_have_the_fold_angles_of_the_mesh() {
     );
     for frame in 0..5 {
         let options = MeshOptions {
-            frame: Some(frame),
+            frame: Some(FoldFrame::Number(frame)),
             ..MeshOptions::default()
         };
         let mesh = read_mesh_with(&path, &options).unwrap();

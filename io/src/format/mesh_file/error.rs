@@ -74,6 +74,9 @@ pub enum MeshFileProblem {
         /// The value.
         tolerance: f64,
     },
+    /// A frame was asked for in a file that is no FOLD file.
+    #[error("a frame is asked for, and only FOLD files have frames")]
+    NoFrames,
     /// The file could not be opened or read.
     #[error("cannot read the file: {0}")]
     Read(std::io::Error),
@@ -217,7 +220,7 @@ pub enum MeshFileProblem {
         problem: String,
     },
     /// A FOLD file is no JSON, or its arrays are not what the format has.
-    #[error("{0}")]
+    #[error("the file is not valid FOLD: {0}")]
     Json(serde_json::Error),
     /// What a FOLD file says does not fit together.
     #[error(transparent)]
@@ -237,7 +240,8 @@ impl Advice for MeshFileProblem {
             Self::WeldTolerance { .. } => {
                 Some("give a length of 0 or more in the unit of the file")
             }
-            Self::Read(..) => Some("check the path"),
+            Self::NoFrames => Some("leave the frame out"),
+            Self::Read(..) => Some("check the path and the permissions"),
             Self::Empty | Self::Truncated { .. } => Some("copy or export it again"),
             Self::NotObj { .. } => Some("check that it is an OBJ file"),
             Self::NoFaces { .. } => Some("export it with its faces"),
@@ -258,9 +262,9 @@ impl Advice for MeshFileProblem {
             Self::Syntax { .. } | Self::Ply(..) | Self::Stl { .. } | Self::Json(..) => {
                 Some("correct the file or export it again")
             }
-            Self::Announced { .. } => {
-                Some("the file is damaged or was cut short: copy or export it again")
-            }
+            Self::Announced { .. } => Some(
+                "the file is damaged, was cut short or has another format than its name says: copy or export it again",
+            ),
             Self::Fold(error) => error.advice(),
             Self::Gltf(error) => error.advice(),
             Self::Mesh(error) => error.advice(),

@@ -8,6 +8,7 @@ mod problem;
 #[cfg(test)]
 mod tests;
 
+pub use frames::FoldFrame;
 pub use problem::FoldProblem;
 
 use super::error::{Located, MeshFileProblem, Place};
@@ -25,7 +26,7 @@ use frames::Frame;
 /// - Fold angles are degrees in the file.
 pub(super) fn parse(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Located> {
     let plain = |problem| (None, problem);
-    let frame = frames::read(bytes, options.frame).map_err(plain)?;
+    let frame = frames::read(bytes, options.frame.as_ref()).map_err(plain)?;
     let mut polyhedron = Polyhedron::default();
     add_vertices(&frame, &mut polyhedron).map_err(plain)?;
     let vertices = polyhedron.positions.len() / 3;

@@ -16,7 +16,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum GltfProblem {
     /// The file breaks the rules of the format.
-    #[error("{0}")]
+    #[error("the file is not valid glTF: {0}")]
     Format(String),
     /// The file needs an extension that is not supported, such as compressed meshes.
     #[error("the file needs the extension {name}, which is not supported")]

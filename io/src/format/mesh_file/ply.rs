@@ -8,6 +8,9 @@ use ply_rs_bw::ply::{
     ScalarType,
 };
 
+/// The first bytes of every PLY file.
+const MAGIC: &[u8] = b"ply";
+
 /// Reads the vertices and faces of a PLY file, text or binary of either byte order: the properties `x`, `y`
 /// and `z` of the element `vertex` and the list `vertex_indices` or `vertex_index` of the element `face`.
 /// Everything else is skipped.
@@ -15,6 +18,14 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polyhedron, Located> {
     let mut mesh = Polyhedron::default();
     if bytes.is_empty() {
         return Ok(mesh);
+    }
+    if !bytes.starts_with(MAGIC) {
+        let first: String = bytes.iter().take(20).map(|&b| char::from(b)).collect();
+        let problem = MeshFileProblem::Syntax {
+            expected: "the word ply".to_owned(),
+            found: first.lines().next().unwrap_or_default().to_owned(),
+        };
+        return Err((Some(Place::Line(1)), problem));
     }
     let parser = Parser::<Row>::new();
     let mut reader = Reader::new(bytes);

@@ -2,9 +2,13 @@
 
 type Point = [f64; 3];
 
+/// Part of the shortest cuts by which cuts may be longer and count as equal: above the round-off of
+/// coordinates of seven digits. A rectangle has the same cuts in every position then, flat and folded.
+const EQUAL_CUTS: f64 = 1e-6;
+
 /// Cuts a polygon into triangles that all contain one of its corners and are turned like the polygon as a
 /// whole; `None` when no corner sees all the others. A quad is cut along the shorter diagonal if both will
-/// do.
+/// do; of equal ones, that with the smallest vertex number.
 pub(crate) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<Vec<[u32; 3]>> {
     let n = corners.len();
     let points: Vec<Point> = corners.iter().map(|&c| at(c)).collect();
@@ -16,15 +20,18 @@ pub(crate) fn triangulate(corners: &[u32], at: impl Fn(u32) -> Point) -> Option<
     let good = |start: usize| {
         fan(start).all(|[a, b, c]| dot(turn(points[a], points[b], points[c]), whole) > 0.0)
     };
-    // The length of the cuts decides among the corners that will do; the first of the shortest wins.
+    // The length of the cuts decides among the corners that will do.
     let cuts = |start: usize| {
         (2..n - 1)
             .map(|k| distance(points[start], points[(start + k) % n]))
             .sum::<f64>()
     };
-    let start = (0..n)
-        .filter(|&s| good(s))
-        .min_by(|&a, &b| cuts(a).total_cmp(&cuts(b)))?;
+    let candidates: Vec<(usize, f64)> = (0..n).filter(|&s| good(s)).map(|s| (s, cuts(s))).collect();
+    let shortest = candidates.iter().map(|c| c.1).min_by(f64::total_cmp)?;
+    let equal = candidates
+        .iter()
+        .filter(|c| c.1 <= (1.0 + EQUAL_CUTS) * shortest);
+    let start = equal.map(|c| c.0).min_by_key(|&s| corners[s])?;
     Some(fan(start).map(|t| t.map(|k| corners[k])).collect())
 }
 
@@ -81,6 +88,28 @@ mod tests {
         ];
         let triangles = cut(&arrow).unwrap();
         assert!(triangles.iter().all(|t| t.contains(&1) && t.contains(&3)));
+    }
+
+    /// Both diagonals of a rectangle have the same length up to round-off, which depends on its position.
+    #[test]
+    fn rectangles_are_cut_alike_in_every_position() {
+        let corners = [7, 3, 9, 5];
+        let expected = [[3, 9, 5], [3, 5, 7]];
+        for k in 0..40 {
+            let (s, c) = (0.157 * f64::from(k)).sin_cos();
+            let turned = |x: f64, y: f64| [0.3 * k as f64 + x, c * y, s * y];
+            let points = [(0.0, 0.0), (0.1, 0.0), (0.1, 0.3), (0.0, 0.3)];
+            // As a file of seven digits has them.
+            let points = points.map(|(x, y)| turned(x, y).map(|p| (1e7 * p).round() / 1e7));
+            let at = |c: u32| points[corners.iter().position(|&d| d == c).unwrap()];
+            assert_eq!(triangulate(&corners, at).unwrap(), expected, "position {k}");
+            let reversed = [5, 9, 3, 7];
+            let cuts = triangulate(&reversed, at).unwrap();
+            assert!(
+                cuts.iter().all(|t| t.contains(&3) && t.contains(&5)),
+                "{cuts:?}"
+            );
+        }
     }
 
     #[test]

@@ -274,7 +274,10 @@ fn defects_of_stl_files_name_their_byte_or_facet() {
 #[test]
 fn defects_of_ply_files_name_their_place() {
     let ply = |text: &str| problem(MeshFormat::Ply, text.as_bytes());
-    assert!(matches!(ply("plx\n"), (Some(Place::Line(1)), P::Ply(_))));
+    assert!(matches!(
+        ply("plx\n"),
+        (Some(Place::Line(1)), P::Syntax { .. })
+    ));
     let many = TEXT_PLY.replace("vertex 4", "vertex 4000000000");
     assert!(matches!(
         ply(&many),

@@ -3,12 +3,39 @@
 use super::FoldProblem;
 use crate::format::mesh_file::MeshFileProblem;
 use crate::format::mesh_file::error::excerpt;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// A frame of a FOLD file: its number, from 0, or its title in quotes. Frame 0 is the key frame, whose keys
+/// are those of the file itself; frame 1 is the first entry of `file_frames`. A title is the `frame_title` of
+/// one frame.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "scene", derive(schemars::JsonSchema))]
+#[serde(
+    untagged,
+    expecting = "expected the number of a frame of a FOLD file, from 0, or its title in quotes"
+)]
+pub enum FoldFrame {
+    /// The number, from 0.
+    Number(usize),
+    /// The title.
+    Title(String),
+}
+
+impl fmt::Display for FoldFrame {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Title(title) => write!(f, "{title:?}"),
+        }
+    }
+}
 
 /// What is used of a frame. All keys of the format are optional.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Frame {
+    frame_title: Option<String>,
     frame_parent: Option<usize>,
     frame_inherit: Option<bool>,
     frame_classes: Option<Vec<String>>,
@@ -30,19 +57,15 @@ struct File {
 }
 
 /// Reads one frame with what it inherits; without a number the first that has vertices.
-pub(super) fn read(bytes: &[u8], wanted: Option<usize>) -> Result<Frame, MeshFileProblem> {
+pub(super) fn read(bytes: &[u8], wanted: Option<&FoldFrame>) -> Result<Frame, MeshFileProblem> {
     if bytes.trim_ascii().is_empty() {
         return Err(MeshFileProblem::Empty);
     }
     let key: Frame = serde_json::from_slice(bytes).map_err(MeshFileProblem::Json)?;
     let file: File = serde_json::from_slice(bytes).map_err(MeshFileProblem::Json)?;
     let frames = [vec![key], file.file_frames.unwrap_or_default()].concat();
-    if let Some(frame) = wanted {
-        let last = frames.len() - 1;
-        if frame > last {
-            return Err(FoldProblem::NoFrame { frame, last }.into());
-        }
-        return Ok(inherited(&frames, frame)?);
+    if let Some(wanted) = wanted {
+        return Ok(inherited(&frames, number_of(&frames, wanted)?)?);
     }
     for k in 0..frames.len() {
         let chain = ancestry(&frames, k)?;
@@ -54,6 +77,64 @@ pub(super) fn read(bytes: &[u8], wanted: Option<usize>) -> Result<Frame, MeshFil
         }
     }
     Err(FoldProblem::NoCoordinates.into())
+}
+
+/// The number of the frame that is asked for.
+fn number_of(frames: &[Frame], wanted: &FoldFrame) -> Result<usize, FoldProblem> {
+    let problem = |found: Vec<usize>| FoldProblem::Choice {
+        wanted: wanted.clone(),
+        found,
+        frames: listed(frames),
+    };
+    match wanted {
+        FoldFrame::Number(number) if *number < frames.len() => Ok(*number),
+        FoldFrame::Number(_) => Err(problem(Vec::new())),
+        FoldFrame::Title(title) => {
+            let has_title = |k: &usize| frames[*k].frame_title.as_ref() == Some(title);
+            let found: Vec<usize> = (0..frames.len()).filter(has_title).collect();
+            match found[..] {
+                [number] => Ok(number),
+                _ => Err(problem(found)),
+            }
+        }
+    }
+}
+
+/// Most frames that an error lists: they fit on a screen.
+const MOST_LISTED: usize = 12;
+
+/// Characters of a title that an error shows.
+const LONGEST_TITLE: usize = 80;
+
+/// The frames of a file, with titles and classes, for an error.
+fn listed(frames: &[Frame]) -> String {
+    let name = |(k, frame): (usize, &Frame)| {
+        let title = frame.frame_title.as_deref();
+        let title = title.map_or(String::new(), |title| {
+            let short: String = title.chars().take(LONGEST_TITLE).collect();
+            format!(" {short:?}")
+        });
+        let classes: Vec<String> = frame
+            .frame_classes
+            .iter()
+            .flatten()
+            .map(|c| excerpt(c))
+            .collect();
+        match classes.is_empty() {
+            true => format!("{k}{title}"),
+            false => format!("{k}{title} ({})", classes.join(", ")),
+        }
+    };
+    let mut names: Vec<String> = frames
+        .iter()
+        .enumerate()
+        .take(MOST_LISTED)
+        .map(name)
+        .collect();
+    if frames.len() > MOST_LISTED {
+        names.push(format!("and so on to {}", frames.len() - 1));
+    }
+    names.join(", ")
 }
 
 /// More ancestors of a frame are refused: a circle has no end.
@@ -81,6 +162,7 @@ fn inherited(frames: &[Frame], number: usize) -> Result<Frame, FoldProblem> {
     let merge = |frame: Frame, &ancestor: &usize| {
         let from = &frames[ancestor];
         Frame {
+            frame_title: None,
             frame_parent: None,
             frame_inherit: None,
             frame_classes: frame.frame_classes.or_else(|| from.frame_classes.clone()),

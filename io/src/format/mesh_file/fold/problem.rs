@@ -1,5 +1,6 @@
 //! What can be wrong with a FOLD file.
 
+use super::FoldFrame;
 use isosheet_mesh::Advice;
 use thiserror::Error;
 
@@ -7,13 +8,15 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FoldProblem {
-    /// There is no such frame.
-    #[error("there is no frame {frame}: the file has the frames 0 to {last}")]
-    NoFrame {
+    /// There is no such frame, or more than one of that title.
+    #[error("{}; the frames of the file are {frames}", choice(wanted, found))]
+    Choice {
         /// The frame that was asked for.
-        frame: usize,
-        /// The last frame.
-        last: usize,
+        wanted: FoldFrame,
+        /// The numbers of the frames of that title: none or several.
+        found: Vec<usize>,
+        /// The frames of the file with their titles and classes, as text.
+        frames: String,
     },
     /// A frame inherits from one that does not exist, from itself in a circle, or over too many frames.
     #[error(
@@ -137,10 +140,17 @@ pub enum FoldProblem {
     },
 }
 
+fn choice(wanted: &FoldFrame, found: &[usize]) -> String {
+    match found.len() {
+        0 => format!("there is no frame {wanted}"),
+        count => format!("{count} frames have the title {wanted}"),
+    }
+}
+
 impl Advice for FoldProblem {
     fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::NoFrame { .. } => Some("name one of these"),
+            Self::Choice { .. } => Some("give the number of one of these"),
             Self::Parent { .. } => Some("correct `frame_parent`"),
             Self::NoCoordinates => Some("export it with coordinates"),
             Self::Unit { .. } => Some("use unit, in, pt, m, cm, mm, um or nm"),

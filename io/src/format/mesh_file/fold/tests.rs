@@ -1,6 +1,6 @@
 //! Defects, frames, faces of drawings, cuts and angles.
 
-use super::FoldProblem;
+use super::{FoldFrame, FoldProblem};
 use crate::format::mesh_file::tests::{FOLD, cross, parse, problem};
 use crate::format::mesh_file::{
     EdgeAssignment, MeshFileProblem, MeshFormat, MeshOptions, Place, parse_mesh,
@@ -70,6 +70,54 @@ fn defects_of_fold_files_are_typed() {
     assert_eq!(place, Some(Place::Face(1)));
 }
 
+/// A title names one frame; errors list what there is to choose from.
+#[test]
+fn frames_have_titles() {
+    let text = r#"{"frame_title": "crease pattern", "frame_classes": ["creasePattern"],
+        "vertices_coords": [[0, 0], [1, 0], [0, 1]], "faces_vertices": [[0, 1, 2]], "file_frames": [
+        {"frame_title": "moved", "frame_inherit": true, "vertices_coords": [[5, 0], [6, 0], [5, 1]]},
+        {"frame_title": "twice", "frame_inherit": true}, {"frame_title": "twice", "frame_inherit": true}]}"#;
+    let read = |frame: &str, format| {
+        let options = MeshOptions {
+            frame: Some(FoldFrame::Title(frame.into())),
+            ..MeshOptions::default()
+        };
+        parse_mesh(text.as_bytes(), format, Path::new("x.fold"), &options)
+    };
+    let x = |frame| read(frame, MeshFormat::Fold).unwrap().positions[0];
+    // The title of a frame is not inherited.
+    assert_eq!((x("crease pattern"), x("moved")), (0.0, 5.0));
+    let frames = r#"0 "crease pattern" (creasePattern), 1 "moved", 2 "twice", 3 "twice""#;
+    for (title, problem) in [
+        ("folded", r#"there is no frame "folded""#),
+        ("twice", r#"2 frames have the title "twice""#),
+    ] {
+        let said = read(title, MeshFormat::Fold).unwrap_err().to_string();
+        let expected = format!("x.fold: {problem}; the frames of the file are {frames}");
+        assert_eq!(said, expected);
+    }
+    let other = read("moved", MeshFormat::Off).unwrap_err().problem;
+    assert!(matches!(other, MeshFileProblem::NoFrames));
+}
+
+/// Files of runs have thousands of frames, which no error lists.
+#[test]
+fn lists_of_frames_are_short() {
+    let frames = vec!["{}"; 5000].join(", ");
+    let text = format!("{{\"file_frames\": [{frames}]}}");
+    let options = MeshOptions {
+        frame: Some(FoldFrame::Number(9000)),
+        ..MeshOptions::default()
+    };
+    let path = Path::new("x.fold");
+    let error = parse_mesh(text.as_bytes(), MeshFormat::Fold, path, &options).unwrap_err();
+    let said = error.to_string();
+    assert!(
+        said.ends_with("9, 10, 11, and so on to 5000") && said.len() < 200,
+        "{said}"
+    );
+}
+
 #[test]
 fn frames_inherit_from_their_parents() {
     let text = r#"{"frame_unit": "mm", "faces_vertices": [[0, 1, 2]], "file_frames": [
@@ -78,9 +126,9 @@ fn frames_inherit_from_their_parents() {
          "frame_classes": ["foldedForm"]},
         {"frame_inherit": true, "frame_parent": 4},
         {"frame_inherit": true, "frame_parent": 3}]}"#;
-    let frame = |frame| {
+    let frame = |frame: Option<usize>| {
         let options = MeshOptions {
-            frame,
+            frame: frame.map(FoldFrame::Number),
             ..MeshOptions::default()
         };
         parse_mesh(
@@ -104,7 +152,11 @@ fn frames_inherit_from_their_parents() {
         refused(3),
         MeshFileProblem::Fold(FoldProblem::Parent { .. })
     ));
-    let missing = FoldProblem::NoFrame { frame: 5, last: 4 };
+    let missing = FoldProblem::Choice {
+        wanted: FoldFrame::Number(5),
+        found: Vec::new(),
+        frames: "0, 1, 2 (foldedForm), 3, 4".into(),
+    };
     assert!(matches!(refused(5), MeshFileProblem::Fold(p) if p == missing));
 }
 
