@@ -33,6 +33,9 @@ pub struct CcdOptions {
     /// Part of the initial gap that is left at the time returned, between 0 and 1. Default 0.1, as
     /// Li et al. 2021: smaller values come closer and take more iterations.
     pub remainder: f64,
+    /// Gap that is left at the time returned where this is more, metres, and half of the initial gap if that
+    /// is less than the given length. Default 0: any gap may become as small as the remainder allows.
+    pub approach: f64,
     /// Most advances per pair. Default 1000; the time reached by then is safe, only early.
     pub max_iterations: usize,
 }
@@ -42,6 +45,7 @@ impl Default for CcdOptions {
         Self {
             separation: 0.0,
             remainder: 0.1,
+            approach: 0.0,
             max_iterations: 1000,
         }
     }
@@ -56,6 +60,9 @@ pub enum CcdOptionsError {
     /// The remainder is not a proper fraction.
     #[error("the remainder is {0}")]
     Remainder(f64),
+    /// The gap to leave is negative or not a number.
+    #[error("the gap that motions leave is {0} m")]
+    Approach(f64),
     /// No iterations at all.
     #[error("max_iterations is 0")]
     Iterations,
@@ -66,6 +73,7 @@ impl Advice for CcdOptionsError {
         match self {
             Self::Separation(..) => Some("give zero or a positive length"),
             Self::Remainder(..) => Some("give a number between 0 and 1, for instance 0.1"),
+            Self::Approach(..) => Some("give zero or a positive length"),
             Self::Iterations => Some("give at least 1"),
         }
     }
@@ -80,6 +88,9 @@ impl CcdOptions {
         }
         if !(self.remainder > 0.0 && self.remainder < 1.0) {
             return Err(CcdOptionsError::Remainder(self.remainder));
+        }
+        if !(self.approach >= 0.0 && self.approach.is_finite()) {
+            return Err(CcdOptionsError::Approach(self.approach));
         }
         if self.max_iterations == 0 {
             return Err(CcdOptionsError::Iterations);
@@ -104,7 +115,8 @@ impl CcdOptions {
     ///
     /// Returns `limit` (0 to 1) if that is safe; the smaller it is, the sooner the search ends, so
     /// pass the best time found so far. Otherwise the largest time that the advances proved safe:
-    /// about [`CcdOptions::remainder`] of the initial gap is left then. Zero if the gap is not above
+    /// the gap that [`CcdOptions::remainder`] and [`CcdOptions::approach`] ask for, or up to a tenth more, is
+    /// left then. Zero if the gap is not above
     /// the separation to begin with, up to round-off, or if a coordinate is not a number.
     pub fn point_triangle(&self, x: &[Vector3<f64>; 4], dx: &[Vector3<f64>; 4], limit: f64) -> f64 {
         self.advance(x, dx, 1, limit, |x| point_triangle(x).difference)
@@ -114,6 +126,11 @@ impl CcdOptions {
     /// separation; at most `limit` (0 to 1). See [`CcdOptions::point_triangle`].
     pub fn edge_edge(&self, x: &[Vector3<f64>; 4], dx: &[Vector3<f64>; 4], limit: f64) -> f64 {
         self.advance(x, dx, 2, limit, |x| edge_edge(x).difference)
+    }
+
+    /// The gap that a motion leaves, for the initial gap, metres.
+    pub(crate) fn least_gap(&self, initial: f64) -> f64 {
+        (self.remainder * initial).max(self.approach.min(0.5 * initial))
     }
 
     /// The first `split` points of the stencil are the first primitive.
@@ -138,7 +155,7 @@ impl CcdOptions {
         let size = far(x) + far(dx);
         let round_off = ROUND_OFF * size;
         let mut t = 0.0;
-        let mut enough = 0.0;
+        let mut least = 0.0;
         for iteration in 0..self.max_iterations {
             let at: [Vector3<f64>; N] = std::array::from_fn(|i| start[i] + t * motion[i]);
             let difference = closest(&at);
@@ -157,16 +174,16 @@ impl CcdOptions {
                 .map(|(i, j)| height[i] - height[j] - margin)
                 .fold(f64::INFINITY, f64::min);
             if iteration == 0 {
-                enough = self.remainder * gap;
+                least = self.least_gap(gap);
             }
-            if gap <= 0.0 || (iteration > 0 && gap <= enough) {
+            if gap <= 0.0 || (iteration > 0 && gap <= CLOSE_ENOUGH * least) {
                 return t;
             }
             let mut step = f64::INFINITY;
             for (i, j) in pairs {
                 let closing = speed[j] - speed[i];
                 if closing > 0.0 {
-                    let clear = height[i] - height[j] - margin - (1.0 - ADVANCE) * gap;
+                    let clear = height[i] - height[j] - margin - least.max((1.0 - ADVANCE) * gap);
                     step = step.min(clear / closing);
                 }
             }
@@ -181,7 +198,9 @@ impl CcdOptions {
 
 /// Part of the gap that an advance may use up, Li et al. 2021: some is left, so that the next
 /// direction is defined.
-const ADVANCE: f64 = 0.9;
+pub(crate) const ADVANCE: f64 = 0.9;
+/// Gap, in units of the one that is to be left, at which advances end.
+pub(crate) const CLOSE_ENOUGH: f64 = 1.1;
 /// Round-off of a gap relative to the largest coordinate: the differences, the products with the
 /// direction and the positions that the caller computes, each a few units in the last place.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;

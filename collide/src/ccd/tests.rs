@@ -311,12 +311,43 @@ fn bad_input_is_stopped_at_once() {
             separation,
             remainder,
             max_iterations,
+            ..CcdOptions::default()
         }
         .validate()
     };
     assert_eq!(with(-1.0, 0.1, 1), Err(CcdOptionsError::Separation(-1.0)));
     assert_eq!(with(0.0, 1.0, 1), Err(CcdOptionsError::Remainder(1.0)));
     assert_eq!(with(0.0, 0.1, 0), Err(CcdOptionsError::Iterations));
+    let approach = CcdOptions {
+        approach: -1.0,
+        ..CcdOptions::default()
+    };
+    assert_eq!(approach.validate(), Err(CcdOptionsError::Approach(-1.0)));
+}
+
+/// The gap left is that of the options or up to a tenth more, wherever the point starts and whatever its
+/// speed.
+#[test]
+fn motions_leave_the_gap_that_is_asked_for() {
+    let zero = Vector3::zeros();
+    let triangle = [v(-1.0, -1.0, 0.0), v(2.0, -1.0, 0.0), v(-1.0, 2.0, 0.0)];
+    for (gap, left) in [(1.0, 0.1), (0.1, 0.02), (0.041, 0.02), (0.03, 0.015)] {
+        let options = CcdOptions {
+            remainder: 0.1,
+            approach: 0.02,
+            ..CcdOptions::default()
+        };
+        for speed in [1.0_f64, 30.0, 1e4] {
+            let start = [v(0.1, 0.2, gap), triangle[0], triangle[1], triangle[2]];
+            let motion = [v(0.3, 0.0, -speed * gap), zero, zero, zero];
+            let t = options.point_triangle(&start, &motion, 1.0);
+            let rest = gap * (1.0 - t * speed);
+            assert!(
+                (left * (1.0 - 1e-9)..1.1 * left).contains(&rest),
+                "{rest} of {gap}, {left} asked for"
+            );
+        }
+    }
 }
 
 /// Offsets by which published tests graze a boundary: a single-precision unit to either side.

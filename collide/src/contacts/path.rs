@@ -1,6 +1,7 @@
 //! The sheet as seen from a moving body, and how far that motion is safe.
 
 use crate::CcdOptions;
+use crate::ccd::{ADVANCE, CLOSE_ENOUGH};
 use isosheet_dynamics::contact::StepMotion;
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 
@@ -117,7 +118,7 @@ impl PartOfStep {
             .fold(far, f64::max);
         let margin = options.separation + ROUND_OFF * size;
         let mut time = 0.0;
-        let mut enough = 0.0;
+        let mut least = 0.0;
         for iteration in 0..options.max_iterations {
             let [places, velocities] = self.at(courses, time);
             let (n, plane) = support(&places);
@@ -128,14 +129,14 @@ impl PartOfStep {
                 return time;
             }
             if iteration == 0 {
-                enough = options.remainder * gap;
-            } else if gap <= enough {
+                least = options.least_gap(gap);
+            } else if gap <= CLOSE_ENOUGH * least {
                 return time;
             }
             let mut step = f64::INFINITY;
             for i in 0..N {
                 let closing = -n.dot(&velocities[i]);
-                let room = clear[i] - (1.0 - ADVANCE) * gap;
+                let room = clear[i] - least.max((1.0 - ADVANCE) * gap);
                 step = step.min(crossing_time(closing, courses[i].bend, room));
             }
             time += step;
@@ -175,8 +176,6 @@ fn crossing_time(closing: f64, bend: f64, room: f64) -> f64 {
     }
 }
 
-/// Part of the gap that an advance may use up, as in [`CcdOptions`].
-const ADVANCE: f64 = 0.9;
 /// Round-off of a gap relative to the largest coordinate: differences, rotations, products with the
 /// direction and the poses that the caller computes, each a few units in the last place.
 const ROUND_OFF: f64 = 32.0 * f64::EPSILON;

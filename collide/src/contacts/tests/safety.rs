@@ -152,10 +152,8 @@ fn a_fast_punch_does_not_tunnel() {
         let zero = vec![0.0; x.len()];
         let a = step.query(&x, &zero);
         let impact = gap / (10.0 * h);
-        assert!(
-            a < 1.05 * impact && a > 0.8 * impact,
-            "{name}: {a} {impact}"
-        );
+        // Half the activation distance is left, a quarter of the gap.
+        assert!(a < 0.8 * impact && a > 0.7 * impact, "{name}: {a} {impact}");
         step.advance(a);
         assert!(step.gap(&x) > 0.0 && step.gap(&x) < 3e-4, "{name}");
         // Nothing more is possible, and it does not end with a touch.
