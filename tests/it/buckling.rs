@@ -117,29 +117,28 @@ fn a_strip_jams_between_walls_without_touching() {
         if step == 79 {
             // What the nip has paid for is stored in bending or lost.
             let stored = report.hamiltonian() - before;
-            // Measured, in shares of the work of 2.65 mJ: stored 0.82, lost to friction 0.28, damped 0.007.
-            // The error of the trapezoidal rule for the work of the jamming pins is 0.105.
+            // Which buckle it snaps into depends on the step. Measured with steps of 2.5, 1.25 and 0.6 ms, in
+            // shares of the work of 2.7 to 3.3 mJ: stored 0.64 to 0.80, lost to friction 0.17 to 0.27, damped
+            // 0.0035 to 0.0065. The error of the trapezoidal rule for the work of the jamming pins, which
+            // jumps as the strip snaps, is -0.12 to 0.07.
             let share = |energy: f64| energy / report.work;
-            assert!((2.2e-3..3.1e-3).contains(&report.work), "{report:?}");
-            assert!((0.7..0.95).contains(&share(stored)), "{report:?}");
-            assert!((0.2..0.36).contains(&share(report.friction)), "{report:?}");
+            assert!((2.2e-3..3.8e-3).contains(&report.work), "{report:?}");
+            assert!((0.55..0.9).contains(&share(stored)), "{report:?}");
+            assert!((0.13..0.36).contains(&share(report.friction)), "{report:?}");
             assert!(
                 (0.003..0.014).contains(&share(report.dissipated)),
                 "{report:?}"
             );
-            assert!(
-                (0.05..0.15).contains(&share(report.energy_drift)),
-                "{report:?}"
-            );
+            assert!(share(report.energy_drift).abs() < 0.15, "{report:?}");
         }
     }
     // The walls let it buckle, and hold the buckle: it carries more than a strip that is hinged at the plate.
     let bends = LENGTH * (1.0 - 1.5 / cells as f64);
     let hinged = 2.0457 * RIGIDITY * WIDTH * (PI / bends).powi(2);
-    // Measured: 5.5 times as much.
+    // Measured with these steps: 5.2 to 6.2 times as much.
     let ratio = largest / hinged;
     assert!(
-        (4.5..6.5).contains(&ratio),
+        (4.5..7.0).contains(&ratio),
         "{largest} N against {hinged} N"
     );
 }
