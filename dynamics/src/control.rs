@@ -8,7 +8,7 @@
 //! | refused: would create energy, has a history | restart as a one-step method | |
 //! | refused: the chart is singular there | | restart from a new reference state |
 //! | refused, the step may be shortened | halve | shorten by that bound, by contact to its safe part |
-//! | refused, a fallback is allowed | fall back to implicit Euler | |
+//! | refused, a fallback is allowed | fall back: implicit Euler, or hold the sheet | |
 //! | refused otherwise | stop | stop |
 //!
 //! [`Subdivision`]: crate::subdivision::Subdivision
@@ -21,7 +21,7 @@ pub(crate) enum Decision<E> {
     Restart,
     /// Propose a sub-step of this length, seconds.
     Shorten(f64),
-    /// Propose a sub-step of this length, seconds, with the fallback method.
+    /// Propose a sub-step of this length, seconds, with the fallback.
     FallBack(f64),
     /// Give up.
     Stop(E),

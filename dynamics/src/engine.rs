@@ -5,6 +5,7 @@ use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
 use crate::control::{Decision, Stepping, take_substep};
 use crate::energy_account::{EnergyAccount, Exchange};
 use crate::feasibility::{Excess, excess};
+use crate::hold::Hold;
 use crate::immobile::immobile_vertices;
 use crate::implicit::ImplicitEuler;
 use crate::integrator::{
@@ -29,7 +30,7 @@ pub(crate) struct Engine {
     fixed: Vec<VertexId>,
     integrator: Box<dyn Integrator>,
     control: StepControl,
-    fallback: Option<ImplicitEuler>,
+    fallback: Option<Box<dyn Integrator>>,
     /// Where the sheet is. Nothing but [`Substeps::commit`] changes it.
     moment: Moment,
     account: EnergyAccount,
@@ -166,7 +167,10 @@ impl Engine {
         control.validate()?;
         self.fallback = match &control.fallback {
             Fallback::Refuse => None,
-            Fallback::ImplicitEuler(o) => Some(ImplicitEuler::new(&self.model, o.clone())?),
+            Fallback::ImplicitEuler(o) => {
+                Some(Box::new(ImplicitEuler::new(&self.model, o.clone())?))
+            }
+            Fallback::Hold => Some(Box::new(Hold::new(&self.model))),
         };
         self.control = control;
         Ok(())
@@ -250,7 +254,7 @@ struct Substeps<'a> {
 enum Proposer {
     /// The method that was asked for.
     Method,
-    /// Implicit Euler.
+    /// The fallback of the step control.
     Fallback,
 }
 
@@ -391,10 +395,16 @@ impl Stepping for Substeps<'_> {
         totals.dissipated += dissipated;
         engine.account.spend(dissipated);
         if self.proposer == Proposer::Fallback {
-            // What implicit Euler remembers means nothing to the method that was asked for.
+            // What the fallback remembers means nothing to the method that was asked for.
             engine.moment.history.previous = None;
             engine.moment.history.multipliers.clear();
-            totals.outcome = StepOutcome::Fallback;
+            totals.outcome = totals.outcome.max(StepOutcome::Fallback);
+        }
+        if step.outcome == StepOutcome::Held {
+            // `proposal.moment` is the moment before.
+            let lost = engine.model.kinetic_energy(&engine.proposal.moment.state.v);
+            totals.dissipated += lost;
+            engine.account.spend(lost);
         }
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         Ok(())

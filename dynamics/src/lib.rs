@@ -83,6 +83,7 @@ mod energy_momentum;
 mod engine;
 mod feasibility;
 mod history;
+mod hold;
 mod immobile;
 mod implicit;
 mod integrator;

@@ -20,6 +20,9 @@ pub enum StepOutcome {
     BranchSeeded,
     /// The integrator asked for rejected every sub-step, and implicit Euler took one instead.
     Fallback,
+    /// Every sub-step was rejected, and the sheet was left where it was, see
+    /// [`Fallback::Hold`](crate::Fallback::Hold). The residual is 1: the momentum balance was not solved.
+    Held,
     /// Explicitly, in a chart.
     Chart,
     /// As `Chart`, and the chart was rebased on the way.
@@ -335,7 +338,7 @@ impl Advice for StepError {
             } => cause.advice(),
             Self::StepTooSmall { .. } => Some(
                 "model the sheet as elastic (`SheetModel::with_membrane`) or as isometric in weak form \
-                 (`SheetModel::with_weak_isometry`)",
+                 (`SheetModel::with_weak_isometry`), or let locked sheets stay where they are (`Fallback::Hold`)",
             ),
             Self::Chart { source, .. } => source.advice(),
             Self::Linalg { source, .. } => source.advice(),

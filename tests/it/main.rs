@@ -12,6 +12,7 @@ mod contact;
 mod elastic;
 mod flat;
 mod forces;
+mod hold;
 mod impacts;
 mod invariance;
 mod locking;

@@ -68,6 +68,9 @@ pub enum Fallback {
     Refuse,
     /// Take the step with implicit Euler, and carry on.
     ImplicitEuler,
+    /// Leave the sheet where it is until the end of the step, at rest, and carry on: for sheets whose rods
+    /// lock at clamps. With `min_fraction = 0.06` locked steps cost less.
+    Hold,
 }
 
 /// What to do when moving supports ask for more than the lengths allow.
@@ -215,6 +218,7 @@ impl Method {
             min_fraction: self.min_fraction,
             fallback: match self.fallback {
                 Fallback::Refuse => engine::Fallback::Refuse,
+                Fallback::Hold => engine::Fallback::Hold,
                 Fallback::ImplicitEuler => {
                     engine::Fallback::ImplicitEuler(ImplicitOptions::default())
                 }
