@@ -342,6 +342,7 @@ fn finish(
         iterations: progress.iterations,
         factorisations: progress.factorisations,
         rejected: progress.rejected,
+        held: progress.held,
         ending,
     };
     if output.page {

@@ -90,6 +90,12 @@ impl Rows {
             "steps",
             format!("{}, {} rejected", summary.steps, summary.rejected),
         );
+        if summary.held > 0 {
+            self.add(
+                "steps in which the sheet was held",
+                summary.held.to_string(),
+            );
+        }
         let solves = (summary.iterations, summary.factorisations);
         self.add(
             "solver",

@@ -7,7 +7,7 @@ use super::summary::{EndReason, Ending};
 use super::{RunError, Tick};
 use crate::format::{HistoryRow, HistoryWriter};
 use crate::scene::{FoldTargets, Origins, Scene, SceneError, SceneFile, SupportForces};
-use isosheet_dynamics::{Simulation, StepReport};
+use isosheet_dynamics::{Simulation, StepOutcome, StepReport};
 use nalgebra::Vector3;
 use std::time::Instant;
 
@@ -106,6 +106,7 @@ impl Stepping<'_> {
         progress.iterations += report.iterations as u64;
         progress.factorisations += report.factorisations as u64;
         progress.rejected += report.rejected as u64;
+        progress.held += u64::from(report.outcome == StepOutcome::Held);
         // An infinite gap means that nothing is within reach.
         if let Some(gap) = report.gap.filter(|gap| gap.is_finite()) {
             progress.gap = Some(progress.gap.map_or(gap, |least| least.min(gap)));

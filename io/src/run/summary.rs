@@ -36,6 +36,9 @@ pub struct Summary {
     pub factorisations: u64,
     /// Sub-steps that were tried and rejected.
     pub rejected: u64,
+    /// Steps in which the sheet was left where it was, see [`Fallback::Hold`](crate::scene::Fallback::Hold).
+    #[serde(default)]
+    pub held: u64,
     /// The state at the end.
     pub ending: Ending,
 }

@@ -103,6 +103,43 @@ hold = { moving_pin = { x = { ramp = { to = 0.1, end = 1 } } } }
     assert_eq!(summary(&dir.join("stop")).ending.reason, EndReason::Taut);
 }
 
+/// From flat at two opposite corners the halves of a sheet fall shut and hang taut, where its rods lock.
+#[test]
+fn a_sheet_that_locks_is_held_where_the_scene_asks_for_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = "version = 1
+[sheet]
+mesh = { square = { side = 1.0, level = 1 } }
+mass = 0.1
+[[support]]
+at = { vertices = [0, 24] }
+[forces]
+gravity = [0.0, 0.0, -9.8]
+[stop]
+time = 1.0
+";
+    fs::write(dir.join("locks.toml"), scene).unwrap();
+    let refused = run(dir, &["simulate", "locks.toml"]);
+    assert_eq!(code(&refused), Some(1), "{}", stderr(&refused));
+    let held = [
+        "simulate",
+        "locks.toml",
+        "--set",
+        "method.fallback=hold",
+        "--set",
+        "method.min_fraction=0.06",
+        "--out",
+        "held",
+    ];
+    let ended = run(dir, &held);
+    assert_eq!(code(&ended), Some(0), "{}", stderr(&ended));
+    let summary = summary(&dir.join("held"));
+    assert_eq!(summary.ending.reason, EndReason::Time);
+    assert!(summary.held > 0 && summary.held < summary.steps);
+    assert!(summary.largest_strain < 1e-12);
+}
+
 /// The straight edge of a banner that hangs by two corners cannot move: the engine holds its vertices, and
 /// their forces are those of the corners. At rest the forces balance weight and torque: half of it at each
 /// corner.
