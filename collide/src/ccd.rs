@@ -116,8 +116,8 @@ impl CcdOptions {
     /// Returns `limit` (0 to 1) if that is safe; the smaller it is, the sooner the search ends, so
     /// pass the best time found so far. Otherwise the largest time that the advances proved safe:
     /// the gap that [`CcdOptions::remainder`] and [`CcdOptions::approach`] ask for, or up to a tenth more, is
-    /// left then. Zero if the gap is not above
-    /// the separation to begin with, up to round-off, or if a coordinate is not a number.
+    /// left then. Zero if the gap is not above the separation to begin with, up to round-off, or if a
+    /// coordinate is not a number.
     pub fn point_triangle(&self, x: &[Vector3<f64>; 4], dx: &[Vector3<f64>; 4], limit: f64) -> f64 {
         self.advance(x, dx, 1, limit, |x| point_triangle(x).difference)
     }

@@ -22,6 +22,11 @@ pub(crate) struct Hold {
 
 /// The momentum balance of a held sheet is not solved: all of it is left over.
 const RESIDUAL: f64 = 1.0;
+/// Violation of the constraints of vertices in mean rod lengths, below which it is as good as none: the default
+/// tolerance of the steps.
+const VIOLATION: f64 = 1e-12;
+/// Largest number of parts in which bodies are moved. Ten leave a thousandth of a gap.
+const MAX_PARTS: usize = 10;
 
 impl Hold {
     pub(crate) fn new(model: &SheetModel) -> Self {
@@ -39,7 +44,7 @@ impl Hold {
         model.place_pins(t, &mut self.end);
         let before = model.largest_violation(state.t, &state.x).unwrap_or(0.0);
         let after = model.largest_violation(t, &state.x).unwrap_or(0.0);
-        self.end == state.x && after <= before.max(f64::EPSILON * model.mean_length())
+        self.end == state.x && after <= before.max(VIOLATION * model.mean_length())
     }
 }
 
@@ -67,15 +72,18 @@ impl Integrator for Hold {
         }
         let span = StepSpan { t0: state.t, h };
         self.iterate.begin(contact.as_mut(), span, &state.x);
-        if self.iterate.safe_fraction(contact.as_mut(), &self.zeros) < 1.0 {
-            // A body moves into the sheet.
-            return Err(StepError::Contact {
-                t: state.t,
-                h,
-                gap: 0.0,
-            });
+        // Bodies that come closer are moved in parts, each of which leaves half a gap.
+        for _ in 0..MAX_PARTS {
+            if self.iterate.progress() == 1.0 {
+                break;
+            }
+            let part = self.iterate.safe_fraction(contact.as_mut(), &self.zeros);
+            self.iterate.advance_bodies(part);
         }
-        self.iterate.advance_bodies(1.0);
+        if self.iterate.progress() < 1.0 {
+            let strain = model.constrained_strain(&state.x);
+            return Err(not_converged(state.t, h, effort, RESIDUAL, strain));
+        }
         let work = self.iterate.contact_work(contact.as_ref());
         let moment = &mut proposal.moment;
         moment.state.copy_from(state);
@@ -83,7 +91,12 @@ impl Integrator for Hold {
         moment.state.t = t;
         moment.history.previous = None;
         moment.history.multipliers.clear();
+        moment.history.rod_stiffness = attempt.rod_stiffness();
+        moment.history.couplings.clear();
+        let couplings = attempt.couplings();
+        moment.history.couplings.extend_from_slice(couplings);
         moment.balance.clear();
+        moment.balance.unassigned.clear();
         moment.set_contacts(self.iterate.contact_state());
         proposal.account = StepAccount {
             residual: RESIDUAL,

@@ -167,7 +167,8 @@ pub enum Fallback {
     /// Leave the sheet where it is for the rest of the step, with zero velocities, and carry on: the answer
     /// where the rods of a clamped sheet lock, so that it could move to first order but has no motion.
     /// Reported as [`StepOutcome::Held`](crate::StepOutcome::Held); the kinetic energy counts as dissipated,
-    /// and the forces of rods and supports are zero. Refused where supports or bodies move the sheet.
+    /// and the forces of rods and supports are zero. Refused where supports move the sheet, and where bodies
+    /// close a gap or nearly so.
     ///
     /// A solver that finds no motion does not prove that there is none: of clamped sheets that fall
     /// 0.26 to 0.58 m some stop after a few centimetres. Every rejected step is tried again in shorter steps

@@ -59,7 +59,8 @@ pub struct StepReport {
     /// constraints, and by changing driven potentials
     /// ([`Potential::is_driven`](crate::Potential::is_driven)), joules.
     pub work: f64,
-    /// Energy taken out by velocity damping since the start, joules.
+    /// Energy taken out since the start by velocity damping, and by steps in which the sheet was held
+    /// ([`StepOutcome::Held`]), joules.
     pub dissipated: f64,
     /// Energy lost to friction since the start, in charts to impacts, joules.
     pub friction: f64,

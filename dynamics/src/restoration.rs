@@ -207,6 +207,7 @@ impl Restoration {
                 // The masses hold the step back.
                 penalty *= 100.0;
             } else if is_stationary && openings == max_openings {
+                strain = self.worst(model, iterate.x());
                 break;
             } else if is_stationary {
                 // Stationary, but not solved: the error lies across the range of G, which happens where a

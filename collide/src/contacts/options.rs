@@ -29,8 +29,9 @@ pub struct ContactOptions {
     /// [`crate::Shape::contact_geometry`]. Default 64: they come closer to the true cylinder by at
     /// most 0.12 % of its radius. Vertices meet the true cylinder.
     pub segments: usize,
-    /// Part of a gap that a checked motion leaves, see [`CcdOptions::remainder`]. Default 0.1. (Motions from
-    /// afar leave half the activation distance.)
+    /// Part of a gap that a checked motion leaves, see [`CcdOptions::remainder`]. Default 0.1. Where half the
+    /// activation distance is more, or half of a gap that is less than the activation distance, the motion
+    /// leaves that ([`CcdOptions::approach`]).
     pub remainder: f64,
 }
 

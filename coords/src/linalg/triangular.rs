@@ -1,12 +1,12 @@
 //! Triangular solves with the supernodal factor of a sparse matrix and one right-hand side.
 //!
-//! faer's solve multiplies dense matrices for each supernode. With one right-hand side and supernodes of a few
-//! columns that takes 1.4 to 1.6 times as long as the loops here (243 to 12 675 unknowns).
+//! faer's solve multiplies dense matrices for each supernode. With one right-hand side and supernodes of
+//! a few columns that takes 1.4 to 1.6 times as long as the loops here (243 to 12 675 unknowns).
 
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 
-/// Columns of a supernode that are applied together. Coordinates of a vertex are eliminated one after another,
-/// so that supernodes of three or a multiple of three columns are the rule.
+/// Columns of a supernode that are applied together. Coordinates of a vertex are eliminated one after
+/// another, so that supernodes of three or a multiple of three columns are the rule.
 const TOGETHER: usize = 3;
 /// Sums that run side by side in an inner product.
 const LANES: usize = 8;

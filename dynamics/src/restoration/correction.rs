@@ -6,7 +6,8 @@ use crate::iterate::Iterate;
 use crate::primal::PrimalMatrix;
 
 /// Largest number of corrections. Hanging sheets of 512 triangles (eight starts) take 11.7 factorisations a
-/// step without corrections, 9.6 with at most four and 9.7 with at most eight; tablecloths a tenth less with four.
+/// step without corrections, 9.6 with at most four and 9.7 with at most eight; tablecloths a tenth less with
+/// four.
 const MAX_CORRECTIONS: usize = 4;
 /// Part of the strain that a correction leaves from which the next one is not worth its solve. With 0.01, 0.1
 /// and 0.5 the hanging sheets take 10.5, 9.6 and 9.7 factorisations a step.

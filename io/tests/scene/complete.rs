@@ -136,7 +136,7 @@ const ALL_KEYS: [&str; 5] = [
     hold = { curve = { shape = { closed_spline = { points = [[0, 0, 0], [1, 0, 0], [1, 1, 0]] } } } }
     [method]
     integrator = "bdf2"
-    fallback = "refuse"
+    fallback = "hold"
     taut = "refuse""#,
     r#"version = 1
     [sheet]

@@ -172,8 +172,8 @@ fn a_frame_in_space_is_a_target() {
     assert_eq!(residual.creases, 24);
 }
 
-/// A file with a crease pattern of quads and its folded form. Each quad is a rectangle in the flat and a rectangle in
-/// the folded frame, and the faces of the flat frame are clockwise, as some programs write them.
+/// A file with a crease pattern of quads and its folded form. Each quad is a rectangle in the flat and a
+/// rectangle in the folded frame, and the faces of the flat frame are clockwise, as some programs write them.
 fn bent_strip() -> Value {
     let (c, s) = (0.5, 0.75_f64.sqrt());
     json!({
