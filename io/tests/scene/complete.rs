@@ -144,7 +144,8 @@ const ALL_KEYS: [&str; 5] = [
     isometry = "rods"
     bending = "none"
     [method]
-    integrator = "rattle""#,
+    integrator = "rattle"
+    fallback = "refuse""#,
     r#"version = 1
     [sheet]
     mesh = { square = { side = 1, level = 1 } }
