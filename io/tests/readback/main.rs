@@ -1,7 +1,7 @@
-//! Programs of others read what is written: the validator of Khronos for glTF, USD, VTK and numpy.
+//! Programs of others read what is written: the validator of Khronos for glTF, USD, VTK, numpy and Blender.
 //!
 //! They are not part of the repository. `ISOSHEET_PYTHON` names a Python that has the packages numpy,
-//! usd-core and vtk (otherwise `python3` is tried), and `NODE_PATH` the folder that has the package
+//! usd-core, vtk or bpy (otherwise `python3` is tried), and `NODE_PATH` the folder that has the package
 //! gltf-validator. What is missing is skipped, with a word about it.
 
 use isosheet_io::mesh::Sheet;
@@ -107,6 +107,21 @@ fn openusd_finds_the_time_samples() {
     trajectory.write(&path("run.npz")).expect("written");
     let files = [&*path("run.usda"), &*path("mesh.usda"), &*path("run.npz")];
     python("numpy, pxr", include_str!("usd.py"), &files);
+}
+
+#[test]
+fn blender_plays_the_animations() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, trajectory) = run();
+    let series = Series::new(&trajectory, &SeriesOptions::default()).expect("frames");
+    let path = |name| folder.path().join(name);
+    for name in ["run.usda", "run.glb", "run.pc2"] {
+        write_series(&path(name), &series).expect("written");
+    }
+    trajectory.write(&path("run.npz")).expect("written");
+    let files = ["run.usda", "run.glb", "run.pc2", "run.obj", "run.npz"].map(path);
+    let files = files.each_ref().map(|file| &**file);
+    python("numpy, bpy", include_str!("blender.py"), &files);
 }
 
 #[test]
