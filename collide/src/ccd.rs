@@ -183,8 +183,8 @@ impl CcdOptions {
             for (i, j) in pairs {
                 let closing = speed[j] - speed[i];
                 if closing > 0.0 {
-                    let clear = height[i] - height[j] - margin - least.max((1.0 - ADVANCE) * gap);
-                    step = step.min(clear / closing);
+                    let clear = height[i] - height[j] - margin;
+                    step = step.min(room(clear, gap, least) / closing);
                 }
             }
             t += step;
@@ -198,9 +198,16 @@ impl CcdOptions {
 
 /// Part of the gap that an advance may use up, Li et al. 2021: some is left, so that the next
 /// direction is defined.
-pub(crate) const ADVANCE: f64 = 0.9;
+const ADVANCE: f64 = 0.9;
 /// Gap, in units of the one that is to be left, at which advances end.
 pub(crate) const CLOSE_ENOUGH: f64 = 1.1;
+
+/// How far an advance may take two points that are `clear` of each other, of primitives whose gap is `gap` and
+/// is to stay at least `least`, metres.
+pub(crate) fn room(clear: f64, gap: f64, least: f64) -> f64 {
+    clear - least.max((1.0 - ADVANCE) * gap)
+}
+
 /// Round-off of a gap relative to the largest coordinate: the differences, the products with the
 /// direction and the positions that the caller computes, each a few units in the last place.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;

@@ -1,9 +1,7 @@
 //! The step that leaves a sheet where it is.
 
 use crate::contact::StepSpan;
-use crate::integrator::{
-    Attempt, ContactSupport, Integrator, MethodTraits, Proposal, RodDemand, Scene, StepAccount,
-};
+use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::iterate::Iterate;
 use crate::report::{SolverEffort, StepError, StepOutcome, not_converged};
 use crate::{SheetModel, State};
@@ -50,10 +48,7 @@ impl Hold {
 
 impl Integrator for Hold {
     fn traits(&self) -> MethodTraits {
-        MethodTraits {
-            demand: RodDemand::Nothing,
-            contact: ContactSupport::Barrier,
-        }
+        MethodTraits::minimising()
     }
 
     fn propose(
@@ -66,9 +61,12 @@ impl Integrator for Hold {
         let Scene { model, mut contact } = scene;
         let (state, h) = (attempt.state, attempt.h);
         let t = state.t + h;
-        if !self.is_supported(model, state, t) {
+        let refusal = || {
             let strain = model.constrained_strain(&state.x);
-            return Err(not_converged(state.t, h, effort, RESIDUAL, strain));
+            Err(not_converged(state.t, h, effort, RESIDUAL, strain))
+        };
+        if !self.is_supported(model, state, t) {
+            return refusal();
         }
         let span = StepSpan { t0: state.t, h };
         self.iterate.begin(contact.as_mut(), span, &state.x);
@@ -81,8 +79,7 @@ impl Integrator for Hold {
             self.iterate.advance_bodies(part);
         }
         if self.iterate.progress() < 1.0 {
-            let strain = model.constrained_strain(&state.x);
-            return Err(not_converged(state.t, h, effort, RESIDUAL, strain));
+            return refusal();
         }
         let work = self.iterate.contact_work(contact.as_ref());
         let moment = &mut proposal.moment;

@@ -1,8 +1,6 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
-use crate::integrator::{
-    Attempt, ContactSupport, Integrator, MethodTraits, Proposal, RodDemand, Scene, StepAccount,
-};
+use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::minimiser::Minimiser;
 use crate::minimiser::problem::StepProblem;
 use crate::options::OptionsError;
@@ -88,7 +86,7 @@ impl ImplicitEuler {
 
 impl Integrator for ImplicitEuler {
     fn traits(&self) -> MethodTraits {
-        MINIMISING
+        MethodTraits::minimising()
     }
 
     fn propose(
@@ -126,7 +124,7 @@ impl Bdf2 {
 
 impl Integrator for Bdf2 {
     fn traits(&self) -> MethodTraits {
-        MINIMISING
+        MethodTraits::minimising()
     }
 
     fn propose(
@@ -159,12 +157,6 @@ impl Integrator for Bdf2 {
         Ok(())
     }
 }
-
-/// Both methods are minimisations, at any rank of the rods, and take contact as a barrier.
-const MINIMISING: MethodTraits = MethodTraits {
-    demand: RodDemand::Nothing,
-    contact: ContactSupport::Barrier,
-};
 
 /// Proposes the step of the two-step formula, or of implicit Euler where there is no state before the present
 /// one.

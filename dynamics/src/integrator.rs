@@ -230,6 +230,15 @@ pub(crate) struct MethodTraits {
 }
 
 impl MethodTraits {
+    /// BDF2, implicit Euler and steps that hold the sheet: minimisations, at any rank of the rods, with
+    /// contact as a barrier.
+    pub(crate) fn minimising() -> Self {
+        Self {
+            demand: RodDemand::Nothing,
+            contact: ContactSupport::Barrier,
+        }
+    }
+
     /// Energy-momentum and RATTLE.
     pub(crate) fn conservative() -> Self {
         Self {

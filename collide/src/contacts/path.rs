@@ -1,7 +1,7 @@
 //! The sheet as seen from a moving body, and how far that motion is safe.
 
 use crate::CcdOptions;
-use crate::ccd::{ADVANCE, CLOSE_ENOUGH};
+use crate::ccd::{CLOSE_ENOUGH, room};
 use isosheet_dynamics::contact::StepMotion;
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 
@@ -136,7 +136,7 @@ impl PartOfStep {
             let mut step = f64::INFINITY;
             for i in 0..N {
                 let closing = -n.dot(&velocities[i]);
-                let room = clear[i] - least.max((1.0 - ADVANCE) * gap);
+                let room = room(clear[i], gap, least);
                 step = step.min(crossing_time(closing, courses[i].bend, room));
             }
             time += step;

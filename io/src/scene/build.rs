@@ -356,14 +356,7 @@ impl<'a> Builder<'a> {
         if !is_rigid || self.scene.sheet.start.file.is_none() {
             return;
         }
-        let t = self.rest.sheet.topology();
-        let (points, rest) = (self.x.as_chunks::<3>().0, self.rest.sheet.lengths());
-        let strain = |(edge, rest): (&[VertexId; 2], &f64)| {
-            let [a, b] = edge.map(|v| Point3::from(points[v.index()]));
-            ((a - b).norm() / rest - 1.0).abs()
-        };
-        let largest = t.edges().iter().zip(rest).map(strain).fold(0.0, f64::max);
-        if (EXACT..=ROUNDING).contains(&largest) {
+        if (EXACT..=ROUNDING).contains(&self.model().rods().max_strain(&self.x)) {
             let mut mended = self.x.clone();
             if project_positions(self.model(), &mut mended, EXACT).is_ok() {
                 self.x = mended;

@@ -182,11 +182,10 @@ impl MeshFile {
     /// Reads the file, in metres and with z upwards; relative paths are relative to `folder`.
     pub(crate) fn read(&self, key: &Key, folder: &Path) -> Result<format::MeshFile, Problem> {
         self.read_frame(self.frame.as_ref(), folder).map_err(|e| {
-            let name = match e.problem {
-                MeshFileProblem::NoFrames | MeshFileProblem::Fold(FoldProblem::Choice { .. }) => {
-                    "frame"
-                }
-                _ => "path",
+            let name = if is_about_frame(&e.problem) {
+                "frame"
+            } else {
+                "path"
             };
             Problem::new(key.name(name), e.to_string(), file_remedy(&e))
         })
@@ -390,6 +389,14 @@ fn read_sheet(file: &MeshFile, key: &Key, folder: &Path) -> Result<RestMesh, Pro
     })
 }
 
+/// Whether a file is refused because of the frame that is asked for.
+fn is_about_frame(problem: &MeshFileProblem) -> bool {
+    matches!(
+        problem,
+        MeshFileProblem::NoFrames | MeshFileProblem::Fold(FoldProblem::Choice { .. })
+    )
+}
+
 /// What to do about a mesh file that cannot be read, in words of scenes.
 fn file_remedy(error: &MeshFileError) -> String {
     match &error.problem {
@@ -401,9 +408,7 @@ fn file_remedy(error: &MeshFileError) -> String {
         MeshFileProblem::Read(_) => {
             "check the path, which is relative to the scene, and the permissions".to_owned()
         }
-        problem @ (MeshFileProblem::NoFrames | MeshFileProblem::Fold(FoldProblem::Choice { .. })) => {
-            problem.advice().unwrap_or_default().to_owned()
-        }
+        problem if is_about_frame(problem) => problem.advice().unwrap_or_default().to_owned(),
         problem => {
             let advice = problem.advice().map(|advice| format!("{advice}; "));
             let advice = advice.unwrap_or_default();

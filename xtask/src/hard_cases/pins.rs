@@ -1,7 +1,9 @@
 //! Too many pins, and sheets pulled taut.
 
 use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel, textbook};
-use super::scenes::{FRAME, apart, at_rest, go, pinned, released, stopped, top_row, upright};
+use super::scenes::{
+    FRAME, STRAIN, apart, at_rest, go, pinned, released, stopped, top_row, upright,
+};
 use super::{Case, Findings, Shortfall};
 use crate::methods::{damped, methods};
 use crate::report::{Effort, number};
@@ -89,15 +91,15 @@ const SHEETS: u32 = 12;
 /// to 17 within 1 s, BDF2 at 23 or 24, the projection at all.
 fn held_at_opposite_corners(f: &mut Findings, flat: &Sheet, pins: [VertexId; 2]) -> Result<()> {
     for (name, method) in damped() {
-        let stopped = stopped(SHEETS, 60, |k| {
+        let (stopped, strain) = stopped(SHEETS, 60, |k| {
             let mass = 0.1 * (1.0 + 0.005 * f64::from(k));
             let model = SheetModel::new(flat, mass, MassKind::Lumped)?.with_gravity();
             at_rest(model.with_pins(&pins)?, flat.positions(), method.clone())
         })?;
         let least = if name == "implicit Euler" { 3.0 } else { 9.0 };
-        let what = format!(
-            "{SHEETS} sheets, flat, held at two opposite corners, {name}: how many stop within 1 s"
-        );
+        let what = format!("{SHEETS} sheets, flat, held at two opposite corners, {name}");
+        f.at_most(format!("{what}: edge strain"), strain, STRAIN);
+        let what = format!("{what}: how many stop within 1 s");
         f.at_most(what, f64::from(stopped), 0.0)
             .limited(NO_ROOM, Shortfall::Value([least, f64::from(SHEETS)]));
     }

@@ -1,7 +1,9 @@
 //! Extreme shapes, masses and sizes.
 
 use super::naive::{GAUSS_SEIDEL, gauss_seidel};
-use super::scenes::{Course, FRAME, apart, at_rest, go, pinned, released, stopped, strain_bound};
+use super::scenes::{
+    Course, FRAME, STRAIN, apart, at_rest, go, pinned, released, stopped, strain_bound,
+};
 use super::{Case, Findings, Shortfall};
 use crate::methods::{conservative, damped, energy_momentum, methods};
 use crate::report::{Effort, Table, number};
@@ -227,12 +229,13 @@ fn neighbouring_boards(
     (state, name): (&str, &str),
     method: &Method,
 ) -> Result<()> {
-    let stopped = stopped(NEIGHBOURS, 60, |k| {
+    let (stopped, strain) = stopped(NEIGHBOURS, 60, |k| {
         let (model, sheet) = board(1e8, 0.0, 1.0 + 0.005 * f64::from(k))?;
         at_rest(model, sheet.positions(), method.clone())
     })?;
-    let what =
-        format!("{NEIGHBOURS} checkerboards 1 : 1e8, {state}, {name}: how many stop within 1 s");
+    let what = format!("{NEIGHBOURS} checkerboards 1 : 1e8, {state}, {name}");
+    f.at_most(format!("{what}: edge strain"), strain, STRAIN);
+    let what = format!("{what}: how many stop within 1 s");
     f.at_most(what, f64::from(stopped), MAY_STOP);
     Ok(())
 }
