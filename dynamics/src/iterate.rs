@@ -23,6 +23,9 @@ struct ContactIterate {
     /// Whether the active contacts are those at the positions.
     is_current: bool,
     friction_before: LaggedFriction,
+    /// Positions at the end of the motion that was checked last, and the contacts there.
+    end: Vec<f64>,
+    ahead: ActiveContacts,
     /// Work and energy of the barrier at the start of the step, joules.
     start_work: f64,
     start_energy: f64,
@@ -43,6 +46,8 @@ impl ContactIterate {
             bodies,
             progress,
             set,
+            end: x0.to_vec(),
+            ahead: active.clone(),
             state: ContactState {
                 active,
                 friction: LaggedFriction::none(),
@@ -170,6 +175,31 @@ impl Iterate {
         own.set.update(contact.geometry, motion);
         own.is_current = false;
         own.set.safe_fraction()
+    }
+
+    /// Adds `scale` times the forces with which a second-order correction of the displacement `dx` answers
+    /// gaps that close faster than to first order; whether there are any. `dx` has to be the motion that was
+    /// checked last, with the bodies at rest. See [`ActiveContacts::add_gap_correction`].
+    pub(crate) fn add_gap_correction(
+        &mut self,
+        contact: Option<&StepContact<'_>>,
+        dx: &[f64],
+        scale: f64,
+        out: &mut [f64],
+    ) -> bool {
+        let (Some(contact), Some(own)) = (contact, &mut self.contact) else {
+            return false;
+        };
+        if !own.is_current {
+            own.update(contact, &self.x);
+        }
+        for ((end, x), d) in own.end.iter_mut().zip(&self.x).zip(dx) {
+            *end = x + d;
+        }
+        own.ahead
+            .update(contact.geometry, &own.set, own.progress, &own.end);
+        let active = &own.state.active;
+        active.add_gap_correction(&own.ahead, &contact.barrier, dx, scale, out)
     }
 
     /// Moves the bodies by a fraction of the rest of their motions, to the end exactly for one.

@@ -3,6 +3,7 @@
 mod augmented_lagrangian;
 mod lagrangian;
 pub(crate) mod problem;
+mod second_order;
 mod sqp;
 #[cfg(test)]
 mod tests;
@@ -27,8 +28,6 @@ use sqp::Sqp;
 
 /// Part of the largest fold that the tolerance of the lengths allows by which contact at rest may move.
 const FOLD_PART: f64 = 0.1;
-/// Relative change of friction's normal forces below which they count as settled.
-const FRICTION_SETTLED: f64 = 0.05;
 /// Allowance for round-off, in units of its estimate, when two values of the incremental potential are
 /// compared.
 const COMPARISON_SLACK: f64 = 10.0;

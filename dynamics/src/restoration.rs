@@ -34,8 +34,8 @@ const MAX_SLOW: usize = 4;
 /// to the caller, who takes a shorter step.
 const LOOSE_TOLERANCE: f64 = 1e-3;
 
-/// Part of the tolerance that is the goal of a projection with contact. It keeps what round-off adds in later
-/// steps below the tolerance, and so a sheet at rest from having to fold.
+/// Part of the tolerance that is the goal of corrections with contact, which cost no factorisation. It keeps
+/// what round-off adds in later steps below the tolerance, and so a sheet at rest from having to fold.
 const RESERVE: f64 = 0.1;
 /// Passes of the method of multipliers: each contracts by the penalty, except along rods that are dependent.
 const PASSES: usize = 3;
@@ -155,12 +155,6 @@ impl Restoration {
         effort: &mut SolverEffort,
     ) -> f64 {
         let tolerance = goal.tolerance;
-        // Where the sheet rests, what is left adds up from step to step.
-        let target = if contact.is_some() {
-            RESERVE * tolerance
-        } else {
-            tolerance
-        };
         let (mut penalty, mut slow) = (FIRST_PENALTY, 0_usize);
         let max_openings = match (tolerance >= LOOSE_TOLERANCE, &contact) {
             (true, _) => 0,
@@ -170,11 +164,15 @@ impl Restoration {
         let mut openings = 0;
         self.begin(model, &goal, iterate);
         if goal.matrix == FirstMatrix::Factorised && model.constraints().is_empty() {
+            let target = match contact {
+                Some(_) => RESERVE * tolerance,
+                None => tolerance,
+            };
             self.correct(model, matrix, contact.as_mut(), iterate, target);
         }
         let mut strain = self.worst(model, iterate.x());
         for _ in 0..goal.max_iterations {
-            if strain <= target || strain.is_nan() {
+            if strain <= tolerance || strain.is_nan() {
                 break;
             }
             effort.iterations += 1;

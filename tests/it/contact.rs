@@ -6,7 +6,7 @@ use isosheet_dynamics::contact::{
     ActiveContacts, BarrierPotential, BodyMotions, Contact, ContactSet, JointMotion,
     LaggedFriction, StepSpan,
 };
-use isosheet_dynamics::{Method, SheetModel, Simulation, State};
+use isosheet_dynamics::{ImplicitOptions, Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 
@@ -28,6 +28,7 @@ fn plate(
     coefficients: Coefficients,
     speed: f64,
     rest_speed: f64,
+    friction_tolerance: f64,
 ) -> (Simulation, Watch) {
     let flat = Sheet::new(
         vec![0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.05, 0.08, 0.0],
@@ -76,7 +77,11 @@ fn plate(
         ..lifted(low)
     };
     let watch = Watch::new(&model, &contacts);
-    let simulation = Simulation::new(model, start, Method::default()).expect("valid");
+    let method = Method::Bdf2(ImplicitOptions {
+        friction_tolerance,
+        ..ImplicitOptions::default()
+    });
+    let simulation = Simulation::new(model, start, method).expect("valid");
     (
         simulation.with_contact(contacts).expect("nothing touches"),
         watch,
@@ -95,6 +100,9 @@ fn speeds(simulation: &Simulation, theta: f64) -> [f64; 3] {
 
 const STEP: f64 = 1.0 / 240.0;
 
+/// Tolerance of friction with which the laws of friction are tested.
+const EXACT: f64 = 1e-6;
+
 /// Static and kinetic coefficient; the friction angle of the static one is 26.6 degrees.
 const TWO: Coefficients = Coefficients {
     rest: 0.5,
@@ -109,13 +117,32 @@ fn below_the_friction_angle_a_plate_sticks() {
         for rest_speed in [1e-3, 1e-5] {
             let theta = (0.99_f64 * coefficients.rest).atan();
             let creep = rest_speed * (1.0 - 0.01_f64.sqrt());
-            let (mut simulation, mut watch) = plate(theta, coefficients, 0.0, rest_speed);
+            let (mut simulation, mut watch) = plate(theta, coefficients, 0.0, rest_speed, EXACT);
             for _ in 0..240 {
                 watch.step(&mut simulation, STEP);
             }
             for v in speeds(&simulation, theta) {
                 assert!((v / creep - 1.0).abs() < 1e-6, "{v} m/s, expected {creep}");
             }
+        }
+    }
+}
+
+#[test]
+fn friction_is_as_exact_as_its_tolerance() {
+    // Friction forces are off by the tolerance at most, on average over a second by far less.
+    let theta = f64::atan(1.0);
+    let coefficients = Coefficients::equal(0.5);
+    for tolerance in [1e-2, ImplicitOptions::default().friction_tolerance, 1e-5] {
+        let (mut simulation, mut watch) = plate(theta, coefficients, 0.0, 1e-5, tolerance);
+        for _ in 0..240 {
+            watch.step(&mut simulation, STEP);
+        }
+        let friction = 0.5 * G * theta.cos();
+        let expected = G * theta.sin() - friction;
+        for v in speeds(&simulation, theta) {
+            let error = (v / (240.0 * STEP) - expected).abs() / friction;
+            assert!(error < tolerance, "{tolerance}: {error}");
         }
     }
 }
@@ -135,7 +162,7 @@ fn above_the_friction_angle_a_plate_slides() {
     for (coefficients, tangent, speed) in scenes {
         let theta = f64::atan(tangent);
         let expected = G * (theta.sin() - coefficients.sliding * theta.cos());
-        let (mut simulation, mut watch) = plate(theta, coefficients, speed, 1e-5);
+        let (mut simulation, mut watch) = plate(theta, coefficients, speed, 1e-5, EXACT);
         let mut before = [0.0; 3];
         let mut loss = [0.0; 2];
         for n in 0..240 {
@@ -179,7 +206,7 @@ fn above_the_friction_angle_a_plate_slides() {
 fn a_plate_that_slides_in_stops_where_friction_says() {
     // On the level v^2 / (2 mu g), whatever the static coefficient.
     for coefficients in [Coefficients::equal(0.3), TWO] {
-        let (mut simulation, mut watch) = plate(0.0, coefficients, 0.9, 1e-5);
+        let (mut simulation, mut watch) = plate(0.0, coefficients, 0.9, 1e-5, EXACT);
         let start = simulation.state().x[0];
         for _ in 0..120 {
             watch.step(&mut simulation, STEP);

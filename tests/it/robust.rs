@@ -103,17 +103,16 @@ fn energy_lost(name: &str, method: Method, width: f64, masses: [f64; 2]) -> f64 
 
 #[test]
 fn damped_methods_do_not_create_energy() {
-    // Strips far from square, step by step. The last column bounds the shares that implicit Euler, BDF2 and
-    // the projection lose. Measured: 0.237, 0.031, 0.164 for the first strip; 0.254, 0.021, 0.205 for the
-    // second.
-    for (width, shares) in [
-        (0.02, [0.2..0.27, 0.025..0.04, 0.14..0.19]),
-        (0.005, [0.21..0.3, 0.015..0.03, 0.17..0.24]),
-    ] {
-        for ((name, method), share) in methods().into_iter().zip(shares) {
-            let lost = energy_lost(name, method, width, [0.004; 2]);
-            assert!(share.contains(&lost), "{name}, width {width}: {lost} lost");
-        }
+    // Strips far from square, step by step. Which way a strip folds, and what it loses, differs from width to
+    // width; bounds are for means of twelve widths. Measured: 0.249, 0.028, 0.175.
+    let widths = (0..12).map(|k| 0.004 * 1.2_f64.powi(k));
+    let shares = [0.22..0.28, 0.022..0.036, 0.15..0.2];
+    for ((name, method), share) in methods().into_iter().zip(shares) {
+        let lost = widths
+            .clone()
+            .map(|width| energy_lost(name, method.clone(), width, [0.004; 2]));
+        let mean = lost.sum::<f64>() / widths.len() as f64;
+        assert!(share.contains(&mean), "{name}: {mean} lost");
     }
 }
 

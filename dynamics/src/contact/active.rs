@@ -76,6 +76,16 @@ impl ActiveContact {
         }
     }
 
+    /// Change of the gap by a displacement (`3V`, metres), to first order, metres.
+    fn gap_change(&self, dx: &[f64]) -> f64 {
+        let parts = self.vertices.iter().zip(&self.weights);
+        let along = parts.take(self.vertex_count()).map(|(&v, w)| {
+            let v = 3 * v as usize;
+            w * self.normal.dot(&Vector3::new(dx[v], dx[v + 1], dx[v + 2]))
+        });
+        along.sum()
+    }
+
     /// Calls `add` with vertices and the barrier's gradients (newtons).
     fn gradient(&self, barrier: &BarrierPotential, mut add: impl FnMut(u32, Vector3<f64>)) {
         let [value, slope, _] = barrier.derivatives(self.gap);
@@ -376,6 +386,39 @@ impl ActiveContacts {
         for contact in &self.list {
             contact.hessian(barrier, sink);
         }
+    }
+
+    /// Adds `scale` times the forces that a displacement `dx` asks for beyond those of the Hessian, newtons:
+    /// `-phi''(g) q dg/dx` for every contact whose gap `g` closes by `q = g(x + dx) - g(x) - dg/dx dx < 0`
+    /// more than to first order; whether there are any. `ahead` are the contacts at `x + dx`.
+    pub(crate) fn add_gap_correction(
+        &self,
+        ahead: &Self,
+        barrier: &BarrierPotential,
+        dx: &[f64],
+        scale: f64,
+        out: &mut [f64],
+    ) -> bool {
+        let mut has_any = false;
+        for contact in &self.list {
+            let Ok(k) = ahead.list.binary_search_by_key(&contact.key, |c| c.key) else {
+                continue;
+            };
+            let there = &ahead.list[k];
+            // Distances between parts of the sheet have no sign.
+            let is_beyond = there.normal.dot(&contact.normal) < 0.0;
+            let gap = if is_beyond { -there.gap } else { there.gap };
+            let excess = gap - contact.gap - contact.gap_change(dx);
+            if excess < 0.0 {
+                has_any = true;
+                let force = -scale * contact.curvature(barrier).normal * excess;
+                for i in 0..contact.vertex_count() {
+                    let along = contact.weights[i] * contact.normal;
+                    add_at(out, contact.vertices[i], force * along);
+                }
+            }
+        }
+        has_any
     }
 
     /// The pairs of vertices, lower number first, that the Hessian couples; may hold pairs twice and pairs

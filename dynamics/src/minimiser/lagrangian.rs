@@ -70,8 +70,10 @@ pub(crate) struct Lagrangian {
     end: Vec<f64>,
     axial: Vec<f64>,
     pub(super) transverse: Vec<f64>,
-    difference: Vec<f64>,
-    weighted: Vec<f64>,
+    pub(super) difference: Vec<f64>,
+    /// The step before its second-order correction.
+    pub(super) uncorrected: Vec<f64>,
+    pub(super) weighted: Vec<f64>,
     /// Changes of length errors, for linearised constraints.
     pub(super) change: Vec<f64>,
 }
@@ -135,6 +137,7 @@ impl Lagrangian {
             axial: vec![0.0; m],
             transverse: vec![0.0; edges],
             difference: vec![0.0; n],
+            uncorrected: vec![0.0; n],
             weighted: vec![0.0; n],
             change: vec![0.0; m],
         })
@@ -436,7 +439,7 @@ impl Lagrangian {
         self.safe_part(problem);
     }
 
-    fn safe_part(&mut self, problem: &mut StepProblem<'_>) -> f64 {
+    pub(super) fn safe_part(&mut self, problem: &mut StepProblem<'_>) -> f64 {
         let x = self.iterate.x();
         for v in problem.model.moving_pins() {
             for i in 3 * v..3 * v + 3 {
