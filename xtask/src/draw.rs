@@ -5,7 +5,6 @@ mod chart;
 mod colour;
 mod drawing;
 mod layout;
-mod png;
 mod series;
 mod sheet;
 pub(crate) mod spatial;
