@@ -9,7 +9,7 @@ mod scene;
 pub(crate) use comparison::{COLUMNS, Entry, words};
 pub(crate) use factorisation::{OrderRow, order};
 pub(crate) use matrices::{Body, STIFFNESS, Sparse};
-pub(crate) use run::{Measured, Mesh, NEIGHBOUR, Timed};
+pub(crate) use run::{Limits, Measured, Mesh, NEIGHBOUR};
 pub(crate) use scene::{
     BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging, on_table,
 };

@@ -20,20 +20,25 @@ const SCALE: f32 = 216.0 / 96.0;
 impl Drawing {
     /// The drawing as an SVG document whose size is that of its contents; `title` is read by screen readers.
     pub(crate) fn to_svg(&self, title: &str) -> String {
+        self.document(title, 1.0).into_string()
+    }
+
+    /// The same as part of a page, larger by a factor.
+    pub(crate) fn document(&self, title: &str, factor: f64) -> Markup {
         let bounds = self.bounds();
         let corner = [bounds.min[0] - MARGIN, bounds.max[1] + MARGIN];
         let size = [bounds.width(), bounds.height()].map(|s| s + 2.0 * MARGIN);
-        let [width, height] = size.map(|s| format!("{s:.2}"));
+        let [width, height] = size.map(|s| format!("{:.2}pt", factor * s));
+        let seen = format!("0 0 {:.2} {:.2}", size[0], size[1]);
         let place = |p: &[f64; 2]| [p[0] - corner[0], corner[1] - p[1]];
-        let svg = html! {
-            svg xmlns="http://www.w3.org/2000/svg" width={ (width) "pt" } height={ (height) "pt" } role="img" aria-label=(title)
-                viewBox={ "0 0 " (width) " " (height) } font-family=(FAMILY) fill="none" stroke-linecap="round" stroke-linejoin="round" {
+        html! {
+            svg xmlns="http://www.w3.org/2000/svg" width=(width) height=(height) role="img" aria-label=(title)
+                viewBox=(seen) font-family=(FAMILY) fill="none" stroke-linecap="round" stroke-linejoin="round" {
                 // White paper: dark lines on a dark viewer's page would vanish.
                 rect width="100%" height="100%" fill=(hex(palette::WHITE)) {}
                 @for item in &self.items { (element(item, &place)) }
             }
-        };
-        svg.into_string()
+        }
     }
 
     /// The drawing as a PNG file; `title` as for [`Drawing::to_svg`].
@@ -78,7 +83,7 @@ fn element(item: &Item, place: &impl Fn(&[f64; 2]) -> [f64; 2]) -> Markup {
             let dash = stroke.dash.map(|[on, off]| format!("{on} {off}"));
             html! {
                 polyline points=(path(line)) stroke=(hex(colour)) stroke-opacity=[opacity(colour)]
-                    stroke-width=(stroke.width) stroke-linecap=[dash.as_ref().map(|_| "butt")] stroke-dasharray=[dash] {}
+                    stroke-width=(stroke.width) stroke-dasharray=[dash] {}
             }
         }
         Item::Disc {

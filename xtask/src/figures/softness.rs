@@ -1,6 +1,6 @@
 //! How soft a sheet is, by mesh level: what the paper says of Figs. 11 and 12 by eye.
 
-use super::{Context, Effort, Picture, Table, whole_percent};
+use super::{Effort, Picture, Table, whole_percent};
 use crate::draw::{Axis, Chart, Drawing, Marker, Series, palette, row};
 use crate::runs::{self, FigureScene, Member};
 use anyhow::Result;
@@ -92,13 +92,13 @@ fn smallest(values: &[f64]) -> f64 {
 
 /// Measures the falls of the scenes that `fall` gives for each level.
 pub(super) fn make(
-    context: &Context<'_>,
+    effort: Effort,
     fall: fn(u32, Effort) -> Result<FigureScene>,
 ) -> Result<Softness> {
-    let (levels, members) = context.effort.quick_or((0..2, 2), (0..4, MEMBERS));
+    let (levels, members) = effort.quick_or((0..2, 2), (0..4, MEMBERS));
     let mut all = Vec::new();
     for level in levels {
-        let scene = fall(level, context.effort)?;
+        let scene = fall(level, effort)?;
         let sheet = scene.sheet()?;
         let t = sheet.topology();
         all.push(Level {

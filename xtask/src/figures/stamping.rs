@@ -1,9 +1,10 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
-use super::sequence::{Shown, View};
-use super::{Context, Effort, Made, Picture, Play};
+use super::show::View;
+use super::{Effort, Made, Picture, Play};
 use crate::draw::{Axis, Chart, Series, palette};
-use crate::runs::{self, FigureScene};
+use crate::runs::{FigureScene, Run};
+use crate::store::Store;
 use anyhow::{Context as _, Result};
 use isosheet_io::scene::{Course, Obstacle, Profile, Scene, Shape};
 use serde_json::json;
@@ -74,30 +75,21 @@ const VIEW: View = View {
     depth: 0.03,
 };
 
-fn shown<'a>(scene: &'a FigureScene, context: &'a Context<'_>) -> Shown<'a> {
-    Shown {
-        scene,
-        view: VIEW,
-        context,
-    }
-}
-
 /// The page that plays a run.
-pub(super) fn page(figure: u8, scene: &FigureScene, context: &Context<'_>) -> Result<Play> {
-    let label = if scene.scene().contact.self_contact {
+pub(super) fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
+    let label = if run.scene.scene().contact.self_contact {
         "stamping"
     } else {
         "stamping, the sheet passing through itself"
     };
-    shown(scene, context).play(figure, label)
+    VIEW.play(run, effort, figure, label)
 }
 
-pub(super) fn make(context: &Context<'_>) -> Result<Made> {
-    let scene = scene(context.effort)?;
-    let (tools, blank) = (Tools::of(scene.scene())?, scene.sheet()?);
-    let density = scene.scene().sheet.density;
-    let run = runs::ensure(context.store, &scene)?;
-    let forces = runs::forces(context.store, &scene, DIE)?;
+pub(super) fn make(store: &Store) -> Result<Made> {
+    let whole = Run::of(store, scene(store.effort)?)?;
+    let (scene, run) = (whole.scene.scene(), &whole.summary);
+    let (tools, blank) = (Tools::of(scene)?, &whole.sheet);
+    let (density, forces) = (scene.sheet.density, whole.forces(DIE));
     let full = tools.duration;
     let speed = tools.stroke / full;
     // The sheet presses the die down.
@@ -128,23 +120,23 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
             1e3 * tools.opening,
             1e3 * tools.die,
             1e3 * speed,
-            scene.scene().obstacle[DIE].friction,
+            scene.obstacle[DIE].friction,
             1e3 * tools.holder,
             1e3 * tools.clearance,
             1e3 * tools.stroke,
             run.vertices,
             run.faces,
-            run.frames,
-            run.rejected,
+            run.course.cost.steps,
+            run.course.cost.rejected,
             run.slowness(),
-            run.max_strain,
-            super::gap(run.smallest_gap),
+            run.course.strain,
+            super::gap(run.course.gap),
         ),
         pictures: vec![
-            shown(&scene, context).picture("fig13.png", pressed, &times)?,
+            VIEW.picture(&whole, store.effort, ["fig13.png", pressed], &times)?,
             Picture::svg("fig13-force", &plot.draw(), alt),
         ],
-        pages: vec![page(13, &scene, context)?],
+        pages: vec![page(13, &whole, store.effort)?],
         facts: json!({ "run": run, "peak_force": peak, "weight": weight, "stroke_mm_and_force_n": curve }),
         ..Made::default()
     })

@@ -206,7 +206,7 @@ fn literal(effort: Effort) -> Result<Findings> {
     let em = counts.iter().map(|n| {
         let mut run = hanging(0, BUMP, energy_momentum())?;
         let c = go(&mut run, END / *n as f64, *n)?;
-        Ok(c.if_finished(apart(&run.state().x, reference)))
+        Ok(c.if_good(apart(&run.state().x, reference)))
     });
     let em: Vec<f64> = em.collect::<Result<_>>()?;
     let last = counts.len() - 1;

@@ -1,12 +1,13 @@
 //! Exactly flat starts, and passing through states where the rods are dependent.
 
 use super::naive::{TEXTBOOK, textbook, textbook_steps};
-use super::scenes::{Course, FRAME, apart, course, go, pinned, released};
+use super::scenes::{FRAME, VIEWPOINT, apart, course, go, pinned, released};
 use super::{Case, Findings, log_log};
-use crate::draw::Series;
+use crate::draw::{Series, Shot, Viewpoint};
 use crate::interrupt;
 use crate::methods::{Named, conservative, damped, methods};
 use crate::report::{Effort, Picture};
+use crate::runs::Course;
 use crate::timing::{bumped, corner};
 use anyhow::Result;
 use isosheet_coords::{
@@ -14,7 +15,6 @@ use isosheet_coords::{
 };
 use isosheet_dynamics::chart::{ChartOptions, Rebase};
 use isosheet_dynamics::{Frames, Method, SheetModel, Simulation, State, rod_rank};
-use isosheet_io::picture::{Camera, Labelled, Look, SheetPicture, montage, render};
 use isosheet_mesh::{MassMatrix, Sheet};
 use isosheet_tests::{Flap, orders};
 use std::f64::consts::FRAC_PI_2;
@@ -52,7 +52,7 @@ fn start(effort: Effort) -> Result<Findings> {
             })?;
             let mut judge = f.of(&c, format!("M^{level}, {name}"));
             judge.strain("largest edge strain in a second");
-            judge.at_most("rejected steps", c.rejected as f64, 0.0);
+            judge.at_most("rejected steps", c.cost.rejected as f64, 0.0);
             judge.at_least("largest energy released, J", -potential, 0.1);
         }
     }
@@ -85,40 +85,29 @@ fn front_condition(sheet: &Sheet, model: &SheetModel) -> Result<f64, ChartError>
 
 /// The fall of M^2, rendered.
 fn fall() -> Result<Picture> {
-    let sheet = bumped(2, 0.0)?;
-    let mut run = released(&sheet, &[corner(2)], Method::default())?;
+    let (sheet, pins) = (bumped(2, 0.0)?, [corner(2)]);
+    let mut run = released(&sheet, &pins, Method::default())?;
     let mut kept = Frames::every(1);
     run.run(1.0, FRAME, &mut [&mut kept, &mut interrupt::observe])?;
     interrupt::check()?;
-    let states = [0, 6, 15, 24, 36, 60].map(|k| &kept.states()[k]);
-    let points = states
-        .iter()
-        .flat_map(|s| s.x.as_chunks::<3>().0.iter().copied());
-    let view = Camera::new([0.0; 3], -62.0, 17.0, 1.0, 6.0);
-    let aspect = view.aspect(points.clone());
-    let camera = view.framing(points, aspect, 0.04);
-    let look = Look {
-        size: [(400.0 * aspect).round() as usize, 400],
-        ..Look::default()
-    };
-    let mut frames = Vec::new();
-    for State { t, x, .. } in states {
-        let picture = SheetPicture {
-            topology: sheet.topology(),
-            positions: x,
-            pins: &[corner(2)],
-            immobile: &[],
-            solids: &[],
-        };
-        frames.push(Labelled {
-            image: render(&picture, &camera, &look)?,
+    let shot = |k: usize| {
+        let State { t, x, .. } = &kept.states()[k];
+        Shot {
+            sheet: &sheet,
+            x,
+            pins: &pins,
+            solids: Vec::new(),
             label: format!("{t:.2} s"),
-        });
-    }
+        }
+    };
+    let shots = [0, 6, 15, 24, 36, 60].map(shot).into();
+    let seen = Viewpoint {
+        height: 400,
+        ..VIEWPOINT
+    };
     let alt = "M^2 released from exactly flat and horizontal, held at a corner (BDF2, 1/60 s). Warm: the upper side at the start; blue: \
                the lower one.";
-    let image = montage(&frames, 6)?.to_png()?;
-    Ok(Picture::file("flat-start.png", image, alt))
+    Ok(Picture::png("flat-start.png", seen.montage(shots, 6)?, alt))
 }
 
 pub(crate) const BRANCH: Case = Case {
@@ -258,9 +247,9 @@ fn converges(f: &mut Findings, named: &Named, counts: &[usize]) -> Result<Vec<[f
         } = crossing(FOLDED)?;
         let mut run = Simulation::new(model, start, method.clone())?;
         let c = go(&mut run, DURATION / n as f64, n)?;
-        let error = c.if_finished(off_exact(&flap, &run.state().x));
+        let error = c.if_good(off_exact(&flap, &run.state().x));
         points.push([1e3 * DURATION / n as f64, error]);
-        all.add(c);
+        all.add_run(c);
     }
     let errors: Vec<f64> = points.iter().map(|p| p[1]).collect();
     let expected = match *name {
@@ -279,7 +268,7 @@ fn converges(f: &mut Findings, named: &Named, counts: &[usize]) -> Result<Vec<[f
     }
     judge.strain("largest edge strain");
     if conservative().iter().any(|c| c.0 == *name) {
-        judge.at_most("rejected steps", all.rejected as f64, 0.0);
+        judge.at_most("rejected steps", all.cost.rejected as f64, 0.0);
     }
     Ok(points)
 }

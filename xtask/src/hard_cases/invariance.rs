@@ -1,6 +1,6 @@
 //! Time reversal, renumbering, turning the frame, and the number of threads.
 
-use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel_step, textbook_steps};
+use super::naive::{GAUSS_SEIDEL, SWEEPS, TEXTBOOK, gauss_seidel_step, textbook_steps};
 use super::scenes::{FRAME, apart, at_rest, course, go, pinned, tumbling};
 use super::{Case, Findings, semi_log};
 use crate::draw::Series;
@@ -59,9 +59,9 @@ fn reversal(effort: Effort) -> Result<Findings> {
             let State { x, v, .. } = run.state().clone();
             let back = State::moving(x, v.iter().map(|v| -v).collect());
             let mut run = Simulation::new(tumbling(0.1)?.0, back, method.clone())?;
-            c.add(go(&mut run, STEP, n)?);
+            c.add_run(go(&mut run, STEP, n)?);
             let error = apart(&run.state().x, &start.x);
-            points.push([n as f64 * STEP, c.if_finished(error)]);
+            points.push([n as f64 * STEP, c.if_good(error)]);
             if n == judged && k < 3 {
                 let quantity = format!("distance from the start after {n} steps there and back, m");
                 f.of(&c, name).at_most(&quantity, error, 1e-9);
@@ -205,7 +205,7 @@ fn symmetry(effort: Effort) -> Result<Findings> {
         let mut x = image.sheet.positions().to_vec();
         let mut v = vec![0.0; x.len()];
         for _ in 0..20 {
-            gauss_seidel_step(&model, &mut x, &mut v, H);
+            gauss_seidel_step(&model, (&mut x, &mut v), H, SWEEPS);
         }
         Ok((image.back)(&x))
     };
@@ -388,7 +388,7 @@ fn cloth(steps: usize) -> Result<Vec<f64>> {
     let contacts = on_table(&model, options, table, Pairs::TableAndItself)?;
     let run = at_rest(model, sheet.positions(), Method::default())?;
     let mut run = run.with_contact(contacts)?;
-    match go(&mut run, 1e-3, steps)?.refusal {
+    match go(&mut run, 1e-3, steps)?.error {
         None => Ok(run.state().x.clone()),
         Some(error) => Err(error.into()),
     }

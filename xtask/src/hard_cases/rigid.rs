@@ -223,7 +223,7 @@ fn spin(f: &mut Findings, solid: &Solid, (name, method): Named, steps: usize) ->
     if name == "energy-momentum" {
         judge.at_most(
             "energy error, of the kinetic energy",
-            c.drift / c.kinetic,
+            c.drift / c.most_kinetic,
             1e-10,
         );
     }

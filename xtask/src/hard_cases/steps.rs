@@ -1,11 +1,12 @@
 //! Step sizes, and free fall.
 
 use super::naive::{TEXTBOOK, textbook, textbook_steps};
-use super::scenes::{Course, apart, course, go};
+use super::scenes::{apart, course, go};
 use super::{Case, Findings, Shortfall, log_log};
 use crate::draw::Series;
 use crate::methods::{Named, damped, methods};
 use crate::report::{Effort, number};
+use crate::runs::Course;
 use crate::timing::{bumped, hanging};
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State, leave_flat};
@@ -91,8 +92,8 @@ fn pendulum(
         let mut run = Simulation::new(problem.model(), problem.start(), method.clone())?;
         let h = END / n as f64;
         let c = go(&mut run, h, n)?;
-        points.push([h, c.if_finished(apart(&run.state().x, &problem.exact(END)))]);
-        all.add(c);
+        points.push([h, c.if_good(apart(&run.state().x, &problem.exact(END)))]);
+        all.add_run(c);
     }
     let [smallest, error] = points[points.len() - 1];
     let bound = match (*name, effort) {
@@ -112,7 +113,7 @@ fn pendulum(
 /// `M^1` hanging by a corner from a bump.
 fn bumped_sheet(f: &mut Findings, (name, method): Named, (h, steps): (f64, usize)) -> Result<()> {
     let c = go(&mut hanging(1, 0.05, method)?, h, steps)?;
-    let (size, scale) = (number(h), c.kinetic.max(1e-12));
+    let (size, scale) = (number(h), c.most_kinetic.max(1e-12));
     f.of(&c, format!("M^1, {name}, {steps} steps of {size} s"))
         .strain("edge strain");
     let mut judge = f.of(&c, format!("M^1, {name}, steps of {size} s"));

@@ -1,14 +1,15 @@
 //! Single everyday scenes with paper.
 
 use super::Findings;
-use super::course::{Course, Plan, Scene};
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::vertices;
-use super::plot::{Dot, Figure, Panel};
+use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::sample::{Sample, requirements};
+use super::scene::Scene;
 use crate::draw::{Axis, Drawing};
 use crate::report::{Effort, Table};
+use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::{PointProfile, Profile, SheetModel};
 use isosheet_mesh::generate::{self, Diagonals};
@@ -181,13 +182,13 @@ fn rolled(sheet: &Sheet) -> Vec<f64> {
 }
 
 /// Heights of the lowest and the highest vertex (metres), and energy of bending (joules) at the end.
-type Day = Sample<Everyday, Course, ([f64; 2], f64)>;
+type Day = Sample<Everyday, ([f64; 2], f64)>;
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
-    let effort = records.effort;
+    let effort = records.store.effort;
     let duration = effort.quick_or(0.5, 3.0);
-    let plan = Plan::new(1.0 / 60.0, duration, effort.patience(0.3, 10.0));
+    let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.3, 10.0));
     let scenes = Everyday::all(effort);
     let all = records.of_models(
         |_| scenes.clone(),
@@ -195,10 +196,10 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
             let sheet = scene.sheet()?;
             let model = scene.model(isometry, &sheet)?;
             let start = scene.start(&sheet);
-            let course = Scene::flat(model, &sheet).from(start).run(&plan)?;
+            let (course, end) = Scene::flat(model, &sheet).from(start).run(&plan)?;
             let bending = (PAPER_RIGIDITY, &*scene.clamp(&sheet));
-            let bending = isometry.bending_energy(&sheet, bending, &course.x)?;
-            let measured = (course.heights(), bending);
+            let bending = isometry.bending_energy(&sheet, bending, &end.x)?;
+            let measured = (end.heights(), bending);
             Ok((sheet.topology().vertex_count(), course, measured))
         },
     )?;
@@ -222,23 +223,23 @@ fn table(all: &[Day], plan: &Plan) -> Table {
         format!(
             "Everyday scenes: {} s simulated, at most {} s of wall time. The energy of bending is that at the end",
             plan.duration,
-            plan.limit()
+            plan.patience
         ),
         all,
         &[
             ("scene", &|d| d.job.to_string().into()),
             ("V", &|d| d.vertices.into()),
             ("model", &|d| d.isometry.to_string().into()),
-            ("ending", &|d| d.run.ending.name().into()),
-            ("t at the end, s", &|d| d.run.t.into()),
-            ("factorisations per step", &|d| d.run.factorisations().into()),
-            ("most in a step", &|d| d.run.worst.into()),
+            ("ending", &|d| d.course.ending.name().into()),
+            ("t at the end, s", &|d| d.course.time.into()),
+            ("factorisations per step", &|d| d.course.cost.factorisations_per_step().into()),
+            ("most in a step", &|d| d.course.worst.into()),
             ("lowest vertex, m", &|d| d.measured.0[0].into()),
             ("highest vertex, m", &|d| d.measured.0[1].into()),
             ("energy of bending, J", &|d| d.measured.1.into()),
-            ("strain", &|d| d.run.strain.into()),
-            ("wall time, s", &|d| d.run.cost.wall.into()),
-            ("message", &|d| d.run.ending.message().into()),
+            ("strain", &|d| d.course.strain.into()),
+            ("wall time, s", &|d| d.course.cost.wall.into()),
+            ("message", &|d| d.course.ending.message().into()),
         ],
     )
     .named("everyday")
@@ -265,7 +266,9 @@ fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
     });
     let range = [-0.7, scenes.len() as f64 - 0.3];
     let x = Axis::linear("squares across, or mesh", range, ticks.collect());
-    let costs = all.iter().filter_map(|d| d.run.factorisations());
+    let costs = all
+        .iter()
+        .filter_map(|d| d.course.cost.factorisations_per_step());
     let y = Axis::holding("factorisations a step", costs);
     let panel = Panel::new("Everyday scenes", dots.collect());
     let kinds = kinds.map(str::to_owned).to_vec();

@@ -10,11 +10,10 @@ use crate::progress::Progress;
 use crate::report::Effort;
 use crate::report::{Cell, Table, rounded, short};
 use anyhow::Result;
-use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// Everything measured on one problem.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(crate) struct Study {
     pub(crate) problem: Problem,
     pub(crate) reference: Reference,
@@ -25,14 +24,15 @@ pub(crate) struct Study {
 pub(crate) fn make(problem: Problem, effort: Effort) -> Result<Study> {
     let schemes = Scheme::all();
     let bar = Progress::start(problem.to_string(), schemes.len() + 1);
-    let reference = reference::compute(problem, effort.reference(problem))?;
+    let reference = reference::compute(problem, reference::budget(problem, effort))?;
     bar.step();
     let mut points = Vec::new();
     for scheme in &schemes {
+        // Steps are halved until a run takes longer, seconds; there are 24 methods in charts.
         let limit = if scheme.is_chart() {
-            effort.chart_run()
+            effort.pick(0.004, 0.25, 3.0)
         } else {
-            effort.run()
+            effort.pick(0.01, 1.0, 8.0)
         };
         points.extend(sweep(problem, scheme, &reference, limit)?);
         bar.step();
