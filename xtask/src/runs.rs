@@ -9,7 +9,7 @@ mod record;
 mod scene;
 mod shape;
 
-pub(crate) use chart_run::{ChartSummary, Fate, chart_run};
+pub(crate) use chart_run::{ChartSummary, chart_run};
 pub(crate) use course::{Course, Ending, Plan, unseen};
 pub(crate) use ensemble::{Member, ensemble};
 pub(crate) use fall::{fall, free_fall, plate_fall};

@@ -20,7 +20,7 @@ mod verdict;
 use crate::interrupt;
 use crate::report::{Effort, FullOptions, Page, Section, Table, list, machine, one_of, plot};
 use crate::store::{Files, Store, Unit};
-use analysis::Measure;
+use analysis::{ENERGY, POSITION};
 use anyhow::Result;
 use clap::Args;
 use maud::{Markup, html};
@@ -133,7 +133,7 @@ fn make(part: Part, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
             if verdict::concerns(problem) {
                 conclusions.push(verdict::words(&study));
             }
-            let fronts = [Measure::Position, Measure::Energy].map(|m| study.default_on_front(m));
+            let fronts = [POSITION, ENERGY].map(|m| study.default_on_front(m));
             on_front = Some(fronts.map(|fronts| fronts.map(|front| front.is_some())));
             html! {
                 h2 { (problem.title()) }
@@ -230,7 +230,7 @@ fn page(records: &[Record]) -> Page {
 fn fronts(records: &[Record]) -> Vec<String> {
     let whom = ["of all methods", "of the methods that take flat states"];
     let mut all = Vec::new();
-    for (m, measure) in [Measure::Position, Measure::Energy].into_iter().enumerate() {
+    for (m, measure) in [POSITION, ENERGY].into_iter().enumerate() {
         for (k, whom) in whom.into_iter().enumerate() {
             let problems = records
                 .iter()
@@ -241,7 +241,7 @@ fn fronts(records: &[Record]) -> Vec<String> {
                 true => String::new(),
                 false => format!("; not on {}", names.join(", ")),
             };
-            let (n, name) = (on.len() + off.len(), measure.name());
+            let (n, name) = (on.len() + off.len(), measure.name);
             all.push(format!(
                 "The default, {DEFAULT}, is on the front of {name} error {whom} on {} of {n} problems{not}.",
                 on.len()

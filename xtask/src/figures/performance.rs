@@ -2,7 +2,7 @@
 
 use super::{Effort, Made, Picture, Play, Table, cloths, crumple, drape, stamping};
 use crate::report::{Cell, machine, rounded};
-use crate::runs::{self, ChartSummary, Fate, FigureScene, Run, RunSummary};
+use crate::runs::{self, ChartSummary, Course, Ending, FigureScene, Run, RunSummary};
 use crate::store::Store;
 use anyhow::Result;
 use isosheet_coords::condition_table;
@@ -158,7 +158,7 @@ impl Tried {
         self.charts.iter().all(|(_, s)| {
             let chart = s.run.scene().method.chart.as_ref();
             let is_published = chart.is_some_and(|c| c.coordinates == Coordinates::Front);
-            !is_published || matches!(s.fate, Fate::Refused { .. })
+            !is_published || is_refused(&s.course)
         })
     }
 
@@ -190,6 +190,11 @@ impl Tried {
         let charts: Vec<&ChartSummary> = self.charts.iter().map(|(_, s)| s).collect();
         json!({ "figure": self.published.figure, "default": self.ours, "without_self_contact": self.free, "published_scheme": charts })
     }
+}
+
+/// Whether a run was refused at its start.
+fn is_refused(course: &Course) -> bool {
+    !course.is_good() && course.cost.steps == 0
 }
 
 /// What is said where the scheme as published cannot start.
@@ -328,26 +333,27 @@ fn contact_table(all: &[Tried]) -> Table {
 }
 
 fn chart_row(mesh: &str, name: &str, s: &ChartSummary) -> Vec<String> {
-    let outcome = match &s.fate {
-        Fate::Finished => format!("{:.1} s, strain {:.0e}", s.time, s.max_strain),
-        Fate::Refused { reason } => format!("refused at t = 0: {}", rounded(reason)),
-        Fate::Stopped { t, reason } => format!(
-            "stopped at t = {t:.3} s, strain {:.0e}: {}",
-            s.max_strain,
-            rounded(reason)
-        ),
-        Fate::OutOfPatience { t } => {
-            format!(
-                "given up at t = {t:.3} s after {:.0} s of wall time, strain {:.0e}",
-                s.wall, s.max_strain
-            )
+    let course = &s.course;
+    let (t, strain) = (course.time, course.strain);
+    let outcome = match &course.ending {
+        Ending::Error { message, .. } if is_refused(course) => {
+            format!("refused at t = 0: {}", rounded(message))
         }
+        Ending::Error { message, .. } => {
+            let reason = rounded(message);
+            format!("stopped at t = {t:.3} s, strain {strain:.0e}: {reason}")
+        }
+        Ending::WallTime(_) => {
+            let wall = course.cost.wall;
+            format!("given up at t = {t:.3} s after {wall:.0} s of wall time, strain {strain:.0e}")
+        }
+        _ => format!("{t:.1} s, strain {strain:.0e}"),
     };
     vec![
         String::new(),
         mesh.into(),
         name.into(),
-        if s.steps > 0 {
+        if course.cost.steps > 0 {
             format!("{:.2}", s.frames_per_second)
         } else {
             "–".into()

@@ -384,13 +384,13 @@ mod tests {
     fn an_aligned_sheet_has_energy_and_moment_of_the_cylinder() {
         let plan = Plan::new(STEP, 4.0).within(60.0).until_rest(REST);
         let job = (Pattern::UnionJack, 8, 0.0);
-        let (vertices, run, measured) = measure(Isometry::Soft, job, &plan).unwrap();
+        let (vertices, course, measured) = measure(Isometry::Soft, job, &plan).unwrap();
         let isometry = Isometry::Soft;
         let bent = Bent {
             isometry,
             job,
             vertices,
-            run,
+            course,
             measured,
         };
         assert!(bent.course.is_good(), "{:?}", bent.course.ending);

@@ -134,14 +134,30 @@ impl Table {
         self
     }
 
-    /// Some columns of the table under another caption; of equal rows that follow each other one is left.
+    /// The same table with another column.
+    ///
+    /// # Panics
+    /// If there are more or fewer cells than rows.
+    pub(crate) fn with_column(mut self, name: &str, cells: impl Iterator<Item = Cell>) -> Self {
+        let cells: Vec<Cell> = cells.collect();
+        assert_eq!(cells.len(), self.rows.len(), "rows of {}", self.caption);
+        self.head.push(name.to_owned());
+        for (row, cell) in self.rows.iter_mut().zip(cells) {
+            row.push(cell);
+        }
+        self
+    }
+
+    /// Some columns of the table under another caption, by their names with spaces between; of equal rows that
+    /// follow each other one is left.
     ///
     /// # Panics
     /// If there is no such column.
-    pub(crate) fn select(&self, caption: impl Into<String>, head: &[&str]) -> Self {
+    pub(crate) fn select(&self, caption: impl Into<String>, names: &str) -> Self {
+        let head: Vec<&str> = names.split_whitespace().collect();
         let place = |name: &&str| self.head.iter().position(|h| h == name);
         let places: Vec<usize> = head.iter().map(|h| place(h).expect("a column")).collect();
-        let mut table = Self::new(caption, head);
+        let mut table = Self::new(caption, &head);
         let pick = |row: &Vec<Cell>| places.iter().map(|k| row[*k].clone()).collect();
         table.rows = self.rows.iter().map(pick).collect();
         table.rows.dedup();

@@ -9,7 +9,7 @@ use super::whole::{SCENES, name};
 use super::whole_report;
 use super::{PICTURE, Results};
 use crate::report::{Page, Picture, Table, list, machine};
-use crate::timing::{COLUMNS, Measured, Work};
+use crate::timing::{Measured, Work};
 use maud::{Markup, html};
 
 /// The page.
@@ -48,25 +48,11 @@ pub(super) fn page(results: &Results) -> Page {
 
 /// What is shown of the whole runs of a scene.
 fn table(scene: Work, runs: &[&Measured]) -> Table {
-    let head = [
-        "level",
-        "vertices",
-        "method",
-        "start",
-        "wall_s_per_simulated_s",
-        "iterations_per_step",
-        "factorisations_per_step",
-        "wall_s_per_factorisation",
-        COLUMNS[0],
-        COLUMNS[1],
-        "rejected",
-        "strain",
-        "gap_m",
-        "reached_s",
-        "not_ended",
-    ];
+    let names = "mesh vertices method start wall_s_per_simulated_s iterations_per_step factorisations_per_step \
+                 wall_s_per_factorisation times_fastest_exact times_one_factorisation_a_step rejected strain \
+                 smallest_gap_m reached_s failure";
     let all = whole_report::table(runs);
-    all.select(format!("{} Here: the {}.", all.caption, name(scene)), &head)
+    all.select(format!("{} Here: the {}.", all.caption, name(scene)), names)
 }
 
 /// The whole runs of a scene.

@@ -61,45 +61,21 @@ pub(super) fn hanging(rows: &[Row]) -> Table {
 
 /// The steps of [`hanging`].
 pub(super) fn steps(rows: &[Row]) -> Table {
-    let head = [
-        "level",
-        "vertices",
-        "faces",
-        "setup_s",
-        "step_s",
-        "iterations",
-        "factorisations",
-        "factorising_s",
-        "solving_s",
-        "rest_s",
-        "strain",
-        "energy_error",
-        "factor_bytes",
-        "peak_bytes",
-    ];
+    let names = "level vertices faces setup_s step_s iterations factorisations factorising_s solving_s rest_s strain \
+                 energy_error factor_bytes peak_bytes";
     hanging(rows).select(
         "Per step of the hanging sheet. Factorisations, solves: their numbers times what one takes alone, parts of the step; the rest is \
          assembly, gradients and vectors. The energy error is relative to the potential energy released, the memory is that of the \
          Cholesky factor and the peak of the process.",
-        &head,
+        names,
     )
 }
 
 /// The orders of elimination of [`hanging`].
 pub(super) fn orders(rows: &[Row]) -> Table {
-    let head = [
-        "level",
-        "ordering",
-        "order_s",
-        "symbolic_s",
-        "numeric_s",
-        "two_threads_s",
-        "solve_s",
-        "factor_entries",
-        "factor_stored",
-        "factor_operations",
-    ];
-    hanging(rows).select("Elimination orders of the matrix of a step.", &head)
+    let names = "level ordering order_s symbolic_s numeric_s two_threads_s solve_s factor_entries factor_stored \
+                 factor_operations";
+    hanging(rows).select("Elimination orders of the matrix of a step.", names)
 }
 
 /// The draping sheet.

@@ -1,10 +1,10 @@
 //! Tables and words on whole runs.
 
 use super::findings::power;
-use super::whole::{are_neighbours, methods, name};
+use super::whole::{are_neighbours, methods};
 use crate::report::{Table, short};
 use crate::runs::Course;
-use crate::timing::{self, COLUMNS, Entry, Measured, NEIGHBOUR, STEP};
+use crate::timing::{self, Entry, Measured, NEIGHBOUR, STEP};
 use std::fmt::Write;
 
 /// What the runs are.
@@ -135,47 +135,15 @@ fn unfinished(r: &Measured) -> Option<String> {
 
 /// The runs of all scenes.
 pub(super) fn table(runs: &[&Measured]) -> Table {
-    let with = |r: &&Measured| {
+    let all = |r: &Measured| {
         let of_scene: Vec<&Measured> = runs.iter().copied().filter(|o| o.work == r.work).collect();
-        let entries = entries(&of_scene, r.mesh.level);
-        let times = r.entry(r.method.clone()).multiples(&entries);
-        ((*r).clone(), r.course.clone(), times)
+        entries(&of_scene, r.mesh.level)
     };
-    Table::of(
+    timing::table(
         "Whole runs: wall seconds for a simulated second, set-up left out, of runs that did not end up to the time they reached; \
          the time as a multiple of that of the fastest method on the mesh that keeps lengths, and of the time of one factorisation a step.",
-        runs.iter().map(with),
-        &[
-            ("scene", &|(r, ..)| name(r.work).into()),
-            ("level", &|(r, ..)| r.mesh.level.into()),
-            ("vertices", &|(r, ..)| r.mesh.vertices.into()),
-            ("method", &|(r, ..)| r.method.as_str().into()),
-            ("start", &|(r, ..)| r.start.into()),
-            ("step_s", &|_| STEP.into()),
-            ("wall_s", &|(_, c, _)| c.cost.wall.into()),
-            ("repetitions", &|(r, ..)| r.repetitions.into()),
-            ("reached_s", &|(_, c, _)| c.time.into()),
-            ("wall_s_per_simulated_s", &|(_, c, _)| c.rate().into()),
-            (COLUMNS[0], &|(.., times)| times[0].into()),
-            (COLUMNS[1], &|(.., times)| times[1].into()),
-            ("steps", &|(_, c, _)| c.cost.steps.into()),
-            ("rejected", &|(_, c, _)| c.cost.rejected.into()),
-            ("iterations", &|(_, c, _)| c.cost.iterations.into()),
-            ("factorisations", &|(_, c, _)| c.cost.factorisations.into()),
-            ("iterations_per_step", &|(_, c, _)| {
-                c.cost.iterations_per_step().into()
-            }),
-            ("factorisations_per_step", &|(_, c, _)| {
-                c.cost.factorisations_per_step().into()
-            }),
-            ("wall_s_per_factorisation", &|(_, c, _)| {
-                c.cost.wall_per_factorisation().into()
-            }),
-            ("factorisation_s", &|(r, ..)| r.mesh.factorisation.into()),
-            ("strain", &|(_, c, _)| c.strain.into()),
-            ("gap_m", &|(_, c, _)| c.gap.into()),
-            ("not_ended", &|(_, c, _)| c.failure().into()),
-        ],
+        runs,
+        &all,
     )
 }
 

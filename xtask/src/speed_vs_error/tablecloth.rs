@@ -6,9 +6,7 @@ use super::scheme::DEFAULT;
 use crate::methods::{Named, implicit_euler};
 use crate::progress::Progress;
 use crate::report::{Effort, Table, rounded, short};
-use crate::timing::{
-    self, BUMP, COLUMNS, Entry, Limits, Measured, Mesh, Pairs, STEP, Work, bumped,
-};
+use crate::timing::{self, BUMP, Entry, Limits, Measured, Mesh, Pairs, STEP, Work, bumped};
 use anyhow::Result;
 use isosheet_dynamics::{Method, Simulation, StepReport};
 use penetration::{Checker, depth};
@@ -115,41 +113,22 @@ fn measure(mesh: Mesh, pairs: Pairs, method: Named, patience: f64) -> Result<Tab
 
 /// All runs.
 pub(super) fn table(rows: &[Tablecloth]) -> Table {
-    let rows = scenes(rows).flat_map(|scene| {
-        let entries = entries(scene);
-        let with = move |r: &Tablecloth| (r.clone(), r.entry().multiples(&entries));
-        scene.iter().map(with)
-    });
-    Table::of(
+    let runs: Vec<&Measured> = rows.iter().map(|r| &r.run).collect();
+    let all = |r: &Measured| {
+        let of = rows
+            .iter()
+            .filter(|o| (o.run.mesh.level, o.run.work) == (r.mesh.level, r.work));
+        of.map(Tablecloth::entry).collect()
+    };
+    timing::table(
         "Tablecloth: wall seconds for a simulated second on one core, as multiples of the fastest run of the scene that keeps lengths to \
          1e-9 and of one factorisation a step; largest relative edge length error, energy balance at the end as part of the potential \
          energy released (negative: lost), smallest gap and deepest vertex in the table",
-        rows.map(|(r, times)| (r.run.course.clone(), r, times)),
-        &[
-            ("mesh", &|(_, r, _)| r.run.mesh().into()),
-            ("contact", &|(_, r, _)| r.pairs().into()),
-            ("method", &|(_, r, _)| r.run.method.as_str().into()),
-            ("step_s", &|(_, r, _)| r.run.step.into()),
-            ("wall_s_per_simulated_s", &|(c, ..)| c.rate().into()),
-            (COLUMNS[0], &|(.., times)| times[0].into()),
-            (COLUMNS[1], &|(.., times)| times[1].into()),
-            ("strain", &|(c, ..)| c.strain.into()),
-            ("energy_balance", &|(_, r, _)| r.run.balance().into()),
-            ("smallest_gap_m", &|(c, ..)| c.gap.into()),
-            ("depth_m", &|(_, r, _)| r.depth.into()),
-            ("crossings", &|(_, r, _)| r.crossings.into()),
-            ("iterations", &|(c, ..)| c.cost.iterations.into()),
-            ("factorisations", &|(c, ..)| c.cost.factorisations.into()),
-            ("steps", &|(c, ..)| c.cost.substeps.into()),
-            ("rejected", &|(c, ..)| c.cost.rejected.into()),
-            ("factorisation_s", &|(_, r, _)| {
-                r.run.mesh.factorisation.into()
-            }),
-            ("reached_s", &|(c, ..)| c.time.into()),
-            ("repetitions", &|(_, r, _)| r.run.repetitions.into()),
-            ("failure", &|(c, ..)| c.failure().into()),
-        ],
+        &runs,
+        &all,
     )
+    .with_column("depth_m", rows.iter().map(|r| r.depth.into()))
+    .with_column("crossings", rows.iter().map(|r| r.crossings.into()))
 }
 
 /// What the rows say.
@@ -252,7 +231,7 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part} is missing in {text}");
         }
-        assert_eq!(table(&rows).rows[0][5], Cell::from(2.0));
+        assert_eq!(table(&rows).rows[0][9], Cell::from(2.0));
         rows[0].depth = 1e-9;
         rows[1].run.course.ending = Ending::Stopped;
         let text = conclusions(&rows).join(" ");

@@ -37,9 +37,6 @@ impl Entry {
     }
 }
 
-/// Heads of the columns of [`Entry::multiples`].
-pub(crate) const COLUMNS: [&str; 2] = ["times_fastest_exact", "times_one_factorisation_a_step"];
-
 /// The fastest run that came to the end and kept the lengths.
 fn fastest(all: &[Entry]) -> Option<&Entry> {
     let exact = all.iter().filter_map(|e| Some((e, e.exact()?)));
