@@ -18,7 +18,7 @@ Exit codes:
   0    everything that was asked for is there
   1    a run failed, or a hard case that is not declared an open limitation
   2    the command line is wrong
-  4    the folder holds other files, or full results that quick ones would replace
+  4    the folder holds other files, another report, or full results that quick ones would replace
   5    another process is writing to the folder
   6    a file or a folder cannot be written
   130  stopped by Ctrl-C; the same command continues";
@@ -28,6 +28,8 @@ Exit codes:
 pub(crate) enum ReportError {
     #[error("{} is for results without --quick, which are not mixed with quick ones", folder.display())]
     NotQuick { folder: PathBuf },
+    #[error("{} has results of {of}", folder.display())]
+    OtherReport { folder: PathBuf, of: String },
     #[error("cases failed, or their open limitations are not as declared: {names}")]
     Cases { names: String },
 }
@@ -35,7 +37,7 @@ pub(crate) enum ReportError {
 impl Advice for ReportError {
     fn advice(&self) -> Option<&'static str> {
         Some(match self {
-            Self::NotQuick { .. } => "choose another folder with --out",
+            Self::NotQuick { .. } | Self::OtherReport { .. } => "choose another folder with --out",
             Self::Cases { .. } => "see their sections of the page",
         })
     }
@@ -78,8 +80,11 @@ fn code(error: &Error) -> u8 {
         if cause.is::<Interrupted>() {
             return Some(130);
         }
-        if matches!(cause.downcast_ref(), Some(ReportError::NotQuick { .. })) {
-            return Some(4);
+        if let Some(report) = cause.downcast_ref() {
+            return Some(match report {
+                ReportError::NotQuick { .. } | ReportError::OtherReport { .. } => 4,
+                ReportError::Cases { .. } => 1,
+            });
         }
         if cause.is::<WriteError>() || cause.is::<std::io::Error>() {
             return Some(6);

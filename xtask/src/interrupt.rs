@@ -30,7 +30,7 @@ pub(crate) struct Interrupted;
 
 impl Advice for Interrupted {
     fn advice(&self) -> Option<&'static str> {
-        Some("what is finished is kept, the same command continues")
+        Some("the same command goes on from what was finished and kept")
     }
 }
 

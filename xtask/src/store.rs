@@ -30,8 +30,15 @@ const RECORDS: &str = ".stamps";
 /// The file in [`RECORDS`] that marks a folder as the program's own, locked while a process works there.
 const MARKER: &str = "isosheet-xtask.lock";
 
-/// The file in [`RECORDS`] with the effort of all results of the folder.
-const EFFORT: &str = "effort.json";
+/// The file in [`RECORDS`] that says whose results the folder has.
+const CLAIM: &str = "report.json";
+
+/// The report that a folder belongs to, and the effort of all its results.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Claim {
+    report: String,
+    effort: Effort,
+}
 
 /// What is known about a unit that has been made.
 #[derive(Debug, Serialize, Deserialize)]
@@ -103,9 +110,9 @@ impl Files<'_> {
 }
 
 impl Store {
-    /// Creates the folder when missing, checks that it is empty or this program's own, has no results of
+    /// Creates the folder when missing, checks that it is empty or that of the same report, has no results of
     /// another kind and can be written to, and locks it. Full results take the place of quick ones.
-    pub(crate) fn open(root: &Path, effort: Effort, remake: Remake) -> Result<Self> {
+    pub(crate) fn open(root: &Path, report: &str, effort: Effort, remake: Remake) -> Result<Self> {
         let lock = lock(root)?;
         remove_unfinished(root)?;
         let store = Self {
@@ -116,22 +123,27 @@ impl Store {
             made: Mutex::default(),
             _lock: lock,
         };
-        let path = store.record(EFFORT);
-        let before = path.is_file().then(|| read_json::<Effort>(&path).ok());
-        let is_quick = |effort| effort == Effort::Quick;
-        match before.flatten().map(is_quick) {
-            Some(false) if is_quick(effort) => {
-                let folder = store.root;
-                return Err(ReportError::NotQuick { folder }.into());
-            }
-            Some(true) if !is_quick(effort) => {
+        let path = store.record(CLAIM);
+        let folder = || root.to_owned();
+        if let Ok(Claim {
+            report: of,
+            effort: before,
+        }) = read_json(&path)
+        {
+            let is_quick = [before, effort].map(|effort| effort == Effort::Quick);
+            if of != report {
+                let folder = folder();
+                return Err(ReportError::OtherReport { folder, of }.into());
+            } else if is_quick == [false, true] {
+                return Err(ReportError::NotQuick { folder: folder() }.into());
+            } else if is_quick == [true, false] {
                 progress::note("quick results", "removed");
                 store.clear()?;
             }
-            _ => {}
         }
         // This also tells whether the folder can be written to, before any work.
-        write_json(&path, &effort)?;
+        let report = report.to_owned();
+        write_json(&path, &Claim { report, effort })?;
         Ok(store)
     }
 
@@ -274,7 +286,7 @@ mod tests {
     use super::*;
 
     fn open(folder: &Path) -> Result<Store> {
-        Store::open(folder, Effort::Standard, Remake::Never)
+        Store::open(folder, "a", Effort::Standard, Remake::Never)
     }
 
     fn unit(options: i32) -> Unit {
@@ -322,7 +334,7 @@ mod tests {
     fn units_are_made_again_once_when_asked() {
         let folder = tempfile::tempdir().unwrap();
         for value in [1.0, 2.0] {
-            let store = Store::open(folder.path(), Effort::Standard, Remake::Once).unwrap();
+            let store = Store::open(folder.path(), "a", Effort::Standard, Remake::Once).unwrap();
             assert_eq!(store.keep(&unit(1), |_| Ok(value)).unwrap(), value);
             assert_eq!(store.keep(&unit(1), |_| Ok(9.0)).unwrap(), value);
         }
@@ -353,15 +365,17 @@ mod tests {
     #[test]
     fn quick_results_are_replaced_and_others_are_not() {
         let folder = tempfile::tempdir().unwrap();
-        let quick = || Store::open(folder.path(), Effort::Quick, Remake::Never);
-        let store = quick().unwrap();
+        let of = |report| Store::open(folder.path(), report, Effort::Quick, Remake::Never);
+        let store = of("a").unwrap();
         let write = |files: &mut Files<'_>| Ok(files.write("figures/one.svg", b"<svg/>")?);
         store.keep(&unit(1), write).unwrap();
         fs::write(folder.path().join("figures/notes.txt"), "mine").unwrap();
         drop(store);
         assert!(open(folder.path()).unwrap().stamp(&unit(1)).is_none());
         assert_eq!(names(&folder.path().join("figures")), ["notes.txt"]);
-        let error = quick().unwrap_err();
+        let error = of("b").unwrap_err();
+        assert_eq!(error.to_string().matches("results of a").count(), 1);
+        let error = of("a").unwrap_err();
         assert!(matches!(
             error.downcast_ref(),
             Some(ReportError::NotQuick { .. })

@@ -97,7 +97,7 @@ mod tests {
     fn runs_are_kept() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("out");
-        let store = Store::open(&out, Effort::Quick, Remake::Never).unwrap();
+        let store = Store::open(&out, "a", Effort::Quick, Remake::Never).unwrap();
         let records = Records {
             store: &store,
             part: "sliding",

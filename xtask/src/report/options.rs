@@ -54,7 +54,8 @@ impl Options {
             Remake::Never
         };
         let default = || Path::new("out").join(report);
-        Store::open(&self.out.clone().unwrap_or_else(default), effort, remake)
+        let out = self.out.clone().unwrap_or_else(default);
+        Store::open(&out, report, effort, remake)
     }
 }
 

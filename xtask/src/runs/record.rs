@@ -345,7 +345,7 @@ mod tests {
     fn the_command_makes_the_motion_that_the_figures_show() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("out");
-        let store = Store::open(&out, Effort::Quick, Remake::Never).unwrap();
+        let store = Store::open(&out, "a", Effort::Quick, Remake::Never).unwrap();
         // A strip that is pushed until its support bears 3 mN, a vertex that folds, a sheet in a chart.
         let cases = [
             ("fig16", vec!["stop.time=0.05", "stop.support_force=0.003"]),
