@@ -120,7 +120,8 @@ fn unit(store: &Store, case: &Case) -> Unit {
 /// Runs a case.
 fn make(case: &Case, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
     let started = Instant::now();
-    let found = (case.run)(effort)?;
+    let mut found = Findings::default();
+    (case.run)(&mut found, effort)?;
     for picture in &found.pictures {
         picture.write(files)?;
     }

@@ -12,6 +12,6 @@ pub(crate) use factorisation::{OrderRow, order};
 pub(crate) use matrices::{Body, STIFFNESS, Sparse};
 pub(crate) use run::{Limits, Measured, Mesh, NEIGHBOUR};
 pub(crate) use scene::{
-    BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging, on_table,
+    BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging, on_table, raised,
 };
 pub(crate) use table::table;

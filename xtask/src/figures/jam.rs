@@ -57,7 +57,7 @@ const WINDOW: usize = 5;
 
 impl Fed {
     fn of(scene: FigureScene, store: &Store) -> Result<Self> {
-        let feed = Feed::of(scene.scene())?;
+        let feed = Feed::of(&scene)?;
         let run = Run::of(store, scene)?;
         let forces = &run.supports;
         let force = forces

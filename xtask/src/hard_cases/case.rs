@@ -15,7 +15,7 @@ pub(crate) struct Case {
     /// What should happen.
     pub(crate) expected: &'static str,
     /// Runs it.
-    pub(crate) run: fn(Effort) -> Result<Findings>,
+    pub(crate) run: fn(&mut Findings, Effort) -> Result<()>,
 }
 
 impl std::fmt::Debug for Case {

@@ -27,8 +27,7 @@ pub(crate) const START: Case = Case {
     run: start,
 };
 
-fn start(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn start(f: &mut Findings, effort: Effort) -> Result<()> {
     let sheet = bumped(1, 0.0)?;
     let model = pinned(&sheet, &[corner(1)])?;
     let condition = front_condition(&sheet, &model).map_err(|e| e.to_string());
@@ -67,7 +66,7 @@ fn start(effort: Effort) -> Result<Findings> {
     if effort != Effort::Quick {
         f.pictures.push(fall()?);
     }
-    Ok(f)
+    Ok(())
 }
 
 /// The condition number of the mass matrix in the paper's coordinates.
@@ -163,8 +162,7 @@ const FOLDED: f64 = 1.1;
 /// Time simulated; the sheet is flat after about a third of it, seconds.
 const DURATION: f64 = 1.0;
 
-fn branch(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn branch(f: &mut Findings, effort: Effort) -> Result<()> {
     let off = |error: f64| {
         (
             format!("Ends {error:.0e} m from the exact motion."),
@@ -177,7 +175,7 @@ fn branch(effort: Effort) -> Result<Findings> {
     let counts = &counts[..effort.pick(2, 5, 6)];
     let mut lines = Vec::new();
     for (k, named) in methods().enumerate() {
-        let points = converges(&mut f, &named, counts)?;
+        let points = converges(f, &named, counts)?;
         lines.push(Series::styled(k, named.0, points));
     }
     // Started exactly there, with the velocities of one of the two ways.
@@ -191,13 +189,16 @@ fn branch(effort: Effort) -> Result<Findings> {
         let Crossing {
             flap, model, start, ..
         } = crossing(FRAC_PI_2)?;
-        let mut run = Simulation::new(model, start, method)?;
-        let c = go(&mut run, DURATION / 200.0, 200)?;
+        let (c, end) = go(
+            Simulation::new(model, start, method)?,
+            DURATION / 200.0,
+            200,
+        )?;
         let is_first = ["implicit Euler", "projection"].contains(&name);
         let bound = if is_first { 2e-2 } else { 1e-3 };
         let what = format!("started exactly at the branch point, {name}, 200 steps");
         f.of(&c, what)
-            .at_most("error, m", off_exact(&flap, &run.state().x), bound);
+            .at_most("error, m", off_exact(&flap, &end), bound);
     }
     f.here = format!(
         "All methods step across the flat state at t = {:.3} s and converge to the closed form at their orders. The half-angle \
@@ -208,7 +209,7 @@ fn branch(effort: Effort) -> Result<Findings> {
     let drawing = log_log("step, ms", "position error after 1 s, m", lines);
     let alt = "Error against the closed form after passing through flat";
     f.drawing("branch-point", &drawing, alt);
-    Ok(f)
+    Ok(())
 }
 
 /// How far the motion in coordinates that do not change on the way ends from the exact one, metres, or why it
@@ -245,9 +246,12 @@ fn converges(f: &mut Findings, named: &Named, counts: &[usize]) -> Result<Vec<[f
         let Crossing {
             flap, model, start, ..
         } = crossing(FOLDED)?;
-        let mut run = Simulation::new(model, start, method.clone())?;
-        let c = go(&mut run, DURATION / n as f64, n)?;
-        let error = c.if_good(off_exact(&flap, &run.state().x));
+        let (c, end) = go(
+            Simulation::new(model, start, method.clone())?,
+            DURATION / n as f64,
+            n,
+        )?;
+        let error = c.if_good(off_exact(&flap, &end));
         points.push([1e3 * DURATION / n as f64, error]);
         all.add_run(c);
     }

@@ -94,11 +94,11 @@ impl<'a> End<'a> {
             run = run.with_contact(contacts)?;
             body = Some(table);
         }
-        let course = go(&mut run, FRAME, steps)?;
+        let (course, x) = go(run, FRAME, steps)?;
         Ok(Self {
             mesh,
             how,
-            x: run.state().x.clone(),
+            x,
             pins,
             body,
             course,
@@ -117,8 +117,7 @@ impl<'a> End<'a> {
     }
 }
 
-fn drape(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn drape(f: &mut Findings, effort: Effort) -> Result<()> {
     let n = effort.pick(4, 8, 16);
     let meshes: [(&str, Sheet); 3] = [
         (
@@ -175,7 +174,7 @@ fn drape(effort: Effort) -> Result<Findings> {
               about lines of edges; where they do not run through, bending needs crumpling of the triangles on the way, or does not take place. The \
               round table prefers no direction: the folds of the overhang are where the lines of the mesh let them be."
         .into();
-    Ok(f)
+    Ok(())
 }
 
 fn table_of(all: &[End<'_>]) -> Table {

@@ -21,8 +21,7 @@ pub(crate) const REST: Case = Case {
     run: rest,
 };
 
-fn rest(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn rest(f: &mut Findings, effort: Effort) -> Result<()> {
     let sheet = upright(&generate::isotropic_square(1, 1.0)?)?;
     let model = || pinned(&sheet, &top_row());
     let start = sheet.positions();
@@ -61,7 +60,7 @@ fn rest(effort: Effort) -> Result<Findings> {
     let drawing = log_log("steps", "largest displacement, m", lines);
     let alt = "Displacement of a hanging sheet at rest (1e-18 stands for none)";
     f.drawing("rest", &drawing, alt);
-    Ok(f)
+    Ok(())
 }
 
 /// Whether a step is one of about four in each octave.
@@ -109,9 +108,8 @@ fn swinging() -> Result<Simulation> {
     released(&sheet, &top_row(), energy_momentum())
 }
 
-fn million(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
-    let naive = free_textbook(&mut f, effort.pick(2000, 20_000, 20_000))?;
+fn million(f: &mut Findings, effort: Effort) -> Result<()> {
+    let naive = free_textbook(f, effort.pick(2000, 20_000, 20_000))?;
     let hanging = hanging(1, 0.05, energy_momentum())?;
     let runs = [
         (
@@ -165,7 +163,7 @@ fn million(effort: Effort) -> Result<Findings> {
     let drawing = log_log("steps", "largest relative energy error so far", lines);
     let alt = "Energy error of M^1 by the energy-momentum method, steps of 5 ms, relative to the largest kinetic energy";
     f.drawing("million-steps", &drawing, alt);
-    Ok(f)
+    Ok(())
 }
 
 /// The relative energy error of the free sheet by the textbook method, over the number of steps.

@@ -1,7 +1,9 @@
 //! Extreme shapes, masses and sizes.
 
 use super::naive::gauss_seidel;
-use super::scenes::{FRAME, STRAIN, apart, at_rest, go, pinned, released, stopped, strain_bound};
+use super::scenes::{
+    FRAME, STRAIN, apart, at_rest, course, go, pinned, released, stopped, strain_bound,
+};
 use super::{Case, Findings, Shortfall};
 use crate::methods::{conservative, damped, energy_momentum, methods};
 use crate::report::{Effort, Table, number};
@@ -66,14 +68,13 @@ fn series_table(caption: &str, head: &[&str], gain: &str, rows: &[Row<'_>]) -> T
     Table::new(caption, &[head, &last].concat()).with_texts(texts)
 }
 
-fn slivers(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn slivers(f: &mut Findings, effort: Effort) -> Result<()> {
     for needle in [
         ("short side", 1e-6, 1.0),
         ("long side", 1.0, 1e-3),
         ("long side", 1.0, 1e-6),
     ] {
-        swinging_needle(&mut f, needle)?;
+        swinging_needle(f, needle)?;
     }
     let sheet = squashed(1, 1e-6)?;
     let pin = [corner(1)];
@@ -81,7 +82,7 @@ fn slivers(effort: Effort) -> Result<Findings> {
     f.swept(what, &pinned(&sheet, &pin)?, sheet.positions(), 60);
     let strip = generate::strip(20, 1.0, 1e-6 / 20.0, generate::Diagonals::UnionJack)?;
     for (name, method) in damped() {
-        let c = go(&mut released(&strip, &[VertexId(0)], method)?, FRAME, 60)?;
+        let (c, _) = go(released(&strip, &[VertexId(0)], method)?, FRAME, 60)?;
         let what = format!("strip of 40 slivers (1 m by 50 nm) held at an end, {name}");
         f.of(&c, what)
             .at_most("edge strain in 1 s", c.strain, strain_bound(&strip));
@@ -91,7 +92,7 @@ fn slivers(effort: Effort) -> Result<Findings> {
     for &width in effort.quick_or(&[1e-2, 1e-6][..], &widths) {
         for (name, method) in damped() {
             let sheet = squashed(1, width)?;
-            let c = go(&mut released(&sheet, &pin, method)?, FRAME, 60)?;
+            let (c, _) = go(released(&sheet, &pin, method)?, FRAME, 60)?;
             f.of(
                 &c,
                 format!("M^1 squashed to 1 m by {} m, {name}", number(width)),
@@ -107,7 +108,7 @@ fn slivers(effort: Effort) -> Result<Findings> {
     f.here = "Matrices are scaled by mean mass and rod length, lengths are relative rod by rod, and face areas are computed without cancellation; \
               a sheet with an altitude below 1e-10 of its longest edge is refused by name."
         .into();
-    Ok(f)
+    Ok(())
 }
 
 /// One triangle that swings about its pinned side.
@@ -124,9 +125,8 @@ fn swinging_needle(f: &mut Findings, (side, base, altitude): (&str, f64, f64)) -
         ("energy-momentum", energy_momentum()),
     ] {
         let (model, x) = needle(base, altitude)?;
-        let mut run = at_rest(model, &x, method)?;
-        let c = go(&mut run, quarter / 2000.0, 2000)?;
-        let error = apart(&run.state().x[6..], &corner) / altitude;
+        let (c, end) = go(at_rest(model, &x, method)?, quarter / 2000.0, 2000)?;
+        let error = apart(&end[6..], &corner) / altitude;
         let what = format!("one triangle of aspect {aspect} held at its {side}, {name}");
         let mut judge = f.of(&c, what);
         let check = judge.at_most("error after a quarter period, of its altitude", error, 1e-5);
@@ -174,9 +174,8 @@ const NEIGHBOURS: u32 = 32;
 /// of an eighth for each board more than nine of 32 stop in four of a thousand reports.
 const MAY_STOP: f64 = 9.0;
 
-fn masses(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
-    hinged_triangles(&mut f)?;
+fn masses(f: &mut Findings, effort: Effort) -> Result<()> {
+    hinged_triangles(f)?;
     let (model, sheet) = board(1e8, 0.0, 1.0)?;
     let what = "Checkerboard of masses 1 : 1e8 on M^1";
     f.swept(what, &model, sheet.positions(), 60);
@@ -187,12 +186,12 @@ fn masses(effort: Effort) -> Result<Findings> {
             let some = conservative().into_iter().take(usize::from(bump > 0.0));
             for (name, method) in damped().into_iter().chain(some) {
                 if ratio == 1e8 && bump == 0.0 && name != "projection" {
-                    neighbouring_boards(&mut f, (state, name), &method)?;
+                    neighbouring_boards(f, (state, name), &method)?;
                     continue;
                 }
                 let (model, sheet) = board(ratio, bump, 1.0)?;
                 let weight = 9.8 * model.mass().total();
-                let c = go(&mut at_rest(model, sheet.positions(), method)?, FRAME, 60)?;
+                let (c, _) = go(at_rest(model, sheet.positions(), method)?, FRAME, 60)?;
                 let what = format!("checkerboard 1 : {}, {state}, {name}", number(ratio));
                 let mut judge = f.of(&c, what);
                 let check = judge.strain("edge strain in 1 s");
@@ -209,7 +208,7 @@ fn masses(effort: Effort) -> Result<Findings> {
     let (head, gain) = (["start", "ratio"], "energy gain, of weight × 1 m");
     f.tables.push(series_table(caption, &head, gain, &rows));
     f.here = "Residuals weigh light and heavy vertices alike, as accelerations.".into();
-    Ok(f)
+    Ok(())
 }
 
 /// A checkerboard of light and heavy vertices.
@@ -255,15 +254,15 @@ fn hinged_triangles(f: &mut Findings) -> Result<()> {
             } else {
                 1e-4
             };
-            let c = go(&mut run, 1e-3, 400)?;
+            let c = course(&mut run, 1e-3, 400, |_, _| {})?;
             let error = apart(&run.state().x, &flap.exact(0.4));
             f.of(&c, &*what)
                 .at_most("position error after 0.4 s, m", error, bound);
             if heavy != "apexes" {
                 continue;
             }
-            let c = go(&mut run, 1e-3, 100)?;
-            let error = apart(&run.state().x, &flap.exact(0.5));
+            let (c, end) = go(run, 1e-3, 100)?;
+            let error = apart(&end, &flap.exact(0.5));
             let mut judge = f.of(&c, what);
             let quantity = "the same after another 0.1 s, through the snap";
             let check = judge.at_most(quantity, error, bound);
@@ -287,8 +286,7 @@ pub(crate) const SIZES: Case = Case {
     run: sizes,
 };
 
-fn sizes(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn sizes(f: &mut Findings, effort: Effort) -> Result<()> {
     let steps = effort.pick(20, 60, 240);
     let powers: &[i32] = effort.pick(&[-10, 5], &[-10, -5, 1, 5], &[-10, -7, -5, -2, 1, 3, 5]);
     let sides = [powers[0], powers[powers.len() - 1]].map(|p| number(4.0_f64.powi(p)));
@@ -327,7 +325,7 @@ fn sizes(effort: Effort) -> Result<Findings> {
     f.here = format!(
         "{steps} steps of M^1 at each size, damped methods from flat, conservative ones from a bump; no number in the solvers has a unit."
     );
-    Ok(f)
+    Ok(())
 }
 
 /// The end of `M^1` with lengths times a power of four, times and masses to match, over the length.
@@ -337,7 +335,10 @@ fn scaled_run(bump: f64, method: &Method, power: i32, steps: usize) -> Result<(V
     let model = SheetModel::new(&sheet, 0.125 * 16.0_f64.powi(power), MassKind::Lumped)?
         .with_gravity()
         .with_pins(&[corner(1)])?;
-    let mut run = at_rest(model, sheet.positions(), method.clone())?;
-    let c = go(&mut run, FRAME * time, steps)?;
-    Ok((run.state().x.iter().map(|x| x / length).collect(), c))
+    let (c, end) = go(
+        at_rest(model, sheet.positions(), method.clone())?,
+        FRAME * time,
+        steps,
+    )?;
+    Ok((end.iter().map(|x| x / length).collect(), c))
 }

@@ -69,7 +69,7 @@ pub(super) fn stopped(
 ) -> Result<(u32, f64)> {
     let (mut stopped, mut strain) = (0, 0.0_f64);
     for k in 0..runs {
-        let course = go(&mut build(k)?, FRAME, steps)?;
+        let (course, _) = go(build(k)?, FRAME, steps)?;
         stopped += u32::from(course.cost.steps < steps);
         strain = strain.max(course.strain);
     }
@@ -95,9 +95,14 @@ pub(super) fn course(
     Plan::new(h, steps as f64 * h).run(run, &mut look)
 }
 
-/// Takes steps as [`course`] does, unwatched.
-pub(super) fn go(run: &mut Simulation, h: f64, steps: usize) -> Result<Course, Interrupted> {
-    course(run, h, steps, |_, _| {})
+/// Takes steps as [`course`] does, unwatched; returns the positions at the end as well.
+pub(super) fn go(
+    mut run: Simulation,
+    h: f64,
+    steps: usize,
+) -> Result<(Course, Vec<f64>), Interrupted> {
+    let course = course(&mut run, h, steps, |_, _| {})?;
+    Ok((course, run.state().x.clone()))
 }
 
 /// Largest distance of corresponding vertices, metres.

@@ -1,12 +1,12 @@
 //! Lateral buckling of a strip that is clamped at one end and stands on edge.
 
 use super::Findings;
-use super::bisection::{Bracket, Verdict};
+use super::bisection::{Bracket, Verdict, search};
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
 use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
-use super::sample::{Sample, requirements, search};
+use super::sample::{Sample, requirements};
 use super::scene::Scene;
 use crate::draw::{Axis, Drawing};
 use crate::methods::implicit_euler;

@@ -1,10 +1,8 @@
 //! What was measured of one model.
 
-use super::bisection::{Bracket, Verdict, bisect};
 use super::isometry::Isometry;
 use super::targets::{self, Target};
 use crate::runs::Course;
-use anyhow::Result;
 use serde::{Deserialize, Serialize};
 
 /// A job done with one model of isometry: a run, or the worst of the runs of a search, and what was measured.
@@ -16,22 +14,6 @@ pub(super) struct Sample<J, M = ()> {
     pub(super) vertices: usize,
     pub(super) course: Course,
     pub(super) measured: M,
-}
-
-/// A search by [`bisect`], and the worst of all steps of its runs; `probe` says what the scene does at a
-/// value, and how its run went.
-pub(super) fn search(
-    range: [f64; 2],
-    halvings: usize,
-    probe: impl Fn(f64) -> Result<(Verdict, Course)>,
-) -> Result<(Course, Bracket)> {
-    let mut worst = Course::default();
-    let found = bisect(range, halvings, |value| {
-        let (verdict, run) = probe(value)?;
-        worst.add_run(run);
-        Ok(verdict)
-    })?;
-    Ok((worst, found))
 }
 
 impl<J, M> Sample<J, M> {

@@ -1,12 +1,12 @@
 //! The angle at which a sheet begins to slide down a plane.
 
 use super::Findings;
-use super::bisection::{Bracket, Verdict};
+use super::bisection::{Bracket, Verdict, search};
 use super::isometry::{Isometry, Material};
 use super::meshes::Pattern;
 use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
-use super::sample::{Sample, requirements, search};
+use super::sample::{Sample, requirements};
 use super::scene::Scene;
 use crate::draw::{Axis, Drawing};
 use crate::report::Table;

@@ -1,8 +1,9 @@
 //! The scenes of the figures: files of the folder `xtask/scenes`, which `isosheet simulate` runs too.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use isosheet_io::scene::{Scene, SceneFile, Setup};
 use isosheet_mesh::Sheet;
+use serde::de::DeserializeOwned;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -67,6 +68,17 @@ impl FigureScene {
 
     pub(crate) fn scene(&self) -> &Scene {
         self.file.scene()
+    }
+
+    /// The value of a key of the scene, given as a JSON pointer such as `/sheet/density`.
+    ///
+    /// # Errors
+    /// A key that the scene does not have, a value of another kind.
+    pub(crate) fn value<T: DeserializeOwned>(&self, key: &str) -> Result<T> {
+        let scene = serde_json::to_value(self.scene())?;
+        let value = scene.pointer(key).cloned();
+        let value = value.with_context(|| format!("{} has no {key}", self.name))?;
+        serde_json::from_value(value).with_context(|| format!("{key} of {}", self.name))
     }
 
     /// The scene file.

@@ -26,7 +26,12 @@ const MASS: f64 = 0.1;
 /// The union-jack square `M^level` of side 1 m with `z = bump sin(pi x) sin(pi y)`.
 pub(crate) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
     let flat = isotropic_square(level, 1.0)?;
-    Ok(flat.map_positions(|[x, y, _]| [x, y, bump * (PI * x).sin() * (PI * y).sin()])?)
+    Ok(flat.map_positions(|p| raised(p, bump))?)
+}
+
+/// A point of the flat square on the bump.
+pub(crate) fn raised([x, y, _]: [f64; 3], bump: f64) -> [f64; 3] {
+    [x, y, bump * (PI * x).sin() * (PI * y).sin()]
 }
 
 /// The corner (0, 1) of `M^level`.
