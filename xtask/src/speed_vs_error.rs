@@ -20,6 +20,7 @@ mod verdict;
 use crate::interrupt;
 use crate::report::{Effort, FullOptions, Page, Section, Table, list, machine, one_of, plot};
 use crate::store::{Files, Store, Unit};
+use crate::timing::SHOWN;
 use analysis::{ENERGY, POSITION};
 use anyhow::Result;
 use clap::Args;
@@ -157,7 +158,7 @@ fn make(part: Part, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
                 h2 { "The hanging sheet" }
                 p { (hanging::ABOUT) }
                 (list(&hanging::conclusions(&rows)))
-                (table)
+                (table.select(&table.caption, SHOWN))
                 (elsewhere())
             }
         }
@@ -169,7 +170,7 @@ fn make(part: Part, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
             html! {
                 h2 { "The tablecloth" }
                 p { (tablecloth::ABOUT) }
-                (table)
+                (table.select(&table.caption, &format!("{SHOWN} depth_m crossings")))
                 (elsewhere())
             }
         }

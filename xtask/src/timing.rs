@@ -14,4 +14,4 @@ pub(crate) use run::{Limits, Measured, Mesh, NEIGHBOUR};
 pub(crate) use scene::{
     BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging, on_table, raised,
 };
-pub(crate) use table::table;
+pub(crate) use table::{SHOWN, table};

@@ -16,6 +16,11 @@ impl Work {
     }
 }
 
+/// The columns of [`table`] that a page shows.
+pub(crate) const SHOWN: &str = "mesh contact method step_s wall_s_per_simulated_s times_fastest_exact \
+    times_one_factorisation_a_step strain energy_balance largest_energy_change smallest_gap_m iterations factorisations \
+    steps rejected failure";
+
 /// Runs; `all` gives the entries that a run is compared with, its own among them.
 pub(crate) fn table(
     caption: &str,
