@@ -12,7 +12,7 @@ mod table;
 pub(crate) use cost::Cost;
 pub(crate) use effort::Effort;
 pub(crate) use machine::machine;
-pub(crate) use number::{exponent, number, order_line, percent, rounded, short};
+pub(crate) use number::{exponent, extremes, number, order_line, percent, rounded, short};
 pub(crate) use options::{FullOptions, Options, one_of};
 pub(crate) use page::{Page, Section, list};
 pub(crate) use picture::{Picture, plot};

@@ -238,9 +238,10 @@ fn fronts(records: &[Record]) -> Vec<String> {
                 .filter_map(|r| Some((&*r.name, r.on_front?[m][k])));
             let (on, off): (Vec<_>, Vec<_>) = problems.partition(|(_, is_on)| *is_on);
             let names: Vec<&str> = off.iter().map(|(name, _)| *name).collect();
-            let not = match off.is_empty() {
-                true => String::new(),
-                false => format!("; not on {}", names.join(", ")),
+            let not = if off.is_empty() {
+                String::new()
+            } else {
+                format!("; not on {}", names.join(", "))
             };
             let (n, name) = (on.len() + off.len(), measure.name);
             all.push(format!(

@@ -1,8 +1,8 @@
 //! The output folder of a report, and which of its pieces of work are up to date.
 //!
 //! Each piece of work (a *unit*: a figure, a run, a case) writes its files, each of which appears when it is
-//! complete, and after them its stamp in `.stamps`. A stamp counts only while its options, the program and the
-//! files it lists are the same, so a rerun makes again whatever changed or was cut short.
+//! complete, and after them its stamp in `.stamps`. A stamp counts only while its options, the program and
+//! the files it lists are the same, so a rerun makes again whatever changed or was cut short.
 //!
 //! The lock file in `.stamps` also marks a folder as the program's own: a folder that has other files and not
 //! this one is refused. Quick results are not mixed with others: they have the same names.

@@ -2,6 +2,7 @@
 
 use super::{Effort, Picture, Table, whole_percent};
 use crate::draw::{Axis, Chart, Drawing, Marker, Series, palette, row};
+use crate::report::extremes;
 use crate::runs::{self, FigureScene, Member};
 use anyhow::Result;
 use isosheet_mesh::Dof;
@@ -80,14 +81,6 @@ impl Level {
 
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-}
-
-fn smallest(values: &[f64]) -> f64 {
-    values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 /// Measures the falls of the scenes that `fall` gives for each level.
@@ -194,7 +187,7 @@ fn table(all: &[Level]) -> Table {
     );
     let range = |l: &Level, digits: usize, f: fn(&Member) -> f64| {
         let v = l.values(f);
-        let (mean, low, high) = (mean(&v), smallest(&v), largest(&v));
+        let (mean, [low, high]) = (mean(&v), extremes(v.into_iter()).unwrap_or_default());
         format!("{mean:.digits$} ({low:.digits$}–{high:.digits$})").into()
     };
     Table::of(

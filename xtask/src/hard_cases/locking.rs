@@ -4,7 +4,7 @@ use super::scenes::{FRAME, VIEWPOINT, at_rest, go};
 use super::{Case, Findings};
 use crate::draw::Shot;
 use crate::locking::meshes::nearest;
-use crate::report::{Effort, Picture, Table, number};
+use crate::report::{Effort, Picture, Table, extremes, number};
 use crate::runs::Course;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
@@ -156,8 +156,8 @@ fn drape(f: &mut Findings, effort: Effort) -> Result<()> {
             f.pictures.push(picture(&ends)?);
         }
         let depths = ends.iter().map(|end| end.shape().0);
-        let [low, high] = depths.fold([f64::INFINITY, 0.0_f64], |[l, h], d| [l.min(d), h.max(d)]);
-        differences.push((high - low, support.0));
+        let difference = extremes(depths).map_or(0.0, |[low, high]| high - low);
+        differences.push((difference, support.0));
         all.extend(ends);
     }
     let listed = differences

@@ -10,7 +10,7 @@ use super::sample::{OfModel, Sample, requirements};
 use super::scene::{End, Scene};
 use crate::draw::{Axis, Drawing};
 use crate::methods::implicit_euler;
-use crate::report::{Table, number};
+use crate::report::{Table, extremes, number};
 use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::SheetModel;
@@ -218,18 +218,13 @@ fn orders(all: &[Hung], directions: &[f64]) -> Table {
 
 fn remark(isometry: Isometry, all: &[Hung]) -> String {
     let of = OfModel::of(isometry, all).all;
-    let errors: Vec<f64> = of.iter().filter_map(|h| h.error()).collect();
-    if errors.is_empty() {
+    let errors = || of.iter().filter_map(|h| h.error());
+    let Some(range) = extremes(errors()) else {
         return format!("{isometry}: no strip reaches the end.");
-    }
-    let low = errors.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = errors.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    };
+    let ([low, high], ended, all) = (range.map(|e| number(100.0 * e)), errors().count(), of.len());
     format!(
-        "{isometry}: {} of {} strips reach the end, with errors of the drop from {} to {} %.",
-        errors.len(),
-        of.len(),
-        number(100.0 * low),
-        number(100.0 * high)
+        "{isometry}: {ended} of {all} strips reach the end, with errors of the drop from {low} to {high} %."
     )
 }
 

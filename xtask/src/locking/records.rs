@@ -51,8 +51,8 @@ impl Records<'_> {
         Ok(all)
     }
 
-    /// Named runs in the order of their jobs: those kept by an earlier report, or new ones on the threads that
-    /// rayon has, which are kept.
+    /// Named runs in the order of their jobs: those kept by an earlier report, or new ones on the threads
+    /// that rayon has, which are kept.
     ///
     /// # Errors
     /// An error of a run, after which no further job begins; those of the output folder.

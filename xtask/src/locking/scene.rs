@@ -2,6 +2,7 @@
 
 use super::limit::{GivenUp, Guard, unless_given_up};
 use crate::interrupt::Interrupted;
+use crate::report::extremes;
 use crate::runs::{Course, Ending, Plan, unseen};
 use anyhow::Result;
 use isosheet_collide::Contacts;
@@ -22,9 +23,7 @@ impl End {
     /// Heights of the lowest and the highest vertex, metres.
     pub(super) fn heights(&self) -> [f64; 2] {
         let heights = self.x.as_chunks::<3>().0.iter().map(|p| p[2]);
-        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| {
-            [low.min(z), high.max(z)]
-        })
+        extremes(heights).unwrap_or([f64::NAN; 2])
     }
 
     /// Mean of a coordinate of some vertices, metres.

@@ -148,8 +148,8 @@ impl Table {
         self
     }
 
-    /// Some columns of the table under another caption, by their names with spaces between; of equal rows that
-    /// follow each other one is left.
+    /// Some columns of the table under another caption, by their names with spaces between; of equal rows
+    /// that follow each other one is left.
     ///
     /// # Panics
     /// If there is no such column.

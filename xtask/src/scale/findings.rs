@@ -3,7 +3,7 @@
 use super::Results;
 use super::drape::DrapeRow;
 use super::steps::Row;
-use crate::report::exponent;
+use crate::report::{exponent, extremes};
 use crate::timing::OrderRow;
 use std::fmt::Write;
 
@@ -60,17 +60,10 @@ pub(super) fn conclusion(rows: &[Row]) -> String {
 
 /// How steps compare with the least that an implicit step can do.
 fn of_the_limit(multiples: impl Iterator<Item = f64>) -> Option<String> {
-    let [low, high] = range(multiples)?;
+    let [low, high] = extremes(multiples)?;
     Some(format!(
         "A step takes {low:.1} to {high:.1} times as long as one factorisation of its matrix, the least that an implicit step can do."
     ))
-}
-
-/// Smallest and largest of some values; `None` if there are none.
-fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
-    values
-        .map(|v| [v; 2])
-        .reduce(|[l, h], [a, b]| [l.min(a), h.max(b)])
 }
 
 /// `a`, `b` of `a V log2 V + b V` entries of the factor, with the least squares of relative deviations, and
@@ -105,7 +98,7 @@ pub(super) fn threads(rows: &[Row]) -> String {
         .filter(|r| r.best().two_threads < PAYS * r.best().numeric)
         .map(|r| format!("M^{}", r.level))
         .collect();
-    let ratios = range(rows.iter().map(|r| r.best().two_threads / r.best().numeric));
+    let ratios = extremes(rows.iter().map(|r| r.best().two_threads / r.best().numeric));
     let ratios = ratios.unwrap_or_default();
     format!(
         "Two threads within one factorisation take {:.1} to {:.1} times as long as one, and {}; they {}. On a machine without two idle cores they \
@@ -139,7 +132,7 @@ pub(super) fn draping_conclusion(results: &Results) -> String {
         power(DrapeRow::detection),
         power(DrapeRow::evaluation),
     );
-    let shares = range(rows.iter().map(|r| r.detection() / r.step())).unwrap_or_default();
+    let shares = extremes(rows.iter().map(|r| r.detection() / r.step())).unwrap_or_default();
     let couplings = rows.iter().map(|r| r.couplings).max().unwrap_or(0);
     let _ = write!(
         out,

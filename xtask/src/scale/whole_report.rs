@@ -2,7 +2,7 @@
 
 use super::findings::power;
 use super::whole::{are_neighbours, methods};
-use crate::report::{Table, short};
+use crate::report::{Table, extremes, short};
 use crate::runs::Course;
 use crate::timing::{self, Entry, Measured, NEIGHBOUR, STEP};
 use std::fmt::Write;
@@ -95,10 +95,7 @@ fn apart(runs: &[&Measured]) -> Option<String> {
 
 /// The larger number of factorisations over the smaller one, less 1.
 fn difference(pair: &[&Measured]) -> Option<f64> {
-    let counts = pair
-        .iter()
-        .map(|r| [r.course.cost.factorisations as f64; 2]);
-    let [low, high] = counts.reduce(|[l, h], [a, b]| [l.min(a), h.max(b)])?;
+    let [low, high] = extremes(pair.iter().map(|r| r.course.cost.factorisations as f64))?;
     (pair.len() > 1 && low > 0.0).then(|| high / low - 1.0)
 }
 

@@ -8,7 +8,7 @@ use super::scheme::{DEFAULT, ROBUST, Scheme, is_paper};
 use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Marker, Series, palette, row};
 use crate::progress::Progress;
 use crate::report::Effort;
-use crate::report::{Cell, Table, rounded, short};
+use crate::report::{Cell, Table, extremes, rounded, short};
 use anyhow::Result;
 use std::fmt::Write;
 
@@ -173,15 +173,10 @@ impl Study {
     /// Smallest and largest ratio of the default's time to that of the cheapest method with as small a
     /// position error.
     fn default_price(&self) -> Option<[f64; 2]> {
-        let ratios: Vec<f64> = self
-            .of(DEFAULT)
-            .filter_map(|p| {
-                let level = p.errors?.position;
-                Some(p.wall / cheapest(&self.points, POSITION, level)?.wall)
-            })
-            .collect();
-        let low = ratios.iter().copied().reduce(f64::min)?;
-        Some([low, ratios.iter().copied().fold(low, f64::max)])
+        extremes(self.of(DEFAULT).filter_map(|p| {
+            let level = p.errors?.position;
+            Some(p.wall / cheapest(&self.points, POSITION, level)?.wall)
+        }))
     }
 
     /// The default's part of the front, of all methods and of those that take any state.

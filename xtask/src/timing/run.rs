@@ -66,8 +66,8 @@ pub(crate) struct Measured {
 const REPETITIONS: usize = 3;
 
 impl Measured {
-    /// Runs a scene by a method with steps of `step` seconds from a start; `look` sees every step of the first
-    /// run.
+    /// Runs a scene by a method with steps of `step` seconds from a start; `look` sees every step of the
+    /// first run.
     ///
     /// # Errors
     /// Values of which no simulation can be made; [`Interrupted`](crate::interrupt::Interrupted).
