@@ -42,7 +42,7 @@ pub use collect::Collection;
 pub use error::RunError;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
-pub use folder::SceneHash;
+pub use folder::{SceneHash, holds_other_files, remove_unfinished};
 #[cfg(feature = "picture")]
 pub use gallery::{Gallery, GalleryEntry, GalleryError};
 pub use page::write_page;

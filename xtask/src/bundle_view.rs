@@ -2,7 +2,6 @@
 //!
 //! The built files are part of the repository, so that nobody needs npm who does not change the page.
 
-use crate::interrupt::Outcome;
 use anyhow::{Context, bail, ensure};
 use clap::Args;
 use std::fs;
@@ -23,13 +22,13 @@ pub(crate) struct BundleViewArgs {
 }
 
 /// Builds the files anew, or checks that they are what the sources and the lock file make.
-pub(crate) fn run(args: &BundleViewArgs) -> anyhow::Result<Outcome> {
+pub(crate) fn run(args: &BundleViewArgs) -> anyhow::Result<()> {
     let folder = sources()?;
     check_lock(&folder.join("package-lock.json"))?;
     if args.check {
         if let Some(reason) = why_not() {
             println!("skipped: {reason}, so the program of the 3D page was not built");
-            return Ok(Outcome::Complete);
+            return Ok(());
         }
         install(&folder)?;
         let built = tempfile::tempdir().context("cannot create a temporary folder")?;
@@ -41,7 +40,7 @@ pub(crate) fn run(args: &BundleViewArgs) -> anyhow::Result<Outcome> {
         build(&folder, &folder.join("dist"))?;
         println!("built {} in io/view/dist", FILES.join(", "));
     }
-    Ok(Outcome::Complete)
+    Ok(())
 }
 
 /// The folder of the page's sources.

@@ -2,8 +2,8 @@
 
 use crate::bundle_view::{self, BundleViewArgs};
 use crate::condition::{self, ConditionArgs};
+use crate::failure::EXIT_CODES;
 use crate::hard_cases::{self, HardCasesArgs};
-use crate::interrupt::Outcome;
 use crate::locking::{self, LockingArgs};
 use crate::reproduce::{self, ReproduceArgs};
 use crate::scale::{self, ScaleArgs};
@@ -13,7 +13,7 @@ use clap::{Parser, Subcommand};
 
 /// Commands of the isosheet workspace.
 #[derive(Debug, Parser)]
-#[command(name = "xtask", bin_name = "cargo xtask", version, about)]
+#[command(name = "xtask", bin_name = "cargo xtask", version, about, after_help = EXIT_CODES)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -67,7 +67,7 @@ pub(crate) enum Command {
 
 impl Command {
     /// Runs the command.
-    pub(crate) fn run(&self) -> Result<Outcome> {
+    pub(crate) fn run(&self) -> Result<()> {
         match self {
             Self::ReproduceFigures(args) => reproduce::run(args),
             Self::ConditionTable(args) => condition::run(args),

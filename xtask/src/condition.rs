@@ -1,10 +1,10 @@
 //! `condition-table`: condition numbers of the mass matrix in three charts, by mesh level.
 
 use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Marker, Series, palette, row};
-use crate::interrupt::{self, Outcome};
+use crate::interrupt;
 use crate::progress::Progress;
-use crate::report::{Cell, Table};
-use crate::store::Store;
+use crate::report::{Cell, Effort, Table};
+use crate::store::{Remake, Store};
 use anyhow::Result;
 use clap::Args;
 use isosheet_coords::{BentState, ConditionRow, TableChart, condition_table};
@@ -44,33 +44,32 @@ const CHARTS: [(TableChart, &str, &str, Colour, Marker); 3] = [
 pub(crate) struct ConditionArgs {
     /// Finest mesh, M^LEVEL
     #[arg(long, value_name = "LEVEL", default_value_t = 4, value_parser = clap::value_parser!(u32).range(0..=5))]
-    pub(crate) level: u32,
+    level: u32,
 
     /// Folder to write to: a new or empty one, or one of an earlier run of this program
     #[arg(long, value_name = "DIR", default_value = "out/condition-table")]
-    pub(crate) out: PathBuf,
+    out: PathBuf,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &ConditionArgs) -> Result<Outcome> {
-    let store = Store::open(&args.out)?;
+pub(crate) fn run(args: &ConditionArgs) -> Result<()> {
+    let store = Store::open(&args.out, "condition-table", Effort::Standard, Remake::Once)?;
     let bar = Progress::start("condition numbers", args.level as usize + 1);
     let mut rows = Vec::new();
     for level in 0..=args.level {
-        if interrupt::requested() {
-            return Ok(Outcome::Interrupted);
-        }
+        interrupt::check()?;
         rows.extend(condition_table([level])?);
         bar.step();
     }
     bar.finish("computed");
-    store.write("condition.csv", &data(&rows).csv()?)?;
+    data(&rows).write_to(&store.path("condition.csv"))?;
     let title = "Condition number of the mass matrix against the mesh level in three charts";
     store.write("condition.svg", plot(&rows).to_svg(title).as_bytes())?;
     print!("{}", table(&rows).text());
-    println!("{}", store.root().join("condition.csv").display());
-    println!("{}", store.root().join("condition.svg").display());
-    Ok(Outcome::Complete)
+    for file in ["condition.csv", "condition.svg"] {
+        println!("{}", store.path(file).display());
+    }
+    Ok(())
 }
 
 fn of(

@@ -19,8 +19,7 @@ mod jam;
 mod marks;
 mod origami;
 mod performance;
-mod play;
-mod sequence;
+mod show;
 mod sketch;
 mod softness;
 mod stamping;
@@ -29,30 +28,27 @@ mod style;
 use crate::draw::{Anchor, Drawing, Vertical, palette};
 use crate::report::{Effort, Picture, Table};
 use crate::runs::FigureScene;
-use crate::store::{Draft, Store};
+use crate::store::{Files, Store};
 use anyhow::Result;
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::borrow::Cow;
 
 /// A page that plays a run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(crate) struct Play {
     /// Path of the page relative to the output folder.
     pub(crate) path: String,
     /// Choices in the address of the page, empty or from `#` on.
-    pub(crate) choices: String,
+    pub(crate) choices: &'static str,
     /// What tells it from the other pages of the figure.
     pub(crate) label: String,
-    /// The page; it is not part of records.
-    #[serde(skip)]
     pub(crate) page: String,
     /// The last frame as a PNG file.
     pub(crate) thumbnail: Picture,
 }
 
 /// A figure that has been made.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Made {
     pub(crate) title: Cow<'static, str>,
     /// What the paper shows.
@@ -68,32 +64,24 @@ pub(crate) struct Made {
 }
 
 impl Made {
-    /// Adds its files to those of a unit.
-    pub(crate) fn keep(&self, draft: &mut Draft) -> Result<()> {
+    /// Writes its files.
+    pub(crate) fn write(&self, files: &mut Files<'_>) -> Result<()> {
         for picture in &self.pictures {
-            draft.write(&picture.path, &picture.bytes)?;
+            picture.write(files)?;
         }
         for play in &self.pages {
-            draft.write(&play.path, play.page.as_bytes())?;
-            draft.write(&play.thumbnail.path, &play.thumbnail.bytes)?;
+            files.write(&play.path, play.page.as_bytes())?;
+            play.thumbnail.write(files)?;
         }
         Ok(())
     }
-}
-
-/// What figures are made with.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Context<'a> {
-    /// Where runs are kept.
-    pub(crate) store: &'a Store,
-    pub(crate) effort: Effort,
 }
 
 /// Makes a figure.
 ///
 /// # Errors
 /// [`Interrupted`](crate::interrupt::Interrupted) after Ctrl-C.
-pub(crate) fn make(figure: u8, context: &Context<'_>) -> Result<Made> {
+pub(crate) fn make(figure: u8, store: &Store) -> Result<Made> {
     match figure {
         1 => fig01::make(),
         2 => fig02::make(),
@@ -104,14 +92,14 @@ pub(crate) fn make(figure: u8, context: &Context<'_>) -> Result<Made> {
         7 => fig07::make(),
         8 => fig08::make(),
         9 => fig09::make(),
-        10 => performance::make(context),
-        11 => crumple::make(11, 1, context),
-        12 => crumple::make(12, 2, context),
-        13 => stamping::make(context),
-        14 => drape::fig14(context),
-        15 => drape::fig15(context),
-        16 => jam::make(context),
-        17 => origami::make(context),
+        10 => performance::make(store),
+        11 => crumple::make(11, 1, store),
+        12 => crumple::make(12, 2, store),
+        13 => stamping::make(store),
+        14 => drape::fig14(store),
+        15 => drape::fig15(store),
+        16 => jam::make(store),
+        17 => origami::make(store),
         _ => anyhow::bail!("figure {figure} cannot be made"),
     }
 }

@@ -23,19 +23,18 @@ mod steps;
 pub(crate) use case::{Case, Findings, Record, Shortfall};
 
 use crate::draw::{Chart, Drawing, Series};
-use crate::interrupt::{self, Outcome};
+use crate::failure::ReportError;
+use crate::interrupt;
 use crate::progress;
-use crate::report::Effort;
-use crate::store::{Draft, Store, Unit};
-use anyhow::{Result, bail};
+use crate::report::{Effort, FullOptions, one_of};
+use crate::store::{Files, Store, Unit};
+use anyhow::Result;
 use clap::Args;
 use rayon::prelude::*;
-use serde_json::json;
-use std::path::PathBuf;
 use std::time::Instant;
 
 /// The cases in the order of the report.
-pub(crate) static CASES: [&Case; 22] = [
+static CASES: [&Case; 22] = [
     &flat::START,
     &flat::BRANCH,
     &charts::CONDITION,
@@ -60,75 +59,45 @@ pub(crate) static CASES: [&Case; 22] = [
     &locking::DRAPE,
 ];
 
-/// A case by its name on the command line.
-pub(crate) fn parse(name: &str) -> Result<&'static Case, String> {
-    CASES.into_iter().find(|c| c.name == name).ok_or_else(|| {
-        let names: Vec<&str> = CASES.iter().map(|c| c.name).collect();
-        format!("there is no such case; the cases are {}", names.join(", "))
-    })
+fn named() -> Vec<(&'static str, &'static Case)> {
+    CASES.map(|case| (case.name, case)).to_vec()
 }
 
 /// Arguments of `hard-cases`.
 #[derive(Debug, Args)]
 pub(crate) struct HardCasesArgs {
     /// Cases to run, such as flat-start,slivers; all when left out
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse)]
-    pub(crate) cases: Vec<&'static Case>,
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = one_of(named))]
+    cases: Vec<&'static Case>,
 
-    /// Folder to write to: a new or empty one, or one of an earlier run of this program
-    #[arg(long, value_name = "DIR", default_value = "out/hard-cases")]
-    pub(crate) out: PathBuf,
-
-    /// Short runs on small meshes: checks in seconds that everything works
-    #[arg(long, conflicts_with = "full")]
-    pub(crate) quick: bool,
-
-    /// Longer runs and finer meshes than fit into a few minutes
-    #[arg(long)]
-    pub(crate) full: bool,
-
-    /// Run everything that is asked for again, also what is up to date
-    #[arg(long)]
-    pub(crate) force: bool,
+    #[command(flatten)]
+    options: FullOptions,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &HardCasesArgs) -> Result<Outcome> {
-    let store = Store::open(&args.out)?;
-    let effort = Effort::of_flags([args.quick, args.full]);
-    let wanted =
-        |case: &Case| args.cases.is_empty() || args.cases.iter().any(|c| c.name == case.name);
-    let results: Vec<Result<()>> = CASES
+pub(crate) fn run(args: &HardCasesArgs) -> Result<()> {
+    let store = args.options.open("hard-cases")?;
+    let is_wanted = |case: &Case| args.cases.iter().any(|c| c.name == case.name);
+    let results: Vec<Result<Record>> = CASES
         .par_iter()
         .with_max_len(1)
-        .filter(|case| wanted(case))
-        .map(|case| {
-            let unit = unit(case, effort);
-            if args.force {
-                store.forget(&unit.name)?;
-            }
-            store.keep(&unit, |draft| make(case, effort, draft))?;
-            Ok(())
-        })
+        .filter(|case| args.cases.is_empty() || is_wanted(case))
+        .map(|case| store.keep(&unit(&store, case), |files| make(case, store.effort, files)))
         .collect();
-    let outcome = interrupt::each(results, |result| result)?;
-    let kept = |case: &&Case| store.kept(&unit(case, effort));
-    let records: Vec<Record> = CASES.iter().filter_map(kept).collect();
-    page::write(&store, &records, effort)?;
-    print!("{}", page::text(&records));
-    println!("{}", store.root().join("index.html").display());
-    let failed: Vec<&str> = records
-        .iter()
-        .filter(|r| r.verdict().is_failure())
-        .map(|r| r.name.as_str())
-        .collect();
-    if !failed.is_empty() {
-        bail!(
-            "cases failed, or their open limitations are not as declared: {}",
-            failed.join(", ")
-        );
-    }
-    Ok(outcome)
+    let made = results.into_iter().try_for_each(|made| made.map(drop));
+    interrupt::afterwards(made, || {
+        let kept = |case: &&Case| store.kept(&unit(&store, case));
+        let records: Vec<Record> = CASES.iter().filter_map(kept).collect();
+        print!("{}", page::text(&records));
+        page::write(&store, &records)?;
+        let failed = records.iter().filter(|r| r.verdict().is_failure());
+        let names: Vec<&str> = failed.map(|r| r.name.as_str()).collect();
+        if names.is_empty() {
+            return Ok(());
+        }
+        let names = names.join(", ");
+        Err(ReportError::Cases { names }.into())
+    })
 }
 
 /// Size of the area inside the axes of charts, points.
@@ -144,31 +113,29 @@ fn semi_log(x: &str, y: &str, series: Vec<Series>) -> Drawing {
     Chart::semi_log(x, y, SIZE, series).draw()
 }
 
-fn unit(case: &Case, effort: Effort) -> Unit {
-    Unit {
-        name: format!("case-{}", case.name),
-        title: case.name.to_owned(),
-        options: json!({ "effort": effort }),
-    }
+fn unit(store: &Store, case: &Case) -> Unit {
+    store.unit(format!("case-{}", case.name), case.name)
 }
 
 /// Runs a case.
-fn make(case: &Case, effort: Effort, draft: &mut Draft) -> Result<Record> {
+fn make(case: &Case, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
     let started = Instant::now();
-    let found = (case.run)(effort)?;
+    let mut found = Findings::default();
+    (case.run)(&mut found, effort)?;
     for picture in &found.pictures {
-        draft.write(&picture.path, &picture.bytes)?;
+        picture.write(files)?;
     }
-    let record = Record {
+    let mut record = Record {
         name: case.name.to_owned(),
         title: case.title.to_owned(),
-        expected: case.expected.to_owned(),
-        found,
+        section: Default::default(),
+        naive: found.naive,
+        checks: found.checks,
         wall: started.elapsed().as_secs_f64(),
     };
-    progress::note(
-        case.name,
-        &format!("{} ({:.1} s)", record.verdict().text(), record.wall),
-    );
+    let text = format!("{} ({:.1} s)", record.verdict().text(), record.wall);
+    progress::note(case.name, &text);
+    let shown = (found.pictures.as_slice(), found.tables.as_slice());
+    record.section = page::section(case, &record, &found.here, shown).into();
     Ok(record)
 }

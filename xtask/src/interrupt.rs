@@ -1,23 +1,15 @@
 //! Ctrl-C: the first one asks the work to stop at the next frame, a second one ends the process at once.
 
-use anyhow::Context;
+use anyhow::{Context, Result};
 use isosheet_dynamics::{Simulation, StepReport};
+use isosheet_io::Advice;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// How a command ended when it did not fail.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Outcome {
-    /// Everything asked for is there.
-    Complete,
-    /// Stopped with Ctrl-C; what was finished has been kept.
-    Interrupted,
-}
 
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// Takes over Ctrl-C.
-pub(crate) fn install() -> anyhow::Result<()> {
+pub(crate) fn install() -> Result<()> {
     ctrlc::set_handler(|| {
         if REQUESTED.swap(true, Ordering::SeqCst) {
             std::process::exit(130);
@@ -35,6 +27,12 @@ pub(crate) fn requested() -> bool {
 #[derive(Clone, Copy, Debug, thiserror::Error)]
 #[error("stopped by Ctrl-C")]
 pub(crate) struct Interrupted;
+
+impl Advice for Interrupted {
+    fn advice(&self) -> Option<&'static str> {
+        Some("the same command goes on from what was finished and kept")
+    }
+}
 
 /// [`Interrupted`] when Ctrl-C was pressed.
 pub(crate) fn check() -> Result<(), Interrupted> {
@@ -54,21 +52,11 @@ pub(crate) fn observe(_simulation: &Simulation, _report: &StepReport) -> Control
     }
 }
 
-/// Does pieces of work one after the other until all are done or Ctrl-C ends one of them with
-/// [`Interrupted`].
-pub(crate) fn each<T>(
-    items: impl IntoIterator<Item = T>,
-    mut work: impl FnMut(T) -> anyhow::Result<()>,
-) -> anyhow::Result<Outcome> {
-    for item in items {
-        match check()
-            .map_err(anyhow::Error::from)
-            .and_then(|()| work(item))
-        {
-            Ok(()) => {}
-            Err(error) if error.is::<Interrupted>() => return Ok(Outcome::Interrupted),
-            Err(error) => return Err(error),
-        }
+/// What follows work that may have been stopped by Ctrl-C: a page of what is there. Other errors end the
+/// command without it.
+pub(crate) fn afterwards(work: Result<()>, page: impl FnOnce() -> Result<()>) -> Result<()> {
+    match work {
+        Err(error) if !error.is::<Interrupted>() => Err(error),
+        work => page().and(work),
     }
-    Ok(Outcome::Complete)
 }

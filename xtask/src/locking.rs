@@ -9,7 +9,6 @@ mod buckling;
 mod cantilever;
 mod clamped;
 mod compliance;
-mod course;
 mod cylinder;
 mod disk;
 mod drape;
@@ -18,29 +17,28 @@ mod isometry;
 mod iterations;
 mod limit;
 pub(crate) mod meshes;
-mod page;
-mod plot;
+mod plots;
 mod records;
 mod rim;
 mod sample;
+mod scene;
 mod sliding;
 mod targets;
 
 use crate::draw::Drawing;
-use crate::interrupt::{self, Outcome};
-use crate::report::{Effort, Table, plot_files};
-use crate::store::{Draft, Store, Unit};
+use crate::interrupt;
+use crate::report::{Options, Page, Section, Table, list, machine, one_of, plot};
+use crate::store::{Files, Store, Unit};
 use anyhow::Result;
 use clap::Args;
-use page::Section;
+use isosheet_io::write_json;
+use maud::html;
 use records::Records;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
-use std::path::PathBuf;
 use targets::Target;
 
 /// What a yardstick found.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default)]
 struct Findings {
     /// Tables of the page, which are files as well.
     tables: Vec<Table>,
@@ -49,6 +47,16 @@ struct Findings {
     /// What the numbers say, one sentence or two each.
     remarks: Vec<String>,
     /// What the models are required to reach here.
+    targets: Vec<Target>,
+}
+
+/// What is kept of a yardstick.
+#[derive(Debug, Serialize, Deserialize)]
+struct Record {
+    name: String,
+    section: Section,
+    /// Tables and remarks for a terminal.
+    text: String,
     targets: Vec<Target>,
 }
 
@@ -76,29 +84,35 @@ impl Yardstick {
         }
     }
 
-    fn unit(&self, effort: Effort) -> Unit {
-        Unit {
-            name: format!("locking-{}", self.name),
-            title: self.name.to_owned(),
-            options: json!({ "effort": effort }),
-        }
+    fn unit(&self, store: &Store) -> Unit {
+        store.unit(format!("locking-{}", self.name), self.name)
     }
 
-    /// Applies the yardstick; its tables and its figure go into the draft.
-    fn apply(&self, store: &Store, effort: Effort, draft: &mut Draft) -> Result<Findings> {
-        let part = self.name.to_owned();
-        let (found, drawing) = (self.make)(&Records {
-            store,
-            part,
-            effort,
-        })?;
+    /// Applies the yardstick and writes its tables and its figure.
+    fn apply(&self, store: &Store, files: &mut Files<'_>) -> Result<Record> {
+        let part = self.name;
+        let (found, drawing) = (self.make)(&Records { store, part })?;
         for table in found.tables.iter().chain(&found.files) {
-            draft.write(&format!("tables/{}", table.file()), &table.csv()?)?;
+            table.write(files)?;
         }
-        if let Some(drawing) = drawing {
-            plot_files(draft, self.name, &drawing, self.title)?;
-        }
-        Ok(found)
+        let figure = drawing.map(|drawing| plot(files, self.name, &drawing, self.title));
+        let section = html! {
+            section id=(self.name) {
+                h2 { (self.title) }
+                p { (self.about) }
+                @if let Some(figure) = figure.transpose()? { (figure) }
+                (list(&found.remarks))
+                @for table in &found.tables { (table) }
+            }
+        };
+        let tables = found.tables.iter().map(Table::text);
+        let texts: Vec<String> = tables.chain(found.remarks).collect();
+        Ok(Record {
+            name: self.name.to_owned(),
+            section: section.into(),
+            text: texts.join("\n"),
+            targets: found.targets,
+        })
     }
 }
 
@@ -143,13 +157,8 @@ static YARDSTICKS: [Yardstick; 9] = [
     ),
 ];
 
-/// A yardstick by its name on the command line.
-fn parse(name: &str) -> Result<&'static Yardstick, String> {
-    let found = YARDSTICKS.iter().find(|y| y.name == name);
-    found.ok_or_else(|| {
-        let names = YARDSTICKS.each_ref().map(|y| y.name).join(", ");
-        format!("there is no yardstick {name:?}; choose from {names}")
-    })
+fn named() -> Vec<(&'static str, &'static Yardstick)> {
+    YARDSTICKS.iter().map(|y| (y.name, y)).collect()
 }
 
 /// The median; NaN of nothing.
@@ -165,58 +174,67 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// Arguments of `locking`.
 #[derive(Debug, Args)]
 pub(crate) struct LockingArgs {
-    /// Folder to write to: a new or empty one, or one of an earlier run of this program
-    #[arg(long, value_name = "DIR", default_value = "out/locking")]
-    pub(crate) out: PathBuf,
-
-    /// Seconds instead of a quarter of an hour: checks that everything works, and shows no result
-    #[arg(long)]
-    pub(crate) quick: bool,
+    #[command(flatten)]
+    options: Options,
 
     /// Yardsticks to apply, separated by commas, such as clamped; all when left out
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = parse)]
-    pub(crate) yardsticks: Vec<&'static Yardstick>,
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = one_of(named))]
+    yardsticks: Vec<&'static Yardstick>,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &LockingArgs) -> Result<Outcome> {
-    let effort = Effort::of_flags([args.quick, true]);
-    let store = Store::open(&args.out)?;
+pub(crate) fn run(args: &LockingArgs) -> Result<()> {
+    let store = args.options.open("locking")?;
     let mut yardsticks = args.yardsticks.clone();
     if yardsticks.is_empty() {
         yardsticks.extend(&YARDSTICKS);
     }
-    let outcome = interrupt::each(yardsticks, |yardstick| {
-        let unit = yardstick.unit(effort);
-        let found = store.keep(&unit, |draft| yardstick.apply(&store, effort, draft))?;
-        for table in &found.tables {
-            println!("{}", table.text());
-        }
-        found.remarks.iter().for_each(|remark| println!("{remark}"));
+    let made = yardsticks.into_iter().try_for_each(|yardstick| {
+        let record = store.keep(&yardstick.unit(&store), |files| {
+            yardstick.apply(&store, files)
+        })?;
+        println!("{}", record.text);
         Ok(())
-    })?;
-    let section = |yardstick: &'static Yardstick| {
-        let found = store.earlier(&yardstick.unit(effort))?;
-        Some(Section { yardstick, found })
-    };
-    let sections: Vec<Section> = YARDSTICKS.iter().filter_map(section).collect();
-    page::write(&store, &sections, effort)?;
-    println!("{}", store.root().join("index.html").display());
-    Ok(outcome)
+    });
+    interrupt::afterwards(made, || write(&store))
 }
+
+/// Writes the page, `tables/targets.csv` and `targets.json` of all yardsticks applied so far.
+fn write(store: &Store) -> Result<()> {
+    let kept = |yardstick: &Yardstick| store.earlier(&yardstick.unit(store));
+    let records: Vec<Record> = YARDSTICKS.iter().filter_map(kept).collect();
+    let of = |r: &'_ Record| {
+        r.targets
+            .iter()
+            .map(|t| (r.name.clone(), t.clone()))
+            .collect::<Vec<_>>()
+    };
+    let targets: Vec<(String, Target)> = records.iter().flat_map(of).collect();
+    let summary = targets::table(&targets);
+    summary.write_to(&store.path("tables/targets.csv"))?;
+    write_json(&store.path("targets.json"), &targets)?;
+    let body = html! {
+        p { (INTRODUCTION) }
+        p {
+            "SI units, z upwards. Times are wall times of runs on one core each, with other runs beside. Machine: "
+            (machine()) "."
+        }
+        section #targets { h2 { "Measured against target" } (summary) }
+        @for record in &records { (record.section) }
+    };
+    Page::new("Yardsticks of locking", body).write(store, "index.html")
+}
+
+const INTRODUCTION: &str = "A triangle mesh whose edges are rigid rods has only B − 3 ways to deform (B: edges on the boundary) and folds only \
+    along mesh lines. It is too stiff, or cannot move at all, where a smooth inextensible sheet bends in another direction: it locks. The \
+    yardsticks measure by how much, and what other models of isometry do: an elastic sheet with the membrane stiffness of office paper, 3e5 N/m; one with the \
+    stiffness 100 D / h² that leaves bends free (D: flexural rigidity; h²: twice the mean area of a triangle); and isometry in weak form, two equations for each vertex that \
+    keep lengths in the mean over the triangles around it, with a membrane of the stiffness 100 D / h² for what the equations leave free. Where a scene has no bending stiffness, the last two have the membrane \
+    of D = 5e-4 N m.";
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn yardsticks_are_found_by_their_names() {
-        for yardstick in &YARDSTICKS {
-            assert_eq!(parse(yardstick.name).unwrap().name, yardstick.name);
-        }
-        let error = parse("moon").unwrap_err();
-        assert!(error.contains("choose from clamped, everyday"), "{error}");
-    }
 
     #[test]
     fn medians() {

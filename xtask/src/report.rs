@@ -1,9 +1,10 @@
-//! What all reports are made with: pages, tables, charts, what a run cost, numbers in words.
+//! What all reports are made with: options, pages, tables, pictures, what a run cost, numbers in words.
 
 mod cost;
 mod effort;
 mod machine;
 mod number;
+mod options;
 mod page;
 mod picture;
 mod table;
@@ -11,7 +12,8 @@ mod table;
 pub(crate) use cost::Cost;
 pub(crate) use effort::Effort;
 pub(crate) use machine::machine;
-pub(crate) use number::{exponent, number, order_line, percent, rounded, short};
-pub(crate) use page::{Page, drawing, list};
-pub(crate) use picture::{Picture, plot_files};
+pub(crate) use number::{exponent, extremes, number, order_line, percent, rounded, short};
+pub(crate) use options::{FullOptions, Options, one_of};
+pub(crate) use page::{Page, Section, list};
+pub(crate) use picture::{Picture, plot};
 pub(crate) use table::{Cell, Table};

@@ -1,117 +1,168 @@
-//! `reproduce-figures`: makes what is asked for and not up to date, then writes the report.
+//! `reproduce-figures`: makes what is asked for and not up to date, then writes the page and `summary.json`.
 
-mod page;
-
-use crate::figures::{self, Context, Made};
-use crate::interrupt::{self, Outcome};
+use crate::figures::{self, Made};
+use crate::interrupt;
 use crate::progress;
-use crate::report::Effort;
-use crate::selection;
+use crate::report::{Options, Page, Section};
+use crate::selection::{self, PAPER};
 use crate::store::{Store, Unit};
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::Args;
-use serde_json::json;
+use isosheet_io::write_json;
+use maud::{Markup, html};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::ops::RangeInclusive;
 use std::time::Instant;
 
 /// Arguments of `reproduce-figures`.
 #[derive(Debug, Args)]
 pub(crate) struct ReproduceArgs {
     /// Figures to make, such as 3 or 1-9,11; all when left out
-    #[arg(long, value_name = "LIST", default_value = "1-17", value_parser = selection::parse)]
-    pub(crate) figures: BTreeSet<u8>,
+    #[arg(long, value_name = "LIST", default_value = "1-17", value_delimiter = ',', value_parser = selection::parse)]
+    pub(crate) figures: Vec<RangeInclusive<u8>>,
 
-    /// Folder to write to: a new or empty one, or one of an earlier run of this program
-    #[arg(long, value_name = "DIR", default_value = "out/reproduce-figures")]
-    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) options: Options,
+}
 
-    /// Short runs and small pictures: checks that everything works in seconds, and shows no result
-    ///
-    /// Not for a folder that has full results. A full run removes quick results.
-    #[arg(long)]
-    pub(crate) quick: bool,
-
-    /// Make everything that is asked for again, also what is up to date
-    #[arg(long)]
-    pub(crate) force: bool,
+/// What is kept of a figure: its section of the page and its part of `summary.json`.
+#[derive(Debug, Serialize, Deserialize)]
+struct Record {
+    section: Section,
+    summary: Value,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &ReproduceArgs) -> Result<Outcome> {
-    let store = Store::open(&args.out)?;
-    let effort = Effort::of_flags([args.quick, true]);
-    claim(&store, effort)?;
-    let context = Context {
-        store: &store,
-        effort,
-    };
-    if args.force && args.figures.iter().any(|f| *f >= 10) {
-        store.forget("run-")?;
-    }
-    let outcome = interrupt::each(&args.figures, |&figure| {
-        let unit = unit(figure, effort);
-        if args.force {
-            store.forget(&unit.name)?;
-        }
-        let title = unit.title.clone();
-        store.keep(&unit, |draft| {
-            let started = Instant::now();
-            let made = figures::make(figure, &context)?;
-            made.keep(draft)?;
-            let wall = started.elapsed().as_secs_f64();
-            progress::note(&title, &format!("made ({wall:.1} s)"));
-            Ok(made)
-        })?;
-        Ok(())
-    })?;
-    page::write(&store, effort, &records(&store))?;
-    progress::note(
-        "report",
-        &store.root().join("index.html").display().to_string(),
-    );
-    Ok(outcome)
-}
-
-/// Where the folder keeps the effort that its results were made with.
-const EFFORT: &str = ".stamps/effort.json";
-
-/// Keeps quick and full results apart, which share the names of figures and runs: full results are not
-/// replaced by quick ones, and quick ones are removed before the first full one is made.
-fn claim(store: &Store, effort: Effort) -> Result<()> {
-    let recorded = store.read(EFFORT).ok();
-    let recorded = recorded.and_then(|text| serde_json::from_slice::<Effort>(&text).ok());
-    match (recorded, effort) {
-        (Some(Effort::Full), Effort::Quick) => bail!(
-            "{} is for results without --quick, which are not mixed with quick ones; choose another folder with --out",
-            store.root().display()
-        ),
-        (Some(Effort::Quick), Effort::Full) => {
-            progress::note("quick results", "removed");
-            store.clear()?;
-        }
-        _ => {}
-    }
-    if recorded != Some(effort) {
-        store.write_json(EFFORT, &effort)?;
-    }
-    Ok(())
+pub(crate) fn run(args: &ReproduceArgs) -> Result<()> {
+    let store = args.options.open("reproduce-figures")?;
+    let figures: BTreeSet<u8> = args.figures.iter().cloned().flatten().collect();
+    let made = figures.into_iter().try_for_each(|n| make(&store, n));
+    interrupt::afterwards(made, || write(&store))
 }
 
 /// What is kept of a figure.
-fn unit(figure: u8, effort: Effort) -> Unit {
-    Unit {
-        name: format!("fig{figure:02}"),
-        title: format!("figure {figure}"),
-        options: json!({ "figure": figure, "effort": effort }),
+fn unit(store: &Store, figure: u8) -> Unit {
+    store.unit(format!("fig{figure:02}"), format!("figure {figure}"))
+}
+
+fn make(store: &Store, figure: u8) -> Result<()> {
+    let unit = unit(store, figure);
+    store.keep(&unit, |files| {
+        let started = Instant::now();
+        let made = figures::make(figure, store)?;
+        made.write(files)?;
+        let wall = started.elapsed().as_secs_f64();
+        progress::note(&unit.title, &format!("made ({wall:.1} s)"));
+        Ok(Record {
+            section: section(figure, &made).into(),
+            summary: summary(figure, &made, store),
+        })
+    })?;
+    Ok(())
+}
+
+/// Writes `index.html` and `summary.json` of all figures made so far.
+fn write(store: &Store) -> Result<()> {
+    let kept = |figure| store.earlier(&unit(store, figure));
+    let records: Vec<Record> = selection::all().filter_map(kept).collect();
+    let figures: Vec<&Value> = records.iter().map(|r| &r.summary).collect();
+    let version = env!("CARGO_PKG_VERSION");
+    write_json(
+        &store.path("summary.json"),
+        &json!({ "version": version, "effort": store.effort, "figures": figures }),
+    )?;
+    let body = html! {
+        p {
+            "Every picture is computed by isosheet. Beside each: what is shown in Y.-J. Liu, K. Tang and A. Joneja, "
+            i { "Modeling dynamic developable meshes by the Hamilton principle" } ", Computer-Aided Design 39 (2007) "
+            "719–731, and what is measured here. SI units, z upwards."
+        }
+        @for record in &records { (record.section) }
+    };
+    let page = Page {
+        heading: "Dynamic developable meshes: the figures reproduced",
+        ..Page::new("Figures of Liu, Tang and Joneja 2007, reproduced", body)
+    };
+    page.write(store, "index.html")
+}
+
+fn summary(figure: u8, made: &Made, store: &Store) -> Value {
+    json!({
+        "figure": figure, "title": made.title, "effort": store.effort, "paper": made.paper, "measured": made.measured,
+        "pictures": made.pictures.iter().map(|p| &p.path).collect::<Vec<_>>(),
+        "pages": made.pages.iter().map(|p| &p.path).collect::<Vec<_>>(), "facts": made.facts,
+    })
+}
+
+fn section(n: u8, made: &Made) -> Markup {
+    let kind = if n > PAPER {
+        "Beyond the paper,"
+    } else {
+        "Fig."
+    };
+    html! {
+        section id={ "fig" (n) } {
+            h2 { (kind) " " (n) ". " (made.title) }
+            @for picture in &made.pictures { figure { (picture.inside) } }
+            @if !made.pages.is_empty() {
+                p { b { "Turn it round and play it:" } }
+                div.play { @for play in &made.pages {
+                    a href={ (play.path) (play.choices) } { (play.thumbnail.inside) (play.label) }
+                } }
+            }
+            div.texts {
+                p { b { "The paper" } (made.paper) }
+                p { b { "Here" } (made.measured) }
+            }
+            @for table in &made.tables { (table) }
+        }
     }
 }
 
-/// All figures made so far, with the effort of each.
-fn records(store: &Store) -> Vec<(u8, Made, Effort)> {
-    let of = |figure| {
-        let made = |effort| Some((figure, store.earlier(&unit(figure, effort))?, effort));
-        [Effort::Quick, Effort::Full].into_iter().find_map(made)
-    };
-    selection::all().filter_map(of).collect()
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::{Drawing, Stroke, palette};
+    use crate::figures::Play;
+    use crate::report::{Picture, Table};
+
+    #[test]
+    fn the_section_holds_everything() {
+        let mut drawing = Drawing::new();
+        let line = [[0.0, 0.0], [100.0, 0.0]];
+        drawing.line(&line, Stroke::new(palette::INK, 6.0));
+        let png = |file, alt| Picture::png(file, vec![1, 2, 3], alt);
+        let made = Made {
+            title: "A < B".into(),
+            paper: "said".into(),
+            measured: "seen".into(),
+            pictures: vec![
+                Picture::svg("a", &drawing, "a"),
+                png("b.png", "b \"quoted\""),
+            ],
+            pages: vec![Play {
+                path: "fig10-a.html".into(),
+                choices: "#bodies=glass",
+                label: "M<2>".into(),
+                page: String::new(),
+                thumbnail: png("fig10-a-end.png", "Figure 10, M<2>, at the end"),
+            }],
+            tables: vec![Table::new("t", &["x"]).with_texts([vec!["<1>".into()]])],
+            facts: Value::Null,
+        };
+        let html = section(10, &made).into_string();
+        for part in [
+            "A &lt; B",
+            // 106 x 6 and a margin of 2 points all around, enlarged by 1.3.
+            "width=\"143.00pt\" height=\"13.00pt\"",
+            "alt=\"b &quot;quoted&quot;\" src=\"data:image/png;base64,AQID\"",
+            "<td>&lt;1&gt;</td>",
+            "<a href=\"fig10-a.html#bodies=glass\"><img alt=\"Figure 10, M&lt;2&gt;, at the end\" \
+             src=\"data:image/png;base64,AQID\">M&lt;2&gt;</a>",
+        ] {
+            assert!(html.contains(part), "{part} is missing in {html}");
+        }
+    }
 }

@@ -1,6 +1,7 @@
-//! Simulations that figures are made of: made once, recorded in DIR/runs, used by several figures.
+//! Runs: their course, and those that figures are made of, made once and recorded in DIR/runs.
 
 mod chart_run;
+mod course;
 mod ensemble;
 mod fall;
 mod hanging;
@@ -8,10 +9,11 @@ mod record;
 mod scene;
 mod shape;
 
-pub(crate) use chart_run::{ChartSummary, Fate, chart_run};
+pub(crate) use chart_run::{ChartSummary, chart_run};
+pub(crate) use course::{Course, Ending, Plan, unseen};
 pub(crate) use ensemble::{Member, ensemble};
 pub(crate) use fall::{fall, free_fall, plate_fall};
 pub(crate) use hanging::{Hanging, mass};
-pub(crate) use record::{RunSummary, end, ensure, forces, history, summary, supports, trajectory};
+pub(crate) use record::{Run, RunSummary};
 pub(crate) use scene::{FigureScene, for_frames};
 pub(crate) use shape::{LIMIT, PLATE, Shape};

@@ -2,23 +2,21 @@
 
 mod drape;
 mod findings;
-mod measure;
+mod page;
 mod plot;
-mod report;
+mod steps;
 mod tables;
 mod timed;
 mod whole;
 mod whole_report;
 
-use crate::interrupt::{self, Outcome};
+use crate::interrupt;
 use crate::progress::Progress;
-use crate::store::Store;
+use crate::report::FullOptions;
 use crate::timing::{Measured, Work};
 use anyhow::Result;
 use clap::Args;
-use measure::measure;
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
 use whole::SCENES;
 
 /// What is measured.
@@ -33,17 +31,10 @@ struct Extent {
 
 impl Extent {
     fn of(args: &ScaleArgs) -> Self {
-        if args.quick {
-            // Shows that everything works.
-            return Self {
-                steps: 1..=3,
-                runs: 1..=2,
-                limit: 5.0,
-            };
-        }
-        let (finest, limit) = if args.full { (5, 600.0) } else { (3, 60.0) };
+        let effort = args.options.effort();
+        let (finest, limit) = effort.pick((2, 5.0), (3, 60.0), (5, 600.0));
         Self {
-            steps: 2..=args.level,
+            steps: effort.quick_or(1..=3, 2..=args.level),
             runs: 1..=finest,
             limit,
         }
@@ -53,7 +44,7 @@ impl Extent {
 /// Everything measured.
 #[derive(Clone, Debug)]
 struct Results {
-    hanging: Vec<measure::Row>,
+    hanging: Vec<steps::Row>,
     draping: Vec<drape::DrapeRow>,
     /// Whole runs, and the limit of wall time of each, seconds.
     whole: Vec<Measured>,
@@ -72,43 +63,36 @@ impl Results {
 pub(crate) struct ScaleArgs {
     /// Finest mesh, M^LEVEL
     #[arg(long, value_name = "LEVEL", default_value_t = 7, value_parser = clap::value_parser!(u32).range(3..=8))]
-    pub(crate) level: u32,
+    level: u32,
 
-    /// Folder to write to: a new or empty one, or one of an earlier run of this program
-    #[arg(long, value_name = "DIR", default_value = "out/scale")]
-    pub(crate) out: PathBuf,
-
-    /// Small meshes only: checks that everything works in seconds, and shows no result
-    #[arg(long, conflicts_with = "full")]
-    pub(crate) quick: bool,
-
-    /// Whole runs up to M^5 instead of M^3, with ten minutes of wall time for each: about an hour
-    #[arg(long)]
-    pub(crate) full: bool,
+    #[command(flatten)]
+    options: FullOptions,
 }
 
+/// What the picture shows, for those who do not see it.
+const PICTURE: &str = "Time, memory and fill of a step against the number of vertices";
+
 /// Runs the command.
-pub(crate) fn run(args: &ScaleArgs) -> Result<Outcome> {
-    let store = Store::open(&args.out)?;
-    let Some(results) = measured(&Extent::of(args))? else {
-        return Ok(Outcome::Interrupted);
-    };
-    let mut names = Vec::new();
-    for (name, bytes) in report::files(&results)? {
-        store.write(name, &bytes)?;
-        names.push(name);
+pub(crate) fn run(args: &ScaleArgs) -> Result<()> {
+    let store = args.options.open("scale")?;
+    let results = measured(&Extent::of(args))?;
+    let whole: Vec<&Measured> = results.whole.iter().collect();
+    for (name, table) in [
+        ("scale.csv", tables::hanging(&results.hanging)),
+        ("draping.csv", tables::draping(&results.draping)),
+        ("runs.csv", whole_report::table(&whole)),
+    ] {
+        table.write_to(&store.path(name))?;
     }
-    store.write("scale.html", report::page(&results)?.to_html().as_bytes())?;
-    print!("{}", report::text(&results));
-    for name in names.into_iter().chain(["scale.html"]) {
-        println!("{}", store.root().join(name).display());
-    }
-    Ok(Outcome::Complete)
+    let plot = plot::plot(&results);
+    store.write("scale.svg", plot.to_svg(PICTURE).as_bytes())?;
+    store.write("scale.png", &plot.to_png(PICTURE)?)?;
+    print!("{}", page::text(&results));
+    page::page(&results).write(&store, "scale.html")
 }
 
 /// Single steps first, coarse to fine, so that the peak of the memory is that of the level; then whole runs.
-/// `None` when stopped.
-fn measured(extent: &Extent) -> Result<Option<Results>> {
+fn measured(extent: &Extent) -> Result<Results> {
     let mut results = Results {
         hanging: Vec::new(),
         draping: Vec::new(),
@@ -116,11 +100,9 @@ fn measured(extent: &Extent) -> Result<Option<Results>> {
         limit: extent.limit,
     };
     for level in extent.steps.clone() {
-        if interrupt::requested() {
-            return Ok(None);
-        }
+        interrupt::check()?;
         let bar = Progress::start(format!("M^{level}"), 2);
-        results.hanging.push(measure(level, STEPS)?);
+        results.hanging.push(steps::measure(level, STEPS)?);
         bar.step();
         results.draping.push(draping(level)?);
         bar.finish("hanging and draping measured");
@@ -128,9 +110,7 @@ fn measured(extent: &Extent) -> Result<Option<Results>> {
     for level in extent.runs.clone() {
         let bar = Progress::start(format!("whole runs of M^{level}"), SCENES.len());
         for scene in SCENES {
-            if interrupt::requested() {
-                return Ok(None);
-            }
+            interrupt::check()?;
             results
                 .whole
                 .extend(whole::measure(scene, level, extent.limit)?);
@@ -138,14 +118,14 @@ fn measured(extent: &Extent) -> Result<Option<Results>> {
         }
         bar.finish("measured");
     }
-    Ok(Some(results))
+    Ok(results)
 }
 
 /// The fastest of some runs, or of one where that takes long.
 fn draping(level: u32) -> Result<drape::DrapeRow> {
     let mut best = drape::measure(level, STEPS, PATIENCE)?;
     for _ in 1..REPETITIONS {
-        if best.cost.wall > LONG {
+        if best.course.cost.wall > LONG {
             break;
         }
         let row = drape::measure(level, STEPS, PATIENCE)?;
@@ -160,7 +140,7 @@ fn draping(level: u32) -> Result<drape::DrapeRow> {
 const REPETITIONS: usize = 5;
 const LONG: f64 = 1.0;
 
-/// Steps that are timed, see [`measure::STEP`].
+/// Steps that are timed, see [`steps::STEP`].
 const STEPS: usize = 3;
 
 /// Longest time for the steps of a draping sheet, seconds.

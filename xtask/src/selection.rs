@@ -1,6 +1,6 @@
-//! Lists of figures, such as `1-9,11`.
+//! Figures by number, and ranges of them, such as `1-9`.
 
-use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
 
 /// First and last figure that can be made. Fig. 10 of the paper is a table; the paper ends at [`PAPER`].
 const BUILT: [u8; 2] = [1, 17];
@@ -9,51 +9,39 @@ const BUILT: [u8; 2] = [1, 17];
 pub(crate) const PAPER: u8 = 15;
 
 /// Every figure that can be made.
-pub(crate) fn all() -> impl Iterator<Item = u8> {
+pub(crate) fn all() -> RangeInclusive<u8> {
     BUILT[0]..=BUILT[1]
 }
 
-/// The figures of a list, in ascending order.
+/// The number of a figure that can be made.
+fn figure(text: &str) -> Result<u8, String> {
+    // The parser of the standard library also takes a plus sign.
+    let is_number = text.bytes().all(|b| b.is_ascii_digit());
+    let number = text.parse::<u64>().ok().filter(|_| is_number);
+    let number = number.ok_or_else(|| {
+        format!("'{text}' is neither a figure nor a range; give figures such as 3 or 1-9,11")
+    })?;
+    let [first, last] = BUILT;
+    let known = u8::try_from(number).ok().filter(|f| all().contains(f));
+    known.ok_or_else(|| format!("there is no figure {number}; known figures are {first} to {last}"))
+}
+
+/// A figure or a range of figures.
 ///
 /// # Errors
 /// What cannot be understood, in words.
-pub(crate) fn parse(list: &str) -> Result<BTreeSet<u8>, String> {
-    const HELP: &str = "give figures such as 3 or 1-9,11";
-    if list.trim().is_empty() {
-        return Err(format!("the list is empty; {HELP}"));
-    }
-    let figure = |text: &str| {
-        // The parser of the standard library also takes a plus sign.
-        let is_number = text.bytes().all(|b| b.is_ascii_digit());
-        let number = text.parse::<u64>().ok().filter(|_| is_number);
-        let number =
-            number.ok_or_else(|| format!("'{text}' is neither a figure nor a range; {HELP}"))?;
-        let [first, last] = BUILT;
-        u8::try_from(number)
-            .ok()
-            .filter(|f| (first..=last).contains(f))
-            .ok_or_else(|| {
-                format!("there is no figure {number}; known figures are {first} to {last}")
-            })
+pub(crate) fn parse(text: &str) -> Result<RangeInclusive<u8>, String> {
+    let (from, to) = match text.trim().split_once('-') {
+        Some((from, to)) if !from.is_empty() && !to.is_empty() => (from, to),
+        _ => (text, text),
     };
-    let mut set = BTreeSet::new();
-    for part in list.split(',').map(str::trim) {
-        match part.split_once('-') {
-            Some((from, to)) if !from.is_empty() && !to.is_empty() => {
-                let (from, to) = (figure(from.trim())?, figure(to.trim())?);
-                if to < from {
-                    return Err(format!(
-                        "the range {from}-{to} runs backwards; write {to}-{from}"
-                    ));
-                }
-                set.extend(from..=to);
-            }
-            _ => {
-                set.insert(figure(part)?);
-            }
-        }
+    let [from, to] = [figure(from.trim())?, figure(to.trim())?];
+    if to < from {
+        return Err(format!(
+            "the range {from}-{to} runs backwards; write {to}-{from}"
+        ));
     }
-    Ok(set)
+    Ok(from..=to)
 }
 
 #[cfg(test)]
@@ -61,19 +49,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_and_lists() {
-        let parse = |list| parse(list).map(|set| set.into_iter().collect::<Vec<u8>>());
-        assert_eq!(parse("3"), Ok(vec![3]));
-        assert_eq!(parse("11, 1-3,2"), Ok(vec![1, 2, 3, 11]));
-        assert_eq!(parse("1-17"), Ok((1..=17).collect()));
-        assert_eq!(parse("7-7"), Ok(vec![7]));
+    fn figures_and_ranges() {
+        for (text, range) in [
+            ("3", 3..=3),
+            (" 1-3", 1..=3),
+            ("1-17", 1..=17),
+            ("7-7", 7..=7),
+        ] {
+            assert_eq!(parse(text), Ok(range));
+        }
     }
 
     #[test]
     fn what_makes_no_sense_is_named() {
-        for (list, word) in [
-            (" ", "empty"),
-            ("1,,2", "'' is neither"),
+        for (text, word) in [
+            (" ", "'' is neither"),
             ("1-x", "'x' is neither"),
             ("-3", "'-3' is neither"),
             ("+3", "neither"),
@@ -87,8 +77,8 @@ mod tests {
             // A range is refused by its ends, not walked through.
             ("1-18446744073709551615", "no figure 18446744073709551615"),
         ] {
-            let error = parse(list).unwrap_err();
-            assert!(error.contains(word), "{list}: {error}");
+            let error = parse(text).unwrap_err();
+            assert!(error.contains(word), "{text}: {error}");
         }
     }
 }

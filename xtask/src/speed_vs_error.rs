@@ -1,16 +1,14 @@
 //! `speed-vs-error`: time against errors of every method on problems with known motion, on two works that
 //! other programs have been measured on, and of the linear solvers.
 //!
-//! Every part is kept in the output folder with what it found, so that an interrupted run continues where it
-//! stopped, and the page is written from what is there.
+//! Every part is kept in the output folder with its section of the page and what it says, so that an
+//! interrupted run continues where it stopped.
 
 mod analysis;
 mod barrier;
-mod effort;
 mod hanging;
 mod matrices;
 mod measure;
-mod page;
 mod problem;
 mod reference;
 mod scheme;
@@ -19,22 +17,22 @@ mod study;
 mod tablecloth;
 mod verdict;
 
-use crate::interrupt::{self, Outcome};
-use crate::report::Effort;
-use crate::report::plot_files;
-use crate::store::{Store, Unit};
+use crate::interrupt;
+use crate::report::{Effort, FullOptions, Page, Section, Table, list, machine, one_of, plot};
+use crate::store::{Files, Store, Unit};
+use crate::timing::SHOWN;
+use analysis::{ENERGY, POSITION};
 use anyhow::Result;
 use clap::Args;
-use page::Results;
+use maud::{Markup, html};
 use problem::Problem;
-use serde_json::json;
-use std::fmt;
+use scheme::DEFAULT;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use std::str::FromStr;
 
 /// A part of the report that can be made alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Part {
+enum Part {
     /// Time against errors on a problem.
     Problem(Problem),
     /// The hanging sheet of other programs.
@@ -46,165 +44,241 @@ pub(crate) enum Part {
 }
 
 impl Part {
-    /// All parts that an effort has time for.
-    fn all(effort: Effort) -> Vec<Self> {
+    /// All parts with their names, in the order of the page.
+    fn named() -> Vec<(&'static str, Self)> {
+        let problems = Problem::ALL.map(|(problem, name)| (name, Self::Problem(problem)));
+        let others = [
+            ("hanging", Self::Hanging),
+            ("tablecloth", Self::Tablecloth),
+            ("solvers", Self::Solvers),
+        ];
+        problems.into_iter().chain(others).collect()
+    }
+
+    /// Whether an effort has time for it.
+    fn is_for(self, effort: Effort) -> bool {
         let costly = [Problem::Strip(64), Problem::Sheet(2), Problem::Sheet(3)];
-        let mut all: Vec<Self> = Problem::ALL
-            .into_iter()
-            .filter(|p| effort != Effort::Quick || !costly.contains(p))
-            .map(Self::Problem)
-            .collect();
-        all.extend([Self::Hanging, Self::Tablecloth, Self::Solvers]);
-        all
+        effort != Effort::Quick || !costly.map(Self::Problem).contains(&self)
     }
-}
 
-impl fmt::Display for Part {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Problem(p) => p.fmt(f),
-            Self::Hanging => f.write_str("hanging"),
-            Self::Tablecloth => f.write_str("tablecloth"),
-            Self::Solvers => f.write_str("solvers"),
-        }
-    }
-}
-
-impl FromStr for Part {
-    type Err = anyhow::Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        match text {
-            "hanging" => Ok(Self::Hanging),
-            "tablecloth" => Ok(Self::Tablecloth),
-            "solvers" => Ok(Self::Solvers),
-            _ => match text.parse() {
-                Ok(problem) => Ok(Self::Problem(problem)),
-                Err(error) => anyhow::bail!("{error}, hanging, tablecloth, solvers"),
-            },
-        }
+    fn name(self) -> &'static str {
+        let named = Self::named().into_iter().find(|(_, part)| *part == self);
+        named.map_or("", |(name, _)| name)
     }
 }
 
 /// Arguments of `speed-vs-error`.
 #[derive(Debug, Args)]
 pub(crate) struct SpeedArgs {
-    /// Folder to write to: a new or empty one, or one of an earlier run of this program
-    #[arg(long, value_name = "DIR", default_value = "out/speed-vs-error")]
-    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    options: FullOptions,
 
-    /// Seconds instead of ten minutes: checks that everything works, and shows no result
-    #[arg(long, conflicts_with = "full")]
-    pub(crate) quick: bool,
-
-    /// Longer runs, smaller steps, larger matrices: about an hour
-    #[arg(long)]
-    pub(crate) full: bool,
-
-    /// What to measure, separated by commas: problems (pendulum, triangle, strip-2, ..., sheet-3, cloth-2),
-    /// hanging, tablecloth, solvers; all when left out
-    #[arg(long, value_name = "LIST", value_delimiter = ',')]
-    pub(crate) problems: Vec<Part>,
+    /// What to measure, separated by commas; all when left out
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = one_of(Part::named))]
+    problems: Vec<Part>,
 
     /// Write the matrices of the solver study to this folder as Matrix Market files, and measure nothing
     #[arg(long, value_name = "DIR", conflicts_with = "problems")]
-    pub(crate) matrices: Option<PathBuf>,
+    matrices: Option<PathBuf>,
+}
+
+/// What is kept of a part.
+#[derive(Debug, Serialize, Deserialize)]
+struct Record {
+    name: String,
+    section: Section,
+    /// What it says among the conclusions of the whole report.
+    conclusions: Vec<String>,
+    /// Of a problem: whether the default is on the fronts of position and energy error, of all methods and of
+    /// those that take flat states.
+    on_front: Option<[[bool; 2]; 2]>,
 }
 
 /// Runs the command.
-pub(crate) fn run(args: &SpeedArgs) -> Result<Outcome> {
-    let effort = Effort::of_flags([args.quick, args.full]);
+pub(crate) fn run(args: &SpeedArgs) -> Result<()> {
     if let Some(folder) = &args.matrices {
-        return matrices::write(folder, effort);
+        return matrices::write(folder, args.options.effort());
     }
-    let store = Store::open(&args.out)?;
-    let parts = if args.problems.is_empty() {
-        Part::all(effort)
-    } else {
-        args.problems.clone()
-    };
-    let outcome = interrupt::each(parts, |part| make(&store, part, effort))?;
-    let problems = Problem::ALL.into_iter().map(Part::Problem);
-    let results = Results {
-        studies: problems
-            .filter_map(|part| store.earlier(&part.unit(effort)))
-            .collect(),
-        hanging: store.earlier(&Part::Hanging.unit(effort)),
-        tablecloth: store.earlier(&Part::Tablecloth.unit(effort)),
-        solvers: store.earlier(&Part::Solvers.unit(effort)),
-    };
-    page::write(&store, &results, effort)?;
-    println!("{}", store.root().join("index.html").display());
-    Ok(outcome)
+    let store = args.options.open("speed-vs-error")?;
+    let all = || Part::named().into_iter().map(|(_, part)| part);
+    let mut parts = args.problems.clone();
+    if parts.is_empty() {
+        parts.extend(all().filter(|part| part.is_for(store.effort)));
+    }
+    let made = parts.into_iter().try_for_each(|part| {
+        store.keep(&unit(&store, part), |files| make(part, store.effort, files))?;
+        Ok(())
+    });
+    interrupt::afterwards(made, || {
+        let kept = |part| store.earlier(&unit(&store, part));
+        let records: Vec<Record> = all().filter_map(kept).collect();
+        page(&records).write(&store, "index.html")
+    })
 }
 
-impl Part {
-    fn unit(self, effort: Effort) -> Unit {
-        Unit {
-            name: format!("speed-{self}"),
-            title: self.to_string(),
-            options: json!({ "effort": effort }),
-        }
-    }
+fn unit(store: &Store, part: Part) -> Unit {
+    store.unit(format!("speed-{}", part.name()), part.name())
 }
 
-/// Makes a part with its files, unless it is up to date.
-fn make(store: &Store, part: Part, effort: Effort) -> Result<()> {
-    let unit = part.unit(effort);
-    let csv = format!("tables/{part}.csv");
-    match part {
+/// Makes a part and writes its files.
+fn make(part: Part, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
+    let name = part.name();
+    let mut keep = |table: &Table| table.clone().named(name).write(files);
+    let (mut conclusions, mut on_front) = (Vec::new(), None);
+    let inside = match part {
         Part::Problem(problem) => {
-            store.keep(&unit, |draft| {
-                let study = study::make(problem, effort)?;
-                draft.write(&csv, &study.data().csv()?)?;
-                let alt = format!("{}: errors against wall time, by method", problem.title());
-                plot_files(draft, &problem.to_string(), &study.plot(), &alt)?;
-                Ok(study)
-            })?;
+            let study = study::make(problem, effort)?;
+            keep(&study.data())?;
+            let alt = format!("{}: errors against wall time, by method", problem.title());
+            let figure = plot(files, name, &study.plot(), &alt)?;
+            if verdict::concerns(problem) {
+                conclusions.push(verdict::words(&study));
+            }
+            let fronts = [POSITION, ENERGY].map(|m| study.default_on_front(m));
+            on_front = Some(fronts.map(|fronts| fronts.map(|front| front.is_some())));
+            html! {
+                h2 { (problem.title()) }
+                p { (problem.about()) }
+                p { (study.reference_words()) }
+                (figure)
+                (list(&study.conclusions()))
+                details {
+                    summary { "All methods" }
+                    (study.table())
+                    (study.solver_table())
+                }
+            }
         }
         Part::Hanging => {
-            store.keep(&unit, |draft| {
-                let rows = hanging::make(effort)?;
-                draft.write(&csv, &hanging::data(&rows).csv()?)?;
-                Ok(rows)
-            })?;
+            let rows = hanging::make(effort)?;
+            let table = hanging::table(&rows);
+            keep(&table)?;
+            conclusions = hanging::comparisons(&rows);
+            html! {
+                h2 { "The hanging sheet" }
+                p { (hanging::ABOUT) }
+                (list(&hanging::conclusions(&rows)))
+                (table.select(&table.caption, SHOWN))
+                (elsewhere())
+            }
         }
         Part::Tablecloth => {
-            store.keep(&unit, |draft| {
-                let rows = tablecloth::make(effort)?;
-                draft.write(&csv, &tablecloth::data(&rows).csv()?)?;
-                Ok(rows)
-            })?;
+            let rows = tablecloth::make(effort)?;
+            let table = tablecloth::table(&rows);
+            keep(&table)?;
+            conclusions = tablecloth::conclusions(&rows);
+            html! {
+                h2 { "The tablecloth" }
+                p { (tablecloth::ABOUT) }
+                (table.select(&table.caption, &format!("{SHOWN} depth_m crossings")))
+                (elsewhere())
+            }
         }
         Part::Solvers => {
-            store.keep(&unit, |draft| {
-                let rows = solvers::make(effort)?;
-                draft.write(&csv, &solvers::data(&rows).csv()?)?;
-                plot_files(draft, "solvers", &solvers::plot(&rows), SOLVERS)?;
-                Ok(rows)
-            })?;
+            let rows = solvers::make(effort)?;
+            let table = solvers::table(&rows);
+            keep(&table)?;
+            let alt = "Time and backward error of the linear solvers against the number of degrees of freedom";
+            let figure = plot(files, name, &solvers::plot(&rows), alt)?;
+            html! {
+                h2 { "Linear solvers" }
+                p { (solvers::ABOUT) }
+                (figure)
+                (list(&solvers::conclusions(&rows)))
+                (table)
+            }
         }
-    }
-    Ok(())
+    };
+    Ok(Record {
+        name: name.to_owned(),
+        section: html! { section id=(name) { (inside) } }.into(),
+        conclusions,
+        on_front,
+    })
 }
 
-/// What the plot of the solvers shows, for those who do not see it.
-const SOLVERS: &str =
-    "Time and backward error of the linear solvers against the number of degrees of freedom";
+/// Page of the repository on what other programs took for the same scenes.
+const ELSEWHERE: &str = "docs/measured-elsewhere.md";
+
+fn elsewhere() -> Markup {
+    html! {
+        p {
+            "What other programs took for this scene was measured elsewhere, and not by this command: see "
+            (ELSEWHERE) " in the repository."
+        }
+    }
+}
+
+const INTRODUCTION: &str = "Every method is run on every problem with ever finer steps. Times are wall seconds for a simulated second on one core, \
+    set-up left out; short runs are repeated up to five times and the minimum is taken. Position errors are the largest distance of a vertex \
+    from the reference at eight points of time, energy errors the largest change of T + V as part of the largest kinetic energy, strains \
+    the largest relative edge length error. Differences in time below 10 % are noise. Whether a method is on the front is asked of position errors up to 0.05 m and energy errors up to \
+    0.1: coarser runs are cheap, but no motion.";
+
+/// The page: conclusions first, then every part.
+fn page(records: &[Record]) -> Page {
+    let mut conclusions = fronts(records);
+    conclusions.extend(records.iter().flat_map(|r| r.conclusions.clone()));
+    let body = html! {
+        p { (INTRODUCTION) " Machine: " (machine()) "." }
+        section { h2 { "Conclusions" } (list(&conclusions)) }
+        @for record in records { (record.section) }
+    };
+    Page::new("Speed against error", body)
+}
+
+/// On which problems the default is on which front.
+fn fronts(records: &[Record]) -> Vec<String> {
+    let whom = ["of all methods", "of the methods that take flat states"];
+    let mut all = Vec::new();
+    for (m, measure) in [POSITION, ENERGY].into_iter().enumerate() {
+        for (k, whom) in whom.into_iter().enumerate() {
+            let problems = records
+                .iter()
+                .filter_map(|r| Some((&*r.name, r.on_front?[m][k])));
+            let (on, off): (Vec<_>, Vec<_>) = problems.partition(|(_, is_on)| *is_on);
+            let names: Vec<&str> = off.iter().map(|(name, _)| *name).collect();
+            let not = if off.is_empty() {
+                String::new()
+            } else {
+                format!("; not on {}", names.join(", "))
+            };
+            let (n, name) = (on.len() + off.len(), measure.name);
+            all.push(format!(
+                "The default, {DEFAULT}, is on the front of {name} error {whom} on {} of {n} problems{not}.",
+                on.len()
+            ));
+        }
+    }
+    all.retain(|_| records.iter().any(|r| r.on_front.is_some()));
+    all
+}
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     #[test]
-    fn parts_read_back() {
-        for part in Part::all(Effort::Full) {
-            assert_eq!(part.to_string().parse::<Part>().unwrap(), part);
-        }
-        let error = "sun".parse::<Part>().unwrap_err().to_string();
-        assert!(
-            error.contains("sheet-3, cloth-2, hanging, tablecloth, solvers"),
-            "{error}"
-        );
+    fn conclusions_name_the_problems_off_the_front() {
+        let record = |name: &str, on_front| Record {
+            name: name.into(),
+            section: Section::default(),
+            conclusions: vec!["said".into()],
+            on_front,
+        };
+        let problems = ["a", "b"].map(|name| record(name, Some([[name == "a", true]; 2])));
+        let all = fronts(&problems);
+        assert_eq!(all.len(), 4);
+        assert!(all[0].ends_with("of position error of all methods on 1 of 2 problems; not on b."));
+        assert!(all[3].ends_with("that take flat states on 2 of 2 problems."));
+        assert!(fronts(&[record("hanging", None)]).is_empty());
+    }
+
+    #[test]
+    fn the_page_on_other_programs_exists() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let text = std::fs::read_to_string(root.join(ELSEWHERE)).expect("the page is there");
+        assert!(text.contains("The hanging sheet") && text.contains("The tablecloth"));
     }
 }

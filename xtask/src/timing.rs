@@ -5,11 +5,13 @@ mod factorisation;
 mod matrices;
 mod run;
 mod scene;
+mod table;
 
-pub(crate) use comparison::{COLUMNS, Entry, words};
+pub(crate) use comparison::{Entry, words};
 pub(crate) use factorisation::{OrderRow, order};
 pub(crate) use matrices::{Body, STIFFNESS, Sparse};
-pub(crate) use run::{Measured, Mesh, NEIGHBOUR, Timed};
+pub(crate) use run::{Limits, Measured, Mesh, NEIGHBOUR};
 pub(crate) use scene::{
-    BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging, on_table,
+    BUMP, CLEARANCE, Pairs, STEP, TABLE, Work, bumped, corner, hanging, on_table, raised,
 };
+pub(crate) use table::{SHOWN, table};

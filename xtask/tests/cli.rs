@@ -54,9 +54,9 @@ fn leftovers(out: &Path) -> Vec<String> {
     };
     let hidden = names(out).into_iter();
     let hidden = hidden.filter(|n| n.starts_with('.') && n != ".stamps");
-    let partial = names(&out.join(".stamps")).into_iter();
+    let records = names(&out.join(".stamps")).into_iter();
     hidden
-        .chain(partial.filter(|n| n.starts_with("partial-")))
+        .chain(records.filter(|n| n.starts_with('.')))
         .collect()
 }
 
@@ -135,10 +135,13 @@ fn a_quick_run_of_everything_writes_readable_runs() {
     assert!(run.join("trajectory.npz").exists());
     assert_eq!(fs::read_dir(run.join("obj")).unwrap().count(), 13);
     let summary = read_json(run.join("summary.json"));
-    assert_eq!(summary["extent"], "complete");
+    assert_eq!(
+        (&summary["ending"], &summary["steps"]),
+        (&"Complete".into(), &12.into())
+    );
     let page = read(out.join("index.html"));
     assert!(page.contains("data:image/png;base64,") && page.contains("33.33"));
-    assert!(page.contains("made with <code>--quick</code>"));
+    assert!(page.contains("Made with <code>--quick</code>"));
     // Every run has a page of its own beside the report, which has all that it needs.
     let played = [
         "fig10-crumple-m1",
@@ -166,7 +169,7 @@ fn refuses_what_makes_no_sense_before_any_work() {
         ("1,18", "there is no figure 18"),
         ("nine", "'nine' is neither a figure nor a range"),
         ("9-1", "runs backwards"),
-        ("", "the list is empty"),
+        ("1,,2", "'' is neither a figure nor a range"),
     ] {
         let (code, text) = reproduce(&out, figures, &[]);
         assert_eq!(code, Some(2), "{text}");
@@ -177,6 +180,21 @@ fn refuses_what_makes_no_sense_before_any_work() {
     assert!(text.contains("unexpected argument '--fast'"), "{text}");
     assert!(!out.exists(), "nothing was written");
     assert_eq!(run(&["condition-table", "--level", "9"], &out).0, Some(2));
+    // An unknown name is answered with the nearest one.
+    for (args, name) in [
+        (["speed-vs-error", "--problems", "pendulm"], "'pendulum'"),
+        (["locking", "--yardsticks", "clamp"], "'clamped'"),
+        (["hard-cases", "--cases", "flat"], "'flat-start'"),
+        (
+            ["reproduce-figure", "--figures", "1"],
+            "'reproduce-figures'",
+        ),
+    ] {
+        let (code, text) = run(&args, &out);
+        assert_eq!(code, Some(2), "{text}");
+        assert!(text.contains(name), "{name} is missing in {text}");
+    }
+    assert!(!out.exists(), "nothing was written");
 }
 
 #[test]
@@ -185,11 +203,9 @@ fn an_unwritable_folder_gets_a_clear_message() {
     let file = keep.path().join("file");
     fs::write(&file, "not a folder").unwrap();
     let (code, text) = reproduce(&file.join("out"), "1", &[]);
-    assert_eq!(code, Some(1), "{text}");
-    assert!(
-        text.contains("cannot write to the folder") && text.contains("choose another with --out"),
-        "{text}"
-    );
+    assert_eq!(code, Some(6), "{text}");
+    assert!(text.contains("error: cannot write to the folder"), "{text}");
+    assert!(text.contains("= help: check the permissions"), "{text}");
     assert!(!text.contains("figure 1"), "no work was done: {text}");
     assert_eq!(text.matches("os error").count(), 1, "told twice: {text}");
 }
@@ -201,15 +217,31 @@ fn folders_of_others_are_left_alone() {
     fs::write(out.join(".partial-work/f"), "").unwrap();
     fs::write(out.join("index.html"), "MYSITE").unwrap();
     let (code, text) = reproduce(&out, "1", &[]);
-    assert_eq!(code, Some(1), "{text}");
+    assert_eq!(code, Some(4), "{text}");
     assert!(
-        text.contains("choose an empty or a new folder with --out"),
+        text.contains("= help: choose an empty or a new folder with --out"),
         "{text}"
     );
-    assert_eq!(run(&["condition-table", "--level", "0"], &out).0, Some(1));
+    assert_eq!(run(&["condition-table", "--level", "0"], &out).0, Some(4));
     assert_eq!(fs::read(out.join("index.html")).unwrap(), b"MYSITE");
     assert!(out.join(".partial-work/f").exists());
     assert_eq!(fs::read_dir(&out).unwrap().count(), 2);
+}
+
+#[test]
+fn two_processes_do_not_write_to_one_folder() {
+    let (_keep, out) = folder();
+    reproduce(&out, "1", &["--quick"]);
+    let lock = fs::File::open(out.join(".stamps/isosheet-xtask.lock")).unwrap();
+    lock.lock().unwrap();
+    let (code, text) = reproduce(&out, "1", &["--quick"]);
+    assert_eq!(code, Some(5), "{text}");
+    assert!(
+        text.contains("= help: wait for it or choose another folder"),
+        "{text}"
+    );
+    drop(lock);
+    assert_eq!(reproduce(&out, "1", &["--quick"]).0, Some(0));
 }
 
 #[test]
@@ -224,7 +256,7 @@ fn quick_and_full_results_do_not_mix() {
     let page = read(out.join("index.html"));
     assert!(page.matches("<section").count() == 1 && !page.contains("quick"));
     let (code, text) = reproduce(&out, "2", &["--quick"]);
-    assert_eq!(code, Some(1), "{text}");
+    assert_eq!(code, Some(4), "{text}");
     assert!(text.contains("not mixed with quick ones"), "{text}");
     assert!(!out.join("figures/fig02.svg").exists());
 }
@@ -261,7 +293,7 @@ fn ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on() {
         "{text}"
     );
     let (code, text) = reproduce(&out, "12", &["--quick"]);
-    assert_eq!(code, Some(1), "{text}");
+    assert_eq!(code, Some(4), "{text}");
     assert!(run.exists(), "a full run is not replaced by a quick one");
 }
 

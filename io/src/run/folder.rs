@@ -194,7 +194,10 @@ impl RunFolder {
 
 /// Whether a folder holds anything besides `own` files and unfinished ones, which killed processes leave. A
 /// folder that does not exist holds nothing, and what is no folder is left to the error of writing to it.
-pub(crate) fn holds_other_files(folder: &Path, own: &[&str]) -> io::Result<bool> {
+///
+/// # Errors
+/// What the system says where the folder cannot be listed.
+pub fn holds_other_files(folder: &Path, own: &[&str]) -> io::Result<bool> {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(e) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&e.kind()) => {
@@ -212,7 +215,10 @@ pub(crate) fn holds_other_files(folder: &Path, own: &[&str]) -> io::Result<bool>
 }
 
 /// Removes the unfinished files that killed processes left in a folder, if it exists.
-pub(crate) fn remove_unfinished(folder: &Path) -> io::Result<()> {
+///
+/// # Errors
+/// What the system says where the folder cannot be listed or a file cannot be removed.
+pub fn remove_unfinished(folder: &Path) -> io::Result<()> {
     if !folder.is_dir() {
         return Ok(());
     }

@@ -4,8 +4,7 @@ use super::drawing::Drawing;
 
 /// Panels from left to right with a gap between their bounds.
 pub(crate) fn row(panels: &[Drawing], gap: f64) -> Drawing {
-    let mut all = Drawing::new();
-    let mut x = 0.0;
+    let (mut all, mut x) = (Drawing::new(), 0.0);
     for panel in panels {
         let b = panel.bounds();
         all.place(panel, [x - b.min[0], 0.0]);
@@ -16,8 +15,7 @@ pub(crate) fn row(panels: &[Drawing], gap: f64) -> Drawing {
 
 /// Panels from top to bottom with a gap between their bounds.
 pub(crate) fn column(panels: &[Drawing], gap: f64) -> Drawing {
-    let mut all = Drawing::new();
-    let mut y = 0.0;
+    let (mut all, mut y) = (Drawing::new(), 0.0);
     for panel in panels {
         let b = panel.bounds();
         all.place(panel, [0.0, y - b.max[1]]);

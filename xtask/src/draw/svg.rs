@@ -1,15 +1,11 @@
-//! Writing a drawing as SVG through the backend of plotters.
+//! Writing a drawing as SVG, and as PNG: the SVG file, rasterised with a font that comes with the program.
 
 use super::drawing::{Anchor, Drawing, Item, Turned};
-use super::{Colour, palette, text};
-use plotters::backend::{DrawingBackend, SVGBackend};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{
-    FontStyle, FontTransform, IntoFont, RGBAColor, RGBColor, ShapeStyle, TextStyle,
-};
-
-/// The backend rounds to whole units: a twentieth of a point each.
-const UNITS: f64 = 20.0;
+use super::text::{Piece, Script, pieces};
+use super::{Colour, palette};
+use anyhow::Result;
+use isosheet_io::picture::svg_to_png;
+use maud::{Markup, html};
 
 /// Free space around the drawing, points.
 const MARGIN: f64 = 2.0;
@@ -17,98 +13,87 @@ const MARGIN: f64 = 2.0;
 /// Fonts by falling preference; every system has one of them.
 const FAMILY: &str = "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
 
-/// The SVG backend divides font sizes by this, to match the bitmap backends.
-const FONT_DIVISOR: f64 = 1.24;
-
-/// The backend writes to a string, which cannot fail.
-const TO_MEMORY: &str = "a string is written to";
-
-/// A position in units of the backend.
-type Coord = (i32, i32);
-
-fn style(colour: Colour, width: f64) -> ShapeStyle {
-    let [r, g, b] = colour.rgb;
-    ShapeStyle {
-        color: RGBAColor(r, g, b, colour.alpha),
-        filled: true,
-        stroke_width: (width * UNITS).round().max(1.0) as u32,
-    }
-}
+/// Pixels of a PNG file for a pixel of the SVG file, of which there are 96 to the inch: 216 to the inch,
+/// enough for print in a column.
+const SCALE: f32 = 216.0 / 96.0;
 
 impl Drawing {
     /// The drawing as an SVG document whose size is that of its contents; `title` is read by screen readers.
     pub(crate) fn to_svg(&self, title: &str) -> String {
+        self.document(title, 1.0).into_string()
+    }
+
+    /// The same as part of a page, larger by a factor.
+    pub(crate) fn document(&self, title: &str, factor: f64) -> Markup {
         let bounds = self.bounds();
-        let left = bounds.min[0] - MARGIN;
-        let top = bounds.max[1] + MARGIN;
-        let size = [
-            bounds.width() + 2.0 * MARGIN,
-            bounds.height() + 2.0 * MARGIN,
-        ];
-        let units = size.map(|s| (s * UNITS).ceil() as u32);
-        let map = |p: &[f64; 2]| -> Coord {
-            (
-                ((p[0] - left) * UNITS).round() as i32,
-                ((top - p[1]) * UNITS).round() as i32,
-            )
-        };
-        let mut svg = String::new();
-        let mut backend = SVGBackend::with_string(&mut svg, (units[0], units[1]));
-        // White paper: dark lines on a dark viewer's page would vanish.
-        let corner = (units[0] as i32, units[1] as i32);
-        backend
-            .draw_rect((0, 0), corner, &style(palette::WHITE, 0.0), true)
-            .expect(TO_MEMORY);
-        for item in &self.items {
-            draw(&mut backend, item, &map);
+        let corner = [bounds.min[0] - MARGIN, bounds.max[1] + MARGIN];
+        let size = [bounds.width(), bounds.height()].map(|s| s + 2.0 * MARGIN);
+        let [width, height] = size.map(|s| format!("{:.2}pt", factor * s));
+        let seen = format!("0 0 {:.2} {:.2}", size[0], size[1]);
+        let place = |p: &[f64; 2]| [p[0] - corner[0], corner[1] - p[1]];
+        html! {
+            svg xmlns="http://www.w3.org/2000/svg" width=(width) height=(height) role="img" aria-label=(title)
+                viewBox=(seen) font-family=(FAMILY) fill="none" stroke-linecap="round" stroke-linejoin="round" {
+                // White paper: dark lines on a dark viewer's page would vanish.
+                rect width="100%" height="100%" fill=(hex(palette::WHITE)) {}
+                @for item in &self.items { (element(item, &place)) }
+            }
         }
-        backend.present().expect(TO_MEMORY);
-        drop(backend);
-        let head = format!("width=\"{}\" height=\"{}\" viewBox", units[0], units[1]);
-        let points = units.map(|u| f64::from(u) / UNITS);
-        let title = title
-            .replace('&', "&amp;")
-            .replace('<', "&lt;")
-            .replace('"', "&quot;");
-        let replaced = format!(
-            "width=\"{:.2}pt\" height=\"{:.2}pt\" role=\"img\" aria-label=\"{title}\" stroke-linecap=\"round\" \
-             stroke-linejoin=\"round\" viewBox",
-            points[0], points[1]
-        );
-        // The vertical positions given are baselines; full opacity and spaces at line ends need no words.
-        let svg = svg
-            .replacen(&head, &replaced, 1)
-            .replace(" dy=\"0.5ex\"", "")
-            .replace(" opacity=\"1\"", "")
-            .replace(" \"/>", "\"/>");
-        text::decode(&svg)
+    }
+
+    /// The drawing as a PNG file; `title` as for [`Drawing::to_svg`].
+    ///
+    /// No fonts of the system are used, so that equal drawings give equal files everywhere.
+    pub(crate) fn to_png(&self, title: &str) -> Result<Vec<u8>> {
+        Ok(svg_to_png(&self.to_svg(title), SCALE)?)
     }
 }
 
-fn draw(backend: &mut SVGBackend<'_>, item: &Item, map: &impl Fn(&[f64; 2]) -> Coord) {
-    let written = match item {
-        Item::Polygon { points, fill } => {
-            backend.fill_polygon(points.iter().map(map), &style(*fill, 0.0))
-        }
-        Item::Line { points, stroke } => {
-            let style = style(stroke.colour, stroke.width);
-            match stroke.dash {
-                None => backend.draw_path(points.iter().map(map), &style),
-                Some(dash) => dashes(points, dash)
-                    .iter()
-                    .try_for_each(|piece| backend.draw_path(piece.iter().map(map), &style)),
+/// A length to a hundredth of a point.
+fn points(length: f64) -> String {
+    let text = format!("{length:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn hex(Colour { rgb: [r, g, b], .. }: Colour) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// The opacity of a colour that is not opaque.
+fn opacity(colour: Colour) -> Option<f64> {
+    (colour.alpha < 1.0).then_some(colour.alpha)
+}
+
+/// An item whose points are where `place` says, y downwards.
+fn element(item: &Item, place: &impl Fn(&[f64; 2]) -> [f64; 2]) -> Markup {
+    let path = |path: &[[f64; 2]]| {
+        let places = path.iter().map(place);
+        let places = places.map(|[x, y]| format!("{},{}", points(x), points(y)));
+        places.collect::<Vec<_>>().join(" ")
+    };
+    match item {
+        Item::Polygon { points, fill } => html! {
+            polygon points=(path(points)) fill=(hex(*fill)) fill-opacity=[opacity(*fill)] {}
+        },
+        Item::Line {
+            points: line,
+            stroke,
+        } => {
+            let colour = stroke.colour;
+            let dash = stroke.dash.map(|[on, off]| format!("{on} {off}"));
+            html! {
+                polyline points=(path(line)) stroke=(hex(colour)) stroke-opacity=[opacity(colour)]
+                    stroke-width=(stroke.width) stroke-dasharray=[dash] {}
             }
         }
         Item::Disc {
             centre,
             radius,
             fill,
-        } => backend.draw_circle(
-            map(centre),
-            (radius * UNITS).round() as u32,
-            &style(*fill, 0.0),
-            true,
-        ),
+        } => {
+            let [x, y] = place(centre).map(points);
+            html! { circle cx=(x) cy=(y) r=(points(*radius)) fill=(hex(*fill)) fill-opacity=[opacity(*fill)] {} }
+        }
         Item::Text {
             at,
             text,
@@ -117,106 +102,94 @@ fn draw(backend: &mut SVGBackend<'_>, item: &Item, map: &impl Fn(&[f64; 2]) -> C
             colour,
             turned,
         } => {
-            let [r, g, b] = colour.rgb;
-            let h = match anchor {
-                Anchor::Start => HPos::Left,
-                Anchor::Middle => HPos::Center,
-                Anchor::End => HPos::Right,
+            let [x, y] = place(at).map(points);
+            let anchor = match anchor {
+                Anchor::Start => "start",
+                Anchor::Middle => "middle",
+                Anchor::End => "end",
             };
-            let transform = match turned {
-                Turned::No => FontTransform::None,
-                Turned::Upwards => FontTransform::Rotate270,
-            };
-            let colour = RGBColor(r, g, b);
-            let font = (FAMILY, size * UNITS * FONT_DIVISOR, FontStyle::Normal)
-                .into_font()
-                .transform(transform);
-            let style = TextStyle::from(font)
-                .color(&colour)
-                .pos(Pos::new(h, VPos::Center));
-            backend.draw_text(&text::encode(text), &style, map(at))
+            let turn = (*turned == Turned::Upwards).then(|| format!("rotate(-90 {x} {y})"));
+            html! {
+                text x=(x) y=(y) font-size=(size) text-anchor=(anchor) fill=(hex(*colour)) fill-opacity=[opacity(*colour)]
+                    transform=[turn] { (spans(&pieces(text), *size)) }
+            }
         }
-    };
-    written.expect(TO_MEMORY);
+    }
 }
 
-/// Cuts a polyline into dashes.
-fn dashes(points: &[[f64; 2]], [on, off]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
-    let mut pieces = Vec::new();
-    let mut piece: Vec<[f64; 2]> = points.first().copied().into_iter().collect();
-    let mut drawing = true;
-    let mut left = on;
-    for pair in points.windows(2) {
-        let [a, b] = [pair[0], pair[1]];
-        let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-        let mut done = 0.0;
-        while length - done > left {
-            done += left;
-            let p = [0, 1].map(|k| a[k] + (b[k] - a[k]) * done / length);
-            if drawing {
-                piece.push(p);
-                pieces.push(std::mem::take(&mut piece));
-            } else {
-                piece = vec![p];
-            }
-            drawing = !drawing;
-            left = if drawing { on } else { off };
+/// The pieces of a text of a size, each moved from the baseline of the one before to its own.
+fn spans(all: &[Piece], size: f64) -> Markup {
+    let before = |k: usize| k.checked_sub(1).map(|k| &all[k]);
+    let span = |k: usize, piece: &Piece| {
+        let last = before(k).map_or(Script::No, |p| p.script);
+        let down = size * (last.rise() - piece.script.rise());
+        // A raised piece right after a lowered one stands above it.
+        let is_above = (last, piece.script) == (Script::Sub, Script::Super);
+        let back = before(k).filter(|_| is_above).map(|p| -size * p.width());
+        html! {
+            tspan dy=[(down != 0.0).then(|| points(down))] dx=[back.map(points)] font-style=[piece.slanted.then_some("italic")]
+                font-size=[(piece.script != Script::No).then(|| points(size * piece.script.size()))] { (piece.text) }
         }
-        left -= length - done;
-        if drawing {
-            piece.push(b);
-        }
-    }
-    if drawing && piece.len() > 1 {
-        pieces.push(piece);
-    }
-    pieces
+    };
+    html! { @for (k, piece) in all.iter().enumerate() { (span(k, piece)) } }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::{Stroke, Vertical, palette};
+    use crate::draw::{Stroke, Vertical};
 
     #[test]
-    fn size_follows_the_contents() {
+    fn size_follows_the_contents_and_scripts_return_to_the_baseline() {
         let mut d = Drawing::new();
-        d.line(
-            &[[10.0, 10.0], [110.0, 60.0]],
-            Stroke::new(palette::INK, 1.0),
-        );
+        let line = [[10.0, 10.0], [110.0, 60.0]];
+        d.line(&line, Stroke::new(palette::INK, 1.0).dashed());
+        let (text, middle) = ("~v~_{I}^{t} & more", Anchor::Middle);
         d.text(
             [60.0, 35.0],
-            "~M~^{1} & more",
-            9.0,
-            Anchor::Middle,
+            text,
+            10.0,
+            middle,
             Vertical::Centre,
             palette::INK,
         );
         let svg = d.to_svg("A \"test\"");
-        assert!(
-            svg.contains("width=\"105.00pt\" height=\"55.00pt\""),
-            "{svg}"
-        );
-        assert!(svg.contains("aria-label=\"A &quot;test&quot;\""), "{svg}");
-        assert!(
-            svg.contains("<tspan font-style=\"italic\">M</tspan>"),
-            "{svg}"
-        );
-        assert!(svg.contains("&amp; more"), "{svg}");
-        assert!(!svg.contains("0.5ex"), "{svg}");
+        for part in [
+            "width=\"105.00pt\" height=\"55.00pt\"",
+            "aria-label=\"A &quot;test&quot;\"",
+            "<polyline points=\"2.5,52.5 102.5,2.5\"",
+            "stroke-dasharray=\"2.6 2\"",
+            "<tspan font-style=\"italic\">v</tspan><tspan dy=\"2.2\" font-size=\"7.2\">I</tspan>\
+             <tspan dy=\"-6\" dx=\"-2.02\" font-size=\"7.2\">t</tspan><tspan dy=\"3.8\"> &amp; more</tspan>",
+        ] {
+            assert!(svg.contains(part), "{part} is missing in {svg}");
+        }
     }
 
     #[test]
-    fn dashes_cover_the_line_and_turn_corners() {
-        let pieces = dashes(&[[0.0, 0.0], [3.0, 0.0], [3.0, 4.0]], [2.0, 1.0]);
-        assert_eq!(pieces.len(), 3);
-        assert_eq!(pieces[0], vec![[0.0, 0.0], [2.0, 0.0]]);
-        let total: f64 = pieces
-            .iter()
-            .flat_map(|p| p.windows(2))
-            .map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1]))
-            .sum();
-        assert!((total - 5.0).abs() < 1e-12, "{total}");
+    fn shapes_and_letters_leave_ink() {
+        let dark = |d: &Drawing| {
+            let bytes = d.to_png("t").unwrap();
+            let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
+                .read_info()
+                .unwrap();
+            let mut data = vec![0; reader.output_buffer_size().unwrap()];
+            let info = reader.next_frame(&mut data).unwrap();
+            assert_eq!(info.color_type, png::ColorType::Rgb);
+            let ink = data.chunks(3).filter(|p| p[0] < 128).count();
+            (ink, info.width * info.height)
+        };
+        let mut d = Drawing::new();
+        let square = [[0.0, 0.0], [50.0, 0.0], [50.0, 40.0], [0.0, 40.0]];
+        d.polygon(&square, palette::WHITE);
+        let (none, size) = dark(&d);
+        assert_eq!((none, size), (0, 162 * 132));
+        let mut letters = d.clone();
+        letters.label([25.0, 20.0], "~M~^{2} − ε", palette::INK);
+        let (some, _) = dark(&letters);
+        assert!(some > 100, "{some} dark pixels");
+        d.polygon(&square[..3], palette::INK);
+        let (half, _) = dark(&d);
+        assert!(half.abs_diff(75 * 120) < 400, "{half} dark pixels");
     }
 }

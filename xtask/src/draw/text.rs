@@ -1,7 +1,4 @@
-//! Text with subscripts, superscripts and slanted letters.
-//!
-//! `_{..}` lowers, `^{..}` raises, `~..~` slants. The SVG backend knows none of these, so they travel through
-//! it as private characters ([`encode`]) and become `<tspan>` elements in the file ([`decode`]).
+//! Text with subscripts, superscripts and slanted letters: `_{..}` lowers, `^{..}` raises, `~..~` slants.
 
 /// Size of ordinary text in drawings, points.
 pub(crate) const TEXT: f64 = 9.0;
@@ -9,109 +6,73 @@ pub(crate) const TEXT: f64 = 9.0;
 /// Size of text inside crowded drawings, points.
 pub(crate) const SMALL: f64 = 7.5;
 
-/// Size of subscripts and superscripts relative to the text.
-const SCRIPT: f64 = 0.72;
+/// Whether a piece of text is lowered or raised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Script {
+    No,
+    Sub,
+    Super,
+}
 
-/// Shift of the baseline of subscripts and superscripts, em of the text.
-const SHIFT: [f64; 2] = [0.22, 0.38];
+impl Script {
+    /// Size relative to the text.
+    pub(super) fn size(self) -> f64 {
+        if self == Self::No { 1.0 } else { 0.72 }
+    }
 
-const SUB: char = '\u{e000}';
-const SUPER: char = '\u{e001}';
-const END_SUB: char = '\u{e002}';
-const END_SUPER: char = '\u{e003}';
-const SLANT: char = '\u{e004}';
-const END_SLANT: char = '\u{e005}';
+    /// Height of the baseline above that of the text, em of the text.
+    pub(super) fn rise(self) -> f64 {
+        match self {
+            Self::No => 0.0,
+            Self::Sub => -0.22,
+            Self::Super => 0.38,
+        }
+    }
+}
 
-/// Replaces the mark-up by private characters.
-pub(super) fn encode(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    let mut open = Vec::new();
-    let mut slanted = false;
+/// Characters that are written alike.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Piece {
+    pub(super) text: String,
+    pub(super) script: Script,
+    pub(super) slanted: bool,
+}
+
+impl Piece {
+    /// Estimated width, em of the whole text.
+    pub(super) fn width(&self) -> f64 {
+        self.script.size() * self.text.chars().map(advance).sum::<f64>()
+    }
+}
+
+/// The pieces of a text, none of them empty.
+pub(super) fn pieces(text: &str) -> Vec<Piece> {
+    let mut pieces: Vec<Piece> = Vec::new();
+    let (mut script, mut slanted) = (Script::No, false);
     let mut chars = text.chars().peekable();
     while let Some(c) = chars.next() {
         match c {
-            '_' | '^' if chars.peek() == Some(&'{') => {
-                chars.next();
-                out.push(if c == '_' { SUB } else { SUPER });
-                open.push(if c == '_' { END_SUB } else { END_SUPER });
+            '_' | '^' if chars.next_if_eq(&'{').is_some() => {
+                script = if c == '_' { Script::Sub } else { Script::Super };
             }
-            '}' => match open.pop() {
-                Some(end) => out.push(end),
-                None => out.push(c),
+            '}' if script != Script::No => script = Script::No,
+            '~' => slanted = !slanted,
+            _ => match pieces.last_mut() {
+                Some(last) if (last.script, last.slanted) == (script, slanted) => last.text.push(c),
+                _ => pieces.push(Piece {
+                    text: c.into(),
+                    script,
+                    slanted,
+                }),
             },
-            '~' => {
-                out.push(if slanted { END_SLANT } else { SLANT });
-                slanted = !slanted;
-            }
-            _ => out.push(c),
         }
     }
-    out
-}
-
-/// Replaces the private characters in an SVG file by elements.
-pub(super) fn decode(svg: &str) -> String {
-    let mut out = String::with_capacity(svg.len());
-    // Shift that a raised piece right after a lowered one has to take back, em of the text.
-    let mut back = 0.0;
-    // Width of the last lowered piece, em of its own size: a raised piece right after it stands above it.
-    let mut lowered = 0.0;
-    let mut chars = svg.chars().peekable();
-    while let Some(c) = chars.next() {
-        match c {
-            SUB | SUPER => {
-                let shift = if c == SUB { SHIFT[0] } else { -SHIFT[1] } + back;
-                let dx = if back == 0.0 {
-                    String::new()
-                } else {
-                    format!(" dx=\"{:.3}em\"", -lowered)
-                };
-                back = 0.0;
-                lowered = 0.0;
-                out.push_str(&format!(
-                    "<tspan dy=\"{:.3}em\"{dx} font-size=\"{:.0}%\">",
-                    shift / SCRIPT,
-                    100.0 * SCRIPT
-                ));
-            }
-            END_SUB | END_SUPER => {
-                out.push_str("</tspan>");
-                let shift = if c == END_SUB { -SHIFT[0] } else { SHIFT[1] };
-                match chars.peek() {
-                    // The text ends here: nothing to take back.
-                    Some('<' | '\n') | None => back = 0.0,
-                    Some(&SUB | &SUPER) => back = shift,
-                    Some(_) => {
-                        // A zero-width piece carries the shift, so that slanted text may follow.
-                        out.push_str(&format!("<tspan dy=\"{shift:.3}em\">\u{200b}</tspan>"));
-                        back = 0.0;
-                    }
-                }
-            }
-            SLANT => out.push_str("<tspan font-style=\"italic\">"),
-            END_SLANT => out.push_str("</tspan>"),
-            _ => {
-                lowered += advance(c);
-                out.push(c);
-            }
-        }
-    }
-    out
+    pieces
 }
 
 /// Estimated width in points: enough for whichever font the viewer has.
 pub(super) fn width(text: &str, size: f64) -> f64 {
-    let mut scale = 1.0;
-    let mut sum = 0.0;
-    for c in encode(text).chars() {
-        match c {
-            SUB | SUPER => scale = SCRIPT,
-            END_SUB | END_SUPER => scale = 1.0,
-            SLANT | END_SLANT => {}
-            _ => sum += scale * advance(c),
-        }
-    }
-    sum * size
+    size * pieces(text).iter().map(Piece::width).sum::<f64>()
 }
 
 /// How far the text reaches below and above its baseline, points.
@@ -141,14 +102,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scripts_return_to_the_baseline() {
-        let svg = decode(&encode("~v~_{I}^{t} = 2"));
-        assert_eq!(
-            svg,
-            "<tspan font-style=\"italic\">v</tspan><tspan dy=\"0.306em\" font-size=\"72%\">I</tspan>\
-             <tspan dy=\"-0.833em\" dx=\"-0.280em\" font-size=\"72%\">t</tspan><tspan dy=\"0.380em\">\u{200b}</tspan> = 2"
-        );
-        assert_eq!(decode(&encode("a + b}")), "a + b}");
+    fn marks_become_pieces() {
+        let all = pieces("~v~_{I}^{~t~} = 2");
+        let seen: Vec<_> = all
+            .iter()
+            .map(|p| (&*p.text, p.script, p.slanted))
+            .collect();
+        let known = [
+            ("v", Script::No, true),
+            ("I", Script::Sub, false),
+            ("t", Script::Super, true),
+            (" = 2", Script::No, false),
+        ];
+        assert_eq!(seen, known);
+        assert_eq!(pieces("a_1 + b}")[0].text, "a_1 + b}");
     }
 
     #[test]

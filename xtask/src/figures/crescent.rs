@@ -1,5 +1,6 @@
 //! The shape of a mark: an arc, as the crescents that a cone leaves in paper, or a straight fold.
 
+use crate::report::extremes;
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use serde::Serialize;
@@ -125,10 +126,7 @@ fn ends(sheet: &Sheet, e: EdgeId) -> [VertexId; 2] {
 fn plane(sheet: &Sheet) -> [usize; 2] {
     let extent = |axis: usize| {
         let along = sheet.positions().iter().skip(axis).step_by(3);
-        let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], c| {
-            [l.min(*c), h.max(*c)]
-        });
-        high - low
+        extremes(along.copied()).map_or(0.0, |[low, high]| high - low)
     };
     let mut axes = [0, 1, 2];
     axes.sort_by(|a, b| extent(*b).total_cmp(&extent(*a)));

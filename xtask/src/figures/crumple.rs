@@ -1,9 +1,10 @@
 //! Figs. 11 and 12: a sheet of paper held at a corner falls and crumples.
 
 use super::marks::{self, Marks};
-use super::sequence::{Shown, View};
-use super::{Context, Effort, Made, Picture, Play, through_itself};
-use crate::runs::{self, FigureScene, Hanging, RunSummary, Shape};
+use super::show::View;
+use super::{Effort, Made, Picture, Play, through_itself};
+use crate::runs::{self, FigureScene, Hanging, Run, RunSummary, Shape};
+use crate::store::Store;
 use anyhow::Result;
 use isosheet_io::scene::Integrator;
 use serde_json::json;
@@ -30,21 +31,20 @@ pub(super) fn without_contact(level: u32, effort: Effort) -> Result<FigureScene>
     scene(level, effort)?.without_self_contact(&format!("crumple-m{level}"))
 }
 
-pub(super) fn make(figure: u8, level: u32, context: &Context<'_>) -> Result<Made> {
-    let scene = scene(level, context.effort)?;
-    let run = runs::ensure(context.store, &scene)?;
-    let free = runs::ensure(context.store, &without_contact(level, context.effort)?)?;
+pub(super) fn make(figure: u8, level: u32, store: &Store) -> Result<Made> {
+    let run = Run::of(store, scene(level, store.effort)?)?;
+    let free = Run::of(store, without_contact(level, store.effort)?)?.summary;
     let mut made = Made {
         title: ["Crumpled paper, M¹", "Crumpled paper, M²"][level as usize - 1].into(),
         paper: PAPER[level as usize - 1].into(),
-        measured: describe(&scene, &run, &free, context)?,
-        pictures: vec![picture(&format!("fig{figure:02}.png"), &scene, context)?],
-        pages: vec![page(figure, &scene, context)?],
-        facts: json!({ "run": run, "without_contact": free }),
+        measured: describe(&run, &free, store.effort)?,
+        pictures: vec![picture(&format!("fig{figure:02}.png"), &run, store.effort)?],
+        pages: vec![page(figure, &run, store.effort)?],
+        facts: json!({ "run": run.summary, "without_contact": free }),
         ..Made::default()
     };
     if figure == 12 {
-        add_softness_and_marks(&mut made, context)?;
+        add_softness_and_marks(&mut made, store)?;
     }
     Ok(made)
 }
@@ -56,17 +56,16 @@ const PAPER: [&str; 2] = [
 ];
 
 /// What Fig. 12 has beside Fig. 11: a finer mesh, softness by mesh, and marks.
-fn add_softness_and_marks(made: &mut Made, context: &Context<'_>) -> Result<()> {
-    if context.effort != Effort::Quick {
-        let finer = scene(3, context.effort)?;
-        runs::ensure(context.store, &finer)?;
-        made.pictures
-            .push(picture("fig12-m3.png", &finer, context)?);
-        made.pages.push(page(12, &finer, context)?);
+fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
+    if store.effort != Effort::Quick {
+        let finer = Run::of(store, scene(3, store.effort)?)?;
+        let picture = picture("fig12-m3.png", &finer, store.effort)?;
+        made.pictures.push(picture);
+        made.pages.push(page(12, &finer, store.effort)?);
         made.measured += " Below it the same with M³, which the paper does not show, and what softer means in numbers.";
     }
-    let part = super::softness::make(context, without_contact)?;
-    let all = concentration(context)?;
+    let part = super::softness::make(store.effort, without_contact)?;
+    let all = concentration(store)?;
     let alt = "How much of the fold angles the sharpest edges carry over time, and how many of the final marks are there already";
     let plot = Picture::svg("fig12-marks", &marks::plot(&all), alt);
     made.pictures.extend([part.picture, plot]);
@@ -80,29 +79,23 @@ fn add_softness_and_marks(made: &mut Made, context: &Context<'_>) -> Result<()> 
 }
 
 /// The concentration of folds in the runs of M^1 to M^3.
-fn concentration(context: &Context<'_>) -> Result<Vec<Marks>> {
+fn concentration(store: &Store) -> Result<Vec<Marks>> {
     let levels = [(1, "M¹"), (2, "M²"), (3, "M³")];
-    let levels = &levels[..context.effort.quick_or(2, 3)];
+    let levels = &levels[..store.effort.quick_or(2, 3)];
     let of = |&(level, name): &(u32, &str)| {
-        let scene = scene(level, context.effort)?;
-        runs::ensure(context.store, &scene)?;
-        let trajectory = runs::trajectory(context.store, &scene)?;
-        Ok(Marks::of(name, &scene.sheet()?, &trajectory))
+        let run = Run::of(store, scene(level, store.effort)?)?;
+        Ok(Marks::of(name, &run.sheet, &run.trajectory))
     };
     levels.iter().map(of).collect()
 }
 
-fn describe(
-    scene: &FigureScene,
-    s: &RunSummary,
-    free: &RunSummary,
-    context: &Context<'_>,
-) -> Result<String> {
+fn describe(run: &Run, free: &RunSummary, effort: Effort) -> Result<String> {
+    let (scene, s) = (&run.scene, &run.summary);
     let (hanging, mass) = (Hanging::of(scene)?, runs::mass(scene)?);
-    let end = if context.effort == Effort::Quick {
+    let end = if effort == Effort::Quick {
         "Cut short.".to_owned()
     } else {
-        let shape = Shape::of(&hanging, &runs::end(context.store, scene)?)?;
+        let shape = Shape::of(&hanging, run.end())?;
         format!(
             "At the end the kinetic energy is {:.0e} of the potential energy released; the centre of mass hangs {:.3} sides below \
              the pin (a rigid plate: {:.3}).",
@@ -122,11 +115,11 @@ fn describe(
         method_name(scene.scene().method.integrator),
         scene.scene().sheet.damping,
         scene.scene().contact.friction,
-        s.time,
-        s.frames,
-        s.rejected,
-        s.max_strain,
-        super::gap(s.smallest_gap),
+        s.course.time,
+        s.course.cost.steps,
+        s.course.cost.rejected,
+        s.course.strain,
+        super::gap(s.course.gap),
         s.slowness(),
         s.slowness() / free.slowness().max(1e-12),
     ))
@@ -146,38 +139,33 @@ pub(super) fn method_name(integrator: Integrator) -> &'static str {
 }
 
 /// How a run is shown, and the level of its mesh.
-fn shown<'a>(scene: &'a FigureScene, context: &'a Context<'_>) -> Result<(Shown<'a>, usize)> {
-    let hanging = Hanging::of(scene)?;
+fn view(run: &Run) -> Result<(View, usize)> {
+    let hanging = Hanging::of(&run.scene)?;
     let view = View {
         azimuth: -62.0,
         elevation: 17.0,
         distance: 6.0 * hanging.side,
+        depth: 0.0,
         columns: 5,
         pins: vec![hanging.pin],
         bodies: &[],
-        depth: 0.0,
     };
-    let shown = Shown {
-        scene,
-        view,
-        context,
-    };
-    Ok((shown, hanging.level as usize))
+    Ok((view, hanging.level as usize))
 }
 
 /// The page that plays a run.
-pub(super) fn page(figure: u8, scene: &FigureScene, context: &Context<'_>) -> Result<Play> {
-    let free = through_itself(scene);
-    let (shown, level) = shown(scene, context)?;
-    let level = ["M⁰", "M¹", "M²", "M³"][level];
-    shown.play(figure, &format!("crumpled paper, {level}{free}"))
+pub(super) fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
+    let (view, level) = view(run)?;
+    let (level, free) = (["M⁰", "M¹", "M²", "M³"][level], through_itself(&run.scene));
+    let label = format!("crumpled paper, {level}{free}");
+    view.play(run, effort, figure, &label)
 }
 
-/// The sequence of a run that has been made.
-fn picture(file: &str, scene: &FigureScene, context: &Context<'_>) -> Result<Picture> {
-    let (shown, level) = shown(scene, context)?;
+/// The sequence of a run.
+fn picture(file: &str, run: &Run, effort: Effort) -> Result<Picture> {
+    let (view, level) = view(run)?;
     let alt = format!(
         "A sheet of paper held at its left-upper corner falls from flat and crumples, mesh M{level}"
     );
-    shown.picture(file, &alt, &TIMES)
+    view.picture(run, effort, [file, &alt], &TIMES)
 }

@@ -3,11 +3,12 @@
 
 use super::cloths::{Layout, irregular, octagon, polygon, rectangle, ringed};
 use super::folds::{Folds, Hem};
-use super::sequence::{Shown, View};
-use super::{Context, Effort, Made, Picture, Play, Table, through_itself, whole_percent};
+use super::show::View;
+use super::{Effort, Made, Picture, Play, Table, through_itself, whole_percent};
 use crate::draw::{Axis, Chart, Drawing, Legend, Marker, Series, column, palette, row};
 use crate::report::Cell;
-use crate::runs::{self, FigureScene, RunSummary};
+use crate::runs::{FigureScene, Run};
+use crate::store::Store;
 use anyhow::Result;
 use isosheet_mesh::{Dof, Sheet};
 use serde_json::{Value, json};
@@ -18,8 +19,7 @@ const TIMES: [f64; 6] = [0.0, 0.15, 0.3, 0.6, 1.2, 8.0];
 /// A cloth at the end of its run.
 struct Draped {
     label: String,
-    scene: FigureScene,
-    run: RunSummary,
+    run: Run,
     folds: Folds,
     hem: Hem,
     /// How far the hem hangs below the table, as part of its distance from the table in the flat cloth (means
@@ -29,19 +29,17 @@ struct Draped {
     internal: i64,
 }
 
-fn drape(label: &str, scene: FigureScene, context: &Context<'_>) -> Result<Draped> {
-    let run = runs::ensure(context.store, &scene)?;
-    let sheet = scene.sheet()?;
-    let x = runs::end(context.store, &scene)?;
-    let layout = Layout::of(scene.scene())?;
+fn drape(label: &str, scene: FigureScene, store: &Store) -> Result<Draped> {
+    let run = Run::of(store, scene)?;
+    let (sheet, x) = (&run.sheet, run.end());
+    let layout = Layout::of(run.scene.scene())?;
     Ok(Draped {
         label: label.into(),
-        folds: Folds::of(&sheet, &x, &layout.table, &layout.cloth),
-        hem: Hem::of(&sheet, &x),
-        drop: drop(&sheet, &x, &layout),
+        folds: Folds::of(sheet, x, &layout.table, &layout.cloth),
+        hem: Hem::of(sheet, x),
+        drop: drop(sheet, x, &layout),
         internal: Dof::of(sheet.topology()).internal,
         run,
-        scene,
     })
 }
 
@@ -58,14 +56,14 @@ fn drop(sheet: &Sheet, x: &[f64], layout: &Layout) -> f64 {
 }
 
 impl Draped {
-    fn picture(&self, file: &str, context: &Context<'_>) -> Result<Picture> {
+    fn picture(&self, file: &str, effort: Effort) -> Result<Picture> {
         let label = &self.label;
         let alt = format!("{label}: it is let go flat above a table, falls and drapes");
-        shown(&self.scene, context).picture(file, &alt, &TIMES)
+        VIEW.picture(&self.run, effort, [file, &alt], &TIMES)
     }
 
     fn facts(&self) -> Value {
-        json!({ "run": self.run, "folds": self.folds, "drop": self.drop, "internal_dof": self.internal, "hem": {
+        json!({ "run": self.run.summary, "folds": self.folds, "drop": self.drop, "internal_dof": self.internal, "hem": {
             "folds": self.hem.folds, "spacing_spread": self.hem.spacing_spread, "size_spread": self.hem.size_spread, "wave": self.hem.wave,
         } })
     }
@@ -82,45 +80,31 @@ const VIEW: View = View {
     depth: 0.4,
 };
 
-fn shown<'a>(scene: &'a FigureScene, context: &'a Context<'_>) -> Shown<'a> {
-    Shown {
-        scene,
-        view: VIEW,
-        context,
-    }
-}
-
 /// The page that plays the run of a cloth.
-pub(super) fn page(
-    figure: u8,
-    label: &str,
-    scene: &FigureScene,
-    context: &Context<'_>,
-) -> Result<Play> {
-    let free = through_itself(scene);
-    let label = format!("draped cloth, {}{free}", label.replace('~', ""));
-    shown(scene, context).play(figure, &label)
+pub(super) fn page(figure: u8, label: &str, run: &Run, effort: Effort) -> Result<Play> {
+    let (label, free) = (label.replace('~', ""), through_itself(&run.scene));
+    VIEW.play(run, effort, figure, &format!("draped cloth, {label}{free}"))
 }
 
 /// The pages of some cloths; one that is there twice has a single page.
 fn pages<'a>(
     figure: u8,
     all: impl Iterator<Item = &'a Draped>,
-    context: &Context<'_>,
+    effort: Effort,
 ) -> Result<Vec<Play>> {
     let mut pages: Vec<Play> = Vec::new();
     let mut played: Vec<&str> = Vec::new();
     for d in all {
-        if !played.contains(&d.scene.name()) {
-            played.push(d.scene.name());
-            pages.push(page(figure, &d.label, &d.scene, context)?);
+        if !played.contains(&d.run.scene.name()) {
+            played.push(d.run.scene.name());
+            pages.push(page(figure, &d.label, &d.run, effort)?);
         }
     }
     Ok(pages)
 }
 
 fn mesh(d: &Draped) -> Cell {
-    format!("{}/{}", d.run.vertices, d.run.faces).into()
+    format!("{}/{}", d.run.summary.vertices, d.run.summary.faces).into()
 }
 
 fn fold_table(all: &[Draped]) -> Table {
@@ -222,7 +206,7 @@ fn profiles(all: &[Draped]) -> Drawing {
 
 /// What holds for a run, in words.
 fn describe(d: &Draped, effort: Effort) -> String {
-    let r = &d.run;
+    let r = &d.run.summary;
     let rest = match (r.at_rest_from, effort) {
         (Some(t), _) => format!("at rest from {t:.1} s on"),
         (None, Effort::Quick) => "cut short".to_owned(),
@@ -235,21 +219,21 @@ fn describe(d: &Draped, effort: Effort) -> String {
         "{}: {rest}, {:.2} s of wall time per simulated second, largest strain {:.0e}, smallest gap {}.",
         d.label,
         r.slowness(),
-        r.max_strain,
-        super::gap(r.smallest_gap),
+        r.course.strain,
+        super::gap(r.course.gap),
     )
 }
 
 const CONDITIONS: &str = "Cloth of 0.2 kg/m², velocity damping 2/s, friction 0.3 with the table and itself, self-contact on, gap below which contact acts 5 mm; \
                           let go exactly flat 5 mm above the table, 8 s. At rest: kinetic energy below 1e-6 of the potential energy released, to the end of the run. ";
 
-pub(super) fn fig14(context: &Context<'_>) -> Result<Made> {
-    let effort = context.effort;
+pub(super) fn fig14(store: &Store) -> Result<Made> {
+    let effort = store.effort;
     let (fine, name) = effort.quick_or((1, "M¹"), (3, "M³"));
     let all = vec![
-        drape("M²", rectangle(2, effort)?, context)?,
-        drape(name, rectangle(fine, effort)?, context)?,
-        drape("irregular", irregular(effort)?, context)?,
+        drape("M²", rectangle(2, effort)?, store)?,
+        drape(name, rectangle(fine, effort)?, store)?,
+        drape("irregular", irregular(effort)?, store)?,
     ];
     let alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
     let words: Vec<String> = all.iter().map(|d| describe(d, effort)).collect();
@@ -265,12 +249,12 @@ pub(super) fn fig14(context: &Context<'_>) -> Result<Made> {
             words.join(" ")
         ),
         pictures: vec![
-            all[0].picture("fig14.png", context)?,
-            all[1].picture("fig14-fine.png", context)?,
-            all[2].picture("fig14-irregular.png", context)?,
+            all[0].picture("fig14.png", effort)?,
+            all[1].picture("fig14-fine.png", effort)?,
+            all[2].picture("fig14-irregular.png", effort)?,
             Picture::svg("fig14-folds", &profiles(&all), alt),
         ],
-        pages: pages(14, all.iter(), context)?,
+        pages: pages(14, all.iter(), effort)?,
         tables: vec![fold_table(&all)],
         facts: json!(all.iter().map(Draped::facts).collect::<Vec<_>>()),
     })
@@ -284,13 +268,13 @@ const RINGS: [(u32, u32); 5] = [(4, 11), (6, 9), (8, 8), (12, 7), (16, 6)];
 const SIDES: [u32; 6] = [4, 6, 8, 12, 16, 48];
 
 /// The octagons, and the polygons with more and more corners, of which the second number is the round one.
-fn fig15_cloths(context: &Context<'_>) -> Result<(Vec<Draped>, Vec<Draped>, usize)> {
-    let effort = context.effort;
+fn fig15_cloths(store: &Store) -> Result<(Vec<Draped>, Vec<Draped>, usize)> {
+    let effort = store.effort;
     let fine = polygon("drape-octagon-fine", 8, effort.quick_or(0.2, 0.045), effort)?;
     let octagons = vec![
-        drape("244/440", octagon(effort)?, context)?,
-        drape("finer", fine, context)?,
-        drape("rings", ringed(8, RINGS[2].1, effort)?, context)?,
+        drape("244/440", octagon(effort)?, store)?,
+        drape("finer", fine, store)?,
+        drape("rings", ringed(8, RINGS[2].1, effort)?, store)?,
     ];
     let mut polygons = Vec::new();
     let (sides, spacing) = effort.quick_or((&SIDES[..1], 0.2), (&SIDES, 0.06));
@@ -300,22 +284,22 @@ fn fig15_cloths(context: &Context<'_>) -> Result<(Vec<Draped>, Vec<Draped>, usiz
             _ => format!("~n~ = {n}"),
         };
         let scene = polygon(&format!("drape-{n}-gon"), n, spacing, effort)?;
-        polygons.push(drape(&label, scene, context)?);
+        polygons.push(drape(&label, scene, store)?);
     }
     let round = polygons.len() - 1;
     for &(n, rings) in effort.quick_or(&RINGS[2..3], &RINGS) {
         let label = format!("~n~ = {n}, rings");
-        polygons.push(drape(&label, ringed(n, rings, effort)?, context)?);
+        polygons.push(drape(&label, ringed(n, rings, effort)?, store)?);
     }
     Ok((octagons, polygons, round))
 }
 
-pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
-    let (octagons, polygons, round) = fig15_cloths(context)?;
+pub(super) fn fig15(store: &Store) -> Result<Made> {
+    let (octagons, polygons, round) = fig15_cloths(store)?;
     let alt = "Distance of the hem from the axis, that of the flat cloth = 1, by angle, for polygons with more and more corners";
     let folds_alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
     let all = || octagons.iter().chain(&polygons);
-    let words = all().map(|d| describe(d, context.effort).replace('~', ""));
+    let words = all().map(|d| describe(d, store.effort).replace('~', ""));
     let words: Vec<String> = words.collect();
     Ok(Made {
         title: "Octagonal cloth on an octagonal table".into(),
@@ -330,14 +314,14 @@ pub(super) fn fig15(context: &Context<'_>) -> Result<Made> {
             words.join(" ")
         ),
         pictures: vec![
-            octagons[0].picture("fig15.png", context)?,
-            octagons[1].picture("fig15-fine.png", context)?,
+            octagons[0].picture("fig15.png", store.effort)?,
+            octagons[1].picture("fig15-fine.png", store.effort)?,
             Picture::svg("fig15-folds", &profiles(&octagons), folds_alt),
-            octagons[2].picture("fig15-rings.png", context)?,
-            polygons[round].picture("fig15-round.png", context)?,
+            octagons[2].picture("fig15-rings.png", store.effort)?,
+            polygons[round].picture("fig15-round.png", store.effort)?,
             Picture::svg("fig15-hems", &hems(&polygons), alt),
         ],
-        pages: pages(15, all(), context)?,
+        pages: pages(15, all(), store.effort)?,
         tables: vec![fold_table(&octagons), hem_table(&polygons)],
         facts: json!({
             "octagons": octagons.iter().map(Draped::facts).collect::<Vec<_>>(),
@@ -406,7 +390,7 @@ fn hem_table(all: &[Draped]) -> Table {
             ("internal DOF", &|d| d.internal.to_string().into()),
             ("drop", &|d| part(d.drop)),
             ("at rest from", &|d| {
-                let time = d.run.at_rest_from;
+                let time = d.run.summary.at_rest_from;
                 time.map(|t| format!("{t:.1} s")).into()
             }),
         ],

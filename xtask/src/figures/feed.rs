@@ -1,7 +1,8 @@
 //! What Fig. 16 says of its scenes: a strip of paper, a nip that moves it, and the walls of a guide.
 
-use anyhow::{Context as _, Result, bail, ensure};
-use isosheet_io::scene::{Bending, Hold, Mesh, Profile, Scene, Shape, Wall};
+use crate::runs::FigureScene;
+use anyhow::Result;
+use isosheet_io::scene::{Profile, Wall};
 
 /// What the figure says of a scene.
 pub(super) struct Feed {
@@ -21,37 +22,24 @@ pub(super) struct Feed {
 }
 
 impl Feed {
-    pub(super) fn of(scene: &Scene) -> Result<Self> {
-        let Mesh::Rectangle {
-            width,
-            height,
-            columns,
-            rows,
-            ..
-        } = scene.sheet.mesh
-        else {
-            bail!("the strip is a rectangle");
-        };
-        let Bending::Hinges { rigidity } = scene.sheet.bending else {
-            bail!("the strip resists bending at its edges");
-        };
-        let Some(Hold::MovingPin(nip)) = scene.support.first().map(|s| &s.hold) else {
-            bail!("a nip moves the strip");
-        };
-        let walls = scene.obstacle.iter().map(|body| match &body.shape {
-            Shape::Wall(wall) => Ok(wall.clone()),
-            other => bail!("the guide has walls, not {other:?}"),
-        });
-        let walls = walls.collect::<Result<Vec<_>>>()?;
-        ensure!(walls.len() > OUTER, "a guide has two walls");
+    pub(super) fn of(scene: &FigureScene) -> Result<Self> {
+        let bodies = 0..scene.scene().obstacle.len();
+        let walls = bodies.map(|k| scene.value(&format!("/obstacle/{k}/shape/wall")));
+        let of_mesh = |key: &str| format!("/sheet/mesh/rectangle/{key}");
         Ok(Self {
-            walls,
-            size: [width, height],
-            cells: [columns, rows],
-            rigidity,
-            displacement: nip.x.clone(),
-            limit: scene.stop.support_force.context("the nip slips")?,
-            activation: scene.contact.activation.context("a gap of contact")?,
+            walls: walls.collect::<Result<_>>()?,
+            size: [
+                scene.value(&of_mesh("width"))?,
+                scene.value(&of_mesh("height"))?,
+            ],
+            cells: [
+                scene.value(&of_mesh("columns"))?,
+                scene.value(&of_mesh("rows"))?,
+            ],
+            rigidity: scene.value("/sheet/bending/hinges/rigidity")?,
+            displacement: scene.value("/support/0/hold/moving_pin/x")?,
+            limit: scene.value("/stop/support_force")?,
+            activation: scene.value("/contact/activation")?,
         })
     }
 

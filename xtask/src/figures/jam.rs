@@ -1,14 +1,15 @@
 //! Beyond the paper: a strip of paper is fed into a bent guide, and passes or jams.
 
 use super::feed::{Feed, INNER, OUTER, PLATE};
-use super::sequence::{Shown, View};
-use super::{Context, Effort, Made, Picture, Table};
+use super::show::View;
+use super::{Effort, Made, Picture, Table};
 use crate::draw::{
     Anchor, Axis, Chart, Colour, Drawing, Series, Stroke, TEXT, Vertical, column, palette, row,
 };
 use crate::report::Cell;
-use crate::runs::{self, FigureScene, RunSummary};
-use anyhow::{Context as _, Result};
+use crate::runs::{FigureScene, Run};
+use crate::store::Store;
+use anyhow::Result;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
@@ -39,9 +40,8 @@ fn scene((file, name): (&str, &str), effort: Effort) -> Result<FigureScene> {
 
 /// A run and what it says.
 struct Fed {
-    scene: FigureScene,
     feed: Feed,
-    run: RunSummary,
+    run: Run,
     /// Displacement of the nip (metres) and force of the nip on the strip in the direction of this
     /// displacement (newtons), mean over [`WINDOW`] frames.
     force: Vec<[f64; 2]>,
@@ -56,11 +56,10 @@ struct Fed {
 const WINDOW: usize = 5;
 
 impl Fed {
-    fn of(scene: FigureScene, context: &Context<'_>) -> Result<Self> {
-        let feed = Feed::of(scene.scene())?;
-        let run = runs::ensure(context.store, &scene)?;
-        let forces = runs::supports(context.store, &scene)?;
-        let trajectory = runs::trajectory(context.store, &scene)?;
+    fn of(scene: FigureScene, store: &Store) -> Result<Self> {
+        let feed = Feed::of(&scene)?;
+        let run = Run::of(store, scene)?;
+        let forces = &run.supports;
         let force = forces
             .windows(WINDOW)
             .map(|w| {
@@ -75,16 +74,14 @@ impl Fed {
             let at = |v: usize| [x[3 * v], x[3 * v + 2]];
             (first..first + along).map(at).collect()
         };
-        let frames = (0..trajectory.len()).map(|k| trajectory.frame(k).context("frame"));
         Ok(Self {
-            profiles: frames.map(|x| x.map(profile)).collect::<Result<_>>()?,
+            profiles: run.frames().map(profile).collect(),
             jammed: forces
                 .last()
                 .is_some_and(|f| f[1].hypot(f[2]).hypot(f[3]) > feed.limit),
             force,
             run,
             feed,
-            scene,
         })
     }
 
@@ -101,7 +98,7 @@ impl Fed {
     fn feed_length_at(&self, frame: usize) -> f64 {
         self.feed
             .displacement
-            .value(frame as f64 * self.scene.frame())
+            .value(frame as f64 * self.run.scene.frame())
     }
 
     /// The frame in which the leading edge first feels the plate.
@@ -190,7 +187,7 @@ impl Fed {
 
     fn facts(&self, passing: f64) -> Value {
         json!({
-            "run": self.run, "jammed": self.jammed, "displacement_m_and_force_n": self.force,
+            "run": self.run.summary, "jammed": self.jammed, "displacement_m_and_force_n": self.force,
             "arrival": self.arrival().map(|k| self.feed_length_at(k)),
             "buckle": self.buckle(passing).map(|(k, force)| json!({ "displacement": self.feed_length_at(k), "force": force, "column": self.column(k), "euler": self.euler(self.column(k)) })),
         })
@@ -260,22 +257,28 @@ fn table(all: &[Fed]) -> Table {
         &[
             ("bend", &|f| f.label().into()),
             ("displacement", &|f| {
-                let fed = f.feed_length_at(f.run.frames);
+                let fed = f.feed_length_at(f.run.summary.course.cost.steps);
                 format!("{:.0} mm", 1e3 * fed).into()
             }),
             ("largest force", &|f| {
                 let [fed, peak] = f.peak();
                 format!("{} at {:.0} mm", newtons(peak), 1e3 * fed).into()
             }),
-            ("work of the nip", &|f| joules(f.run.energy.work)),
-            ("stored", &|f| joules(-f.run.energy.released)),
-            ("friction", &|f| joules(f.run.energy.friction)),
-            ("damping", &|f| joules(f.run.energy.damped)),
-            ("missing", &|f| joules(f.run.energy.drift)),
-            ("strain", &|f| format!("{:.0e}", f.run.max_strain).into()),
-            ("gap", &|f| super::gap(f.run.smallest_gap).into()),
-            ("rejected", &|f| f.run.rejected.to_string().into()),
-            ("wall time", &|f| format!("{:.1} s", f.run.wall).into()),
+            ("work of the nip", &|f| joules(f.run.summary.energy.work)),
+            ("stored", &|f| joules(-f.run.summary.energy.released)),
+            ("friction", &|f| joules(f.run.summary.energy.friction)),
+            ("damping", &|f| joules(f.run.summary.energy.damped)),
+            ("missing", &|f| joules(f.run.summary.energy.drift)),
+            ("strain", &|f| {
+                format!("{:.0e}", f.run.summary.course.strain).into()
+            }),
+            ("gap", &|f| super::gap(f.run.summary.course.gap).into()),
+            ("rejected", &|f| {
+                f.run.summary.course.cost.rejected.to_string().into()
+            }),
+            ("wall time", &|f| {
+                format!("{:.1} s", f.run.summary.course.cost.wall).into()
+            }),
         ],
     )
 }
@@ -296,27 +299,19 @@ fn view(feed: &Feed) -> View {
     }
 }
 
-fn shown<'a>(fed: &'a Fed, context: &'a Context<'_>) -> Shown<'a> {
-    Shown {
-        scene: &fed.scene,
-        view: view(&fed.feed),
-        context,
-    }
-}
-
 /// Parts of the run at which the jam is shown: the fold-up happens at its end.
 const SHOWN: [f64; 6] = [0.0, 0.5, 0.84, 0.91, 0.95, 1.0];
 
-pub(super) fn make(context: &Context<'_>) -> Result<Made> {
-    let fed = |case| Fed::of(scene(case, context.effort)?, context);
+pub(super) fn make(store: &Store) -> Result<Made> {
+    let fed = |case| Fed::of(scene(case, store.effort)?, store);
     let all: Vec<Fed> = CASES.into_iter().map(fed).collect::<Result<_>>()?;
     let jam = &all[JAM];
     let passing = 2.0 * all[OPEN].peak()[1];
-    let times = SHOWN.map(|s| s * jam.run.time);
+    let times = SHOWN.map(|s| s * jam.run.summary.course.time);
     let alt = "A strip of paper is pushed round a bend against a plate, buckles and folds up";
     let alt_force = "Force of the nip over its displacement in four guides";
     let alt_side = "The strip from the side at five times in each of the four guides";
-    let (s, of_scene) = (&jam.feed, jam.scene.scene());
+    let (s, of_scene) = (&jam.feed, jam.run.scene.scene());
     let through = all.iter().take(JAM).map(|f| {
         let [fed, peak] = f.peak();
         format!(
@@ -331,7 +326,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let side = column(&[row(&side[..2], 30.0), row(&side[2..], 30.0)], 24.0);
     let page = |f: &Fed| {
         let label = format!("strip in a bend of {}", f.label());
-        shown(f, context).play(16, &label)
+        view(&f.feed).play(&f.run, store.effort, 16, &label)
     };
     Ok(Made {
         title: "Paper jam".into(),
@@ -345,8 +340,8 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
             1e3 * s.size[1],
             1e3 * of_scene.sheet.density,
             s.rigidity,
-            jam.run.vertices,
-            jam.run.faces,
+            jam.run.summary.vertices,
+            jam.run.summary.faces,
             1e3 * s.channel(),
             s.speed(),
             of_scene.contact.friction,
@@ -354,7 +349,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
             describe(jam, passing),
         ),
         pictures: vec![
-            shown(jam, context).picture("fig16.png", alt, &times)?,
+            view(s).picture(&jam.run, store.effort, ["fig16.png", alt], &times)?,
             Picture::svg("fig16-force", &force_plot(&all), alt_force),
             Picture::svg("fig16-side", &side, alt_side),
         ],

@@ -1,10 +1,11 @@
 //! Beyond the paper: crease patterns folded by driven angles.
 
-use super::sequence::{Shown, View};
-use super::{Context, Effort, Made, Picture, Play, degrees};
+use super::show::View;
+use super::{Effort, Made, Picture, Play, degrees};
 use crate::draw::{Axis, Chart, Colour, Drawing, Marker, Series, palette, row};
-use crate::runs::{self, FigureScene, RunSummary};
-use anyhow::{Context as _, Result, bail};
+use crate::runs::{FigureScene, Run, RunSummary};
+use crate::store::Store;
+use anyhow::{Context, Result, bail};
 use isosheet_io::scene::{AlikeCreases, DegreeFour, Mesh, Miura};
 use isosheet_mesh::generate::{FoldAssignment, FoldPattern, miura_zigzags};
 use isosheet_mesh::origami;
@@ -118,21 +119,17 @@ impl Folded {
 }
 
 /// The fold angles of the four creases of a vertex at every frame, with the first crease a valley.
-fn vertex_angles(scene: &FigureScene, context: &Context<'_>) -> Result<Vec<[f64; 4]>> {
-    let trajectory = runs::trajectory(context.store, scene)?;
-    let sheet = scene.sheet()?;
-    let t = sheet.topology();
-    (0..trajectory.len())
-        .map(|k| {
-            let x = trajectory.frame(k).context("frame")?;
-            let mut angles = [0.0; 4];
-            for (c, angle) in angles.iter_mut().enumerate() {
-                let e = t.find_edge(VertexId(0), VertexId::from_index(c + 1));
-                *angle = e.and_then(|e| fold_angle(t, x, e)).context("a crease")?;
-            }
-            Ok(angles)
-        })
-        .collect()
+fn vertex_angles(run: &Run) -> Result<Vec<[f64; 4]>> {
+    let t = run.sheet.topology();
+    let of_frame = |x: &[f64]| {
+        let mut angles = [0.0; 4];
+        for (c, angle) in angles.iter_mut().enumerate() {
+            let e = t.find_edge(VertexId(0), VertexId::from_index(c + 1));
+            *angle = e.and_then(|e| fold_angle(t, x, e)).context("a crease")?;
+        }
+        Ok(angles)
+    };
+    run.frames().map(of_frame).collect()
 }
 
 /// Folds below this say more about round-off than about kinematics: the lengths, kept to 1e-12, fix an angle
@@ -160,15 +157,6 @@ const VIEW: View = View {
 
 /// Every so many frames are marked in plots.
 const EVERY: usize = 6;
-
-/// A run of one of the patterns.
-fn shown<'a>(scene: &'a FigureScene, context: &'a Context<'_>) -> Shown<'a> {
-    Shown {
-        scene,
-        view: VIEW,
-        context,
-    }
-}
 
 /// Exact curves are grey.
 fn exact_curve(name: &str, points: Vec<[f64; 2]>) -> Series {
@@ -248,13 +236,15 @@ const MODES: [(AlikeCreases, &str, Colour, Marker); 2] = [
 impl Vertex {
     fn of(
         (alike, name, colour, marker): (AlikeCreases, &str, Colour, Marker),
-        context: &Context<'_>,
+        store: &Store,
     ) -> Result<Self> {
-        let scene = vertex(alike, context.effort)?;
-        let (exact, mode) = (vertex_of(&scene)?.kinematics(), vertex_of(&scene)?.mode());
-        let run = runs::ensure(context.store, &scene)?;
+        let run = Run::of(store, vertex(alike, store.effort)?)?;
+        let (exact, mode) = (
+            vertex_of(&run.scene)?.kinematics(),
+            vertex_of(&run.scene)?.mode(),
+        );
         let label = format!("vertex of degree four, creases {name}");
-        let found = vertex_angles(&scene, context)?;
+        let found = vertex_angles(&run)?;
         let folded = found.iter().filter(|a| a[lead(mode)].abs() > LEAST);
         let errors = folded.flat_map(|a| {
             let e = exact.angles(mode, a[0]);
@@ -266,8 +256,8 @@ impl Vertex {
         let exact_name = ["exact", ""][alike as usize];
         let measured = found.iter().step_by(EVERY).map(two).collect();
         Ok(Self {
-            run,
-            page: shown(&scene, context).play(17, &label)?,
+            page: VIEW.play(&run, store.effort, 17, &label)?,
+            run: run.summary,
             error: errors.fold(0.0, f64::max),
             end,
             series: [
@@ -282,26 +272,27 @@ impl Vertex {
 fn describe(r: &RunSummary) -> String {
     format!(
         "{} frames, {} rejected sub-steps, {:.2} s of wall time, largest strain {:.0e}, work of the drive {:.2e} J, of which the balance lacks {:.1e} J",
-        r.frames, r.rejected, r.wall, r.max_strain, r.energy.work, r.energy.drift
+        r.course.cost.steps,
+        r.course.cost.rejected,
+        r.course.cost.wall,
+        r.course.strain,
+        r.energy.work,
+        r.energy.drift
     )
 }
 
-pub(super) fn make(context: &Context<'_>) -> Result<Made> {
-    let scene = miura(context.effort)?;
-    let run = runs::ensure(context.store, &scene)?;
-    let (pattern, exact) = (miura_of(&scene)?.pattern()?, miura_of(&scene)?.kinematics());
-    let trajectory = runs::trajectory(context.store, &scene)?;
-    let frames = (0..trajectory.len()).map(|k| {
-        let x = trajectory.frame(k).context("frame")?;
-        Ok(Folded::of(miura_of(&scene)?, &pattern, x))
-    });
-    let folded: Vec<Folded> = frames.collect::<Result<_>>()?;
+pub(super) fn make(store: &Store) -> Result<Made> {
+    let whole = Run::of(store, miura(store.effort)?)?;
+    let (run, miura) = (&whole.summary, miura_of(&whole.scene)?);
+    let (pattern, exact) = (miura.pattern()?, miura.kinematics());
+    let folded = whole.frames().map(|x| Folded::of(miura, &pattern, x));
+    let folded: Vec<Folded> = folded.collect();
     let beyond = || folded.iter().filter(|f| f.zigzag > LEAST);
     let errors = [0, 1, 2].map(|k| beyond().fold(0.0f64, |m, f| m.max(f.errors[k])));
     let last = folded.last().context("frames")?;
     let mut vertices = Vec::new();
     for mode in MODES {
-        vertices.push(Vertex::of(mode, context)?);
+        vertices.push(Vertex::of(mode, store)?);
     }
     let branches = Chart::new(
         Axis::round("fold of crease 1 (°)", [0.0, 160.0], 4),
@@ -312,13 +303,12 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let times = [0.0, 30.0, 60.0, 90.0, 120.0, 150.0].map(|angle: f64| {
         let off = |k: &usize| (folded[*k].zigzag.to_degrees() - angle).abs();
         let nearest = (0..folded.len()).min_by(|a, b| off(a).total_cmp(&off(b)));
-        trajectory.times()[nearest.unwrap_or(0)]
+        whole.trajectory.times()[nearest.unwrap_or(0)]
     });
     let alt = "A flat sheet with a Miura pattern folds up";
     let alt_folds = "Fold of the straight creases, and size of the sheet, over the fold of the zigzags: simulated and exact";
     let alt_vertex = "Fold of the second crease of a vertex over that of the first in its two modes: simulated and exact";
-    let miura = shown(&scene, context);
-    let mut pages = vec![miura.play(17, "Miura's pattern")?];
+    let mut pages = vec![VIEW.play(&whole, store.effort, 17, "Miura's pattern")?];
     pages.extend(vertices.iter().map(|v| v.page.clone()));
     Ok(Made {
         title: "Origami: crease patterns folded by driven angles".into(),
@@ -341,12 +331,12 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
             degrees(last.zigzag),
             degrees(last.straight),
             last.errors[0],
-            describe(&run),
+            describe(run),
             vertices[0].error,
             vertices[1].error,
         ),
         pictures: vec![
-            miura.picture("fig17.png", alt, &times)?,
+            VIEW.picture(&whole, store.effort, ["fig17.png", alt], &times)?,
             Picture::svg("fig17-folds", &folds_plot(&exact, &folded), alt_folds),
             Picture::svg("fig17-vertex", &branches.draw(), alt_vertex),
         ],
@@ -356,7 +346,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
             "errors": { "straight_rad": errors[0], "panels_rad": errors[1], "distances_m": errors[2] },
             "folds": folded.iter().map(|f| [f.zigzag, f.straight, f.size[0], f.size[1]]).collect::<Vec<_>>(),
             "vertices": vertices.iter().map(|v| json!({ "run": v.run, "error_rad": v.error, "end_rad": v.end })).collect::<Vec<_>>(),
-            "name": scene.name(),
+            "name": whole.scene.name(),
         }),
         ..Made::default()
     })

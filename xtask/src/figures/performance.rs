@@ -1,8 +1,9 @@
 //! Fig. 10: the paper's table of performance, with ours beside it.
 
-use super::{Context, Effort, Made, Picture, Play, Table, cloths, crumple, drape, stamping};
+use super::{Effort, Made, Picture, Play, Table, cloths, crumple, drape, stamping};
 use crate::report::{Cell, machine, rounded};
-use crate::runs::{self, ChartSummary, Fate, FigureScene, RunSummary};
+use crate::runs::{self, ChartSummary, Course, Ending, FigureScene, Run, RunSummary};
+use crate::store::Store;
 use anyhow::Result;
 use isosheet_coords::condition_table;
 use isosheet_io::scene::{Coordinates, Integrator};
@@ -39,41 +40,36 @@ const PUBLISHED: [Published; 5] = [
     Published::new(15, None, ["244/440", "0.435", "1.5/30"]),
 ];
 
-/// Our run of a figure, with everything that it meets, and without contact of the sheet with itself.
-fn runs_of(figure: u8, context: &Context<'_>) -> Result<[RunSummary; 2]> {
-    let (store, effort) = (context.store, context.effort);
-    let scene = match figure {
+/// The scene of a figure, with everything that the sheet meets.
+fn ours(figure: u8, effort: Effort) -> Result<FigureScene> {
+    match figure {
         11 | 12 => crumple::scene(u32::from(figure - 10), effort),
         13 => stamping::scene(effort),
         14 => cloths::rectangle(2, effort),
         _ => cloths::octagon(effort),
-    }?;
-    Ok([
-        runs::ensure(store, &scene)?,
-        runs::ensure(store, &free(figure, effort)?)?,
-    ])
+    }
 }
 
 /// The scene of a figure without contact of the sheet with itself.
 fn free(figure: u8, effort: Effort) -> Result<FigureScene> {
-    match figure {
-        11 | 12 => crumple::without_contact(u32::from(figure - 10), effort),
-        13 => stamping::scene(effort)?.without_self_contact("stamping-free"),
-        14 => cloths::rectangle(2, effort)?.without_self_contact("drape-m2-free"),
-        _ => cloths::octagon(effort)?.without_self_contact("drape-octagon-free"),
-    }
+    let name = match figure {
+        11 => "crumple-m1",
+        12 => "crumple-m2",
+        13 => "stamping-free",
+        14 => "drape-m2-free",
+        _ => "drape-octagon-free",
+    };
+    ours(figure, effort)?.without_self_contact(name)
 }
 
-/// The pages of the runs without contact of the sheet with itself; Figs. 11 to 15 have those of the others.
-fn pages(context: &Context<'_>) -> Result<Vec<Play>> {
-    let effort = context.effort;
-    Ok(vec![
-        crumple::page(10, &free(11, effort)?, context)?,
-        crumple::page(10, &free(12, effort)?, context)?,
-        stamping::page(10, &free(13, effort)?, context)?,
-        drape::page(10, "M²", &free(14, effort)?, context)?,
-        drape::page(10, "244/440", &free(15, effort)?, context)?,
-    ])
+/// The page of the run without contact of the sheet with itself; Figs. 11 to 15 have those of the others.
+fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
+    match figure {
+        11 | 12 => crumple::page(10, run, effort),
+        13 => stamping::page(10, run, effort),
+        14 => drape::page(10, "M²", run, effort),
+        _ => drape::page(10, "244/440", run, effort),
+    }
 }
 
 /// The paper's scheme on a mesh, with ever more help: the last one is the scene file.
@@ -130,25 +126,29 @@ struct Tried {
     ours: RunSummary,
     /// Without contact of the sheet with itself.
     free: RunSummary,
+    /// The page of the run without it.
+    page: Play,
     /// The paper's scheme with ever more help.
     charts: Vec<(&'static str, ChartSummary)>,
 }
 
 impl Tried {
-    fn of(published: &'static Published, context: &Context<'_>) -> Result<Self> {
-        let [ours, free] = runs_of(published.figure, context)?;
-        let patience = context.effort.quick_or(0.5, 60.0);
+    fn of(published: &'static Published, store: &Store) -> Result<Self> {
+        let (figure, effort) = (published.figure, store.effort);
+        let free = Run::of(store, free(figure, effort)?)?;
+        let patience = effort.quick_or(0.5, 60.0);
         let mut charts = Vec::new();
         if let Some(level) = published.level {
-            for (name, scene) in variants(level, context.effort)? {
+            for (name, scene) in variants(level, effort)? {
                 let title = format!("published scheme, M^{level}");
                 charts.push((name, runs::chart_run(&title, &scene, patience)?));
             }
         }
         Ok(Self {
             published,
-            ours,
-            free,
+            ours: Run::of(store, ours(figure, effort)?)?.summary,
+            page: page(figure, &free, effort)?,
+            free: free.summary,
             charts,
         })
     }
@@ -158,7 +158,7 @@ impl Tried {
         self.charts.iter().all(|(_, s)| {
             let chart = s.run.scene().method.chart.as_ref();
             let is_published = chart.is_some_and(|c| c.coordinates == Coordinates::Front);
-            !is_published || matches!(s.fate, Fate::Refused { .. })
+            !is_published || is_refused(&s.course)
         })
     }
 
@@ -192,14 +192,19 @@ impl Tried {
     }
 }
 
+/// Whether a run was refused at its start.
+fn is_refused(course: &Course) -> bool {
+    !course.is_good() && course.cost.steps == 0
+}
+
 /// What is said where the scheme as published cannot start.
 const REFUSED: &str = "As published, the scheme cannot start on either mesh: in the union jack every inner vertex of degree 4 keeps one of its creases \
                        straight, which is the degenerate case of Fig. 7, flat or not. The rows below help it step by step until it runs. ";
 
-pub(super) fn make(context: &Context<'_>) -> Result<Made> {
+pub(super) fn make(store: &Store) -> Result<Made> {
     let all = PUBLISHED
         .iter()
-        .map(|published| Tried::of(published, context));
+        .map(|published| Tried::of(published, store));
     let all: Vec<Tried> = all.collect::<Result<_>>()?;
     let is_refused = all.iter().all(Tried::is_refused);
     let verdict = if is_refused { REFUSED } else { "" };
@@ -214,7 +219,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let table = Table::new("Fig. 10: the paper's columns beside ours", &head);
     let machine = machine();
     // Why the coordinates of the front do not carry far.
-    let condition = condition_table(0..context.effort.quick_or(2, 5))?;
+    let condition = condition_table(0..store.effort.quick_or(2, 5))?;
     let condition = crate::condition::plot(&condition);
     let alt = "Condition number of the mass matrix in the paper's coordinates and in chosen Cartesian ones, by mesh level";
     Ok(Made {
@@ -232,7 +237,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
              beyond 1/ε nothing is left of a dense solve, whichever method is used."
         ),
         pictures: vec![Picture::svg("fig10-condition", &condition, alt)],
-        pages: pages(context)?,
+        pages: all.iter().map(|tried| tried.page.clone()).collect(),
         tables: vec![
             table.with_texts(all.iter().flat_map(Tried::rows)),
             contact_table(&all),
@@ -267,7 +272,7 @@ fn default_row(mesh: &str, s: &RunSummary) -> Vec<String> {
         s.step_range.map_or("–".into(), milliseconds),
         format!(
             "{:.1} s, {} rejected steps, strain {:.0e}",
-            s.time, s.rejected, s.max_strain
+            s.course.time, s.course.cost.rejected, s.course.strain
         ),
     ]
 }
@@ -280,7 +285,7 @@ fn contact_table(all: &[Tried]) -> Table {
         }
         format!("{v:.2e}").replace('-', "−").into()
     };
-    let frames = |s: &RunSummary| s.frames.max(1) as f64;
+    let frames = |s: &RunSummary| s.course.cost.steps.max(1) as f64;
     Table::of(
         "What the paper did not report. Slowness: seconds of wall time per simulated second, on one core, with and without contact of the sheet with \
                   itself (two different motions where it touches itself), and their ratio; a frame is 1/60 s; solves are Newton steps, each with a factorisation. \
@@ -301,19 +306,23 @@ fn contact_table(all: &[Tried]) -> Table {
                 format!("{ratio:.1}").into()
             }),
             ("frame, solves in it", &|r| {
-                let (step, solves) = (1e3 * r.ours.wall, r.ours.iterations as f64);
+                let (step, solves) = (
+                    1e3 * r.ours.course.cost.wall,
+                    r.ours.course.cost.iterations as f64,
+                );
                 let [step, solves] = [step, solves].map(|all| all / frames(&r.ours));
                 format!("{step:.1} ms, {solves:.0}").into()
             }),
             ("solves/s", &|r| {
-                format!("{:.0}", r.ours.solves_per_second()).into()
+                let cost = &r.ours.course.cost;
+                format!("{:.0}", cost.iterations as f64 / cost.wall.max(1e-9)).into()
             }),
             ("largest strain", &|r| {
-                format!("{:.0e}", r.ours.max_strain)
+                format!("{:.0e}", r.ours.course.strain)
                     .replace('-', "−")
                     .into()
             }),
-            ("smallest gap", &|r| super::gap(r.ours.smallest_gap).into()),
+            ("smallest gap", &|r| super::gap(r.ours.course.gap).into()),
             ("released", &|r| joules(r.ours.energy.released)),
             ("work", &|r| joules(r.ours.energy.work)),
             ("damping", &|r| joules(r.ours.energy.damped)),
@@ -324,26 +333,27 @@ fn contact_table(all: &[Tried]) -> Table {
 }
 
 fn chart_row(mesh: &str, name: &str, s: &ChartSummary) -> Vec<String> {
-    let outcome = match &s.fate {
-        Fate::Finished => format!("{:.1} s, strain {:.0e}", s.time, s.max_strain),
-        Fate::Refused { reason } => format!("refused at t = 0: {}", rounded(reason)),
-        Fate::Stopped { t, reason } => format!(
-            "stopped at t = {t:.3} s, strain {:.0e}: {}",
-            s.max_strain,
-            rounded(reason)
-        ),
-        Fate::OutOfPatience { t } => {
-            format!(
-                "given up at t = {t:.3} s after {:.0} s of wall time, strain {:.0e}",
-                s.wall, s.max_strain
-            )
+    let course = &s.course;
+    let (t, strain) = (course.time, course.strain);
+    let outcome = match &course.ending {
+        Ending::Error { message, .. } if is_refused(course) => {
+            format!("refused at t = 0: {}", rounded(message))
         }
+        Ending::Error { message, .. } => {
+            let reason = rounded(message);
+            format!("stopped at t = {t:.3} s, strain {strain:.0e}: {reason}")
+        }
+        Ending::WallTime(_) => {
+            let wall = course.cost.wall;
+            format!("given up at t = {t:.3} s after {wall:.0} s of wall time, strain {strain:.0e}")
+        }
+        _ => format!("{t:.1} s, strain {strain:.0e}"),
     };
     vec![
         String::new(),
         mesh.into(),
         name.into(),
-        if s.steps > 0 {
+        if course.cost.steps > 0 {
             format!("{:.2}", s.frames_per_second)
         } else {
             "–".into()

@@ -1,7 +1,8 @@
 //! How soft a sheet is, by mesh level: what the paper says of Figs. 11 and 12 by eye.
 
-use super::{Context, Effort, Picture, Table, whole_percent};
+use super::{Effort, Picture, Table, whole_percent};
 use crate::draw::{Axis, Chart, Drawing, Marker, Series, palette, row};
+use crate::report::extremes;
 use crate::runs::{self, FigureScene, Member};
 use anyhow::Result;
 use isosheet_mesh::Dof;
@@ -82,23 +83,15 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-fn largest(values: &[f64]) -> f64 {
-    values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-}
-
-fn smallest(values: &[f64]) -> f64 {
-    values.iter().copied().fold(f64::INFINITY, f64::min)
-}
-
 /// Measures the falls of the scenes that `fall` gives for each level.
 pub(super) fn make(
-    context: &Context<'_>,
+    effort: Effort,
     fall: fn(u32, Effort) -> Result<FigureScene>,
 ) -> Result<Softness> {
-    let (levels, members) = context.effort.quick_or((0..2, 2), (0..4, MEMBERS));
+    let (levels, members) = effort.quick_or((0..2, 2), (0..4, MEMBERS));
     let mut all = Vec::new();
     for level in levels {
-        let scene = fall(level, context.effort)?;
+        let scene = fall(level, effort)?;
         let sheet = scene.sheet()?;
         let t = sheet.topology();
         all.push(Level {
@@ -194,7 +187,7 @@ fn table(all: &[Level]) -> Table {
     );
     let range = |l: &Level, digits: usize, f: fn(&Member) -> f64| {
         let v = l.values(f);
-        let (mean, low, high) = (mean(&v), smallest(&v), largest(&v));
+        let (mean, [low, high]) = (mean(&v), extremes(v.into_iter()).unwrap_or_default());
         format!("{mean:.digits$} ({low:.digits$}–{high:.digits$})").into()
     };
     Table::of(

@@ -1,11 +1,11 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
-use super::sequence::{Shown, View};
-use super::{Context, Effort, Made, Picture, Play};
+use super::show::View;
+use super::{Effort, Made, Picture, Play};
 use crate::draw::{Axis, Chart, Series, palette};
-use crate::runs::{self, FigureScene};
-use anyhow::{Context as _, Result};
-use isosheet_io::scene::{Course, Obstacle, Profile, Scene, Shape};
+use crate::runs::{FigureScene, Run};
+use crate::store::Store;
+use anyhow::Result;
 use serde_json::json;
 
 /// The scene of the figure.
@@ -15,50 +15,9 @@ pub(super) fn scene(effort: Effort) -> Result<FigureScene> {
     FigureScene::of("fig13", "stamping", &edits)
 }
 
-/// The numbers of the die, the frame and the holders among the bodies.
+/// The numbers of the die and the frame among the bodies; the holders follow.
 const DIE: usize = 0;
 const FRAME: usize = 1;
-const HOLDER: usize = 2;
-
-/// The tools of the scene, lengths in metres.
-struct Tools {
-    /// Sides of the die and of the opening of the frame.
-    die: f64,
-    opening: f64,
-    /// Width of the holders along the frame, and their height above it.
-    holder: f64,
-    clearance: f64,
-    /// How far the die rises, and in which time, seconds.
-    stroke: f64,
-    duration: f64,
-}
-
-impl Tools {
-    fn of(scene: &Scene) -> Result<Self> {
-        let body = |k: usize| scene.obstacle.get(k).context("die, frame and holders");
-        let (die, frame, holder) = (body(DIE)?, body(FRAME)?, body(HOLDER)?);
-        let size = |body: &Obstacle| match body.shape {
-            Shape::Box { size } => Some(size),
-            _ => None,
-        };
-        let Shape::Frame { opening, top, .. } = frame.shape else {
-            anyhow::bail!("body {FRAME} is the frame");
-        };
-        let Profile::Course(Course::Ramp(rise)) = &die.motion.z else {
-            anyhow::bail!("the die rises at a constant speed");
-        };
-        let of_holder = size(holder).context("holders are boxes")?;
-        let below = holder.pose.position[2] - 0.5 * of_holder[2];
-        Ok(Self {
-            die: size(die).context("the die is a box")?[0],
-            opening,
-            holder: of_holder[1],
-            clearance: below - top,
-            stroke: rise.to - rise.from,
-            duration: rise.end - rise.begin,
-        })
-    }
-}
 
 /// Strokes of the pictures as parts of the whole.
 const STROKES: [f64; 6] = [0.0, 0.3, 0.5, 0.7, 0.85, 1.0];
@@ -74,32 +33,29 @@ const VIEW: View = View {
     depth: 0.03,
 };
 
-fn shown<'a>(scene: &'a FigureScene, context: &'a Context<'_>) -> Shown<'a> {
-    Shown {
-        scene,
-        view: VIEW,
-        context,
-    }
-}
-
 /// The page that plays a run.
-pub(super) fn page(figure: u8, scene: &FigureScene, context: &Context<'_>) -> Result<Play> {
-    let label = if scene.scene().contact.self_contact {
+pub(super) fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
+    let label = if run.scene.scene().contact.self_contact {
         "stamping"
     } else {
         "stamping, the sheet passing through itself"
     };
-    shown(scene, context).play(figure, label)
+    VIEW.play(run, effort, figure, label)
 }
 
-pub(super) fn make(context: &Context<'_>) -> Result<Made> {
-    let scene = scene(context.effort)?;
-    let (tools, blank) = (Tools::of(scene.scene())?, scene.sheet()?);
-    let density = scene.scene().sheet.density;
-    let run = runs::ensure(context.store, &scene)?;
-    let forces = runs::forces(context.store, &scene, DIE)?;
-    let full = tools.duration;
-    let speed = tools.stroke / full;
+pub(super) fn make(store: &Store) -> Result<Made> {
+    let whole = Run::of(store, scene(store.effort)?)?;
+    let (scene, run) = (whole.scene.scene(), &whole.summary);
+    let (density, blank, forces) = (scene.sheet.density, &whole.sheet, whole.forces(DIE));
+    let value = |key: &str| whole.scene.value::<f64>(key);
+    let rise = |key: &str| value(&format!("/obstacle/0/motion/z/ramp/{key}"));
+    let stroke = rise("to")? - rise("from")?;
+    let full = rise("end")? - rise("begin")?;
+    let speed = stroke / full;
+    // The bottom of the holders above the top of the frame.
+    let thickness = value("/obstacle/2/shape/box/size/2")?;
+    let bottom = value("/obstacle/2/pose/position/2")? - 0.5 * thickness;
+    let clearance = bottom - value("/obstacle/1/shape/frame/top")?;
     // The sheet presses the die down.
     let curve: Vec<[f64; 2]> = forces
         .iter()
@@ -111,7 +67,7 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
     let pressed =
         "A square die rises through the opening of a frame and punches the sheet that lies on it";
     let times = STROKES.map(|s| s * full);
-    let plot = plot(&curve, weight, 1e3 * tools.stroke, peak);
+    let plot = plot(&curve, weight, 1e3 * stroke, peak);
     let alt = "Force of the sheet on the die over its stroke";
     Ok(Made {
         title: "Sheet metal stamping".into(),
@@ -125,26 +81,26 @@ pub(super) fn make(context: &Context<'_>) -> Result<Made> {
              smallest gap {}. The holding conditions of the paper are not known.",
             blank.area().sqrt(),
             density,
-            1e3 * tools.opening,
-            1e3 * tools.die,
+            1e3 * value("/obstacle/1/shape/frame/opening")?,
+            1e3 * value("/obstacle/0/shape/box/size/0")?,
             1e3 * speed,
-            scene.scene().obstacle[DIE].friction,
-            1e3 * tools.holder,
-            1e3 * tools.clearance,
-            1e3 * tools.stroke,
+            scene.obstacle[DIE].friction,
+            1e3 * value("/obstacle/2/shape/box/size/1")?,
+            1e3 * clearance,
+            1e3 * stroke,
             run.vertices,
             run.faces,
-            run.frames,
-            run.rejected,
+            run.course.cost.steps,
+            run.course.cost.rejected,
             run.slowness(),
-            run.max_strain,
-            super::gap(run.smallest_gap),
+            run.course.strain,
+            super::gap(run.course.gap),
         ),
         pictures: vec![
-            shown(&scene, context).picture("fig13.png", pressed, &times)?,
+            VIEW.picture(&whole, store.effort, ["fig13.png", pressed], &times)?,
             Picture::svg("fig13-force", &plot.draw(), alt),
         ],
-        pages: vec![page(13, &scene, context)?],
+        pages: vec![page(13, &whole, store.effort)?],
         facts: json!({ "run": run, "peak_force": peak, "weight": weight, "stroke_mm_and_force_n": curve }),
         ..Made::default()
     })

@@ -1,8 +1,9 @@
 //! What a hard case is, and what is found in it.
 
-use super::scenes::{Course, STRAIN};
+use super::scenes::STRAIN;
 use crate::draw::Drawing;
-use crate::report::{Effort, Picture, Table, number};
+use crate::report::{Effort, Picture, Section, Table, number};
+use crate::runs::Course;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +15,7 @@ pub(crate) struct Case {
     /// What should happen.
     pub(crate) expected: &'static str,
     /// Runs it.
-    pub(crate) run: fn(Effort) -> Result<Findings>,
+    pub(crate) run: fn(&mut Findings, Effort) -> Result<()>,
 }
 
 impl std::fmt::Debug for Case {
@@ -189,7 +190,7 @@ pub(crate) struct Naive {
 }
 
 /// What was found in a case.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Findings {
     pub(crate) naive: Vec<Naive>,
     pub(crate) here: String,
@@ -293,7 +294,7 @@ impl Judge<'_> {
     fn check(&mut self, quantity: &str, value: f64, bound: Bound) -> &mut Check {
         let (what, value) = (
             format!("{}: {quantity}", self.what),
-            self.course.if_finished(value),
+            self.course.if_good(value),
         );
         self.findings.check(what, value, bound).ended(self.course)
     }
@@ -311,8 +312,8 @@ impl Check {
 
     /// Notes when and why the run ended, if it did so early.
     pub(super) fn ended(&mut self, course: &Course) -> &mut Self {
-        self.stopped = course.refusal.as_ref().map(|_| course.end);
-        self.remark = course.said();
+        self.remark = course.failure();
+        self.stopped = self.remark.as_ref().map(|_| course.time);
         self
     }
 
@@ -328,8 +329,9 @@ impl Check {
 pub(crate) struct Record {
     pub(crate) name: String,
     pub(crate) title: String,
-    pub(crate) expected: String,
-    pub(crate) found: Findings,
+    pub(crate) section: Section,
+    pub(crate) naive: Vec<Naive>,
+    pub(crate) checks: Vec<Check>,
     /// Wall time, seconds.
     pub(crate) wall: f64,
 }
@@ -337,7 +339,7 @@ pub(crate) struct Record {
 impl Record {
     /// The worst verdict of the checks.
     pub(super) fn verdict(&self) -> Verdict {
-        let has = |v| self.found.checks.iter().any(|c| c.verdict() == v);
+        let has = |v| self.checks.iter().any(|c| c.verdict() == v);
         [
             Verdict::Failed,
             Verdict::Cured,
@@ -353,7 +355,7 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isosheet_dynamics::StepError;
+    use crate::runs::Ending;
 
     #[test]
     fn verdicts() {
@@ -403,9 +405,13 @@ mod tests {
         let mut f = Findings::default();
         let declared = Shortfall::stops([1.0, 2.0], "step size is 0.5 s");
         let mut stopped = |t: Option<f64>, value: f64, h: f64| {
+            let error = |_| Ending::Error {
+                kind: "StepSize".into(),
+                message: format!("the step size is {h} s"),
+            };
             let course = Course {
-                end: t.unwrap_or(3.0),
-                refusal: t.map(|t| StepError::StepSize { h, t }),
+                time: t.unwrap_or(3.0),
+                ending: t.map_or(Ending::Complete, error),
                 ..Course::default()
             };
             let check = f.at_most("a", value, 2.0);

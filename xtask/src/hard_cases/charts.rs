@@ -34,8 +34,7 @@ pub(crate) const CONDITION: Case = Case {
     run: condition,
 };
 
-fn condition(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn condition(f: &mut Findings, effort: Effort) -> Result<()> {
     let mut rows: Vec<ConditionRow> = Vec::new();
     for level in 0..=effort.pick(2, 5, 5) {
         interrupt::check()?;
@@ -95,7 +94,7 @@ fn condition(effort: Effort) -> Result<Findings> {
     );
     let alt = "Condition number of the mass matrix of bent sheets by mesh level, in three systems of coordinates";
     f.drawing("chart-condition", &condition::plot(&rows), alt);
-    Ok(f)
+    Ok(())
 }
 
 /// The paper's coordinates of a sheet that is held at a vertex, at positions `x`.
@@ -187,13 +186,11 @@ pub(crate) const LITERAL: Case = Case {
 const BUMP: f64 = 0.1;
 const END: f64 = 0.3;
 
-fn literal(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn literal(f: &mut Findings, effort: Effort) -> Result<()> {
     let counts = [75, 150, 300, 600, 1200, 2400, 4800];
     let counts = &counts[..effort.pick(3, 6, 7)];
-    let mut run = hanging(0, BUMP, rattle_composition())?;
-    go(&mut run, 1e-4, 3000)?;
-    let reference = &run.state().x;
+    let (_, reference) = go(hanging(0, BUMP, rattle_composition())?, 1e-4, 3000)?;
+    let reference = &reference;
     let chart = |method, equations| {
         let errors = counts
             .iter()
@@ -204,9 +201,8 @@ fn literal(effort: Effort) -> Result<Findings> {
     let reformed = chart(ChartMethod::ForwardEuler, Equations::Reformed)?;
     let full = chart(ChartMethod::RungeKutta4, Equations::Full)?;
     let em = counts.iter().map(|n| {
-        let mut run = hanging(0, BUMP, energy_momentum())?;
-        let c = go(&mut run, END / *n as f64, *n)?;
-        Ok(c.if_finished(apart(&run.state().x, reference)))
+        let (c, end) = go(hanging(0, BUMP, energy_momentum())?, END / *n as f64, *n)?;
+        Ok(c.if_good(apart(&end, reference)))
     });
     let em: Vec<f64> = em.collect::<Result<_>>()?;
     let last = counts.len() - 1;
@@ -254,7 +250,7 @@ fn literal(effort: Effort) -> Result<Findings> {
     let drawing = log_log("step, ms", "position error after 0.3 s, m", lines);
     let alt = "Position error of M^0 held at a corner against the step";
     f.drawing("literal-scheme", &drawing, alt);
-    Ok(f)
+    Ok(())
 }
 
 /// The distance from the reference of a run in the paper's coordinates, metres; NaN of one that does not end.
@@ -306,9 +302,8 @@ fn trilateration(p: [Vector3<f64>; 3], r: [f64; 3]) -> Vector3<f64> {
     p[0] + x * ex + y * ey + z * ex.cross(&ey)
 }
 
-fn collinear(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
-    placements(&mut f)?;
+fn collinear(f: &mut Findings, effort: Effort) -> Result<()> {
+    placements(f)?;
     let outcome = paper_on_fold()?;
     let method = "The paper's assignment on M^1 folded along its middle line";
     f.naive_run(method, outcome, |strain| {
@@ -331,13 +326,12 @@ fn collinear(effort: Effort) -> Result<Findings> {
         .remark(result.err());
     let square = folded_square()?;
     for (name, method) in methods().take(effort.pick(2, 3, 3)) {
-        let mut run = released(&square, &[corner(1)], method)?;
-        let c = go(&mut run, FRAME, 60)?;
+        let (c, _) = go(released(&square, &[corner(1)], method)?, FRAME, 60)?;
         f.of(&c, format!("M^1 folded along its middle line, {name}"))
             .strain("edge strain in 1 s");
     }
     f.here = "Placement has a typed refusal for the case and two ways on; the chart-free methods do not know it at all.".into();
-    Ok(f)
+    Ok(())
 }
 
 /// What the rules of placement do where the three known vertices are on a line.

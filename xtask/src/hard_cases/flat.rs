@@ -1,12 +1,13 @@
 //! Exactly flat starts, and passing through states where the rods are dependent.
 
 use super::naive::{TEXTBOOK, textbook, textbook_steps};
-use super::scenes::{Course, FRAME, apart, course, go, pinned, released};
+use super::scenes::{FRAME, VIEWPOINT, apart, course, go, pinned, released};
 use super::{Case, Findings, log_log};
-use crate::draw::Series;
+use crate::draw::{Series, Shot, Viewpoint};
 use crate::interrupt;
 use crate::methods::{Named, conservative, damped, methods};
 use crate::report::{Effort, Picture};
+use crate::runs::Course;
 use crate::timing::{bumped, corner};
 use anyhow::Result;
 use isosheet_coords::{
@@ -14,7 +15,6 @@ use isosheet_coords::{
 };
 use isosheet_dynamics::chart::{ChartOptions, Rebase};
 use isosheet_dynamics::{Frames, Method, SheetModel, Simulation, State, rod_rank};
-use isosheet_io::picture::{Camera, Labelled, Look, SheetPicture, montage, render};
 use isosheet_mesh::{MassMatrix, Sheet};
 use isosheet_tests::{Flap, orders};
 use std::f64::consts::FRAC_PI_2;
@@ -27,8 +27,7 @@ pub(crate) const START: Case = Case {
     run: start,
 };
 
-fn start(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn start(f: &mut Findings, effort: Effort) -> Result<()> {
     let sheet = bumped(1, 0.0)?;
     let model = pinned(&sheet, &[corner(1)])?;
     let condition = front_condition(&sheet, &model).map_err(|e| e.to_string());
@@ -52,7 +51,7 @@ fn start(effort: Effort) -> Result<Findings> {
             })?;
             let mut judge = f.of(&c, format!("M^{level}, {name}"));
             judge.strain("largest edge strain in a second");
-            judge.at_most("rejected steps", c.rejected as f64, 0.0);
+            judge.at_most("rejected steps", c.cost.rejected as f64, 0.0);
             judge.at_least("largest energy released, J", -potential, 0.1);
         }
     }
@@ -67,7 +66,7 @@ fn start(effort: Effort) -> Result<Findings> {
     if effort != Effort::Quick {
         f.pictures.push(fall()?);
     }
-    Ok(f)
+    Ok(())
 }
 
 /// The condition number of the mass matrix in the paper's coordinates.
@@ -85,40 +84,29 @@ fn front_condition(sheet: &Sheet, model: &SheetModel) -> Result<f64, ChartError>
 
 /// The fall of M^2, rendered.
 fn fall() -> Result<Picture> {
-    let sheet = bumped(2, 0.0)?;
-    let mut run = released(&sheet, &[corner(2)], Method::default())?;
+    let (sheet, pins) = (bumped(2, 0.0)?, [corner(2)]);
+    let mut run = released(&sheet, &pins, Method::default())?;
     let mut kept = Frames::every(1);
     run.run(1.0, FRAME, &mut [&mut kept, &mut interrupt::observe])?;
     interrupt::check()?;
-    let states = [0, 6, 15, 24, 36, 60].map(|k| &kept.states()[k]);
-    let points = states
-        .iter()
-        .flat_map(|s| s.x.as_chunks::<3>().0.iter().copied());
-    let view = Camera::new([0.0; 3], -62.0, 17.0, 1.0, 6.0);
-    let aspect = view.aspect(points.clone());
-    let camera = view.framing(points, aspect, 0.04);
-    let look = Look {
-        size: [(400.0 * aspect).round() as usize, 400],
-        ..Look::default()
-    };
-    let mut frames = Vec::new();
-    for State { t, x, .. } in states {
-        let picture = SheetPicture {
-            topology: sheet.topology(),
-            positions: x,
-            pins: &[corner(2)],
-            immobile: &[],
-            solids: &[],
-        };
-        frames.push(Labelled {
-            image: render(&picture, &camera, &look)?,
+    let shot = |k: usize| {
+        let State { t, x, .. } = &kept.states()[k];
+        Shot {
+            sheet: &sheet,
+            x,
+            pins: &pins,
+            solids: Vec::new(),
             label: format!("{t:.2} s"),
-        });
-    }
+        }
+    };
+    let shots = [0, 6, 15, 24, 36, 60].map(shot).into();
+    let seen = Viewpoint {
+        height: 400,
+        ..VIEWPOINT
+    };
     let alt = "M^2 released from exactly flat and horizontal, held at a corner (BDF2, 1/60 s). Warm: the upper side at the start; blue: \
                the lower one.";
-    let image = montage(&frames, 6)?.to_png()?;
-    Ok(Picture::file("flat-start.png", image, alt))
+    Ok(Picture::png("flat-start.png", seen.montage(shots, 6)?, alt))
 }
 
 pub(crate) const BRANCH: Case = Case {
@@ -174,8 +162,7 @@ const FOLDED: f64 = 1.1;
 /// Time simulated; the sheet is flat after about a third of it, seconds.
 const DURATION: f64 = 1.0;
 
-fn branch(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn branch(f: &mut Findings, effort: Effort) -> Result<()> {
     let off = |error: f64| {
         (
             format!("Ends {error:.0e} m from the exact motion."),
@@ -188,7 +175,7 @@ fn branch(effort: Effort) -> Result<Findings> {
     let counts = &counts[..effort.pick(2, 5, 6)];
     let mut lines = Vec::new();
     for (k, named) in methods().enumerate() {
-        let points = converges(&mut f, &named, counts)?;
+        let points = converges(f, &named, counts)?;
         lines.push(Series::styled(k, named.0, points));
     }
     // Started exactly there, with the velocities of one of the two ways.
@@ -202,13 +189,16 @@ fn branch(effort: Effort) -> Result<Findings> {
         let Crossing {
             flap, model, start, ..
         } = crossing(FRAC_PI_2)?;
-        let mut run = Simulation::new(model, start, method)?;
-        let c = go(&mut run, DURATION / 200.0, 200)?;
+        let (c, end) = go(
+            Simulation::new(model, start, method)?,
+            DURATION / 200.0,
+            200,
+        )?;
         let is_first = ["implicit Euler", "projection"].contains(&name);
         let bound = if is_first { 2e-2 } else { 1e-3 };
         let what = format!("started exactly at the branch point, {name}, 200 steps");
         f.of(&c, what)
-            .at_most("error, m", off_exact(&flap, &run.state().x), bound);
+            .at_most("error, m", off_exact(&flap, &end), bound);
     }
     f.here = format!(
         "All methods step across the flat state at t = {:.3} s and converge to the closed form at their orders. The half-angle \
@@ -219,7 +209,7 @@ fn branch(effort: Effort) -> Result<Findings> {
     let drawing = log_log("step, ms", "position error after 1 s, m", lines);
     let alt = "Error against the closed form after passing through flat";
     f.drawing("branch-point", &drawing, alt);
-    Ok(f)
+    Ok(())
 }
 
 /// How far the motion in coordinates that do not change on the way ends from the exact one, metres, or why it
@@ -256,11 +246,14 @@ fn converges(f: &mut Findings, named: &Named, counts: &[usize]) -> Result<Vec<[f
         let Crossing {
             flap, model, start, ..
         } = crossing(FOLDED)?;
-        let mut run = Simulation::new(model, start, method.clone())?;
-        let c = go(&mut run, DURATION / n as f64, n)?;
-        let error = c.if_finished(off_exact(&flap, &run.state().x));
+        let (c, end) = go(
+            Simulation::new(model, start, method.clone())?,
+            DURATION / n as f64,
+            n,
+        )?;
+        let error = c.if_good(off_exact(&flap, &end));
         points.push([1e3 * DURATION / n as f64, error]);
-        all.add(c);
+        all.add_run(c);
     }
     let errors: Vec<f64> = points.iter().map(|p| p[1]).collect();
     let expected = match *name {
@@ -279,7 +272,7 @@ fn converges(f: &mut Findings, named: &Named, counts: &[usize]) -> Result<Vec<[f
     }
     judge.strain("largest edge strain");
     if conservative().iter().any(|c| c.0 == *name) {
-        judge.at_most("rejected steps", all.rejected as f64, 0.0);
+        judge.at_most("rejected steps", all.cost.rejected as f64, 0.0);
     }
     Ok(points)
 }

@@ -1,6 +1,6 @@
 //! Time reversal, renumbering, turning the frame, and the number of threads.
 
-use super::naive::{GAUSS_SEIDEL, TEXTBOOK, gauss_seidel_step, textbook_steps};
+use super::naive::{GAUSS_SEIDEL, SWEEPS, TEXTBOOK, gauss_seidel_step, textbook_steps};
 use super::scenes::{FRAME, apart, at_rest, course, go, pinned, tumbling};
 use super::{Case, Findings, semi_log};
 use crate::draw::Series;
@@ -28,8 +28,7 @@ pub(crate) const REVERSAL: Case = Case {
 /// Length of a step there and back, seconds.
 const STEP: f64 = 4e-3;
 
-fn reversal(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn reversal(f: &mut Findings, effort: Effort) -> Result<()> {
     let (model, start) = tumbling(0.1)?;
     let (mut x, mut v) = (start.x.clone(), start.v.clone());
     let turn = |k: usize, _: &[f64], v: &mut [f64]| {
@@ -55,13 +54,14 @@ fn reversal(effort: Effort) -> Result<Findings> {
         let mut points = Vec::new();
         for &n in counts {
             let mut run = Simulation::new(tumbling(0.1)?.0, start.clone(), method.clone())?;
-            let mut c = go(&mut run, STEP, n)?;
+            let mut c = course(&mut run, STEP, n, |_, _| {})?;
             let State { x, v, .. } = run.state().clone();
             let back = State::moving(x, v.iter().map(|v| -v).collect());
-            let mut run = Simulation::new(tumbling(0.1)?.0, back, method.clone())?;
-            c.add(go(&mut run, STEP, n)?);
-            let error = apart(&run.state().x, &start.x);
-            points.push([n as f64 * STEP, c.if_finished(error)]);
+            let run = Simulation::new(tumbling(0.1)?.0, back, method.clone())?;
+            let (back, end) = go(run, STEP, n)?;
+            c.add_run(back);
+            let error = apart(&end, &start.x);
+            points.push([n as f64 * STEP, c.if_good(error)]);
             if n == judged && k < 3 {
                 let quantity = format!("distance from the start after {n} steps there and back, m");
                 f.of(&c, name).at_most(&quantity, error, 1e-9);
@@ -82,7 +82,7 @@ fn reversal(effort: Effort) -> Result<Findings> {
         &drawing,
         "There and back: distance from the start",
     );
-    Ok(f)
+    Ok(())
 }
 
 pub(crate) const SYMMETRY: Case = Case {
@@ -196,8 +196,7 @@ fn turned(level: u32) -> Result<Image> {
 /// Length of a step of the images, seconds.
 const H: f64 = 5e-3;
 
-fn symmetry(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn symmetry(f: &mut Findings, effort: Effort) -> Result<()> {
     let steps = effort.pick(60, 400, 1000);
     // Gauss-Seidel goes through the rods in the order of their numbers.
     let naive = |image: &Image| -> Result<Vec<f64>> {
@@ -205,7 +204,7 @@ fn symmetry(effort: Effort) -> Result<Findings> {
         let mut x = image.sheet.positions().to_vec();
         let mut v = vec![0.0; x.len()];
         for _ in 0..20 {
-            gauss_seidel_step(&model, &mut x, &mut v, H);
+            gauss_seidel_step(&model, (&mut x, &mut v), H, SWEEPS);
         }
         Ok((image.back)(&x))
     };
@@ -218,15 +217,9 @@ fn symmetry(effort: Effort) -> Result<Findings> {
     let rounding = (f64::EPSILON, "rounding (2.2e-16 m)");
     let tolerance = (1e-12, "the tolerance of the lengths (1e-12 m)");
     // What a step is exact to: rounding, or the tolerance of the lengths.
-    compare_images(
-        &mut f,
-        "energy-momentum",
-        &energy_momentum(),
-        rounding,
-        steps,
-    )?;
-    compare_images(&mut f, "BDF2", &Method::default(), tolerance, steps)?;
-    Ok(f)
+    compare_images(f, "energy-momentum", &energy_momentum(), rounding, steps)?;
+    compare_images(f, "BDF2", &Method::default(), tolerance, steps)?;
+    Ok(())
 }
 
 /// How a small difference at the start grows over the steps `want` of the reference: the larger of two twins.
@@ -337,17 +330,15 @@ fn differing(run: impl Fn() -> Result<Vec<f64>> + Sync) -> Result<usize> {
         .count())
 }
 
-fn threads(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn threads(f: &mut Findings, effort: Effort) -> Result<()> {
     let steps = effort.pick(20, 120, 600);
     let level = effort.pick(1, 2, 3);
     let damped = damped().map(|(name, method)| (name, method, 0.0));
     let conservative = ("energy-momentum", energy_momentum(), 0.1);
     for (name, method, bump) in damped.into_iter().chain([conservative]) {
         let different = differing(|| {
-            let mut run = hanging(level, bump, method.clone())?;
-            go(&mut run, FRAME, steps)?;
-            Ok(run.state().x.clone())
+            let (_, end) = go(hanging(level, bump, method.clone())?, FRAME, steps)?;
+            Ok(end)
         })?;
         let what = format!("M^{level}, {name}: numbers that differ after {steps} steps");
         f.at_most(what, different as f64, 0.0);
@@ -375,7 +366,7 @@ fn threads(effort: Effort) -> Result<Findings> {
     f.here = "One run uses one thread, for its linear algebra and for contact, and keeps a fixed order; threads are used across runs. Compared: pools \
               of 1, 2 and 4 threads, and two runs at the same time."
         .into();
-    Ok(f)
+    Ok(())
 }
 
 /// The end of some steps of a cloth that touches a table and itself.
@@ -387,9 +378,6 @@ fn cloth(steps: usize) -> Result<Vec<f64>> {
     let table = ([0.25, 0.25, 0.1], 0.05 - 0.95 * options.activation);
     let contacts = on_table(&model, options, table, Pairs::TableAndItself)?;
     let run = at_rest(model, sheet.positions(), Method::default())?;
-    let mut run = run.with_contact(contacts)?;
-    match go(&mut run, 1e-3, steps)?.refusal {
-        None => Ok(run.state().x.clone()),
-        Some(error) => Err(error.into()),
-    }
+    let (c, end) = go(run.with_contact(contacts)?, 1e-3, steps)?;
+    c.error.map_or(Ok(end), |error| Err(error.into()))
 }

@@ -1,13 +1,15 @@
 //! The same drape on different triangulations.
 
-use super::scenes::{Course, FRAME, at_rest, course};
+use super::scenes::{FRAME, VIEWPOINT, at_rest, go};
 use super::{Case, Findings};
+use crate::draw::Shot;
 use crate::locking::meshes::nearest;
-use crate::report::{Effort, Picture, Table, number};
+use crate::report::{Effort, Picture, Table, extremes, number};
+use crate::runs::Course;
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Method, SheetModel};
-use isosheet_io::picture::{Camera, Labelled, Look, SheetPicture, Solid, montage, render};
+use isosheet_io::picture::Solid;
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{CreasePattern, MassKind, Sheet, VertexId};
 use nalgebra::Isometry3;
@@ -63,9 +65,6 @@ struct End<'a> {
     x: Vec<f64>,
     pins: Vec<VertexId>,
     body: Option<Obstacle>,
-    /// Kinetic energy left, of weight times 1 m, and smallest gap, metres.
-    kinetic: f64,
-    gap: f64,
     course: Course,
 }
 
@@ -95,21 +94,20 @@ impl<'a> End<'a> {
             run = run.with_contact(contacts)?;
             body = Some(table);
         }
-        let (mut kinetic, mut gap) = (0.0, f64::INFINITY);
-        let course = course(&mut run, FRAME, steps, |r, _| {
-            kinetic = r.kinetic / 0.98;
-            gap = gap.min(r.gap.unwrap_or(f64::INFINITY));
-        })?;
+        let (course, x) = go(run, FRAME, steps)?;
         Ok(Self {
             mesh,
             how,
-            x: run.state().x.clone(),
+            x,
             pins,
             body,
-            kinetic,
-            gap,
             course,
         })
+    }
+
+    /// Kinetic energy left, of weight times 1 m.
+    fn kinetic(&self) -> f64 {
+        self.course.kinetic / 0.98
     }
 
     /// Depth of the centre and area of the shadow, see [`shape`].
@@ -119,8 +117,7 @@ impl<'a> End<'a> {
     }
 }
 
-fn drape(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn drape(f: &mut Findings, effort: Effort) -> Result<()> {
     let n = effort.pick(4, 8, 16);
     let meshes: [(&str, Sheet); 3] = [
         (
@@ -144,19 +141,23 @@ fn drape(effort: Effort) -> Result<Findings> {
             let mut judge = f.of(&end.course, format!("{}, {}", end.mesh.0, end.how));
             judge.strain("edge strain");
             if support.1 == Support::Table {
-                judge.at_least("smallest gap, m", end.gap, f64::MIN_POSITIVE);
+                judge.at_least(
+                    "smallest gap, m",
+                    end.course.gap.unwrap_or(f64::INFINITY),
+                    f64::MIN_POSITIVE,
+                );
             }
             if effort != Effort::Quick {
                 let quantity = "kinetic energy at the end, of weight × 1 m";
-                judge.at_most(quantity, end.kinetic, REST);
+                judge.at_most(quantity, end.kinetic(), REST);
             }
         }
         if effort != Effort::Quick {
             f.pictures.push(picture(&ends)?);
         }
         let depths = ends.iter().map(|end| end.shape().0);
-        let [low, high] = depths.fold([f64::INFINITY, 0.0_f64], |[l, h], d| [l.min(d), h.max(d)]);
-        differences.push((high - low, support.0));
+        let difference = extremes(depths).map_or(0.0, |[low, high]| high - low);
+        differences.push((difference, support.0));
         all.extend(ends);
     }
     let listed = differences
@@ -173,7 +174,7 @@ fn drape(effort: Effort) -> Result<Findings> {
               about lines of edges; where they do not run through, bending needs crumpling of the triangles on the way, or does not take place. The \
               round table prefers no direction: the folds of the overhang are where the lines of the mesh let them be."
         .into();
-    Ok(f)
+    Ok(())
 }
 
 fn table_of(all: &[End<'_>]) -> Table {
@@ -201,7 +202,7 @@ fn table_of(all: &[End<'_>]) -> Table {
                 format!("{:.3}", end.shape().1).into()
             }),
             ("kinetic energy left, of weight × 1 m", &|end| {
-                number(end.kinetic).into()
+                number(end.kinetic()).into()
             }),
         ],
     )
@@ -221,35 +222,19 @@ fn shape(sheet: &Sheet, x: &[f64], top: f64) -> (f64, f64) {
 
 /// The three ends on one support.
 fn picture(ends: &[End<'_>]) -> Result<Picture> {
-    let points = ends
-        .iter()
-        .flat_map(|end| end.x.as_chunks::<3>().0.iter().copied());
-    let view = Camera::new([0.0; 3], -62.0, 18.0, 1.0, 6.0);
-    let aspect = view.aspect(points.clone());
-    let camera = view.framing(points, aspect, 0.04);
-    let look = Look {
-        size: [360, (360.0 / aspect).round() as usize],
-        ..Look::default()
-    };
-    let mut frames = Vec::new();
+    let mut shots = Vec::new();
     for end in ends {
         let solids = end.body.iter().map(|b| Solid::of(b, 0.0));
-        let solids = solids.collect::<Result<Vec<_>, _>>()?;
-        let picture = SheetPicture {
-            topology: end.mesh.1.topology(),
-            positions: &end.x,
+        shots.push(Shot {
+            sheet: &end.mesh.1,
+            x: &end.x,
             pins: &end.pins,
-            immobile: &[],
-            solids: &solids,
-        };
-        frames.push(Labelled {
-            image: render(&picture, &camera, &look)?,
+            solids: solids.collect::<Result<_, _>>()?,
             label: String::new(),
         });
     }
     let how = ends[0].how;
     let file = format!("locking-{}.png", how.replace(' ', "-"));
     let alt = format!("At rest, {how}: union jack, one-way grid, irregular mesh.");
-    let image = montage(&frames, 3)?.to_png()?;
-    Ok(Picture::file(&file, image, &alt))
+    Ok(Picture::png(&file, VIEWPOINT.montage(shots, 3)?, &alt))
 }

@@ -1,9 +1,10 @@
 //! The report: DIR/index.html, DIR/verdicts.csv, DIR/verdicts.json and the table on the terminal.
 
-use super::case::{Bound, Check, Record, Verdict};
-use crate::report::{Effort, Page, Table, number};
+use super::case::{Bound, Case, Check, Record, Verdict};
+use crate::report::{Page, Picture, Table, number};
 use crate::store::Store;
 use anyhow::Result;
+use isosheet_io::write_json;
 use maud::{Markup, html};
 use serde_json::json;
 use std::fmt::Write;
@@ -15,25 +16,22 @@ figcaption{font-size:.85rem;color:#666;margin-top:.4rem}h3{font-size:.85rem;font
 section p{margin:.1rem 0 .4rem}ul{margin:.1rem 0 .4rem;padding-left:1.1rem}td.number{white-space:nowrap}";
 
 /// Writes the three files.
-pub(super) fn write(store: &Store, records: &[Record], effort: Effort) -> Result<()> {
-    let page = page(store, records, effort)?;
-    store.write("index.html", page.to_html().as_bytes())?;
-    store.write("verdicts.csv", &checks(records).csv()?)?;
+pub(super) fn write(store: &Store, records: &[Record]) -> Result<()> {
+    checks(records).write_to(&store.path("verdicts.csv"))?;
     let check = |c: &Check| {
         json!({ "what": c.what, "value": c.value, "bound": c.bound, "verdict": c.verdict(),
                 "limitation": c.limitation, "stopped": c.stopped, "remark": c.remark })
     };
     let case = |r: &Record| {
-        let checks: Vec<_> = r.found.checks.iter().map(check).collect();
-        json!({ "case": r.name, "title": r.title, "verdict": r.verdict(), "naive": r.found.naive, "checks": checks,
+        let checks: Vec<_> = r.checks.iter().map(check).collect();
+        json!({ "case": r.name, "title": r.title, "verdict": r.verdict(), "naive": r.naive, "checks": checks,
                 "seconds": r.wall })
     };
     let cases: Vec<_> = records.iter().map(case).collect();
-    store.write_json(
-        "verdicts.json",
-        &json!({ "version": env!("CARGO_PKG_VERSION"), "effort": effort, "cases": cases }),
-    )?;
-    Ok(())
+    let version = env!("CARGO_PKG_VERSION");
+    let all = json!({ "version": version, "effort": store.effort, "cases": cases });
+    write_json(&store.path("verdicts.json"), &all)?;
+    page(records).write(store, "index.html")
 }
 
 /// What was measured, for people.
@@ -57,25 +55,20 @@ fn badge(verdict: Verdict) -> Markup {
     html! { span class={ "verdict " (class) } { (verdict.text()) } }
 }
 
-fn page(store: &Store, records: &[Record], effort: Effort) -> Result<Page> {
-    let sections = records.iter().map(|r| section(store, r));
-    let sections = sections.collect::<Result<Vec<Markup>>>()?;
+fn page(records: &[Record]) -> Page {
     let body = html! {
         p {
             "Situations that break solvers for sheets of rigid rods. Each says what should "
             "happen, shows a naive method at it, and measures isosheet against a bound. Every number is computed by the run that made this page. "
             "Unless stated otherwise: a square of side 1 m and 0.1 kg, lumped masses, gravity 9.8 m/s² along −z, steps of 1/60 s."
         }
-        @if effort == Effort::Quick {
-            p.note { "Made with " code { "--quick" } ": short runs on small meshes." }
-        }
         (summary(records))
-        @for section in &sections { (section) }
+        @for record in records { (record.section) }
     };
-    Ok(Page {
+    Page {
         style: MORE_STYLE,
         ..Page::new("Hard cases", body)
-    })
+    }
 }
 
 fn summary(records: &[Record]) -> Markup {
@@ -91,7 +84,7 @@ fn summary(records: &[Record]) -> Markup {
             thead { tr { th { "Case" } th { "Checks" } th { "Naive method" } th { "isosheet" } } }
             tbody { @for r in records { tr {
                 td { a href={ "#" (r.name) } { (r.title) } }
-                td { (r.found.checks.len()) }
+                td { (r.checks.len()) }
                 td { (naive_word(r)) }
                 td { (badge(r.verdict())) }
             } } }
@@ -100,8 +93,8 @@ fn summary(records: &[Record]) -> Markup {
 }
 
 fn naive_word(r: &Record) -> &'static str {
-    let failed = r.found.naive.iter().filter(|n| n.failed).count();
-    match (failed, r.found.naive.len()) {
+    let failed = r.naive.iter().filter(|n| n.failed).count();
+    match (failed, r.naive.len()) {
         (_, 0) => "none shown",
         (0, _) => "copes",
         (f, n) if f == n => "fails",
@@ -109,33 +102,34 @@ fn naive_word(r: &Record) -> &'static str {
     }
 }
 
-fn section(store: &Store, r: &Record) -> Result<Markup> {
-    let mut pictures = Vec::new();
-    for picture in &r.found.pictures {
-        let inside = picture.inside(&store.read(&picture.path)?);
-        pictures.push(html! { figure { (inside) figcaption { (picture.alt) } } });
-    }
-    Ok(html! {
-        section id=(r.name) {
-            h2 { (r.title) (badge(r.verdict())) }
+/// The section of a case: what isosheet does, in words, pictures and tables.
+pub(super) fn section(
+    case: &Case,
+    r: &Record,
+    here: &str,
+    (pictures, tables): (&[Picture], &[Table]),
+) -> Markup {
+    html! {
+        section id=(case.name) {
+            h2 { (case.title) (badge(r.verdict())) }
             h3 { "What should happen" }
-            p { (r.expected) }
-            @if !r.found.naive.is_empty() {
+            p { (case.expected) }
+            @if !r.naive.is_empty() {
                 h3 { "What a naive method does" }
-                ul { @for n in &r.found.naive {
+                ul { @for n in &r.naive {
                     li { (n.method) ": " b { @if n.failed { "fails" } @else { "copes" } } ". " (n.outcome) }
                 } }
             }
             h3 { "What isosheet does" }
-            p { (r.found.here) }
+            p { (here) }
             div.scroll { table {
                 thead { tr { th { "Check" } th { "Measured" } th { "Bound" } th { "Verdict" } } }
-                tbody { @for check in &r.found.checks { (check_row(check)) } }
+                tbody { @for check in &r.checks { (check_row(check)) } }
             } }
-            @for picture in &pictures { (picture) }
-            @for table in &r.found.tables { (table) }
+            @for picture in pictures { figure { (picture.inside) figcaption { (picture.alt) } } }
+            @for table in tables { (table) }
         }
-    })
+    }
 }
 
 fn check_row(check: &Check) -> Markup {
@@ -158,7 +152,7 @@ fn check_row(check: &Check) -> Markup {
 fn of_all(records: &[Record]) -> impl Iterator<Item = (&Record, &Check)> {
     records
         .iter()
-        .flat_map(|r| r.found.checks.iter().map(move |c| (r, c)))
+        .flat_map(|r| r.checks.iter().map(move |c| (r, c)))
 }
 
 /// Every check, for programs.
@@ -197,7 +191,7 @@ pub(super) fn text(records: &[Record]) -> String {
         &[
             ("case", &|r| r.name.as_str().into()),
             ("isosheet", &|r| {
-                format!("{} ({} checks)", r.verdict().text(), r.found.checks.len()).into()
+                format!("{} ({} checks)", r.verdict().text(), r.checks.len()).into()
             }),
             ("naive method", &|r| naive_word(r).into()),
             ("seconds", &|r| format!("{:.1}", r.wall).into()),

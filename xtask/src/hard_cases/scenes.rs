@@ -1,14 +1,25 @@
 //! Sheets, methods and ways to run them that several cases share.
 
-use crate::interrupt::{self, Interrupted};
+use crate::draw::Viewpoint;
+use crate::interrupt::Interrupted;
+use crate::runs::{Course, Plan};
 use crate::timing::bumped;
 use anyhow::Result;
-use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepError, StepReport};
+use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepReport};
 use isosheet_mesh::{MassKind, Sheet, VertexId};
 use std::ops::ControlFlow;
 
 /// The length of a step wherever a case does not say otherwise, seconds.
 pub(super) const FRAME: f64 = 1.0 / 60.0;
+
+/// How sheets are seen.
+pub(super) const VIEWPOINT: Viewpoint = Viewpoint {
+    azimuth: -62.0,
+    elevation: 17.0,
+    distance: 6.0,
+    depth: f64::INFINITY,
+    height: 300,
+};
 
 /// Bound for the relative edge length error of accepted steps, unless the rounding of the coordinates is
 /// larger.
@@ -58,8 +69,8 @@ pub(super) fn stopped(
 ) -> Result<(u32, f64)> {
     let (mut stopped, mut strain) = (0, 0.0_f64);
     for k in 0..runs {
-        let course = go(&mut build(k)?, FRAME, steps)?;
-        stopped += u32::from(course.steps < steps);
+        let (course, _) = go(build(k)?, FRAME, steps)?;
+        stopped += u32::from(course.cost.steps < steps);
         strain = strain.max(course.strain);
     }
     Ok((stopped, strain))
@@ -70,55 +81,6 @@ pub(super) fn top_row() -> Vec<VertexId> {
     (20..25).map(VertexId).collect()
 }
 
-/// What happened in a number of steps.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Course {
-    /// Steps taken.
-    pub(super) steps: usize,
-    pub(super) rejected: usize,
-    /// Largest relative edge length error.
-    pub(super) strain: f64,
-    /// Largest absolute energy error, joules.
-    pub(super) drift: f64,
-    /// Largest energy error of the sign of a gain, joules.
-    pub(super) gain: f64,
-    /// Largest kinetic energy, joules.
-    pub(super) kinetic: f64,
-    /// Time at its end, seconds.
-    pub(super) end: f64,
-    /// Why it ended early.
-    pub(super) refusal: Option<StepError>,
-}
-
-impl Course {
-    /// The error message of an early end, shortened to its first reason.
-    pub(super) fn said(&self) -> Option<String> {
-        self.refusal.as_ref().map(ToString::to_string)
-    }
-
-    /// Takes another run into account: the worst of both, and the first error.
-    pub(super) fn add(&mut self, other: Self) {
-        self.steps += other.steps;
-        self.rejected += other.rejected;
-        self.strain = self.strain.max(other.strain);
-        self.drift = self.drift.max(other.drift);
-        self.gain = self.gain.max(other.gain);
-        self.kinetic = self.kinetic.max(other.kinetic);
-        if self.refusal.is_none() {
-            (self.end, self.refusal) = (other.end, other.refusal);
-        }
-    }
-
-    /// NaN if the run ended early: no number of it is what was asked for.
-    pub(super) fn if_finished(&self, value: f64) -> f64 {
-        if self.refusal.is_none() {
-            value
-        } else {
-            f64::NAN
-        }
-    }
-}
-
 /// Takes `steps` steps or as many as are accepted.
 pub(super) fn course(
     run: &mut Simulation,
@@ -126,28 +88,21 @@ pub(super) fn course(
     steps: usize,
     mut watch: impl FnMut(&StepReport, &State),
 ) -> Result<Course, Interrupted> {
-    let mut course = Course::default();
-    let mut observe = |run: &Simulation, report: &StepReport| {
-        course.steps += 1;
-        course.rejected += report.rejected;
-        course.strain = course.strain.max(report.strain);
-        course.drift = course.drift.max(report.energy_drift.abs());
-        course.gain = course.gain.max(report.energy_drift);
-        course.kinetic = course.kinetic.max(report.kinetic);
+    let mut look = |run: &Simulation, report: &StepReport| {
         watch(report, run.state());
         ControlFlow::Continue(())
     };
-    let duration = steps as f64 * h;
-    let end = run.run(duration, h, &mut [&mut observe, &mut interrupt::observe]);
-    interrupt::check()?;
-    course.refusal = end.err();
-    course.end = run.state().t;
-    Ok(course)
+    Plan::new(h, steps as f64 * h).run(run, &mut look)
 }
 
-/// Takes steps as [`course`] does, unwatched.
-pub(super) fn go(run: &mut Simulation, h: f64, steps: usize) -> Result<Course, Interrupted> {
-    course(run, h, steps, |_, _| {})
+/// Takes steps as [`course`] does, unwatched; returns the positions at the end as well.
+pub(super) fn go(
+    mut run: Simulation,
+    h: f64,
+    steps: usize,
+) -> Result<(Course, Vec<f64>), Interrupted> {
+    let course = course(&mut run, h, steps, |_, _| {})?;
+    Ok((course, run.state().x.clone()))
 }
 
 /// Largest distance of corresponding vertices, metres.

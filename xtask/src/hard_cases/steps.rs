@@ -1,11 +1,12 @@
 //! Step sizes, and free fall.
 
 use super::naive::{TEXTBOOK, textbook, textbook_steps};
-use super::scenes::{Course, apart, course, go};
+use super::scenes::{apart, course, go};
 use super::{Case, Findings, Shortfall, log_log};
 use crate::draw::Series;
 use crate::methods::{Named, damped, methods};
 use crate::report::{Effort, number};
+use crate::runs::Course;
 use crate::timing::{bumped, hanging};
 use anyhow::Result;
 use isosheet_dynamics::{SheetModel, Simulation, State, leave_flat};
@@ -30,15 +31,14 @@ const ROUND_OFF: &str = "RATTLE solves for the rods' impulses also where they ar
 /// Time after which pendulums are compared, seconds.
 const END: f64 = 0.1;
 
-fn sizes(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn sizes(f: &mut Findings, effort: Effort) -> Result<()> {
     let counts: &[usize] = effort.quick_or(
         &[1, 10, 100, 1000],
         &[1, 3, 10, 30, 100, 1000, 10_000, 100_000],
     );
     let mut lines = Vec::new();
     for (k, named) in methods().enumerate() {
-        let points = pendulum(&mut f, &named, counts, effort)?;
+        let points = pendulum(f, &named, counts, effort)?;
         lines.push(Series::styled(k, named.0, points));
     }
     // The sheet at its extremes.
@@ -48,11 +48,11 @@ fn sizes(effort: Effort) -> Result<Findings> {
     ];
     for extreme in extremes {
         for named in methods() {
-            bumped_sheet(&mut f, named, extreme)?;
+            bumped_sheet(f, named, extreme)?;
         }
     }
     for named in damped() {
-        flat_sheet(&mut f, &named, effort)?;
+        flat_sheet(f, &named, effort)?;
     }
     let problem = Pendulum::default();
     for h in [1e-3, 0.1] {
@@ -74,7 +74,7 @@ fn sizes(effort: Effort) -> Result<Findings> {
     let drawing = log_log("step, s", "position error after 0.1 s, m", lines);
     let alt = "A triangle held at an edge (exact pendulum): error against the step";
     f.drawing("step-sizes", &drawing, alt);
-    Ok(f)
+    Ok(())
 }
 
 /// The errors of the pendulum against the step.
@@ -88,11 +88,11 @@ fn pendulum(
     let mut points = Vec::new();
     let mut all = Course::default();
     for &n in counts {
-        let mut run = Simulation::new(problem.model(), problem.start(), method.clone())?;
         let h = END / n as f64;
-        let c = go(&mut run, h, n)?;
-        points.push([h, c.if_finished(apart(&run.state().x, &problem.exact(END)))]);
-        all.add(c);
+        let run = Simulation::new(problem.model(), problem.start(), method.clone())?;
+        let (c, end) = go(run, h, n)?;
+        points.push([h, c.if_good(apart(&end, &problem.exact(END)))]);
+        all.add_run(c);
     }
     let [smallest, error] = points[points.len() - 1];
     let bound = match (*name, effort) {
@@ -111,8 +111,8 @@ fn pendulum(
 
 /// `M^1` hanging by a corner from a bump.
 fn bumped_sheet(f: &mut Findings, (name, method): Named, (h, steps): (f64, usize)) -> Result<()> {
-    let c = go(&mut hanging(1, 0.05, method)?, h, steps)?;
-    let (size, scale) = (number(h), c.kinetic.max(1e-12));
+    let (c, _) = go(hanging(1, 0.05, method)?, h, steps)?;
+    let (size, scale) = (number(h), c.most_kinetic.max(1e-12));
     f.of(&c, format!("M^1, {name}, {steps} steps of {size} s"))
         .strain("edge strain");
     let mut judge = f.of(&c, format!("M^1, {name}, steps of {size} s"));
@@ -130,7 +130,7 @@ fn bumped_sheet(f: &mut Findings, (name, method): Named, (h, steps): (f64, usize
 fn flat_sheet(f: &mut Findings, (name, method): &Named, effort: Effort) -> Result<()> {
     for h in [1e-6, 0.1] {
         let steps = effort.pick(30, if h < 1e-3 { 4000 } else { 30 }, 4000);
-        let c = go(&mut hanging(1, 0.0, method.clone())?, h, steps)?;
+        let (c, _) = go(hanging(1, 0.0, method.clone())?, h, steps)?;
         let what = format!("M^1 from exactly flat, {name}, steps of {} s", number(h));
         let mut judge = f.of(&c, what);
         let check = judge.strain("edge strain");
@@ -165,8 +165,7 @@ fn thrown(sheet: &Sheet) -> Result<SheetModel> {
     Ok(SheetModel::new(sheet, 0.1, MassKind::Lumped)?.with_gravity())
 }
 
-fn free_fall(effort: Effort) -> Result<Findings> {
-    let mut f = Findings::default();
+fn free_fall(f: &mut Findings, effort: Effort) -> Result<()> {
     let level = effort.pick(1, 2, 3);
     let sheet = bumped(level, 0.0)?;
     for (state, displaced) in [("exactly flat", 0.0), ("crumpled", 0.3)] {
@@ -191,7 +190,7 @@ fn free_fall(effort: Effort) -> Result<Findings> {
                 _ => None,
             };
             let what = format!("M^{level} {state}, {}", named.0);
-            throw(&mut f, what, named, (thrown(&sheet)?, &x))?;
+            throw(f, what, named, (thrown(&sheet)?, &x))?;
             let from = f.checks.len() - 3;
             if let Some(at) = stops.filter(|_| displaced == 0.0) {
                 let stops = Shortfall::stops(at, "the length constraints are dependent");
@@ -204,7 +203,7 @@ fn free_fall(effort: Effort) -> Result<Findings> {
     f.here = format!(
         "M^{level} thrown with 3.2 m/s, {STEPS} steps of 10 ms. The parabola of the first-order methods is that of their discrete time."
     );
-    Ok(f)
+    Ok(())
 }
 
 /// The mean place of all vertices, metres.

@@ -1,5 +1,6 @@
 //! Bisection for the value from which on a scene behaves otherwise.
 
+use crate::runs::Course;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 
@@ -35,16 +36,19 @@ impl Bracket {
 }
 
 /// Halves the interval of logarithms so many times, or until a scene is undecided. The ends of the interval
-/// themselves are not tried.
-pub(super) fn bisect(
+/// themselves are not tried. `probe` says what the scene does at a value, and how its run went; the worst of
+/// all runs is returned as well.
+pub(super) fn search(
     [mut low, mut high]: [f64; 2],
     halvings: usize,
-    mut probe: impl FnMut(f64) -> Result<Verdict>,
-) -> Result<Bracket> {
-    let mut bracket = Bracket::default();
+    mut probe: impl FnMut(f64) -> Result<(Verdict, Course)>,
+) -> Result<(Course, Bracket)> {
+    let (mut worst, mut bracket) = (Course::default(), Bracket::default());
     for _ in 0..halvings {
         let middle = (low * high).sqrt();
-        match probe(middle)? {
+        let (verdict, run) = probe(middle)?;
+        worst.add_run(run);
+        match verdict {
             Verdict::Below => {
                 low = middle;
                 bracket.below = Some(middle);
@@ -59,7 +63,7 @@ pub(super) fn bisect(
             }
         }
     }
-    Ok(bracket)
+    Ok((worst, bracket))
 }
 
 #[cfg(test)]
@@ -68,22 +72,22 @@ mod tests {
 
     #[test]
     fn the_critical_value_is_bracketed() {
-        let step = |x: f64| {
-            Ok(if x < 3.0 {
-                Verdict::Below
-            } else {
-                Verdict::Above
-            })
+        let find = |halvings, verdict: &dyn Fn(f64) -> Verdict| {
+            let probe = |x| Ok((verdict(x), Course::default()));
+            search([1.0, 16.0], halvings, probe).unwrap().1
         };
-        let found = bisect([1.0, 16.0], 10, step).unwrap();
+        let found = find(10, &|x| match x < 3.0 {
+            true => Verdict::Below,
+            false => Verdict::Above,
+        });
         let (below, above) = (found.below.unwrap(), found.above.unwrap());
         assert!(below < 3.0 && above >= 3.0 && found.undecided.is_empty());
         // Ten halvings of a ratio of 16.
         assert!((above / below - 16.0_f64.powf(1.0 / 1024.0)).abs() < 1e-12);
         assert!((found.middle().unwrap() - (below * above).sqrt()).abs() < 1e-15);
-        let never = bisect([1.0, 16.0], 4, |_| Ok(Verdict::Below)).unwrap();
+        let never = find(4, &|_| Verdict::Below);
         assert_eq!((never.above, never.middle()), (None, None));
-        let lost = bisect([1.0, 16.0], 4, |_| Ok(Verdict::Undecided("lost".into())));
-        assert_eq!(lost.unwrap().undecided, "at 4.000: lost");
+        let lost = find(4, &|_| Verdict::Undecided("lost".into()));
+        assert_eq!(lost.undecided, "at 4.000: lost");
     }
 }

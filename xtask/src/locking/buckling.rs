@@ -1,16 +1,17 @@
 //! Lateral buckling of a strip that is clamped at one end and stands on edge.
 
 use super::Findings;
-use super::bisection::Verdict;
-use super::course::{Kept, Plan, Scene};
+use super::bisection::{Bracket, Verdict, search};
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
-use super::plot::{Dot, Figure, Panel};
+use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
-use super::sample::{Sample, Search, requirements};
+use super::sample::{Sample, requirements};
+use super::scene::Scene;
 use crate::draw::{Axis, Drawing};
 use crate::methods::implicit_euler;
 use crate::report::{Effort, Table};
+use crate::runs::{Course, Plan};
 use anyhow::Result;
 use isosheet_mesh::Sheet;
 
@@ -79,7 +80,7 @@ fn prandtl_michell() -> f64 {
 }
 
 /// What the strip does under a load, and what its steps kept.
-fn verdict(isometry: Isometry, flat: &Sheet, load: f64, plan: &Plan) -> Result<(Verdict, Kept)> {
+fn verdict(isometry: Isometry, flat: &Sheet, load: f64, plan: &Plan) -> Result<(Verdict, Course)> {
     let rigidity = DENSITY * GRAVITY * STRIP.free.powi(3) / load;
     let clamp = STRIP.clamp(flat);
     let material = Material::plate(flat, DENSITY, rigidity, &clamp);
@@ -88,8 +89,8 @@ fn verdict(isometry: Isometry, flat: &Sheet, load: f64, plan: &Plan) -> Result<(
         .with_acceleration([0.0, -GRAVITY, -IMPERFECTION * GRAVITY])
         .with_damping(DAMPING)?
         .with_pins(&clamp)?;
-    let course = Scene::flat(model, flat).by(implicit_euler()).run(plan)?;
-    let aside = course.mean(&STRIP.tip(flat), 2, f64::abs);
+    let (course, end) = Scene::flat(model, flat).by(implicit_euler()).run(plan)?;
+    let aside = end.mean(&STRIP.tip(flat), 2, f64::abs);
     let verdict = if aside > BUCKLED * STRIP.free {
         Verdict::Above
     } else if course.is_good() {
@@ -97,14 +98,14 @@ fn verdict(isometry: Isometry, flat: &Sheet, load: f64, plan: &Plan) -> Result<(
     } else {
         Verdict::Undecided(course.ending.name().to_owned())
     };
-    Ok((verdict, course.kept))
+    Ok((verdict, course))
 }
 
 /// A mesh: its pattern, the angle of its squares against the strip (degrees), squares across.
 type Mesh = (Pattern, f64, usize);
 
 /// Where a strip buckles: critical load `q L^3 / (D w)`.
-type Buckled = Sample<Mesh, Search>;
+type Buckled = Sample<Mesh, Bracket>;
 
 /// Critical loads of the beams that bound the strip: its energy lies between theirs.
 fn bounds() -> [f64; 2] {
@@ -113,9 +114,11 @@ fn bounds() -> [f64; 2] {
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
-    let effort = records.effort;
+    let effort = records.store.effort;
     let duration = effort.quick_or(5.0, 20.0);
-    let plan = Plan::new(STEP, duration, effort.patience(0.2, 6.0)).until_rest(REST);
+    let plan = Plan::new(STEP, duration)
+        .within(effort.quick_or(0.2, 6.0))
+        .until_rest(REST);
     let halvings = effort.quick_or(3, 8);
     let sizes: &[usize] = effort.quick_or(&[2], &[2, 4]);
     let mut patterns: Vec<(Pattern, f64)> = Pattern::ALL.map(|p| (p, 0.0)).to_vec();
@@ -131,10 +134,10 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         |_| meshes.clone(),
         |isometry, &(pattern, degrees, across)| {
             let sheet = STRIP.mesh(pattern, across, degrees)?;
-            let search = Search::over(LOADS, halvings, |load| {
+            let (worst, found) = search(LOADS, halvings, |load| {
                 verdict(isometry, &sheet, load, &plan)
             })?;
-            Ok((sheet.topology().vertex_count(), search, ()))
+            Ok((sheet.topology().vertex_count(), worst, found))
         },
     )?;
     all.sort_by_key(|b| (b.isometry, b.job.0.number(), b.job.1 as usize, b.job.2));
@@ -159,7 +162,7 @@ fn table(all: &[Buckled], plan: &Plan, halvings: usize) -> Table {
              {BUCKLED} of its length: at most {halvings} halvings of the ratio of the loads. Every run ends at rest, after {} s, or after {} s of wall time; the \
              search ends where a run neither moves aside nor reaches its end",
             plan.duration,
-            plan.limit()
+            plan.patience
         ),
         all,
         &[
@@ -168,11 +171,11 @@ fn table(all: &[Buckled], plan: &Plan, halvings: usize) -> Table {
             ("squares across", &|b| b.job.2.into()),
             ("V", &|b| b.vertices.into()),
             ("model", &|b| b.isometry.to_string().into()),
-            ("upright at", &|b| b.run.found.below.into()),
-            ("buckled at", &|b| b.run.found.above.into()),
+            ("upright at", &|b| b.measured.below.into()),
+            ("buckled at", &|b| b.measured.above.into()),
             ("lower bound", &|_| bounds[0].into()),
             ("upper bound", &|_| bounds[1].into()),
-            ("not decided", &|b| b.run.found.undecided.as_str().into()),
+            ("not decided", &|b| b.measured.undecided.as_str().into()),
         ],
     )
     .named("buckling")
@@ -182,7 +185,7 @@ fn table(all: &[Buckled], plan: &Plan, halvings: usize) -> Table {
 /// bounds, of the others the load of the plate, see [`ABOUT`]. (Membranes and equations in weak form do
 /// not resist the first small twist: strains are quadratic in it.)
 fn error(b: &Buckled) -> Option<f64> {
-    let ([low, high], load) = (bounds(), b.run.found.middle()?);
+    let ([low, high], load) = (bounds(), b.measured.middle()?);
     let reference = match b.isometry {
         Isometry::Rods => load.clamp(low, high),
         _ => low,
@@ -198,7 +201,7 @@ fn plot(all: &[Buckled], patterns: &[(Pattern, f64)], sizes: &[usize]) -> Drawin
         let mesh = sizes.iter().position(|n| *n == across)?;
         // Models and sizes beside one another.
         let aside = 0.2 * b.isometry.aside() + 0.09 * (mesh as f64 - 0.5);
-        Some(Dot::of(b, mesh, place + aside, b.run.found.middle()))
+        Some(Dot::of(b, mesh, place + aside, b.measured.middle()))
     });
     let name = |(p, degrees): &(Pattern, f64)| match degrees {
         0.0 => p.to_string(),

@@ -1,16 +1,17 @@
 //! The drop of a heavy strip against the exact elastica, on meshes turned against the strip.
 
 use super::Findings;
-use super::course::{Course, Plan, Scene};
 use super::cylinder::DIRECTIONS;
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
-use super::plot::{Dot, Figure, Panel, order};
+use super::plots::{Dot, Figure, Panel, order};
 use super::records::Records;
 use super::sample::{OfModel, Sample, requirements};
+use super::scene::{End, Scene};
 use crate::draw::{Axis, Drawing};
 use crate::methods::implicit_euler;
-use crate::report::{Table, number};
+use crate::report::{Table, extremes, number};
+use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::SheetModel;
 use isosheet_mesh::Sheet;
@@ -55,7 +56,7 @@ struct Job {
 }
 
 /// A strip at rest, its drop, and the exact one (metres).
-type Hung = Sample<Job, Course, [f64; 2]>;
+type Hung = Sample<Job, [f64; 2]>;
 
 impl Hung {
     fn spacing(&self) -> f64 {
@@ -65,7 +66,7 @@ impl Hung {
     /// The relative error of the drop, of a run that reached its end.
     fn error(&self) -> Option<f64> {
         let [drop, exact] = self.measured;
-        self.run.is_good().then(|| drop / exact - 1.0)
+        self.course.is_good().then(|| drop / exact - 1.0)
     }
 
     /// Its size.
@@ -92,8 +93,8 @@ fn combinations(directions: &[f64]) -> Vec<Job> {
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
-    let effort = records.effort;
-    let plan = Plan::new(STEP, effort.quick_or(3.0, 10.0), effort.patience(0.3, 4.0));
+    let effort = records.store.effort;
+    let plan = Plan::new(STEP, effort.quick_or(3.0, 10.0)).within(effort.quick_or(0.3, 4.0));
     let plan = plan.until_rest(REST);
     let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
     let directions: &[f64] = effort.quick_or(&[0.0, 22.5], &DIRECTIONS);
@@ -108,8 +109,8 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
             let sheet = STRIP.mesh(job.pattern, job.across, job.degrees)?;
             let clamp = STRIP.clamp(&sheet);
             let material = Material::plate(&sheet, DENSITY, job.rigidity, &clamp);
-            let course = scene(&sheet, isometry.model(&sheet, material)?)?.run(&plan)?;
-            let drop = [drop(&sheet, &course), exact_drop(job.rigidity)];
+            let (course, end) = scene(&sheet, isometry.model(&sheet, material)?)?.run(&plan)?;
+            let drop = [drop(&sheet, &end), exact_drop(job.rigidity)];
             Ok((sheet.topology().vertex_count(), course, drop))
         },
     )?;
@@ -142,8 +143,8 @@ pub(super) fn scene(sheet: &Sheet, model: SheetModel) -> Result<Scene> {
 }
 
 /// How far the free edge is below the clamp at the end, metres: the mean over its vertices.
-pub(super) fn drop(sheet: &Sheet, course: &Course) -> f64 {
-    0.0 - course.mean(&STRIP.tip(sheet), 2, |z| z)
+pub(super) fn drop(sheet: &Sheet, end: &End) -> f64 {
+    0.0 - end.mean(&STRIP.tip(sheet), 2, |z| z)
 }
 
 /// The exact drop of the tip, metres.
@@ -163,7 +164,7 @@ fn table(all: &[Hung], plan: &Plan) -> Table {
              time. A negative error is a strip that is too stiff; a positive one comes from the springs along the clamp, which are as soft as those between two \
              free rows of triangles and bend over half the length",
             plan.duration,
-            plan.limit()
+            plan.patience
         ),
         all,
         &[
@@ -173,14 +174,14 @@ fn table(all: &[Hung], plan: &Plan) -> Table {
             ("D, N m", &|h| h.job.rigidity.into()),
             ("V", &|h| h.vertices.into()),
             ("model", &|h| h.isometry.to_string().into()),
-            ("ending", &|h| h.run.ending.name().into()),
-            ("t at the end, s", &|h| h.run.t.into()),
-            ("factorisations", &|h| h.run.cost.factorisations.into()),
-            ("speed left, m/s", &|h| h.run.speed.into()),
+            ("ending", &|h| h.course.ending.name().into()),
+            ("t at the end, s", &|h| h.course.time.into()),
+            ("factorisations", &|h| h.course.cost.factorisations.into()),
+            ("speed left, m/s", &|h| h.course.speed.into()),
             ("drop, m", &|h| h.measured[0].into()),
             ("exact, m", &|h| h.measured[1].into()),
             ("error", &|h| h.error().into()),
-            ("message", &|h| h.run.ending.message().into()),
+            ("message", &|h| h.course.ending.message().into()),
         ],
     )
     .named("cantilever")
@@ -217,18 +218,13 @@ fn orders(all: &[Hung], directions: &[f64]) -> Table {
 
 fn remark(isometry: Isometry, all: &[Hung]) -> String {
     let of = OfModel::of(isometry, all).all;
-    let errors: Vec<f64> = of.iter().filter_map(|h| h.error()).collect();
-    if errors.is_empty() {
+    let errors = || of.iter().filter_map(|h| h.error());
+    let Some(range) = extremes(errors()) else {
         return format!("{isometry}: no strip reaches the end.");
-    }
-    let low = errors.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = errors.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    };
+    let ([low, high], ended, all) = (range.map(|e| number(100.0 * e)), errors().count(), of.len());
     format!(
-        "{isometry}: {} of {} strips reach the end, with errors of the drop from {} to {} %.",
-        errors.len(),
-        of.len(),
-        number(100.0 * low),
-        number(100.0 * high)
+        "{isometry}: {ended} of {all} strips reach the end, with errors of the drop from {low} to {high} %."
     )
 }
 

@@ -1,14 +1,15 @@
 //! Flat sheets that are clamped along lines of any direction.
 
-use super::course::{Course, Plan, Scene};
 use super::isometry::{Isometry, Material};
-use super::plot::{Dot, Figure, Panel};
+use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::sample::{OfModel, Sample, requirements};
+use super::scene::Scene;
 use super::{Findings, median};
 use crate::draw::{Axis, Drawing};
 use crate::methods::damped;
 use crate::report::{Effort, Table};
+use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::Method;
 use isosheet_mesh::generate::{self, Diagonals};
@@ -124,7 +125,7 @@ fn sheets(isometry: Isometry, by: usize, effort: Effort) -> usize {
 
 /// A clamped sheet at the end of its run, its rigidity (N m), and how far its lowest vertex is below the
 /// clamp (metres).
-type Fallen = Sample<Job, Course, (f64, f64)>;
+type Fallen = Sample<Job, (f64, f64)>;
 
 fn method(f: &Fallen) -> &'static str {
     damped()[f.job.0].0
@@ -136,9 +137,9 @@ fn kind(f: &Fallen) -> usize {
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
-    let effort = records.effort;
+    let effort = records.store.effort;
     let duration = effort.quick_or(0.5, 2.0);
-    let plan = Plan::new(1.0 / 60.0, duration, effort.patience(0.3, 2.0));
+    let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.3, 2.0));
     let jobs = |isometry| -> Vec<Job> {
         let of = |by| (0..sheets(isometry, by, effort)).map(move |number| (by, number));
         (0..damped().len()).flat_map(of).collect()
@@ -146,9 +147,9 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     let all = records.of_models(jobs, |isometry, &(by, number)| {
         let clamped = Clamped::new(number)?;
         let (_, method) = damped()[by].clone();
-        let course = clamped.scene(isometry, method)?.run(&plan)?;
+        let (course, end) = clamped.scene(isometry, method)?.run(&plan)?;
         let vertices = clamped.sheet.topology().vertex_count();
-        let drop = 0.0 - course.heights()[0];
+        let drop = 0.0 - end.heights()[0];
         Ok((vertices, course, (clamped.rigidity, drop)))
     })?;
     let targets = requirements(&all, |of| {
@@ -175,8 +176,7 @@ fn runs(all: &[Fallen], plan: &Plan) -> Table {
     Table::of(
         format!(
             "Every clamped sheet: steps of 1/60 s, {} s simulated, at most {} s of wall time",
-            plan.duration,
-            plan.limit()
+            plan.duration, plan.patience
         ),
         all,
         &[
@@ -186,15 +186,15 @@ fn runs(all: &[Fallen], plan: &Plan) -> Table {
             ("model", &|f| f.isometry.to_string().into()),
             ("method", &|f| method(f).into()),
             ("D, N m", &|f| f.measured.0.into()),
-            ("ending", &|f| f.run.ending.name().into()),
-            ("t at the end, s", &|f| f.run.t.into()),
+            ("ending", &|f| f.course.ending.name().into()),
+            ("t at the end, s", &|f| f.course.time.into()),
             ("factorisations per step", &|f| {
-                f.run.factorisations().into()
+                f.course.cost.factorisations_per_step().into()
             }),
-            ("most in a step", &|f| f.run.worst.into()),
+            ("most in a step", &|f| f.course.worst.into()),
             ("drop, m", &|f| f.measured.1.into()),
-            ("wall time, s", &|f| f.run.cost.wall.into()),
-            ("message", &|f| f.run.ending.message().into()),
+            ("wall time, s", &|f| f.course.cost.wall.into()),
+            ("message", &|f| f.course.ending.message().into()),
         ],
     )
     .named("clamped-runs")
@@ -202,7 +202,7 @@ fn runs(all: &[Fallen], plan: &Plan) -> Table {
 
 /// A group, those of it that reached their end, and those that did not.
 fn split(group: Vec<&Fallen>) -> (Vec<&Fallen>, Vec<&Fallen>, Vec<&Fallen>) {
-    let (good, bad) = group.iter().partition(|f| f.run.is_good());
+    let (good, bad) = group.iter().partition(|f| f.course.is_good());
     (group, good, bad)
 }
 
@@ -216,13 +216,13 @@ fn summary(all: &[Fallen]) -> Table {
     let late = |bad: &[&Fallen]| {
         let over = bad
             .iter()
-            .filter(|f| f.run.ending.name() == "wall time over");
+            .filter(|f| f.course.ending.name() == "wall time over");
         over.count()
     };
-    let most = |group: &[&Fallen]| group.iter().map(|f| f.run.worst).max().unwrap_or(0);
+    let most = |group: &[&Fallen]| group.iter().map(|f| f.course.worst).max().unwrap_or(0);
     let drop =
         |good: &[&Fallen]| good.iter().map(|f| f.measured.1).sum::<f64>() / good.len() as f64;
-    let time = |bad: &[&Fallen]| median(bad.iter().map(|f| f.run.t).collect());
+    let time = |bad: &[&Fallen]| median(bad.iter().map(|f| f.course.time).collect());
     Table::of(
         "Clamped sheets by kind. Factorisations belong to the steps that were completed, the drop to the runs that reached their end",
         groups.into_values().map(split),
@@ -246,16 +246,16 @@ fn summary(all: &[Fallen]) -> Table {
 
 /// Mean number of factorisations in the steps that were completed; nothing where none was.
 fn factorisations(fallen: &[&Fallen]) -> Option<f64> {
-    let steps: usize = fallen.iter().map(|f| f.run.cost.steps).sum();
-    let factorisations: usize = fallen.iter().map(|f| f.run.cost.factorisations).sum();
+    let steps: usize = fallen.iter().map(|f| f.course.cost.steps).sum();
+    let factorisations: usize = fallen.iter().map(|f| f.course.cost.factorisations).sum();
     (steps > 0).then(|| factorisations as f64 / steps as f64)
 }
 
 /// The kinds of errors with their numbers.
 fn errors(bad: &[&Fallen]) -> String {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for f in bad.iter().filter(|f| !f.run.ending.message().is_empty()) {
-        *counts.entry(f.run.ending.name()).or_default() += 1;
+    for f in bad.iter().filter(|f| !f.course.ending.message().is_empty()) {
+        *counts.entry(f.course.ending.name()).or_default() += 1;
     }
     let texts: Vec<String> = counts.iter().map(|(k, n)| format!("{n} {k}")).collect();
     texts.join(", ")
@@ -266,7 +266,7 @@ fn remarks(all: &[Fallen]) -> Vec<String> {
     for isometry in Isometry::ALL {
         for (by, (name, _)) in damped().into_iter().enumerate() {
             let of = OfModel::of(isometry, all).with(|job| job.0 == by).all;
-            let ended = of.iter().filter(|f| f.run.is_good()).count();
+            let ended = of.iter().filter(|f| f.course.is_good()).count();
             if !of.is_empty() {
                 let sheets = of.len();
                 remarks.push(format!(

@@ -3,14 +3,15 @@
 
 use super::Findings;
 use super::cantilever;
-use super::course::{Course, Plan, Scene};
 use super::isometry::{Material, PAPER, PAPER_RIGIDITY, elastic, rods, weak};
 use super::meshes::Pattern;
-use super::plot::order;
+use super::plots::order;
 use super::records::Records;
+use super::scene::{End, Scene};
 use crate::draw::spatial::{norm, sub};
 use crate::draw::{Axis, Chart, Drawing, Legend, Marker, Missing, Series, column, row};
 use crate::report::Table;
+use crate::runs::{Course, Plan};
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method};
 use isosheet_mesh::{Sheet, VertexId, generate};
@@ -95,7 +96,7 @@ impl Problem {
         Ok(Run {
             problem: self,
             stiffness,
-            error: error.filter(|_| course.ending.is_good()),
+            error: error.filter(|_| course.is_good()),
             course,
         })
     }
@@ -121,7 +122,7 @@ fn tilted(ladder: &Sheet) -> Vec<f64> {
 }
 
 /// A run of a ladder with the stiffness, or with rods.
-fn ladder(sheet: &Sheet, stiffness: Option<f64>, plan: &Plan) -> Result<Course> {
+fn ladder(sheet: &Sheet, stiffness: Option<f64>, plan: &Plan) -> Result<(Course, End)> {
     let material = Material::limp(MASS);
     let model = match stiffness {
         None => rods(sheet, material)?,
@@ -140,14 +141,14 @@ fn ladder(sheet: &Sheet, stiffness: Option<f64>, plan: &Plan) -> Result<Course> 
 
 fn ladder_error(squares: usize, stiffness: f64, plan: &Plan) -> Result<(Course, Option<f64>)> {
     let sheet = generate::ladder(squares, 0.1, 0.1)?;
-    let plan = Plan::new(STEP, DURATION, plan.patience);
-    let limit = ladder(&sheet, None, &plan)?;
-    let course = ladder(&sheet, Some(stiffness), &plan)?;
-    let pairs = course.x.as_chunks::<3>().0.iter();
-    let pairs = pairs.zip(limit.x.as_chunks::<3>().0);
+    let plan = Plan::new(STEP, DURATION).within(plan.patience);
+    let (limit, rigid) = ladder(&sheet, None, &plan)?;
+    let (course, end) = ladder(&sheet, Some(stiffness), &plan)?;
+    let pairs = end.x.as_chunks::<3>().0.iter();
+    let pairs = pairs.zip(rigid.x.as_chunks::<3>().0);
     let distance = |(a, b): (&[f64; 3], &[f64; 3])| norm(&sub(a, b));
     let largest = pairs.map(distance).fold(0.0, f64::max);
-    let error = limit.ending.is_good().then_some(largest);
+    let error = limit.is_good().then_some(largest);
     Ok((course, error))
 }
 
@@ -165,16 +166,16 @@ fn elastica_error(
         Form::Elastic => elastic(&sheet, material, (stiffness, PAPER.1))?,
         Form::Weak => weak(&sheet, material, stiffness)?,
     };
-    let course = cantilever::scene(&sheet, model)?.run(plan)?;
+    let (course, end) = cantilever::scene(&sheet, model)?.run(plan)?;
     let exact = cantilever::exact_drop(PAPER_RIGIDITY);
-    let error = (cantilever::drop(&sheet, &course) / exact - 1.0).abs();
+    let error = (cantilever::drop(&sheet, &end) / exact - 1.0).abs();
     Ok((course, Some(error)))
 }
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
-    let effort = records.effort;
-    let plan = Plan::new(cantilever::STEP, 10.0, effort.patience(0.5, 5.0));
+    let effort = records.store.effort;
+    let plan = Plan::new(cantilever::STEP, 10.0).within(effort.quick_or(0.5, 5.0));
     let plan = plan.until_rest(cantilever::REST);
     let stiffnesses: &[f64] = effort.quick_or(&[1e4, 1e6], &STIFFNESSES);
     let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
@@ -215,7 +216,7 @@ fn table(all: &[Run]) -> Table {
             ("stiffness, N/m", &|r| r.stiffness.into()),
             ("ending", &|r| r.course.ending.name().into()),
             ("factorisations per step", &|r| {
-                r.course.factorisations().into()
+                r.course.cost.factorisations_per_step().into()
             }),
             ("error", &|r| r.error.into()),
             ("message", &|r| r.course.ending.message().into()),
@@ -313,7 +314,7 @@ mod tests {
     /// Ladders approach rods to first order in the compliance.
     #[test]
     fn ladders_approach_rods_to_first_order() {
-        let plan = Plan::new(STEP, DURATION, std::time::Duration::from_secs(60));
+        let plan = Plan::new(STEP, DURATION).within(60.0);
         let run = |stiffness: f64| Problem::Ladder(3).measure(stiffness, &plan).unwrap();
         let all = [1e4, 1e5, 1e6].map(run);
         let power = order(&points(&all, Problem::Ladder(3)), FLOOR).unwrap();
@@ -331,11 +332,11 @@ mod tests {
             .with_acceleration([0.0, -9.8, 0.0])
             .with_pins(&[VertexId(0), VertexId(1)])
             .unwrap();
-        let plan = Plan::new(STEP, DURATION, std::time::Duration::from_secs(60));
+        let plan = Plan::new(STEP, DURATION).within(60.0);
         let method = Method::ImplicitEuler(ImplicitOptions::default());
         let scene = Scene::flat(model, &sheet).from(tilted(&sheet)).by(method);
-        let course = scene.run(&plan).unwrap();
-        assert!(course.ending.is_good() && course.kept.violation <= 1e-12);
+        let (course, _) = scene.run(&plan).unwrap();
+        assert!(course.is_good() && course.violation <= 1e-12);
         assert!(course.strain < 1e-10, "{}", course.strain);
     }
 }

@@ -1,16 +1,17 @@
 //! A square that clamps bend to a cylinder, with exact energy and moment.
 
 use super::Findings;
-use super::course::{Course, Plan, Scene};
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::{Pattern, vertices, with_line};
-use super::plot::{Dot, Figure, Panel, order};
+use super::plots::{Dot, Figure, Panel, order};
 use super::records::Records;
 use super::sample::{OfModel, Sample, requirements};
+use super::scene::{End, Scene};
 use super::targets::{Target, at_least};
 use crate::draw::{Axis, Drawing};
 use crate::methods::implicit_euler;
 use crate::report::{Table, number};
+use crate::runs::{Course, Plan};
 use anyhow::Result;
 use isosheet_dynamics::{Profile, SheetModel, Support};
 use isosheet_mesh::{Sheet, VertexId};
@@ -116,22 +117,22 @@ struct Measured {
     distance: f64,
 }
 
-type Bent = Sample<Mesh, Course, Measured>;
+type Bent = Sample<Mesh, Measured>;
 
 fn measure(isometry: Isometry, mesh: Mesh, plan: &Plan) -> Result<(usize, Course, Measured)> {
     let (pattern, cells, degrees) = mesh;
     let sheet = square(pattern, cells, degrees)?;
     let pins = clamped(&sheet);
     let scene = Scene::flat(model(isometry, &sheet, &pins)?, &sheet);
-    let course = scene.by(implicit_euler()).run(plan)?;
-    let elastic = model(isometry, &sheet, &pins)?.potential_energy(course.t, &course.x);
+    let (course, end) = scene.by(implicit_euler()).run(plan)?;
+    let elastic = model(isometry, &sheet, &pins)?.potential_energy(course.time, &end.x);
     let exact = 0.5 * PAPER_RIGIDITY * CURVATURE * CURVATURE * SIDE * SIDE;
-    let bending = isometry.bending_energy(&sheet, (PAPER_RIGIDITY, &pins), &course.x)?;
+    let bending = isometry.bending_energy(&sheet, (PAPER_RIGIDITY, &pins), &end.x)?;
     let measured = Measured {
         energy: elastic / exact,
         bending: bending / exact,
-        moment: course.is_good().then(|| moment(&sheet, &course)),
-        distance: distance(&sheet, &course.x),
+        moment: course.is_good().then(|| moment(&sheet, &end)),
+        distance: distance(&sheet, &end.x),
     };
     Ok((sheet.topology().vertex_count(), course, measured))
 }
@@ -148,7 +149,7 @@ impl Bent {
             energy, bending, ..
         } = self.measured;
         let error = (bending - 1.0).abs() + (energy - bending).abs();
-        self.run.is_good().then_some(error)
+        self.course.is_good().then_some(error)
     }
 
     fn moment_error(&self) -> Option<f64> {
@@ -158,15 +159,15 @@ impl Bent {
 
 /// The moment of the pins on the moving clamp about its line, over D k per width; positive where it bends
 /// towards +z.
-fn moment(sheet: &Sheet, course: &Course) -> f64 {
+fn moment(sheet: &Sheet, end: &End) -> f64 {
     let line = Vector3::from(place(CURVATURE, [SIDE, 0.0]));
     let mut moment = 0.0;
-    for reaction in &course.reactions {
+    for reaction in &end.reactions {
         let Support::Pin(v) = reaction.support else {
             continue;
         };
         if sheet.position(v)[0] > 0.5 * SIDE {
-            let at: [f64; 3] = std::array::from_fn(|k| course.x[3 * v.index() + k]);
+            let at: [f64; 3] = std::array::from_fn(|k| end.x[3 * v.index() + k]);
             // The right-handed moment about y turns +x towards -z.
             moment -= (Vector3::from(at) - line).cross(&reaction.force).y;
         }
@@ -188,8 +189,10 @@ fn distance(sheet: &Sheet, x: &[f64]) -> f64 {
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
-    let effort = records.effort;
-    let plan = Plan::new(STEP, 6.0, effort.patience(0.3, 4.0)).until_rest(REST);
+    let effort = records.store.effort;
+    let plan = Plan::new(STEP, 6.0)
+        .within(effort.quick_or(0.3, 4.0))
+        .until_rest(REST);
     let sizes: &[usize] = effort.quick_or(&[4], &[4, 8, 16]);
     let directions: &[f64] = effort.quick_or(&[0.0, 22.5, 45.0], &DIRECTIONS);
     let mut meshes: Vec<Mesh> = Vec::new();
@@ -215,7 +218,7 @@ fn table(all: &[Bent], plan: &Plan) -> Table {
             "Squares bent by clamps: implicit Euler, steps of {STEP} s, until no vertex is faster than {REST} m/s or {} s are simulated; at most \
              {} s of wall time. Energies are over D κ² / 2 times the area, the moment is over D κ times the width",
             plan.duration,
-            plan.limit()
+            plan.patience
         ),
         all,
         &[
@@ -224,15 +227,15 @@ fn table(all: &[Bent], plan: &Plan) -> Table {
             ("h, m", &|b| b.spacing().into()),
             ("V", &|b| b.vertices.into()),
             ("model", &|b| b.isometry.to_string().into()),
-            ("ending", &|b| b.run.ending.name().into()),
-            ("t at the end, s", &|b| b.run.t.into()),
-            ("factorisations per step", &|b| b.run.factorisations().into()),
+            ("ending", &|b| b.course.ending.name().into()),
+            ("t at the end, s", &|b| b.course.time.into()),
+            ("factorisations per step", &|b| b.course.cost.factorisations_per_step().into()),
             ("energy", &|b| b.measured.energy.into()),
             ("bending energy", &|b| b.measured.bending.into()),
             ("moment", &|b| b.measured.moment.into()),
             ("distance, m", &|b| b.measured.distance.into()),
-            ("speed left, m/s", &|b| b.run.speed.into()),
-            ("message", &|b| b.run.ending.message().into()),
+            ("speed left, m/s", &|b| b.course.speed.into()),
+            ("message", &|b| b.course.ending.message().into()),
         ],
     )
     .named("cylinder")
@@ -280,11 +283,7 @@ fn orders(all: &[Bent], directions: &[f64]) -> Table {
     .named("cylinder-orders")
 }
 
-fn targets(
-    of: &OfModel<'_, Mesh, Course, Measured>,
-    all: &[Bent],
-    directions: &[f64],
-) -> Vec<Target> {
+fn targets(of: &OfModel<'_, Mesh, Measured>, all: &[Bent], directions: &[f64]) -> Vec<Target> {
     let judged = of.with(|job| job.1 == JUDGED);
     let two = |(name, error): (&str, Measure)| {
         let combinations = combinations(of.isometry, directions).into_iter();
@@ -301,7 +300,7 @@ fn targets(
 
 fn remark(isometry: Isometry, all: &[Bent]) -> String {
     let of = OfModel::of(isometry, all).all;
-    let ended: Vec<&&Bent> = of.iter().filter(|b| b.run.is_good()).collect();
+    let ended: Vec<&&Bent> = of.iter().filter(|b| b.course.is_good()).collect();
     let error = |b: &Bent| b.energy_error().unwrap_or(0.0);
     let worst = ended.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
     let worst = worst.map_or(String::new(), |b| {
@@ -383,18 +382,18 @@ mod tests {
     /// On mesh lines a coarse elastic sheet has the energy of the cylinder, and pulls with its moment.
     #[test]
     fn an_aligned_sheet_has_energy_and_moment_of_the_cylinder() {
-        let plan = Plan::new(STEP, 4.0, std::time::Duration::from_secs(60)).until_rest(REST);
+        let plan = Plan::new(STEP, 4.0).within(60.0).until_rest(REST);
         let job = (Pattern::UnionJack, 8, 0.0);
-        let (vertices, run, measured) = measure(Isometry::Soft, job, &plan).unwrap();
+        let (vertices, course, measured) = measure(Isometry::Soft, job, &plan).unwrap();
         let isometry = Isometry::Soft;
         let bent = Bent {
             isometry,
             job,
             vertices,
-            run,
+            course,
             measured,
         };
-        assert!(bent.run.is_good(), "{:?}", bent.run.ending);
+        assert!(bent.course.is_good(), "{:?}", bent.course.ending);
         assert!(bent.moment_error().unwrap() < 0.05, "{bent:?}");
         assert!(bent.energy_error().unwrap() < 0.05, "{bent:?}");
     }

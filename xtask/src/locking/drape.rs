@@ -1,16 +1,17 @@
 //! A disk on a smaller round table, on several triangulations.
 
-use super::course::{Course, Plan, Scene};
 use super::disk::{DISK, Mesh};
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
-use super::plot::{Dot, Figure, Panel};
+use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::rim::{Rim, analyse};
 use super::sample::{OfModel, Sample, requirements};
+use super::scene::Scene;
 use super::targets::{Target, at_least};
 use super::{Findings, median};
 use crate::draw::{Axis, Drawing};
 use crate::report::{Cell, Table};
+use crate::runs::{Course, Plan};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::{Gravity, ImplicitOptions, Method, SheetModel};
@@ -60,7 +61,7 @@ struct Measured {
     aside: f64,
 }
 
-type Drape = Sample<Job, Course, Measured>;
+type Drape = Sample<Job, Measured>;
 
 fn measure(
     isometry: Isometry,
@@ -82,13 +83,13 @@ fn measure(
         ..ImplicitOptions::default()
     });
     let scene = Scene::flat(model, &sheet).by(method).touching(contacts);
-    let course = scene.run(plan)?;
+    let (course, end) = scene.run(plan)?;
     let total: f64 = weights.iter().sum();
-    let places = || course.x.as_chunks::<3>().0.iter().zip(&weights);
+    let places = || end.x.as_chunks::<3>().0.iter().zip(&weights);
     let centre = |k: usize| places().map(|(p, w)| w * p[k]).sum::<f64>() / total;
-    let bending = isometry.bending_energy(&sheet, (PAPER_RIGIDITY, &[]), &course.x)?;
+    let bending = isometry.bending_energy(&sheet, (PAPER_RIGIDITY, &[]), &end.x)?;
     let measured = Measured {
-        rim: rim(&sheet, &course.x),
+        rim: rim(&sheet, &end.x),
         energy: total * GRAVITY * centre(2) + bending,
         aside: centre(0).hypot(centre(1)),
     };
@@ -118,7 +119,7 @@ impl Drape {
     /// The number of folds at the end of a run that reached it with the disk on the table.
     fn folds(&self) -> Option<usize> {
         let is_on_table = self.measured.aside < TABLE[0];
-        let is_good = self.run.is_good() && is_on_table;
+        let is_good = self.course.is_good() && is_on_table;
         Some(self.measured.rim.filter(|_| is_good)?.folds)
     }
 }
@@ -159,9 +160,11 @@ fn rim(sheet: &Sheet, x: &[f64]) -> Option<Rim> {
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
-    let effort = records.effort;
+    let effort = records.store.effort;
     let duration = effort.quick_or(0.3, 10.0);
-    let plan = Plan::new(1.0 / 60.0, duration, effort.patience(0.5, 9.0)).until_rest(2e-3);
+    let plan = Plan::new(1.0 / 60.0, duration)
+        .within(effort.quick_or(0.5, 9.0))
+        .until_rest(2e-3);
     let rings = effort.quick_or(3, RINGS);
     let meshes: &[Mesh] = effort.quick_or(&Mesh::ALL[..1], &Mesh::ALL);
     let frictions: &[f64] = effort.quick_or(&[0.3], &[0.0, 0.3]);
@@ -251,20 +254,20 @@ fn runs(all: &[Drape]) -> Table {
             ("seed", &|d| (d.job.2 as usize).into()),
             ("V", &|d| d.vertices.into()),
             ("model", &|d| d.isometry.to_string().into()),
-            ("ending", &|d| d.run.ending.name().into()),
-            ("t at the end, s", &|d| d.run.t.into()),
+            ("ending", &|d| d.course.ending.name().into()),
+            ("t at the end, s", &|d| d.course.time.into()),
             ("factorisations per step", &|d| {
-                d.run.factorisations().into()
+                d.course.cost.factorisations_per_step().into()
             }),
             ("folds", &|d| rim(d, |r| r.folds as f64)),
             ("largest wave", &|d| rim(d, |r| r.wave as f64)),
             ("its share", &|d| rim(d, |r| r.share)),
             ("rim, m", &|d| rim(d, |r| r.mean)),
             ("energy, J", &|d| d.measured.energy.into()),
-            ("strain", &|d| d.run.strain.into()),
+            ("strain", &|d| d.course.strain.into()),
             ("centre off by, m", &|d| d.measured.aside.into()),
-            ("speed left, m/s", &|d| d.run.speed.into()),
-            ("message", &|d| d.run.ending.message().into()),
+            ("speed left, m/s", &|d| d.course.speed.into()),
+            ("message", &|d| d.course.ending.message().into()),
         ],
     )
     .named("drape-runs")
@@ -298,7 +301,7 @@ fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Ta
             for &friction in frictions {
                 let of = OfModel::of(isometry, all);
                 let all = of.with(|job| (job.0, job.1) == (mesh, friction)).all;
-                let good = all.iter().copied().filter(|d| d.run.is_good()).collect();
+                let good = all.iter().copied().filter(|d| d.course.is_good()).collect();
                 groups.push(Group { all, good });
             }
         }
@@ -307,7 +310,7 @@ fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Ta
         let over = g
             .all
             .iter()
-            .filter(|d| d.run.ending.name() == "wall time over");
+            .filter(|d| d.course.ending.name() == "wall time over");
         over.count()
     };
     let rim = |d: &Drape| Some(d.measured.rim?.mean);
@@ -317,7 +320,7 @@ fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Ta
             "Disks on a round table: default method, steps of 1/60 s, {} s simulated, at most {} s of wall time. Numbers of folds with how often \
              they occur, of the disks that are still on the table, medians and ranges (largest minus smallest) are of the runs that reached their end",
             plan.duration,
-            plan.limit()
+            plan.patience
         ),
         groups,
         &[
@@ -332,7 +335,7 @@ fn summary(all: &[Drape], meshes: &[Mesh], frictions: &[f64], plan: &Plan) -> Ta
             ("range, m", &|g| g.range(rim)),
             ("energy, J", &|g| g.median(energy)),
             ("range, J", &|g| g.range(energy)),
-            ("speed left, m/s", &|g| g.median(|d| Some(d.run.speed))),
+            ("speed left, m/s", &|g| g.median(|d| Some(d.course.speed))),
             ("centre off by, m", &|g| g.median(|d| Some(d.measured.aside))),
         ],
     )

@@ -1,14 +1,15 @@
 //! Single everyday scenes with paper.
 
 use super::Findings;
-use super::course::{Course, Plan, Scene};
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::vertices;
-use super::plot::{Dot, Figure, Panel};
+use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::sample::{Sample, requirements};
+use super::scene::Scene;
 use crate::draw::{Axis, Drawing};
 use crate::report::{Effort, Table};
+use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::{PointProfile, Profile, SheetModel};
 use isosheet_mesh::generate::{self, Diagonals};
@@ -33,75 +34,68 @@ const ROLL: f64 = 0.05;
 /// Part of its free length by which the strip is pushed together.
 const PUSH: f64 = 0.1;
 
+/// A kind of scene, in the order of the report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Kind {
+    Pushed,
+    Roll,
+    Banner,
+    Corners,
+}
+
+/// Their names.
+const KINDS: [&str; 4] = ["pushed together", "roll", "banner", "opposite corners"];
+
 /// A scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-enum Everyday {
-    Pushed(usize),
-    Roll(usize),
-    Banner(u32),
-    Corners(u32),
+struct Everyday {
+    kind: Kind,
+    /// Squares across, or the level of the mesh.
+    size: u32,
 }
 
 impl fmt::Display for Everyday {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Pushed(n) => write!(f, "pushed together, {n} squares across"),
-            Self::Roll(n) => write!(f, "roll, {n} squares across"),
-            Self::Banner(level) => write!(f, "banner M^{level}"),
-            Self::Corners(level) => write!(f, "opposite corners, M^{level}"),
+        let (name, size) = (KINDS[self.kind as usize], self.size);
+        match self.kind {
+            Kind::Pushed | Kind::Roll => write!(f, "{name}, {size} squares across"),
+            Kind::Banner => write!(f, "{name} M^{size}"),
+            Kind::Corners => write!(f, "{name}, M^{size}"),
         }
     }
 }
 
 impl Everyday {
     fn all(effort: Effort) -> Vec<Self> {
-        use Everyday::{Banner, Corners, Pushed, Roll};
-        let mut all = vec![Pushed(2), Roll(2), Banner(1), Corners(1)];
-        if effort != Effort::Quick {
-            all.extend([
-                Pushed(4),
-                Roll(4),
-                Banner(2),
-                Banner(3),
-                Corners(2),
-                Corners(3),
-            ]);
-        }
-        all.sort_by_key(|scene| (scene.kind(), scene.size()));
-        all
-    }
-
-    /// The number of its kind in the order of the report.
-    fn kind(self) -> usize {
-        match self {
-            Self::Pushed(_) => 0,
-            Self::Roll(_) => 1,
-            Self::Banner(_) => 2,
-            Self::Corners(_) => 3,
-        }
-    }
-
-    /// Squares across, or the level of the mesh.
-    fn size(self) -> u32 {
-        match self {
-            Self::Pushed(n) | Self::Roll(n) => n as u32,
-            Self::Banner(level) | Self::Corners(level) => level,
-        }
+        let across: &[u32] = effort.quick_or(&[2], &[2, 4]);
+        let levels: &[u32] = effort.quick_or(&[1], &[1, 2, 3]);
+        let sizes = [
+            (Kind::Pushed, across),
+            (Kind::Roll, across),
+            (Kind::Banner, levels),
+            (Kind::Corners, levels),
+        ];
+        let of = |(kind, sizes): (Kind, &[u32])| {
+            let of_size = |&size: &u32| Self { kind, size };
+            sizes.iter().map(of_size).collect::<Vec<_>>()
+        };
+        sizes.into_iter().flat_map(of).collect()
     }
 
     /// The flat sheet in its plane of reference, z = 0.
     fn sheet(self) -> Result<Sheet> {
-        Ok(match self {
-            Self::Pushed(n) => generate::grid(3 * n, n, 0.3, 0.1, Diagonals::UnionJack)?,
-            Self::Roll(n) => generate::grid(6 * n, 2 * n, 0.3, 0.2, Diagonals::UnionJack)?,
-            Self::Banner(level) | Self::Corners(level) => generate::isotropic_square(level, 1.0)?,
+        let n = self.size as usize;
+        Ok(match self.kind {
+            Kind::Pushed => generate::grid(3 * n, n, 0.3, 0.1, Diagonals::UnionJack)?,
+            Kind::Roll => generate::grid(6 * n, 2 * n, 0.3, 0.2, Diagonals::UnionJack)?,
+            Kind::Banner | Kind::Corners => generate::isotropic_square(self.size, 1.0)?,
         })
     }
 
     /// Positions at the start.
     fn start(self, sheet: &Sheet) -> Vec<f64> {
-        match self {
-            Self::Roll(_) => rolled(sheet),
+        match self.kind {
+            Kind::Roll => rolled(sheet),
             _ => sheet.positions().to_vec(),
         }
     }
@@ -109,12 +103,12 @@ impl Everyday {
     /// The vertices of faces that are clamped.
     fn clamp(self, sheet: &Sheet) -> Vec<VertexId> {
         let second = sheet.position(VertexId(1))[0];
-        match self {
-            Self::Pushed(_) => vertices(sheet, |[x, ..]| {
+        match self.kind {
+            Kind::Pushed => vertices(sheet, |[x, ..]| {
                 x < second + 1e-9 || x > 0.3 - second - 1e-9
             }),
-            Self::Roll(_) => vertices(sheet, |[x, ..]| x < second + 1e-9),
-            Self::Banner(_) | Self::Corners(_) => Vec::new(),
+            Kind::Roll => vertices(sheet, |[x, ..]| x < second + 1e-9),
+            Kind::Banner | Kind::Corners => Vec::new(),
         }
     }
 
@@ -125,13 +119,13 @@ impl Everyday {
             .model(sheet, material)?
             .with_gravity()
             .with_damping(DAMPING)?;
-        let held = |x: f64, y: f64| match self {
-            Self::Banner(_) => y > 1.0 - 1e-9 && (x - 0.5).abs() > 0.5 - 1e-9,
+        let held = |x: f64, y: f64| match self.kind {
+            Kind::Banner => y > 1.0 - 1e-9 && (x - 0.5).abs() > 0.5 - 1e-9,
             _ => (x + y - 1.0).abs() > 1.0 - 1e-9,
         };
-        Ok(match self {
-            Self::Pushed(_) => pushed(model, sheet)?,
-            Self::Roll(_) => model.with_pins(&clamp)?,
+        Ok(match self.kind {
+            Kind::Pushed => pushed(model, sheet)?,
+            Kind::Roll => model.with_pins(&clamp)?,
             _ => model.with_pins(&vertices(sheet, |[x, y, _]| held(x, y)))?,
         })
     }
@@ -181,13 +175,13 @@ fn rolled(sheet: &Sheet) -> Vec<f64> {
 }
 
 /// Heights of the lowest and the highest vertex (metres), and energy of bending (joules) at the end.
-type Day = Sample<Everyday, Course, ([f64; 2], f64)>;
+type Day = Sample<Everyday, ([f64; 2], f64)>;
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
-    let effort = records.effort;
+    let effort = records.store.effort;
     let duration = effort.quick_or(0.5, 3.0);
-    let plan = Plan::new(1.0 / 60.0, duration, effort.patience(0.3, 10.0));
+    let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.3, 10.0));
     let scenes = Everyday::all(effort);
     let all = records.of_models(
         |_| scenes.clone(),
@@ -195,10 +189,10 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
             let sheet = scene.sheet()?;
             let model = scene.model(isometry, &sheet)?;
             let start = scene.start(&sheet);
-            let course = Scene::flat(model, &sheet).from(start).run(&plan)?;
+            let (course, end) = Scene::flat(model, &sheet).from(start).run(&plan)?;
             let bending = (PAPER_RIGIDITY, &*scene.clamp(&sheet));
-            let bending = isometry.bending_energy(&sheet, bending, &course.x)?;
-            let measured = (course.heights(), bending);
+            let bending = isometry.bending_energy(&sheet, bending, &end.x)?;
+            let measured = (end.heights(), bending);
             Ok((sheet.topology().vertex_count(), course, measured))
         },
     )?;
@@ -222,23 +216,23 @@ fn table(all: &[Day], plan: &Plan) -> Table {
         format!(
             "Everyday scenes: {} s simulated, at most {} s of wall time. The energy of bending is that at the end",
             plan.duration,
-            plan.limit()
+            plan.patience
         ),
         all,
         &[
             ("scene", &|d| d.job.to_string().into()),
             ("V", &|d| d.vertices.into()),
             ("model", &|d| d.isometry.to_string().into()),
-            ("ending", &|d| d.run.ending.name().into()),
-            ("t at the end, s", &|d| d.run.t.into()),
-            ("factorisations per step", &|d| d.run.factorisations().into()),
-            ("most in a step", &|d| d.run.worst.into()),
+            ("ending", &|d| d.course.ending.name().into()),
+            ("t at the end, s", &|d| d.course.time.into()),
+            ("factorisations per step", &|d| d.course.cost.factorisations_per_step().into()),
+            ("most in a step", &|d| d.course.worst.into()),
             ("lowest vertex, m", &|d| d.measured.0[0].into()),
             ("highest vertex, m", &|d| d.measured.0[1].into()),
             ("energy of bending, J", &|d| d.measured.1.into()),
-            ("strain", &|d| d.run.strain.into()),
-            ("wall time, s", &|d| d.run.cost.wall.into()),
-            ("message", &|d| d.run.ending.message().into()),
+            ("strain", &|d| d.course.strain.into()),
+            ("wall time, s", &|d| d.course.cost.wall.into()),
+            ("message", &|d| d.course.ending.message().into()),
         ],
     )
     .named("everyday")
@@ -246,29 +240,26 @@ fn table(all: &[Day], plan: &Plan) -> Table {
 
 /// Factorisations a step of every scene.
 fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
-    let kinds = ["pushed together", "roll", "banner", "opposite corners"];
     let dots = all.iter().filter_map(|d| {
         let place = scenes.iter().position(|s| *s == d.job)?;
-        Some(Dot::of(d, d.job.kind(), place as f64, d.cost()))
+        Some(Dot::of(d, d.job.kind as usize, place as f64, d.cost()))
     });
     let ticks = scenes.iter().enumerate().map(|(k, scene)| {
-        let size = scene.size();
-        let is_level = scene.kind() > 1;
-        (
-            k as f64,
-            if is_level {
-                format!("M^{{{size}}}")
-            } else {
-                size.to_string()
-            },
-        )
+        let size = scene.size;
+        let name = match scene.kind {
+            Kind::Pushed | Kind::Roll => size.to_string(),
+            Kind::Banner | Kind::Corners => format!("M^{{{size}}}"),
+        };
+        (k as f64, name)
     });
     let range = [-0.7, scenes.len() as f64 - 0.3];
     let x = Axis::linear("squares across, or mesh", range, ticks.collect());
-    let costs = all.iter().filter_map(|d| d.run.factorisations());
+    let costs = all
+        .iter()
+        .filter_map(|d| d.course.cost.factorisations_per_step());
     let y = Axis::holding("factorisations a step", costs);
     let panel = Panel::new("Everyday scenes", dots.collect());
-    let kinds = kinds.map(str::to_owned).to_vec();
+    let kinds = KINDS.map(str::to_owned).to_vec();
     Figure::of_row(x, y, vec![panel], kinds, [260.0, 150.0]).draw()
 }
 
@@ -284,10 +275,11 @@ mod tests {
             let start = everyday.start(&sheet);
             let strain = model.rods().max_strain(&start);
             assert!(strain < 1e-13, "{everyday}: {strain}");
-            let pins = match everyday {
-                Everyday::Pushed(n) => 2 * 2 * (n + 1),
-                Everyday::Roll(n) => 2 * (2 * n + 1),
-                Everyday::Banner(_) | Everyday::Corners(_) => 2,
+            let n = everyday.size as usize;
+            let pins = match everyday.kind {
+                Kind::Pushed => 2 * 2 * (n + 1),
+                Kind::Roll => 2 * (2 * n + 1),
+                Kind::Banner | Kind::Corners => 2,
             };
             assert_eq!(model.pins().len(), pins, "{everyday}");
         }
@@ -296,7 +288,8 @@ mod tests {
     /// A regular polygon about a circle of the radius: all corners are at the same distance of its centre.
     #[test]
     fn the_roll_is_a_prism() {
-        let sheet = Everyday::Roll(4).sheet().unwrap();
+        let (kind, size) = (Kind::Roll, 4);
+        let sheet = Everyday { kind, size }.sheet().unwrap();
         let x = rolled(&sheet);
         let panel = 0.3 / 24.0;
         let centre = [0.5 * panel, (ROLL * ROLL - 0.25 * panel * panel).sqrt()];

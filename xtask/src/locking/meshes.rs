@@ -29,8 +29,8 @@ impl Pattern {
     /// A flat rectangle (corners `low` and `high`, metres) with squares of the side `cell`, whose sides are
     /// turned by `angle` (radians) against the x axis; an irregular mesh has edges of the same mean length.
     ///
-    /// A turned grid is cut along the outline, see [`FlatCut::split`]. Of an irregular mesh `angle` is no more
-    /// than another seed.
+    /// A turned grid is cut along the outline, see [`FlatCut::split`]. Of an irregular mesh `angle` is no
+    /// more than another seed.
     pub(super) fn rectangle(
         self,
         low: [f64; 2],

@@ -1,5 +1,6 @@
 //! Folds of a draped disk, counted on its rim.
 
+use crate::report::extremes;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -46,11 +47,7 @@ pub(super) fn analyse(angles: &[f64], heights: &[f64]) -> Option<Rim> {
     let mean = (0..n).map(|i| width(i) * heights[i]).sum::<f64>() / TAU;
     let square = (0..n).map(|i| width(i) * (heights[i] - mean).powi(2));
     let variance = square.sum::<f64>() / TAU;
-    let range = heights
-        .iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], z| {
-            [l.min(*z), h.max(*z)]
-        });
+    let range = extremes(heights.iter().copied())?;
     if range[1] - range[0] <= 1e-9 {
         return None;
     }

@@ -1,15 +1,16 @@
 //! The angle at which a sheet begins to slide down a plane.
 
 use super::Findings;
-use super::bisection::Verdict;
-use super::course::{Kept, Plan, Scene};
+use super::bisection::{Bracket, Verdict, search};
 use super::isometry::{Isometry, Material};
 use super::meshes::Pattern;
-use super::plot::{Dot, Figure, Panel};
+use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
-use super::sample::{Sample, Search, requirements};
+use super::sample::{Sample, requirements};
+use super::scene::Scene;
 use crate::draw::{Axis, Drawing};
 use crate::report::Table;
+use crate::runs::{Course, Plan};
 use anyhow::Result;
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_mesh::Sheet;
@@ -37,7 +38,7 @@ fn slides(
     mu: f64,
     tangent: f64,
     plan: &Plan,
-) -> Result<(Verdict, Kept)> {
+) -> Result<(Verdict, Course)> {
     let (s, c) = tangent.atan().sin_cos();
     let model = isometry
         .model(sheet, Material::limp(MASS))?
@@ -46,7 +47,7 @@ fn slides(
     let pose = Isometry3::translation(0.0, 0.0, -START * options.activation);
     let plane = Obstacle::fixed(Shape::HalfSpace, pose)?;
     let contacts = Contacts::new(&model, options)?.with_body(plane, Coefficients::equal(mu))?;
-    let course = Scene::flat(model, sheet).touching(contacts).run(plan)?;
+    let (course, _) = Scene::flat(model, sheet).touching(contacts).run(plan)?;
     let verdict = if !course.is_good() {
         Verdict::Undecided(course.ending.name().to_owned())
     } else if course.speed > 2.0 * options.rest_speed {
@@ -54,17 +55,17 @@ fn slides(
     } else {
         Verdict::Below
     };
-    Ok((verdict, course.kept))
+    Ok((verdict, course))
 }
 
 /// Where a sheet begins to slide: tangents of the critical tilt over the coefficient of friction, of a
 /// mesh and a coefficient.
-type Slide = Sample<(Pattern, f64), Search>;
+type Slide = Sample<(Pattern, f64), Bracket>;
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
-    let effort = records.effort;
-    let plan = Plan::new(1.0 / 60.0, 1.0, effort.patience(0.5, 3.0));
+    let effort = records.store.effort;
+    let plan = Plan::new(1.0 / 60.0, 1.0).within(effort.quick_or(0.5, 3.0));
     let (halvings, cells) = effort.quick_or((4, 2), (9, 4));
     let coefficients: &[f64] = effort.quick_or(&[0.3], &[0.1, 0.3, 0.6]);
     let of = |p: Pattern| coefficients.iter().map(move |mu| (p, *mu));
@@ -74,14 +75,14 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         |isometry, &(pattern, mu)| {
             let cell = SIDE / cells as f64;
             let sheet = pattern.rectangle([0.0; 2], [SIDE; 2], cell, 0.0)?;
-            let search = Search::over(TANGENTS, halvings, |part| {
+            let (worst, found) = search(TANGENTS, halvings, |part| {
                 slides(isometry, &sheet, mu, mu * part, &plan)
             })?;
-            Ok((sheet.topology().vertex_count(), search, ()))
+            Ok((sheet.topology().vertex_count(), worst, found))
         },
     )?;
     let quantity = "relative error of the critical tangent, every mesh and coefficient";
-    let error = |s: &Slide| Some((s.run.found.middle()? - 1.0).abs());
+    let error = |s: &Slide| Some((s.measured.middle()? - 1.0).abs());
     let findings = Findings {
         tables: vec![table(&all, halvings)],
         targets: requirements(&all, |of| vec![of.at_most(quantity, 0.1, error)]),
@@ -101,9 +102,9 @@ fn table(all: &[Slide], halvings: usize) -> Table {
             ("V", &|s| s.vertices.into()),
             ("model", &|s| s.isometry.to_string().into()),
             ("friction", &|s| s.job.1.into()),
-            ("stays at", &|s| s.run.found.below.into()),
-            ("slides at", &|s| s.run.found.above.into()),
-            ("not decided", &|s| s.run.found.undecided.as_str().into()),
+            ("stays at", &|s| s.measured.below.into()),
+            ("slides at", &|s| s.measured.above.into()),
+            ("not decided", &|s| s.measured.undecided.as_str().into()),
         ],
     )
     .named("sliding")
@@ -116,7 +117,7 @@ fn plot(all: &[Slide], coefficients: &[f64]) -> Drawing {
         // Beside one another: the values differ by less than a symbol.
         let aside = 3.0 * s.isometry.aside() + pattern.number() as f64 - 1.0;
         let place = mu * 1.05_f64.powf(aside);
-        Dot::of(s, pattern.number(), place, s.run.found.middle())
+        Dot::of(s, pattern.number(), place, s.measured.middle())
     });
     let last = coefficients.len() - 1;
     let ends = [coefficients[0] / 1.4, coefficients[last] * 1.4];
@@ -142,14 +143,14 @@ mod tests {
     /// Well below and well above Coulomb's angle the verdict is known.
     #[test]
     fn a_sheet_stays_below_the_angle_and_slides_above() {
-        let plan = Plan::new(1.0 / 60.0, 0.5, std::time::Duration::from_secs(60));
+        let plan = Plan::new(1.0 / 60.0, 0.5).within(60.0);
         let sheet = Pattern::UnionJack
             .rectangle([0.0; 2], [SIDE; 2], 0.5 * SIDE, 0.0)
             .unwrap();
         for isometry in [Isometry::Rods, Isometry::Weak] {
             let at = |tangent: f64| slides(isometry, &sheet, 0.3, tangent, &plan).unwrap();
-            let (below, kept) = at(0.25);
-            assert!(matches!(below, Verdict::Below) && kept.gap.is_some_and(|gap| gap > 0.0));
+            let (below, course) = at(0.25);
+            assert!(matches!(below, Verdict::Below) && course.gap.is_some_and(|gap| gap > 0.0));
             assert!(matches!(at(0.35).0, Verdict::Above));
         }
     }

@@ -1,8 +1,8 @@
 //! What a model of isometry is required to reach, and what was measured.
 
-use super::course::Kept;
 use super::isometry::Isometry;
 use crate::report::Table;
+use crate::runs::Course;
 use serde::{Deserialize, Serialize};
 
 /// On which side of its bound a measured number has to be.
@@ -95,9 +95,9 @@ pub(super) const MOST_STRAIN: (&str, f64) = ("largest strain of an edge", 0.01);
 /// What every accepted step guarantees, over all steps of all runs, those of runs included that did not
 /// reach their end: equations of isometry to a tolerance of 1e-12 (of models that have some), gaps above 0
 /// (of scenes with contact).
-pub(super) fn kept(model: Isometry, runs: impl Iterator<Item = Kept>) -> Vec<Target> {
-    let mut worst = Kept::default();
-    runs.for_each(|kept| worst.add(kept));
+pub(super) fn kept<'a>(model: Isometry, runs: impl Iterator<Item = &'a Course>) -> Vec<Target> {
+    let mut worst = Course::default();
+    runs.for_each(|course| worst.add_run(course.clone()));
     let mut targets = Vec::new();
     if model.has_equations() {
         let quantity = "largest violation of the equations of isometry";
@@ -116,12 +116,12 @@ pub(super) fn kept(model: Isometry, runs: impl Iterator<Item = Kept>) -> Vec<Tar
 }
 
 /// All requirements as a table.
-pub(super) fn table<'a>(targets: impl Iterator<Item = (&'a str, &'a Target)>) -> Table {
+pub(super) fn table(targets: &[(String, Target)]) -> Table {
     Table::of(
         "Measured against target. A number is the worst of all runs that the requirement names; where it is missing, one of these runs did not end",
         targets,
         &[
-            ("yardstick", &|(yardstick, _)| (*yardstick).into()),
+            ("yardstick", &|(yardstick, _)| yardstick.as_str().into()),
             ("quantity", &|(_, t)| t.quantity.as_str().into()),
             ("model", &|(_, t)| t.model.to_string().into()),
             ("required", &|(_, t)| t.side.words().into()),
@@ -151,22 +151,28 @@ mod tests {
         assert_eq!(met(&[]), (false, false));
         let worst = at_most(model, "q", 2.0, &[Some(1.0), Some(5.0)]);
         assert_eq!(worst.measured, Some(5.0));
-        let csv = table([("y", &worst)].into_iter()).csv().unwrap();
+        let csv = table(&[("y".into(), worst)]).csv().unwrap();
         let text = String::from_utf8(csv).unwrap();
         assert!(text.ends_with("y,q,rods,at most,2,5,no\n"), "{text}");
     }
 
     #[test]
     fn guarantees_are_those_of_the_worst_step() {
-        let run = |violation, gap| Kept { violation, gap };
-        let met = |model, runs: &[Kept]| -> Vec<bool> {
+        let run = |violation, gap| Course {
+            violation,
+            gap,
+            ..Course::default()
+        };
+        let met = |model, runs: &[&Course]| -> Vec<bool> {
             let targets = kept(model, runs.iter().copied());
             targets.iter().map(Target::is_met).collect()
         };
         let [good, loose] = [1e-13, 1e-11].map(|violation| run(violation, None));
+        let (good, loose) = (&good, &loose);
         assert_eq!(met(Isometry::Weak, &[good, good]), [true]);
         assert_eq!(met(Isometry::Weak, &[good, loose, good]), [false]);
         let [near, touching] = [1e-6, 0.0].map(|gap| run(1e-13, Some(gap)));
+        let (near, touching) = (&near, &touching);
         assert_eq!(met(Isometry::Rods, &[near, good]), [true, true]);
         assert_eq!(met(Isometry::Rods, &[near, touching]), [true, false]);
         // Elastic sheets have no equations.

@@ -28,19 +28,34 @@ impl Cost {
         self.factorisations += report.factorisations;
     }
 
-    /// A count as a mean over the steps; nothing where no step was completed.
-    fn per_step(&self, count: usize) -> Option<f64> {
-        (self.steps > 0).then(|| count as f64 / self.steps as f64)
+    /// Counts the steps of another run.
+    pub(crate) fn add_run(&mut self, other: &Self) {
+        self.steps += other.steps;
+        self.substeps += other.substeps;
+        self.rejected += other.rejected;
+        self.iterations += other.iterations;
+        self.factorisations += other.factorisations;
+        self.wall += other.wall;
+    }
+
+    /// A number as a mean over the steps; nothing where no step was completed.
+    fn per_step(&self, all: f64) -> Option<f64> {
+        (self.steps > 0).then(|| all / self.steps as f64)
     }
 
     /// Iterations of a step in the mean.
     pub(crate) fn iterations_per_step(&self) -> Option<f64> {
-        self.per_step(self.iterations)
+        self.per_step(self.iterations as f64)
     }
 
     /// Factorisations of a step in the mean.
     pub(crate) fn factorisations_per_step(&self) -> Option<f64> {
-        self.per_step(self.factorisations)
+        self.per_step(self.factorisations as f64)
+    }
+
+    /// Wall seconds for a step in the mean.
+    pub(crate) fn wall_per_step(&self) -> Option<f64> {
+        self.per_step(self.wall)
     }
 
     /// Wall seconds for a factorisation and all that belongs to it.

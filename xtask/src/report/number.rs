@@ -17,6 +17,12 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
+/// The smallest and the largest of some values; nothing of none.
+pub(crate) fn extremes(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    let pairs = values.map(|v| [v; 2]);
+    pairs.reduce(|[low, high], [a, b]| [low.min(a), high.max(b)])
+}
+
 /// Exponent `p` of the least-squares fit `y ~ x^p`; `None` from fewer than two different `x`.
 pub(crate) fn exponent(points: &[[f64; 2]]) -> Option<f64> {
     let n = points.len() as f64;
@@ -137,6 +143,12 @@ mod tests {
         ] {
             assert_eq!(short(value), text);
         }
+    }
+
+    #[test]
+    fn extremes_of_values() {
+        assert_eq!(extremes([2.0, -1.0, 5.0].into_iter()), Some([-1.0, 5.0]));
+        assert_eq!(extremes(std::iter::empty()), None);
     }
 
     #[test]

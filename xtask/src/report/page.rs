@@ -1,9 +1,10 @@
 //! Pages: one HTML file each, pictures inside.
 
-use super::picture::Picture;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use super::Effort;
+use crate::store::Store;
+use anyhow::Result;
+use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
+use serde::{Deserialize, Serialize};
 
 /// The look of all pages.
 const STYLE: &str = "\
@@ -40,8 +41,15 @@ impl Page {
         }
     }
 
+    /// Writes the page as a file of the output folder and says where it is.
+    pub(crate) fn write(&self, store: &Store, file: &str) -> Result<()> {
+        store.write(file, self.to_html(store.effort).as_bytes())?;
+        println!("{}", store.path(file).display());
+        Ok(())
+    }
+
     /// The file.
-    pub(crate) fn to_html(&self) -> String {
+    pub(crate) fn to_html(&self, effort: Effort) -> String {
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -51,7 +59,16 @@ impl Page {
                     title { (self.title) }
                     style { (PreEscaped(STYLE)) (PreEscaped(self.style)) }
                 }
-                body { h1 { (self.heading) } (self.body) }
+                body {
+                    h1 { (self.heading) }
+                    @if effort == Effort::Quick {
+                        p.note {
+                            "Made with " code { "--quick" } ": short runs on small meshes, which show that everything "
+                            "works, and no result."
+                        }
+                    }
+                    (self.body)
+                }
             }
         };
         page.into_string() + "\n"
@@ -63,39 +80,19 @@ pub(crate) fn list(items: &[String]) -> Markup {
     html! { @if !items.is_empty() { ul { @for item in items { li { (item) } } } } }
 }
 
-/// Size of drawings in the page relative to their own: their text is as large as that of the page then.
-const ENLARGED: f64 = 1.3;
+/// A part of a page, as units keep it.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Section(String);
 
-/// A drawing inside the page: an SVG file without its XML declaration, enlarged.
-pub(crate) fn drawing(svg: &[u8]) -> Markup {
-    let svg = String::from_utf8_lossy(svg);
-    let mut out = svg
-        .find("<svg")
-        .map_or(&*svg, |start| &svg[start..])
-        .to_owned();
-    for name in ["width=\"", "height=\""] {
-        // The first of each belongs to the drawing as a whole.
-        let Some(start) = out.find(name).map(|k| k + name.len()) else {
-            continue;
-        };
-        let Some(length) = out[start..].find("pt\"") else {
-            continue;
-        };
-        if let Ok(points) = out[start..start + length].parse::<f64>() {
-            out.replace_range(start..start + length, &format!("{:.2}", ENLARGED * points));
-        }
+impl From<Markup> for Section {
+    fn from(markup: Markup) -> Self {
+        Self(markup.into_string())
     }
-    PreEscaped(out)
 }
 
-impl Picture {
-    /// The picture inside the page, whose file has the given contents.
-    pub(crate) fn inside(&self, bytes: &[u8]) -> Markup {
-        if self.path.ends_with(".svg") {
-            return drawing(bytes);
-        }
-        let data = format!("data:image/png;base64,{}", STANDARD.encode(bytes));
-        html! { img alt=(self.alt) src=(data); }
+impl Render for Section {
+    fn render(&self) -> Markup {
+        PreEscaped(self.0.clone())
     }
 }
 
@@ -104,18 +101,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn drawings_are_enlarged_and_texts_escaped() {
-        let svg = br#"<?xml?><svg width="100.00pt" height="50.00pt"></svg>"#;
-        assert_eq!(
-            drawing(svg).into_string(),
-            "<svg width=\"130.00pt\" height=\"65.00pt\"></svg>"
-        );
-        let page = Page::new("a < b", list(&["\"c\" & d".into()])).to_html();
-        assert!(page.contains("<title>a &lt; b</title>"), "{page}");
-        assert!(
-            page.contains("<ul><li>&quot;c&quot; &amp; d</li></ul>"),
-            "{page}"
-        );
+    fn texts_are_escaped_and_quick_results_marked() {
+        let page = Page::new("a < b", list(&["\"c\" & d".into()]));
+        let full = page.to_html(Effort::Full);
+        for part in [
+            "<title>a &lt; b</title>",
+            "<ul><li>&quot;c&quot; &amp; d</li></ul>",
+        ] {
+            assert!(full.contains(part), "{full}");
+        }
+        let is_marked = |page: String| page.contains("class=\"note\"");
+        assert!(is_marked(page.to_html(Effort::Quick)) && !is_marked(full));
         assert_eq!(list(&[]).into_string(), "");
     }
 }

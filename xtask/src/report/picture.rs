@@ -1,48 +1,65 @@
-//! Pictures of reports.
+//! Pictures of reports: files, and what pages show of them.
 
 use crate::draw::Drawing;
-use crate::store::Draft;
+use crate::store::Files;
 use anyhow::Result;
-use serde::{Deserialize, Serialize};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use maud::{Markup, html};
+
+/// Size of drawings in the page relative to their own: their text is as large as that of the page then.
+const ENLARGED: f64 = 1.3;
 
 /// A picture.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(crate) struct Picture {
     /// Path relative to the output folder.
     pub(crate) path: String,
     /// What it shows, in words.
     pub(crate) alt: String,
-    /// The file; it is not part of records.
-    #[serde(skip)]
+    /// The file.
     pub(crate) bytes: Vec<u8>,
+    /// The picture inside a page.
+    pub(crate) inside: Markup,
 }
 
 impl Picture {
-    /// A drawing as the SVG file `name.svg`.
+    /// A drawing as the SVG file `figures/name.svg`.
     pub(crate) fn svg(name: &str, drawing: &Drawing, alt: &str) -> Self {
-        let bytes = drawing.to_svg(alt).into_bytes();
-        Self::file(&format!("{name}.svg"), bytes, alt)
+        Self {
+            path: format!("figures/{name}.svg"),
+            alt: alt.to_owned(),
+            bytes: drawing.to_svg(alt).into_bytes(),
+            inside: drawing.document(alt, ENLARGED),
+        }
     }
 
-    /// A file in the folder of pictures.
-    pub(crate) fn file(file: &str, bytes: Vec<u8>, alt: &str) -> Self {
+    /// A PNG file in the folder of pictures.
+    pub(crate) fn png(file: &str, bytes: Vec<u8>, alt: &str) -> Self {
+        let data = format!("data:image/png;base64,{}", STANDARD.encode(&bytes));
         Self {
             path: format!("figures/{file}"),
             alt: alt.to_owned(),
             bytes,
+            inside: html! { img alt=(alt) src=(data); },
         }
+    }
+
+    /// Writes the file.
+    pub(crate) fn write(&self, files: &mut Files<'_>) -> Result<()> {
+        Ok(files.write(&self.path, &self.bytes)?)
     }
 }
 
-/// Adds a drawing to the files of a unit, as `plots/name.svg` and `plots/name.png`.
-pub(crate) fn plot_files(
-    draft: &mut Draft,
+/// Writes a drawing as `plots/name.svg` and `plots/name.png`, and returns what the page shows.
+pub(crate) fn plot(
+    files: &mut Files<'_>,
     name: &str,
     drawing: &Drawing,
     alt: &str,
-) -> Result<()> {
+) -> Result<Markup> {
     let svg = drawing.to_svg(alt);
-    draft.write(&format!("plots/{name}.svg"), svg.as_bytes())?;
-    draft.write(&format!("plots/{name}.png"), &drawing.to_png(alt)?)?;
-    Ok(())
+    files.write(&format!("plots/{name}.svg"), svg.as_bytes())?;
+    files.write(&format!("plots/{name}.png"), &drawing.to_png(alt)?)?;
+    Ok(html! { figure { (drawing.document(alt, ENLARGED)) } })
 }

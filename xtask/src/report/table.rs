@@ -1,13 +1,15 @@
 //! Tables: the same rows as a CSV file for programs, in a page and on a terminal for people.
 
 use super::number::number;
+use crate::store::Files;
 use anyhow::Result;
+use isosheet_io::write_atomically;
 use maud::{Markup, Render, html};
-use serde::{Deserialize, Serialize};
+use std::io::Write;
+use std::path::Path;
 
 /// An entry of a table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Cell {
     /// A finite number.
     Number(f64),
@@ -82,7 +84,7 @@ impl Cell {
 pub(crate) type Column<'a, R> = (&'a str, &'a dyn Fn(&R) -> Cell);
 
 /// A table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Table {
     /// Name of its file, without folder and extension; empty where it is not a file.
     pub(crate) name: String,
@@ -132,6 +134,36 @@ impl Table {
         self
     }
 
+    /// The same table with another column.
+    ///
+    /// # Panics
+    /// If there are more or fewer cells than rows.
+    pub(crate) fn with_column(mut self, name: &str, cells: impl Iterator<Item = Cell>) -> Self {
+        let cells: Vec<Cell> = cells.collect();
+        assert_eq!(cells.len(), self.rows.len(), "rows of {}", self.caption);
+        self.head.push(name.to_owned());
+        for (row, cell) in self.rows.iter_mut().zip(cells) {
+            row.push(cell);
+        }
+        self
+    }
+
+    /// Some columns of the table under another caption, by their names with spaces between; of equal rows
+    /// that follow each other one is left.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    pub(crate) fn select(&self, caption: impl Into<String>, names: &str) -> Self {
+        let head: Vec<&str> = names.split_whitespace().collect();
+        let place = |name: &&str| self.head.iter().position(|h| h == name);
+        let places: Vec<usize> = head.iter().map(|h| place(h).expect("a column")).collect();
+        let mut table = Self::new(caption, &head);
+        let pick = |row: &Vec<Cell>| places.iter().map(|k| row[*k].clone()).collect();
+        table.rows = self.rows.iter().map(pick).collect();
+        table.rows.dedup();
+        table
+    }
+
     /// Adds a row with an entry for every column.
     ///
     /// # Panics
@@ -154,9 +186,15 @@ impl Table {
         Ok(writer.into_inner()?)
     }
 
-    /// The file of the table in the folder `tables`, without the folder.
-    pub(crate) fn file(&self) -> String {
-        format!("{}.csv", self.name)
+    /// Writes the table as a CSV file.
+    pub(crate) fn write_to(&self, path: &Path) -> Result<()> {
+        let bytes = self.csv()?;
+        Ok(write_atomically(path, |w| w.write_all(&bytes))?)
+    }
+
+    /// Writes the table as `tables/name.csv`.
+    pub(crate) fn write(&self, files: &mut Files<'_>) -> Result<()> {
+        Ok(files.write(&format!("tables/{}.csv", self.name), &self.csv()?)?)
     }
 
     /// The table for a terminal: columns of equal width.
@@ -176,13 +214,14 @@ impl Table {
     }
 }
 
-/// A table of a page, which scrolls when it is wide; numbers are rounded.
+/// A table of a page, which scrolls when it is wide; numbers are rounded, and names of columns that programs
+/// read have spaces.
 impl Render for Table {
     fn render(&self) -> Markup {
         html! {
             div.scroll { table {
                 caption { (self.caption) }
-                thead { tr { @for name in &self.head { th { (name) } } } }
+                thead { tr { @for name in &self.head { th { (name.replace('_', " ")) } } } }
                 tbody { @for row in &self.rows { tr { @for cell in row { td { (cell.text()) } } } } }
             } }
         }
@@ -232,8 +271,5 @@ mod tests {
         for value in [0.1, -1.0 / 3.0, 1e-300, 2.5e17, 12345.678, 0.0, 9e-5] {
             assert_eq!(Cell::from(value).exact().parse::<f64>().unwrap(), value);
         }
-        let cells = vec![Cell::from(0.1), Cell::from("1"), Cell::Missing];
-        let text = serde_json::to_string(&cells).unwrap();
-        assert_eq!(serde_json::from_str::<Vec<Cell>>(&text).unwrap(), cells);
     }
 }

@@ -1,24 +1,20 @@
-//! Running a scene and keeping what it did.
+//! Runs of scenes as figures are made of them: made once, recorded in DIR/runs.
 
-use super::FigureScene;
-use crate::interrupt::{self, Interrupted};
-use crate::progress::{self, Progress};
-use crate::store::{Draft, Extent, Store};
-use anyhow::{Context, Result, ensure};
-use isosheet_dynamics::{RunEnd, Simulation, StepOutcome, StepReport};
+use super::{Course, FigureScene, Plan};
+use crate::progress::Progress;
+use crate::report::Table;
+use crate::store::{Files, Store, Unit};
+use anyhow::{Result, ensure};
+use isosheet_dynamics::{Simulation, StepOutcome, StepReport};
 use isosheet_io::scene::SupportForces;
 use isosheet_io::{
-    HistoryRow, HistoryWriter, Trajectory, frame_path, read_history, read_json, write_atomically,
-    write_json, write_obj,
+    HistoryRow, HistoryWriter, Trajectory, frame_path, read_history, write_json, write_obj,
 };
 use isosheet_mesh::Sheet;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
-use std::fmt::Write as _;
-use std::io::Write as _;
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::time::Instant;
 
 /// A run with an edge strain from here on is an error: what every figure promises is that nothing stretches.
 const STRAIN: f64 = 1e-10;
@@ -31,30 +27,15 @@ const REST: f64 = 1e-6;
 pub(crate) struct RunSummary {
     /// The scene file.
     pub(crate) scene: String,
-    pub(crate) extent: Extent,
     pub(crate) vertices: usize,
     pub(crate) faces: usize,
-    /// Frames after the first.
-    pub(crate) frames: usize,
-    /// Simulated time, seconds.
-    pub(crate) time: f64,
-    /// Time that the steps took, seconds; without writing and drawing.
-    pub(crate) wall: f64,
+    /// Its steps are the frames after the first.
+    #[serde(flatten)]
+    pub(crate) course: Course,
     pub(crate) frames_per_second: f64,
-    /// Accepted sub-steps.
-    pub(crate) substeps: usize,
-    /// Rejected sub-steps.
-    pub(crate) rejected: usize,
-    pub(crate) iterations: usize,
-    pub(crate) factorisations: usize,
     /// Shortest and longest step, seconds; where a frame was subdivided, the mean of its sub-steps counts.
     /// `None` without a step.
     pub(crate) step_range: Option<[f64; 2]>,
-    /// Largest relative edge length error.
-    pub(crate) max_strain: f64,
-    /// Smallest gap between the sheet and a body or itself at the end of a frame, metres; `None` without
-    /// contact or if nothing ever came within reach.
-    pub(crate) smallest_gap: Option<f64>,
     /// The energy balance at the end.
     pub(crate) energy: Energy,
     /// Time from which the kinetic energy stays below [`REST`] of the potential energy released, seconds.
@@ -83,108 +64,117 @@ pub(crate) struct Energy {
 impl RunSummary {
     /// Wall time over simulated time: below one is faster than real time.
     pub(crate) fn slowness(&self) -> f64 {
-        self.wall / self.time.max(1e-12)
+        self.course.cost.wall / self.course.time.max(1e-12)
     }
 
-    /// Linear systems solved per second of wall time.
-    pub(crate) fn solves_per_second(&self) -> f64 {
-        self.iterations as f64 / self.wall.max(1e-9)
+    /// Takes a step of a run into account that started with the energy `before`, joules.
+    fn add(&mut self, r: &StepReport, before: f64) {
+        let step = r.h / r.substeps.max(1) as f64;
+        let [low, high] = self.step_range.unwrap_or([step, step]);
+        self.step_range = Some([low.min(step), high.max(step)]);
+        self.paths[match r.outcome {
+            StepOutcome::Newton => 0,
+            StepOutcome::Globalised => 1,
+            StepOutcome::BranchSeeded => 2,
+            _ => 3,
+        }] += 1;
+        let released = before - r.potential;
+        let is_lower = released > 0.0;
+        self.motion_left = if is_lower { r.kinetic / released } else { 0.0 };
+        let is_at_rest = is_lower && self.motion_left < REST;
+        self.at_rest_from = is_at_rest.then(|| self.at_rest_from.unwrap_or(r.t));
+        self.energy = Energy {
+            released,
+            work: r.work,
+            damped: r.dissipated,
+            friction: r.friction,
+            drift: r.energy_drift,
+        };
     }
 }
 
-fn unit(scene: &FigureScene) -> String {
-    format!("run-{}", scene.name())
+/// A force of the sheet on a body with its torque about the body's origin: time (s), number of the body, N,
+/// N m.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Load {
+    t: f64,
+    body: usize,
+    force: [f64; 3],
+    torque: [f64; 3],
+}
+
+/// What is kept of a run beside its files.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Found {
+    summary: RunSummary,
+    loads: Vec<Load>,
+    /// Time (s), and the sum of the forces (N) of all pins and vertex constraints on the sheet.
+    supports: Vec<[f64; 4]>,
+}
+
+/// A run that has been made.
+#[derive(Clone, Debug)]
+pub(crate) struct Run {
+    pub(crate) scene: FigureScene,
+    pub(crate) sheet: Sheet,
+    pub(crate) summary: RunSummary,
+    pub(crate) trajectory: Trajectory,
+    /// A row for the start and for each frame.
+    pub(crate) history: Vec<HistoryRow>,
+    /// Time and force of all supports on the sheet: seconds, newtons.
+    pub(crate) supports: Vec<[f64; 4]>,
+    loads: Vec<Load>,
+}
+
+impl Run {
+    /// An up-to-date run of the scene, which is made now when there is none.
+    ///
+    /// # Errors
+    /// [`Interrupted`](crate::interrupt::Interrupted) after Ctrl-C; those of the simulation.
+    pub(crate) fn of(store: &Store, scene: FigureScene) -> Result<Self> {
+        let unit = Unit {
+            name: format!("run-{}", scene.name()),
+            title: format!("run {}", scene.name()),
+            options: scene.options(),
+        };
+        let Found {
+            summary,
+            loads,
+            supports,
+        } = store.keep(&unit, |files| record(&scene, files))?;
+        let folder = store.path(&folder(&scene));
+        Ok(Self {
+            sheet: scene.sheet()?,
+            trajectory: Trajectory::read(&folder.join("trajectory.npz"))?,
+            history: read_history(&folder.join("history.csv"))?,
+            summary,
+            loads,
+            supports,
+            scene,
+        })
+    }
+
+    /// Positions (3V, metres) in all frames.
+    pub(crate) fn frames(&self) -> impl Iterator<Item = &[f64]> {
+        (0..self.trajectory.len()).filter_map(|k| self.trajectory.frame(k))
+    }
+
+    /// The positions in the last frame.
+    pub(crate) fn end(&self) -> &[f64] {
+        let last = self.frames().last();
+        last.unwrap_or(self.sheet.positions())
+    }
+
+    /// Time and force of the sheet on a body: seconds, newtons.
+    pub(crate) fn forces(&self, body: usize) -> Vec<[f64; 4]> {
+        let of_body = self.loads.iter().filter(|load| load.body == body);
+        let row = |load: &Load| [load.t, load.force[0], load.force[1], load.force[2]];
+        of_body.map(row).collect()
+    }
 }
 
 fn folder(scene: &FigureScene) -> String {
     format!("runs/{}", scene.name())
-}
-
-/// The summary of an up-to-date run of the scene, which is made now when there is none.
-///
-/// # Errors
-/// [`Interrupted`] after Ctrl-C; the frames made so far are kept and readable.
-pub(crate) fn ensure(store: &Store, scene: &FigureScene) -> Result<RunSummary> {
-    let options = scene.options();
-    if let Some(stamp) = store.current(&unit(scene), &options) {
-        progress::note(&format!("run {}", scene.name()), "up to date");
-        return Ok(serde_json::from_value(stamp.facts)?);
-    }
-    let mut draft = store.draft()?;
-    let summary = run(scene, &mut draft, interrupt::requested)
-        .with_context(|| format!("run {}", scene.name()))?;
-    let extent = summary.extent;
-    store.commit(
-        draft,
-        &unit(scene),
-        &options,
-        extent,
-        serde_json::to_value(&summary)?,
-    )?;
-    if extent == Extent::Partial {
-        return Err(Interrupted.into());
-    }
-    Ok(summary)
-}
-
-/// The frames of a run that [`ensure()`] has made.
-pub(crate) fn trajectory(store: &Store, scene: &FigureScene) -> Result<Trajectory> {
-    let path = store.root().join(folder(scene)).join("trajectory.npz");
-    Ok(Trajectory::read(&path)?)
-}
-
-/// The positions (3V, metres) in the last frame of a run that [`ensure()`] has made.
-pub(crate) fn end(store: &Store, scene: &FigureScene) -> Result<Vec<f64>> {
-    let trajectory = trajectory(store, scene)?;
-    let last = trajectory.frame(trajectory.len() - 1);
-    Ok(last.context("last frame")?.to_vec())
-}
-
-/// The summary of a run that [`ensure()`] has made.
-pub(crate) fn summary(store: &Store, scene: &FigureScene) -> Result<RunSummary> {
-    let path = store.root().join(folder(scene)).join("summary.json");
-    Ok(read_json(&path)?)
-}
-
-/// The history of a run that [`ensure()`] has made: a row for the start and for each frame.
-pub(crate) fn history(store: &Store, scene: &FigureScene) -> Result<Vec<HistoryRow>> {
-    let path = store.root().join(folder(scene)).join("history.csv");
-    Ok(read_history(&path)?)
-}
-
-/// Columns of loads.csv: time (s), body, force (N) and torque about the body's origin (N m) of the sheet on
-/// the body.
-const LOADS: &str = "t,body,fx,fy,fz,mx,my,mz";
-
-/// Time and force of the sheet on a body in a run that [`ensure()`] has made: seconds, newtons.
-pub(crate) fn forces(store: &Store, scene: &FigureScene, body: usize) -> Result<Vec<[f64; 4]>> {
-    let rows = table(store, scene, "loads.csv")?;
-    let of_body = rows.iter().filter_map(|row| match row[..] {
-        [t, number, fx, fy, fz, ..] if number == body as f64 => Some([t, fx, fy, fz]),
-        _ => None,
-    });
-    Ok(of_body.collect())
-}
-
-/// Columns of supports.csv: time (s) and the sum of the forces (N) of all pins and vertex constraints on the
-/// sheet.
-const SUPPORTS: &str = "t,fx,fy,fz";
-
-/// Time and force of all supports on the sheet in a run that [`ensure()`] has made: seconds, newtons.
-pub(crate) fn supports(store: &Store, scene: &FigureScene) -> Result<Vec<[f64; 4]>> {
-    let rows = table(store, scene, "supports.csv")?;
-    let rows = rows.into_iter();
-    rows.map(|row| <[f64; 4]>::try_from(row).ok().context("supports.csv"))
-        .collect()
-}
-
-/// The numbers of a file of a run, row by row, without its header.
-fn table(store: &Store, scene: &FigureScene, file: &'static str) -> Result<Vec<Vec<f64>>> {
-    let text = store.read(&format!("{}/{file}", folder(scene)))?;
-    let text = String::from_utf8_lossy(&text);
-    let numbers = |line: &str| line.split(',').map(str::parse).collect::<Result<_, _>>();
-    let rows = text.lines().skip(1).map(numbers);
-    rows.collect::<Result<_, _>>().context(file)
 }
 
 /// What every run has to keep at every frame.
@@ -208,63 +198,55 @@ struct Recorder<'a> {
     history: HistoryWriter,
     folder: &'a Path,
     start: f64,
-    /// Rows of loads.csv.
-    loads: String,
-    /// Rows of supports.csv.
-    supports: String,
+    found: Found,
 }
 
 impl Recorder<'_> {
     fn frame(&mut self, simulation: &Simulation, report: Option<&StepReport>) -> Result<()> {
         let state = simulation.state();
-        let frame = self.trajectory.len();
-        self.trajectory.push(state.t, &state.x)?;
-        write_obj(
-            &frame_path(&self.folder.join("obj"), frame),
-            self.sheet.topology(),
-            &state.x,
-        )?;
-        let model = simulation.model();
-        let kinetic = model.kinetic_energy(&state.v);
-        let potential = simulation.energy() - kinetic;
-        let total = kinetic + potential;
+        let t = state.t;
+        let obj = frame_path(&self.folder.join("obj"), self.trajectory.len());
+        write_obj(&obj, self.sheet.topology(), &state.x)?;
+        self.trajectory.push(t, &state.x)?;
+        let kinetic = simulation.model().kinetic_energy(&state.v);
+        let total = simulation.energy();
         let mut row = HistoryRow {
-            t: state.t,
+            t,
             kinetic,
-            potential,
+            potential: total - kinetic,
             total,
+            drift: total - self.start,
             ..HistoryRow::default()
         };
-        match report {
-            None => self.start = total,
-            Some(r) => {
-                (row.h, row.iterations, row.factorisations) = (r.h, r.iterations, r.factorisations);
-                (row.rejected, row.strain) = (r.rejected, r.strain);
-                // An infinite gap means that nothing is within reach.
-                row.gap = r.gap.filter(|g| g.is_finite());
-            }
+        if let Some(r) = report {
+            check(r)?;
+            self.found.summary.add(r, self.start);
+            (row.h, row.iterations, row.factorisations) = (r.h, r.iterations, r.factorisations);
+            (row.rejected, row.strain) = (r.rejected, r.strain);
+            // An infinite gap means that nothing is within reach.
+            row.gap = r.gap.filter(|g| g.is_finite());
         }
-        row.drift = total - self.start;
         self.history.append(&row)?;
-        for (body, load) in simulation.body_loads().iter().enumerate() {
-            let [fx, fy, fz]: [f64; 3] = load.force.into();
-            let [mx, my, mz]: [f64; 3] = load.torque.into();
-            let t = state.t;
-            writeln!(self.loads, "{t},{body},{fx},{fy},{fz},{mx},{my},{mz}")?;
-        }
+        let loads = simulation.body_loads().into_iter().enumerate();
+        self.found.loads.extend(loads.map(|(body, load)| Load {
+            t,
+            body,
+            force: load.force.into(),
+            torque: load.torque.into(),
+        }));
         // Their forces are known after the first step.
         let forces: Vec<_> = simulation.reactions().iter().map(|r| r.force).collect();
         if !forces.is_empty() {
-            let [fx, fy, fz]: [f64; 3] = forces.iter().sum::<Vector3<f64>>().into();
-            writeln!(self.supports, "{},{fx},{fy},{fz}", state.t)?;
+            let [x, y, z]: [f64; 3] = forces.iter().sum::<Vector3<f64>>().into();
+            self.found.supports.push([t, x, y, z]);
         }
         Ok(())
     }
 }
 
-/// Runs a scene into a draft until it ends or `stop` says so.
-fn run(scene: &FigureScene, draft: &mut Draft, stop: impl Fn() -> bool) -> Result<RunSummary> {
-    let folder = draft.folder(&folder(scene))?;
+/// Runs a scene and writes what it did.
+fn record(scene: &FigureScene, files: &mut Files<'_>) -> Result<Found> {
+    let folder = files.folder(&folder(scene))?;
     let setup = scene.setup()?;
     let (sheet, origins) = (setup.sheet.clone(), setup.origins.clone());
     let mut simulation = setup.start()?;
@@ -274,159 +256,96 @@ fn run(scene: &FigureScene, draft: &mut Draft, stop: impl Fn() -> bool) -> Resul
         trajectory: Trajectory::new(&sheet),
         history: HistoryWriter::create(&folder.join("history.csv"))?,
         folder: &folder,
-        start: 0.0,
-        loads: String::new(),
-        supports: String::new(),
+        // The sheet starts at rest.
+        start: simulation.energy(),
+        found: Found::default(),
     };
     recorder.frame(&simulation, None)?;
-    let mut s = RunSummary::start(scene, &sheet);
-    // The sheet starts at rest.
-    let before = simulation.energy();
-    let (frame, frames) = (scene.frame(), scene.frames());
-    let bar = Progress::start(format!("run {}", scene.name()), frames);
-    let stopped_at_once = stop();
-    let mut stopped = stopped_at_once;
+    let stop = &scene.scene().stop;
+    let bar = Progress::start(format!("run {}", scene.name()), scene.frames());
     let mut outcome = Ok(());
-    let mut clock = Instant::now();
-    let mut record = |simulation: &Simulation, report: &StepReport| {
-        s.wall += clock.elapsed().as_secs_f64();
-        s.count(report);
-        s.balance(report, before);
-        outcome = check(report).and_then(|()| recorder.frame(simulation, Some(report)));
+    let mut look = |simulation: &Simulation, report: &StepReport| {
+        outcome = recorder.frame(simulation, Some(report));
         bar.step();
-        let supports = supports.of(simulation);
-        let over = outcome.is_err() || scene.scene().stop.is_force_reached(&supports);
-        stopped = !over && stop();
-        clock = Instant::now();
-        if over || stopped {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
+        if outcome.is_err() || stop.is_force_reached(&supports.of(simulation)) {
+            return ControlFlow::Break(());
         }
+        ControlFlow::Continue(())
     };
-    let end = if stopped_at_once {
-        RunEnd::Stopped
-    } else {
-        simulation.run(scene.scene().stop.time, frame, &mut [&mut record])?
-    };
+    let plan = Plan::new(scene.frame(), stop.time);
+    let mut course = plan.run(&mut simulation, &mut look)?;
     outcome?;
-    if stopped && end == RunEnd::Stopped {
-        s.extent = Extent::Partial;
+    if let Some(error) = course.error.take() {
+        return Err(error.into());
     }
+    let mut found = recorder.found;
+    found.summary = RunSummary {
+        scene: scene.text().to_owned(),
+        vertices: sheet.topology().vertex_count(),
+        faces: sheet.topology().face_count(),
+        frames_per_second: course.cost.steps as f64 / course.cost.wall.max(1e-9),
+        course,
+        ..found.summary
+    };
     recorder.trajectory.write(&folder.join("trajectory.npz"))?;
-    for (file, head, rows) in [
-        ("loads.csv", LOADS, &recorder.loads),
-        ("supports.csv", SUPPORTS, &recorder.supports),
-    ] {
-        if !rows.is_empty() {
-            let text = format!("{head}\n{rows}");
-            write_atomically(&folder.join(file), |w| w.write_all(text.as_bytes()))?;
-        }
-    }
-    s.frames_per_second = s.frames as f64 / s.wall.max(1e-9);
-    write_json(&folder.join("summary.json"), &s)?;
-    let how = format!(
+    write_tables(&found, &folder)?;
+    write_json(&folder.join("summary.json"), &found.summary)?;
+    let s = &found.summary;
+    bar.finish(&format!(
         "{} of {} frames, {:.1} frames/s",
-        s.frames, frames, s.frames_per_second
-    );
-    bar.finish(&how);
-    Ok(s)
+        s.course.cost.steps,
+        scene.frames(),
+        s.frames_per_second
+    ));
+    Ok(found)
 }
 
-impl RunSummary {
-    /// Of a run without a frame yet.
-    fn start(scene: &FigureScene, sheet: &Sheet) -> Self {
-        Self {
-            scene: scene.text().to_owned(),
-            vertices: sheet.topology().vertex_count(),
-            faces: sheet.topology().face_count(),
-            ..Self::default()
+/// Writes loads.csv and supports.csv, where there are any.
+fn write_tables(found: &Found, folder: &Path) -> Result<()> {
+    let loads = Table::of(
+        "",
+        &found.loads,
+        &[
+            ("t", &|l| l.t.into()),
+            ("body", &|l| l.body.into()),
+            ("fx", &|l| l.force[0].into()),
+            ("fy", &|l| l.force[1].into()),
+            ("fz", &|l| l.force[2].into()),
+            ("mx", &|l| l.torque[0].into()),
+            ("my", &|l| l.torque[1].into()),
+            ("mz", &|l| l.torque[2].into()),
+        ],
+    );
+    let supports = Table::of(
+        "",
+        &found.supports,
+        &[
+            ("t", &|s| s[0].into()),
+            ("fx", &|s| s[1].into()),
+            ("fy", &|s| s[2].into()),
+            ("fz", &|s| s[3].into()),
+        ],
+    );
+    for (file, table) in [("loads.csv", loads), ("supports.csv", supports)] {
+        if !table.rows.is_empty() {
+            table.write_to(&folder.join(file))?;
         }
     }
-
-    /// The energies after a step of a run that started with the energy `before`, joules.
-    fn balance(&mut self, r: &StepReport, before: f64) {
-        let released = before - r.potential;
-        self.motion_left = if released > 0.0 {
-            r.kinetic / released
-        } else {
-            0.0
-        };
-        self.at_rest_from =
-            (self.motion_left < REST && released > 0.0).then(|| self.at_rest_from.unwrap_or(r.t));
-        self.energy = Energy {
-            released,
-            work: r.work,
-            damped: r.dissipated,
-            friction: r.friction,
-            drift: r.energy_drift,
-        };
-    }
-
-    fn count(&mut self, r: &StepReport) {
-        self.frames += 1;
-        self.time = r.t;
-        self.substeps += r.substeps;
-        self.rejected += r.rejected;
-        self.iterations += r.iterations;
-        self.factorisations += r.factorisations;
-        let step = r.h / r.substeps.max(1) as f64;
-        let [low, high] = self.step_range.unwrap_or([step, step]);
-        self.step_range = Some([low.min(step), high.max(step)]);
-        self.max_strain = self.max_strain.max(r.strain);
-        if let Some(gap) = r.gap.filter(|g| g.is_finite()) {
-            self.smallest_gap = Some(self.smallest_gap.map_or(gap, |g| g.min(gap)));
-        }
-        self.paths[match r.outcome {
-            StepOutcome::Newton => 0,
-            StepOutcome::Globalised => 1,
-            StepOutcome::BranchSeeded => 2,
-            _ => 3,
-        }] += 1;
-    }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::cell::Cell;
-
-    #[test]
-    fn a_run_that_is_stopped_is_readable_and_made_again() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = Store::open(folder.path()).unwrap();
-        let edits = ["sheet.mesh.square.level=0", "stop.time=0.1"].map(str::to_owned);
-        let scene = FigureScene::of("fig11", "crumple-m0", &edits).unwrap();
-        for stopped_after in [0, 3] {
-            let count = Cell::new(0);
-            let stop = || count.replace(count.get() + 1) == stopped_after;
-            let mut draft = store.draft().unwrap();
-            let s = run(&scene, &mut draft, stop).unwrap();
-            assert_eq!((s.frames, s.extent), (stopped_after, Extent::Partial));
-            let options = scene.options();
-            store
-                .commit(
-                    draft,
-                    &unit(&scene),
-                    &options,
-                    s.extent,
-                    serde_json::to_value(&s).unwrap(),
-                )
-                .unwrap();
-            assert_eq!(trajectory(&store, &scene).unwrap().len(), stopped_after + 1);
-            let rows = read_history(&folder.path().join("runs/crumple-m0/history.csv")).unwrap();
-            assert_eq!(rows.len(), stopped_after + 1);
-        }
-        let whole = ensure(&store, &scene).unwrap();
-        assert_eq!((whole.frames, whole.extent), (6, Extent::Complete));
-        assert!(whole.max_strain < 1e-11 && whole.step_range.is_some());
-    }
+    use crate::report::Effort;
+    use crate::store::Remake;
 
     /// [`simulate`](isosheet_io::run::simulate) is what `isosheet simulate` calls.
     #[test]
     fn the_command_makes_the_motion_that_the_figures_show() {
         let folder = tempfile::tempdir().unwrap();
-        let store = Store::open(&folder.path().join("out")).unwrap();
+        let out = folder.path().join("out");
+        let store = Store::open(&out, "a", Effort::Quick, Remake::Never).unwrap();
         // A strip that is pushed until its support bears 3 mN, a vertex that folds, a sheet in a chart.
         let cases = [
             ("fig16", vec!["stop.time=0.05", "stop.support_force=0.003"]),
@@ -436,20 +355,20 @@ mod tests {
         for (file, edits) in cases {
             let edits: Vec<String> = edits.into_iter().map(str::to_owned).collect();
             let scene = FigureScene::of(file, file, &edits).unwrap();
-            let summary = ensure(&store, &scene).unwrap();
-            let shown = trajectory(&store, &scene).unwrap();
+            let shown = Run::of(&store, scene.clone()).unwrap();
+            let course = &shown.summary.course;
+            assert!(course.strain < 1e-11 && shown.summary.step_range.is_some());
             let run = folder.path().join(file);
             let go_on = &mut |_: &isosheet_io::run::Tick| ControlFlow::Continue(());
             isosheet_io::run::simulate(scene.file(), &run, go_on).unwrap();
             let made = Trajectory::read(&run.join("trajectory.npz")).unwrap();
-            assert_eq!(made.times(), shown.times(), "{file}");
-            assert_eq!(made.len(), summary.frames + 1, "{file}");
-            assert!(
-                summary.frames < scene.frames() || file != "fig16",
-                "stopped by force"
-            );
-            for k in 0..made.len() {
-                assert_eq!(made.frame(k), shown.frame(k), "{file}, frame {k}");
+            assert_eq!(made.times(), shown.trajectory.times(), "{file}");
+            assert_eq!(made.len(), course.cost.steps + 1, "{file}");
+            assert_eq!(shown.history.len(), made.len());
+            let is_whole = course.cost.steps == scene.frames();
+            assert!(!is_whole || file != "fig16", "stopped by force");
+            for (k, x) in shown.frames().enumerate() {
+                assert_eq!(made.frame(k), Some(x), "{file}, frame {k}");
             }
         }
     }

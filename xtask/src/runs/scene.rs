@@ -3,41 +3,13 @@
 use anyhow::{Context, Result};
 use isosheet_io::scene::{Scene, SceneFile, Setup};
 use isosheet_mesh::Sheet;
+use serde::de::DeserializeOwned;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// The files, name and text.
-const FILES: [(&str, &str); 16] = [
-    ("fig10", include_str!("../../scenes/fig10.toml")),
-    ("fig11", include_str!("../../scenes/fig11.toml")),
-    ("fig12", include_str!("../../scenes/fig12.toml")),
-    ("fig13", include_str!("../../scenes/fig13.toml")),
-    ("fig14", include_str!("../../scenes/fig14.toml")),
-    (
-        "fig14-irregular",
-        include_str!("../../scenes/fig14-irregular.toml"),
-    ),
-    ("fig15", include_str!("../../scenes/fig15.toml")),
-    (
-        "fig15-irregular",
-        include_str!("../../scenes/fig15-irregular.toml"),
-    ),
-    ("fig15-rings", include_str!("../../scenes/fig15-rings.toml")),
-    ("fig16", include_str!("../../scenes/fig16.toml")),
-    ("fig16-8mm", include_str!("../../scenes/fig16-8mm.toml")),
-    ("fig16-20mm", include_str!("../../scenes/fig16-20mm.toml")),
-    ("fig16-45mm", include_str!("../../scenes/fig16-45mm.toml")),
-    ("fig17", include_str!("../../scenes/fig17.toml")),
-    (
-        "fig17-vertex-odd",
-        include_str!("../../scenes/fig17-vertex-odd.toml"),
-    ),
-    (
-        "fig17-vertex-even",
-        include_str!("../../scenes/fig17-vertex-even.toml"),
-    ),
-];
+/// The folder of the files.
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
 
 /// The edit that lets a sheet pass through itself.
 const THROUGH_ITSELF: &str = "contact.self_contact=false";
@@ -62,12 +34,10 @@ impl FigureScene {
     /// # Errors
     /// A file that is not there, edits that make no sense.
     pub(crate) fn of(file: &str, name: &str, edits: &[String]) -> Result<Self> {
-        let known = FILES.iter().find(|(known, _)| *known == file);
-        let (_, text) = known.with_context(|| format!("there is no scene {file}"))?;
-        let path = format!("xtask/scenes/{file}.toml");
+        let path = Path::new(FOLDER).join(file).with_extension("toml");
         Ok(Self {
             name: name.to_owned(),
-            file: SceneFile::parse((*text).to_owned(), Path::new(&path), edits)?,
+            file: SceneFile::read(&path, edits)?,
         })
     }
 
@@ -98,6 +68,17 @@ impl FigureScene {
 
     pub(crate) fn scene(&self) -> &Scene {
         self.file.scene()
+    }
+
+    /// The value of a key of the scene, given as a JSON pointer such as `/sheet/density`.
+    ///
+    /// # Errors
+    /// A key that the scene does not have, a value of another kind.
+    pub(crate) fn value<T: DeserializeOwned>(&self, key: &str) -> Result<T> {
+        let scene = serde_json::to_value(self.scene())?;
+        let value = scene.pointer(key).cloned();
+        let value = value.with_context(|| format!("{} has no {key}", self.name))?;
+        serde_json::from_value(value).with_context(|| format!("{key} of {}", self.name))
     }
 
     /// The scene file.
@@ -151,27 +132,19 @@ pub(crate) fn for_frames(frames: usize, frame: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeSet;
 
     #[test]
-    fn every_file_of_the_folder_is_known_and_makes_a_simulation() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-        let there: BTreeSet<String> = std::fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-            .collect();
-        let known = FILES.iter().map(|(name, _)| format!("{name}.toml"));
-        assert_eq!(there, known.collect());
-        for (name, _) in FILES {
+    fn every_file_of_the_folder_makes_a_simulation() {
+        for file in std::fs::read_dir(FOLDER).unwrap() {
+            let path = file.unwrap().path();
+            let name = path.file_stem().unwrap().to_str().unwrap();
             let scene = FigureScene::of(name, name, &[]).unwrap();
             assert!(scene.setup().unwrap().start().is_ok(), "{name}");
             // What `isosheet simulate` shows is what the figures show: every step.
             let output = &scene.scene().output;
             assert_eq!(output.steps_per_frame(scene.frame()), 1, "{name}");
-            assert!(
-                scene.scene().stop.rest.is_none(),
-                "figures show all of {name}"
-            );
+            let rest = &scene.scene().stop.rest;
+            assert!(rest.is_none(), "figures show all of {name}");
         }
     }
 }

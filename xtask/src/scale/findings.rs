@@ -2,8 +2,8 @@
 
 use super::Results;
 use super::drape::DrapeRow;
-use super::measure::Row;
-use crate::report::exponent;
+use super::steps::Row;
+use crate::report::{exponent, extremes};
 use crate::timing::OrderRow;
 use std::fmt::Write;
 
@@ -23,8 +23,8 @@ pub(super) fn conclusion(rows: &[Row]) -> String {
     let mut out = format!(
         "Fitted powers of V: time per step {}, factorisations per step {}, one numeric factorisation {}, its operations {}, \
          entries of the factor {}.",
-        power(|r| r.per_step),
-        power(|r| r.factorisations),
+        power(Row::step),
+        power(Row::factorisations),
         power(|r| r.best().numeric),
         power(|r| r.best().fill.operations),
         power(|r| r.best().fill.entries),
@@ -51,7 +51,7 @@ pub(super) fn conclusion(rows: &[Row]) -> String {
             100.0 * deviation
         );
     }
-    let multiples = rows.iter().map(|r| r.per_step / r.best().numeric);
+    let multiples = rows.iter().map(|r| r.step() / r.best().numeric);
     if let Some(words) = of_the_limit(multiples) {
         let _ = write!(out, " {words}");
     }
@@ -60,17 +60,10 @@ pub(super) fn conclusion(rows: &[Row]) -> String {
 
 /// How steps compare with the least that an implicit step can do.
 fn of_the_limit(multiples: impl Iterator<Item = f64>) -> Option<String> {
-    let [low, high] = range(multiples)?;
+    let [low, high] = extremes(multiples)?;
     Some(format!(
         "A step takes {low:.1} to {high:.1} times as long as one factorisation of its matrix, the least that an implicit step can do."
     ))
-}
-
-/// Smallest and largest of some values; `None` if there are none.
-fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
-    values
-        .map(|v| [v; 2])
-        .reduce(|[l, h], [a, b]| [l.min(a), h.max(b)])
 }
 
 /// `a`, `b` of `a V log2 V + b V` entries of the factor, with the least squares of relative deviations, and
@@ -105,7 +98,7 @@ pub(super) fn threads(rows: &[Row]) -> String {
         .filter(|r| r.best().two_threads < PAYS * r.best().numeric)
         .map(|r| format!("M^{}", r.level))
         .collect();
-    let ratios = range(rows.iter().map(|r| r.best().two_threads / r.best().numeric));
+    let ratios = extremes(rows.iter().map(|r| r.best().two_threads / r.best().numeric));
     let ratios = ratios.unwrap_or_default();
     format!(
         "Two threads within one factorisation take {:.1} to {:.1} times as long as one, and {}; they {}. On a machine without two idle cores they \
@@ -139,7 +132,7 @@ pub(super) fn draping_conclusion(results: &Results) -> String {
         power(DrapeRow::detection),
         power(DrapeRow::evaluation),
     );
-    let shares = range(rows.iter().map(|r| r.detection() / r.step())).unwrap_or_default();
+    let shares = extremes(rows.iter().map(|r| r.detection() / r.step())).unwrap_or_default();
     let couplings = rows.iter().map(|r| r.couplings).max().unwrap_or(0);
     let _ = write!(
         out,
@@ -161,14 +154,11 @@ pub(super) fn draping_conclusion(results: &Results) -> String {
     if let Some(words) = of_the_limit(multiples) {
         let _ = write!(out, " {words}");
     }
-    for r in rows.iter().filter(|r| r.stopped.is_some()) {
-        let _ = write!(
-            out,
-            " M^{}: {} steps only ({}).",
-            r.level,
-            r.cost.steps,
-            r.stopped.as_deref().unwrap_or("")
-        );
+    for r in rows {
+        if let Some(stopped) = r.course.failure() {
+            let (level, steps) = (r.level, r.course.cost.steps);
+            let _ = write!(out, " M^{level}: {steps} steps only ({stopped}).");
+        }
     }
     out
 }
@@ -176,7 +166,7 @@ pub(super) fn draping_conclusion(results: &Results) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scale::measure::measure;
+    use crate::scale::steps::measure;
 
     #[test]
     fn growth_as_v_log_v_is_told_from_powers() {
@@ -203,9 +193,10 @@ mod tests {
     #[test]
     fn steps_are_compared_with_one_factorisation() {
         let mut row = measure(1, 1).expect("a small sheet moves");
-        row.per_step = 3.0 * row.best().numeric;
+        let steps = row.course.cost.steps as f64;
+        row.course.cost.wall = 3.0 * steps * row.best().numeric;
         let mut other = row.clone();
-        other.per_step = 7.0 * other.best().numeric;
+        other.course.cost.wall = 7.0 * steps * other.best().numeric;
         let text = conclusion(&[row, other]);
         assert!(
             text.contains("3.0 to 7.0 times as long as one factorisation"),

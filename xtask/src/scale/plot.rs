@@ -3,7 +3,7 @@
 use super::Results;
 use super::drape::DrapeRow;
 use super::findings::points;
-use super::measure::Row;
+use super::steps::Row;
 use super::tables::factor_bytes;
 use super::whole::{DEFAULT, SCENES, name};
 use crate::draw::{Chart, Colour, Drawing, Marker, Series, column, palette};
@@ -54,7 +54,7 @@ fn of(rows: &[Row], value: fn(&Row) -> f64) -> Vec<[f64; 2]> {
 }
 
 fn time(rows: &[Row]) -> Drawing {
-    let step = of(rows, |r| r.per_step);
+    let step = of(rows, Row::step);
     let [degree, dissection] = [0, 1].map(|k| {
         let numeric = rows
             .iter()
@@ -112,10 +112,10 @@ fn operations(rows: &[Row]) -> Drawing {
 fn whole(results: &Results) -> Option<Drawing> {
     let of = |scene| -> Vec<[f64; 2]> {
         let mut runs = results.whole_of(scene);
-        runs.retain(|r| r.run.ended() && r.method == DEFAULT && r.start == 1);
+        runs.retain(|r| r.course.is_good() && r.method == DEFAULT && r.start == 1);
         let points = runs
             .iter()
-            .filter_map(|r| Some([r.vertices as f64, r.run.rate()?]));
+            .filter_map(|r| Some([r.mesh.vertices as f64, r.course.rate()?]));
         points.collect()
     };
     let [hanging, tablecloth] = SCENES.map(of);

@@ -1,119 +1,15 @@
-//! Tables of the scaling study, for people and for programs.
+//! Tables of the scaling study: all columns for programs, some of them for people.
 
 use super::drape::DrapeRow;
-use super::measure::{Row, STEP};
-use crate::report::{Cell, Table};
+use super::steps::{Row, STEP};
+use crate::report::Table;
 use crate::timing::OrderRow;
-
-fn megabytes(bytes: Option<f64>) -> Cell {
-    bytes
-        .map_or("unknown".into(), |b| format!("{:.0}", b / 1e6))
-        .into()
-}
-
-fn percent(part: f64, whole: f64) -> Cell {
-    format!("{:.0} %", 100.0 * part / whole).into()
-}
-
-fn milliseconds(seconds: f64) -> Cell {
-    format!("{:.2}", 1e3 * seconds).into()
-}
-
-fn tenths(value: f64) -> Cell {
-    format!("{value:.1}").into()
-}
-
-fn power(value: f64) -> Cell {
-    format!("{value:.0e}").into()
-}
-
-pub(super) fn steps(rows: &[Row]) -> Table {
-    Table::of(
-        "Per step of the hanging sheet. Factorisations, solves: their numbers times what one takes alone, parts of the step; the rest is \
-         assembly, gradients and vectors. The energy error is relative to the potential energy released, the memory is that of the \
-         Cholesky factor and the peak of the process.",
-        rows,
-        &[
-            ("mesh", &|r| format!("M^{}", r.level).into()),
-            ("V/F", &|r| format!("{}/{}", r.vertices, r.faces).into()),
-            ("set-up, s", &|r| format!("{:.3}", r.setup).into()),
-            ("step, s", &|r| format!("{:.2e}", r.per_step).into()),
-            ("iterations", &|r| tenths(r.iterations)),
-            ("factorisations", &|r| tenths(r.factorisations)),
-            ("factorising", &|r| percent(r.linear()[0], r.per_step)),
-            ("solving", &|r| percent(r.linear()[1], r.per_step)),
-            ("rest", &|r| {
-                percent(r.per_step - r.linear()[0] - r.linear()[1], r.per_step)
-            }),
-            ("strain", &|r| power(r.strain)),
-            ("energy error", &|r| power(r.balance)),
-            ("factor, MB", &|r| tenths(factor_bytes(r.best()) / 1e6)),
-            ("peak, MB", &|r| megabytes(r.peak)),
-        ],
-    )
-}
-
-/// Every order of every mesh.
-fn all_orders(rows: &[Row]) -> impl Iterator<Item = (&Row, &OrderRow)> {
-    rows.iter()
-        .flat_map(|r| r.orders.iter().map(move |o| (r, o)))
-}
-
-pub(super) fn orders(rows: &[Row]) -> Table {
-    Table::of(
-        "Elimination orders of the matrix of a step.",
-        all_orders(rows),
-        &[
-            ("mesh", &|(r, _)| format!("M^{}", r.level).into()),
-            ("order", &|(_, o)| name(o).into()),
-            ("found in, ms", &|(_, o)| milliseconds(o.order)),
-            ("symbolic, ms", &|(_, o)| milliseconds(o.symbolic)),
-            ("numeric, ms", &|(_, o)| milliseconds(o.numeric)),
-            ("on two threads, ms", &|(_, o)| milliseconds(o.two_threads)),
-            ("solve, ms", &|(_, o)| milliseconds(o.solve)),
-            ("entries of L", &|(_, o)| {
-                format!("{:.3e}", o.fill.entries).into()
-            }),
-            ("stored", &|(_, o)| {
-                format!("{:.3e}", o.stored as f64).into()
-            }),
-            ("operations", &|(_, o)| {
-                format!("{:.3e}", o.fill.operations).into()
-            }),
-        ],
-    )
-}
-
-pub(super) fn draping(rows: &[DrapeRow]) -> Table {
-    Table::of(
-        "Per step of the draping sheet. Detection: pairs within reach and the safe part of every motion; distances: distances, normals \
-         and weights of the pairs. Couplings: pairs of vertices that contact adds to the pattern of the matrix.",
-        rows,
-        &[
-            ("mesh", &|r| format!("M^{}", r.level).into()),
-            ("V", &|r| r.vertices.into()),
-            ("steps", &|r| r.cost.steps.into()),
-            ("step, s", &|r| format!("{:.2e}", r.step()).into()),
-            ("iterations", &|r| tenths(r.iterations())),
-            ("factorisations", &|r| tenths(r.factorisations())),
-            ("rejected", &|r| r.cost.rejected.into()),
-            ("detection", &|r| percent(r.detection(), r.step())),
-            ("distances", &|r| percent(r.evaluation(), r.step())),
-            ("contacts", &|r| r.contacts.into()),
-            ("couplings", &|r| r.couplings.into()),
-            ("strain", &|r| power(r.strain)),
-            ("gap, µm", &|r| tenths(1e6 * r.gap)),
-            ("peak, MB", &|r| megabytes(r.peak)),
-            ("remark", &|r| r.stopped.clone().unwrap_or_default().into()),
-        ],
-    )
-}
+use isosheet_coords::linalg::Ordering;
 
 pub(super) fn name(o: &OrderRow) -> &'static str {
-    use isosheet_coords::linalg::Ordering;
     match o.ordering {
-        Ordering::MinimumDegree => "minimum degree",
-        Ordering::NestedDissection => "nested dissection",
+        Ordering::MinimumDegree => "minimum_degree",
+        Ordering::NestedDissection => "nested_dissection",
         Ordering::Best => "best",
     }
 }
@@ -122,60 +18,91 @@ pub(super) fn factor_bytes(o: &OrderRow) -> f64 {
     8.0 * o.stored as f64
 }
 
-/// The hanging sheet, for programs.
-pub(super) fn steps_data(rows: &[Row]) -> Table {
+/// The hanging sheet: a row for every order of elimination of every mesh.
+pub(super) fn hanging(rows: &[Row]) -> Table {
+    let all = rows
+        .iter()
+        .flat_map(|r| r.orders.iter().map(move |o| (r, &r.course, o)));
     Table::of(
         "",
-        all_orders(rows),
+        all,
         &[
-            ("level", &|(r, _)| r.level.into()),
-            ("vertices", &|(r, _)| r.vertices.into()),
-            ("faces", &|(r, _)| r.faces.into()),
+            ("level", &|(r, ..)| r.level.into()),
+            ("vertices", &|(r, ..)| r.vertices.into()),
+            ("faces", &|(r, ..)| r.faces.into()),
             ("step_size_s", &|_| STEP.into()),
-            ("steps", &|(r, _)| r.steps.into()),
-            ("setup_s", &|(r, _)| r.setup.into()),
-            ("step_s", &|(r, _)| r.per_step.into()),
-            ("iterations", &|(r, _)| r.iterations.into()),
-            ("factorisations", &|(r, _)| r.factorisations.into()),
-            ("strain", &|(r, _)| r.strain.into()),
-            ("energy_error", &|(r, _)| r.balance.into()),
-            ("peak_bytes", &|(r, _)| r.peak.into()),
-            ("ordering", &|(_, o)| name(o).replace(' ', "_").into()),
-            ("order_s", &|(_, o)| o.order.into()),
-            ("symbolic_s", &|(_, o)| o.symbolic.into()),
-            ("numeric_s", &|(_, o)| o.numeric.into()),
-            ("two_threads_s", &|(_, o)| o.two_threads.into()),
-            ("same_bits", &|(_, o)| o.same_bits.to_string().into()),
-            ("solve_s", &|(_, o)| o.solve.into()),
-            ("factor_entries", &|(_, o)| o.fill.entries.into()),
-            ("factor_stored", &|(_, o)| o.stored.into()),
-            ("factor_operations", &|(_, o)| o.fill.operations.into()),
+            ("steps", &|(_, c, _)| c.cost.steps.into()),
+            ("setup_s", &|(r, ..)| r.setup.into()),
+            ("step_s", &|(r, ..)| r.step().into()),
+            ("factorising_s", &|(r, ..)| r.parts()[0].into()),
+            ("solving_s", &|(r, ..)| r.parts()[1].into()),
+            ("rest_s", &|(r, ..)| r.parts()[2].into()),
+            ("iterations", &|(_, c, _)| {
+                c.cost.iterations_per_step().into()
+            }),
+            ("factorisations", &|(r, ..)| r.factorisations().into()),
+            ("strain", &|(_, c, _)| c.strain.into()),
+            ("energy_error", &|(r, ..)| r.balance.into()),
+            ("factor_bytes", &|(r, ..)| factor_bytes(r.best()).into()),
+            ("peak_bytes", &|(r, ..)| r.peak.into()),
+            ("ordering", &|(.., o)| name(o).into()),
+            ("order_s", &|(.., o)| o.order.into()),
+            ("symbolic_s", &|(.., o)| o.symbolic.into()),
+            ("numeric_s", &|(.., o)| o.numeric.into()),
+            ("two_threads_s", &|(.., o)| o.two_threads.into()),
+            ("same_bits", &|(.., o)| o.same_bits.to_string().into()),
+            ("solve_s", &|(.., o)| o.solve.into()),
+            ("factor_entries", &|(.., o)| o.fill.entries.into()),
+            ("factor_stored", &|(.., o)| o.stored.into()),
+            ("factor_operations", &|(.., o)| o.fill.operations.into()),
         ],
     )
 }
 
-/// The draping sheet, for programs.
-pub(super) fn draping_data(rows: &[DrapeRow]) -> Table {
+/// The steps of [`hanging`].
+pub(super) fn steps(rows: &[Row]) -> Table {
+    let names = "level vertices faces setup_s step_s iterations factorisations factorising_s solving_s rest_s strain \
+                 energy_error factor_bytes peak_bytes";
+    hanging(rows).select(
+        "Per step of the hanging sheet. Factorisations, solves: their numbers times what one takes alone, parts of the step; the rest is \
+         assembly, gradients and vectors. The energy error is relative to the potential energy released, the memory is that of the \
+         Cholesky factor and the peak of the process.",
+        names,
+    )
+}
+
+/// The orders of elimination of [`hanging`].
+pub(super) fn orders(rows: &[Row]) -> Table {
+    let names = "level ordering order_s symbolic_s numeric_s two_threads_s solve_s factor_entries factor_stored \
+                 factor_operations";
+    hanging(rows).select("Elimination orders of the matrix of a step.", names)
+}
+
+/// The draping sheet.
+pub(super) fn draping(rows: &[DrapeRow]) -> Table {
     Table::of(
-        "",
+        "Per step of the draping sheet. Detection: pairs within reach and the safe part of every motion; distances: distances, normals \
+         and weights of the pairs. Couplings: pairs of vertices that contact adds to the pattern of the matrix.",
         rows,
         &[
             ("level", &|r| r.level.into()),
             ("vertices", &|r| r.vertices.into()),
             ("step_size_s", &|_| STEP.into()),
-            ("steps", &|r| r.cost.steps.into()),
+            ("steps", &|r| r.course.cost.steps.into()),
             ("step_s", &|r| r.step().into()),
             ("detection_s", &|r| r.detection().into()),
             ("distances_s", &|r| r.evaluation().into()),
-            ("iterations", &|r| r.iterations().into()),
+            ("iterations", &|r| {
+                r.course.cost.iterations_per_step().into()
+            }),
             ("factorisations", &|r| r.factorisations().into()),
-            ("rejected", &|r| r.cost.rejected.into()),
+            ("rejected", &|r| r.course.cost.rejected.into()),
             ("contacts", &|r| r.contacts.into()),
             ("couplings", &|r| r.couplings.into()),
-            ("strain", &|r| r.strain.into()),
-            ("gap_m", &|r| r.gap.into()),
+            ("strain", &|r| r.course.strain.into()),
+            ("gap_m", &|r| r.course.gap.into()),
             ("peak_bytes", &|r| r.peak.into()),
-            ("stopped", &|r| r.stopped.clone().into()),
+            ("stopped", &|r| r.course.failure().into()),
         ],
     )
 }

@@ -12,12 +12,12 @@ use std::time::Instant;
 
 /// Seconds spent in contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Spent {
+pub(super) struct Spent {
     /// Looking for pairs within reach and for the safe part of motions: broad phase and continuous collision
     /// detection.
-    pub(crate) detection: f64,
+    pub(super) detection: f64,
     /// Distances, normals and weights of the pairs within reach.
-    pub(crate) evaluation: f64,
+    pub(super) evaluation: f64,
 }
 
 impl Spent {

@@ -1,7 +1,8 @@
 //! What whole runs cost: the hanging sheet and the tablecloth with self-contact, from start to end.
 
 use crate::methods::{Named, damped};
-use crate::timing::{Measured, Mesh, Pairs, STEP, Work};
+use crate::runs::unseen;
+use crate::timing::{Limits, Measured, Mesh, Pairs, STEP, Work};
 use anyhow::Result;
 
 /// The scenes that run.
@@ -32,7 +33,7 @@ const STARTS: usize = 2;
 
 /// Whether runs differ in their starts alone.
 pub(super) fn are_neighbours(a: &Measured, b: &Measured) -> bool {
-    (a.level, &a.method) == (b.level, &b.method)
+    (a.mesh.level, &a.method) == (b.mesh.level, &b.method)
 }
 
 /// Runs that take less than this together are repeated, seconds.
@@ -45,8 +46,12 @@ pub(super) fn measure(scene: Work, level: u32, limit: f64) -> Result<Vec<Measure
     let mut runs = Vec::new();
     for method in methods(scene) {
         for start in 1..=STARTS {
-            let (method, limits) = (method.clone(), [limit, SHORT]);
-            let run = Measured::of(scene, mesh, method, (start, STEP), limits, &mut |_, _| {})?;
+            let limits = Limits {
+                patience: limit,
+                short: SHORT,
+            };
+            let (method, start) = (method.clone(), (start, STEP));
+            let run = Measured::of(scene, mesh, method, start, limits, &mut unseen)?;
             runs.push(run);
         }
     }
@@ -63,14 +68,17 @@ mod tests {
             let runs = measure(scene, 1, 30.0).expect("coarse scenes run");
             assert_eq!(runs.len(), 2 * methods(scene).len());
             for r in &runs {
-                let run = &r.run;
-                assert_eq!(run.failure, None, "{r:?}");
-                assert!((run.reached - scene.duration()).abs() < 1e-9, "{r:?}");
-                let (steps, effort) = ((scene.duration() / STEP).round() as usize, &run.cost);
-                assert_eq!(effort.steps, steps);
-                assert!(run.strain < 1e-9 && effort.factorisations >= steps, "{r:?}");
-                assert_eq!(run.gap.is_some(), scene != Work::Hanging);
-                assert!(run.gap.is_none_or(|gap| gap > 0.0), "{r:?}");
+                let (course, cost) = (&r.course, &r.course.cost);
+                assert_eq!(course.failure(), None, "{r:?}");
+                assert!((course.time - scene.duration()).abs() < 1e-9, "{r:?}");
+                let steps = (scene.duration() / STEP).round() as usize;
+                assert_eq!(cost.steps, steps);
+                assert!(
+                    course.strain < 1e-9 && cost.factorisations >= steps,
+                    "{r:?}"
+                );
+                assert_eq!(course.gap.is_some(), scene != Work::Hanging);
+                assert!(course.gap.is_none_or(|gap| gap > 0.0), "{r:?}");
             }
         }
     }

@@ -1,9 +1,10 @@
 //! Tables and words on whole runs.
 
 use super::findings::power;
-use super::whole::{are_neighbours, methods, name};
-use crate::report::{Cell, Table, short};
-use crate::timing::{self, COLUMNS, Entry, Measured, NEIGHBOUR, STEP, Timed, Work};
+use super::whole::{are_neighbours, methods};
+use crate::report::{Table, extremes, short};
+use crate::runs::Course;
+use crate::timing::{self, Entry, Measured, NEIGHBOUR, STEP};
 use std::fmt::Write;
 
 /// What the runs are.
@@ -37,10 +38,10 @@ pub(super) fn findings(runs: &[&Measured]) -> Vec<String> {
         let entries = entries(runs, level);
         all.push(timing::words(&format!("M^{level}"), &entries));
     }
-    let strain = runs.iter().map(|r| r.run.strain).fold(0.0, f64::max);
+    let strain = runs.iter().map(|r| r.course.strain).fold(0.0, f64::max);
     let mut extremes =
         format!("The largest strain of an edge in any of these runs is {strain:.0e}");
-    if let Some(gap) = runs.iter().filter_map(|r| r.run.gap).reduce(f64::min) {
+    if let Some(gap) = runs.iter().filter_map(|r| r.course.gap).reduce(f64::min) {
         let _ = write!(extremes, ", the smallest gap {} µm", short(1e6 * gap));
     }
     all.push(extremes + ".");
@@ -53,20 +54,22 @@ pub(super) fn findings(runs: &[&Measured]) -> Vec<String> {
 
 /// The fitted powers of a method.
 fn powers(runs: &[&Measured], method: &str) -> String {
-    let ended = runs.iter().filter(|r| r.method == method && r.run.ended());
+    let ended = runs
+        .iter()
+        .filter(|r| r.method == method && r.course.is_good());
     let ended: Vec<&&Measured> = ended.collect();
-    let fit = |value: fn(&Timed) -> Option<f64>| {
+    let fit = |value: fn(&Course) -> Option<f64>| {
         let points = ended
             .iter()
-            .filter_map(|r| Some([r.vertices as f64, value(&r.run)?]));
+            .filter_map(|r| Some([r.mesh.vertices as f64, value(&r.course)?]));
         power(&points.collect::<Vec<_>>())
     };
-    let meshes = ended.chunk_by(|a, b| a.level == b.level).count();
+    let meshes = ended.chunk_by(|a, b| a.mesh.level == b.mesh.level).count();
     format!(
         "{method}, fitted powers of V from {} runs on {meshes} meshes that ended: time per simulated second {}, time per factorisation {}, factorisations per step {}, \
          iterations per step {}.",
         ended.len(),
-        fit(Timed::rate),
+        fit(Course::rate),
         fit(|run| run.cost.wall_per_factorisation()),
         fit(|run| run.cost.factorisations_per_step()),
         fit(|run| run.cost.iterations_per_step()),
@@ -78,7 +81,8 @@ fn powers(runs: &[&Measured], method: &str) -> String {
 fn apart(runs: &[&Measured]) -> Option<String> {
     let of_level = |level: u32| {
         let pairs = runs.chunk_by(|a, b| are_neighbours(a, b));
-        let pairs = pairs.filter(|p| p[0].level == level && p.iter().all(|r| r.run.ended()));
+        let pairs =
+            pairs.filter(|p| p[0].mesh.level == level && p.iter().all(|r| r.course.is_good()));
         let part = pairs.filter_map(difference).reduce(f64::max)?;
         Some(format!("M^{level} {:.0} %", 100.0 * part))
     };
@@ -91,13 +95,12 @@ fn apart(runs: &[&Measured]) -> Option<String> {
 
 /// The larger number of factorisations over the smaller one, less 1.
 fn difference(pair: &[&Measured]) -> Option<f64> {
-    let counts = pair.iter().map(|r| [r.run.cost.factorisations as f64; 2]);
-    let [low, high] = counts.reduce(|[l, h], [a, b]| [l.min(a), h.max(b)])?;
+    let [low, high] = extremes(pair.iter().map(|r| r.course.cost.factorisations as f64))?;
     (pair.len() > 1 && low > 0.0).then(|| high / low - 1.0)
 }
 
 fn levels(runs: &[&Measured]) -> Vec<u32> {
-    let mut levels: Vec<u32> = runs.iter().map(|r| r.level).collect();
+    let mut levels: Vec<u32> = runs.iter().map(|r| r.mesh.level).collect();
     levels.dedup();
     levels
 }
@@ -110,13 +113,13 @@ fn entries(runs: &[&Measured], level: u32) -> Vec<Entry> {
         let walls: Option<Vec<f64>> = walls.collect();
         Entry {
             wall: walls.map(|w| w.iter().sum::<f64>() / w.len() as f64),
-            strain: starts.iter().map(|r| r.run.strain).fold(0.0, f64::max),
+            strain: starts.iter().map(|r| r.course.strain).fold(0.0, f64::max),
             ..first
         }
     };
     let groups = runs.chunk_by(|a, b| are_neighbours(a, b));
     groups
-        .filter(|starts| starts[0].level == level)
+        .filter(|starts| starts[0].mesh.level == level)
         .map(of_starts)
         .collect()
 }
@@ -124,113 +127,62 @@ fn entries(runs: &[&Measured], level: u32) -> Vec<Entry> {
 /// How far a run came that did not come to the end.
 fn unfinished(r: &Measured) -> Option<String> {
     let (mesh, method, remark) = (r.mesh(), &r.method, r.remark());
-    (!r.run.ended()).then(|| format!("{mesh}, {method}, start {}: {remark}", r.start))
+    (!r.course.is_good()).then(|| format!("{mesh}, {method}, start {}: {remark}", r.start))
 }
 
-fn cell(value: Option<f64>) -> Cell {
-    value.map_or("–".into(), short).into()
-}
-
-/// The runs of one scene.
-pub(super) fn table(scene: Work, runs: &[&Measured]) -> Table {
-    let with = |r: &&Measured| {
-        let entry = r.entry(r.method.clone());
-        ((*r).clone(), entry.cells(&entries(runs, r.level)))
+/// The runs of all scenes.
+pub(super) fn table(runs: &[&Measured]) -> Table {
+    let all = |r: &Measured| {
+        let of_scene: Vec<&Measured> = runs.iter().copied().filter(|o| o.work == r.work).collect();
+        entries(&of_scene, r.mesh.level)
     };
-    Table::of(
-        format!(
-            "Whole runs of the {}: wall seconds for a simulated second, set-up left out, of runs that did not end up to the time they reached; \
-             the time as a multiple of that of the fastest method on the mesh that keeps lengths, and of the time of one factorisation a step.",
-            name(scene)
-        ),
-        runs.iter().map(with),
-        &[
-            ("mesh", &|(r, _)| r.mesh().into()),
-            ("V", &|(r, _)| r.vertices.into()),
-            ("method", &|(r, _)| r.method.as_str().into()),
-            ("start", &|(r, _)| r.start.into()),
-            ("s/s", &|(r, _)| r.rate().into()),
-            ("iterations per step", &|(r, _)| {
-                cell(r.run.cost.iterations_per_step())
-            }),
-            ("factorisations per step", &|(r, _)| {
-                cell(r.run.cost.factorisations_per_step())
-            }),
-            ("ms per factorisation", &|(r, _)| {
-                let seconds = r.run.cost.wall_per_factorisation();
-                cell(seconds.map(|s| 1e3 * s))
-            }),
-            (COLUMNS[0], &|(_, c)| c[0].as_str().into()),
-            (COLUMNS[1], &|(_, c)| c[1].as_str().into()),
-            ("rejected", &|(r, _)| r.run.cost.rejected.into()),
-            ("strain", &|(r, _)| format!("{:.0e}", r.run.strain).into()),
-            ("smallest gap, µm", &|(r, _)| {
-                cell(r.run.gap.map(|gap| 1e6 * gap))
-            }),
-            ("remark", &|(r, _)| r.remark().into()),
-        ],
-    )
-}
-
-/// All runs, for programs.
-pub(super) fn data(runs: &[Measured]) -> Table {
-    Table::of(
-        "",
+    timing::table(
+        "Whole runs: wall seconds for a simulated second, set-up left out, of runs that did not end up to the time they reached; \
+         the time as a multiple of that of the fastest method on the mesh that keeps lengths, and of the time of one factorisation a step.",
         runs,
-        &[
-            ("scene", &|r| name(r.work).into()),
-            ("level", &|r| r.level.into()),
-            ("vertices", &|r| r.vertices.into()),
-            ("method", &|r| r.method.as_str().into()),
-            ("start", &|r| r.start.into()),
-            ("step_s", &|_| STEP.into()),
-            ("wall_s", &|r| r.run.cost.wall.into()),
-            ("repetitions", &|r| r.run.repetitions.into()),
-            ("reached_s", &|r| r.run.reached.into()),
-            ("steps", &|r| r.run.cost.steps.into()),
-            ("rejected", &|r| r.run.cost.rejected.into()),
-            ("iterations", &|r| r.run.cost.iterations.into()),
-            ("factorisations", &|r| r.run.cost.factorisations.into()),
-            ("factorisation_s", &|r| r.factorisation.into()),
-            ("strain", &|r| r.run.strain.into()),
-            ("gap_m", &|r| r.run.gap.into()),
-            ("not_ended", &|r| r.run.failure.clone().into()),
-        ],
+        &all,
     )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Cost;
+    use crate::report::{Cell, Cost};
+    use crate::runs::Ending;
+    use crate::timing::{Mesh, Work};
 
     /// A run of the hanging sheet with made-up numbers: `cost` times `V^2` seconds, `V^1.5` of them for each
     /// factorisation.
     fn made_up(level: u32, method: &str, start: usize, cost: f64) -> Measured {
         let vertices = (2_usize.pow(level + 1) + 1).pow(2);
         let v = vertices as f64;
+        let cost = Cost {
+            steps: 60,
+            substeps: 60,
+            rejected: 0,
+            iterations: 240,
+            factorisations: (1e6 * cost * v.sqrt()) as usize,
+            wall: cost * v * v,
+        };
         Measured {
             work: Work::Hanging,
-            level,
-            vertices,
+            mesh: Mesh {
+                level,
+                vertices,
+                factorisation: 1e-6 * v * v * STEP,
+            },
             method: method.to_owned(),
             start,
             step: STEP,
-            factorisation: 1e-6 * v * v * STEP,
-            run: Timed {
-                cost: Cost {
-                    steps: 60,
-                    substeps: 60,
-                    rejected: 0,
-                    iterations: 240,
-                    factorisations: (1e6 * cost * v.sqrt()) as usize,
-                    wall: cost * v * v,
-                },
+            course: Course {
+                cost,
+                time: 1.0,
                 strain: 1e-12,
-                reached: 1.0,
-                repetitions: 1,
-                ..Timed::default()
+                ..Course::default()
             },
+            gained: 0.0,
+            released: 1.0,
+            repetitions: 1,
         }
     }
 
@@ -266,11 +218,11 @@ mod tests {
         let mut runs = made_up_runs();
         let lost = runs
             .iter_mut()
-            .find(|r| r.level == 3)
-            .map(|r| &mut r.run)
+            .find(|r| r.mesh.level == 3)
+            .map(|r| &mut r.course)
             .expect("a run of M^3");
-        (lost.cost.wall, lost.reached) = (1e9, 0.25);
-        lost.failure = Some("600 s of wall time were over".into());
+        (lost.cost.wall, lost.time) = (1e9, 0.25);
+        lost.ending = Ending::WallTime(600.0);
         let all: Vec<&Measured> = runs.iter().collect();
         let text = findings(&all).join("\n");
         for part in [
@@ -280,8 +232,8 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part} is missing in {text}");
         }
-        let table = table(Work::Hanging, &all);
-        let says = |c: &Cell| matches!(c, Cell::Text(t) if t.starts_with("stopped at 0.25 s"));
+        let table = table(&all);
+        let says = |c: &Cell| matches!(c, Cell::Text(t) if t.starts_with("600 s of wall time"));
         let marked = table.rows.iter().filter(|r| r.last().is_some_and(says));
         assert_eq!(marked.count(), 1);
     }
@@ -289,8 +241,8 @@ mod tests {
     #[test]
     fn neighbouring_starts_are_compared_by_their_factorisations() {
         let mut runs = made_up_runs();
-        let first = runs[0].run.cost.factorisations;
-        runs[1].run.cost.factorisations = first * 4 / 3;
+        let first = runs[0].course.cost.factorisations;
+        runs[1].course.cost.factorisations = first * 4 / 3;
         let all: Vec<&Measured> = runs.iter().collect();
         let text = apart(&all).expect("pairs of runs");
         assert!(text.contains("M^1 33 %, M^2 0 %"), "{text}");

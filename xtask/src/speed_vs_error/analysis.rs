@@ -5,49 +5,35 @@ use crate::report::{exponent, short};
 use std::fmt::Write;
 
 /// Which error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Measure {
-    Position,
-    Energy,
-    Strain,
-}
-
-impl Measure {
-    pub(crate) const ALL: [Self; 3] = [Self::Position, Self::Energy, Self::Strain];
-
-    pub(crate) fn of(self, errors: &Errors) -> f64 {
-        match self {
-            Self::Position => errors.position,
-            Self::Energy => errors.energy,
-            Self::Strain => errors.strain,
-        }
-    }
-
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Position => "position",
-            Self::Energy => "energy",
-            Self::Strain => "strain",
-        }
-    }
-
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Measure {
+    pub(crate) name: &'static str,
+    pub(crate) unit: &'static str,
     /// The largest error that is of use: coarser runs are cheap, but no motion. Position errors of sheets of
     /// 1 m.
-    pub(crate) fn useful(self) -> f64 {
-        match self {
-            Self::Position => 0.05,
-            Self::Energy => 0.1,
-            Self::Strain => 1e-2,
-        }
-    }
-
-    pub(crate) fn unit(self) -> &'static str {
-        match self {
-            Self::Position => " m",
-            Self::Energy | Self::Strain => "",
-        }
-    }
+    useful: f64,
+    pub(crate) of: fn(&Errors) -> f64,
 }
+
+/// Distances from the reference, changes of energy, edge strains: see [`Errors`].
+pub(crate) const POSITION: Measure = Measure {
+    name: "position",
+    unit: " m",
+    useful: 0.05,
+    of: |errors| errors.position,
+};
+pub(crate) const ENERGY: Measure = Measure {
+    name: "energy",
+    unit: "",
+    useful: 0.1,
+    of: |errors| errors.energy,
+};
+pub(crate) const STRAIN: Measure = Measure {
+    name: "strain",
+    unit: "",
+    useful: 1e-2,
+    of: |errors| errors.strain,
+};
 
 /// Points that a fitted order rests on: the finest ones, before floors are reached.
 const FITTED: usize = 4;
@@ -60,7 +46,7 @@ pub(crate) fn order(points: &[Point], scheme: &str, measure: Measure, floor: f64
         .filter(|p| p.scheme == scheme && p.uniform)
         .filter_map(|p| {
             p.errors
-                .map(|e| [p.step, measure.of(&e)])
+                .map(|e| [p.step, (measure.of)(&e)])
                 .filter(|[_, e]| *e > 10.0 * floor)
         })
         .collect();
@@ -79,7 +65,7 @@ pub(crate) fn cheapest<'a>(
 ) -> Option<&'a Point> {
     points
         .into_iter()
-        .filter(|p| p.errors.is_some_and(|e| measure.of(&e) <= level))
+        .filter(|p| p.errors.is_some_and(|e| (measure.of)(&e) <= level))
         .min_by(|a, b| a.wall.total_cmp(&b.wall))
 }
 
@@ -90,10 +76,10 @@ pub(crate) fn on_front(points: &[Point], scheme: &str, measure: Measure) -> Opti
         .iter()
         .filter(|p| p.scheme == scheme)
         .filter_map(|p| {
-            let level = measure.of(&p.errors?);
+            let level = (measure.of)(&p.errors?);
             let others = points.iter().filter(|q| q.scheme != scheme);
             let first = cheapest(others, measure, level).is_none_or(|q| q.wall * NOISE >= p.wall);
-            (first && level <= measure.useful()).then_some([level; 2])
+            (first && level <= measure.useful).then_some([level; 2])
         })
         .reduce(|a, b| [a[0].max(b[0]), a[1].min(b[1])])
 }
@@ -138,7 +124,7 @@ pub(crate) fn advice(points: &[Point], measure: Measure) -> String {
             text,
             "{join}down to 1e{}{}: {} ({} s/s)",
             stretch.to,
-            measure.unit(),
+            measure.unit,
             stretch.scheme,
             short(stretch.wall)
         );
@@ -184,7 +170,7 @@ mod tests {
     #[test]
     fn orders_are_slopes_above_the_floor() {
         let points = sample();
-        let o = |name, floor| order(&points, name, Measure::Position, floor);
+        let o = |name, floor| order(&points, name, POSITION, floor);
         assert!((o("one", 1e-12).unwrap() - 1.0).abs() < 1e-12);
         assert!((o("four", 1e-12).unwrap() - 4.0).abs() < 1e-12);
         assert_eq!(o("four", 1e-5), None, "too few points are left");
@@ -193,23 +179,23 @@ mod tests {
     #[test]
     fn the_front_names_the_cheapest() {
         let points = sample();
-        let stretches = front(&points, Measure::Position);
+        let stretches = front(&points, POSITION);
         assert_eq!(stretches[0].scheme, "one");
         assert_eq!(stretches[0].to, -1);
         assert_eq!(stretches[1].scheme, "four");
-        let [high, low] = on_front(&points, "one", Measure::Position).unwrap();
+        let [high, low] = on_front(&points, "one", POSITION).unwrap();
         assert!(
             high == 0.05 && low < high,
             "{high} is no more than what is of use"
         );
-        assert!(on_front(&points, "four", Measure::Position).is_some());
-        assert_eq!(on_front(&points, "bad", Measure::Position), None);
-        assert_eq!(on_front(&points, "absent", Measure::Position), None);
-        let words = advice(&points, Measure::Position);
+        assert!(on_front(&points, "four", POSITION).is_some());
+        assert_eq!(on_front(&points, "bad", POSITION), None);
+        assert_eq!(on_front(&points, "absent", POSITION), None);
+        let words = advice(&points, POSITION);
         assert!(
             words.starts_with("down to 1e-1 m: one (0.10 s/s)"),
             "{words}"
         );
-        assert_eq!(advice(&[], Measure::Energy), "no method reaches 1e-1");
+        assert_eq!(advice(&[], ENERGY), "no method reaches 1e-1");
     }
 }

@@ -4,7 +4,8 @@ use super::scheme::DEFAULT;
 use crate::methods::{Named, energy_momentum};
 use crate::progress::Progress;
 use crate::report::{Effort, Table, percent};
-use crate::timing::{self, COLUMNS, Entry, Measured, Mesh, Work};
+use crate::runs::unseen;
+use crate::timing::{self, Entry, Limits, Measured, Mesh, Work};
 use anyhow::Result;
 use isosheet_dynamics::{ImplicitOptions, Method, ProjectionStepOptions};
 use std::fmt::Write;
@@ -43,13 +44,15 @@ fn methods() -> [(Named, f64); 6] {
 
 /// Runs the work on all meshes.
 pub(crate) fn make(effort: Effort) -> Result<Vec<Measured>> {
-    let levels = 1..=effort.hanging_level();
+    let levels = 1..=effort.quick_or(1, 4);
+    // Longest run, seconds of wall time.
+    let patience = effort.pick(0.3, 20.0, 240.0);
     let bar = Progress::start("hanging sheet", levels.clone().count() * methods().len());
     let mut rows = Vec::new();
     for level in levels {
         let mesh = Mesh::measured(level)?;
         for method in methods() {
-            rows.push(measure(mesh, method, effort.hanging())?);
+            rows.push(measure(mesh, method, patience)?);
             bar.step();
         }
     }
@@ -58,100 +61,59 @@ pub(crate) fn make(effort: Effort) -> Result<Vec<Measured>> {
 }
 
 fn measure(mesh: Mesh, (method, step): (Named, f64), patience: f64) -> Result<Measured> {
-    let limits = [patience, 0.1 * patience];
-    Measured::of(
-        Work::Hanging,
-        mesh,
-        method,
-        (1, step),
-        limits,
-        &mut |_, _| {},
-    )
+    let limits = Limits {
+        patience,
+        short: 0.1 * patience,
+    };
+    Measured::of(Work::Hanging, mesh, method, (1, step), limits, &mut unseen)
 }
 
-/// All runs, for programs.
-pub(crate) fn data(rows: &[Measured]) -> Table {
-    Table::of(
-        "",
-        rows,
-        &[
-            ("mesh", &|r| r.mesh().into()),
-            ("method", &|r| r.method.as_str().into()),
-            ("step_s", &|r| r.step.into()),
-            ("wall_s_per_simulated_s", &|r| r.run.rate().into()),
-            ("strain", &|r| r.run.strain.into()),
-            ("energy_balance", &|r| r.run.balance().into()),
-            ("largest_energy_change", &|r| r.run.relative_drift().into()),
-            ("factorisations", &|r| r.run.cost.factorisations.into()),
-            ("steps", &|r| r.run.cost.substeps.into()),
-            ("rejected", &|r| r.run.cost.rejected.into()),
-            ("factorisation_s", &|r| r.factorisation.into()),
-            ("reached_s", &|r| r.run.reached.into()),
-            ("repetitions", &|r| r.run.repetitions.into()),
-            ("failure", &|r| r.run.failure.clone().into()),
-        ],
-    )
-}
-
-/// The table for people.
-pub(crate) fn table(rows: &[Measured]) -> Table {
-    let rows = rows.chunk_by(|a, b| a.level == b.level).flat_map(|mesh| {
-        let entries = entries(mesh);
-        let with = move |r| (r, entry(r).cells(&entries));
-        mesh.iter().map(with)
-    });
-    Table::of(
+/// All runs.
+pub(super) fn table(rows: &[Measured]) -> Table {
+    timing::table(
         "Hanging sheet: wall seconds for a simulated second on one core, as multiples of the fastest run on the mesh that keeps lengths to \
          1e-9 and of one factorisation a step; largest relative edge length error, energy balance at the end as part of the potential \
          energy released (negative: lost), and its largest change on the way",
-        rows,
-        &[
-            ("mesh", &|(r, _)| r.mesh().into()),
-            ("method", &|(r, _)| r.method.as_str().into()),
-            ("step (ms)", &|(r, _)| format!("{:.1}", 1e3 * r.step).into()),
-            ("s/s", &|(r, _)| r.rate().into()),
-            (COLUMNS[0], &|(_, c)| c[0].as_str().into()),
-            (COLUMNS[1], &|(_, c)| c[1].as_str().into()),
-            ("strain", &|(r, _)| format!("{:.0e}", r.run.strain).into()),
-            ("energy", &|(r, _)| percent(r.run.balance()).into()),
-            ("largest change", &|(r, _)| {
-                percent(r.run.relative_drift()).into()
-            }),
-            ("factorisations", &|(r, _)| r.run.cost.factorisations.into()),
-            ("steps", &|(r, _)| r.run.cost.substeps.into()),
-            ("rejected", &|(r, _)| r.run.cost.rejected.into()),
-            ("remark", &|(r, _)| r.remark().into()),
-        ],
+        &rows.iter().collect::<Vec<_>>(),
+        &|r| {
+            rows.iter()
+                .filter(|o| of_one_mesh(r, o))
+                .map(entry)
+                .collect()
+        },
     )
+}
+
+fn of_one_mesh(a: &Measured, b: &Measured) -> bool {
+    a.mesh.level == b.mesh.level
 }
 
 /// What the rows say.
 pub(crate) fn conclusions(rows: &[Measured]) -> Vec<String> {
-    let finished: Vec<&Measured> = rows.iter().filter(|r| r.run.ended()).collect();
+    let finished: Vec<&Measured> = rows.iter().filter(|r| r.course.is_good()).collect();
     let mut all = Vec::new();
-    if let Some(strain) = finished.iter().map(|r| r.run.strain).reduce(f64::max) {
+    if let Some(strain) = finished.iter().map(|r| r.course.strain).reduce(f64::max) {
         all.push(format!(
             "{} of {} runs of the hanging sheet came to the end; none of these strains an edge by more than {strain:.0e}.",
             finished.len(),
             rows.len()
         ));
     }
-    let mut levels: Vec<u32> = rows.iter().map(|r| r.level).collect();
-    levels.dedup();
-    for level in levels {
-        let here = || finished.iter().filter(|r| r.level == level);
+    for mesh in rows.chunk_by(of_one_mesh) {
+        let name = mesh[0].mesh();
+        let here = || mesh.iter().filter(|r| r.course.is_good());
         let damped = here()
             .filter(|r| r.method != CONSERVATIVE)
-            .min_by(|a, b| a.run.cost.wall.total_cmp(&b.run.cost.wall));
+            .min_by(|a, b| a.course.cost.wall.total_cmp(&b.course.cost.wall));
         let mut text = match damped {
             Some(r) => format!(
-                "M^{level}: the cheapest damped run is {} at {:.1} ms, {} s/s with strain {:.0e}",
+                "{name}: the cheapest damped run is {} at {:.1} ms, {} s/s with strain {:.0e}",
                 r.method,
                 1e3 * r.step,
                 r.rate(),
-                r.run.strain
+                r.course.strain
             ),
-            None => format!("M^{level}: no damped run came to the end"),
+            None => format!("{name}: no damped run came to the end"),
         };
         match here().find(|r| r.method == CONSERVATIVE) {
             Some(r) => {
@@ -159,7 +121,7 @@ pub(crate) fn conclusions(rows: &[Measured]) -> Vec<String> {
                     text,
                     "; the conservative one takes {} s/s and keeps the energy to {:.0e}.",
                     r.rate(),
-                    r.run.relative_drift()
+                    r.relative_drift()
                 );
             }
             None => text.push_str("; the conservative one did not come to the end."),
@@ -170,10 +132,10 @@ pub(crate) fn conclusions(rows: &[Measured]) -> Vec<String> {
         let (method, mesh, step) = (&r.method, r.mesh(), 1e3 * r.step);
         format!(
             "{method} on {mesh} at {step:.1} ms by {}",
-            percent(r.run.balance())
+            percent(r.balance())
         )
     };
-    let gains = finished.iter().filter(|r| r.run.balance() > GAIN).map(gain);
+    let gains = finished.iter().filter(|r| r.balance() > GAIN).map(gain);
     let gains: Vec<String> = gains.collect();
     if !gains.is_empty() {
         all.push(format!(
@@ -186,7 +148,7 @@ pub(crate) fn conclusions(rows: &[Measured]) -> Vec<String> {
 
 /// How the runs on each mesh compare in time.
 pub(crate) fn comparisons(rows: &[Measured]) -> Vec<String> {
-    rows.chunk_by(|a, b| a.level == b.level)
+    rows.chunk_by(of_one_mesh)
         .map(|mesh| {
             let scene = format!("Hanging sheet {}", mesh[0].mesh());
             timing::words(&scene, &entries(mesh))
@@ -211,27 +173,20 @@ mod tests {
     use crate::report::Cell;
 
     #[test]
-    fn the_coarsest_mesh_hangs() {
-        let row = measure(Mesh::measured(1).unwrap(), methods()[0].clone(), 1.0).unwrap();
-        assert_eq!(row.run.failure, None);
-        assert!((row.run.reached - 1.0).abs() < 1e-9);
-        assert!(row.run.strain < 1e-11 && row.run.cost.factorisations > 60);
-        let csv = String::from_utf8(data(std::slice::from_ref(&row)).csv().unwrap()).unwrap();
-        assert!(csv.contains("M^1,BDF2 (default),"), "{csv}");
-        assert!(conclusions(&[row])[1].starts_with("M^1: the cheapest damped run is BDF2"));
-    }
-
-    #[test]
-    fn comparisons_follow_the_numbers() {
+    fn the_coarsest_mesh_hangs_and_comparisons_follow_the_numbers() {
         let mut row = measure(Mesh::measured(1).unwrap(), methods()[0].clone(), 1.0).unwrap();
-        row.run.cost.wall = 0.6 * row.run.reached;
-        row.factorisation = 0.1 * row.step;
+        let course = &mut row.course;
+        assert!(course.is_good() && (course.time - 1.0).abs() < 1e-9);
+        assert!(course.strain < 1e-11 && course.cost.factorisations > 60);
+        course.cost.wall = 0.6 * course.time;
+        row.mesh.factorisation = 0.1 * row.step;
         let mut other = row.clone();
         other.method = CONSERVATIVE.into();
-        other.run.cost.wall *= 3.0;
+        other.course.cost.wall *= 3.0;
         let mut finer = row.clone();
-        finer.level = 2;
+        finer.mesh.level = 2;
         let all = [row, other, finer];
+        assert!(conclusions(&all)[1].starts_with("M^1: the cheapest damped run is BDF2"));
         let text = comparisons(&all);
         assert_eq!(text.len(), 2, "one for each mesh");
         for part in [
@@ -240,7 +195,15 @@ mod tests {
         ] {
             assert!(text[0].contains(part), "{part} is missing in {text:?}");
         }
-        let row = &table(&all).rows[1];
-        assert_eq!(row[4..6], [Cell::from("3.0"), Cell::from("18")]);
+        let table = table(&all);
+        let Cell::Number(times) = table.rows[1][9] else {
+            panic!("{table:?}")
+        };
+        assert!((times - 3.0).abs() < 1e-9);
+        let csv = String::from_utf8(table.csv().unwrap()).unwrap();
+        assert!(
+            csv.contains("hanging sheet,,M^1,25,BDF2 (default),"),
+            "{csv}"
+        );
     }
 }

@@ -1,6 +1,7 @@
 //! Matrix Market files of the matrices of the solver study.
 
-use crate::interrupt::{self, Outcome};
+use super::solvers;
+use crate::interrupt;
 use crate::progress;
 use crate::report::Effort;
 use crate::timing::{Body, STIFFNESS};
@@ -9,8 +10,8 @@ use isosheet_io::{MatrixSymmetry, write_matrix_market};
 use std::path::Path;
 
 /// Writes the matrices of all sizes of an effort.
-pub(crate) fn write(folder: &Path, effort: Effort) -> Result<Outcome> {
-    for body in Body::all(effort.solver_level()) {
+pub(crate) fn write(folder: &Path, effort: Effort) -> Result<()> {
+    for body in Body::all(solvers::finest(effort)) {
         let body = body?;
         let kinds = [
             ("saddle", "saddle-point matrix [M G^T; G 0]"),
@@ -18,9 +19,7 @@ pub(crate) fn write(folder: &Path, effort: Effort) -> Result<Outcome> {
             ("primal", "primal matrix M + r G^T G"),
         ];
         for (kind, words) in kinds {
-            if interrupt::requested() {
-                return Ok(Outcome::Interrupted);
-            }
+            interrupt::check()?;
             let matrix = match kind {
                 "saddle" => body.saddle(MatrixSymmetry::Symmetric),
                 "schur" => body.schur(),
@@ -45,7 +44,7 @@ pub(crate) fn write(folder: &Path, effort: Effort) -> Result<Outcome> {
             );
         }
     }
-    Ok(Outcome::Complete)
+    Ok(())
 }
 
 #[cfg(test)]

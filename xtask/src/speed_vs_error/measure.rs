@@ -3,17 +3,15 @@
 use super::problem::Problem;
 use super::reference::Reference;
 use super::scheme::{Fineness, Scheme};
-use crate::interrupt;
 use crate::report::Cost;
+use crate::runs::{Course, Ending, Plan, unseen};
 use anyhow::Result;
-use isosheet_dynamics::{Observer, Simulation, StepReport};
+use isosheet_dynamics::Simulation;
 use isosheet_tests::max_difference;
-use serde::{Deserialize, Serialize};
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// What one run of a method gave.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Point {
     /// Name of the method.
     pub(crate) scheme: String,
@@ -42,7 +40,7 @@ pub(crate) struct Point {
 }
 
 /// Largest errors over a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Errors {
     /// Distance of a vertex from the reference at the checkpoints, metres.
     pub(crate) position: f64,
@@ -55,10 +53,10 @@ pub(crate) struct Errors {
 /// One pass over the checkpoints.
 #[derive(Default)]
 struct Pass {
-    cost: Cost,
-    errors: Errors,
+    course: Course,
+    /// Largest distance from the reference, metres.
+    position: f64,
     failure: Option<String>,
-    reached: f64,
     /// Checkpoints reached.
     checkpoints: usize,
 }
@@ -92,7 +90,10 @@ pub(crate) fn point(
         let pass = run(&mut simulation, reference, pieces, patience)?;
         repetitions += 1;
         let stop = pass.failure.is_some();
-        if best.as_ref().is_none_or(|b| pass.cost.wall < b.cost.wall) {
+        if best
+            .as_ref()
+            .is_none_or(|b| pass.course.cost.wall < b.course.cost.wall)
+        {
             best = Some(pass);
         }
         if stop || clock.elapsed().as_secs_f64() > 0.1 * patience {
@@ -103,7 +104,7 @@ pub(crate) fn point(
         return Ok(refused(scheme, asked.value(reference), "not run".into()));
     };
     // Differences smaller than the doubt of the reference mean nothing.
-    pass.errors.position = pass.errors.position.max(reference.doubt());
+    pass.position = pass.position.max(reference.doubt());
     Ok(of_pass(pass, scheme, reference, asked, repetitions))
 }
 
@@ -125,7 +126,13 @@ fn of_pass(
     asked: Asked,
     repetitions: usize,
 ) -> Point {
-    let energy = pass.errors.energy;
+    let (course, cost) = (&pass.course, &pass.course.cost);
+    let energy = course.drift / reference.energy;
+    let errors = Errors {
+        position: pass.position,
+        energy,
+        strain: course.strain,
+    };
     if pass.failure.is_none() && energy > BLOWN_UP {
         pass.failure = Some(format!(
             "blown up: its energy changes by {energy:.0e} of the largest kinetic energy"
@@ -134,7 +141,7 @@ fn of_pass(
     let finished = pass.failure.is_none();
     let expected = match asked {
         Asked::Steps(n) => n * reference.usable(),
-        Asked::Tolerance(_) => pass.cost.substeps,
+        Asked::Tolerance(_) => cost.substeps,
     };
     // Round-off may leave a rest of a step at every checkpoint.
     let rests = if scheme.steps_itself() {
@@ -142,27 +149,22 @@ fn of_pass(
     } else {
         0
     };
-    let as_asked =
-        (expected..=expected + rests).contains(&pass.cost.substeps) && pass.cost.rejected == 0;
+    let as_asked = (expected..=expected + rests).contains(&cost.substeps) && cost.rejected == 0;
     let partial = !finished && pass.checkpoints > 0 && energy <= BLOWN_UP;
     Point {
         scheme: scheme.name.clone(),
         fineness: asked.value(reference),
         step: match asked.fineness(reference) {
             Fineness::Step(h) if rests > 0 => h,
-            _ => pass.reached / pass.cost.substeps.max(1) as f64,
+            _ => course.time / cost.substeps.max(1) as f64,
         },
         uniform: finished && as_asked,
-        wall: if pass.reached > 0.0 {
-            pass.cost.wall / pass.reached
-        } else {
-            0.0
-        },
+        wall: course.rate().unwrap_or(0.0),
         repetitions,
-        cost: pass.cost,
-        errors: finished.then_some(pass.errors),
-        partial: partial.then_some(pass.errors),
-        reached: pass.reached,
+        cost: *cost,
+        errors: finished.then_some(errors),
+        partial: partial.then_some(errors),
+        reached: course.time,
         failure: pass.failure,
     }
 }
@@ -201,43 +203,29 @@ fn run(
     patience: f64,
 ) -> Result<Pass> {
     let mut pass = Pass::default();
-    let h = reference.interval() / pieces as f64;
-    let clock = Instant::now();
-    let mut comparing = 0.0;
+    let interval = reference.interval();
     let mut at_last_checkpoint = None;
     for want in reference.positions() {
-        let mut watch = |_: &Simulation, report: &StepReport| {
-            pass.cost.add(report);
-            let e = &mut pass.errors;
-            e.energy = e.energy.max(report.energy_drift.abs() / reference.energy);
-            e.strain = e.strain.max(report.strain);
-            if clock.elapsed().as_secs_f64() - comparing > patience {
-                pass.failure = Some(format!("given up after {patience} s of wall time"));
-                return ControlFlow::Break(());
-            }
-            ControlFlow::Continue(())
+        let left = patience - pass.course.cost.wall;
+        let plan = Plan::new(interval / pieces as f64, interval).within(left);
+        plan.go_on(simulation, &mut pass.course, &mut unseen)?;
+        let course = &mut pass.course;
+        pass.failure = match course.ending {
+            Ending::WallTime(_) => Some(format!("given up after {patience} s of wall time")),
+            _ => course.failure(),
         };
-        let observers: &mut [&mut dyn Observer] = &mut [&mut watch, &mut interrupt::observe];
-        if let Err(error) = simulation.run(reference.interval(), h, observers) {
-            pass.failure = Some(error.to_string());
-        }
-        interrupt::check()?;
         if pass.failure.is_some() {
+            // What a run spent on its way from the last checkpoint to its failure is not counted.
+            if let Some((wall, time, substeps)) = at_last_checkpoint {
+                (course.cost.wall, course.time, course.cost.substeps) = (wall, time, substeps);
+            }
             break;
         }
-        let before = Instant::now();
-        let error = max_difference(&simulation.state().x, want);
-        pass.errors.position = pass.errors.position.max(error);
+        pass.position = pass
+            .position
+            .max(max_difference(&simulation.state().x, want));
         pass.checkpoints += 1;
-        let wall = clock.elapsed().as_secs_f64() - comparing;
-        at_last_checkpoint = Some((wall, simulation.state().t, pass.cost.substeps));
-        comparing += before.elapsed().as_secs_f64();
-    }
-    pass.cost.wall = clock.elapsed().as_secs_f64() - comparing;
-    pass.reached = simulation.state().t;
-    // What a run spent on its way from the last checkpoint to its failure is not counted.
-    if let (Some(_), Some(before)) = (&pass.failure, at_last_checkpoint) {
-        (pass.cost.wall, pass.reached, pass.cost.substeps) = before;
+        at_last_checkpoint = Some((course.cost.wall, course.time, course.cost.substeps));
     }
     Ok(pass)
 }

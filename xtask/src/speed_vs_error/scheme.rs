@@ -25,16 +25,13 @@ pub(crate) struct Scheme {
 pub(crate) enum Kind {
     /// Without a chart.
     Free(Method),
-    /// The full equations of motion in a chart with exact positions.
+    /// In a chart: the full equations of motion with exact positions, or the scheme of Liu, Tang and Joneja
+    /// 2007, forward Euler with momenta carried over and positions to first order.
     Chart {
         chart: ChartKind,
-        method: ChartMethod,
-        solver: MassSolverKind,
-    },
-    /// The scheme of Liu, Tang and Joneja 2007: forward Euler, momenta carried over, positions to first
-    /// order.
-    Paper {
         degenerate: Degenerate,
+        /// Options with everything but the step control.
+        options: ChartOptions,
         stepping: Stepping,
     },
 }
@@ -147,27 +144,17 @@ impl Scheme {
 
     /// Whether the method adapts its steps to a tolerance.
     pub(crate) fn is_adaptive(&self) -> bool {
-        matches!(
-            self.kind,
-            Kind::Paper {
-                stepping: Stepping::Adaptive,
-                ..
-            }
-        )
+        matches!(self.kind, Kind::Chart { stepping, .. } if stepping == Stepping::Adaptive)
     }
 
     /// Whether the method, asked to go on for some time, takes fixed steps of its own on the way.
     pub(crate) fn steps_itself(&self) -> bool {
-        match self.kind {
-            Kind::Free(_) => false,
-            Kind::Chart { .. } => true,
-            Kind::Paper { stepping, .. } => stepping == Stepping::Fixed,
-        }
+        matches!(self.kind, Kind::Chart { stepping, .. } if stepping == Stepping::Fixed)
     }
 
     /// Whether the method is one of the many in charts, of which only few are drawn.
     pub(crate) fn is_chart(&self) -> bool {
-        matches!(self.kind, Kind::Chart { .. })
+        matches!(self.kind, Kind::Chart { .. }) && !is_paper(&self.name)
     }
 
     /// The problem at its start. The inner error is that of the method.
@@ -177,7 +164,18 @@ impl Scheme {
         fineness: Fineness,
     ) -> Result<Result<Simulation, StartError>> {
         let state = problem.start()?;
-        let control = match fineness {
+        let (chart, degenerate, mut options) = match &self.kind {
+            Kind::Free(method) => {
+                return Ok(problem.simulation(method, state)?.map_err(Into::into));
+            }
+            Kind::Chart {
+                chart,
+                degenerate,
+                options,
+                ..
+            } => (*chart, *degenerate, *options),
+        };
+        options.control = match fineness {
             Fineness::Step(h) => ChartStepControl::Fixed(h),
             Fineness::Tolerance(tolerance) => ChartStepControl::Adaptive {
                 tolerance,
@@ -187,46 +185,12 @@ impl Scheme {
                 max: 0.25,
             },
         };
-        let (kind, degenerate, options) = match &self.kind {
-            Kind::Free(method) => {
-                return Ok(problem.simulation(method, state)?.map_err(Into::into));
-            }
-            Kind::Chart {
-                chart,
-                method,
-                solver,
-            } => (
-                *chart,
-                Degenerate::Assign,
-                ChartOptions {
-                    method: *method,
-                    solver: *solver,
-                    control,
-                    ..Default::default()
-                },
-            ),
-            Kind::Paper { degenerate, .. } => {
-                let (solver, max_steps) = if freedoms(problem)? <= CRAMER {
-                    (MassSolverKind::Cramer, CRAWL)
-                } else {
-                    (MassSolverKind::DenseLu, LARGE_CRAWL)
-                };
-                let options = ChartOptions {
-                    method: ChartMethod::ForwardEuler,
-                    equations: Equations::Published,
-                    position: PositionUpdate::Linear,
-                    control,
-                    solver,
-                    rebase: Rebase::Never,
-                    max_steps,
-                    ..Default::default()
-                };
-                (ChartKind::Front, *degenerate, options)
-            }
-        };
+        if is_paper(&self.name) && freedoms(problem)? > CRAMER {
+            (options.solver, options.max_steps) = (MassSolverKind::DenseLu, LARGE_CRAWL);
+        }
         let model = problem.model()?;
         Ok(
-            build(problem, kind, degenerate, &state.x)?.and_then(|chart| {
+            build(problem, chart, degenerate, &state.x)?.and_then(|chart| {
                 Simulation::in_chart(model, state, chart, options).map_err(Into::into)
             }),
         )
@@ -261,11 +225,23 @@ fn build(
     Ok(chart.map_err(Into::into))
 }
 
+/// The scheme as published.
 fn paper(name: &str, degenerate: Degenerate, stepping: Stepping) -> Scheme {
+    let options = ChartOptions {
+        method: ChartMethod::ForwardEuler,
+        equations: Equations::Published,
+        position: PositionUpdate::Linear,
+        solver: MassSolverKind::Cramer,
+        rebase: Rebase::Never,
+        max_steps: CRAWL,
+        ..ChartOptions::default()
+    };
     Scheme {
         name: name.into(),
-        kind: Kind::Paper {
+        kind: Kind::Chart {
+            chart: ChartKind::Front,
             degenerate,
+            options,
             stepping,
         },
     }
@@ -301,8 +277,13 @@ fn chart(chart: ChartKind, method: ChartMethod, solver: MassSolverKind) -> Schem
         name: format!("{steps}, {coordinates}, {solve}"),
         kind: Kind::Chart {
             chart,
-            method,
-            solver,
+            degenerate: Degenerate::Assign,
+            options: ChartOptions {
+                method,
+                solver,
+                ..ChartOptions::default()
+            },
+            stepping: Stepping::Fixed,
         },
     }
 }

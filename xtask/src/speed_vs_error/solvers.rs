@@ -4,8 +4,8 @@ mod elimination;
 mod report;
 mod row;
 
-pub(crate) use report::{conclusions, data, plot, table};
-pub(crate) use row::SolverRow;
+pub(crate) use report::{conclusions, plot, table};
+use row::SolverRow;
 
 use crate::interrupt;
 use crate::progress::Progress;
@@ -30,12 +30,18 @@ pub(crate) const ABOUT: &str = "Free, bent sheets: two triangles (n = 7), then t
     steps of the method of multipliers leave. Each time is the minimum over repetitions. \
     Two at once: how much more is done when two cores factorise one matrix each.";
 
+/// Finest mesh of the study.
+pub(super) fn finest(effort: Effort) -> u32 {
+    effort.pick(2, 6, 7)
+}
+
 /// Runs all solvers on all sizes.
 pub(crate) fn make(effort: Effort) -> Result<Vec<SolverRow>> {
-    let bar = Progress::start("linear solvers", effort.solver_level() as usize + 2);
-    let limit = effort.solver();
+    let bar = Progress::start("linear solvers", finest(effort) as usize + 2);
+    // Longest measurement of one solver on one matrix, all repetitions together, seconds.
+    let limit = effort.pick(0.02, 2.0, 20.0);
     let mut rows: Vec<SolverRow> = Vec::new();
-    for body in Body::all(effort.solver_level()) {
+    for body in Body::all(finest(effort)) {
         let body = body?;
         let task = Task::new(&body)?;
         // Forming C takes as many solves as there are coordinates; past the limit nothing dense is tried.
@@ -390,7 +396,7 @@ mod tests {
         assert_eq!(rows[0].n, 7);
         assert!(conclusions(&rows).len() >= 5);
         assert!(plot(&rows).to_svg("t").contains("dense Cholesky"));
-        let csv = String::from_utf8(data(&rows).csv().unwrap()).unwrap();
+        let csv = String::from_utf8(table(&rows).csv().unwrap()).unwrap();
         assert!(!csv.contains("inf"));
     }
 }

@@ -1,6 +1,6 @@
 //! The study of one problem: all methods, all steps; its table, its plot, its words.
 
-use super::analysis::{Measure, advice, cheapest, on_front, order};
+use super::analysis::{ENERGY, Measure, POSITION, STRAIN, advice, cheapest, on_front, order};
 use super::measure::{Point, sweep};
 use super::problem::{CHECKPOINTS, Problem};
 use super::reference::{self, Reference};
@@ -8,13 +8,12 @@ use super::scheme::{DEFAULT, ROBUST, Scheme, is_paper};
 use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Marker, Series, palette, row};
 use crate::progress::Progress;
 use crate::report::Effort;
-use crate::report::{Cell, Table, rounded, short};
+use crate::report::{Cell, Table, extremes, rounded, short};
 use anyhow::Result;
-use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// Everything measured on one problem.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(crate) struct Study {
     pub(crate) problem: Problem,
     pub(crate) reference: Reference,
@@ -25,14 +24,15 @@ pub(crate) struct Study {
 pub(crate) fn make(problem: Problem, effort: Effort) -> Result<Study> {
     let schemes = Scheme::all();
     let bar = Progress::start(problem.to_string(), schemes.len() + 1);
-    let reference = reference::compute(problem, effort.reference(problem))?;
+    let reference = reference::compute(problem, reference::budget(problem, effort))?;
     bar.step();
     let mut points = Vec::new();
     for scheme in &schemes {
+        // Steps are halved until a run takes longer, seconds; there are 24 methods in charts.
         let limit = if scheme.is_chart() {
-            effort.chart_run()
+            effort.pick(0.004, 0.25, 3.0)
         } else {
-            effort.run()
+            effort.pick(0.01, 1.0, 8.0)
         };
         points.extend(sweep(problem, scheme, &reference, limit)?);
         bar.step();
@@ -51,7 +51,7 @@ const ENERGY_FLOOR: f64 = 1e-13;
 impl Study {
     /// All points, for programs.
     pub(crate) fn data(&self) -> Table {
-        let error = |p: &Point, m: Measure| Cell::from(p.errors.map(|e| m.of(&e)));
+        let error = |p: &Point, m: Measure| Cell::from(p.errors.map(|e| (m.of)(&e)));
         Table::of(
             "",
             &self.points,
@@ -61,9 +61,9 @@ impl Study {
                 ("step_or_tolerance", &|p| p.fineness.into()),
                 ("mean_step_s", &|p| p.step.into()),
                 ("wall_s_per_simulated_s", &|p| p.wall.into()),
-                ("position_error_m", &|p| error(p, Measure::Position)),
-                ("relative_energy_error", &|p| error(p, Measure::Energy)),
-                ("strain", &|p| error(p, Measure::Strain)),
+                ("position_error_m", &|p| error(p, POSITION)),
+                ("relative_energy_error", &|p| error(p, ENERGY)),
+                ("strain", &|p| error(p, STRAIN)),
                 ("steps", &|p| p.cost.substeps.into()),
                 ("rejected", &|p| p.cost.rejected.into()),
                 ("factorisations", &|p| p.cost.factorisations.into()),
@@ -120,12 +120,12 @@ impl Study {
 
     /// What follows for the choice of a method.
     pub(crate) fn conclusions(&self) -> Vec<String> {
-        let mut all: Vec<String> = [Measure::Position, Measure::Energy]
+        let mut all: Vec<String> = [POSITION, ENERGY]
             .into_iter()
             .map(|m| {
                 format!(
                     "Cheapest for a given {} error: {}.",
-                    m.name(),
+                    m.name,
                     advice(&self.points, m)
                 )
             })
@@ -136,10 +136,10 @@ impl Study {
 
     /// Whether the default is on the fronts, and what it costs where it is not.
     fn default_words(&self) -> String {
-        let parts: Vec<String> = Measure::ALL
+        let parts: Vec<String> = [POSITION, ENERGY, STRAIN]
             .into_iter()
             .map(|measure| {
-                let unit = measure.unit();
+                let unit = measure.unit;
                 let range = |[high, low]: [f64; 2]| {
                     if low < high {
                         format!("from {high:.0e} to {low:.0e}{unit}")
@@ -155,7 +155,7 @@ impl Study {
                     ),
                     [None, None] => "not on the front".into(),
                 };
-                format!("{}: {words}", measure.name())
+                format!("{}: {words}", measure.name)
             })
             .collect();
         let mut text = format!("The default, {DEFAULT}, in {}.", parts.join("; "));
@@ -173,15 +173,10 @@ impl Study {
     /// Smallest and largest ratio of the default's time to that of the cheapest method with as small a
     /// position error.
     fn default_price(&self) -> Option<[f64; 2]> {
-        let ratios: Vec<f64> = self
-            .of(DEFAULT)
-            .filter_map(|p| {
-                let level = p.errors?.position;
-                Some(p.wall / cheapest(&self.points, Measure::Position, level)?.wall)
-            })
-            .collect();
-        let low = ratios.iter().copied().reduce(f64::min)?;
-        Some([low, ratios.iter().copied().fold(low, f64::max)])
+        extremes(self.of(DEFAULT).filter_map(|p| {
+            let level = p.errors?.position;
+            Some(p.wall / cheapest(&self.points, POSITION, level)?.wall)
+        }))
     }
 
     /// The default's part of the front, of all methods and of those that take any state.
@@ -205,12 +200,12 @@ impl Study {
             Cell::from(order.map(|o| format!("{o:.1}")))
         };
         let cost = |name: &str, level: f64| {
-            let point = cheapest(self.of(name), Measure::Position, level);
+            let point = cheapest(self.of(name), POSITION, level);
             Cell::from(point.map(|p| short(p.wall)))
         };
         let extreme = |name: &str, measure: Measure, f: fn(f64, f64) -> f64| {
             let errors = self.of(name).filter_map(|p| p.errors);
-            let extreme = errors.map(|e| measure.of(&e)).reduce(f);
+            let extreme = errors.map(|e| (measure.of)(&e)).reduce(f);
             Cell::from(extreme.map(|e| format!("{e:.0e}")))
         };
         Table::of(
@@ -219,24 +214,18 @@ impl Study {
             &[
                 ("method", &|name| (*name).into()),
                 ("order, position", &|name| {
-                    order(name, Measure::Position, self.reference.doubt())
+                    order(name, POSITION, self.reference.doubt())
                 }),
-                ("order, energy", &|name| {
-                    order(name, Measure::Energy, ENERGY_FLOOR)
-                }),
+                ("order, energy", &|name| order(name, ENERGY, ENERGY_FLOOR)),
                 ("s/s for 1e-2 m", &|name| cost(name, 1e-2)),
                 ("s/s for 1e-4 m", &|name| cost(name, 1e-4)),
                 ("s/s for 1e-6 m", &|name| cost(name, 1e-6)),
                 ("s/s for 1e-8 m", &|name| cost(name, 1e-8)),
                 ("best position error (m)", &|name| {
-                    extreme(name, Measure::Position, f64::min)
+                    extreme(name, POSITION, f64::min)
                 }),
-                ("best energy error", &|name| {
-                    extreme(name, Measure::Energy, f64::min)
-                }),
-                ("largest strain", &|name| {
-                    extreme(name, Measure::Strain, f64::max)
-                }),
+                ("best energy error", &|name| extreme(name, ENERGY, f64::min)),
+                ("largest strain", &|name| extreme(name, STRAIN, f64::max)),
                 ("remark", &|name| self.remark(name).into()),
             ],
         )
@@ -263,8 +252,8 @@ impl Study {
     pub(crate) fn plot(&self) -> Drawing {
         let drawn = self.drawn();
         let walls = || self.points.iter().filter_map(|p| p.errors.map(|_| p.wall));
-        let error = |measure: Measure, p: &Point| Some(measure.of(&p.errors?).max(CLIP));
-        let panel = |measure: Measure| {
+        let error = |measure: Measure, p: &Point| Some((measure.of)(&p.errors?).max(CLIP));
+        let panel = |(measure, label, legend): (Measure, &str, Legend)| {
             let points = |name: &str| -> Vec<[f64; 2]> {
                 let of = self
                     .of(name)
@@ -277,17 +266,21 @@ impl Study {
                 points: points(&look.name),
                 ..look.clone()
             });
-            let (label, legend) = match measure {
-                Measure::Position => ("position error (m)", Legend::None),
-                Measure::Energy => ("energy error / largest kinetic energy", Legend::None),
-                Measure::Strain => ("largest edge strain", Legend::Right),
-            };
             let x = Axis::holding("wall time / simulated time", walls());
             let y = Axis::holding(label, errors);
             let chart = Chart::new(x, y, [150.0, 160.0], series.collect());
             chart.with_legend(legend).draw()
         };
-        row(&Measure::ALL.map(panel), 18.0)
+        let panels = [
+            (POSITION, "position error (m)", Legend::None),
+            (
+                ENERGY,
+                "energy error / largest kinetic energy",
+                Legend::None,
+            ),
+            (STRAIN, "largest edge strain", Legend::Right),
+        ];
+        row(&panels.map(panel), 18.0)
     }
 
     /// How the methods are drawn that are: of those in charts, those in one chart with one solver only.
@@ -380,12 +373,7 @@ mod tests {
         assert_eq!(study.table().rows.len(), Scheme::all().len());
         assert_eq!(study.solver_table().rows.len(), 6);
         // Second order shows in a few milliseconds already.
-        let order = order(
-            &study.points,
-            "RATTLE",
-            Measure::Position,
-            study.reference.doubt(),
-        );
+        let order = order(&study.points, "RATTLE", POSITION, study.reference.doubt());
         assert!(order.is_some_and(|o| (o - 2.0).abs() < 0.2), "{order:?}");
         // Lengths: exact for us, drifting for the published scheme.
         let strain = |name: &str| {

@@ -5,13 +5,12 @@ mod penetration;
 use super::scheme::DEFAULT;
 use crate::methods::{Named, implicit_euler};
 use crate::progress::Progress;
-use crate::report::{Effort, Table, percent, rounded, short};
-use crate::timing::{self, BUMP, COLUMNS, Entry, Measured, Mesh, Pairs, STEP, Timed, Work, bumped};
+use crate::report::{Effort, Table, rounded, short};
+use crate::timing::{self, BUMP, Entry, Limits, Measured, Mesh, Pairs, STEP, Work, bumped};
 use anyhow::Result;
 use isosheet_dynamics::{Method, Simulation, StepReport};
 use penetration::{Checker, depth};
-use serde::{Deserialize, Serialize};
-use std::fmt::Write;
+use std::ops::ControlFlow;
 
 /// What the work is, in words.
 pub(crate) const ABOUT: &str = "The sheet of the hanging work, all vertices free, 1 mm above a square table of half its side (a box), 1.5 s, without \
@@ -23,10 +22,10 @@ pub(crate) const ABOUT: &str = "The sheet of the hanging work, all vertices free
 const CHECK: usize = 6;
 
 /// One run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Tablecloth {
+#[derive(Clone, Debug)]
+pub(super) struct Tablecloth {
     pairs: Pairs,
-    measured: Measured,
+    run: Measured,
     /// Deepest vertex in the table at a check, metres; 0 if none is inside.
     depth: f64,
     /// Pairs of an edge and a face that cross at a check, over all checks.
@@ -34,23 +33,27 @@ pub(crate) struct Tablecloth {
 }
 
 impl Tablecloth {
-    fn run(&self) -> &Timed {
-        &self.measured.run
-    }
-
     /// Part of the wall time that the factorisations take, if each costs as much as without contact.
     fn factorising(&self) -> f64 {
-        let effort = &self.measured.run.cost;
-        self.measured.factorisation * effort.factorisations as f64 / effort.wall
+        let cost = &self.run.course.cost;
+        self.run.mesh.factorisation * cost.factorisations as f64 / cost.wall
     }
 
     fn entry(&self) -> Entry {
-        self.measured.entry(self.measured.method.clone())
+        self.run.entry(self.run.method.clone())
     }
 
     fn clean(&self) -> bool {
-        let is_apart = self.measured.run.gap.is_none_or(|gap| gap > 0.0);
+        let is_apart = self.run.course.gap.is_none_or(|gap| gap > 0.0);
         is_apart && self.depth == 0.0 && self.crossings == 0
+    }
+
+    /// What the sheet touches.
+    fn pairs(&self) -> &'static str {
+        match self.pairs {
+            Pairs::Table => "table",
+            Pairs::TableAndItself => "table, itself",
+        }
     }
 }
 
@@ -64,14 +67,16 @@ fn methods() -> [Named; 2] {
 
 /// Runs the work on all meshes.
 pub(crate) fn make(effort: Effort) -> Result<Vec<Tablecloth>> {
-    let levels = effort.tablecloth_levels();
+    let levels = effort.quick_or(1..=1, 2..=4);
+    // Longest run, seconds of wall time.
+    let patience = effort.pick(0.5, 30.0, 240.0);
     let bar = Progress::start("tablecloth", 4 * levels.clone().count());
     let mut rows = Vec::new();
     for level in levels {
         let mesh = Mesh::measured(level)?;
         for pairs in [Pairs::Table, Pairs::TableAndItself] {
             for method in methods() {
-                rows.push(measure(mesh, pairs, method, effort.tablecloth())?);
+                rows.push(measure(mesh, pairs, method, patience)?);
                 bar.step();
             }
         }
@@ -90,99 +95,48 @@ fn measure(mesh: Mesh, pairs: Pairs, method: Named, patience: f64) -> Result<Tab
             deepest = deepest.max(depth(x));
             crossings += checker.crossings(x, pairs);
         }
+        ControlFlow::Continue(())
     };
-    let (work, limits) = (Work::Tablecloth(pairs), [patience, 0.1 * patience]);
-    let measured = Measured::of(work, mesh, method, (1, STEP), limits, &mut check)?;
+    let limits = Limits {
+        patience,
+        short: 0.1 * patience,
+    };
+    let work = Work::Tablecloth(pairs);
+    let run = Measured::of(work, mesh, method, (1, STEP), limits, &mut check)?;
     Ok(Tablecloth {
         pairs,
-        measured,
+        run,
         depth: deepest,
         crossings,
     })
 }
 
-/// What the sheet touches.
-fn pairs(r: &Tablecloth) -> &'static str {
-    match r.pairs {
-        Pairs::Table => "table",
-        Pairs::TableAndItself => "table, itself",
-    }
-}
-
-/// The smallest gap, micrometres.
-fn gap(r: &Tablecloth) -> String {
-    short(1e6 * r.measured.run.gap.unwrap_or(f64::INFINITY))
-}
-
-/// All runs, for programs.
-pub(crate) fn data(rows: &[Tablecloth]) -> Table {
-    Table::of(
-        "",
-        rows.iter().map(|r| (r, &r.measured, &r.measured.run)),
-        &[
-            ("mesh", &|(_, m, _)| m.mesh().into()),
-            ("contact", &|(r, ..)| pairs(r).into()),
-            ("method", &|(_, m, _)| m.method.as_str().into()),
-            ("step_s", &|(_, m, _)| m.step.into()),
-            ("wall_s_per_simulated_s", &|(.., r)| r.rate().into()),
-            ("strain", &|(.., r)| r.strain.into()),
-            ("energy_balance", &|(.., r)| r.balance().into()),
-            ("smallest_gap_m", &|(.., r)| r.gap.into()),
-            ("depth_m", &|(r, ..)| r.depth.into()),
-            ("crossings", &|(r, ..)| r.crossings.into()),
-            ("iterations", &|(.., r)| r.cost.iterations.into()),
-            ("factorisations", &|(.., r)| r.cost.factorisations.into()),
-            ("steps", &|(.., r)| r.cost.substeps.into()),
-            ("rejected", &|(.., r)| r.cost.rejected.into()),
-            ("factorisation_s", &|(_, m, _)| m.factorisation.into()),
-            ("reached_s", &|(.., r)| r.reached.into()),
-            ("repetitions", &|(.., r)| r.repetitions.into()),
-            ("failure", &|(.., r)| r.failure.clone().into()),
-        ],
-    )
-}
-
-/// The table for people.
-pub(crate) fn table(rows: &[Tablecloth]) -> Table {
-    let rows = scenes(rows).flat_map(|scene| {
-        let entries = entries(scene);
-        let with = move |r: &Tablecloth| (r.clone(), r.entry().cells(&entries));
-        scene.iter().map(with)
-    });
-    Table::of(
+/// All runs.
+pub(super) fn table(rows: &[Tablecloth]) -> Table {
+    let runs: Vec<&Measured> = rows.iter().map(|r| &r.run).collect();
+    let all = |r: &Measured| {
+        let of = rows
+            .iter()
+            .filter(|o| (o.run.mesh.level, o.run.work) == (r.mesh.level, r.work));
+        of.map(Tablecloth::entry).collect()
+    };
+    timing::table(
         "Tablecloth: wall seconds for a simulated second on one core, as multiples of the fastest run of the scene that keeps lengths to \
          1e-9 and of one factorisation a step; largest relative edge length error, energy balance at the end as part of the potential \
          energy released (negative: lost), smallest gap and deepest vertex in the table",
-        rows,
-        &[
-            ("mesh", &|(r, _)| r.measured.mesh().into()),
-            ("contact", &|(r, _)| pairs(r).into()),
-            ("method", &|(r, _)| r.measured.method.as_str().into()),
-            ("s/s", &|(r, _)| r.measured.rate().into()),
-            (COLUMNS[0], &|(_, c)| c[0].as_str().into()),
-            (COLUMNS[1], &|(_, c)| c[1].as_str().into()),
-            ("strain", &|(r, _)| format!("{:.0e}", r.run().strain).into()),
-            ("energy", &|(r, _)| percent(r.run().balance()).into()),
-            ("gap (µm)", &|(r, _)| gap(r).into()),
-            ("depth (µm)", &|(r, _)| short(1e6 * r.depth).into()),
-            ("crossings", &|(r, _)| r.crossings.into()),
-            ("iterations", &|(r, _)| r.run().cost.iterations.into()),
-            ("factorisations", &|(r, _)| {
-                r.run().cost.factorisations.into()
-            }),
-            ("steps", &|(r, _)| r.run().cost.substeps.into()),
-            ("rejected", &|(r, _)| r.run().cost.rejected.into()),
-            ("remark", &|(r, _)| r.measured.remark().into()),
-        ],
+        &runs,
+        &all,
     )
+    .with_column("depth_m", rows.iter().map(|r| r.depth.into()))
+    .with_column("crossings", rows.iter().map(|r| r.crossings.into()))
 }
 
 /// What the rows say.
 pub(crate) fn conclusions(rows: &[Tablecloth]) -> Vec<String> {
     let mut all = Vec::new();
-    let finished = rows.iter().filter(|r| r.run().ended()).count();
+    let finished = rows.iter().filter(|r| r.run.course.is_good()).count();
     let clean = rows.iter().filter(|r| r.clean()).count();
-    let strain = rows.iter().map(|r| r.run().strain).fold(0.0, f64::max);
+    let strain = rows.iter().map(|r| r.run.course.strain).fold(0.0, f64::max);
     all.push(format!(
         "{finished} of {} runs of the tablecloth came to the end; in {clean} of {} nothing penetrates; the largest strain is {strain:.0e}.",
         rows.len(),
@@ -192,26 +146,21 @@ pub(crate) fn conclusions(rows: &[Tablecloth]) -> Vec<String> {
         let first = &scene[0];
         let name = format!(
             "Tablecloth M^{}, contact with {}",
-            first.measured.level,
+            first.run.mesh.level,
             match first.pairs {
                 Pairs::Table => "the table",
                 Pairs::TableAndItself => "the table and itself",
             }
         );
         all.push(timing::words(&name, &entries(scene)));
-        all.extend(
-            scene
-                .iter()
-                .filter(|r| r.measured.method == DEFAULT)
-                .map(effort),
-        );
+        all.extend(scene.iter().filter(|r| r.run.method == DEFAULT).map(effort));
     }
     all
 }
 
 /// Runs of the same mesh and contact.
 fn scenes(rows: &[Tablecloth]) -> impl Iterator<Item = &[Tablecloth]> {
-    rows.chunk_by(|a, b| (a.measured.level, a.pairs) == (b.measured.level, b.pairs))
+    rows.chunk_by(|a, b| (a.run.mesh.level, a.pairs) == (b.run.mesh.level, b.pairs))
 }
 
 fn entries(scene: &[Tablecloth]) -> Vec<Entry> {
@@ -220,47 +169,45 @@ fn entries(scene: &[Tablecloth]) -> Vec<Entry> {
 
 /// Where the time of a run goes.
 fn effort(r: &Tablecloth) -> String {
-    let (run, effort) = (&r.measured.run, &r.measured.run.cost);
-    let mut text = format!("{}, {}", r.measured.mesh(), pairs(r));
-    if let Some(failure) = &run.failure {
-        let _ = write!(
-            text,
-            ", stopped at {} s ({})",
-            short(run.reached),
-            rounded(failure)
-        );
-    }
-    let _ = write!(
-        text,
-        ": {} takes {} iterations and {} factorisations for {} steps taken and {} rejected, {} ms for a factorisation and what belongs to it; \
+    let (course, cost) = (&r.run.course, &r.run.course.cost);
+    let stopped = course.failure().map_or(String::new(), |failure| {
+        let (reached, failure) = (short(course.time), rounded(&failure));
+        format!(", stopped at {reached} s ({failure})")
+    });
+    format!(
+        "{}, {}{stopped}: {} takes {} iterations and {} factorisations for {} steps taken and {} rejected, {} ms for a factorisation and what belongs to it; \
          one factorisation of the matrix without contact takes {} ms, which makes {:.0} % of the time. Smallest gap {} µm.",
-        r.measured.method,
-        effort.iterations,
-        effort.factorisations,
-        effort.substeps,
-        effort.rejected,
-        short(1e3 * effort.wall_per_factorisation().unwrap_or(effort.wall)),
-        short(1e3 * r.measured.factorisation),
+        r.run.mesh(),
+        r.pairs(),
+        r.run.method,
+        cost.iterations,
+        cost.factorisations,
+        cost.substeps,
+        cost.rejected,
+        short(1e3 * cost.wall_per_factorisation().unwrap_or(cost.wall)),
+        short(1e3 * r.run.mesh.factorisation),
         100.0 * r.factorising(),
-        gap(r)
-    );
-    text
+        short(1e6 * course.gap.unwrap_or(f64::INFINITY))
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::report::Cell;
+    use crate::runs::Ending;
 
     #[test]
     fn a_coarse_cloth_comes_to_the_end_without_penetration() {
         let (mesh, method) = (Mesh::measured(1).unwrap(), methods()[0].clone());
         let row = measure(mesh, Pairs::TableAndItself, method, 4.0).unwrap();
-        let run = &row.measured.run;
-        assert_eq!(run.failure, None);
-        assert!((run.reached - 1.5).abs() < 1e-9 && run.gap.is_some());
-        assert!(run.strain < 1e-10 && row.clean(), "{row:?}");
-        assert!(run.cost.factorisations >= run.cost.substeps, "{row:?}");
+        let course = &row.run.course;
+        assert!(course.is_good() && (course.time - 1.5).abs() < 1e-9);
+        assert!(course.strain < 1e-10 && course.gap.is_some() && row.clean());
+        assert!(
+            course.cost.factorisations >= course.cost.substeps,
+            "{row:?}"
+        );
     }
 
     #[test]
@@ -268,12 +215,12 @@ mod tests {
         let mut mesh = Mesh::measured(1).unwrap();
         mesh.factorisation = 3e-3;
         let mut row = measure(mesh, Pairs::Table, methods()[0].clone(), 0.0).unwrap();
-        let run = &mut row.measured.run;
-        (run.failure, run.reached, run.gap) = (None, 1.5, Some(1e-4));
-        (run.cost.wall, run.cost.factorisations) = (0.75, 100);
+        let course = &mut row.run.course;
+        (course.ending, course.time, course.gap) = (Ending::Complete, 1.5, Some(1e-4));
+        (course.cost.wall, course.cost.factorisations) = (0.75, 100);
         let mut faster = row.clone();
-        faster.measured.method = "implicit Euler".into();
-        faster.measured.run.cost.wall = 0.375;
+        faster.run.method = "implicit Euler".into();
+        faster.run.course.cost.wall = 0.375;
         let mut rows = [row, faster];
         let text = conclusions(&rows).join(" ");
         for part in [
@@ -284,10 +231,9 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part} is missing in {text}");
         }
-        let cells = &table(&rows).rows[0];
-        assert_eq!(cells[4..6], [Cell::from("2.0"), Cell::from("2.8")]);
+        assert_eq!(table(&rows).rows[0][9], Cell::from(2.0));
         rows[0].depth = 1e-9;
-        rows[1].measured.run.failure = Some("lost".into());
+        rows[1].run.course.ending = Ending::Stopped;
         let text = conclusions(&rows).join(" ");
         for part in [
             "in 1 of 2 nothing penetrates",

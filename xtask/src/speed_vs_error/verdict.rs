@@ -4,7 +4,7 @@ use super::measure::{Errors, Point};
 use super::problem::Problem;
 use super::scheme::{DEFAULT, is_paper};
 use super::study::Study;
-use crate::report::{rounded, short};
+use crate::report::{extremes, rounded, short};
 
 /// A run of the published scheme and the best that the default does in no more time.
 struct Match<'a> {
@@ -79,7 +79,7 @@ pub(crate) fn words(study: &Study) -> String {
         })
         .collect();
     let unmatched = matches.len() - ratios.len();
-    let walls = |f: fn(f64, f64) -> f64| matches.iter().map(|m| m.paper.wall).reduce(f);
+    let walls = extremes(matches.iter().map(|m| m.paper.wall)).unwrap_or_default();
     let ended = matches.iter().filter(|m| m.paper.errors.is_some()).count();
     let furthest = matches.iter().map(|m| m.paper.reached).fold(0.0, f64::max);
     let mut text = format!(
@@ -93,8 +93,8 @@ pub(crate) fn words(study: &Study) -> String {
         },
         matches.len(),
         short(furthest),
-        walls(f64::min).map_or(String::new(), short),
-        walls(f64::max).map_or(String::new(), short),
+        short(walls[0]),
+        short(walls[1]),
     );
     if ratios.is_empty() {
         text.push_str(
@@ -103,11 +103,10 @@ pub(crate) fn words(study: &Study) -> String {
         return text;
     }
     for (k, name) in ["energy error", "strain"].into_iter().enumerate() {
-        let of = |f: fn(f64, f64) -> f64| ratios.iter().map(|r| r[k]).reduce(f).unwrap_or(f64::NAN);
+        let range = extremes(ratios.iter().map(|r| r[k])).unwrap_or([f64::NAN; 2]);
+        let [low, high] = range.map(short);
         text.push_str(&format!(
-            " In no more time, the {name} of the default is {} to {} times smaller.",
-            short(of(f64::min)),
-            short(of(f64::max))
+            " In no more time, the {name} of the default is {low} to {high} times smaller."
         ));
     }
     if unmatched > 0 {

@@ -35,16 +35,7 @@ impl Entry {
             self.wall.map(|wall| wall / self.limit),
         ]
     }
-
-    /// The multiples as entries of a table.
-    pub(crate) fn cells(&self, all: &[Self]) -> [String; 2] {
-        self.multiples(all)
-            .map(|multiple| multiple.map_or("–".into(), short))
-    }
 }
-
-/// Heads of the columns that [`Entry::cells`] fills.
-pub(crate) const COLUMNS: [&str; 2] = ["times fastest exact", "times one factorisation a step"];
 
 /// The fastest run that came to the end and kept the lengths.
 fn fastest(all: &[Entry]) -> Option<&Entry> {
@@ -113,7 +104,6 @@ mod tests {
         let [times, of_limit] = all[2].multiples(&all);
         assert!(close(times, 0.25) && close(of_limit, 0.5));
         assert_eq!(all[3].multiples(&all), [None, None]);
-        assert_eq!(all[3].cells(&all), ["–", "–"]);
         let text = words("Sheet", &all);
         assert!(
             text.contains("is fast: 0.20 s/s, 2.0 times the 0.10 s/s"),
@@ -131,7 +121,6 @@ mod tests {
     #[test]
     fn without_an_exact_run_the_limit_is_still_compared() {
         let all = [entry("loose", Some(0.05), 1e-3, 0.1)];
-        assert_eq!(all[0].multiples(&all)[0], None);
-        assert_eq!(all[0].cells(&all), ["–", "0.50"]);
+        assert_eq!(all[0].multiples(&all), [None, Some(0.5)]);
     }
 }

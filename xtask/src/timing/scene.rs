@@ -6,7 +6,6 @@ use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{MassKind, Sheet, VertexId};
 use nalgebra::Isometry3;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Height of the bump, metres: nearly flat, so that the length constraints are nearly dependent.
@@ -27,7 +26,12 @@ const MASS: f64 = 0.1;
 /// The union-jack square `M^level` of side 1 m with `z = bump sin(pi x) sin(pi y)`.
 pub(crate) fn bumped(level: u32, bump: f64) -> Result<Sheet> {
     let flat = isotropic_square(level, 1.0)?;
-    Ok(flat.map_positions(|[x, y, _]| [x, y, bump * (PI * x).sin() * (PI * y).sin()])?)
+    Ok(flat.map_positions(|p| raised(p, bump))?)
+}
+
+/// A point of the flat square on the bump.
+pub(crate) fn raised([x, y, _]: [f64; 3], bump: f64) -> [f64; 3] {
+    [x, y, bump * (PI * x).sin() * (PI * y).sin()]
 }
 
 /// The corner (0, 1) of `M^level`.
@@ -37,7 +41,7 @@ pub(crate) fn corner(level: u32) -> VertexId {
 }
 
 /// Which pairs repel each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pairs {
     /// Sheet and table.
     Table,
@@ -46,7 +50,7 @@ pub(crate) enum Pairs {
 }
 
 /// A scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Work {
     /// A nearly flat sheet held at a corner, one second.
     Hanging,

@@ -2,13 +2,14 @@
 
 use super::row::{CHOLESKY, CRAMER, LDLT, MINORS, SCHUR, SOLVERS, SPARSE_LU, SolverRow};
 use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
-use crate::report::{Cell, Table, exponent, short};
+use crate::report::{Table, exponent, short};
 
-/// All rows, for programs.
-pub(crate) fn data(rows: &[SolverRow]) -> Table {
+/// All rows, solver by solver.
+pub(crate) fn table(rows: &[SolverRow]) -> Table {
+    let of = |solver: &'static str| rows.iter().filter(move |r| r.solver == solver);
     Table::of(
-        "",
-        rows,
+        "Linear solvers by size",
+        SOLVERS.into_iter().flat_map(of),
         &[
             ("solver", &|r| r.solver.as_str().into()),
             ("mesh", &|r| r.mesh.as_str().into()),
@@ -22,40 +23,6 @@ pub(crate) fn data(rows: &[SolverRow]) -> Table {
             ("velocity_error", &|r| r.velocity.into()),
             ("two_cores", &|r| r.two.into()),
             ("failure", &|r| r.failure.clone().into()),
-        ],
-    )
-}
-
-/// Time in microseconds or milliseconds.
-fn time(seconds: f64) -> Cell {
-    match seconds {
-        0.0 => Cell::Missing,
-        s if s < 1e-3 => format!("{} µs", short(1e6 * s)).into(),
-        s if s < 1.0 => format!("{} ms", short(1e3 * s)).into(),
-        s => format!("{} s", short(s)).into(),
-    }
-}
-
-/// The table for people.
-pub(crate) fn table(rows: &[SolverRow]) -> Table {
-    let error = |v: Option<f64>| Cell::from(v.map(|v| format!("{v:.0e}")));
-    let of = |solver: &'static str| rows.iter().filter(move |r| r.solver == solver);
-    Table::of(
-        "Linear solvers by size",
-        SOLVERS.into_iter().flat_map(of),
-        &[
-            ("solver", &|r| r.solver.as_str().into()),
-            ("mesh", &|r| r.mesh.as_str().into()),
-            ("n", &|r| r.n.into()),
-            ("order", &|r| r.order.into()),
-            ("forming C", &|r| time(r.form)),
-            ("first", &|r| time(r.first)),
-            ("again", &|r| time(r.again)),
-            ("solve", &|r| time(r.solve)),
-            ("backward error", &|r| error(r.backward)),
-            ("velocity error", &|r| error(r.velocity)),
-            ("two at once", &|r| r.two.map(|t| format!("{t:.1}×")).into()),
-            ("remark", &|r| r.failure.clone().unwrap_or_default().into()),
         ],
     )
 }

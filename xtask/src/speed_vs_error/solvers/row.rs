@@ -1,9 +1,7 @@
 //! What is measured of a linear solver.
 
-use serde::{Deserialize, Serialize};
-
 /// One solver on one matrix. Times in seconds.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct SolverRow {
     pub(crate) solver: String,
     pub(crate) mesh: String,

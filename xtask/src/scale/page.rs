@@ -1,44 +1,28 @@
-//! The page of the scaling study, its other files, and its text for a terminal.
+//! The page of the scaling study, and its text for a terminal.
 
-use super::Results;
 use super::drape;
 use super::findings::{conclusion, draping_conclusion, threads};
-use super::measure::STEP;
 use super::plot;
-use super::tables::{draping, draping_data, orders, steps, steps_data};
+use super::steps::STEP;
+use super::tables::{draping, orders, steps};
 use super::whole::{SCENES, name};
 use super::whole_report;
-use crate::report::{Page, drawing, list, machine};
-use crate::timing::Work;
-use anyhow::Result;
+use super::{PICTURE, Results};
+use crate::report::{Page, Picture, Table, list, machine};
+use crate::timing::{Measured, Work};
 use maud::{Markup, html};
 
-/// What the picture shows, for those who do not see it.
-const PICTURE: &str = "Time, memory and fill of a step against the number of vertices";
-
-/// All files but the page: names and contents.
-pub(super) fn files(results: &Results) -> Result<Vec<(&'static str, Vec<u8>)>> {
-    let plot = plot::plot(results);
-    Ok(vec![
-        ("scale.svg", plot.to_svg(PICTURE).into_bytes()),
-        ("scale.png", plot.to_png(PICTURE)?),
-        ("scale.csv", steps_data(&results.hanging).csv()?),
-        ("draping.csv", draping_data(&results.draping).csv()?),
-        ("runs.csv", whole_report::data(&results.whole).csv()?),
-    ])
-}
-
 /// The page.
-pub(super) fn page(results: &Results) -> Result<Page> {
-    let svg = plot::plot(results).to_svg(PICTURE);
+pub(super) fn page(results: &Results) -> Page {
+    let figure = Picture::svg("scale", &plot::plot(results), PICTURE);
     let body = html! {
         p {
             "A square sheet of 1 m and 0.1 kg hangs by a corner from a start that is flat but for a bump of 1 mm; steps of "
-            (1e3 * STEP) " ms by the default method, the first " (results.hanging.first().map_or(0, |r| r.steps))
+            (1e3 * STEP) " ms by the default method, the first " (results.hanging.first().map_or(0, |r| r.course.cost.steps))
             " after one of warm-up at each mesh size, without contact. Later steps of the fine meshes cost more: near the "
             "flat state the length equations are all but dependent. Machine: " (machine()) "."
         }
-        figure { (drawing(svg.as_bytes())) }
+        figure { (figure.inside) }
         p { (conclusion(&results.hanging)) }
         (steps(&results.hanging))
         p { (threads(&results.hanging)) }
@@ -56,10 +40,19 @@ pub(super) fn page(results: &Results) -> Result<Page> {
         p { (whole_report::CHAOS) }
         @for scene in SCENES { (whole_runs(results, scene)) }
     };
-    Ok(Page {
+    Page {
         heading: "Scale",
         ..Page::new("isosheet: scale", body)
-    })
+    }
+}
+
+/// What is shown of the whole runs of a scene.
+fn table(scene: Work, runs: &[&Measured]) -> Table {
+    let names = "mesh vertices method start wall_s_per_simulated_s iterations_per_step factorisations_per_step \
+                 wall_s_per_factorisation times_fastest_exact times_one_factorisation_a_step rejected strain \
+                 smallest_gap_m reached_s failure";
+    let all = whole_report::table(runs);
+    all.select(format!("{} Here: the {}.", all.caption, name(scene)), names)
 }
 
 /// The whole runs of a scene.
@@ -71,7 +64,7 @@ fn whole_runs(results: &Results, scene: Work) -> Markup {
     html! {
         h3 { (title) }
         (list(&whole_report::findings(&runs)))
-        (whole_report::table(scene, &runs))
+        (table(scene, &runs))
     }
 }
 
@@ -86,7 +79,7 @@ pub(super) fn text(results: &Results) -> String {
     ];
     for scene in SCENES {
         let runs = results.whole_of(scene);
-        parts.push(whole_report::table(scene, &runs).text());
+        parts.push(table(scene, &runs).text());
         parts.extend(whole_report::findings(&runs));
     }
     parts.join("\n") + "\n"
@@ -95,14 +88,14 @@ pub(super) fn text(results: &Results) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scale::measure::measure;
-    use crate::scale::whole;
+    use crate::report::Effort;
+    use crate::scale::{steps, whole};
 
     #[test]
     fn the_page_is_whole() {
         let results = Results {
             hanging: [0, 1]
-                .map(|level| measure(level, 2).expect("small sheets move"))
+                .map(|level| steps::measure(level, 2).expect("small sheets move"))
                 .to_vec(),
             draping: [0, 1]
                 .map(|level| drape::measure(level, 2, 10.0).expect("small cloths move"))
@@ -112,10 +105,10 @@ mod tests {
                 .concat(),
             limit: 30.0,
         };
-        let page = page(&results).expect("drawn").to_html();
+        let page = page(&results).to_html(Effort::Full);
         for part in [
             "<svg",
-            "nested dissection",
+            "nested_dissection",
             "With contact",
             "give the same bits",
             "Whole runs",
@@ -126,11 +119,11 @@ mod tests {
             assert!(page.contains(part), "{part}");
         }
         assert!(!page.contains("NaN"));
-        let files = files(&results).expect("drawn");
-        for (k, rows) in [(2, 4), (3, 2), (4, 10)] {
-            let lines = files[k].1.iter().filter(|b| **b == b'\n').count();
-            assert_eq!(lines, 1 + rows, "{}", files[k].0);
-        }
+        let all = super::super::tables::hanging(&results.hanging);
+        assert_eq!(
+            (all.rows.len(), draping(&results.draping).rows.len()),
+            (4, 2)
+        );
         assert!(text(&results).contains("M^1"));
     }
 }

@@ -30,12 +30,7 @@ pub(super) struct Dot {
 
 impl Dot {
     /// Of a sample.
-    pub(super) fn of<J, R, M>(
-        sample: &Sample<J, R, M>,
-        mesh: usize,
-        x: f64,
-        y: Option<f64>,
-    ) -> Self {
+    pub(super) fn of<J, M>(sample: &Sample<J, M>, mesh: usize, x: f64, y: Option<f64>) -> Self {
         let isometry = sample.isometry;
         Self {
             isometry,

@@ -1,0 +1,322 @@
+//! The course of a run: its steps until the end, until rest or until a limit, and the worst of them.
+
+use crate::interrupt::{self, Interrupted};
+use crate::report::Cost;
+use isosheet_dynamics::{RunEnd, Simulation, StepError, StepReport};
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+/// How a run ended.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Ending {
+    /// The whole time was simulated, or as much of it as supports that pull a sheet taut leave.
+    #[default]
+    Complete,
+    /// The sheet came to rest.
+    Rest,
+    /// Whoever looked at the steps had seen enough.
+    Stopped,
+    /// The limit of wall time, seconds, was reached.
+    WallTime(f64),
+    /// The solver returned an error: its kind and its message.
+    Error { kind: String, message: String },
+}
+
+impl Ending {
+    /// The ending by an error, with the names of the error and of the one behind it as they are in the code.
+    pub(crate) fn of(error: &impl std::error::Error, cause: &impl std::fmt::Debug) -> Self {
+        let variant = |debug: String| {
+            let end = debug.find(|c: char| !c.is_alphanumeric());
+            debug[..end.unwrap_or(debug.len())].to_owned()
+        };
+        let (kind, cause) = (variant(format!("{error:?}")), variant(format!("{cause:?}")));
+        Self::Error {
+            kind: if cause == kind {
+                kind
+            } else {
+                format!("{kind} ({cause})")
+            },
+            message: error.to_string(),
+        }
+    }
+
+    /// The ending by an error of a step.
+    fn of_step(error: &StepError) -> Self {
+        match error {
+            StepError::StepTooSmall { cause, .. } => Self::of(error, &**cause),
+            _ => Self::of(error, error),
+        }
+    }
+
+    /// The ending in a word or two.
+    pub(crate) fn name(&self) -> &str {
+        match self {
+            Self::Complete => "complete",
+            Self::Rest => "at rest",
+            Self::Stopped => "stopped",
+            Self::WallTime(_) => "wall time over",
+            Self::Error { kind, .. } => kind,
+        }
+    }
+
+    /// The message of an error, nothing otherwise.
+    pub(crate) fn message(&self) -> &str {
+        match self {
+            Self::Error { message, .. } => message,
+            _ => "",
+        }
+    }
+}
+
+/// What happened in a run, up to its last complete step.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Course {
+    pub(crate) ending: Ending,
+    /// The error behind the ending, if there was one; not part of records.
+    #[serde(skip)]
+    pub(crate) error: Option<StepError>,
+    /// Time at the end, seconds.
+    pub(crate) time: f64,
+    /// What the steps cost; looking at them does not count.
+    #[serde(flatten)]
+    pub(crate) cost: Cost,
+    /// Most factorisations in one step.
+    pub(crate) worst: usize,
+    /// Largest relative error of an edge length.
+    pub(crate) strain: f64,
+    /// Largest violation of the equations of isometry (see [`StepReport::constrained_strain`]).
+    pub(crate) violation: f64,
+    /// Smallest gap, metres; nothing without contact, or if nothing ever came within reach.
+    pub(crate) gap: Option<f64>,
+    /// Largest absolute energy error, and the largest one of the sign of a gain, joules.
+    pub(crate) drift: f64,
+    pub(crate) gain: f64,
+    /// Largest kinetic energy, and that after the last step, joules.
+    pub(crate) most_kinetic: f64,
+    pub(crate) kinetic: f64,
+    /// Largest speed of a vertex after the last step, metres per second.
+    pub(crate) speed: f64,
+}
+
+impl Course {
+    /// Takes a step into account; its wall time is known to the caller alone.
+    pub(crate) fn add(&mut self, report: &StepReport) {
+        self.cost.add(report);
+        self.time = report.t;
+        self.worst = self.worst.max(report.factorisations);
+        self.strain = self.strain.max(report.strain);
+        self.violation = self.violation.max(report.constrained_strain);
+        // An infinite gap means that nothing is within reach.
+        let gap = report.gap.filter(|gap| gap.is_finite());
+        self.gap = [self.gap, gap].into_iter().flatten().reduce(f64::min);
+        self.drift = self.drift.max(report.energy_drift.abs());
+        self.gain = self.gain.max(report.energy_drift);
+        self.most_kinetic = self.most_kinetic.max(report.kinetic);
+        self.kinetic = report.kinetic;
+    }
+
+    /// Takes another run into account: the worst of both, and the first ending that is none as planned.
+    pub(crate) fn add_run(&mut self, other: Self) {
+        self.cost.add_run(&other.cost);
+        self.worst = self.worst.max(other.worst);
+        self.strain = self.strain.max(other.strain);
+        self.violation = self.violation.max(other.violation);
+        self.gap = [self.gap, other.gap].into_iter().flatten().reduce(f64::min);
+        self.drift = self.drift.max(other.drift);
+        self.gain = self.gain.max(other.gain);
+        self.most_kinetic = self.most_kinetic.max(other.most_kinetic);
+        if self.is_good() {
+            (self.ending, self.error, self.time) = (other.ending, other.error, other.time);
+            (self.kinetic, self.speed) = (other.kinetic, other.speed);
+        }
+    }
+
+    /// Whether the run reached its end.
+    pub(crate) fn is_good(&self) -> bool {
+        matches!(self.ending, Ending::Complete | Ending::Rest)
+    }
+
+    /// NaN if the run ended early: no number of it is what was asked for.
+    pub(crate) fn if_good(&self, value: f64) -> f64 {
+        if self.is_good() { value } else { f64::NAN }
+    }
+
+    /// Why the run did not reach its end, for people.
+    pub(crate) fn failure(&self) -> Option<String> {
+        match &self.ending {
+            Ending::Complete | Ending::Rest => None,
+            Ending::Stopped => Some("stopped".into()),
+            Ending::WallTime(limit) => Some(format!("{limit} s of wall time were over")),
+            Ending::Error { message, .. } => Some(message.clone()),
+        }
+    }
+
+    /// Wall seconds for a simulated second; nothing if not a single step was completed.
+    pub(crate) fn rate(&self) -> Option<f64> {
+        (self.time > 0.0).then(|| self.cost.wall / self.time)
+    }
+}
+
+/// How long a run goes on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plan {
+    /// Length of a step, seconds.
+    pub(crate) step: f64,
+    /// Longest time simulated, seconds.
+    pub(crate) duration: f64,
+    /// The run ends early when the sheet is at rest: when the largest speed of a vertex (m/s) has been below
+    /// this bound for [`QUIET`] steps. `None`: it does not end early.
+    pub(crate) rest_speed: Option<f64>,
+    /// Longest wall time, seconds. A run ends at the end of the step in which it is over, unless it is the
+    /// last one.
+    pub(crate) patience: f64,
+}
+
+/// Steps below the bound of speed after which a sheet is called at rest: one alone may be a turning point.
+pub(crate) const QUIET: usize = 5;
+
+/// For runs at which nobody looks.
+pub(crate) fn unseen(_simulation: &Simulation, _report: &StepReport) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// Largest speed of a vertex, metres per second.
+fn largest_speed(simulation: &Simulation) -> f64 {
+    let velocities = simulation.state().v.as_chunks::<3>().0.iter();
+    let squares = velocities.map(|v| v.iter().map(|c| c * c).sum::<f64>());
+    squares.fold(0.0, f64::max).sqrt()
+}
+
+impl Plan {
+    /// So many seconds in steps of so many, whatever the sheet does and however long it takes.
+    pub(crate) fn new(step: f64, duration: f64) -> Self {
+        Self {
+            step,
+            duration,
+            rest_speed: None,
+            patience: f64::INFINITY,
+        }
+    }
+
+    /// The same, but the run ends when the sheet is at rest, see [`Plan::rest_speed`].
+    pub(crate) fn until_rest(self, speed: f64) -> Self {
+        Self {
+            rest_speed: Some(speed),
+            ..self
+        }
+    }
+
+    /// The same with a limit of wall time, seconds.
+    pub(crate) fn within(self, patience: f64) -> Self {
+        Self { patience, ..self }
+    }
+
+    /// Runs a simulation as planned. `look` sees every step, and may end the run; the time that it takes does
+    /// not count. An error of the solver is an ending like others, and not an error of this function.
+    ///
+    /// # Errors
+    /// [`Interrupted`].
+    pub(crate) fn run(
+        &self,
+        simulation: &mut Simulation,
+        look: &mut dyn FnMut(&Simulation, &StepReport) -> ControlFlow<()>,
+    ) -> Result<Course, Interrupted> {
+        let mut course = Course::default();
+        self.go_on(simulation, &mut course, look)?;
+        Ok(course)
+    }
+
+    /// The same for a course that has begun, to which the steps are added as they are taken.
+    ///
+    /// # Errors
+    /// [`Interrupted`].
+    pub(crate) fn go_on(
+        &self,
+        simulation: &mut Simulation,
+        course: &mut Course,
+        look: &mut dyn FnMut(&Simulation, &StepReport) -> ControlFlow<()>,
+    ) -> Result<(), Interrupted> {
+        let end = simulation.state().t + self.duration - 0.5 * self.step;
+        let (before, clock) = (course.cost.wall, Instant::now());
+        let (mut looking, mut quiet, mut stopped) = (Duration::ZERO, 0, Ending::Stopped);
+        let mut watch = |simulation: &Simulation, report: &StepReport| {
+            let begun = Instant::now();
+            course.add(report);
+            let enough = look(simulation, report);
+            course.speed = largest_speed(simulation);
+            let is_slow = self.rest_speed.is_some_and(|bound| course.speed < bound);
+            quiet = if is_slow { quiet + 1 } else { 0 };
+            looking += begun.elapsed();
+            let wall = (clock.elapsed() - looking).as_secs_f64();
+            course.cost.wall = before + wall;
+            if enough.is_continue() {
+                if quiet >= QUIET {
+                    stopped = Ending::Rest;
+                } else if wall > self.patience && report.t < end {
+                    stopped = Ending::WallTime(self.patience);
+                } else {
+                    return ControlFlow::Continue(());
+                }
+            }
+            ControlFlow::Break(())
+        };
+        let end = simulation.run(
+            self.duration,
+            self.step,
+            &mut [&mut watch, &mut interrupt::observe],
+        );
+        interrupt::check()?;
+        course.cost.wall = before + (clock.elapsed() - looking).as_secs_f64();
+        course.time = simulation.state().t;
+        course.ending = match end {
+            Ok(RunEnd::Complete | RunEnd::Taut) => Ending::Complete,
+            Ok(RunEnd::Stopped) => stopped,
+            Err(error) => {
+                let ending = Ending::of_step(&error);
+                course.error = Some(error);
+                ending
+            }
+        };
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isosheet_dynamics::{Method, SheetModel, State};
+    use isosheet_mesh::{MassKind, generate};
+
+    fn falling() -> Simulation {
+        let sheet = generate::isotropic_square(1, 1.0).unwrap();
+        let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped).unwrap();
+        let start = State::at_rest(sheet.positions().to_vec());
+        Simulation::new(model.with_gravity(), start, Method::default()).unwrap()
+    }
+
+    #[test]
+    fn runs_end_complete_at_rest_out_of_time_stopped_or_with_an_error() {
+        let plan = Plan::new(0.01, 0.1);
+        let run = |plan: Plan| plan.run(&mut falling(), &mut unseen).unwrap();
+        let whole = run(plan);
+        assert_eq!((&whole.ending, whole.cost.steps), (&Ending::Complete, 10));
+        assert!((whole.time - 0.1).abs() < 1e-12 && whole.failure().is_none());
+        let rest = run(plan.until_rest(100.0));
+        assert_eq!((&rest.ending, rest.cost.steps), (&Ending::Rest, QUIET));
+        let late = run(plan.within(0.0));
+        assert_eq!((&late.ending, late.cost.steps), (&Ending::WallTime(0.0), 1));
+        assert_eq!(late.rate(), Some(late.cost.wall / 0.01));
+        let mut stop = |_: &Simulation, _: &StepReport| ControlFlow::Break(());
+        let stopped = plan.run(&mut falling(), &mut stop).unwrap();
+        assert_eq!(stopped.ending, Ending::Stopped);
+        let wrong = run(Plan::new(f64::NAN, 0.1));
+        assert!(!wrong.ending.message().is_empty() && wrong.if_good(1.0).is_nan());
+        let mut both = whole.clone();
+        both.add_run(late.clone());
+        assert_eq!((both.cost.steps, &both.ending), (11, &late.ending));
+        let mut both = late.clone();
+        both.add_run(whole);
+        assert_eq!((both.cost.steps, both.ending), (11, late.ending));
+    }
+}
