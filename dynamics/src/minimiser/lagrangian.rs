@@ -1,5 +1,6 @@
 //! The augmented Lagrangian of a step at an iterate: value, gradient and Hessian.
 
+use super::FRICTION_SETTLED;
 use super::problem::StepProblem;
 use crate::constraint::rows::{HessianPart, VertexRows};
 use crate::contact::StepSpan;
@@ -498,7 +499,8 @@ impl Lagrangian {
     /// Lags friction anew at the iterate; the relative change of its normal forces, zero without friction.
     pub(super) fn renew_friction(&mut self, problem: &StepProblem<'_>) -> f64 {
         let x0 = &problem.state.x;
-        self.iterate.renew_friction(problem.contact(), x0)
+        self.iterate
+            .renew_friction(problem.contact(), x0, FRICTION_SETTLED)
     }
 
     /// Displaces the iterate off a saddle, in the direction that belongs to `seed`: for sheets that may be
