@@ -244,7 +244,10 @@ impl Simulation {
     /// point. The forces of a contact of the sheet with itself add up to zero; over all vertices the sum is
     /// minus that of the forces on the bodies ([`Simulation::body_loads`]), and enters the balance of momentum
     /// that [`Simulation::reactions`] states. Before the first step, and after a step that held the sheet,
-    /// there is no friction, and in a chart there is no force before the first step.
+    /// there is no friction, and in a chart there is no force before the first step. The friction of a step
+    /// acts with the normal forces for which the step was solved: a contact that has just opened may have
+    /// friction without a normal force. With rigid rods the projection that ends a step changes the forces
+    /// once more, to second order: those of a flat sheet at rest balance its weight to a percent.
     pub fn contact_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Engine::Free(engine) => {

@@ -266,8 +266,8 @@ fn gaps_of_a_sheet_to_itself_are_those_of_all_pairs() {
     let mut run = closing(0.0);
     let reach = ContactOptions::for_sheet(run.model()).activation;
     let mut partly = 0;
-    for _ in 0..700 {
-        let report = run.step(1e-4).expect("accepted");
+    for _ in 0..1400 {
+        let report = run.step(5e-5).expect("accepted");
         let gaps = run.vertex_gaps().expect("contact");
         let expected = gaps_of_all_pairs(&run, reach);
         for (v, (gap, expected)) in gaps.iter().zip(&expected).enumerate() {
