@@ -72,6 +72,13 @@ fn fields_are_exact_to_their_stated_precision() {
         0 => 0.0,
         _ => 10_f64.powf(-17.0 + 8.0 * scattered(31 * k + e)),
     };
+    let sizes = |row: &Vec<f64>| row.iter().map(|f| f.abs()).collect();
+    replay.fields.push(Field {
+        name: "size of the force".into(),
+        scale: Scale::Magnitude,
+        values: replay.fields[2].values.iter().map(sizes).collect(),
+        ..replay.fields[2].clone()
+    });
     let edges = replay.fields[0].values[0].len();
     replay.fields[0].values = (0..30)
         .map(|k| (0..edges).map(|e| decades(k, e)).collect())

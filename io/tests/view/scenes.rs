@@ -47,16 +47,6 @@ pub(crate) fn waving(level: u32, frames: usize) -> Replay {
                 .map(|k| forces(sheet.topology().edge_count(), k))
                 .collect(),
         },
-        Field {
-            name: "contact force".into(),
-            unit: "N".into(),
-            place: Place::Vertex,
-            scale: Scale::Magnitude,
-            values: (0..frames)
-                .map(|k| forces(sheet.topology().vertex_count(), k + 1))
-                .map(|row| row.into_iter().map(f64::abs).collect())
-                .collect(),
-        },
     ];
     let series = |name: &str, unit: &str, scale, f: fn(f64) -> f64| Series {
         name: name.into(),
