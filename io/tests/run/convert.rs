@@ -61,6 +61,49 @@ fn mesh_files_are_converted() {
     assert!(!dir.join("g.ply").exists());
 }
 
+/// Another file is replaced; what is read is not, by whatever name it is called.
+#[test]
+fn what_is_read_is_not_replaced() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n# mine\n";
+    for name in ["a.obj", "b.obj"] {
+        fs::write(dir.join(name), square).unwrap();
+    }
+    let read = |name: &str| fs::read_to_string(dir.join(name)).unwrap();
+    fs::create_dir(dir.join("sub")).unwrap();
+    let mut names = vec!["a.obj", "./a.obj", "sub/../a.obj"];
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("../a.obj", dir.join("sub/link.obj")).unwrap();
+        fs::hard_link(dir.join("a.obj"), dir.join("hard.obj")).unwrap();
+        names.extend(["sub/link.obj", "hard.obj"]);
+    }
+    for name in names {
+        let said = refused(dir, &["convert", "a.obj", name], 3);
+        assert!(said.contains("is the file that is read"), "{said}");
+        assert_eq!(read(name), square);
+    }
+    done(dir, &["convert", "a.obj", "b.obj"]);
+    assert!(!read("b.obj").contains("mine") && read("a.obj") == square);
+
+    fs::write(dir.join("scene.toml"), StartingPoint::Hanging.text()).unwrap();
+    let edits = ["--set", "stop.time=0.1", "--out", "run"];
+    let simulated = run(dir, &[&["simulate", "scene.toml"], &edits[..]].concat());
+    assert_eq!(code(&simulated), Some(0), "{}", stderr(&simulated));
+    let history = read("run/history.csv");
+    let said = refused(dir, &["convert", "run", "run/history.csv"], 3);
+    assert!(said.contains("is the history of the run"), "{said}");
+    assert_eq!(read("run/history.csv"), history);
+    let count = || fs::read_dir(dir.join("run")).unwrap().count();
+    let before = count();
+    for name in ["run.pvd", "run.obj", "run/"] {
+        refused(dir, &["convert", "run", name], 3);
+    }
+    assert_eq!(count(), before);
+    done(dir, &["convert", "run", "run/points.csv"]);
+}
+
 /// A file whose name says another format than it has, and mesh files where scenes are meant.
 #[test]
 fn files_of_the_wrong_kind_are_named() {
