@@ -53,6 +53,14 @@ fn mesh_files_are_converted() {
     }
     let said = refused(dir, &["convert", "a.off", "b.step"], 6);
     assert!(said.contains(".step is no format"), "{said}");
+    for missing in ["a.xyz", "a-run", "none.obj", "none.npz"] {
+        let said = refused(dir, &["convert", missing, "b.ply"], 3);
+        assert!(
+            said.contains(missing) && said.contains("No such file"),
+            "{said}"
+        );
+    }
+    fs::write(dir.join("a.xyz"), "").unwrap();
     let said = refused(dir, &["convert", "a.xyz", "b.ply"], 3);
     assert!(said.contains(".fold, .gltf, .glb"), "{said}");
     refused(dir, &["convert", "a.off", "g.ply", "--every", "2"], 3);
@@ -92,6 +100,16 @@ fn what_is_read_is_not_replaced() {
     let simulated = run(dir, &[&["simulate", "scene.toml"], &edits[..]].concat());
     assert_eq!(code(&simulated), Some(0), "{}", stderr(&simulated));
     let history = read("run/history.csv");
+    for (file, remedy) in [
+        ("scene.toml", "`isosheet simulate scene.toml`"),
+        ("run/scene.toml", "name its folder, run"),
+        ("run/summary.json", "name its folder, run"),
+    ] {
+        let said = refused(dir, &["convert", file, "x.obj"], 3);
+        assert!(said.contains(remedy), "{said}");
+    }
+    let said = refused(dir, &["convert", "run", "run"], 3);
+    assert!(said.contains("run is the folder that is read"), "{said}");
     let said = refused(dir, &["convert", "run", "run/history.csv"], 3);
     assert!(said.contains("is the history of the run"), "{said}");
     assert_eq!(read("run/history.csv"), history);
@@ -102,6 +120,8 @@ fn what_is_read_is_not_replaced() {
     }
     assert_eq!(count(), before);
     done(dir, &["convert", "run", "run/points.csv"]);
+    done(dir, &["convert", "run", "run.csv"]);
+    done(dir, &["convert", "run", "run.obj", "--frame", "1"]);
 }
 
 /// A file whose name says another format than it has, and mesh files where scenes are meant.

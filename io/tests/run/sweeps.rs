@@ -339,6 +339,13 @@ fn folders_keep_their_sweep() {
     assert_eq!(table, "run,folder,sheet.damping\n0,000,1\n1,001,2\n");
     let log = fs::read_to_string(dir.join("scene-sweep/001.log")).unwrap();
     assert!(log.contains("complete: 6 steps"), "{log}");
+    let onto = run(
+        dir,
+        &["collect", "scene-sweep", "--out", "scene-sweep/runs.csv"],
+    );
+    assert_eq!(code(&onto), Some(3), "{}", stderr(&onto));
+    let again = fs::read_to_string(dir.join("scene-sweep/runs.csv")).unwrap();
+    assert_eq!(again, table);
     let other = sweep("sheet.damping=2,1", &[]);
     assert_eq!(code(&other), Some(4), "{}", stderr(&other));
     // A value more at the end of the first key.

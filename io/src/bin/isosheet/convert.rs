@@ -2,14 +2,15 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::info::is_scene;
 use crate::message::counted;
 use crate::pictures::{self, FrameChoice, PictureFormat};
 use crate::write::{is_same_file, to_stdout};
 use clap::Args;
 use isosheet_io::run::Recording;
 use isosheet_io::{
-    Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshOptions, Series,
-    SeriesOptions, Trajectory, read_mesh_with, write_mesh, write_series,
+    Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFormat, MeshOptions,
+    Series, SeriesOptions, Trajectory, read_mesh_with, write_mesh, write_series,
 };
 use std::path::{Path, PathBuf};
 
@@ -84,6 +85,7 @@ impl Convert {
             let trajectory = Trajectory::read(&self.input).map_err(|e| input(&e))?;
             return self.write_run(&self.series(&trajectory)?);
         }
+        self.check_input()?;
         if self.every.is_some() {
             let message = "--every chooses frames of a run, and a mesh file has none";
             return Err(wrong(message, "leave it out"));
@@ -103,16 +105,48 @@ impl Convert {
         let (input, output) = (&self.input, &self.output);
         let is_run = input.is_dir();
         let message = if is_same_file(input, output) {
-            format!("{} is the file that is read", output.display())
+            let what = if is_run { "folder" } else { "file" };
+            format!("{} is the {what} that is read", output.display())
         } else if is_run && is_same_file(&input.join("history.csv"), output) {
             format!("{} is the history of the run", output.display())
-        } else if is_run && is_same_file(input, &output.with_extension("")) {
+        } else if is_run
+            && self.is_folder_written()
+            && is_same_file(input, &output.with_extension(""))
+        {
             let message = "the files of single frames would be written into the folder of the run";
             message.to_owned()
         } else {
             return Ok(());
         };
         Err(wrong(&message, "choose another name"))
+    }
+
+    /// Whether the files of single frames go to a folder with the name of the output.
+    fn is_folder_written(&self) -> bool {
+        let extension = self.output.extension().unwrap_or_default();
+        let has_folder = ["obj", "pvd"]
+            .iter()
+            .any(|e| extension.eq_ignore_ascii_case(e));
+        has_folder && self.frame.is_none()
+    }
+
+    /// Refuses files of a run and scenes, of which a user means the run.
+    fn check_input(&self) -> Result<(), Failure> {
+        let name = self.input.display();
+        let folder = self.input.parent().unwrap_or(Path::new(""));
+        let is_mesh = MeshFormat::of(&self.input).is_some();
+        if !is_mesh && self.input.is_file() && folder.join("run.lock").is_file() {
+            let message = format!("{name} is a file of a run, and no mesh");
+            let remedy = format!("name its folder, {}", folder.display());
+            return Err(Failure::new(Code::Input, message).remedy(remedy));
+        }
+        if is_scene(&self.input) && self.input.is_file() {
+            let message = format!("{name} is a scene, and no mesh");
+            let remedy =
+                format!("run it, `isosheet simulate {name}`, and convert the folder of the run");
+            return Err(Failure::new(Code::Input, message).remedy(remedy));
+        }
+        Ok(())
     }
 
     fn series<'a>(&self, trajectory: &'a Trajectory) -> Result<Series<'a>, Failure> {
