@@ -235,19 +235,18 @@ impl Simulation {
     /// Force of contact on each vertex of the sheet, newtons (`3V`): of bodies and of the sheet on itself,
     /// normal forces and friction together. `None` in scenes without contact.
     ///
-    /// | method | the forces are |
-    /// |---|---|
-    /// | BDF2, implicit Euler | those at the end of the last accepted sub-step, `-d(B + D)/dx` with the barrier potential `B` and the friction potential `D` of the sub-step |
-    /// | in a chart | the impulses of the last step over its duration: a mean |
+    /// Under BDF2 and implicit Euler these are the forces at the end of the last accepted sub-step,
+    /// `-d(B + D)/dx` with the barrier potential `B` and the friction potential `D` of the sub-step. In a
+    /// chart they are the impulses of the last step over its duration: a mean.
     ///
     /// An edge or a face that touches shares its force out to its corners by the weights of the closest
     /// point. The forces of a contact of the sheet with itself add up to zero; over all vertices the sum is
-    /// minus that of the forces on the bodies ([`Simulation::body_loads`]), and enters the balance of momentum
-    /// that [`Simulation::reactions`] states. Before the first step, and after a step that held the sheet,
-    /// there is no friction, and in a chart there is no force before the first step. The friction of a step
-    /// acts with the normal forces for which the step was solved: a contact that has just opened may have
-    /// friction without a normal force. With rigid rods the projection that ends a step changes the forces
-    /// once more, to second order: those of a flat sheet at rest balance its weight to a percent.
+    /// minus that of the forces on the bodies ([`Simulation::body_loads`]), and enters the balance of
+    /// momentum that [`Simulation::reactions`] states. Before the first step, and after a step that held the
+    /// sheet, there is no friction, and in a chart there is no force before the first step. The friction of a
+    /// step acts with the normal forces for which the step was solved: a contact that has just opened may
+    /// have friction without a normal force. With rigid rods the projection that ends a step changes the
+    /// forces once more, to second order: those of a flat sheet at rest balance its weight to a percent.
     pub fn contact_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Engine::Free(engine) => {

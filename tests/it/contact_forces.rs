@@ -138,8 +138,8 @@ fn momentum(simulation: &Simulation) -> Vector3<f64> {
         .into()
 }
 
-/// Largest difference of the rate of change of the momentum and the sum of weight and contact forces, relative
-/// to the largest force of contact.
+/// Largest difference of the rate of change of the momentum and the sum of weight and contact forces,
+/// relative to the largest force of contact.
 fn imbalance(mut run: Simulation) -> f64 {
     let (mut worst, mut largest, mut flights) = (0.0_f64, 0.0_f64, 0);
     for _ in 0..120 {

@@ -279,7 +279,8 @@ impl Trajectory {
     }
 
     /// The force of contact on each vertex in a frame (length 3V, newtons): normal forces and friction of the
-    /// bodies on the sheet and of the sheet on itself. `None` when the trajectory has no contact or no such frame.
+    /// bodies on the sheet and of the sheet on itself. `None` when the trajectory has no contact or no such
+    /// frame.
     pub fn contact_forces(&self, k: usize) -> Option<&[f64]> {
         self.values(Quantity::ContactForces, k)
     }

@@ -14,9 +14,10 @@ use std::path::Path;
 
 /// Folding to the angles of the FOLD file that is the mesh of the sheet.
 ///
-/// A torsion spring at each crease drives it from the angle that it has at the start (before a perturbation) to
-/// its target, and a stiffer one keeps each edge inside a panel flat, or makes it flat. Angles that no shape of rigid panels has are approached as far as the springs come to an
-/// equilibrium: the summary of the run says how large the differences are at the end.
+/// A torsion spring at each crease drives it from the angle that it has at the start (before a perturbation)
+/// to its target, and a stiffer one keeps each edge inside a panel flat, or makes it flat. Angles that no
+/// shape of rigid panels has are approached as far as the springs come to an equilibrium: the summary of the
+/// run says how large the differences are at the end.
 ///
 /// Mountains and valleys are driven to the angles that `edges_foldAngle` gives them; edges of the kinds `F`
 /// and `J` and the cuts of polygons stay flat; `U`, and `B` inside the sheet, are driven where their angle is
@@ -24,16 +25,17 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Folding {
-    /// When the angles of the springs have reached their targets, seconds. They begin at the fold angles of the
-    /// start and change smoothly.
+    /// When the angles of the springs have reached their targets, seconds. They begin at the fold angles of
+    /// the start and change smoothly.
     pub time: f64,
     /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre).
     pub stiffness: f64,
-    /// Torsional stiffness of a metre of the edges that stay flat, N; if left out, 50 times that of the creases.
+    /// Torsional stiffness of a metre of the edges that stay flat, N; if left out, 50 times that of the
+    /// creases.
     #[serde(default)]
     pub flat_stiffness: Option<f64>,
-    /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on each
-    /// other, which cross without self-contact: take less than 1.
+    /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on
+    /// each other, which cross without self-contact: take less than 1.
     #[serde(default = "whole")]
     pub part: f64,
     /// The frame of the file that has the angles, by its number from 0 or by its title; if left out, the one

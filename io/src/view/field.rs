@@ -29,8 +29,8 @@ pub enum Scale {
     /// are of either sign and differ by orders of magnitude. A page keeps values to 0.02 %, and those below a
     /// millionth of the largest as zero. In plots as [`Scale::Linear`].
     Signed,
-    /// By value, with colours that begin at zero and reach as far as 98 % of the values that are not zero; for
-    /// sizes of forces, which are not negative and differ by orders of magnitude. Kept as with
+    /// By value, with colours that begin at zero and reach as far as 98 % of the values that are not zero;
+    /// for sizes of forces, which are not negative and differ by orders of magnitude. Kept as with
     /// [`Scale::Signed`]. In plots as [`Scale::Linear`].
     Magnitude,
 }
@@ -122,8 +122,8 @@ impl Field {
         })
     }
 
-    /// What the trajectory has of contact: the size of the force of contact on each vertex (newtons; of bodies
-    /// and of the sheet on itself), and the gap of each vertex (metres, see [`Trajectory::gaps`]).
+    /// What the trajectory has of contact: the size of the force of contact on each vertex (newtons; of
+    /// bodies and of the sheet on itself), and the gap of each vertex (metres, see [`Trajectory::gaps`]).
     pub fn contact(trajectory: &Trajectory) -> Vec<Self> {
         let frames = || 0..trajectory.len();
         let size = |f: &[f64; 3]| f[0].hypot(f[1]).hypot(f[2]);

@@ -39,7 +39,8 @@ fn columns(support: FieldSupport) -> Option<usize> {
     }
 }
 
-/// The names of the columns after the positions, each after a comma; those of a vector end in `_x`, `_y`, `_z`.
+/// The names of the columns after the positions, each after a comma. Those of a vector end in `_x`, `_y`,
+/// `_z`.
 fn further_names(series: &Series<'_>) -> String {
     let mut names = String::new();
     for (field, _) in series.fields(0) {

@@ -52,8 +52,8 @@ pub struct SeriesField {
     pub name: String,
     /// What the values belong to.
     pub support: FieldSupport,
-    /// One value (of vectors three) for each vertex, edge or face of each frame of the trajectory, frame after
-    /// frame, also of those that are not written.
+    /// One value (of vectors three) for each vertex, edge or face of each frame of the trajectory, frame
+    /// after frame, also of those that are not written.
     pub values: Vec<f64>,
 }
 
