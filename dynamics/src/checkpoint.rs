@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the format. It grows with every change of the fields, because the binary format does not name
 /// them.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";
@@ -77,6 +77,8 @@ pub(crate) struct InChart {
     /// Forces of the supports at the end of the last step, newtons; empty before the first.
     pub(crate) reactions: Vec<Vector3<f64>>,
     pub(crate) has_contact: bool,
+    /// Mean forces of contact over the last step, `3V`, newtons; empty before the first and without contact.
+    pub(crate) contact_forces: Vec<f64>,
 }
 
 /// A chart-free simulation between two steps.

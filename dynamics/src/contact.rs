@@ -33,6 +33,7 @@ mod parallel;
 mod run;
 mod set;
 mod terms;
+mod vertex_data;
 
 pub use active::{ActiveContact, ActiveContacts, Rolling};
 pub use barrier::{BarrierError, BarrierPotential, Stiffness};

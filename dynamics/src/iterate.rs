@@ -228,8 +228,14 @@ impl Iterate {
     }
 
     /// Lags friction of the step from `x0` anew at the iterate. Returns the largest change of a normal force
-    /// relative to the largest normal force: zero without friction.
-    pub(crate) fn renew_friction(&mut self, contact: Option<&StepContact<'_>>, x0: &[f64]) -> f64 {
+    /// relative to the largest normal force: zero without friction. A change up to `settled` is not taken
+    /// over: friction remains that for which the iterate was found, and the forces of the step balance.
+    pub(crate) fn renew_friction(
+        &mut self,
+        contact: Option<&StepContact<'_>>,
+        x0: &[f64],
+        settled: f64,
+    ) -> f64 {
         let (Some(contact), Some(own)) = (contact, &mut self.contact) else {
             return 0.0;
         };
@@ -240,7 +246,11 @@ impl Iterate {
         std::mem::swap(friction, &mut own.friction_before);
         let laws = contact.geometry.laws();
         friction.lag(laws, &contact.barrier, &own.state.active, x0);
-        friction.change_since(&own.friction_before)
+        let change = friction.change_since(&own.friction_before);
+        if change <= settled {
+            std::mem::swap(friction, &mut own.friction_before);
+        }
+        change
     }
 
     /// What contact did over the step if it ends at the iterate; zero without contact.

@@ -65,7 +65,8 @@
 //! Every method takes moving pins ([`SheetModel::with_moving_pin`]) and vertices on curves and surfaces
 //! ([`SheetModel::with_constraint`]), one-sided ones the damped methods only. [`Simulation::reactions`] are
 //! the forces of pins and constraints on the sheet, [`Simulation::body_loads`] those of the sheet on the
-//! bodies, [`Simulation::rod_forces`] the tensions of the rods.
+//! bodies, [`Simulation::contact_forces`] those of contact on each vertex of the sheet,
+//! [`Simulation::rod_forces`] the tensions of the rods.
 #![doc = include_str!("paper.md")]
 
 pub mod chart;

@@ -228,8 +228,46 @@ impl Simulation {
     /// in charts, where impulses act ([`ChartSimulation::impulses`]).
     pub fn body_loads(&self) -> Vec<BodyLoad> {
         self.barrier().map_or_else(Vec::new, |(contact, contacts)| {
-            contact.loads(contacts, &self.state().x)
+            contact.terms(contacts, &self.state().x).loads()
         })
+    }
+
+    /// Force of contact on each vertex of the sheet, newtons (`3V`): of bodies and of the sheet on itself,
+    /// normal forces and friction together. `None` in scenes without contact.
+    ///
+    /// Under BDF2 and implicit Euler these are the forces at the end of the last accepted sub-step,
+    /// `-d(B + D)/dx` with the barrier potential `B` and the friction potential `D` of the sub-step. In a
+    /// chart they are the impulses of the last step over its duration: a mean.
+    ///
+    /// An edge or a face that touches shares its force out to its corners by the weights of the closest
+    /// point. The forces of a contact of the sheet with itself add up to zero; over all vertices the sum is
+    /// minus that of the forces on the bodies ([`Simulation::body_loads`]), and enters the balance of
+    /// momentum that [`Simulation::reactions`] states. Before the first step, and after a step that held the
+    /// sheet, there is no friction, and in a chart there is no force before the first step. The friction of a
+    /// step acts with the normal forces for which the step was solved: a contact that has just opened may
+    /// have friction without a normal force. With rigid rods the projection that ends a step changes the
+    /// forces once more, to second order: those of a flat sheet at rest balance its weight to a percent.
+    pub fn contact_forces(&self) -> Option<Vec<f64>> {
+        match &self.engine {
+            Engine::Free(engine) => {
+                let (contact, contacts) = engine.contact()?;
+                Some(contact.terms(contacts, &self.state().x).vertex_forces())
+            }
+            Engine::Chart(chart) => chart.contact_forces(),
+        }
+    }
+
+    /// Gap of each vertex of the sheet, metres: the smallest gap of the contacts in which the vertex takes
+    /// part, by itself or as a corner of an edge or a face that does. A gap is a distance less the thickness
+    /// of the sheet (and the radius of a rounded body). Contacts reach as far as the activation distance of
+    /// the barrier; a vertex without any has that distance as its gap. `None` in scenes without contact.
+    pub fn vertex_gaps(&self) -> Option<Vec<f64>> {
+        let reach = match &self.engine {
+            Engine::Free(engine) => engine.contact()?.0.barrier().activation(),
+            Engine::Chart(chart) => chart.simulation.activation()?,
+        };
+        let vertices = self.model().topology().vertex_count();
+        Some(self.contacts()?.vertex_gaps(vertices, reach))
     }
 
     /// Contact that acts by its barrier.

@@ -27,4 +27,4 @@ pub use mesh_file::{
     SeparateBuffers, parse_mesh, read_mesh, read_mesh_with, read_sheet,
 };
 pub use obj_write::{ObjWriteError, frame_path, write_obj, write_obj_to};
-pub use trajectory::{Trajectory, TrajectoryError};
+pub use trajectory::{FrameData, Trajectory, TrajectoryError};

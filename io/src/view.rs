@@ -10,10 +10,11 @@
 //! The sheet has two colours, one for each side. It can be coloured by the fold angles of the edges, by
 //! height and by every [`Field`]. The range of colours is that of the whole run; of the fold angles above a
 //! degree it has 98 %, and the legend says so. [`Field::edge_strain`] makes the field of the strains and
-//! [`Field::rod_forces`] that of the forces of the rods. Fields of either sign ([`Scale::Signed`]) have zero
-//! in the middle of the colours, whose range has 98 % of their values that are not zero. The camera frames
-//! the rest shape, the first frame, the bodies, and where the sheet usually is (90 % of each coordinate over
-//! all frames) unless this is far away. Pins are marked. Bodies are drawn where their poses say: solid,
+//! [`Field::rod_forces`] that of the forces of the rods, [`Field::contact`] those of contact. Fields of
+//! either sign ([`Scale::Signed`]) have zero in the middle of the colours, magnitudes ([`Scale::Magnitude`])
+//! at their lower end; the range of either has 98 % of the values that are not zero. The camera frames the
+//! rest shape, the first frame, the bodies, and where the sheet usually is (90 % of each coordinate over all
+//! frames) unless this is far away. Pins are marked. Bodies are drawn where their poses say: solid,
 //! see-through or not at all, as the reader chooses. The rest shape is shown on demand. What is under the
 //! pointer (vertex, edge, face) is named with its fold angle and values. A click in a plot goes to that time.
 //! Space plays, arrow keys step. The part of the address after `#` makes choices, as in
@@ -31,7 +32,7 @@
 //! | fold angles | not stored | about `2 L / 65535 / h` radians |
 //! | fields, linear | 16-bit integers | `(max - min) / 65535 / 2` |
 //! | fields, logarithmic | bytes | a factor `(max / min)^(1 / 508)` |
-//! | fields, signed | 16-bit integers | 0.022 % of the value; values below `1e-6 max` are zero |
+//! | signed fields, magnitudes | 16-bit integers | 0.022 % of the value; values below `1e-6 max` are zero |
 //! | rest shape, times, series, poses | doubles | none |
 //!
 //! # Size

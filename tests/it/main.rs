@@ -9,6 +9,7 @@ mod closures;
 mod conservation;
 mod constraints;
 mod contact;
+mod contact_forces;
 mod elastic;
 mod flat;
 mod forces;

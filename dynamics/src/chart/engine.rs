@@ -1,7 +1,7 @@
 //! A simulation in a chart as an engine of [`Simulation`](crate::Simulation).
 
 use super::{ChartDynamicsError, ChartSimulation};
-use crate::checkpoint::{CheckpointError, InChart, check_finite};
+use crate::checkpoint::{CheckpointError, InChart, check_finite, check_length};
 use crate::contact::Contact;
 use crate::reaction::{Reaction, supports};
 use crate::report::{StepError, StepOutcome, StepTotals};
@@ -18,6 +18,8 @@ pub(crate) struct ChartEngine {
     pub(crate) state: State,
     /// Forces of the supports at the end of the last step.
     pub(crate) reactions: Vec<Reaction>,
+    /// Mean forces of contact over the last step, `3V`, newtons; empty before the first.
+    contact_forces: Vec<f64>,
 }
 
 impl ChartEngine {
@@ -26,7 +28,16 @@ impl ChartEngine {
             simulation,
             state,
             reactions: Vec::new(),
+            contact_forces: Vec::new(),
         }
+    }
+
+    /// Mean forces of contact over the last step, `3V`, newtons; `None` in scenes without contact.
+    pub(crate) fn contact_forces(&self) -> Option<Vec<f64>> {
+        self.simulation.contacts()?;
+        let mut forces = self.contact_forces.clone();
+        forces.resize(self.state.x.len(), 0.0);
+        Some(forces)
     }
 
     /// What a checkpoint keeps.
@@ -37,6 +48,7 @@ impl ChartEngine {
             velocities: self.state.v.clone(),
             reactions: self.reactions.iter().map(|r| r.force).collect(),
             has_contact: self.simulation.contacts().is_some(),
+            contact_forces: self.contact_forces.clone(),
         }
     }
 
@@ -51,17 +63,14 @@ impl ChartEngine {
             let expected = kept.has_contact;
             return Err(CheckpointError::Contact { expected }.into());
         }
-        let (found, expected) = (kept.velocities.len(), model.coordinate_count());
-        if found != expected {
-            let what = "velocities";
-            return Err(CheckpointError::Length {
-                what,
-                found,
-                expected,
-            }
-            .into());
-        }
+        let expected = model.coordinate_count();
+        check_length("velocities", kept.velocities.len(), expected)?;
         check_finite("velocities", &kept.velocities)?;
+        let found = kept.contact_forces.len();
+        if found > 0 {
+            check_length("forces of contact", found, expected)?;
+            check_finite("forces of contact", &kept.contact_forces)?;
+        }
         kept.motion.check_numbers()?;
         let mut simulation = ChartSimulation::resume(model, chart, kept.options, kept.motion)?;
         if let Some(contact) = contact {
@@ -77,6 +86,7 @@ impl ChartEngine {
                 .zip(kept.reactions)
                 .map(|(support, force)| Reaction { support, force })
                 .collect(),
+            contact_forces: kept.contact_forces,
             simulation,
             state,
         })
@@ -85,6 +95,11 @@ impl ChartEngine {
     /// Advances to the time `end`.
     pub(crate) fn advance(&mut self, end: f64, totals: &mut StepTotals) -> Result<(), StepError> {
         let (chart, state) = (&mut self.simulation, &mut self.state);
+        let start = state.t;
+        self.contact_forces.clear();
+        if chart.contacts().is_some() {
+            self.contact_forces.resize(state.x.len(), 0.0);
+        }
         totals.outcome = StepOutcome::Chart;
         let failed = |t: f64, source: ChartDynamicsError| StepError::Chart {
             t,
@@ -115,6 +130,9 @@ impl ChartEngine {
                 Ok(report) => report,
                 Err(error) => break Err(failed(chart.time(), error)),
             };
+            for contact in chart.impulses() {
+                contact.add_to(&mut self.contact_forces);
+            }
             totals.substeps += 1;
             totals.rejected += report.rejected as usize;
             totals.work += report.driven;
@@ -134,6 +152,11 @@ impl ChartEngine {
             }
         };
         state.t = if outcome.is_ok() { end } else { chart.time() };
+        // Impulses so far; nothing has moved if no time has passed.
+        let span = state.t - start;
+        if span > 0.0 {
+            self.contact_forces.iter_mut().for_each(|f| *f /= span);
+        }
         state.x.copy_from_slice(chart.positions());
         state.v = chart.velocities().map_err(|e| failed(state.t, e))?;
         if chart.mechanics().model().has_supports() {

@@ -53,6 +53,18 @@ pub struct ContactImpulse {
     pub impulse: Vector3<f64>,
 }
 
+impl ContactImpulse {
+    /// Adds the impulse on each vertex to `out` (`3V`, newton seconds).
+    pub(super) fn add_to(&self, out: &mut [f64]) {
+        for &(v, w) in &self.point.stencil {
+            let i = 3 * v as usize;
+            for k in 0..3 {
+                out[i + k] += w * self.impulse[k];
+            }
+        }
+    }
+}
+
 /// What impacts did.
 pub(super) struct Impact {
     /// Change of the velocities, on the unknowns.

@@ -184,6 +184,11 @@ impl ChartSimulation {
         self.contact.as_ref().map(ChartContact::active)
     }
 
+    /// Gap below which contacts are named, metres; `None` in scenes without contact.
+    pub(crate) fn activation(&self) -> Option<f64> {
+        self.contact.as_ref().map(ChartContact::activation)
+    }
+
     /// The impulses of contacts at the end of the last step, zero ones of contacts that do not press
     /// included; empty if nothing approached.
     #[must_use]

@@ -61,6 +61,11 @@ impl ActiveContact {
         }
     }
 
+    /// The vertices of the sheet that take part.
+    pub fn corners(&self) -> &[u32] {
+        &self.vertices[..self.vertex_count()]
+    }
+
     /// Size of the barrier force along the normal, newtons.
     pub fn force(&self, barrier: &BarrierPotential) -> f64 {
         self.factor() * barrier.force(self.gap)

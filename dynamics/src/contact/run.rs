@@ -1,8 +1,8 @@
 //! Contact of a simulation and of a step.
 
 use super::{
-    ActiveContacts, BarrierPotential, BodyLoad, BodyMotionError, BodyMotions, Contact,
-    ContactError, ContactState, ContactTerms, LaggedFriction, StepSpan,
+    ActiveContacts, BarrierPotential, BodyMotionError, BodyMotions, Contact, ContactError,
+    ContactState, ContactTerms, LaggedFriction, StepSpan,
 };
 use crate::{SheetModel, State};
 
@@ -85,15 +85,18 @@ impl RunContact {
         contacts.active.barrier_energy(&self.barrier)
     }
 
-    /// What the sheet does to the bodies at contacts, `x` being the positions.
-    pub(crate) fn loads(&self, contacts: &ContactState, x: &[f64]) -> Vec<BodyLoad> {
-        let terms = ContactTerms {
+    /// Barrier and friction at contacts, `x` being the positions.
+    pub(crate) fn terms<'a>(
+        &'a self,
+        contacts: &'a ContactState,
+        x: &'a [f64],
+    ) -> ContactTerms<'a> {
+        ContactTerms {
             x,
             active: &contacts.active,
             barrier: &self.barrier,
             friction: &contacts.friction,
-        };
-        terms.loads()
+        }
     }
 }
 

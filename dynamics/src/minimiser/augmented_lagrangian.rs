@@ -180,7 +180,7 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
                 self.outcome = StepOutcome::BranchSeeded;
                 lagrangian.perturb(self.problem, options.seed);
             } else if friction_updates < MAX_FRICTION_UPDATES
-                && lagrangian.renew_friction(self.problem) > FRICTION_SETTLED
+                && lagrangian.renew_friction(self.problem, FRICTION_SETTLED) > FRICTION_SETTLED
             {
                 friction_updates += 1;
             } else {

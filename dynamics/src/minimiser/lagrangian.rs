@@ -498,10 +498,11 @@ impl Lagrangian {
         problem.model.place_pins(problem.t(), self.iterate.x_mut());
     }
 
-    /// Lags friction anew at the iterate; the relative change of its normal forces, zero without friction.
-    pub(super) fn renew_friction(&mut self, problem: &StepProblem<'_>) -> f64 {
+    /// Lags friction anew at the iterate where its normal forces have changed by more than `settled`,
+    /// relative to the largest; the change, zero without friction.
+    pub(super) fn renew_friction(&mut self, problem: &StepProblem<'_>, settled: f64) -> f64 {
         let x0 = &problem.state.x;
-        self.iterate.renew_friction(problem.contact(), x0)
+        self.iterate.renew_friction(problem.contact(), x0, settled)
     }
 
     /// Displaces the iterate off a saddle, in the direction that belongs to `seed`: for sheets that may be

@@ -204,8 +204,8 @@ impl<'a, 'b> Sqp<'a, 'b> {
                     return None;
                 }
                 self.minimiser.lagrangian.merit(self.problem);
-                let friction_change = self.renew_friction();
-                if is_converged && !self.goes_on(&direction, friction_change) {
+                let is_renewed = self.renew_friction();
+                if is_converged && !self.goes_on(&direction, is_renewed) {
                     return Some(residual);
                 }
                 continue;
@@ -216,8 +216,8 @@ impl<'a, 'b> Sqp<'a, 'b> {
             if length < 1.0 {
                 continue;
             }
-            let friction_change = self.renew_friction();
-            if is_converged && self.is_near() && !self.goes_on(&direction, friction_change) {
+            let is_renewed = self.renew_friction();
+            if is_converged && self.is_near() && !self.goes_on(&direction, is_renewed) {
                 if self.restore_lengths() {
                     return Some(residual);
                 }
@@ -383,24 +383,32 @@ impl<'a, 'b> Sqp<'a, 'b> {
         self.problem.has_contact() || self.problem.model.constrained_strain(x) <= SMALL_STRAIN
     }
 
-    /// Lags friction anew at the iterate, and evaluates the merit function with it; the relative change of
-    /// the normal forces of friction, zero without friction.
+    /// Lags friction anew at the iterate, unless it has settled or been renewed too often; whether it was
+    /// renewed.
     ///
     /// Friction follows after every full step, not only where the minimisation with lagged friction has
     /// converged: sheets of 289 vertices on a table need three quarters of the factorisations.
-    fn renew_friction(&mut self) -> f64 {
-        let lagrangian = &mut self.minimiser.lagrangian;
-        let change = lagrangian.renew_friction(self.problem);
-        if change > 0.0 {
+    fn renew_friction(&mut self) -> bool {
+        let Minimiser {
+            options,
+            lagrangian,
+            ..
+        } = &mut *self.minimiser;
+        if self.friction_updates == options.max_friction_updates {
+            return false;
+        }
+        let settled = options.friction_tolerance;
+        let is_renewed = lagrangian.renew_friction(self.problem, settled) > settled;
+        if is_renewed {
             lagrangian.merit(self.problem);
         }
-        change
+        is_renewed
     }
 
     /// Begins anew from a point that has converged but is no minimum: a saddle, where the sheet could fold
-    /// either way, or one whose friction belonged to other normal forces. Returns false if there is no
-    /// reason to.
-    fn goes_on(&mut self, direction: &Direction, friction_change: f64) -> bool {
+    /// either way, or one whose friction belonged to other normal forces and was renewed. Returns false if
+    /// there is no reason to.
+    fn goes_on(&mut self, direction: &Direction, is_renewed: bool) -> bool {
         // Without contact the strategy that comes first looks for saddles: others start off them.
         let first = Strategy::list(self.problem, self.minimiser.faces).first();
         let may_be_saddle = direction.hessian == Definiteness::Modified
@@ -415,9 +423,7 @@ impl<'a, 'b> Sqp<'a, 'b> {
         let least = options.tolerance * direction.before.inertia;
         if may_be_saddle && lagrangian.leave_saddle(self.problem, options.seed, least) {
             self.is_perturbed = true;
-        } else if self.friction_updates < options.max_friction_updates
-            && friction_change > options.friction_tolerance
-        {
+        } else if is_renewed {
             self.friction_updates += 1;
         } else {
             return false;

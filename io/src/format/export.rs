@@ -87,8 +87,8 @@ pub enum SeriesFormat {
     /// A collection of VTK files, one for each frame: for `run.pvd`, `run/frame_00000.vtp` and so on. All
     /// digits, times, strain and fold angle of the edges and the fields of the series.
     Pvd,
-    /// A table with a line for each vertex of each frame, `.csv`: frame, time, vertex, x, y, z with all
-    /// digits.
+    /// A table with a line for each vertex of each frame, `.csv`: frame, time, vertex, x, y, z and the fields
+    /// of vertices, with all digits.
     Csv,
 }
 

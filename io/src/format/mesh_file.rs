@@ -340,6 +340,8 @@ pub fn read_mesh_with(path: &Path, options: &MeshOptions) -> Result<MeshFile, Me
         place: None,
         problem,
     };
+    // Of a path that leads nowhere the extension is not the problem.
+    std::fs::metadata(path).map_err(|e| error(MeshFileProblem::Read(e)))?;
     let format = MeshFormat::of(path).ok_or_else(|| {
         let extension = path.extension().unwrap_or_default();
         error(MeshFileProblem::Extension {

@@ -1,10 +1,15 @@
 //! Trajectories as numpy archives.
 
+mod data;
+
+pub use data::FrameData;
+
+use data::Quantity;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
+use isosheet_mesh::{Advice, Sheet, VertexId};
 use npyz::WriterBuilder;
 use npyz::npz::{NpzArchive, NpzWriter};
 use npyz::zip::DateTime;
@@ -23,6 +28,8 @@ use crate::format::atomic::{WriteError, write_atomically};
 /// | `edges` | u32 | E x 2 | ends, from 0 |
 /// | `rest_lengths` | f64 | E | in metres |
 /// | `rod_forces` | f64 | T x E | forces of the rods, in newtons, tension positive; of runs that have them |
+/// | `contact_forces` | f64 | T x V x 3 | force of contact on each vertex, in newtons; of runs with contact |
+/// | `gaps` | f64 | T x V | gap of each vertex, in metres; of runs with contact |
 ///
 /// In Python: `data = numpy.load("trajectory.npz"); data["x"][-1]` are the last positions.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +40,8 @@ pub struct Trajectory {
     faces: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
     rest_lengths: Vec<f64>,
-    /// Those of each frame, or none at all.
-    rod_forces: Vec<f64>,
+    /// Of each quantity the values of all frames, or none at all.
+    data: [Vec<f64>; 3],
 }
 
 /// A trajectory that cannot be recorded, written or read.
@@ -65,23 +72,29 @@ pub enum TrajectoryError {
         /// The value.
         value: f64,
     },
-    /// A frame has not as many forces as the frames before it: one for each edge, or none.
-    #[error("frame {frame} has {got} forces of rods where {expected} are needed")]
-    ForceCount {
+    /// A frame has not as many values as the mesh needs, or as the frames before it have: all or none.
+    #[error("frame {frame} has {got} values of `{array}` where {expected} are needed")]
+    DataCount {
         /// The frame.
         frame: usize,
-        /// The number of forces given.
+        /// The array.
+        array: &'static str,
+        /// The number of values given.
         got: usize,
-        /// The number of edges; zero if the frames before have no forces.
+        /// The number needed; zero if the frames before have none.
         expected: usize,
     },
-    /// The force of a rod is NaN or infinite.
-    #[error("the force of {edge} in frame {frame} is {value}, and the frame was not recorded")]
-    ForceNotFinite {
+    /// A value is NaN or infinite.
+    #[error(
+        "value {index} of `{array}` in frame {frame} is {value}, and the frame was not recorded"
+    )]
+    DataNotFinite {
         /// The frame.
         frame: usize,
-        /// The edge.
-        edge: EdgeId,
+        /// The array.
+        array: &'static str,
+        /// The index in the values of the frame.
+        index: usize,
         /// The value.
         value: f64,
     },
@@ -121,14 +134,14 @@ pub enum TrajectoryError {
 impl Advice for TrajectoryError {
     fn advice(&self) -> Option<&'static str> {
         match self {
-            Self::NotFinite { .. } | Self::ForceNotFinite { .. } => {
+            Self::NotFinite { .. } | Self::DataNotFinite { .. } => {
                 Some("go back to the last state that was finite")
             }
             Self::Time { .. } => Some("record frames in the order of time"),
             Self::File(error) => error.advice(),
             Self::Read { .. } => Some("check that it is an .npz file"),
             Self::Array { .. } => Some("give a trajectory that this program wrote"),
-            Self::ForceCount { .. } => Some("give forces in all frames or in none"),
+            Self::DataCount { .. } => Some("give them in all frames or in none"),
             Self::WrongLength { .. } => None,
         }
     }
@@ -145,7 +158,7 @@ impl Trajectory {
             faces: sheet.face_indices(),
             edges: t.edges().iter().map(|e| e.map(|v| v.0)).collect(),
             rest_lengths: sheet.lengths().to_vec(),
-            rod_forces: Vec::new(),
+            data: Default::default(),
         }
     }
 
@@ -153,22 +166,21 @@ impl Trajectory {
     ///
     /// # Errors
     /// [`TrajectoryError`] for a wrong length, a number that is not finite, a time before the last, or if the
-    /// frames before have forces of the rods; nothing is added then.
+    /// frames before have further data; nothing is added then.
     pub fn push(&mut self, t: f64, x: &[f64]) -> Result<(), TrajectoryError> {
-        self.push_with_forces(t, x, &[])
+        self.push_with(t, x, &FrameData::default())
     }
 
-    /// Adds a frame with the forces of its rods (length E, newtons, tension positive), which all frames of a
-    /// trajectory have, or none.
+    /// Adds a frame with further data, each of which all frames of a trajectory have, or none.
     ///
     /// # Errors
-    /// As [`Self::push`]; [`TrajectoryError::ForceCount`] for another number of forces than the frames before
+    /// As [`Self::push`]; [`TrajectoryError::DataCount`] for another number of values than the frames before
     /// have.
-    pub fn push_with_forces(
+    pub fn push_with(
         &mut self,
         t: f64,
         x: &[f64],
-        forces: &[f64],
+        data: &FrameData<'_>,
     ) -> Result<(), TrajectoryError> {
         let frame = self.t.len();
         if x.len() != 3 * self.vertex_count {
@@ -191,36 +203,32 @@ impl Trajectory {
         if !t.is_finite() || t < before {
             return Err(TrajectoryError::Time { frame, t, before });
         }
-        self.check_forces(forces)?;
-        self.rod_forces.extend_from_slice(forces);
+        for (quantity, kept) in Quantity::ALL.into_iter().zip(&self.data) {
+            let values = quantity.of(data);
+            let expected = match (frame, values) {
+                (0, []) => 0,
+                (0, _) => self.size(quantity),
+                _ => kept.len() / frame,
+            };
+            quantity.check(values, frame, expected)?;
+        }
+        for (quantity, kept) in Quantity::ALL.into_iter().zip(&mut self.data) {
+            kept.extend_from_slice(quantity.of(data));
+        }
         self.t.push(t);
         self.x.extend_from_slice(x);
         Ok(())
     }
 
-    fn check_forces(&self, forces: &[f64]) -> Result<(), TrajectoryError> {
-        let (frame, got) = (self.t.len(), forces.len());
-        let edges = self.edges.len();
-        let expected = match (frame, got) {
-            (0, 0) => 0,
-            (0, _) => edges,
-            _ => self.rod_forces.len() / frame,
-        };
-        if got != expected {
-            return Err(TrajectoryError::ForceCount {
-                frame,
-                got,
-                expected,
-            });
-        }
-        match forces.iter().position(|f| !f.is_finite()) {
-            None => Ok(()),
-            Some(e) => Err(TrajectoryError::ForceNotFinite {
-                frame,
-                edge: EdgeId::from_index(e),
-                value: forces[e],
-            }),
-        }
+    /// The numbers of a quantity in one frame.
+    fn size(&self, quantity: Quantity) -> usize {
+        quantity.size(self.vertex_count, self.edges.len())
+    }
+
+    /// A quantity in a frame.
+    fn values(&self, quantity: Quantity, k: usize) -> Option<&[f64]> {
+        let n = self.size(quantity);
+        self.data[quantity as usize].get(n * k..n * (k + 1))
     }
 
     /// The number of frames T.
@@ -267,8 +275,21 @@ impl Trajectory {
     /// The force of each edge in a frame (newtons, tension positive); `None` when the trajectory has no
     /// forces or no such frame.
     pub fn rod_forces(&self, k: usize) -> Option<&[f64]> {
-        let n = self.edges.len();
-        self.rod_forces.get(n * k..n * (k + 1))
+        self.values(Quantity::RodForces, k)
+    }
+
+    /// The force of contact on each vertex in a frame (length 3V, newtons): normal forces and friction of the
+    /// bodies on the sheet and of the sheet on itself. `None` when the trajectory has no contact or no such
+    /// frame.
+    pub fn contact_forces(&self, k: usize) -> Option<&[f64]> {
+        self.values(Quantity::ContactForces, k)
+    }
+
+    /// The gap of each vertex in a frame (length V, metres): the smallest gap of the contacts that the vertex
+    /// or an edge or a face at it takes part in, and the activation distance of contact where nothing is
+    /// within reach; `None` when the trajectory has no contact or no such frame.
+    pub fn gaps(&self, k: usize) -> Option<&[f64]> {
+        self.values(Quantity::Gaps, k)
     }
 
     /// Writes the `.npz` file, atomically. Equal trajectories give equal bytes.
@@ -304,14 +325,12 @@ impl Trajectory {
                 &[self.rest_lengths.len() as u64],
                 self.rest_lengths.iter().copied(),
             )?;
-            if !self.rod_forces.is_empty() {
-                let shape = [frames, self.edges.len() as u64];
-                put(
-                    &mut npz,
-                    "rod_forces",
-                    &shape,
-                    self.rod_forces.iter().copied(),
-                )?;
+            for (quantity, kept) in Quantity::ALL.into_iter().zip(&self.data) {
+                if !kept.is_empty() {
+                    let frame = quantity.shape(self.vertex_count, self.edges.len());
+                    let shape = [&[frames], &frame[..]].concat();
+                    put(&mut npz, quantity.name(), &shape, kept.iter().copied())?;
+                }
             }
             npz.zip_writer().finish()?;
             Ok(())
@@ -339,20 +358,31 @@ impl Trajectory {
         let (faces_shape, faces) = get::<u32>(&mut npz, path, "faces", 2)?;
         let (edges_shape, edges) = get::<u32>(&mut npz, path, "edges", 2)?;
         let (lengths_shape, rest_lengths) = get::<f64>(&mut npz, path, "rest_lengths", 1)?;
-        let (forces_shape, rod_forces) =
-            get_if_there::<f64>(&mut npz, path, "rod_forces", 2)?.unwrap_or_default();
         let (frames, vertices, rods) = (t_shape[0], x_shape[1], edges_shape[0]);
         for (name, shape, expected) in [
             ("x", &x_shape, vec![frames, vertices, 3]),
             ("faces", &faces_shape, vec![faces_shape[0], 3]),
             ("edges", &edges_shape, vec![rods, 2]),
             ("rest_lengths", &lengths_shape, vec![rods]),
-            ("rod_forces", &forces_shape, vec![frames, rods]),
         ] {
-            if *shape != expected && !shape.is_empty() {
+            if *shape != expected {
                 let problem = format!("its shape is {shape:?}, {expected:?} expected");
                 return Err(array(name, problem));
             }
+        }
+        let mut data: [Vec<f64>; 3] = Default::default();
+        for (quantity, kept) in Quantity::ALL.into_iter().zip(&mut data) {
+            let frame = quantity.shape(vertices as usize, rods as usize);
+            let expected = [&[frames], &frame[..]].concat();
+            let found = get_if_there::<f64>(&mut npz, path, quantity.name(), expected.len())?;
+            let Some((shape, values)) = found else {
+                continue;
+            };
+            if shape != expected {
+                let problem = format!("its shape is {shape:?}, {expected:?} expected");
+                return Err(array(quantity.name(), problem));
+            }
+            *kept = values;
         }
         let outside = |v: &&u32| u64::from(**v) >= vertices;
         for (name, list) in [("faces", &faces), ("edges", &edges)] {
@@ -367,7 +397,9 @@ impl Trajectory {
             ("t", &t),
             ("x", &x),
             ("rest_lengths", &rest_lengths),
-            ("rod_forces", &rod_forces),
+            (Quantity::RodForces.name(), &data[0]),
+            (Quantity::ContactForces.name(), &data[1]),
+            (Quantity::Gaps.name(), &data[2]),
         ] {
             if let Some(v) = list.iter().find(|v| !v.is_finite()) {
                 return Err(array(name, format!("it contains {v}")));
@@ -380,7 +412,7 @@ impl Trajectory {
             faces: faces.chunks_exact(3).map(|f| [f[0], f[1], f[2]]).collect(),
             edges: edges.chunks_exact(2).map(|e| [e[0], e[1]]).collect(),
             rest_lengths,
-            rod_forces,
+            data,
         })
     }
 }

@@ -1,13 +1,14 @@
 //! The frames of a run while it goes on: one file that grows.
 
-use crate::format::WriteError;
+use crate::format::{FrameData, WriteError};
 use crate::scene::Setup;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// A file of frames of equal length: time (seconds), positions (`3V`, metres) and, of runs that have them,
-/// the forces of the rods (newtons, tension positive), little-endian `f64`.
+/// the forces of the rods (newtons, tension positive), the forces of contact (`3V`, newtons) and the gaps of
+/// the vertices (metres), little-endian `f64`.
 #[derive(Debug)]
 pub(crate) struct FrameFile {
     path: PathBuf,
@@ -23,7 +24,22 @@ pub(crate) struct Frame {
     pub(crate) t: f64,
     pub(crate) x: Vec<f64>,
     /// Empty in runs without them.
-    pub(crate) forces: Vec<f64>,
+    pub(crate) rod_forces: Vec<f64>,
+    /// Empty in runs without contact.
+    pub(crate) contact_forces: Vec<f64>,
+    /// Empty in runs without contact.
+    pub(crate) gaps: Vec<f64>,
+}
+
+impl Frame {
+    /// What the frame has besides positions.
+    pub(crate) fn data(&self) -> FrameData<'_> {
+        FrameData {
+            rod_forces: &self.rod_forces,
+            contact_forces: &self.contact_forces,
+            gaps: &self.gaps,
+        }
+    }
 }
 
 /// How many numbers a frame has.
@@ -32,25 +48,25 @@ pub(crate) struct FrameShape {
     /// `3V`.
     pub(crate) coordinates: usize,
     /// One for each rod, or zero.
-    pub(crate) forces: usize,
+    pub(crate) rod_forces: usize,
+    /// One for each vertex, or zero. There are three times as many numbers of forces of contact.
+    pub(crate) gaps: usize,
 }
 
 impl FrameShape {
     /// That of the frames of a run.
     pub(crate) fn of(setup: &Setup) -> Self {
-        let has_forces = setup.has_rod_forces();
+        let coordinates = setup.start.x.len();
+        let if_there = |is_there: bool, count: usize| if is_there { count } else { 0 };
         Self {
-            coordinates: setup.start.x.len(),
-            forces: if has_forces {
-                setup.model.rods().len()
-            } else {
-                0
-            },
+            coordinates,
+            rod_forces: if_there(setup.has_rod_forces(), setup.model.rods().len()),
+            gaps: if_there(setup.contacts.is_some(), coordinates / 3),
         }
     }
 
     fn bytes(self) -> usize {
-        8 * (1 + self.coordinates + self.forces)
+        8 * (1 + self.coordinates + self.rod_forces + 4 * self.gaps)
     }
 }
 
@@ -97,11 +113,18 @@ impl FrameFile {
     }
 
     /// Adds a frame.
-    pub(crate) fn append(&mut self, t: f64, x: &[f64], forces: &[f64]) -> Result<(), WriteError> {
+    pub(crate) fn append(
+        &mut self,
+        t: f64,
+        x: &[f64],
+        data: &FrameData<'_>,
+    ) -> Result<(), WriteError> {
         self.record.clear();
         self.record.extend(t.to_le_bytes());
-        let numbers = x.iter().chain(forces);
-        self.record.extend(numbers.flat_map(|c| c.to_le_bytes()));
+        for numbers in [x, data.rod_forces, data.contact_forces, data.gaps] {
+            let bytes = numbers.iter().flat_map(|c| c.to_le_bytes());
+            self.record.extend(bytes);
+        }
         let written = self.file.write_all(&self.record);
         written.map_err(|source| self.failed(source))?;
         self.count += 1;
@@ -133,7 +156,9 @@ pub(crate) fn read_frames(path: &Path, shape: FrameShape) -> io::Result<Vec<Fram
         Frame {
             t: numbers.next().unwrap_or_default(),
             x: numbers.by_ref().take(shape.coordinates).collect(),
-            forces: numbers.collect(),
+            rod_forces: numbers.by_ref().take(shape.rod_forces).collect(),
+            contact_forces: numbers.by_ref().take(3 * shape.gaps).collect(),
+            gaps: numbers.collect(),
         }
     };
     let records = bytes.chunks_exact(shape.bytes());
@@ -150,22 +175,25 @@ mod tests {
         let path = dir.path().join("frames.bin");
         let shape = FrameShape {
             coordinates: 6,
-            forces: 2,
+            rod_forces: 1,
+            gaps: 2,
         };
-        let x = |k: usize| -> Vec<f64> { (0..6).map(|i| (k * 6 + i) as f64 / 7.0).collect() };
-        let forces = |k: usize| vec![k as f64, -0.5];
+        let frame = |k: usize| Frame {
+            t: k as f64 / 3.0,
+            x: (0..6).map(|i| (k * 6 + i) as f64 / 7.0).collect(),
+            rod_forces: vec![k as f64 - 0.5],
+            contact_forces: (0..6).map(|i| (k + i) as f64 / 11.0).collect(),
+            gaps: vec![1e-3, k as f64 * 1e-4],
+        };
+        let add =
+            |file: &mut FrameFile, frame: &Frame| file.append(frame.t, &frame.x, &frame.data());
         let mut file = FrameFile::create(&path).unwrap();
         for k in 0..4 {
-            file.append(k as f64 / 3.0, &x(k), &forces(k)).unwrap();
+            add(&mut file, &frame(k)).unwrap();
         }
         file.sync().unwrap();
         let frames = read_frames(&path, shape).unwrap();
-        assert_eq!(frames.len(), 4);
-        for (k, frame) in frames.iter().enumerate() {
-            let t = k as f64 / 3.0;
-            let (x, forces) = (x(k), forces(k));
-            assert_eq!(*frame, Frame { t, x, forces });
-        }
+        assert_eq!(frames, (0..4).map(frame).collect::<Vec<_>>());
         // Half a frame, as a full disk leaves it.
         File::options()
             .append(true)
@@ -175,7 +203,7 @@ mod tests {
             .unwrap();
         assert_eq!(read_frames(&path, shape).unwrap(), frames);
         let mut resumed = FrameFile::resume(&path, 2, shape).unwrap();
-        resumed.append(2.0 / 3.0, &x(2), &forces(2)).unwrap();
+        add(&mut resumed, &frame(2)).unwrap();
         assert_eq!(resumed.count(), 3);
         assert_eq!(read_frames(&path, shape).unwrap(), frames[..3]);
         assert!(FrameFile::resume(&path, 4, shape).is_err());

@@ -44,10 +44,12 @@ impl Recording {
                 rows.add("state", format!("not complete: up to {t:.4} s"));
             }
         }
-        rows.add(
-            "not recorded",
-            "gaps of the sheet to itself by vertex".into(),
-        );
+        if self.trajectory.gaps(0).is_none() {
+            rows.add(
+                "not recorded",
+                "gaps of the sheet to itself by vertex".into(),
+            );
+        }
         rows.0
     }
 

@@ -98,7 +98,7 @@ pub(crate) fn open_scene(folder: &Path) -> Result<SceneFile, RunError> {
 pub(crate) fn trajectory_of(sheet: &Sheet, frames: &[Frame]) -> Result<Trajectory, RunError> {
     let mut trajectory = Trajectory::new(sheet);
     for frame in frames {
-        trajectory.push_with_forces(frame.t, &frame.x, &frame.forces)?;
+        trajectory.push_with(frame.t, &frame.x, &frame.data())?;
     }
     Ok(trajectory)
 }

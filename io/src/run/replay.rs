@@ -10,12 +10,11 @@ impl Replay {
     /// The page of a recorded motion: the sheet, the bodies in their poses, and
     ///
     /// - the field "strain" ([`Field::edge_strain`]), where there are bodies "distance to obstacles" (see
-    ///   [`Field::obstacle_distance`]), and the forces of the rods ([`Field::rod_forces`]) where the
-    ///   trajectory has them,
+    ///   [`Field::obstacle_distance`]), and where the trajectory has them the forces of the rods
+    ///   ([`Field::rod_forces`]), the forces of contact and the gaps of the vertices ([`Field::contact`]),
     /// - the series of the history (see [`Series::of_history`]).
     ///
-    /// Titles, pins and texts are left to the caller. The gaps of the sheet to itself are in no recording,
-    /// and therefore in no field.
+    /// Titles, pins and texts are left to the caller.
     ///
     /// # Errors
     /// [`ViewError`] if the trajectory is not one of this sheet.
@@ -34,6 +33,7 @@ impl Replay {
             fields.push(Field::obstacle_distance(obstacles, &times, &positions));
         }
         fields.extend(Field::rod_forces(trajectory));
+        fields.extend(Field::contact(trajectory));
         let bodies = obstacles.iter().enumerate();
         let bodies =
             bodies.map(|(k, body)| Body::of_obstacle(&format!("obstacle[{k}]"), body, &times));

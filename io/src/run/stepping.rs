@@ -5,7 +5,7 @@ use super::folder::RunFolder;
 use super::frames::FrameFile;
 use super::summary::{EndReason, Ending};
 use super::{RunError, Tick};
-use crate::format::{HistoryRow, HistoryWriter};
+use crate::format::{FrameData, HistoryRow, HistoryWriter};
 use crate::scene::{FoldTargets, Origins, Scene, SceneError, SceneFile, SupportForces};
 use isosheet_dynamics::{Simulation, StepOutcome, StepReport};
 use nalgebra::Vector3;
@@ -67,8 +67,15 @@ impl Stepping<'_> {
 
     fn record_frame(&mut self) -> Result<(), RunError> {
         let state = self.simulation.state();
-        let forces = self.simulation.rod_forces().unwrap_or_default();
-        Ok(self.frames.append(state.t, &state.x, &forces)?)
+        let rod_forces = self.simulation.rod_forces().unwrap_or_default();
+        let contact_forces = self.simulation.contact_forces().unwrap_or_default();
+        let gaps = self.simulation.vertex_gaps().unwrap_or_default();
+        let data = FrameData {
+            rod_forces: &rod_forces,
+            contact_forces: &contact_forces,
+            gaps: &gaps,
+        };
+        Ok(self.frames.append(state.t, &state.x, &data)?)
     }
 
     /// Takes and records a step. Says what has been reached.

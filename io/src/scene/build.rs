@@ -31,9 +31,9 @@ impl Scene {
         builder.add_supports()?;
         builder.add_bending()?;
         builder.add_creases()?;
+        builder.mend_lengths();
         builder.add_folding(folder)?;
         builder.add_isometry()?;
-        builder.mend_lengths();
         builder.perturb()?;
         let (contacts, obstacles) = builder.contacts(folder)?;
         Ok(builder.finish(contacts, obstacles))
@@ -310,7 +310,7 @@ impl<'a> Builder<'a> {
         };
         let key = Key::root().name("folding");
         let targets = folding.targets(&key, file, &self.unplaced, folder)?;
-        let springs = folding.springs(&targets, &self.rest.sheet);
+        let springs = folding.springs(&targets, &self.rest.sheet, &self.x);
         let springs = CreaseSprings::new(self.rest.sheet.topology(), springs);
         let springs = springs.map_err(at(&key))?;
         self.change(

@@ -3,9 +3,9 @@
 use super::Mesh;
 use super::mesh::MeshFile;
 use super::problem::{Checks, Key, Problem};
-use super::profile::Profile;
+use super::profile::{Change, Course, Profile};
 use crate::format::{EdgeAssignment, FoldFrame};
-use isosheet_dynamics::CreaseSpring;
+use isosheet_dynamics::{CreaseSpring, RestAngle};
 use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, fold_angle};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -14,9 +14,10 @@ use std::path::Path;
 
 /// Folding to the angles of the FOLD file that is the mesh of the sheet.
 ///
-/// A torsion spring at each crease drives it from flat to its angle, and a stiffer one keeps each edge inside a
-/// panel flat. Angles that no shape of rigid panels has are approached as far as the springs come to an
-/// equilibrium: the summary of the run says how large the differences are at the end.
+/// A torsion spring at each crease drives it from the angle that it has at the start (before a perturbation)
+/// to its target, and a stiffer one keeps each edge inside a panel flat, or makes it flat. Angles that no
+/// shape of rigid panels has are approached as far as the springs come to an equilibrium: the summary of the
+/// run says how large the differences are at the end.
 ///
 /// Mountains and valleys are driven to the angles that `edges_foldAngle` gives them; edges of the kinds `F`
 /// and `J` and the cuts of polygons stay flat; `U`, and `B` inside the sheet, are driven where their angle is
@@ -24,15 +25,17 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Folding {
-    /// When the angles of the springs have reached their targets, seconds. They begin at 0 and change smoothly.
+    /// When the angles of the springs have reached their targets, seconds. They begin at the fold angles of
+    /// the start and change smoothly.
     pub time: f64,
     /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre).
     pub stiffness: f64,
-    /// Torsional stiffness of a metre of the edges that stay flat, N; if left out, 50 times that of the creases.
+    /// Torsional stiffness of a metre of the edges that stay flat, N; if left out, 50 times that of the
+    /// creases.
     #[serde(default)]
     pub flat_stiffness: Option<f64>,
-    /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on each
-    /// other, which cross without self-contact: take less than 1.
+    /// Which part of its angle each crease is driven to, from -1 to 1. Angles of 180 degrees lay panels on
+    /// each other, which cross without self-contact: take less than 1.
     #[serde(default = "whole")]
     pub part: f64,
     /// The frame of the file that has the angles, by its number from 0 or by its title; if left out, the one
@@ -183,26 +186,44 @@ impl Folding {
         Ok(targets)
     }
 
-    /// The springs that drive a sheet to targets.
-    pub(crate) fn springs(&self, targets: &FoldTargets, sheet: &Sheet) -> Vec<CreaseSpring> {
-        let length = |e: EdgeId| sheet.lengths()[e.index()];
+    /// The springs that drive a sheet to targets from positions `x` (`3V`, metres).
+    pub(crate) fn springs(
+        &self,
+        targets: &FoldTargets,
+        sheet: &Sheet,
+        x: &[f64],
+    ) -> Vec<CreaseSpring> {
+        let spring = |edge: EdgeId, stiffness: f64, target: f64| CreaseSpring {
+            edge,
+            stiffness: stiffness * sheet.lengths()[edge.index()],
+            rest: self.course(fold_angle(sheet.topology(), x, edge).unwrap_or(0.0), target),
+        };
         let flat_stiffness = self
             .flat_stiffness
             .unwrap_or(FLAT_STIFFNESS * self.stiffness);
-        let driven = targets.creases.iter().map(|&(edge, target)| CreaseSpring {
-            edge,
-            stiffness: self.stiffness * length(edge),
-            // A target that is a last digit above pi because of rounding would be refused.
-            rest: Profile::smooth_step(target.clamp(-PI, PI), self.time)
-                .as_given()
-                .into(),
-        });
-        let flat = targets.flat.iter().map(|&edge| CreaseSpring {
-            edge,
-            stiffness: flat_stiffness * length(edge),
-            rest: 0.0.into(),
-        });
+        let driven = targets.creases.iter();
+        let driven = driven.map(|&(edge, target)| spring(edge, self.stiffness, target));
+        let flat = targets.flat.iter();
+        let flat = flat.map(|&edge| spring(edge, flat_stiffness, 0.0));
         driven.chain(flat).collect()
+    }
+
+    /// The rest angle of a spring that goes from one angle to another, radians.
+    fn course(&self, start: f64, target: f64) -> RestAngle {
+        // A target that is a last digit above pi because of rounding would be refused.
+        let target = target.clamp(-PI, PI);
+        if start == target {
+            return target.into();
+        }
+        let change = Change {
+            from: start,
+            to: target,
+            end: self.time,
+            ..Change::default()
+        };
+        Profile::Course(Course::SmoothStep(change))
+            .as_given()
+            .into()
     }
 }
 

@@ -193,7 +193,7 @@ fn series_data(series: &Series) -> SeriesData<'_> {
         name: &series.name,
         unit: &series.unit,
         scale: match series.scale {
-            Scale::Linear | Scale::Signed => "linear",
+            Scale::Linear | Scale::Signed | Scale::Magnitude => "linear",
             Scale::Logarithmic => "logarithmic",
         },
         times: pack_doubles(series.times.iter().copied()),
@@ -206,5 +206,6 @@ fn scale_name(scale: Scale) -> &'static str {
         Scale::Linear => "linear",
         Scale::Logarithmic => "logarithmic",
         Scale::Signed => "signed",
+        Scale::Magnitude => "magnitude",
     }
 }

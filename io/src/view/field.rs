@@ -29,6 +29,10 @@ pub enum Scale {
     /// are of either sign and differ by orders of magnitude. A page keeps values to 0.02 %, and those below a
     /// millionth of the largest as zero. In plots as [`Scale::Linear`].
     Signed,
+    /// By value, with colours that begin at zero and reach as far as 98 % of the values that are not zero;
+    /// for sizes of forces, which are not negative and differ by orders of magnitude. Kept as with
+    /// [`Scale::Signed`]. In plots as [`Scale::Linear`].
+    Magnitude,
 }
 
 /// A quantity on the sheet, such as the strain of the edges or the gap of the vertices.
@@ -118,6 +122,28 @@ impl Field {
         })
     }
 
+    /// What the trajectory has of contact: the size of the force of contact on each vertex (newtons; of
+    /// bodies and of the sheet on itself), and the gap of each vertex (metres, see [`Trajectory::gaps`]).
+    pub fn contact(trajectory: &Trajectory) -> Vec<Self> {
+        let frames = || 0..trajectory.len();
+        let size = |f: &[f64; 3]| f[0].hypot(f[1]).hypot(f[2]);
+        let sizes = |forces: &[f64]| forces.as_chunks::<3>().0.iter().map(size).collect();
+        let forces = frames().map(|k| trajectory.contact_forces(k).map(sizes));
+        let gaps = frames().map(|k| trajectory.gaps(k).map(<[f64]>::to_vec));
+        let field = |name: &str, unit: &str, scale, values: Option<Vec<Vec<f64>>>| {
+            Some(Self {
+                name: name.into(),
+                unit: unit.into(),
+                place: Place::Vertex,
+                scale,
+                values: values?,
+            })
+        };
+        let forces = field("contact force", "N", Scale::Magnitude, forces.collect());
+        let gaps = field("gap", "m", Scale::Linear, gaps.collect());
+        forces.into_iter().chain(gaps).collect()
+    }
+
     pub(super) fn validate(
         &self,
         index: usize,
@@ -135,7 +161,7 @@ impl Field {
             let what = || format!("{what}, frame {frame}");
             check::length_of(values.len(), expected, what)?;
             check::finite_of(values, what)?;
-            if self.scale == Scale::Logarithmic {
+            if matches!(self.scale, Scale::Logarithmic | Scale::Magnitude) {
                 check::not_negative(values, what)?;
             }
         }

@@ -59,8 +59,8 @@ fn step(low: f64, high: f64, count: f64) -> f64 {
 }
 
 /// The values of a field. On a linear scale a value is `low + q step` with 16 bits; on a logarithmic one it
-/// is `10^(low + (q - 1) step)` with 8 bits, and `q = 0` is zero. Signed values have 16 bits: up to 32767 as
-/// on a logarithmic scale, and the negative of `q - 32768` from 32768 on.
+/// is `10^(low + (q - 1) step)` with 8 bits, and `q = 0` is zero. Signed values and magnitudes have 16 bits:
+/// up to 32767 as on a logarithmic scale, and the negative of `q - 32768` from 32768 on.
 pub(super) fn quantise_field(rows: &[&Vec<f64>], scale: Scale) -> Quantised {
     let all = || rows.iter().flat_map(|row| row.iter().copied());
     match scale {
@@ -70,7 +70,7 @@ pub(super) fn quantise_field(rows: &[&Vec<f64>], scale: Scale) -> Quantised {
             let integer = |v: &f64| ((v - low) / step).round() as u16;
             Quantised::of(rows, low, step, 2, integer)
         }
-        Scale::Signed => {
+        Scale::Signed | Scale::Magnitude => {
             let largest = all().fold(0.0, |largest: f64, v| largest.max(v.abs()));
             let least = NEGLIGIBLE * largest;
             let is_zero = |v: f64| v.abs() <= least;

@@ -7,8 +7,8 @@
 use isosheet_io::mesh::Sheet;
 use isosheet_io::mesh::generate::{self, Diagonals};
 use isosheet_io::{
-    FieldSupport, MeshFile, Series, SeriesField, SeriesOptions, Trajectory, read_mesh, write_mesh,
-    write_series,
+    FieldSupport, FrameData, MeshFile, Series, SeriesField, SeriesOptions, Trajectory, read_mesh,
+    write_mesh, write_series,
 };
 use std::io::Write;
 use std::path::Path;
@@ -60,7 +60,15 @@ fn run() -> (Sheet, Trajectory) {
         };
         let points = sheet.positions().as_chunks::<3>().0;
         let x: Vec<f64> = points.iter().flat_map(place).collect();
-        trajectory.push(t, &x).expect("a frame");
+        // Numbers that tell frames, vertices and axes apart.
+        let contact_forces: Vec<f64> = x.iter().map(|c| c * c - 0.25 * t).collect();
+        let gaps: Vec<f64> = (0..x.len() / 3).map(|v| 1e-3 * v as f64 + t).collect();
+        let data = FrameData {
+            contact_forces: &contact_forces,
+            gaps: &gaps,
+            ..FrameData::default()
+        };
+        trajectory.push_with(t, &x, &data).expect("a frame");
     }
     (sheet, trajectory)
 }

@@ -58,6 +58,8 @@ for number, entry in enumerate(listed):
         assert abs(cell("fold_angle")[edges + i]) == max(map(abs, own))
     points = vtk_to_numpy(poly.GetPointData().GetArray("height <m>"))
     assert (points == 0.5 * np.arange(len(x) * k, len(x) * (k + 1))).all()
+    assert (vtk_to_numpy(poly.GetPointData().GetArray("contact_force")) == data["contact_forces"][k]).all()
+    assert (vtk_to_numpy(poly.GetPointData().GetArray("gap")) == data["gaps"][k]).all()
     assert (cell("energy")[edges:] == 0.5 * np.arange(n * k, n * (k + 1))).all()
     assert (cell("force & load")[:edges] == 0.5 * np.arange(edges * k, edges * (k + 1))).all()
     assert poly.GetNumberOfCells() == edges + n == len(cell("energy"))

@@ -53,12 +53,75 @@ fn mesh_files_are_converted() {
     }
     let said = refused(dir, &["convert", "a.off", "b.step"], 6);
     assert!(said.contains(".step is no format"), "{said}");
+    for missing in ["a.xyz", "a-run", "none.obj", "none.npz"] {
+        let said = refused(dir, &["convert", missing, "b.ply"], 3);
+        assert!(
+            said.contains(missing) && said.contains("No such file"),
+            "{said}"
+        );
+    }
+    fs::write(dir.join("a.xyz"), "").unwrap();
     let said = refused(dir, &["convert", "a.xyz", "b.ply"], 3);
     assert!(said.contains(".fold, .gltf, .glb"), "{said}");
     refused(dir, &["convert", "a.off", "g.ply", "--every", "2"], 3);
     refused(dir, &["convert", "a.off", "g.ply", "--weld=-1"], 3);
     refused(dir, &["convert", "a.off", "g.ply", "--every", "0"], 2);
     assert!(!dir.join("g.ply").exists());
+}
+
+/// Another file is replaced; what is read is not, by whatever name it is called.
+#[test]
+fn what_is_read_is_not_replaced() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n# mine\n";
+    for name in ["a.obj", "b.obj"] {
+        fs::write(dir.join(name), square).unwrap();
+    }
+    let read = |name: &str| fs::read_to_string(dir.join(name)).unwrap();
+    fs::create_dir(dir.join("sub")).unwrap();
+    let mut names = vec!["a.obj", "./a.obj", "sub/../a.obj"];
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("../a.obj", dir.join("sub/link.obj")).unwrap();
+        fs::hard_link(dir.join("a.obj"), dir.join("hard.obj")).unwrap();
+        names.extend(["sub/link.obj", "hard.obj"]);
+    }
+    for name in names {
+        let said = refused(dir, &["convert", "a.obj", name], 3);
+        assert!(said.contains("is the file that is read"), "{said}");
+        assert_eq!(read(name), square);
+    }
+    done(dir, &["convert", "a.obj", "b.obj"]);
+    assert!(!read("b.obj").contains("mine") && read("a.obj") == square);
+
+    fs::write(dir.join("scene.toml"), StartingPoint::Hanging.text()).unwrap();
+    let edits = ["--set", "stop.time=0.1", "--out", "run"];
+    let simulated = run(dir, &[&["simulate", "scene.toml"], &edits[..]].concat());
+    assert_eq!(code(&simulated), Some(0), "{}", stderr(&simulated));
+    let history = read("run/history.csv");
+    for (file, remedy) in [
+        ("scene.toml", "`isosheet simulate scene.toml`"),
+        ("run/scene.toml", "name its folder, run"),
+        ("run/summary.json", "name its folder, run"),
+    ] {
+        let said = refused(dir, &["convert", file, "x.obj"], 3);
+        assert!(said.contains(remedy), "{said}");
+    }
+    let said = refused(dir, &["convert", "run", "run"], 3);
+    assert!(said.contains("run is the folder that is read"), "{said}");
+    let said = refused(dir, &["convert", "run", "run/history.csv"], 3);
+    assert!(said.contains("is the history of the run"), "{said}");
+    assert_eq!(read("run/history.csv"), history);
+    let count = || fs::read_dir(dir.join("run")).unwrap().count();
+    let before = count();
+    for name in ["run.pvd", "run.obj", "run/"] {
+        refused(dir, &["convert", "run", name], 3);
+    }
+    assert_eq!(count(), before);
+    done(dir, &["convert", "run", "run/points.csv"]);
+    done(dir, &["convert", "run", "run.csv"]);
+    done(dir, &["convert", "run", "run.obj", "--frame", "1"]);
 }
 
 /// A file whose name says another format than it has, and mesh files where scenes are meant.

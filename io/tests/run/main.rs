@@ -1,5 +1,6 @@
 //! The command: runs that are killed and continued, folders in use, exit codes.
 
+mod contact_data;
 mod continuing;
 mod convert;
 mod ends;

@@ -171,6 +171,64 @@ fn gnu_parallel_runs_a_sweep_and_may_be_killed() {
     assert_eq!(collected(dir), undisturbed());
 }
 
+/// Whether Slurm runs jobs on this machine and no other: temporary folders are seen by no other one.
+#[cfg(unix)]
+fn has_slurm_of_its_own() -> bool {
+    let said = |program: &str, arguments: &[&str]| {
+        let output = Command::new(program).args(arguments).output().ok()?;
+        let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        output.status.success().then_some(text)
+    };
+    let nodes = said("sbatch", &["--version"])
+        .and_then(|_| said("sinfo", &["--noheader", "--Node", "--format=%N %T"]));
+    let Some(nodes) = nodes.filter(|nodes| !nodes.is_empty()) else {
+        eprintln!("skipped: Slurm is not installed, or its controller does not answer");
+        return false;
+    };
+    let own = said("hostname", &["-s"]).unwrap_or_default();
+    let is_ready = |node: &str| {
+        let state = node.strip_prefix(&format!("{own} "));
+        state.is_some_and(|s| ["idle", "mixed", "allocated"].contains(&s))
+    };
+    let is_own = nodes.lines().all(is_ready);
+    if !is_own {
+        eprintln!("skipped: the nodes of Slurm are not this machine alone, or not ready: {nodes}");
+    }
+    is_own
+}
+
+/// The job array runs the sweep. When the job is cancelled half-way, the same script completes the table.
+#[cfg(unix)]
+#[test]
+fn slurm_runs_a_sweep_and_may_be_cancelled() {
+    if !has_slurm_of_its_own() {
+        return;
+    }
+    let dir = with_scene(StartingPoint::Fold);
+    let (dir, sweep) = (dir.path(), dir.path().join("my sweep"));
+    let script = run(dir, &[&TWELVE[..], &["--engine", "slurm"]].concat());
+    assert_eq!(code(&script), Some(0), "{}", stderr(&script));
+    fs::write(dir.join("array.sh"), &script.stdout).unwrap();
+    let slurm = |program: &str, arguments: &[&str]| {
+        let mut command = Command::new(program);
+        let output = command.args(arguments).current_dir(dir).output().unwrap();
+        assert!(output.status.success(), "{program}: {}", stderr(&output));
+        String::from_utf8(output.stdout).unwrap().trim().to_owned()
+    };
+    let submit = || slurm("sbatch", &["--parsable", "array.sh"]);
+    // A job that has ended is known for some minutes, and has no tasks in the queue.
+    let ended = |job: &str| slurm("squeue", &["--noheader", "--jobs", job]).is_empty();
+    let first = submit();
+    wait_for(|| complete(&sweep) >= 4);
+    slurm("scancel", &[&first]);
+    wait_for(|| ended(&first));
+    let count = complete(&sweep);
+    assert!((4..12).contains(&count), "cancelled too late: {count}");
+    let second = submit();
+    wait_for(|| ended(&second));
+    assert_eq!(collected(dir), undisturbed());
+}
+
 /// Every line is what a shell and Slurm make of it: the words of a run, whatever its values are.
 #[cfg(unix)]
 #[test]
@@ -281,6 +339,13 @@ fn folders_keep_their_sweep() {
     assert_eq!(table, "run,folder,sheet.damping\n0,000,1\n1,001,2\n");
     let log = fs::read_to_string(dir.join("scene-sweep/001.log")).unwrap();
     assert!(log.contains("complete: 6 steps"), "{log}");
+    let onto = run(
+        dir,
+        &["collect", "scene-sweep", "--out", "scene-sweep/runs.csv"],
+    );
+    assert_eq!(code(&onto), Some(3), "{}", stderr(&onto));
+    let again = fs::read_to_string(dir.join("scene-sweep/runs.csv")).unwrap();
+    assert_eq!(again, table);
     let other = sweep("sheet.damping=2,1", &[]);
     assert_eq!(code(&other), Some(4), "{}", stderr(&other));
     // A value more at the end of the first key.

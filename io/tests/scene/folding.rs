@@ -172,6 +172,62 @@ fn a_frame_in_space_is_a_target() {
     assert_eq!(residual.creases, 24);
 }
 
+/// A sheet that starts folded stays at rest if its angles are the targets, and goes smoothly from there to
+/// others.
+#[test]
+fn springs_begin_at_the_angles_of_the_start() {
+    let dir = tempfile::tempdir().unwrap();
+    let pattern = pattern();
+    let shape = |theta: f64| {
+        json!({
+            "frame_inherit": true, "frame_parent": 0, "frame_classes": ["foldedForm"],
+            "vertices_coords": MIURA.positions(4, 4, theta).as_chunks::<3>().0,
+        })
+    };
+    let mut fold = fold_file(&pattern, |_| 0.0);
+    fold["file_frames"] = json!([shape(0.6), shape(0.9)]);
+    fs::write(dir.path().join("sheet.fold"), fold.to_string()).unwrap();
+    let started = |target: &str| {
+        let text = format!(
+            "version = 1
+            [sheet]
+            mesh = {{ file = {{ path = \"sheet.fold\" }} }}
+            start = {{ file = {{ path = \"sheet.fold\", frame = 1 }} }}
+            density = 0.1
+            damping = 5.0
+            [folding]
+            time = 1.0
+            stiffness = 0.01
+            {target}"
+        );
+        let scene = SceneFile::parse(text, &dir.path().join("scene.toml"), &[]).unwrap();
+        let setup = scene.build().unwrap_or_else(|e| panic!("{e}"));
+        (setup.folding.clone().unwrap(), setup.start().unwrap())
+    };
+    let fastest = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let (_, mut at_rest) = started("frame = 1");
+    assert!(at_rest.energy().abs() < 1e-20, "{}", at_rest.energy());
+    for _ in 0..60 {
+        at_rest.step(1.0 / 60.0).unwrap();
+        let speed = fastest(&at_rest.state().v);
+        // Round-off of angles, 1e-15, times 0.01 N on a tenth of a gram for a second.
+        assert!(speed < 1e-10, "{speed} m/s");
+    }
+    let (targets, mut moving) = started("frame = 2");
+    let t = moving.model().topology().clone();
+    let before = targets.residual(&t, &moving.state().x).largest;
+    assert!(before > 10.0, "{before}");
+    moving.step(1.0 / 60.0).unwrap();
+    // The rest angles have changed by 1e-5 of the way, and nothing has snapped.
+    let first = fastest(&moving.state().v);
+    assert!(first < 1e-3, "{first} m/s");
+    for _ in 1..180 {
+        moving.step(1.0 / 60.0).unwrap();
+    }
+    let after = targets.residual(&t, &moving.state().x).largest;
+    assert!(after < 1e-3, "{after}");
+}
+
 /// A file with a crease pattern of quads and its folded form. Each quad is a rectangle in the flat and a
 /// rectangle in the folded frame, and the faces of the flat frame are clockwise, as some programs write them.
 fn bent_strip() -> Value {

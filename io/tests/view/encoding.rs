@@ -72,6 +72,13 @@ fn fields_are_exact_to_their_stated_precision() {
         0 => 0.0,
         _ => 10_f64.powf(-17.0 + 8.0 * scattered(31 * k + e)),
     };
+    let sizes = |row: &Vec<f64>| row.iter().map(|f| f.abs()).collect();
+    replay.fields.push(Field {
+        name: "size of the force".into(),
+        scale: Scale::Magnitude,
+        values: replay.fields[2].values.iter().map(sizes).collect(),
+        ..replay.fields[2].clone()
+    });
     let edges = replay.fields[0].values[0].len();
     replay.fields[0].values = (0..30)
         .map(|k| (0..edges).map(|e| decades(k, e)).collect())
@@ -108,27 +115,25 @@ fn fields_are_exact_to_their_stated_precision() {
         }
     }
 
-    let signed = &replay.fields[2].values;
-    let largest = signed
-        .iter()
-        .flatten()
-        .fold(0.0, |l: f64, v| l.max(v.abs()));
-    let mut kept = [0, 0, 0];
-    for (read, given) in field(&data, 2)
-        .iter()
-        .flatten()
-        .zip(signed.iter().flatten())
-    {
-        if given.abs() <= 1e-6 * largest {
-            assert_eq!(*read, 0.0);
-            kept[0] += 1;
-        } else {
-            let error = (read / given - 1.0).abs();
-            assert!(error < 2.2e-4, "{read:e} of {given:e}");
-            kept[if *given < 0.0 { 1 } else { 2 }] += 1;
+    for (index, has_negative) in [(2, true), (3, false)] {
+        let given = &replay.fields[index].values;
+        let size = |l: f64, v: &f64| l.max(v.abs());
+        let largest = given.iter().flatten().fold(0.0, size);
+        let mut kept = [0, 0, 0];
+        let read = field(&data, index);
+        for (read, given) in read.iter().flatten().zip(given.iter().flatten()) {
+            if given.abs() <= 1e-6 * largest {
+                assert_eq!(*read, 0.0);
+                kept[0] += 1;
+            } else {
+                let error = (read / given - 1.0).abs();
+                assert!(error < 2.2e-4, "{read:e} of {given:e}");
+                kept[if *given < 0.0 { 1 } else { 2 }] += 1;
+            }
         }
+        assert!(kept[0] > 100 && kept[2] > 100, "{kept:?}");
+        assert_eq!(kept[1] > 100, has_negative, "{kept:?}");
     }
-    assert!(kept.iter().all(|count| *count > 100), "{kept:?}");
 }
 
 #[test]

@@ -15,8 +15,12 @@ export function showLegend(quantity) {
     (quantity.scale === "logarithmic" ? ", logarithmic" : "");
   drawMap(quantity.map, $("legend-bar"));
   const middle = quantity.scale === "logarithmic" ? Math.sqrt(low) * Math.sqrt(high) : (low + high) / 2;
-  const [below, above] = quantity.open?.() ? ["\u2264 ", "\u2265 "] : ["", ""];
-  const ticks = [below + number(low, 3), number(middle, 3), above + number(high, 3)];
+  const { below, above } = quantity.open?.() ?? {};
+  const ticks = [
+    (below ? "\u2264 " : "") + number(low, 3),
+    number(middle, 3),
+    (above ? "\u2265 " : "") + number(high, 3),
+  ];
   $("legend-ticks").replaceChildren(
     ...(high > low ? ticks : ["", ticks[1], ""]).map((textContent) =>
       Object.assign(document.createElement("span"), { textContent }),

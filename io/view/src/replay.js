@@ -80,7 +80,8 @@ export class Replay {
 
 // A quantity has a value for each vertex, edge or face (`place`), a range, a scale and a map of colours. Its
 // place in the map is in [0, 1]; edges that `leavesOut` names by their place show nothing. Ranges are those
-// of the whole run, so that colours mean the same in every frame; there are values beyond an `open` one.
+// of the whole run, so that colours mean the same in every frame; `open` says beyond which ends there are
+// values.
 
 /** Edges whose fold angle is less than this share of the range of colours are shown as flat. */
 const FLAT = 0.01;
@@ -95,7 +96,7 @@ function foldQuantity(replay) {
     place: "edge",
     map: DIVERGING,
     scale: "linear",
-    open: () => found.open,
+    open: () => ({ below: found.open, above: found.open }),
     leavesOut: (place) => !(Math.abs(place - 0.5) > FLAT),
     range: () => (found ??= foldRange(replay)).range,
     value: (edge) => replay.folds[edge] * DEGREES,
@@ -153,7 +154,7 @@ function heightQuantity(replay) {
 }
 
 function fieldQuantity(replay, field, k) {
-  if (field.scale === "signed") return signedQuantity(replay, field, k);
+  if (field.scale === "signed" || field.scale === "magnitude") return forceQuantity(replay, field, k);
   const { low, step, values } = field;
   const width = values.length / replay.frames;
   const logarithmic = field.scale === "logarithmic";
@@ -174,33 +175,35 @@ function fieldQuantity(replay, field, k) {
 }
 
 /** The share of the values that are not zero that is inside the range of colours. */
-const SIGNED_IN_RANGE = 0.98;
+const FORCES_IN_RANGE = 0.98;
 /** Integers from here on stand for negative values. */
 const NEGATIVE = 32768;
 
-/** A field with values of either sign, such as forces. */
-function signedQuantity(replay, field, k) {
+/** A field whose values differ by orders of magnitude, such as forces: of either sign, or magnitudes. */
+function forceQuantity(replay, field, k) {
   const { low, step, values } = field;
   const width = values.length / replay.frames;
   const size = (q) => (q === 0 ? 0 : 10 ** (low + step * (q - 1)));
   const decode = (q) => (q < NEGATIVE ? size(q) : -size(q - NEGATIVE));
+  const hasSigns = field.scale === "signed";
   let found = null;
+  const end = () => (found ??= usualSize(values, size));
   return {
     key: `field-${k}`,
     label: field.name,
     unit: field.unit,
     place: field.place,
-    map: DIVERGING,
+    map: hasSigns ? DIVERGING : SEQUENTIAL,
     scale: "linear",
-    open: () => (found ??= signedRange(values, size)).open,
-    range: () => (found ??= signedRange(values, size)).range,
+    open: () => ({ below: hasSigns && end().open, above: end().open }),
+    range: () => [hasSigns ? -end().size : 0, end().size],
     leavesOut: Number.isNaN,
     value: (index) => decode(values[replay.frame * width + index]),
   };
 }
 
-/** A range to both sides of zero that has most of the values in all frames, and whether there are others. */
-function signedRange(values, size) {
+/** The size that most of the values in all frames do not exceed, and whether others do. */
+function usualSize(values, size) {
   const histogram = new Uint32Array(NEGATIVE);
   let largest = 0;
   for (const q of values) {
@@ -210,8 +213,8 @@ function signedRange(values, size) {
   }
   const count = values.length - histogram[0];
   let last = 0;
-  for (let within = 0; within < SIGNED_IN_RANGE * count;) within += histogram[++last];
-  return { range: [-size(last), size(last)], open: largest > last };
+  for (let within = 0; within < FORCES_IN_RANGE * count;) within += histogram[++last];
+  return { size: size(last), open: largest > last };
 }
 
 /** The function from values to places in [0, 1]; zeros of a logarithmic scale are at its low end. */

@@ -3,7 +3,7 @@
 use crate::Done;
 use crate::exit::{Code, Failure};
 use crate::info::{describe_scene, is_scene, refuse_folder};
-use crate::write::to_stdout;
+use crate::write::{is_same_file, to_stdout};
 use clap::Args;
 use isosheet_io::mesh::Sheet;
 use isosheet_io::scene::SceneFile;
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Check {
     /// A scene (.toml) or a mesh (OBJ, OFF, STL, PLY, FOLD, glTF)
     file: PathBuf,
-    /// Write the repaired mesh to this file, in the format of its extension
+    /// Write the repaired mesh to this other file, in the format of its extension
     #[arg(long, value_name = "FILE2")]
     fix: Option<PathBuf>,
 }
@@ -64,6 +64,10 @@ impl Check {
 
     fn fix_mesh(&self, fixed: &Path) -> Done {
         let name = self.file.display();
+        if is_same_file(&self.file, fixed) {
+            let message = format!("{} is the file that is read", fixed.display());
+            return Err(Failure::new(Code::Input, message).remedy("choose another name"));
+        }
         let given = read(&self.file, Polygons::Triangulate)?;
         let mut mesh = given.clone();
         let repair = mesh

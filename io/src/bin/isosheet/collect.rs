@@ -3,7 +3,7 @@
 use crate::Done;
 use crate::exit::{Code, Failure};
 use crate::message::{counted, print_message};
-use crate::write::bytes_to_stdout;
+use crate::write::{bytes_to_stdout, is_same_file};
 use clap::Args;
 use isosheet_io::run::Collection;
 use std::path::PathBuf;
@@ -26,6 +26,7 @@ pub(crate) struct Collect {
 
 impl Collect {
     pub(crate) fn run(&self) -> Done {
+        self.check_out()?;
         let collection = Collection::of(&self.folders)?;
         for folder in collection.incomplete() {
             print_message(format_args!("not complete: {}", folder.display()));
@@ -48,6 +49,22 @@ impl Collect {
                 Ok(())
             }
             None => bytes_to_stdout(&collection.to_csv()),
+        }
+    }
+    /// Refuses to replace what is read, or the history of a run. Other files are replaced.
+    fn check_out(&self) -> Result<(), Failure> {
+        let Some(out) = &self.out else { return Ok(()) };
+        let own = ["runs.csv", "summary.json", "history.csv"];
+        let mut files = self
+            .folders
+            .iter()
+            .flat_map(|f| own.map(|name| f.join(name)));
+        match files.find(|file| is_same_file(file, out)) {
+            None => Ok(()),
+            Some(file) => {
+                let message = format!("{} belongs to the sweep or the run", file.display());
+                Err(Failure::new(Code::Input, message).remedy("choose another name"))
+            }
         }
     }
 }

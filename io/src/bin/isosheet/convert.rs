@@ -2,14 +2,15 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::info::is_scene;
 use crate::message::counted;
 use crate::pictures::{self, FrameChoice, PictureFormat};
-use crate::write::to_stdout;
+use crate::write::{is_same_file, to_stdout};
 use clap::Args;
 use isosheet_io::run::Recording;
 use isosheet_io::{
-    Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshOptions, Series,
-    SeriesOptions, Trajectory, read_mesh_with, write_mesh, write_series,
+    Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFormat, MeshOptions,
+    Series, SeriesOptions, Trajectory, read_mesh_with, write_mesh, write_series,
 };
 use std::path::{Path, PathBuf};
 
@@ -26,13 +27,13 @@ Files that are written of a run:
   .glb    morph targets, at most 120 frames, evenly chosen (all glTF viewers)
   .usda   time samples (Blender: the best choice)
   .pc2    point cache, with the mesh as .obj beside it (Blender: Mesh Cache modifier)
-  .pvd    VTK, one .vtp for each frame in a folder, with strain and fold angle (ParaView)
+  .pvd    VTK, one .vtp for each frame in a folder, with strain, fold angle, forces and gaps (ParaView)
   .obj    one file for each frame in a folder of that name
-  .csv    a line for each vertex of each frame
+  .csv    a line for each vertex of each frame, with force of contact and gap
   .png    a shaded picture of one frame (--frame K, the last one without it)
   .svg    the same as a vector drawing
   .apng   shaded pictures of all frames as an animation in real time (browsers)
-docs/formats.md says more.";
+A file that exists is replaced, unless it is the one that is read. docs/formats.md says more.";
 
 /// Convert a mesh file to another format, or a run to files of other programs
 #[derive(Debug, Args)]
@@ -40,7 +41,7 @@ docs/formats.md says more.";
 pub(crate) struct Convert {
     /// A mesh file, the folder of a run, or a trajectory (.npz)
     input: PathBuf,
-    /// The file to write; its extension says the format
+    /// The file to write, or to replace; its extension says the format
     output: PathBuf,
     /// Of a run, write frame K alone, as a mesh; of a FOLD file, read frame K (from 0)
     #[arg(long, value_name = "K")]
@@ -56,6 +57,7 @@ pub(crate) struct Convert {
 
 impl Convert {
     pub(crate) fn run(&self) -> Done {
+        self.check_output()?;
         if self.input.is_dir() {
             let recording = Recording::read(&self.input).map_err(Failure::from)?;
             if let Some(format) = PictureFormat::of(&self.output) {
@@ -83,6 +85,7 @@ impl Convert {
             let trajectory = Trajectory::read(&self.input).map_err(|e| input(&e))?;
             return self.write_run(&self.series(&trajectory)?);
         }
+        self.check_input()?;
         if self.every.is_some() {
             let message = "--every chooses frames of a run, and a mesh file has none";
             return Err(wrong(message, "leave it out"));
@@ -94,6 +97,56 @@ impl Convert {
         };
         let mesh = read_mesh_with(&self.input, &options).map_err(|e| input(&e))?;
         self.write_mesh(&mesh)
+    }
+
+    /// Refuses an output that would replace what is read: the file itself, or a file of the run. Other files
+    /// are replaced.
+    fn check_output(&self) -> Result<(), Failure> {
+        let (input, output) = (&self.input, &self.output);
+        let is_run = input.is_dir();
+        let message = if is_same_file(input, output) {
+            let what = if is_run { "folder" } else { "file" };
+            format!("{} is the {what} that is read", output.display())
+        } else if is_run && is_same_file(&input.join("history.csv"), output) {
+            format!("{} is the history of the run", output.display())
+        } else if is_run
+            && self.is_folder_written()
+            && is_same_file(input, &output.with_extension(""))
+        {
+            let message = "the files of single frames would be written into the folder of the run";
+            message.to_owned()
+        } else {
+            return Ok(());
+        };
+        Err(wrong(&message, "choose another name"))
+    }
+
+    /// Whether the files of single frames go to a folder with the name of the output.
+    fn is_folder_written(&self) -> bool {
+        let extension = self.output.extension().unwrap_or_default();
+        let has_folder = ["obj", "pvd"]
+            .iter()
+            .any(|e| extension.eq_ignore_ascii_case(e));
+        has_folder && self.frame.is_none()
+    }
+
+    /// Refuses files of a run and scenes, of which a user means the run.
+    fn check_input(&self) -> Result<(), Failure> {
+        let name = self.input.display();
+        let folder = self.input.parent().unwrap_or(Path::new(""));
+        let is_mesh = MeshFormat::of(&self.input).is_some();
+        if !is_mesh && self.input.is_file() && folder.join("run.lock").is_file() {
+            let message = format!("{name} is a file of a run, and no mesh");
+            let remedy = format!("name its folder, {}", folder.display());
+            return Err(Failure::new(Code::Input, message).remedy(remedy));
+        }
+        if is_scene(&self.input) && self.input.is_file() {
+            let message = format!("{name} is a scene, and no mesh");
+            let remedy =
+                format!("run it, `isosheet simulate {name}`, and convert the folder of the run");
+            return Err(Failure::new(Code::Input, message).remedy(remedy));
+        }
+        Ok(())
     }
 
     fn series<'a>(&self, trajectory: &'a Trajectory) -> Result<Series<'a>, Failure> {

@@ -29,3 +29,18 @@ pub(crate) fn reference(dir: &Path) -> Done {
         .map_err(|e| Failure::of(Code::Output, &e))?;
     write_json(&dir.join("scene.schema.json"), &schema()).map_err(|e| Failure::of(Code::Output, &e))
 }
+
+/// Whether two paths lead to one file or folder, by whatever names and links.
+pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let id = |path: &Path| std::fs::metadata(path).map(|m| (m.dev(), m.ino())).ok();
+        id(a).is_some() && id(a) == id(b)
+    }
+    #[cfg(not(unix))]
+    {
+        let place = |path: &Path| path.canonicalize().ok();
+        place(a).is_some() && place(a) == place(b)
+    }
+}

@@ -139,9 +139,9 @@ impl Advice for ExportError {
             Self::Topology(error) => error.advice(),
             Self::RestLength { .. } => Some("give a positive length"),
             Self::FieldNotFinite { .. } => Some("give finite values"),
-            Self::FieldName { .. } => {
-                Some("rename one (strain, fold_angle, rod_force and TimeValue are taken)")
-            }
+            Self::FieldName { .. } => Some(
+                "rename one (strain, fold_angle, rod_force, contact_force, gap and TimeValue are taken)",
+            ),
             Self::NotFinite { .. } => Some("go back to the last state that was finite"),
             Self::SinglePrecision { .. } => Some("scale the mesh, or use a format with 64 bits"),
             Self::IndexOutOfRange { .. } => Some("correct the mesh"),

@@ -37,6 +37,8 @@ impl SeriesOptions {
 pub enum FieldSupport {
     /// Vertices.
     Vertices,
+    /// Vertices, with a vector of three values for each.
+    VertexVectors,
     /// Edges, in the order of [`Series::topology`].
     Edges,
     /// Faces.
@@ -50,14 +52,17 @@ pub struct SeriesField {
     pub name: String,
     /// What the values belong to.
     pub support: FieldSupport,
-    /// One value for each vertex, edge or face of each frame of the trajectory, frame after frame, also of
-    /// those that are not written.
+    /// One value (of vectors three) for each vertex, edge or face of each frame of the trajectory, frame
+    /// after frame, also of those that are not written.
     pub values: Vec<f64>,
 }
 
-/// Frames of a moving sheet that are to be written, with what is known of its edges: strains, fold angles
-/// and, where the trajectory has them, the forces of the rods as the field `rod_force` (newtons, tension
-/// positive).
+/// Frames of a moving sheet that are to be written, with what is known of its edges, strains and fold angles,
+/// and where the trajectory has them the fields
+///
+/// - `rod_force`, the forces of the rods (newtons, tension positive),
+/// - `contact_force`, the forces of contact on the vertices (vectors, newtons), and
+/// - `gap`, the gaps of the vertices (metres, see [`Trajectory::gaps`]).
 ///
 /// Of frames at the same time only the first is written: most formats cannot hold two.
 #[derive(Clone, Debug)]
@@ -98,7 +103,8 @@ impl<'a> Series<'a> {
         let times = trajectory.times();
         let mut frames: Vec<usize> = (0..times.len()).step_by(options.every).collect();
         frames.dedup_by(|later, first| times[*later] == times[*first]);
-        let fields = rod_forces(trajectory, &topology).into_iter().collect();
+        let rod_forces = rod_forces(trajectory, &topology).into_iter();
+        let fields = rod_forces.chain(contact_fields(trajectory)).collect();
         Ok(Self {
             trajectory,
             topology,
@@ -269,6 +275,7 @@ impl<'a> Series<'a> {
     fn support_size(&self, support: FieldSupport) -> usize {
         match support {
             FieldSupport::Vertices => self.topology.vertex_count(),
+            FieldSupport::VertexVectors => 3 * self.topology.vertex_count(),
             FieldSupport::Edges => self.topology.edge_count(),
             FieldSupport::Faces => self.topology.face_count(),
         }
@@ -299,4 +306,26 @@ fn rod_forces(trajectory: &Trajectory, topology: &Topology) -> Option<SeriesFiel
         support: FieldSupport::Edges,
         values,
     })
+}
+
+/// What the trajectory has of contact as fields.
+fn contact_fields(trajectory: &Trajectory) -> Vec<SeriesField> {
+    let all = |of: fn(&Trajectory, usize) -> Option<&[f64]>| -> Option<Vec<f64>> {
+        let frames = (0..trajectory.len()).map(|k| of(trajectory, k));
+        frames.collect::<Option<Vec<_>>>().map(|f| f.concat())
+    };
+    let forces = (
+        "contact_force",
+        FieldSupport::VertexVectors,
+        all(Trajectory::contact_forces),
+    );
+    let gaps = ("gap", FieldSupport::Vertices, all(Trajectory::gaps));
+    let field = |(name, support, values): (&str, FieldSupport, Option<Vec<f64>>)| {
+        Some(SeriesField {
+            name: name.to_owned(),
+            support,
+            values: values?,
+        })
+    };
+    [forces, gaps].into_iter().filter_map(field).collect()
 }

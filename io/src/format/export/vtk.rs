@@ -34,6 +34,9 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
     Ok(files)
 }
 
+/// The attribute of arrays of vectors.
+const VECTORS: &str = "NumberOfComponents=\"3\"";
+
 /// The cells of a frame: one line for each edge, then one triangle for each face. Fields of vertices are
 /// point data; all others are cell data. A triangle has the value of that of its edges whose value is
 /// largest in size, a line the mean of the values of its faces.
@@ -51,8 +54,10 @@ fn frame_file(series: &Series<'_>, frame: usize) -> Vec<u8> {
          NumberOfStrips=\"0\" NumberOfPolys=\"{faces}\">\n<PointData>"
     ));
     for (field, values) in series.fields(frame) {
-        if field.support == FieldSupport::Vertices {
-            file.floats(&field.name, "", values);
+        match field.support {
+            FieldSupport::Vertices => file.floats(&field.name, "", values),
+            FieldSupport::VertexVectors => file.floats(&field.name, VECTORS, values),
+            FieldSupport::Edges | FieldSupport::Faces => {}
         }
     }
     file.line("</PointData>\n<CellData>");
@@ -65,13 +70,13 @@ fn frame_file(series: &Series<'_>, frame: usize) -> Vec<u8> {
     file.floats("fold_angle", "", &of_edges(series, &degrees));
     for (field, values) in series.fields(frame) {
         match field.support {
-            FieldSupport::Vertices => {}
+            FieldSupport::Vertices | FieldSupport::VertexVectors => {}
             FieldSupport::Edges => file.floats(&field.name, "", &of_edges(series, values)),
             FieldSupport::Faces => file.floats(&field.name, "", &of_faces(series, values)),
         }
     }
     file.line("</CellData>\n<Points>");
-    file.floats("Points", "NumberOfComponents=\"3\"", x);
+    file.floats("Points", VECTORS, x);
     file.line("</Points>\n<Lines>");
     let edges: Vec<u32> = t.edges().iter().flatten().map(|v| v.0).collect();
     file.cells(&edges, 2);

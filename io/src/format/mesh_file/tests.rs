@@ -166,8 +166,15 @@ fn every_format_has_the_same_square() {
 #[test]
 fn formats_are_known_by_their_extension() {
     assert_eq!(MeshFormat::of(Path::new("a/b.STL")), Some(MeshFormat::Stl));
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::create_dir(dir.path().join("folder.obj")).unwrap();
     for name in ["a.step", "a", "folder.obj/a"] {
-        let error = read_mesh(Path::new(name)).unwrap_err();
+        let path = dir.path().join(name);
+        // Of a file that does not exist the extension is not the problem.
+        let missing = read_mesh(&path).unwrap_err().problem;
+        assert!(matches!(missing, MeshFileProblem::Read(_)), "{missing}");
+        std::fs::write(&path, "").unwrap();
+        let error = read_mesh(&path).unwrap_err();
         let text = error.to_string();
         assert!(matches!(error.problem, MeshFileProblem::Extension { .. }));
         assert!(

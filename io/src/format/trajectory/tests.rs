@@ -15,7 +15,14 @@ fn sample() -> (Sheet, Trajectory) {
         let forces: Vec<f64> = (0..sheet.lengths().len())
             .map(|e| (e as f64 - 9.5) * 10.0_f64.powi(k))
             .collect();
-        run.push_with_forces(0.1 * k as f64, &x, &forces).unwrap();
+        let contact_forces: Vec<f64> = x.iter().map(|c| c * c - 0.2).collect();
+        let gaps: Vec<f64> = (0..x.len() / 3).map(|v| 1e-3 / (v + 1) as f64).collect();
+        let data = FrameData {
+            rod_forces: &forces,
+            contact_forces: &contact_forces,
+            gaps: &gaps,
+        };
+        run.push_with(0.1 * k as f64, &x, &data).unwrap();
     }
     (sheet, run)
 }
@@ -39,6 +46,10 @@ fn comes_back_bit_for_bit() {
     let last = back.rod_forces(4).unwrap();
     assert_eq!((last.len(), last[3]), (sheet.lengths().len(), -6.5e4));
     assert_eq!(back.rod_forces(5), None);
+    let (x, forces) = (back.frame(3).unwrap(), back.contact_forces(3).unwrap());
+    assert_eq!((forces.len(), forces[4]), (63, x[4] * x[4] - 0.2));
+    assert_eq!(back.gaps(1).unwrap()[1..3], [1e-3 / 2.0, 1e-3 / 3.0]);
+    assert_eq!((back.contact_forces(5), back.gaps(5)), (None, None));
     // Without forces, and without frames: still a file.
     let mut run = Trajectory::new(&sheet);
     run.push(0.0, sheet.positions()).unwrap();
@@ -61,7 +72,7 @@ fn equal_trajectories_are_equal_files() {
     let entries: Vec<usize> = (0..bytes.len() - 46)
         .filter(|k| bytes[*k..].starts_with(b"PK\x01\x02"))
         .collect();
-    assert_eq!(entries.len(), 6);
+    assert_eq!(entries.len(), 8);
     for k in entries {
         assert_eq!(bytes[k + 12..k + 16], [0, 0, 0x21, 0]);
     }
@@ -81,8 +92,24 @@ fn arrays_have_the_documented_names_types_and_shapes() {
     names.sort();
     assert_eq!(
         names,
-        ["edges", "faces", "rest_lengths", "rod_forces", "t", "x"]
+        [
+            "contact_forces",
+            "edges",
+            "faces",
+            "gaps",
+            "rest_lengths",
+            "rod_forces",
+            "t",
+            "x"
+        ]
     );
+    for (name, shape) in [("contact_forces", &[5, 21, 3][..]), ("gaps", &[5, 21])] {
+        let array = npz.by_name(name).unwrap().unwrap();
+        assert_eq!(
+            (array.shape(), array.dtype().descr()),
+            (shape, "'<f8'".to_owned())
+        );
+    }
     let forces = npz.by_name("rod_forces").unwrap().unwrap();
     assert_eq!(forces.shape(), [5, sheet.lengths().len() as u64]);
     assert_eq!(forces.dtype().descr(), "'<f8'");
@@ -140,37 +167,110 @@ fn bad_frames_are_refused() {
     );
     x[4] = 0.0;
     let edges = sheet.lengths().len();
-    for (mut run, got, expected) in [
-        (run.clone(), 0, edges),
-        (run.clone(), 3, edges),
-        (Trajectory::new(&sheet), 3, edges),
+    let (rods, forces, gaps) = (vec![0.0; edges], vec![0.0; 63], vec![0.0; 21]);
+    let whole = FrameData {
+        rod_forces: &rods,
+        contact_forces: &forces,
+        gaps: &gaps,
+    };
+    let mut without = Trajectory::new(&sheet);
+    without.push(0.0, &x).unwrap();
+    let new = Trajectory::new(&sheet);
+    let (none, few) = (&[][..], &rods[..3]);
+    for (run, data, array, got, expected) in [
+        (
+            &run,
+            FrameData {
+                rod_forces: none,
+                ..whole
+            },
+            "rod_forces",
+            0,
+            edges,
+        ),
+        (
+            &run,
+            FrameData {
+                rod_forces: few,
+                ..whole
+            },
+            "rod_forces",
+            3,
+            edges,
+        ),
+        (
+            &run,
+            FrameData {
+                contact_forces: none,
+                ..whole
+            },
+            "contact_forces",
+            0,
+            63,
+        ),
+        (&run, FrameData { gaps: few, ..whole }, "gaps", 3, 21),
+        (
+            &new,
+            FrameData {
+                rod_forces: few,
+                ..whole
+            },
+            "rod_forces",
+            3,
+            edges,
+        ),
+        (
+            &new,
+            FrameData {
+                contact_forces: few,
+                ..whole
+            },
+            "contact_forces",
+            3,
+            63,
+        ),
+        (
+            &without,
+            FrameData {
+                rod_forces: none,
+                contact_forces: none,
+                gaps: &gaps,
+            },
+            "gaps",
+            21,
+            0,
+        ),
     ] {
-        let frame = run.len();
-        match run.push_with_forces(1.0, &x, &vec![0.0; got]) {
-            Err(TrajectoryError::ForceCount {
+        let (mut run, frame) = (run.clone(), run.len());
+        match run.push_with(1.0, &x, &data) {
+            Err(TrajectoryError::DataCount {
                 frame: f,
+                array: a,
                 got: g,
                 expected: e,
-            }) => assert_eq!((f, g, e), (frame, got, expected)),
+            }) => assert_eq!((f, a, g, e), (frame, array, got, expected)),
             other => panic!("{other:?}"),
         }
         assert_eq!(run.len(), frame, "nothing was added");
     }
-    let mut forces = vec![0.0; edges];
+    let mut forces = forces.clone();
     forces[7] = f64::NEG_INFINITY;
+    let contact_forces = &forces[..];
     assert!(matches!(
-        run.push_with_forces(1.0, &x, &forces),
-        Err(TrajectoryError::ForceNotFinite {
+        run.push_with(
+            1.0,
+            &x,
+            &FrameData {
+                contact_forces,
+                ..whole
+            }
+        ),
+        Err(TrajectoryError::DataNotFinite {
             frame: 5,
-            edge: EdgeId(7),
+            array: "contact_forces",
+            index: 7,
             ..
         })
-    ));
-    let mut without = Trajectory::new(&sheet);
-    without.push(0.0, &x).unwrap();
-    assert!(matches!(
-        without.push_with_forces(1.0, &x, &vec![0.0; edges]),
-        Err(TrajectoryError::ForceCount { expected: 0, .. })
     ));
     assert_eq!((run.len(), without.len()), (5, 1), "nothing was added");
 }
@@ -208,7 +308,9 @@ fn other_files_are_refused() {
     broken(&|r| r.rest_lengths[0] = f64::NAN, "rest_lengths");
     broken(&|r| r.rest_lengths.truncate(3), "rest_lengths");
     broken(&|r| r.t[0] = f64::INFINITY, "t");
-    broken(&|r| r.rod_forces[1] = f64::NAN, "rod_forces");
+    broken(&|r| r.data[0][1] = f64::NAN, "rod_forces");
+    broken(&|r| r.data[1][1] = f64::NAN, "contact_forces");
+    broken(&|r| r.data[2][1] = f64::INFINITY, "gaps");
 
     // A missing array.
     let file = File::create(&path).unwrap();

@@ -47,12 +47,7 @@ pub(super) struct Frame {
     #[serde(rename = "edges_foldAngle", alias = "edges_foldAngles")]
     pub(super) fold_angles: Option<Vec<Option<f64>>>,
     pub(super) faces_vertices: Option<Vec<Vec<i64>>>,
-}
-
-/// The frames besides the key frame, whose keys are those of the file itself.
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-struct File {
+    /// The other frames; in the key frame alone, whose keys are those of the file itself.
     file_frames: Option<Vec<Frame>>,
 }
 
@@ -61,9 +56,9 @@ pub(super) fn read(bytes: &[u8], wanted: Option<&FoldFrame>) -> Result<Frame, Me
     if bytes.trim_ascii().is_empty() {
         return Err(MeshFileProblem::Empty);
     }
-    let key: Frame = serde_json::from_slice(bytes).map_err(MeshFileProblem::Json)?;
-    let file: File = serde_json::from_slice(bytes).map_err(MeshFileProblem::Json)?;
-    let frames = [vec![key], file.file_frames.unwrap_or_default()].concat();
+    let mut key: Frame = serde_json::from_slice(bytes).map_err(MeshFileProblem::Json)?;
+    let others = key.file_frames.take().unwrap_or_default();
+    let frames: Vec<Frame> = std::iter::once(key).chain(others).collect();
     if let Some(wanted) = wanted {
         return Ok(inherited(&frames, number_of(&frames, wanted)?)?);
     }
@@ -176,6 +171,7 @@ fn inherited(frames: &[Frame], number: usize) -> Result<Frame, FoldProblem> {
                 .or_else(|| from.edges_assignment.clone()),
             fold_angles: frame.fold_angles.or_else(|| from.fold_angles.clone()),
             faces_vertices: frame.faces_vertices.or_else(|| from.faces_vertices.clone()),
+            file_frames: None,
         }
     };
     Ok(chain.iter().fold(Frame::default(), merge))
