@@ -13,7 +13,7 @@ impl Lagrangian {
     /// that is factorised; steps along which bodies move are left as they are.
     ///
     /// The linear system knows gaps to first order. A face that rolls on a ball of radius `R` while it tilts
-    /// by an angle `a` comes closer by `R a^2 / 2`, many activation distances at a few degrees: such a step
+    /// by an angle `a` comes closer by `R a^2 / 2`, several activation distances at five degrees: such a step
     /// is cut again and again, and the gap halves each time. With `q < 0` the part of a gap's change that is
     /// left out, the corrected step solves the same system with the barrier force of the gap at the end of
     /// the step,
