@@ -7,6 +7,9 @@ use super::{
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+#[cfg(test)]
+mod tests;
+
 /// A pair of primitives whose gap is below the activation distance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ActiveContact {
