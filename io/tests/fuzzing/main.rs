@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
-use targets::{TARGETS, checkpoints, checkpoints_json, target};
+use targets::{TARGETS, checkpoints, checkpoints_json, histories, target, trajectories, with_file};
 
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
@@ -42,6 +42,8 @@ fn seeds(name: &str) -> Vec<Vec<u8>> {
     match name {
         "checkpoint" => checkpoints().to_vec(),
         "checkpoint_json" => checkpoints_json().to_vec(),
+        "trajectory" => trajectories().to_vec(),
+        "history" => histories().to_vec(),
         _ => {
             let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
                 .join("fuzz/seeds")
@@ -153,7 +155,7 @@ fn damaged_files_give_a_value_or_a_typed_error() {
 fn every_seed_is_accepted() {
     use isosheet_io::dynamics::Checkpoint;
     use isosheet_io::scene::SceneFile;
-    use isosheet_io::{MeshFormat, MeshOptions, parse_mesh};
+    use isosheet_io::{MeshFormat, MeshOptions, Trajectory, parse_mesh, read_history};
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     for (name, _) in TARGETS {
         let seeds = seeds(name);
@@ -164,6 +166,14 @@ fn every_seed_is_accepted() {
             let refusal = match name {
                 "checkpoint" => Checkpoint::from_bytes(seed).err().map(|e| e.to_string()),
                 "checkpoint_json" => Checkpoint::from_json(text()).err().map(|e| e.to_string()),
+                "trajectory" => {
+                    let read = with_file("npz", seed, Trajectory::read);
+                    read.err().map(|e| e.to_string())
+                }
+                "history" => {
+                    let read = with_file("csv", seed, read_history);
+                    read.err().map(|e| e.to_string())
+                }
                 "scene" => {
                     let built = SceneFile::parse(text().to_owned(), path, &[])
                         .map_err(|e| e.to_string())

@@ -8,7 +8,8 @@ use isosheet_io::dynamics::{Checkpoint, Method, SheetModel, Simulation, State};
 use isosheet_io::mesh::{MassKind, VertexId, generate};
 use isosheet_io::scene::{Mesh, Outline, OutlineShape, Scene, SceneFile};
 use isosheet_io::{
-    FoldFrame, MeshFile, MeshFormat, MeshOptions, Polygons, SeparateBuffers, parse_mesh,
+    FoldFrame, FrameData, HistoryRow, HistoryWriter, MeshFile, MeshFormat, MeshOptions, Polygons,
+    SeparateBuffers, Trajectory, parse_mesh, read_history,
 };
 use std::path::Path;
 
@@ -16,7 +17,7 @@ use std::path::Path;
 pub(crate) type Target = fn(&[u8]);
 
 /// All targets with their names.
-pub(crate) const TARGETS: [(&str, Target); 10] = [
+pub(crate) const TARGETS: [(&str, Target); 12] = [
     ("obj", obj),
     ("off", off),
     ("stl", stl),
@@ -27,6 +28,8 @@ pub(crate) const TARGETS: [(&str, Target); 10] = [
     ("scene", scene),
     ("checkpoint", checkpoint),
     ("checkpoint_json", checkpoint_json),
+    ("trajectory", trajectory),
+    ("history", history),
 ];
 
 /// The target of a name.
@@ -237,6 +240,91 @@ fn model() -> SheetModel {
         .with_gravity()
         .with_pins(&[VertexId(6)])
         .expect("the corner exists")
+}
+
+fn trajectory(data: &[u8]) {
+    let Ok(run) = with_file("npz", data, Trajectory::read) else {
+        return;
+    };
+    let vertices = run.vertex_count();
+    assert!(
+        run.faces()
+            .iter()
+            .flatten()
+            .all(|&v| (v as usize) < vertices)
+    );
+    assert!(
+        run.edges()
+            .iter()
+            .flatten()
+            .all(|&v| (v as usize) < vertices)
+    );
+    assert_eq!(run.edges().len(), run.rest_lengths().len());
+    for k in 0..run.len() {
+        let x = run.frame(k).expect("it counts the frames");
+        assert_eq!(x.len(), 3 * vertices);
+        let kept = [run.rod_forces(k), run.contact_forces(k), run.gaps(k)];
+        let counts = [run.edges().len(), 3 * vertices, vertices];
+        for (kept, count) in kept.into_iter().zip(counts) {
+            let Some(kept) = kept else { continue };
+            assert_eq!(kept.len(), count);
+            assert!(kept.iter().all(|v| v.is_finite()));
+        }
+        assert!(x.iter().all(|v| v.is_finite()));
+    }
+}
+
+fn history(data: &[u8]) {
+    // Rows are read as they are: a run may have recorded that a number was not finite.
+    let _ = with_file("csv", data, read_history);
+}
+
+/// What `read` makes of a file of these bytes.
+pub(crate) fn with_file<T>(extension: &str, data: &[u8], read: impl Fn(&Path) -> T) -> T {
+    let name = format!("isosheet-fuzz-{}.{extension}", std::process::id());
+    let path = std::env::temp_dir().join(name);
+    std::fs::write(&path, data).expect("the temporary folder can be written");
+    let value = read(&path);
+    // A file that stays is written anew by the next case.
+    let _ = std::fs::remove_file(&path);
+    value
+}
+
+/// A trajectory to begin with: three frames, with forces of the rods and of contact.
+pub(crate) fn trajectories() -> [Vec<u8>; 1] {
+    let sheet = generate::isotropic_square(0, 0.21).expect("valid");
+    let mut run = Trajectory::new(&sheet);
+    let (rods, n) = (sheet.lengths().len(), sheet.positions().len());
+    for k in 0..3 {
+        let data = FrameData {
+            rod_forces: &vec![f64::from(k); rods],
+            contact_forces: &vec![0.5; n],
+            gaps: &vec![1e-3; n / 3],
+        };
+        run.push_with(0.1 * f64::from(k), sheet.positions(), &data)
+            .expect("it fits");
+    }
+    [with_file("npz", &[], |path| {
+        run.write(path)
+            .expect("the temporary folder can be written");
+        std::fs::read(path).expect("it was just written")
+    })]
+}
+
+/// A history to begin with.
+pub(crate) fn histories() -> [Vec<u8>; 1] {
+    [with_file("csv", &[], |path| {
+        let mut writer = HistoryWriter::create(path).expect("the temporary folder can be written");
+        for k in 0..4 {
+            let row = HistoryRow {
+                t: 0.1 * f64::from(k),
+                gap: (k > 1).then_some(1e-3),
+                ..HistoryRow::default()
+            };
+            writer.append(&row).expect("there is room");
+        }
+        std::fs::read(path).expect("it was just written")
+    })]
 }
 
 /// Checkpoints to begin with, in the binary form: after two steps of BDF2 and of implicit Euler.
