@@ -227,17 +227,17 @@ impl Iterate {
         })
     }
 
-    /// Lags friction of the step from `x0` anew at the iterate. Returns the largest change of a normal force
-    /// relative to the largest normal force: zero without friction. A change up to `settled` is not taken
-    /// over: friction remains that for which the iterate was found, and the forces of the step balance.
+    /// Lags friction of the step from `x0` anew at the iterate where a normal force has changed by more than
+    /// `settled`, relative to the largest; whether it has. Otherwise friction remains that for which the
+    /// iterate was found, and the forces of the step balance.
     pub(crate) fn renew_friction(
         &mut self,
         contact: Option<&StepContact<'_>>,
         x0: &[f64],
         settled: f64,
-    ) -> f64 {
+    ) -> bool {
         let (Some(contact), Some(own)) = (contact, &mut self.contact) else {
-            return 0.0;
+            return false;
         };
         if !own.is_current {
             own.update(contact, &self.x);
@@ -246,11 +246,11 @@ impl Iterate {
         std::mem::swap(friction, &mut own.friction_before);
         let laws = contact.geometry.laws();
         friction.lag(laws, &contact.barrier, &own.state.active, x0);
-        let change = friction.change_since(&own.friction_before);
-        if change <= settled {
+        let has_changed = friction.change_since(&own.friction_before) > settled;
+        if !has_changed {
             std::mem::swap(friction, &mut own.friction_before);
         }
-        change
+        has_changed
     }
 
     /// What contact did over the step if it ends at the iterate; zero without contact.

@@ -142,6 +142,7 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
         } else {
             options.tolerance
         };
+        let settled = options.friction_tolerance.max(FRICTION_SETTLED);
         let (mut driven, mut friction_updates) = (0, 0);
         let mut merit = self.minimiser.lagrangian.merit(self.problem);
         for _ in 0..options.max_iterations {
@@ -179,8 +180,8 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
                 // fold either way.
                 self.outcome = StepOutcome::BranchSeeded;
                 lagrangian.perturb(self.problem, options.seed);
-            } else if friction_updates < MAX_FRICTION_UPDATES
-                && lagrangian.renew_friction(self.problem, FRICTION_SETTLED) > FRICTION_SETTLED
+            } else if friction_updates < MAX_FRICTION_UPDATES.min(options.max_friction_updates)
+                && lagrangian.renew_friction(self.problem, settled)
             {
                 friction_updates += 1;
             } else {

@@ -499,8 +499,8 @@ impl Lagrangian {
     }
 
     /// Lags friction anew at the iterate where its normal forces have changed by more than `settled`,
-    /// relative to the largest; the change, zero without friction.
-    pub(super) fn renew_friction(&mut self, problem: &StepProblem<'_>, settled: f64) -> f64 {
+    /// relative to the largest; whether they have.
+    pub(super) fn renew_friction(&mut self, problem: &StepProblem<'_>, settled: f64) -> bool {
         let x0 = &problem.state.x;
         self.iterate.renew_friction(problem.contact(), x0, settled)
     }

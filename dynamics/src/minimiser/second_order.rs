@@ -9,8 +9,8 @@ const KEPT_SLOPE: f64 = 0.1;
 impl Lagrangian {
     /// Corrects the step `-dx`, of which only the part `limit` is safe, for gaps that close faster than to
     /// first order. Keeps the correction where a larger part of the corrected step is safe; the part that is
-    /// safe of what it keeps. The step has to be the motion that was checked last, and its matrix the one
-    /// that is factorised; steps along which bodies move are left as they are.
+    /// safe of what it keeps. The step has to be the motion that was checked last, its matrix the one that
+    /// is factorised, and no body or pin may be on its way.
     ///
     /// The linear system knows gaps to first order. A face that rolls on a ball of radius `R` while it tilts
     /// by an angle `a` comes closer by `R a^2 / 2`, several activation distances at five degrees: such a step
@@ -26,9 +26,6 @@ impl Lagrangian {
     /// 15.6. A disk of 688 vertices on a ball needs 12.2 factorisations a step with the correction and 16.0
     /// without; a second pass changes nothing.)
     pub(super) fn correct_gaps(&mut self, problem: &mut StepProblem<'_>, limit: f64) -> f64 {
-        if self.is_driven(problem) {
-            return limit;
-        }
         let slope = self.slope();
         self.uncorrected.copy_from_slice(&self.dx);
         for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
@@ -48,11 +45,13 @@ impl Lagrangian {
         for (d, change) in self.dx.iter_mut().zip(&self.weighted) {
             *d -= change;
         }
-        if self.slope() <= KEPT_SLOPE * slope {
-            let corrected = self.safe_part(problem);
-            if corrected > limit {
-                return corrected;
-            }
+        if self.slope() > KEPT_SLOPE * slope {
+            self.dx.copy_from_slice(&self.uncorrected);
+            return limit;
+        }
+        let corrected = self.safe_part(problem);
+        if corrected > limit {
+            return corrected;
         }
         self.dx.copy_from_slice(&self.uncorrected);
         self.safe_part(problem)

@@ -397,8 +397,7 @@ impl<'a, 'b> Sqp<'a, 'b> {
         if self.friction_updates == options.max_friction_updates {
             return false;
         }
-        let settled = options.friction_tolerance;
-        let is_renewed = lagrangian.renew_friction(self.problem, settled) > settled;
+        let is_renewed = lagrangian.renew_friction(self.problem, options.friction_tolerance);
         if is_renewed {
             lagrangian.merit(self.problem);
         }
