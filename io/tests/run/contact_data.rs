@@ -1,7 +1,7 @@
 //! Forces of contact and gaps of the vertices in what a run leaves.
 
 use crate::headless::self_test;
-use crate::{code, run, started, stderr};
+use crate::{code, killed, run, stderr};
 use isosheet_io::run::Recording;
 use isosheet_io::view::{Field, Scale};
 use std::fs;
@@ -190,9 +190,7 @@ fn a_run_that_was_stopped_has_contact_up_to_there() {
         "--set",
         "stop.time=600",
     ];
-    let mut child = started(folder, &simulate, "run", 60);
-    child.kill().unwrap();
-    child.wait().unwrap();
+    killed(folder, &simulate, "run", 60);
     assert!(!folder.join("run/summary.json").exists());
     let trajectory = Recording::read(&folder.join("run")).unwrap().trajectory;
     let last = trajectory.len() - 1;

@@ -1,6 +1,6 @@
 //! Runs that are stopped and continued.
 
-use crate::{assert_same, code, run, started, stderr, with_scene};
+use crate::{assert_same, code, killed, run, started, stderr, with_scene};
 use isosheet_io::read_history;
 use isosheet_io::run::Recording;
 use isosheet_io::scene::StartingPoint;
@@ -18,7 +18,7 @@ fn a_run_that_is_killed_at_any_moment_continues_to_the_same_bits() {
         all.extend(["--set", interval]);
         all
     };
-    for (interval, whole, killed) in [
+    for (interval, whole, cut) in [
         ("output.checkpoint_interval=0", "whole-0", "killed-0"),
         ("output.checkpoint_interval=0.05", "whole-1", "killed-1"),
     ] {
@@ -27,17 +27,15 @@ fn a_run_that_is_killed_at_any_moment_continues_to_the_same_bits() {
         // Rows of the history at which the process is killed: before the first step, and wherever it comes to
         // be then. Kills that lose steps go back behind the row before.
         for rows in [1, 5, 23, 48, 49, 75, 100] {
-            let mut child = started(dir, &arguments(killed, interval), killed, rows);
-            child.kill().unwrap();
-            child.wait().unwrap();
+            killed(dir, &arguments(cut, interval), cut, rows);
             assert!(
-                !dir.join(killed).join("summary.json").exists(),
+                !dir.join(cut).join("summary.json").exists(),
                 "killed too late"
             );
         }
-        let done = run(dir, &arguments(killed, interval));
+        let done = run(dir, &arguments(cut, interval));
         assert_eq!(code(&done), Some(0), "{}", stderr(&done));
-        assert_same(&dir.join(whole), &dir.join(killed));
+        assert_same(&dir.join(whole), &dir.join(cut));
     }
     let history = read_history(&dir.join("whole-0/history.csv")).unwrap();
     assert_eq!(history.len(), 151);
@@ -63,9 +61,7 @@ fn scenes_with_motions_continue_to_the_same_bits() {
         let done = run(dir, &with_out("whole"));
         assert_eq!(code(&done), Some(0), "{}", stderr(&done));
         for rows in [3, 8, 14] {
-            let mut child = started(dir, &with_out("killed"), "killed", rows);
-            child.kill().unwrap();
-            child.wait().unwrap();
+            killed(dir, &with_out("killed"), "killed", rows);
             assert!(!dir.join("killed/summary.json").exists(), "killed too late");
         }
         let done = run(dir, &with_out("killed"));

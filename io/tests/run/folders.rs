@@ -1,6 +1,6 @@
 //! Folders that are in use, complete, foreign, damaged, full or not to be written.
 
-use crate::{assert_same, code, run, started, stderr, summary, with_scene};
+use crate::{assert_same, code, killed, run, started, stderr, summary, with_scene};
 use isosheet_io::run::{EndReason, Recording};
 use isosheet_io::scene::StartingPoint;
 use serde_json::Value;
@@ -136,9 +136,7 @@ fn damaged_checkpoints_are_refused() {
     let dir = with_scene(StartingPoint::Drape);
     let dir = dir.path();
     let simulate = ["simulate", "scene.toml", "--out", "run"];
-    let mut child = started(dir, &simulate, "run", 3);
-    child.kill().unwrap();
-    child.wait().unwrap();
+    killed(dir, &simulate, "run", 3);
     let stored = dir.join("run/scene.toml");
     let text = fs::read_to_string(&stored).unwrap();
     fs::write(&stored, text.replace("time = 1.0", "time = 0.9")).unwrap();

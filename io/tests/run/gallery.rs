@@ -1,6 +1,6 @@
 //! Galleries of runs.
 
-use crate::{code, isosheet, run, started, stderr};
+use crate::{code, isosheet, killed, run, stderr};
 use isosheet_io::read_json;
 use isosheet_io::run::GalleryEntry;
 use isosheet_io::scene::StartingPoint;
@@ -39,9 +39,7 @@ fn a_gallery_shows_every_run_beneath_its_folders_and_needs_nothing_else() {
         "--set",
         "stop.time=30",
     ];
-    let mut child = started(dir, &part, "b/c/scene-run", 20);
-    child.kill().unwrap();
-    child.wait().unwrap();
+    killed(dir, &part, "b/c/scene-run", 20);
     // A run whose history is damaged.
     write_scene(&dir.join("d"), StartingPoint::Fold);
     let done = run(

@@ -68,6 +68,13 @@ fn started(folder: &Path, arguments: &[&str], out: &str, rows: usize) -> Child {
     }
 }
 
+/// Starts a run and kills it once its history has so many rows.
+fn killed(folder: &Path, arguments: &[&str], out: &str, rows: usize) {
+    let mut child = started(folder, arguments, out, rows);
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
 /// The simulation in a checkpoint of a run: after eight bytes and the progress with its length, before the
 /// sum.
 fn simulation_bytes(folder: &Path) -> Vec<u8> {

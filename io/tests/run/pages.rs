@@ -1,7 +1,7 @@
 //! The pages of runs.
 
 use crate::headless::self_test;
-use crate::{code, run, started, stderr, summary, with_scene};
+use crate::{code, killed, run, stderr, summary, with_scene};
 use isosheet_io::mesh::generate;
 use isosheet_io::run::Recording;
 use isosheet_io::scene::StartingPoint;
@@ -107,9 +107,7 @@ fn a_run_that_was_killed_has_a_page_up_to_there() {
     let dir = with_scene(StartingPoint::Drape);
     let dir = dir.path();
     let scene = ["simulate", "scene.toml", "--set", "stop.time=30"];
-    let mut child = started(dir, &scene, "scene-run", 20);
-    child.kill().unwrap();
-    child.wait().unwrap();
+    killed(dir, &scene, "scene-run", 20);
     let made = run(dir, &["page", "scene-run"]);
     assert_eq!(code(&made), Some(0), "{}", stderr(&made));
     let data = data(&dir.join("scene-run/index.html"));

@@ -1,6 +1,6 @@
 //! Forces of the rods in what a run leaves.
 
-use crate::{code, run, started, stderr};
+use crate::{code, killed, run, stderr};
 use isosheet_io::run::Recording;
 use isosheet_io::view::Scale;
 use std::fs;
@@ -121,9 +121,7 @@ fn a_run_that_was_stopped_has_forces_up_to_there() {
         "--set",
         "stop.time=60",
     ];
-    let mut child = started(folder, &simulate, "run", 30);
-    child.kill().unwrap();
-    child.wait().unwrap();
+    killed(folder, &simulate, "run", 30);
     assert!(!folder.join("run/summary.json").exists());
     let recording = Recording::read(&folder.join("run")).unwrap();
     let forces = recording
