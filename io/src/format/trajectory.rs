@@ -393,14 +393,9 @@ impl Trajectory {
                 ));
             }
         }
-        for (name, list) in [
-            ("t", &t),
-            ("x", &x),
-            ("rest_lengths", &rest_lengths),
-            (Quantity::RodForces.name(), &data[0]),
-            (Quantity::ContactForces.name(), &data[1]),
-            (Quantity::Gaps.name(), &data[2]),
-        ] {
+        let further = Quantity::ALL.map(Quantity::name).into_iter().zip(&data);
+        let own = [("t", &t), ("x", &x), ("rest_lengths", &rest_lengths)];
+        for (name, list) in own.into_iter().chain(further) {
             if let Some(v) = list.iter().find(|v| !v.is_finite()) {
                 return Err(array(name, format!("it contains {v}")));
             }

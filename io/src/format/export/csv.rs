@@ -8,7 +8,11 @@ use std::path::{Path, PathBuf};
 /// Writes a line for each vertex of each frame: its position, then the fields of vertices.
 pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathBuf>, ExportError> {
     write_atomically(path, |w| {
-        writeln!(w, "frame,t,vertex,x,y,z{}", further_names(series))?;
+        // The names of fields are free, and may need quotes.
+        let mut header = csv::Writer::from_writer(&mut *w);
+        header.write_record(names(series))?;
+        header.flush()?;
+        drop(header);
         for &frame in series.frames() {
             let (t, x) = series.state(frame);
             let fields: Vec<(&[f64], usize)> = series
@@ -39,29 +43,18 @@ fn columns(support: FieldSupport) -> Option<usize> {
     }
 }
 
-/// The names of the columns after the positions, each after a comma. Those of a vector end in `_x`, `_y`,
-/// `_z`.
-fn further_names(series: &Series<'_>) -> String {
-    let mut names = String::new();
+/// The names of the columns: those of a vector end in `_x`, `_y`, `_z`.
+fn names(series: &Series<'_>) -> Vec<String> {
+    let mut names = ["frame", "t", "vertex", "x", "y", "z"]
+        .map(str::to_owned)
+        .to_vec();
     for (field, _) in series.fields(0) {
         let endings: &[&str] = match columns(field.support) {
             Some(1) => &[""],
             Some(_) => &["_x", "_y", "_z"],
             None => &[],
         };
-        for ending in endings {
-            names.push(',');
-            names += &quoted(&format!("{}{ending}", field.name));
-        }
+        names.extend(endings.iter().map(|e| format!("{}{e}", field.name)));
     }
     names
-}
-
-/// A cell of a table, in quotes where it needs them.
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
 }

@@ -44,11 +44,8 @@ impl Quantity {
 
     /// The numbers in one frame of it.
     pub(super) fn size(self, vertices: usize, edges: usize) -> usize {
-        match self {
-            Self::RodForces => edges,
-            Self::ContactForces => 3 * vertices,
-            Self::Gaps => vertices,
-        }
+        let shape = self.shape(vertices, edges);
+        shape.iter().product::<u64>() as usize
     }
 
     /// What a frame has of it.
