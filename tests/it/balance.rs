@@ -197,19 +197,20 @@ fn implicit(tolerance: f64) -> [Method; 2] {
 #[test]
 fn supports_of_the_implicit_methods_balance_the_change_of_momentum() {
     // In an exactly flat sheet rods are dependent, and what round-off asks of them converges slowly. In
-    // later steps the imbalance is the momentum that Newton's method leaves at free vertices, in proportion
-    // to the square root of its tolerance.
+    // later steps the imbalance is the momentum that Newton's method leaves at free vertices. Measured: up to
+    // 2.1e-4 of the weight with the small tolerance, and 2.2e-2 with the default one.
     for (tolerance, first, bound) in [
-        (1e-12, 2e-4, 1e-5),
-        (ImplicitOptions::default().tolerance, 2e-3, 1e-2),
+        (1e-12, 2e-4, 4e-4),
+        (ImplicitOptions::default().tolerance, 2e-3, 4e-2),
     ] {
         for method in implicit(tolerance) {
             for supports in two_sided().into_iter().chain(one_sided()) {
                 for mass in MASSES {
                     let found = imbalance(supports, &method, mass);
-                    if !(found.first < first && found.of_weight < bound) {
-                        println!("{supports:?} {method:?} {found:?}");
-                    }
+                    assert!(
+                        found.first < first && found.of_weight < bound,
+                        "{supports:?} {method:?} {found:?}"
+                    );
                     assert!(found.steps > 50);
                 }
             }
