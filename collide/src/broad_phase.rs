@@ -160,10 +160,16 @@ impl BroadPhase {
         );
         let chunks = x0.as_chunks::<3>().0.iter().zip(x1.as_chunks::<3>().0);
         for (bounds, (p, q)) in self.vertices.iter_mut().zip(chunks) {
-            // What the sum loses is made up for: boxes that touch stay touching.
+            // What the sum loses, at most half of the round-off, is made up for: boxes that touch stay so.
             *bounds = Bounds {
-                min: std::array::from_fn(|k| (p[k].min(q[k]) - inflation).next_down()),
-                max: std::array::from_fn(|k| (p[k].max(q[k]) + inflation).next_up()),
+                min: std::array::from_fn(|k| {
+                    let low = p[k].min(q[k]) - inflation;
+                    low - f64::EPSILON * low.abs()
+                }),
+                max: std::array::from_fn(|k| {
+                    let high = p[k].max(q[k]) + inflation;
+                    high + f64::EPSILON * high.abs()
+                }),
             };
         }
         let vertex = |v: u32| &self.vertices[v as usize];

@@ -110,8 +110,8 @@ use path::PartOfStep;
 /// # Cost
 /// What a scene does not name costs nothing: half-spaces need the vertices only; friction without
 /// coefficients is not evaluated. Pairs that may meet are searched for in a tree of boxes, which bodies and
-/// self-contact share, when the sheet has moved by a quarter of an edge since the last search; in between a
-/// motion is checked against the list of these.
+/// self-contact share, when the sheet leaves the last motion that was searched by an eighth of an edge; in
+/// between a motion is checked against the list of these.
 ///
 /// Between calls only boxes and lists are kept, and memory. The tree of boxes has the shape of the sheet at
 /// the first positions it was asked about, which decides about speed and about the order in which pairs are

@@ -214,7 +214,7 @@ pub fn point_point(x: &[Vector3<f64>; 2]) -> Closest<2> {
 
 /// Distance of a point and an edge, stencil `[p, a, b]`. The edge may have no length.
 pub fn point_edge(x: &[Vector3<f64>; 3]) -> Closest<3> {
-    end_and_edge(x, 0, [1, 2], 1.0)
+    end_and_edge(x, 0, [1, 2], 1.0).closest(x)
 }
 
 /// Distance of a point and a triangle, stencil `[p, a, b, c]`. The triangle may have no area.
@@ -232,14 +232,8 @@ pub fn point_triangle(x: &[Vector3<f64>; 4]) -> Closest<4> {
             return Closest::new(x, Feature::PointTriangle, [1.0, -(1.0 - b - c), -b, -c]);
         }
     }
-    let mut best = end_and_edge(x, 0, [1, 2], 1.0);
-    for edge in [[2, 3], [3, 1]] {
-        let other = end_and_edge(x, 0, edge, 1.0);
-        if other.distance2 < best.distance2 {
-            best = other;
-        }
-    }
-    best
+    let edges = [[1, 2], [2, 3], [3, 1]].map(|edge| end_and_edge(x, 0, edge, 1.0));
+    nearest(edges).closest(x)
 }
 
 /// Distance of two edges, stencil `[a, b, c, d]` with the edges `ab` and `cd`. Either may have no
@@ -249,30 +243,53 @@ pub fn edge_edge(x: &[Vector3<f64>; 4]) -> Closest<4> {
     let n = u.cross(&v);
     let nn = n.norm_squared();
     let squares = u.norm_squared() * v.norm_squared();
-    let mut best: Option<Closest<4>> = None;
+    let mut crossing = None;
     if nn > DEGENERATE_SINE * DEGENERATE_SINE * squares {
         let solve = |w: &Vector3<f64>| [v.cross(w).dot(&n) / nn, u.cross(w).dot(&n) / nn];
         let [s, t] = solve(&w);
         let [ds, dt] = solve(&(w + s * u - t * v));
         let (s, t) = (s + ds, t + dt);
         if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
-            let crossing = Closest::new(x, Feature::EdgeEdge, [1.0 - s, s, t - 1.0, -t]);
+            let closest = Closest::new(x, Feature::EdgeEdge, [1.0 - s, s, t - 1.0, -t]);
             if nn > RELIABLE_SINE * RELIABLE_SINE * squares {
-                return crossing;
+                return closest;
             }
-            best = Some(crossing);
+            crossing = Some(closest);
         }
     }
-    let mut best = best.unwrap_or_else(|| end_and_edge(x, 0, [2, 3], 1.0));
-    for (point, edge, sign) in [
-        (0, [2, 3], 1.0),
-        (1, [2, 3], 1.0),
-        (2, [0, 1], -1.0),
-        (3, [0, 1], -1.0),
-    ] {
-        let other = end_and_edge(x, point, edge, sign);
+    let ends = nearest([
+        end_and_edge(x, 0, [2, 3], 1.0),
+        end_and_edge(x, 1, [2, 3], 1.0),
+        end_and_edge(x, 2, [0, 1], -1.0),
+        end_and_edge(x, 3, [0, 1], -1.0),
+    ]);
+    match crossing {
+        Some(crossing) if crossing.distance2 <= ends.distance2 => crossing,
+        _ => ends.closest(x),
+    }
+}
+
+/// A pair of features, the weights of the closest points, and their squared distance but for round-off of
+/// the lengths.
+#[derive(Debug, Clone, Copy)]
+struct Place<const N: usize> {
+    feature: Feature,
+    weights: [f64; N],
+    distance2: f64,
+}
+
+impl<const N: usize> Place<N> {
+    fn closest(&self, x: &[Vector3<f64>; N]) -> Closest<N> {
+        Closest::new(x, self.feature, self.weights)
+    }
+}
+
+/// The first of the places with the smallest distance.
+fn nearest<const N: usize, const M: usize>(places: [Place<N>; M]) -> Place<N> {
+    let mut best = places[0];
+    for other in &places[1..] {
         if other.distance2 < best.distance2 {
-            best = other;
+            best = *other;
         }
     }
     best
@@ -285,36 +302,34 @@ fn end_and_edge<const N: usize>(
     point: usize,
     edge: [usize; 2],
     sign: f64,
-) -> Closest<N> {
-    let e = x[edge[1]] - x[edge[0]];
-    let along = (x[point] - x[edge[0]]).dot(&e);
-    let ee = e.norm_squared();
+) -> Place<N> {
+    let (e, from) = (x[edge[1]] - x[edge[0]], x[point] - x[edge[0]]);
+    let (along, ee) = (from.dot(&e), e.norm_squared());
     let mut weights = [0.0; N];
     weights[point] = sign;
     let ends = |end: usize| {
-        if sign > 0.0 {
-            Feature::PointPoint {
-                first: point,
-                second: end,
-            }
+        let (first, second) = if sign > 0.0 {
+            (point, end)
         } else {
-            Feature::PointPoint {
-                first: end,
-                second: point,
-            }
-        }
+            (end, point)
+        };
+        Feature::PointPoint { first, second }
     };
-    let feature = if along <= 0.0 {
+    let (feature, t) = if along <= 0.0 {
         weights[edge[0]] = -sign;
-        ends(edge[0])
+        (ends(edge[0]), 0.0)
     } else if along >= ee {
         weights[edge[1]] = -sign;
-        ends(edge[1])
+        (ends(edge[1]), 1.0)
     } else {
         let t = along / ee;
         weights[edge[0]] = -sign * (1.0 - t);
         weights[edge[1]] = -sign * t;
-        Feature::PointEdge { point, edge }
+        (Feature::PointEdge { point, edge }, t)
     };
-    Closest::new(x, feature, weights)
+    Place {
+        feature,
+        weights,
+        distance2: (from - t * e).norm_squared(),
+    }
 }

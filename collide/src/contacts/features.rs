@@ -6,15 +6,6 @@ use crate::{BroadPhase, ContactGeometry, ContactMesh, ObstacleError, Shape};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::HashMap;
 
-/// What motions lists serve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scope {
-    /// The one that they were made for, which is longer than the skin.
-    OneMotion,
-    /// All that displace primitives by no more than the skin relative to each other.
-    Skin,
-}
-
 /// Sine of the angle between two faces below which the edge between them is none: a thousand times
 /// the round-off of unit normals, and a ridge too low to matter.
 const FLAT_SINE: f64 = 1e-12;
@@ -40,10 +31,11 @@ pub(super) struct Features {
     resting: Option<(Isometry3<f64>, f64)>,
     /// The same of the tree.
     resting_tree: Option<(Isometry3<f64>, f64)>,
-    /// Places of the points for which lists of neighbours were made, and what the boxes were enlarged by.
-    reference: Vec<f64>,
-    reference_inflation: f64,
-    /// Since then.
+    /// Start and end of the motion for which lists of neighbours were made, and what its boxes were enlarged
+    /// by.
+    listed: [Vec<f64>; 2],
+    listed_inflation: f64,
+    /// Beyond the boxes of that motion.
     displacements: Displacements,
 }
 
@@ -86,11 +78,11 @@ impl Features {
             flat_vertices,
             flat_edges,
             end: positions.clone(),
-            reference: positions.clone(),
-            displacements: Displacements::since(&positions, &positions, &positions),
+            listed: [positions.clone(), positions.clone()],
+            displacements: Displacements::beyond([&positions; 2], &positions, &positions),
             start: positions,
             inflation: 0.0,
-            reference_inflation: 0.0,
+            listed_inflation: 0.0,
             resting: None,
             resting_tree: None,
         }))
@@ -109,48 +101,37 @@ impl Features {
         place_all(&self.points, &pose, &mut self.start);
         place_all(&self.points, &part.pose_at(1.0), &mut self.end);
         (self.inflation, self.resting) = (inflation, resting);
-        self.displacements = Displacements::since(&self.reference, &self.start, &self.end);
-        self.return_to_motion();
+        self.phase.update_boxes(&self.start, &self.end, inflation);
+        self.displacements = Displacements::beyond(
+            self.listed.each_ref().map(Vec::as_slice),
+            &self.start,
+            &self.end,
+        );
     }
 
-    /// Takes the middle of the motion as the reference of displacements.
-    pub(super) fn take_reference(&mut self) {
-        let ends = self.start.iter().zip(&self.end);
-        for (r, (start, end)) in self.reference.iter_mut().zip(ends) {
-            *r = 0.5 * (start + end);
-        }
-        self.reference_inflation = self.inflation;
-        self.displacements = Displacements::since(&self.reference, &self.start, &self.end);
-    }
-
-    /// Displacements since the reference.
+    /// Displacements beyond the boxes of the motion that lists were made for.
     pub(super) fn displacements(&self) -> &Displacements {
         &self.displacements
     }
 
-    /// How much more the boxes are enlarged than at the reference, metres.
+    /// How much more the boxes are enlarged than those of the motion that lists were made for, metres.
     pub(super) fn growth(&self) -> f64 {
-        (self.inflation - self.reference_inflation).max(0.0)
+        (self.inflation - self.listed_inflation).max(0.0)
     }
 
-    /// Refits boxes and tree to the motion or, for lists that serve others as well, to the reference.
-    /// [`Features::return_to_motion`] has to follow.
-    pub(super) fn refit(&mut self, scope: Scope) -> &BroadPhase {
+    /// The boxes with their tree, for lists of the motion.
+    pub(super) fn list(&mut self) -> &BroadPhase {
+        let Self { start, end, .. } = self;
+        for (listed, place) in self.listed.iter_mut().zip([&*start, &*end]) {
+            listed.copy_from_slice(place);
+        }
+        self.listed_inflation = self.inflation;
+        self.displacements = Displacements::beyond([start, end], start, end);
         if self.resting.is_none() || self.resting != self.resting_tree {
-            let (from, to) = match scope {
-                Scope::OneMotion => (&self.start, &self.end),
-                Scope::Skin => (&self.reference, &self.reference),
-            };
-            self.phase.update(from, to, self.inflation);
+            self.phase.update(start, end, self.inflation);
             self.resting_tree = self.resting;
         }
         &self.phase
-    }
-
-    /// Sets the boxes to those of the motion.
-    pub(super) fn return_to_motion(&mut self) {
-        self.phase
-            .update_boxes(&self.start, &self.end, self.inflation);
     }
 
     /// The boxes.
