@@ -31,6 +31,13 @@ use neighbours::{Neighbours, SelfPairs};
 use options::smallest_height;
 use path::PartOfStep;
 
+/// Length of the first part of a long motion that is searched for pairs, in mean edge lengths, and ratio of the
+/// lengths of the following parts: contact mostly ends a long motion early, and the number of pairs whose boxes
+/// overlap grows with its length until it is that of all pairs. (Of a disk of 688 vertices, 1.1 s for a motion of
+/// 46 000 edge lengths.) Steps of 1/60 s of sheets that fall by their own size are shorter.
+const FIRST_PART: f64 = 4.0;
+const NEXT_PART: f64 = 4.0;
+
 /// The geometry of contact of a sheet with bodies and with itself: pairs within reach, distances, and motions
 /// that are checked before they are taken. Barrier and friction are those of
 /// [`isosheet_dynamics::contact`], which says in which order the values are made that a step works with.
@@ -131,8 +138,9 @@ pub struct Contacts {
     has_self_contact: bool,
     /// Made at the first positions, in scenes that need them.
     neighbours: Option<Neighbours>,
-    /// Working memory: the motions of the bodies.
+    /// Working memory: the motions of the bodies, and the first part of a long motion.
     parts: Vec<PartOfStep>,
+    part_of_motion: Vec<f64>,
 }
 
 impl Contacts {
@@ -154,6 +162,7 @@ impl Contacts {
             mean_length: model.mean_length(),
             neighbours: None,
             parts: Vec::new(),
+            part_of_motion: Vec::new(),
         })
     }
 
@@ -205,23 +214,14 @@ impl Contacts {
     pub fn bodies(&self) -> impl ExactSizeIterator<Item = &Obstacle> {
         self.bodies.iter().map(Body::obstacle)
     }
-}
 
-impl Contact for Contacts {
-    fn laws(&self) -> &ContactLaws {
-        &self.laws
+    /// Whether pairs are searched for in a tree of boxes.
+    fn needs_boxes(&self) -> bool {
+        self.has_self_contact || self.bodies.iter().any(|b| b.features().is_some())
     }
 
-    fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>) {
-        out.extend(self.bodies.iter().map(|b| b.motion_over(span)));
-    }
-
-    fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64> {
-        let body = &self.bodies[body as usize];
-        body.obstacle().velocity(t, place)
-    }
-
-    fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
+    /// [`Contact::query`] in one piece.
+    fn query_whole(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
         let JointMotion {
             progress, x, dx, ..
         } = motion;
@@ -236,7 +236,7 @@ impl Contact for Contacts {
         let motions = motion.bodies.list().iter();
         self.parts
             .extend(motions.map(|m| PartOfStep::new(&m.surface, progress)));
-        if self.has_self_contact || self.bodies.iter().any(|b| b.features().is_some()) {
+        if self.needs_boxes() {
             let own = if self.has_self_contact {
                 SelfPairs::Listed
             } else {
@@ -258,6 +258,54 @@ impl Contact for Contacts {
             }
             _ => limit,
         }
+    }
+}
+
+impl Contact for Contacts {
+    fn laws(&self) -> &ContactLaws {
+        &self.laws
+    }
+
+    fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>) {
+        out.extend(self.bodies.iter().map(|b| b.motion_over(span)));
+    }
+
+    fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64> {
+        let body = &self.bodies[body as usize];
+        body.obstacle().velocity(t, place)
+    }
+
+    fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
+        let longest = motion.dx.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+        let mut part = FIRST_PART * self.mean_length / longest;
+        if !(part > 0.0 && self.needs_boxes()) {
+            part = 1.0;
+        }
+        let mut dx = std::mem::take(&mut self.part_of_motion);
+        let before = pairs.len();
+        while part < 1.0 {
+            dx.clear();
+            dx.extend(motion.dx.iter().map(|d| part * d));
+            let [from, to] = motion.progress;
+            let progress = [from, from + part * (to - from)];
+            let shorter = JointMotion {
+                progress,
+                dx: &dx,
+                ..motion
+            };
+            let safe = self.query_whole(shorter, pairs);
+            if safe < 1.0 {
+                part *= safe;
+                break;
+            }
+            pairs.truncate(before);
+            part *= NEXT_PART;
+        }
+        self.part_of_motion = dx;
+        if part < 1.0 {
+            return part;
+        }
+        self.query_whole(motion, pairs)
     }
 
     fn evaluate(

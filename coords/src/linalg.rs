@@ -1,4 +1,5 @@
-//! Sparse direct solvers: thin, non-generic wrappers around faer.
+//! Sparse direct solvers: thin, non-generic wrappers around faer, and a numerical Cholesky factorisation for
+//! the matrices of sheets.
 //!
 //! Every solver owns its matrix (a fixed [`Pattern`] and its values), analyses the pattern
 //! once, and is then refactorised numerically as often as the values change, into buffers
@@ -6,16 +7,16 @@
 //! returns, so assembling is a plain scatter-add.
 //!
 //! faer's generic code is instantiated only here, which keeps the build of every crate
-//! above short. Factorisation and solves run sequentially: at all sizes up to 198 147 unknowns two
-//! threads inside one factorisation were measured to be slower than one
-//! ([`SparseLlt::factorize_on`]), and sequential solves are bitwise reproducible, which
-//! those on several threads are not.
+//! above short. Large Cholesky factorisations are shared among the threads of rayon's current pool; all else
+//! runs sequentially. Results do not depend on the number of threads.
 
+mod dense;
 mod error;
 mod graph;
 mod ldlt;
 mod llt;
 mod lu;
+mod multifrontal;
 mod nested_dissection;
 mod ordering;
 mod pattern;

@@ -69,9 +69,9 @@ pub trait Contact: Send + Sync {
     /// `t`.
     fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64>;
 
-    /// Appends all pairs whose gap is below the activation distance at any time of a motion, in any order and
-    /// each once, and returns the largest fraction `a <= 1` of the motion that is proven to bring nothing
-    /// into contact. Pairs that stay out of reach may be among them.
+    /// Returns the largest fraction `a <= 1` of a motion that is proven to bring nothing into contact, and
+    /// appends all pairs whose gap is below the activation distance at any time of that part of the motion, in
+    /// any order and each once. Pairs that stay out of reach may be among them.
     fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64;
 
     /// Appends the contacts of those pairs whose gap is below the activation distance (or not a number) at

@@ -1,15 +1,17 @@
 //! Sparse Cholesky factorisation of a symmetric positive definite matrix.
 
 use super::error::LinalgError;
-use super::ordering::{Ordering, elimination_order};
+use super::graph::Graph;
+use super::multifrontal::Multifrontal;
+use super::ordering::{Ordering, elimination_order, postordered};
 use super::pattern::Pattern;
 use super::symbolic::{analyse, view};
 use super::triangular;
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltError;
+use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::cholesky as ch;
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side};
-use std::num::NonZeroUsize;
 
 /// Cholesky factorisation `A = L L^T` of a sparse symmetric positive definite matrix,
 /// stored as its lower triangle.
@@ -17,7 +19,8 @@ pub struct SparseLlt {
     pattern: Pattern,
     values: Vec<f64>,
     symbolic: ch::SymbolicCholesky<usize>,
-    permuted: Permuted,
+    /// The plan of the factorisation, for matrices with couplings.
+    fronts: Option<Multifrontal>,
     factor: Vec<f64>,
     factor_scratch: MemBuffer,
     solve_scratch: MemBuffer,
@@ -32,7 +35,7 @@ impl SparseLlt {
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
     pub fn new(pattern: Pattern) -> Result<Self, LinalgError> {
-        Self::with_ordering(pattern, None)
+        Self::analysed(pattern, None)
     }
 
     /// Analyses the lower-triangular `pattern` of unknowns that come in groups of `block`, as the three
@@ -45,18 +48,24 @@ impl SparseLlt {
     /// If `block` does not divide the order of the matrix.
     pub fn with_blocks(pattern: Pattern, block: usize) -> Result<Self, LinalgError> {
         let order = elimination_order(&pattern, block, Ordering::Best);
-        Self::with_ordering(pattern, Some(&order))
+        Self::analysed(pattern, Some(&order))
     }
 
     /// As [`SparseLlt::new`] with a given elimination order (`order[k]` is the unknown
-    /// eliminated k-th) in place of approximate minimum degree.
+    /// eliminated k-th), or one with the same fill, in place of approximate minimum degree.
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
     ///
     /// # Panics
     /// If `order` is not a permutation of the unknowns.
-    pub fn with_ordering(pattern: Pattern, order: Option<&[usize]>) -> Result<Self, LinalgError> {
+    pub fn with_ordering(pattern: Pattern, order: &[usize]) -> Result<Self, LinalgError> {
+        let order = postordered(&Graph::of_blocks(&pattern, 1), order);
+        Self::analysed(pattern, Some(&order))
+    }
+
+    /// Analyses the pattern in an order in which the subtrees of the elimination tree are ranges.
+    fn analysed(pattern: Pattern, order: Option<&[usize]>) -> Result<Self, LinalgError> {
         let symbolic = analyse(&pattern, order)?;
         let par = Par::Seq;
         Ok(Self {
@@ -66,7 +75,12 @@ impl SparseLlt {
                 symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default()),
             ),
             solve_scratch: MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, par)),
-            permuted: Permuted::new(&pattern, &symbolic),
+            fronts: match (symbolic.raw(), symbolic.perm()) {
+                (ch::SymbolicCholeskyRaw::Supernodal(s), Some(perm)) => {
+                    Some(Multifrontal::new(&pattern, perm, s))
+                }
+                _ => None,
+            },
             permuted_rhs: vec![0.0; pattern.cols()],
             rows: match symbolic.raw() {
                 ch::SymbolicCholeskyRaw::Supernodal(s) => vec![0.0; triangular::scratch_len(s)],
@@ -102,76 +116,39 @@ impl SparseLlt {
         self.factor.len()
     }
 
-    /// Numeric factorisation of the current values.
+    /// Numeric factorisation of the current values. Those of more than 2e7 multiplications are shared among
+    /// the threads of rayon's current pool, with the same bits for any number of threads.
     ///
     /// # Errors
     /// [`LinalgError::NotPositiveDefinite`] if a pivot is not positive.
     pub fn factorize(&mut self) -> Result<(), LinalgError> {
-        let mut scratch =
-            std::mem::replace(&mut self.factor_scratch, MemBuffer::new(StackReq::EMPTY));
-        let result = self.factorize_with(Par::Seq, &mut scratch);
-        self.factor_scratch = scratch;
-        result
-    }
-
-    /// As [`SparseLlt::factorize`], with the dense blocks shared among threads: the same bits. Nothing here
-    /// uses it, because it does not pay: on two idle cores it takes as long on matrices of 867 unknowns and
-    /// 1.3 to 3 times as long on those of 3267 to 198 147, whose supernodes are too narrow to share.
-    /// (`cargo xtask scale` measures it.)
-    ///
-    /// # Errors
-    /// As [`SparseLlt::factorize`].
-    pub fn factorize_on(&mut self, threads: NonZeroUsize) -> Result<(), LinalgError> {
-        let par = Par::Rayon(threads);
-        let scratch = self
-            .symbolic
-            .factorize_numeric_llt_scratch::<f64>(par, Default::default());
-        self.factorize_with(par, &mut MemBuffer::new(scratch))
+        let result = match &mut self.fronts {
+            Some(fronts) => fronts.factorise(&self.values, &mut self.factor),
+            // Matrices without couplings.
+            None => {
+                let result = self.symbolic.factorize_numeric_llt::<f64>(
+                    &mut self.factor,
+                    SparseColMatRef::new(view(&self.pattern), self.values.as_slice()),
+                    Side::Lower,
+                    Default::default(),
+                    Par::Seq,
+                    MemStack::new(&mut self.factor_scratch),
+                    Default::default(),
+                );
+                result.map(|_| ()).map_err(|e| match e {
+                    LltError::NonPositivePivot { index } => index,
+                })
+            }
+        };
+        result.map_err(|index| LinalgError::NotPositiveDefinite {
+            order: self.pattern.cols(),
+            index,
+        })
     }
 
     /// Entries of the factor in the order in which they are stored, by supernodes.
     pub fn factor(&self) -> &[f64] {
         &self.factor
-    }
-
-    fn factorize_with(&mut self, par: Par, scratch: &mut MemBuffer) -> Result<(), LinalgError> {
-        let stack = MemStack::new(scratch);
-        let result = match self.symbolic.raw() {
-            ch::SymbolicCholeskyRaw::Supernodal(symbolic) => {
-                ch::supernodal::factorize_supernodal_numeric_llt(
-                    &mut self.factor,
-                    self.permuted.fill(&self.values),
-                    Default::default(),
-                    symbolic,
-                    par,
-                    stack,
-                    Default::default(),
-                )
-                .map(|_| ())
-            }
-            // Matrices without couplings.
-            ch::SymbolicCholeskyRaw::Simplicial(_) => self
-                .symbolic
-                .factorize_numeric_llt::<f64>(
-                    &mut self.factor,
-                    SparseColMatRef::new(view(&self.pattern), self.values.as_slice()),
-                    Side::Lower,
-                    Default::default(),
-                    par,
-                    stack,
-                    Default::default(),
-                )
-                .map(|_| ()),
-        };
-        match result {
-            Ok(()) => Ok(()),
-            Err(faer::linalg::cholesky::llt::factor::LltError::NonPositivePivot { index }) => {
-                Err(LinalgError::NotPositiveDefinite {
-                    order: self.pattern.cols(),
-                    index,
-                })
-            }
-        }
     }
 
     /// Solves `A x = b` in place with the current factor.
@@ -203,52 +180,6 @@ impl SparseLlt {
                 );
             }
         }
-    }
-}
-
-/// The lower triangle in elimination order. faer permutes a matrix anew before each factorisation, a tenth of
-/// the time of small ones; here its values are gathered.
-struct Permuted {
-    pattern: SymbolicSparseColMat<usize>,
-    /// Place of each value in the pattern that was given.
-    from: Vec<usize>,
-    values: Vec<f64>,
-}
-
-impl Permuted {
-    fn new(pattern: &Pattern, symbolic: &ch::SymbolicCholesky<usize>) -> Self {
-        let n = pattern.cols();
-        let place: Vec<usize> = match symbolic.perm() {
-            Some(perm) => perm.arrays().1.to_vec(),
-            None => (0..n).collect(),
-        };
-        let mut columns = vec![Vec::new(); n];
-        for (j, ends) in pattern.col_ptr().windows(2).enumerate() {
-            for k in ends[0]..ends[1] {
-                let (a, b) = (place[pattern.row_idx()[k]], place[j]);
-                columns[a.min(b)].push((a.max(b), k));
-            }
-        }
-        let mut col_ptr = vec![0];
-        let (mut row_idx, mut from) = (Vec::new(), Vec::new());
-        for mut column in columns {
-            column.sort_unstable();
-            row_idx.extend(column.iter().map(|c| c.0));
-            from.extend(column.iter().map(|c| c.1));
-            col_ptr.push(row_idx.len());
-        }
-        Self {
-            pattern: SymbolicSparseColMat::new_checked(n, n, col_ptr, None, row_idx),
-            values: vec![0.0; from.len()],
-            from,
-        }
-    }
-
-    fn fill(&mut self, values: &[f64]) -> SparseColMatRef<'_, usize, f64> {
-        for (v, k) in self.values.iter_mut().zip(&self.from) {
-            *v = values[*k];
-        }
-        SparseColMatRef::new(self.pattern.as_ref(), &self.values)
     }
 }
 
@@ -337,22 +268,6 @@ mod tests {
                 .sub_symmetric_product(llt.values(), &x, &mut residual);
             let worst = residual.iter().fold(0.0_f64, |m, r| m.max(r.abs()));
             assert!(worst < 1e-13, "grid of {side}, blocks of {block}: {worst}");
-        }
-    }
-
-    /// A grid whose factor has supernodes wide enough to be shared.
-    #[test]
-    fn any_number_of_threads_gives_the_same_bits() {
-        let mut llt = grid(60, 1);
-        let one = llt.factor().to_vec();
-        for threads in [2, 3] {
-            let threads = NonZeroUsize::new(threads).expect("positive");
-            llt.factorize_on(threads).expect("diagonally dominant");
-            let same = llt.factor().iter().zip(&one);
-            assert!(
-                same.clone().all(|(a, b)| a.to_bits() == b.to_bits()),
-                "{threads} threads"
-            );
         }
     }
 

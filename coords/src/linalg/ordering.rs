@@ -39,7 +39,7 @@ pub fn elimination_order(pattern: &Pattern, block: usize, ordering: Ordering) ->
         Ordering::NestedDissection => nested_dissection(&graph),
         Ordering::Best => best(&graph, block),
     };
-    order
+    postordered(&graph, &order)
         .iter()
         .flat_map(|v| (0..block).map(move |k| block * v + k))
         .collect()
@@ -76,18 +76,41 @@ impl Fill {
         Self::of_graph(&Graph::of_blocks(pattern, block), &groups, block)
     }
 
-    /// Counts each row of the factor as the subtree of the elimination tree that its entries hang on
-    /// (Liu, "The role of elimination trees in sparse factorization", SIAM J. Matrix Anal. Appl. 11, 1990).
     fn of_graph(graph: &Graph, order: &[usize], block: usize) -> Self {
+        let tree = EliminationTree::new(graph, order);
+        let columns = tree
+            .below
+            .iter()
+            .flat_map(|rows| (1..=block).map(move |k| (rows * block + k) as f64));
+        Self {
+            entries: columns.clone().sum(),
+            operations: columns.map(|c| c * c).sum(),
+        }
+    }
+}
+
+/// The elimination tree of a graph in some order (Liu, "The role of elimination trees in sparse
+/// factorization", SIAM J. Matrix Anal. Appl. 11, 1990).
+struct EliminationTree {
+    /// Parents, by places in the order; [`ROOT`] where there is none.
+    parent: Vec<usize>,
+    /// Number of rows of the factor below the diagonal, by columns.
+    below: Vec<usize>,
+}
+
+const ROOT: usize = usize::MAX;
+
+impl EliminationTree {
+    /// Finds each row of the factor as the subtree that its entries hang on.
+    fn new(graph: &Graph, order: &[usize]) -> Self {
         let n = graph.len();
         let mut place = vec![0; n];
         for (k, &v) in order.iter().enumerate() {
             place[v] = k;
         }
-        const ROOT: usize = usize::MAX;
         let mut parent = vec![ROOT; n];
         let mut reached = vec![ROOT; n];
-        let mut below = vec![0usize; n];
+        let mut below = vec![0; n];
         for i in 0..n {
             reached[i] = i;
             for &w in graph.of(order[i] as u32) {
@@ -105,14 +128,44 @@ impl Fill {
                 }
             }
         }
-        let columns = below
-            .iter()
-            .flat_map(|rows| (1..=block).map(move |k| (rows * block + k) as f64));
-        Self {
-            entries: columns.clone().sum(),
-            operations: columns.map(|c| c * c).sum(),
-        }
+        Self { parent, below }
     }
+
+    /// The places in the order, subtree by subtree, each root last.
+    fn postorder(&self) -> Vec<usize> {
+        let n = self.parent.len();
+        let mut size = vec![1; n];
+        let mut first = vec![0; n];
+        let mut next_root = 0;
+        for j in 0..n {
+            if self.parent[j] != ROOT {
+                size[self.parent[j]] += size[j];
+            }
+        }
+        // From the roots down, each subtree takes its size from the room of the parent.
+        for j in (0..n).rev() {
+            let room = match self.parent[j] {
+                ROOT => &mut next_root,
+                parent => &mut first[parent],
+            };
+            let start = *room;
+            *room += size[j];
+            first[j] = start;
+        }
+        let mut list = vec![0; n];
+        for j in 0..n {
+            // What is left of the room of a vertex is its own place.
+            list[first[j]] = j;
+        }
+        list
+    }
+}
+
+/// An order with the same fill in which the subtrees of the elimination tree are ranges: the columns of a
+/// supernode are adjacent then.
+pub(super) fn postordered(graph: &Graph, order: &[usize]) -> Vec<usize> {
+    let places = EliminationTree::new(graph, order).postorder();
+    places.into_iter().map(|k| order[k]).collect()
 }
 
 /// Moves every multiplier of a saddle-point matrix behind the last of its own unknowns.

@@ -8,9 +8,9 @@ use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams, cholesky as ch};
 
 /// Adjacent supernodes are merged up to so many columns in all, if so large a part of the entries of both is
-/// zero. With faer's limits (4, 16, 48 and any number of columns; 1, 0.8, 0.1 and 0.05) factorisations of 243
-/// and 867 unknowns take 6 to 8 % longer, of 3267 and 12 675 unknowns as long as with these; solves are 5 %
-/// faster.
+/// zero. With faer's limits (4, 16, 48 and any number of columns; 1, 0.8, 0.1 and 0.05) faer's numerical
+/// factorisations of 243 and 867 unknowns take 6 to 8 % longer, of 3267 and 12 675 unknowns as long as with
+/// these; solves are 5 % faster.
 const MERGED: [(usize, f64); 4] = [(18, 1.0), (36, 0.5), (72, 0.2), (usize::MAX, 0.1)];
 
 /// The pattern as faer sees it.

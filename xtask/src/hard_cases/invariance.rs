@@ -363,8 +363,8 @@ fn threads(f: &mut Findings, effort: Effort) -> Result<()> {
     );
     let method = "A sum over as many parts as there are threads";
     f.naive(method, text, spread > 0.0);
-    f.here = "One run uses one thread, for its linear algebra and for contact, and keeps a fixed order; threads are used across runs. Compared: pools \
-              of 1, 2 and 4 threads, and two runs at the same time."
+    f.here = "Large factorisations share the subtrees of their elimination trees among threads and add them up in a fixed order; all else of a run is \
+              done by one thread. Compared: pools of 1, 2 and 4 threads, and two runs at the same time."
         .into();
     Ok(())
 }

@@ -101,8 +101,8 @@ pub(super) fn threads(rows: &[Row]) -> String {
     let ratios = extremes(rows.iter().map(|r| r.best().two_threads / r.best().numeric));
     let ratios = ratios.unwrap_or_default();
     format!(
-        "Two threads within one factorisation take {:.1} to {:.1} times as long as one, and {}; they {}. On a machine without two idle cores they \
-         can only lose. The simulations use one.",
+        "Two threads within one factorisation take {:.1} to {:.1} times as long as one, and {}; they {}. Simulations share \
+         factorisations among threads from some 2000 vertices on.",
         ratios[0],
         ratios[1],
         if faster.is_empty() {

@@ -1,0 +1,286 @@
+//! The fronts of a factorisation and where their numbers are.
+
+use super::Pattern;
+use faer::perm::PermRef;
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+use std::ops::Range;
+
+/// Adjacent columns of the factor with the same rows below.
+#[derive(Debug, Clone)]
+pub(super) struct Front {
+    /// First column.
+    pub(super) start: usize,
+    pub(super) columns: usize,
+    /// Rows below the columns.
+    pub(super) rows: usize,
+    /// The columns in the values of the factor.
+    pub(super) values: Range<usize>,
+    /// Values of the matrix, in [`Plan::entries`].
+    pub(super) entries: Range<usize>,
+    /// Rows, in [`Plan::places`].
+    pub(super) places: Range<usize>,
+    /// Children, in [`Plan::children`].
+    pub(super) children: Range<usize>,
+    /// Where the update is computed, and where it is kept for the parent. It is a square matrix with a row for
+    /// each row of the front.
+    pub(super) work: usize,
+    pub(super) update: usize,
+}
+
+impl Front {
+    /// Multiplications, those of square roots and divisions left out.
+    fn operations(&self) -> f64 {
+        let (c, r) = (self.columns as f64, self.rows as f64);
+        c * (c * c / 6.0 + c * r / 2.0 + r * r / 2.0)
+    }
+}
+
+/// Fronts that depend on no others.
+#[derive(Debug, Clone)]
+pub(super) struct Subtree {
+    pub(super) fronts: Range<usize>,
+    /// Their columns in the values of the factor.
+    pub(super) values: Range<usize>,
+    /// Room for their updates.
+    pub(super) updates: Range<usize>,
+    operations: f64,
+}
+
+impl Subtree {
+    /// Cuts a list of two subtrees or more where the halves differ least.
+    pub(super) fn halves(list: &[Self]) -> (&[Self], &[Self]) {
+        let of = |part: &[Self]| -> f64 { part.iter().map(|t| t.operations).sum() };
+        let uneven = |k: &usize| (of(&list[..*k]) - of(&list[*k..])).abs();
+        let best = (1..list.len()).min_by(|j, k| uneven(j).total_cmp(&uneven(k)));
+        list.split_at(best.unwrap_or(0))
+    }
+}
+
+/// What to do in which order.
+#[derive(Debug)]
+pub(super) struct Plan {
+    /// In the order of elimination, a postorder of the elimination tree: subtrees are ranges.
+    pub(super) fronts: Vec<Front>,
+    /// Of each value of the matrix its place in the columns of its front, and its number.
+    pub(super) entries: Vec<[u32; 2]>,
+    /// Of each row of a front its place in the parent, among columns and rows.
+    pub(super) places: Vec<u32>,
+    pub(super) children: Vec<u32>,
+    /// The largest subtrees with no more than half of the operations each.
+    pub(super) subtrees: Vec<Subtree>,
+    /// The fronts above them, each but the first the parent of the one before.
+    pub(super) trunk: Vec<u32>,
+    /// Multiplications.
+    pub(super) operations: f64,
+    room: usize,
+}
+
+impl Plan {
+    pub(super) fn new(
+        pattern: &Pattern,
+        perm: PermRef<'_, usize>,
+        symbolic: &SymbolicSupernodalCholesky<usize>,
+    ) -> Self {
+        let mut plan = Self {
+            fronts: Vec::new(),
+            entries: vec![[0; 2]; pattern.len()],
+            places: Vec::new(),
+            children: Vec::new(),
+            subtrees: Vec::new(),
+            trunk: Vec::new(),
+            operations: 0.0,
+            room: 0,
+        };
+        let front_of = plan.add_fronts(symbolic, pattern);
+        plan.place_entries(pattern, perm, symbolic, &front_of);
+        plan.divide();
+        plan
+    }
+
+    /// Fronts with their children; returns the front of each column.
+    fn add_fronts(
+        &mut self,
+        symbolic: &SymbolicSupernodalCholesky<usize>,
+        pattern: &Pattern,
+    ) -> Vec<usize> {
+        let (begin, end) = (symbolic.supernode_begin(), symbolic.supernode_end());
+        let (values, rows) = (symbolic.col_ptr_for_val(), symbolic.col_ptr_for_row_idx());
+        let count = symbolic.n_supernodes();
+        let mut front_of = vec![0; pattern.cols()];
+        for s in 0..count {
+            front_of[begin[s]..end[s]].fill(s);
+        }
+        let parents: Vec<Option<usize>> = (0..count)
+            .map(|s| symbolic.supernode(s).pattern().first())
+            .map(|row| row.map(|&row| front_of[row]))
+            .collect();
+        let child_parents = || parents.iter().flatten().copied();
+        let first_child = grouped(count, child_parents());
+        let mut next = first_child.clone();
+        self.children = vec![0; first_child[count]];
+        for (s, parent) in parents.iter().enumerate() {
+            if let Some(parent) = *parent {
+                self.children[next[parent]] = number(s);
+                next[parent] += 1;
+            }
+        }
+        self.places = vec![0; rows[count]];
+        self.fronts.extend((0..count).map(|s| Front {
+            start: begin[s],
+            columns: end[s] - begin[s],
+            rows: rows[s + 1] - rows[s],
+            values: values[s]..values[s + 1],
+            entries: 0..0,
+            places: rows[s]..rows[s + 1],
+            children: first_child[s]..first_child[s + 1],
+            work: 0,
+            update: 0,
+        }));
+        front_of
+    }
+
+    /// Finds where in the fronts the values of the matrix and the rows of the children belong.
+    fn place_entries(
+        &mut self,
+        pattern: &Pattern,
+        perm: PermRef<'_, usize>,
+        symbolic: &SymbolicSupernodalCholesky<usize>,
+        front_of: &[usize],
+    ) {
+        let position = perm.arrays().1;
+        // Columns and numbers of the values, by fronts.
+        let ends = |j: usize, k: usize| (position[pattern.row_idx()[k]], position[j]);
+        let all = || {
+            let columns = pattern.col_ptr().windows(2).enumerate();
+            columns.flat_map(|(j, range)| (range[0]..range[1]).map(move |k| (j, k)))
+        };
+        let front = |(j, k)| {
+            let (a, b) = ends(j, k);
+            front_of[a.min(b)]
+        };
+        let first_entry = grouped(self.fronts.len(), all().map(front));
+        let mut next = first_entry.clone();
+        for (j, k) in all() {
+            let s = front((j, k));
+            self.entries[next[s]] = [number(j), number(k)];
+            next[s] += 1;
+        }
+        // Places of rows in one front after the other.
+        let mut place = vec![0; pattern.cols()];
+        for (s, front) in self.fronts.iter_mut().enumerate() {
+            let columns = front.start..front.start + front.columns;
+            for (p, row) in columns
+                .chain(symbolic.supernode(s).pattern().iter().copied())
+                .enumerate()
+            {
+                place[row] = p;
+            }
+            front.entries = first_entry[s]..first_entry[s + 1];
+            let height = front.columns + front.rows;
+            for entry in &mut self.entries[front.entries.clone()] {
+                let (a, b) = ends(entry[0] as usize, entry[1] as usize);
+                entry[0] = number(place[a.min(b)] * height + place[a.max(b)]);
+            }
+            for &child in &self.children[front.children.clone()] {
+                let rows = symbolic.supernode(child as usize).pattern();
+                let first = symbolic.col_ptr_for_row_idx()[child as usize];
+                for (p, &row) in self.places[first..].iter_mut().zip(rows) {
+                    *p = number(place[row]);
+                }
+            }
+        }
+    }
+
+    /// Divides the fronts into subtrees and trunk, and the room for updates among them.
+    fn divide(&mut self) {
+        let count = self.fronts.len();
+        // Operations and number of the fronts of each subtree.
+        let mut operations: Vec<f64> = self.fronts.iter().map(Front::operations).collect();
+        let mut sizes = vec![1; count];
+        self.operations = operations.iter().sum();
+        let mut is_child = vec![false; count];
+        for s in 0..count {
+            let mut first = s;
+            for &child in self.children[self.fronts[s].children.clone()].iter().rev() {
+                let child = child as usize;
+                assert!(child + 1 == first, "supernodes are in postorder");
+                first -= sizes[child];
+                sizes[s] += sizes[child];
+                operations[s] += operations[child];
+                is_child[child] = true;
+            }
+        }
+        let add = |plan: &mut Self, s: usize| {
+            let fronts = s + 1 - sizes[s]..s + 1;
+            let updates = plan.room..plan.room + plan.stack(fronts.clone());
+            plan.room = updates.end;
+            plan.subtrees.push(Subtree {
+                values: plan.fronts[fronts.start].values.start..plan.fronts[s].values.end,
+                fronts,
+                updates,
+                operations: operations[s],
+            });
+        };
+        let is_large = |s: usize| operations[s] > 0.5 * self.operations;
+        let trunk: Vec<usize> = (0..count).filter(|&s| is_large(s)).collect();
+        let mut roots: Vec<usize> = (0..count)
+            .filter(|&s| !is_child[s] && !is_large(s))
+            .collect();
+        for &s in &trunk {
+            let children = self.children[self.fronts[s].children.clone()].iter();
+            roots.extend(children.map(|&c| c as usize).filter(|&c| !is_large(c)));
+        }
+        roots.sort_unstable();
+        for s in roots {
+            add(self, s);
+        }
+        // Each front of the trunk needs the update of the one before only: two places take turns.
+        let squares = trunk.iter().map(|&s| self.fronts[s].rows.pow(2));
+        let most = squares.max().unwrap_or(0);
+        for (k, &s) in trunk.iter().enumerate() {
+            let update = self.room + k % 2 * most;
+            self.fronts[s].update = update;
+            self.fronts[s].work = update;
+        }
+        self.room += 2 * most;
+        self.trunk = trunk.into_iter().map(number).collect();
+    }
+
+    /// Places the updates of a subtree, from the end of the room on, as on a stack: each is computed above those
+    /// of its children, and then takes their place. Returns the height of the stack.
+    fn stack(&mut self, fronts: Range<usize>) -> usize {
+        let (mut top, mut most) = (self.room, self.room);
+        for s in fronts {
+            let first = self.children[self.fronts[s].children.clone()].first();
+            let update = first.map_or(top, |&c| self.fronts[c as usize].update);
+            let size = self.fronts[s].rows.pow(2);
+            self.fronts[s].work = top;
+            self.fronts[s].update = update;
+            most = most.max(top + size);
+            top = update + size;
+        }
+        most - self.room
+    }
+
+    /// Number of values that updates take.
+    pub(super) fn room(&self) -> usize {
+        self.room
+    }
+}
+
+/// Where the members of each of `count` groups begin, and where the last ends, if they are sorted by group.
+fn grouped(count: usize, groups: impl Iterator<Item = usize>) -> Vec<usize> {
+    let mut first = vec![0; count + 1];
+    for group in groups {
+        first[group + 1] += 1;
+    }
+    for s in 0..count {
+        first[s + 1] += first[s];
+    }
+    first
+}
+
+/// Numbers of fronts, rows and values are kept with 32 bits.
+fn number(n: usize) -> u32 {
+    u32::try_from(n).expect("a matrix with fewer than 2^32 values")
+}
