@@ -6,7 +6,7 @@ use super::multifrontal::Multifrontal;
 use super::ordering::{Ordering, elimination_order, postordered};
 use super::pattern::Pattern;
 use super::symbolic::{analyse, view};
-use super::triangular;
+use super::triangular::{self, Factor};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::SparseColMatRef;
@@ -22,6 +22,8 @@ pub struct SparseLlt {
     /// The plan of the factorisation, for matrices with couplings.
     fronts: Option<Multifrontal>,
     factor: Vec<f64>,
+    /// Inverses of the diagonal entries of the factor, in elimination order.
+    inverses: Vec<f64>,
     factor_scratch: MemBuffer,
     solve_scratch: MemBuffer,
     /// A right-hand side in elimination order, and room for the rows below a supernode.
@@ -70,6 +72,7 @@ impl SparseLlt {
         let par = Par::Seq;
         Ok(Self {
             values: vec![0.0; pattern.len()],
+            inverses: vec![0.0; pattern.cols()],
             factor: vec![0.0; symbolic.len_val()],
             factor_scratch: MemBuffer::new(
                 symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default()),
@@ -140,6 +143,9 @@ impl SparseLlt {
                 })
             }
         };
+        if let ch::SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() {
+            triangular::invert_diagonal(symbolic, &self.factor, &mut self.inverses);
+        }
         result.map_err(|index| LinalgError::NotPositiveDefinite {
             order: self.pattern.cols(),
             index,
@@ -159,12 +165,12 @@ impl SparseLlt {
                 for (p, i) in self.permuted_rhs.iter_mut().zip(order) {
                     *p = rhs[*i];
                 }
-                triangular::solve(
+                let factor = Factor {
                     symbolic,
-                    &self.factor,
-                    &mut self.permuted_rhs,
-                    &mut self.rows,
-                );
+                    values: &self.factor,
+                    inverses: &self.inverses,
+                };
+                triangular::solve(factor, &mut self.permuted_rhs, &mut self.rows);
                 for (p, i) in self.permuted_rhs.iter().zip(order) {
                     rhs[*i] = *p;
                 }

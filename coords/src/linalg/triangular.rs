@@ -11,6 +11,32 @@ const TOGETHER: usize = 3;
 /// Sums that run side by side in an inner product.
 const LANES: usize = 8;
 
+/// A factor.
+#[derive(Clone, Copy)]
+pub(super) struct Factor<'a> {
+    pub(super) symbolic: &'a SymbolicSupernodalCholesky<usize>,
+    /// Values by supernodes.
+    pub(super) values: &'a [f64],
+    /// Inverses of the diagonal entries: a division takes as long as a row of a supernode.
+    pub(super) inverses: &'a [f64],
+}
+
+/// Sets the inverses of the diagonal entries of a factor.
+pub(super) fn invert_diagonal(
+    symbolic: &SymbolicSupernodalCholesky<usize>,
+    values: &[f64],
+    inverses: &mut [f64],
+) {
+    for s in 0..symbolic.n_supernodes() {
+        let (start, end) = (symbolic.supernode_begin()[s], symbolic.supernode_end()[s]);
+        let next = end - start + symbolic.supernode(s).pattern().len() + 1;
+        let diagonal = values[symbolic.col_ptr_for_val()[s]..].iter().step_by(next);
+        for (inverse, d) in inverses[start..end].iter_mut().zip(diagonal) {
+            *inverse = 1.0 / d;
+        }
+    }
+}
+
 /// A supernode: adjacent columns of `L` with the same rows below.
 struct Supernode<'a> {
     /// Its first column.
@@ -20,39 +46,42 @@ struct Supernode<'a> {
     rows: &'a [usize],
     /// Values by columns, each with the rows of the supernode itself first.
     values: &'a [f64],
+    /// Inverses of the diagonal entries.
+    inverses: &'a [f64],
 }
 
 impl<'a> Supernode<'a> {
-    fn of(symbolic: &'a SymbolicSupernodalCholesky<usize>, factor: &'a [f64], s: usize) -> Self {
-        let supernode = symbolic.supernode(s);
+    fn of(factor: Factor<'a>, s: usize) -> Self {
+        let symbolic = factor.symbolic;
+        let (start, end) = (symbolic.supernode_begin()[s], symbolic.supernode_end()[s]);
         let values = symbolic.col_ptr_for_val();
         Self {
-            start: symbolic.supernode_begin()[s],
-            columns: symbolic.supernode_end()[s] - symbolic.supernode_begin()[s],
-            rows: supernode.pattern(),
-            values: &factor[values[s]..values[s + 1]],
+            start,
+            columns: end - start,
+            rows: symbolic.supernode(s).pattern(),
+            values: &factor.values[values[s]..values[s + 1]],
+            inverses: &factor.inverses[start..end],
         }
     }
 
-    /// Column `j`: the diagonal entry, the entries below in the supernode's own rows, and those in the rows
-    /// below.
-    fn column(&self, j: usize) -> (f64, &'a [f64], &'a [f64]) {
+    /// Column `j`: the entries below the diagonal in the supernode's own rows, and those in the rows below.
+    fn column(&self, j: usize) -> (&'a [f64], &'a [f64]) {
         let height = self.columns + self.rows.len();
         let column = &self.values[j * height..(j + 1) * height];
         let (own, below) = column.split_at(self.columns);
-        (own[j], &own[j + 1..], below)
+        (&own[j + 1..], below)
     }
 
     fn below(&self, j: usize) -> &'a [f64] {
-        self.column(j).2
+        self.column(j).1
     }
 
     /// Solves for the supernode's own unknowns in `L x = b` and takes their parts off the rows below.
     fn forward(&self, x: &mut [f64], sums: &mut [f64]) {
         let own = &mut x[self.start..self.start + self.columns];
         for j in 0..self.columns {
-            let (diagonal, column, _) = self.column(j);
-            own[j] /= diagonal;
+            let (column, _) = self.column(j);
+            own[j] *= self.inverses[j];
             let xj = own[j];
             for (xi, l) in own[j + 1..].iter_mut().zip(column) {
                 *xi -= l * xj;
@@ -87,9 +116,9 @@ impl<'a> Supernode<'a> {
         }
         let own = &mut x[self.start..self.start + self.columns];
         for j in (0..self.columns).rev() {
-            let (diagonal, column, below) = self.column(j);
+            let (column, below) = self.column(j);
             let (solved, rest) = own[j..].split_at_mut(1);
-            solved[0] = (solved[0] - inner(column, rest) - inner(below, known)) / diagonal;
+            solved[0] = (solved[0] - inner(column, rest) - inner(below, known)) * self.inverses[j];
         }
     }
 }
@@ -109,17 +138,13 @@ fn inner(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Solves `L L^T x = b` in place, in the order of the factor; `scratch` has room for the rows of a supernode.
-pub(super) fn solve(
-    symbolic: &SymbolicSupernodalCholesky<usize>,
-    factor: &[f64],
-    x: &mut [f64],
-    scratch: &mut [f64],
-) {
-    for s in 0..symbolic.n_supernodes() {
-        Supernode::of(symbolic, factor, s).forward(x, scratch);
+pub(super) fn solve(factor: Factor<'_>, x: &mut [f64], scratch: &mut [f64]) {
+    let count = factor.symbolic.n_supernodes();
+    for s in 0..count {
+        Supernode::of(factor, s).forward(x, scratch);
     }
-    for s in (0..symbolic.n_supernodes()).rev() {
-        Supernode::of(symbolic, factor, s).backward(x, scratch);
+    for s in (0..count).rev() {
+        Supernode::of(factor, s).backward(x, scratch);
     }
 }
 
