@@ -267,7 +267,8 @@ fn record(scene: &FigureScene, files: &mut Files<'_>) -> Result<Found> {
     let mut look = |simulation: &Simulation, report: &StepReport| {
         outcome = recorder.frame(simulation, Some(report));
         bar.step();
-        if outcome.is_err() || stop.is_force_reached(&supports.of(simulation)) {
+        let ends = || stop.is_force_reached(&supports.of(simulation));
+        if outcome.is_err() || stop.support_force.is_some() && ends() {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
