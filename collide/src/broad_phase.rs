@@ -160,7 +160,7 @@ impl BroadPhase {
         );
         let chunks = x0.as_chunks::<3>().0.iter().zip(x1.as_chunks::<3>().0);
         for (bounds, (p, q)) in self.vertices.iter_mut().zip(chunks) {
-            // What the sum loses, at most half of the round-off, is made up for: boxes that touch stay so.
+            // Sums are rounded by at most half of EPSILON, relative; the box is enlarged by twice that.
             *bounds = Bounds {
                 min: std::array::from_fn(|k| {
                     let low = p[k].min(q[k]) - inflation;

@@ -70,8 +70,8 @@ pub trait Contact: Send + Sync {
     fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64>;
 
     /// Returns the largest fraction `a <= 1` of a motion that is proven to bring nothing into contact, and
-    /// appends all pairs whose gap is below the activation distance at any time of that part of the motion, in
-    /// any order and each once. Pairs that stay out of reach may be among them.
+    /// appends all pairs whose gap is below the activation distance at any time of that part of the motion,
+    /// in any order and each once. Pairs that stay out of reach may be among them.
     fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64;
 
     /// Appends the contacts of those pairs whose gap is below the activation distance (or not a number) at

@@ -9,9 +9,12 @@ use crate::narrow_phase::{gather, larger};
 use crate::{BroadPhase, Candidates, CrossCandidates};
 
 /// Skin of the lists, in mean edge lengths. With 0.06 and 0.25 a draping disk of 688 vertices takes 12 % and
-/// 25 % more time, a star of 876 vertices as long and 14 % more, tablecloths of 289 vertices as long; with 0.6
-/// all take 10 to 55 % more.
+/// 25 % more time, a star of 876 vertices as long and 14 % more, tablecloths of 289 vertices as long; with
+/// 0.6 all take 10 to 55 % more.
 const SKIN: f64 = 0.12;
+/// Lists of a motion that is so many times as long as the motion at hand, or as the skin, are made anew,
+/// because they hold too many pairs.
+const LONGEST: f64 = 16.0;
 /// Part of the skin that motions may use. The rest covers the round-off of the boxes, as long as
 /// coordinates are below a million edge lengths.
 const USED: f64 = 1.0 - 1e-6;
@@ -43,14 +46,16 @@ pub(super) struct Neighbours {
     /// Start, end and middle of the motion that lists were made for, `3V`, metres.
     listed: [Vec<f64>; 3],
     are_listed: bool,
+    /// Largest displacement along an axis on that motion, at least the skin, metres.
+    length: f64,
     /// Positions at the end of the motion.
     end: Vec<f64>,
     /// Pairs of the sheet with itself, as the broad phase finds them.
     candidates: Candidates,
     vertex_face: ByDistance,
     edge_edge: ByDistance,
-    /// Distance in the middle of the listed motion from which pairs of the sheet with itself stay out of reach on the motion,
-    /// metres.
+    /// Distance in the middle of the listed motion from which pairs of the sheet with itself stay out of
+    /// reach on the motion, metres.
     far: f64,
     /// Of each body.
     cross: Vec<CrossCandidates>,
@@ -71,6 +76,7 @@ impl Neighbours {
             own_pairs,
             listed: std::array::from_fn(|_| sheet.x.to_vec()),
             are_listed: false,
+            length: 0.0,
             end: sheet.x.to_vec(),
             candidates: Candidates::default(),
             vertex_face: ByDistance::default(),
@@ -124,8 +130,11 @@ impl Neighbours {
                 features.place(part, reach);
             }
         }
-        if !self.are_listed || !self.is_within_skin(x, bodies) {
+        let length = dx.iter().fold(self.skin, |m, d| m.max(d.abs()));
+        let is_long = self.length > LONGEST * length;
+        if !self.are_listed || is_long || !self.is_within_skin(x, bodies) {
             self.list(sheet, bodies);
+            self.length = length;
         }
         self.boxes.update_boxes(x, &self.end, 0.5 * reach);
         let [.., middle] = &self.listed;
@@ -134,14 +143,16 @@ impl Neighbours {
         // Points come nearer by the first; by what `approach` in sheet.rs bounds, once for each primitive,
         // which is the displacement relative to the mean of four points, by no more than twice 3/4 of
         // the second.
-        self.far = reach + before + 1.5 * now + (1.0 - USED) * self.skin;
+        let far = reach + before + 1.5 * now + (1.0 - USED) * self.skin;
+        self.far = if far.is_nan() { f64::INFINITY } else { far };
     }
 
     /// Whether the motion from `x` to the end leaves the boxes of the lists by no more than the skin.
     fn is_within_skin(&self, x: &[f64], bodies: &[Body]) -> bool {
         let [start, end, _] = &self.listed;
         let sheet = Displacements::beyond([start, end], x, &self.end);
-        // Two boxes of the sheet are enlarged by the skin, and of a body none.
+        // Of a pair of the sheet with itself both boxes are enlarged by the skin, of a pair with a body only
+        // that of the sheet.
         let itself = match self.own_pairs {
             SelfPairs::Listed => 0.5 * sheet.relative_to(&sheet),
             SelfPairs::Ignored => 0.0,

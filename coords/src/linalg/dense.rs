@@ -77,7 +77,7 @@ fn factorise_columns<S: Simd, const N: usize>(
     let mut heads = columns.chunks_exact_mut(height);
     let below: [&mut [f64]; N] =
         std::array::from_fn(|_| &mut heads.next().expect("N columns")[first + N..]);
-    let (vectors, tails): (Vec3<'_, S, N>, [&mut [f64]; N]) = split(below);
+    let (vectors, tails): (Registers<'_, S, N>, [&mut [f64]; N]) = split(below);
     let inverses = inverse.map(|v| simd.splat_f64s(v));
     let rows = vectors.0[0].len();
     for i in 0..rows {
@@ -102,10 +102,12 @@ fn factorise_columns<S: Simd, const N: usize>(
 }
 
 /// Columns as registers.
-struct Vec3<'a, S: Simd, const N: usize>([&'a mut [S::f64s]; N]);
+struct Registers<'a, S: Simd, const N: usize>([&'a mut [S::f64s]; N]);
 
 #[inline(always)]
-fn split<S: Simd, const N: usize>(columns: [&mut [f64]; N]) -> (Vec3<'_, S, N>, [&mut [f64]; N]) {
+fn split<S: Simd, const N: usize>(
+    columns: [&mut [f64]; N],
+) -> (Registers<'_, S, N>, [&mut [f64]; N]) {
     let mut tails: [&mut [f64]; N] = std::array::from_fn(|_| Default::default());
     let mut k = 0;
     let vectors = columns.map(|column| {
@@ -114,7 +116,7 @@ fn split<S: Simd, const N: usize>(columns: [&mut [f64]; N]) -> (Vec3<'_, S, N>, 
         k += 1;
         vectors
     });
-    (Vec3(vectors), tails)
+    (Registers(vectors), tails)
 }
 
 /// Sets the lower triangle of the square matrix `out` to `-B B^T`, where `B` is what columns of `height`
@@ -144,8 +146,8 @@ struct Left<'a> {
 }
 
 impl Left<'_> {
-    /// The first `N` columns of `B B^T`. `out` begins with the first row of the first of these columns, which are
-    /// `stride` values apart.
+    /// The first `N` columns of `B B^T`. `out` begins with the first row of the first of these columns, which
+    /// are `stride` values apart.
     #[inline(always)]
     fn product<S: Simd, const N: usize>(self, simd: S, out: &mut [f64], stride: usize, onto: Onto) {
         let rows = self.height - self.first_row;

@@ -7,7 +7,7 @@ use super::ordering::{Ordering, elimination_order, postordered};
 use super::pattern::Pattern;
 use super::symbolic::{analyse, view};
 use super::triangular::{self, Factor};
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::cholesky as ch;
@@ -19,7 +19,7 @@ pub struct SparseLlt {
     pattern: Pattern,
     values: Vec<f64>,
     symbolic: ch::SymbolicCholesky<usize>,
-    /// The plan of the factorisation, for matrices with couplings.
+    /// The plan of the factorisation; nothing for matrices that faer factorises column by column.
     fronts: Option<Multifrontal>,
     factor: Vec<f64>,
     /// Inverses of the diagonal entries of the factor, in elimination order.
@@ -62,28 +62,31 @@ impl SparseLlt {
     /// # Panics
     /// If `order` is not a permutation of the unknowns.
     pub fn with_ordering(pattern: Pattern, order: &[usize]) -> Result<Self, LinalgError> {
-        let order = postordered(&Graph::of_blocks(&pattern, 1), order);
-        Self::analysed(pattern, Some(&order))
+        Self::analysed(pattern, Some(order))
     }
 
-    /// Analyses the pattern in an order in which the subtrees of the elimination tree are ranges.
+    /// Analyses the pattern, once more if subtrees of the elimination tree are not ranges of the order.
     fn analysed(pattern: Pattern, order: Option<&[usize]>) -> Result<Self, LinalgError> {
-        let symbolic = analyse(&pattern, order)?;
+        let mut symbolic = analyse(&pattern, order)?;
+        let mut fronts = plan(&pattern, &symbolic);
+        if let (None, Some(perm)) = (&fronts, symbolic.perm()) {
+            let order = postordered(&Graph::of_blocks(&pattern, 1), perm.arrays().0);
+            symbolic = analyse(&pattern, Some(&order))?;
+            fronts = plan(&pattern, &symbolic);
+        }
         let par = Par::Seq;
+        // faer's numerical factorisation is that of matrices without a plan.
+        let scratch = match fronts {
+            Some(_) => StackReq::EMPTY,
+            None => symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default()),
+        };
         Ok(Self {
             values: vec![0.0; pattern.len()],
             inverses: vec![0.0; pattern.cols()],
             factor: vec![0.0; symbolic.len_val()],
-            factor_scratch: MemBuffer::new(
-                symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default()),
-            ),
+            factor_scratch: MemBuffer::new(scratch),
             solve_scratch: MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, par)),
-            fronts: match (symbolic.raw(), symbolic.perm()) {
-                (ch::SymbolicCholeskyRaw::Supernodal(s), Some(perm)) => {
-                    Some(Multifrontal::new(&pattern, perm, s))
-                }
-                _ => None,
-            },
+            fronts,
             permuted_rhs: vec![0.0; pattern.cols()],
             rows: match symbolic.raw() {
                 ch::SymbolicCholeskyRaw::Supernodal(s) => vec![0.0; triangular::scratch_len(s)],
@@ -127,7 +130,6 @@ impl SparseLlt {
     pub fn factorize(&mut self) -> Result<(), LinalgError> {
         let result = match &mut self.fronts {
             Some(fronts) => fronts.factorise(&self.values, &mut self.factor),
-            // Matrices without couplings.
             None => {
                 let result = self.symbolic.factorize_numeric_llt::<f64>(
                     &mut self.factor,
@@ -152,7 +154,8 @@ impl SparseLlt {
         })
     }
 
-    /// Entries of the factor in the order in which they are stored, by supernodes.
+    /// Entries of the factor in the order in which they are stored, by supernodes. Entries above the diagonal
+    /// have no meaning.
     pub fn factor(&self) -> &[f64] {
         &self.factor
     }
@@ -186,6 +189,14 @@ impl SparseLlt {
                 );
             }
         }
+    }
+}
+
+/// The plan of a factorisation by supernodes.
+fn plan(pattern: &Pattern, symbolic: &ch::SymbolicCholesky<usize>) -> Option<Multifrontal> {
+    match (symbolic.raw(), symbolic.perm()) {
+        (ch::SymbolicCholeskyRaw::Supernodal(s), Some(perm)) => Multifrontal::new(pattern, perm, s),
+        _ => None,
     }
 }
 
@@ -275,6 +286,46 @@ mod tests {
             let worst = residual.iter().fold(0.0_f64, |m, r| m.max(r.abs()));
             assert!(worst < 1e-13, "grid of {side}, blocks of {block}: {worst}");
         }
+    }
+
+    /// Orders in which subtrees of the elimination tree are no ranges: groups that are not full, rows that
+    /// minimum degree takes out as dense, and any order at all.
+    #[test]
+    fn every_order_is_taken() {
+        let solve = |entries: &[(u32, u32)], n: usize, make: &dyn Fn(Pattern) -> SparseLlt| {
+            let all: Vec<_> = entries
+                .iter()
+                .copied()
+                .chain((0..n as u32).map(|i| (i, i)))
+                .collect();
+            let (pattern, slots) = Pattern::from_entries(n, n, &all);
+            let mut llt = make(pattern);
+            for (slot, (r, c)) in slots.iter().zip(&all) {
+                llt.values_mut()[*slot as usize] = if r == c { n as f64 } else { -1.0 };
+            }
+            llt.factorize().unwrap();
+            let b: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();
+            let mut x = b.clone();
+            llt.solve(&mut x);
+            let mut left = b;
+            llt.pattern()
+                .sub_symmetric_product(llt.values(), &x, &mut left);
+            assert!(left.iter().all(|r| r.abs() < 1e-12), "{n} unknowns");
+        };
+        solve(&[(3, 0), (4, 1), (5, 2)], 6, &|p| {
+            SparseLlt::with_blocks(p, 3).unwrap()
+        });
+        let mut hubs: Vec<(u32, u32)> = (1..1200)
+            .filter(|i| i % 400 > 0)
+            .map(|i| (i, i - 1))
+            .collect();
+        hubs.extend((0..400).chain(800..1200).map(|i| (1200, i)));
+        hubs.extend((400..800).map(|i| (1201, i)));
+        solve(&hubs, 1202, &|p| SparseLlt::new(p).unwrap());
+        let order: Vec<usize> = (0..1202).map(|i| i * 5 % 1202).collect();
+        solve(&hubs, 1202, &|p| {
+            SparseLlt::with_ordering(p, &order).unwrap()
+        });
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Numerical Cholesky factorisation by the multifrontal method (Duff and Reid, ACM Trans. Math. Softw. 9,
-//! 1983; Liu, SIAM Review 34, 1992), on one or two threads.
+//! 1983; Liu, SIAM Review 34, 1992), on the threads of rayon's current pool.
 //!
-//! Each supernode of the factor, a *front*, is assembled from values of the matrix and from the updates of its
-//! children in the elimination tree, is eliminated by dense kernels, and leaves an update to its parent.
+//! Each supernode of the factor, a *front*, is assembled from values of the matrix and from the updates of
+//! its children in the elimination tree, is eliminated by dense kernels, and leaves an update to its parent.
 //! faer's factorisation, which gathers updates from all descendants, takes 1.5 to 3 times as long for
 //! matrices of 75 to 12 675 unknowns of sheets.
 
@@ -28,23 +28,25 @@ pub(super) struct Multifrontal {
 }
 
 impl Multifrontal {
+    /// The plan; nothing if the supernodes are in no postorder of the elimination tree.
     pub(super) fn new(
         pattern: &Pattern,
         perm: PermRef<'_, usize>,
         symbolic: &SymbolicSupernodalCholesky<usize>,
-    ) -> Self {
-        let plan = Plan::new(pattern, perm, symbolic);
-        Self {
+    ) -> Option<Self> {
+        let plan = Plan::new(pattern, perm, symbolic)?;
+        Some(Self {
             updates: vec![0.0; plan.room()],
             plan,
-        }
+        })
     }
 
-    /// Sets `factor` to the Cholesky factor of the matrix with the given values. The result does not depend on
-    /// the number of threads.
+    /// Sets `factor` to the Cholesky factor of the matrix with the given values. The result does not depend
+    /// on the number of threads. (A thread that waits for another one may take up other work of the pool.)
     ///
     /// # Errors
-    /// The first unknown, in the order of elimination, whose pivot is not positive.
+    /// The place in the order of elimination of an unknown whose pivot is not positive, the same for any
+    /// number of threads.
     pub(super) fn factorise(&mut self, values: &[f64], factor: &mut [f64]) -> Result<(), usize> {
         let plan = &self.plan;
         let numbers = Numbers { plan, values };

@@ -43,8 +43,8 @@ pub enum ContactKind {
 
 /// The pairs that come within reach on a motion, and the part of the motion that is safe.
 ///
-/// A set holds what can be evaluated at all places of the safe part of its motion ([`super::ActiveContacts`]). It does not
-/// depend on what was searched for before: the pairs are sorted.
+/// A set holds what can be evaluated at all places of the safe part of its motion
+/// ([`super::ActiveContacts`]). It does not depend on what was searched for before: the pairs are sorted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSet {
     bodies: BodyMotions,

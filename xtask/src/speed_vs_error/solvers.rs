@@ -225,15 +225,17 @@ impl<'a> Task<'a> {
         let fresh = || Factor::new(name, &matrix, order.as_deref());
         let mut factor = fresh()?;
         let mut outcome = Ok(());
-        row.first = shortest(limit, || {
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+        let mut begin = || {
             outcome = fresh().and_then(|f| {
                 factor = f;
                 factor.factorize()
             });
-        });
+        };
+        row.first = one.install(|| shortest(limit, &mut begin));
         outcome?;
         let mut outcome = Ok(());
-        row.again = shortest(limit, || outcome = factor.factorize());
+        row.again = one.install(|| shortest(limit, || outcome = factor.factorize()));
         outcome?;
         let mut solution = Vec::new();
         row.solve = shortest(limit, || solution = self.solve(&mut factor));

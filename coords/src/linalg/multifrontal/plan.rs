@@ -21,8 +21,8 @@ pub(super) struct Front {
     pub(super) places: Range<usize>,
     /// Children, in [`Plan::children`].
     pub(super) children: Range<usize>,
-    /// Where the update is computed, and where it is kept for the parent. It is a square matrix with a row for
-    /// each row of the front.
+    /// Where the update is computed, and where it is kept for the parent. It is a square matrix with a row
+    /// for each row of the front.
     pub(super) work: usize,
     pub(super) update: usize,
 }
@@ -43,16 +43,18 @@ pub(super) struct Subtree {
     pub(super) values: Range<usize>,
     /// Room for their updates.
     pub(super) updates: Range<usize>,
-    operations: f64,
+    /// Multiplications of the subtrees before it, and with its own.
+    operations: [f64; 2],
 }
 
 impl Subtree {
-    /// Cuts a list of two subtrees or more where the halves differ least.
+    /// Cuts a list of two subtrees or more near the middle of the operations.
     pub(super) fn halves(list: &[Self]) -> (&[Self], &[Self]) {
-        let of = |part: &[Self]| -> f64 { part.iter().map(|t| t.operations).sum() };
-        let uneven = |k: &usize| (of(&list[..*k]) - of(&list[*k..])).abs();
-        let best = (1..list.len()).min_by(|j, k| uneven(j).total_cmp(&uneven(k)));
-        list.split_at(best.unwrap_or(0))
+        let ([first, _], [_, last]) = (list[0].operations, list[list.len() - 1].operations);
+        let middle = 0.5 * (first + last);
+        // The subtree in the middle belongs to the half that has more of it.
+        let cut = list.partition_point(|t| 0.5 * (t.operations[0] + t.operations[1]) < middle);
+        list.split_at(cut.clamp(1, list.len() - 1))
     }
 }
 
@@ -76,11 +78,12 @@ pub(super) struct Plan {
 }
 
 impl Plan {
+    /// The plan; nothing if the supernodes are in no postorder of the elimination tree.
     pub(super) fn new(
         pattern: &Pattern,
         perm: PermRef<'_, usize>,
         symbolic: &SymbolicSupernodalCholesky<usize>,
-    ) -> Self {
+    ) -> Option<Self> {
         let mut plan = Self {
             fronts: Vec::new(),
             entries: vec![[0; 2]; pattern.len()],
@@ -93,8 +96,8 @@ impl Plan {
         };
         let front_of = plan.add_fronts(symbolic, pattern);
         plan.place_entries(pattern, perm, symbolic, &front_of);
-        plan.divide();
-        plan
+        plan.divide()?;
+        Some(plan)
     }
 
     /// Fronts with their children; returns the front of each column.
@@ -191,8 +194,9 @@ impl Plan {
         }
     }
 
-    /// Divides the fronts into subtrees and trunk, and the room for updates among them.
-    fn divide(&mut self) {
+    /// Divides the fronts into subtrees and trunk, and the room for updates among them. Returns nothing if
+    /// subtrees are not ranges.
+    fn divide(&mut self) -> Option<()> {
         let count = self.fronts.len();
         // Operations and number of the fronts of each subtree.
         let mut operations: Vec<f64> = self.fronts.iter().map(Front::operations).collect();
@@ -203,14 +207,17 @@ impl Plan {
             let mut first = s;
             for &child in self.children[self.fronts[s].children.clone()].iter().rev() {
                 let child = child as usize;
-                assert!(child + 1 == first, "supernodes are in postorder");
+                if child + 1 != first {
+                    return None;
+                }
                 first -= sizes[child];
                 sizes[s] += sizes[child];
                 operations[s] += operations[child];
                 is_child[child] = true;
             }
         }
-        let add = |plan: &mut Self, s: usize| {
+        let mut before = 0.0;
+        let mut add = |plan: &mut Self, s: usize| {
             let fronts = s + 1 - sizes[s]..s + 1;
             let updates = plan.room..plan.room + plan.stack(fronts.clone());
             plan.room = updates.end;
@@ -218,8 +225,9 @@ impl Plan {
                 values: plan.fronts[fronts.start].values.start..plan.fronts[s].values.end,
                 fronts,
                 updates,
-                operations: operations[s],
+                operations: [before, before + operations[s]],
             });
+            before += operations[s];
         };
         let is_large = |s: usize| operations[s] > 0.5 * self.operations;
         let trunk: Vec<usize> = (0..count).filter(|&s| is_large(s)).collect();
@@ -244,10 +252,11 @@ impl Plan {
         }
         self.room += 2 * most;
         self.trunk = trunk.into_iter().map(number).collect();
+        Some(())
     }
 
-    /// Places the updates of a subtree, from the end of the room on, as on a stack: each is computed above those
-    /// of its children, and then takes their place. Returns the height of the stack.
+    /// Places the updates of a subtree, from the end of the room on, as on a stack: each is computed above
+    /// those of its children, and then takes their place. Returns the height of the stack.
     fn stack(&mut self, fronts: Range<usize>) -> usize {
         let (mut top, mut most) = (self.room, self.room);
         for s in fronts {

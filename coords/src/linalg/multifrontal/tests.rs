@@ -52,7 +52,7 @@ fn dense(
     else {
         panic!("supernodal, with an order");
     };
-    let mut fronts = Multifrontal::new(pattern, perm, supernodal);
+    let mut fronts = Multifrontal::new(pattern, perm, supernodal).expect("a postorder");
     let mut factor = vec![f64::NAN; symbolic.len_val()];
     // Twice, so that what the first time leaves behind is seen.
     for _ in 0..2 {
@@ -129,7 +129,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     else {
         panic!("supernodal, with an order");
     };
-    let mut fronts = Multifrontal::new(&pattern, perm, supernodal);
+    let mut fronts = Multifrontal::new(&pattern, perm, supernodal).expect("a postorder");
     assert!(fronts.plan.operations > WORTH_SHARING && fronts.plan.subtrees.len() > 1);
     let mut on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
@@ -157,7 +157,7 @@ fn the_first_bad_pivot_is_named_whatever_the_number_of_threads() {
     else {
         panic!("supernodal, with an order");
     };
-    let mut fronts = Multifrontal::new(&pattern, perm, supernodal);
+    let mut fronts = Multifrontal::new(&pattern, perm, supernodal).expect("a postorder");
     let mut factor = vec![0.0; symbolic.len_val()];
     for place in [19_000, 700, 100] {
         let j = perm.arrays().0[place];
