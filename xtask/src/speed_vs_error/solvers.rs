@@ -225,7 +225,8 @@ impl<'a> Task<'a> {
         let fresh = || Factor::new(name, &matrix, order.as_deref());
         let mut factor = fresh()?;
         let mut outcome = Ok(());
-        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let one = one.expect("one thread can be started");
         let mut begin = || {
             outcome = fresh().and_then(|f| {
                 factor = f;
