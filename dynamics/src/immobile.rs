@@ -313,9 +313,9 @@ mod tests {
             if project_positions(&model, &mut x, 1e-12).is_ok() {
                 for v in found {
                     for k in 3 * v.index()..3 * v.index() + 3 {
-                        // A length error of 1e-12 leaves 1e-6 of an edge across, and more where several add
-                        // up.
-                        prop_assert!((x[k] - rest[k]).abs() < 1e-4, "{} by {:e}", v.0, x[k] - rest[k]);
+                        // A length error of 1e-12 leaves 1e-6 of an edge across a straight line of rods, and
+                        // that leaves 1e-3, its root, across a line that ends there.
+                        prop_assert!((x[k] - rest[k]).abs() < 1e-3, "{} by {:e}", v.0, x[k] - rest[k]);
                     }
                 }
             }
