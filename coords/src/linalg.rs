@@ -22,6 +22,8 @@ mod ordering;
 mod pattern;
 mod separator;
 mod symbolic;
+#[cfg(test)]
+mod testing;
 mod triangular;
 
 pub use error::LinalgError;

@@ -18,6 +18,17 @@ enum Onto {
     Values,
 }
 
+impl Onto {
+    /// What is stored where there was `before`.
+    #[inline(always)]
+    fn stored<S: Simd>(self, simd: S, before: S::f64s, product: S::f64s) -> S::f64s {
+        match self {
+            Self::Nothing => simd.neg_f64s(product),
+            Self::Values => simd.sub_f64s(before, product),
+        }
+    }
+}
+
 /// Factorises the first columns of a matrix, `A = L L^T` in their rows: `panel` holds its first columns of
 /// `height` values each, whose lower triangle is replaced by the columns of `L`. What is above the diagonal
 /// has no meaning.
@@ -73,50 +84,32 @@ fn factorise_columns<S: Simd, const N: usize>(
         }
         columns[j * height + first + j..][..N - j].copy_from_slice(&factor[j][j..]);
     }
-    // The rows below.
+    // The rows below, as many as fill registers and the rest.
     let mut heads = columns.chunks_exact_mut(height);
-    let below: [&mut [f64]; N] =
-        std::array::from_fn(|_| &mut heads.next().expect("N columns")[first + N..]);
-    let (vectors, tails): (Registers<'_, S, N>, [&mut [f64]; N]) = split(below);
+    let below: [(&mut [S::f64s], &mut [f64]); N] = std::array::from_fn(|_| {
+        let column = heads.next().expect("N columns");
+        S::as_mut_simd_f64s(&mut column[first + N..])
+    });
     let inverses = inverse.map(|v| simd.splat_f64s(v));
-    let rows = vectors.0[0].len();
-    for i in 0..rows {
+    for i in 0..below[0].0.len() {
         let mut solved = [simd.splat_f64s(0.0); N];
         for j in 0..N {
-            let mut value = vectors.0[j][i];
+            let mut value = below[j].0[i];
             for k in 0..j {
                 let l = simd.splat_f64s(-factor[k][j]);
                 value = simd.mul_add_f64s(solved[k], l, value);
             }
             solved[j] = simd.mul_f64s(value, inverses[j]);
-            vectors.0[j][i] = solved[j];
+            below[j].0[i] = solved[j];
         }
     }
-    for i in 0..tails[0].len() {
+    for i in 0..below[0].1.len() {
         for j in 0..N {
-            let known: f64 = (0..j).map(|k| tails[k][i] * factor[k][j]).sum();
-            tails[j][i] = (tails[j][i] - known) * inverse[j];
+            let known: f64 = (0..j).map(|k| below[k].1[i] * factor[k][j]).sum();
+            below[j].1[i] = (below[j].1[i] - known) * inverse[j];
         }
     }
     Ok(())
-}
-
-/// Columns as registers.
-struct Registers<'a, S: Simd, const N: usize>([&'a mut [S::f64s]; N]);
-
-#[inline(always)]
-fn split<S: Simd, const N: usize>(
-    columns: [&mut [f64]; N],
-) -> (Registers<'_, S, N>, [&mut [f64]; N]) {
-    let mut tails: [&mut [f64]; N] = std::array::from_fn(|_| Default::default());
-    let mut k = 0;
-    let vectors = columns.map(|column| {
-        let (vectors, tail) = S::as_mut_simd_f64s(column);
-        tails[k] = tail;
-        k += 1;
-        vectors
-    });
-    (Registers(vectors), tails)
 }
 
 /// Sets the lower triangle of the square matrix `out` to `-B B^T`, where `B` is what columns of `height`
@@ -195,10 +188,7 @@ impl Left<'_> {
         for q in 0..N {
             let (target, _) = S::as_mut_simd_f64s(&mut out[q * stride + i..][..size]);
             for v in 0..V {
-                target[v] = match onto {
-                    Onto::Nothing => simd.neg_f64s(sums[q][v]),
-                    Onto::Values => simd.sub_f64s(target[v], sums[q][v]),
-                };
+                target[v] = onto.stored(simd, target[v], sums[q][v]);
             }
         }
     }
@@ -224,11 +214,8 @@ impl Left<'_> {
         }
         for q in 0..N {
             let target = &mut out[q * stride + i..][..size];
-            let value = match onto {
-                Onto::Nothing => simd.neg_f64s(sums[q]),
-                Onto::Values => simd.sub_f64s(simd.partial_load_f64s(target), sums[q]),
-            };
-            simd.partial_store_f64s(target, value);
+            let before = simd.partial_load_f64s(target);
+            simd.partial_store_f64s(target, onto.stored(simd, before, sums[q]));
         }
     }
 }

@@ -145,13 +145,14 @@ impl SparseLlt {
                 })
             }
         };
-        if let ch::SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() {
-            triangular::invert_diagonal(symbolic, &self.factor, &mut self.inverses);
-        }
         result.map_err(|index| LinalgError::NotPositiveDefinite {
             order: self.pattern.cols(),
             index,
-        })
+        })?;
+        if let ch::SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() {
+            triangular::invert_diagonal(symbolic, &self.factor, &mut self.inverses);
+        }
+        Ok(())
     }
 
     /// Entries of the factor in the order in which they are stored, by supernodes. Entries above the diagonal
@@ -202,6 +203,7 @@ fn plan(pattern: &Pattern, symbolic: &ch::SymbolicCholesky<usize>) -> Option<Mul
 
 #[cfg(test)]
 mod tests {
+    use super::super::testing::grids;
     use super::*;
 
     fn laplacian(n: usize, shift: f64) -> SparseLlt {
@@ -245,30 +247,9 @@ mod tests {
 
     /// The matrix of a square grid.
     fn grid(side: u32, block: usize) -> SparseLlt {
-        let at = |i: u32, j: u32| i * side + j;
-        let mut entries = Vec::new();
-        for i in 0..side {
-            for j in 0..side {
-                entries.push((at(i, j), at(i, j)));
-                if i + 1 < side {
-                    entries.push((at(i + 1, j), at(i, j)));
-                }
-                if j + 1 < side {
-                    entries.push((at(i, j + 1), at(i, j)));
-                }
-            }
-        }
-        let n = (side * side) as usize;
-        let (pattern, slots) = Pattern::from_entries(n, n, &entries);
+        let (pattern, values) = grids(&[side], 1);
         let mut llt = SparseLlt::with_blocks(pattern, block).expect("small pattern");
-        for (k, &(r, c)) in entries.iter().enumerate() {
-            let value = if r == c {
-                4.1
-            } else {
-                -(f64::from(r)).sin().abs()
-            };
-            llt.values_mut()[slots[k] as usize] = value;
-        }
+        llt.values_mut().copy_from_slice(&values);
         llt.factorize().expect("diagonally dominant");
         llt
     }

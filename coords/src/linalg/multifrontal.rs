@@ -36,7 +36,7 @@ impl Multifrontal {
     ) -> Option<Self> {
         let plan = Plan::new(pattern, perm, symbolic)?;
         Some(Self {
-            updates: vec![0.0; plan.room()],
+            updates: vec![0.0; plan.room],
             plan,
         })
     }

@@ -74,7 +74,8 @@ pub(super) struct Plan {
     pub(super) trunk: Vec<u32>,
     /// Multiplications.
     pub(super) operations: f64,
-    room: usize,
+    /// Number of values that updates take.
+    pub(super) room: usize,
 }
 
 impl Plan {
@@ -95,8 +96,8 @@ impl Plan {
             room: 0,
         };
         let front_of = plan.add_fronts(symbolic, pattern);
-        plan.place_entries(pattern, perm, symbolic, &front_of);
         plan.divide()?;
+        plan.place_entries(pattern, perm, symbolic, &front_of);
         Some(plan)
     }
 
@@ -200,9 +201,9 @@ impl Plan {
         let count = self.fronts.len();
         // Operations and number of the fronts of each subtree.
         let mut operations: Vec<f64> = self.fronts.iter().map(Front::operations).collect();
-        let mut sizes = vec![1; count];
         self.operations = operations.iter().sum();
-        let mut is_child = vec![false; count];
+        let mut sizes = vec![1; count];
+        let mut parent = vec![None; count];
         for s in 0..count {
             let mut first = s;
             for &child in self.children[self.fronts[s].children.clone()].iter().rev() {
@@ -213,34 +214,27 @@ impl Plan {
                 first -= sizes[child];
                 sizes[s] += sizes[child];
                 operations[s] += operations[child];
-                is_child[child] = true;
+                parent[child] = Some(s);
             }
         }
+        let half = 0.5 * self.operations;
+        let is_large = |s: usize| operations[s] > half;
+        let (trunk, small): (Vec<usize>, Vec<usize>) = (0..count).partition(|&s| is_large(s));
         let mut before = 0.0;
-        let mut add = |plan: &mut Self, s: usize| {
+        for s in small
+            .into_iter()
+            .filter(|&s| parent[s].is_none_or(is_large))
+        {
             let fronts = s + 1 - sizes[s]..s + 1;
-            let updates = plan.room..plan.room + plan.stack(fronts.clone());
-            plan.room = updates.end;
-            plan.subtrees.push(Subtree {
-                values: plan.fronts[fronts.start].values.start..plan.fronts[s].values.end,
+            let updates = self.room..self.room + self.stack(fronts.clone());
+            self.room = updates.end;
+            self.subtrees.push(Subtree {
+                values: self.fronts[fronts.start].values.start..self.fronts[s].values.end,
                 fronts,
                 updates,
                 operations: [before, before + operations[s]],
             });
             before += operations[s];
-        };
-        let is_large = |s: usize| operations[s] > 0.5 * self.operations;
-        let trunk: Vec<usize> = (0..count).filter(|&s| is_large(s)).collect();
-        let mut roots: Vec<usize> = (0..count)
-            .filter(|&s| !is_child[s] && !is_large(s))
-            .collect();
-        for &s in &trunk {
-            let children = self.children[self.fronts[s].children.clone()].iter();
-            roots.extend(children.map(|&c| c as usize).filter(|&c| !is_large(c)));
-        }
-        roots.sort_unstable();
-        for s in roots {
-            add(self, s);
         }
         // Each front of the trunk needs the update of the one before only: two places take turns.
         let squares = trunk.iter().map(|&s| self.fronts[s].rows.pow(2));
@@ -269,11 +263,6 @@ impl Plan {
             top = update + size;
         }
         most - self.room
-    }
-
-    /// Number of values that updates take.
-    pub(super) fn room(&self) -> usize {
-        self.room
     }
 }
 
