@@ -280,35 +280,33 @@ impl Contact for Contacts {
 
     fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64 {
         let longest = motion.dx.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
-        let mut part = FIRST_PART * self.mean_length / longest;
-        if !(part > 0.0 && self.needs_boxes()) {
-            part = 1.0;
+        if !(self.needs_boxes() && longest.is_finite()) {
+            return self.query_whole(motion, pairs);
         }
+        let mut part = FIRST_PART * self.mean_length / longest;
         let mut dx = std::mem::take(&mut self.part_of_motion);
         let before = pairs.len();
-        while part < 1.0 {
+        let safe = loop {
+            if part >= 1.0 {
+                break self.query_whole(motion, pairs);
+            }
             dx.clear();
             dx.extend(motion.dx.iter().map(|d| part * d));
             let [from, to] = motion.progress;
-            let progress = [from, from + part * (to - from)];
             let shorter = JointMotion {
-                progress,
+                progress: [from, from + part * (to - from)],
                 dx: &dx,
                 ..motion
             };
             let safe = self.query_whole(shorter, pairs);
             if safe < 1.0 {
-                part *= safe;
-                break;
+                break part * safe;
             }
             pairs.truncate(before);
             part *= NEXT_PART;
-        }
+        };
         self.part_of_motion = dx;
-        if part < 1.0 {
-            return part;
-        }
-        self.query_whole(motion, pairs)
+        safe
     }
 
     fn evaluate(

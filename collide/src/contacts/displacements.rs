@@ -11,15 +11,15 @@ pub(super) struct Displacements {
 }
 
 impl Displacements {
-    /// Of points on a motion from `x0` to `x1`, beyond the boxes of another motion `from` its start and end
-    /// (three values a point). Not numbers if a coordinate is not finite.
-    pub(super) fn beyond(from: [&[f64]; 2], x0: &[f64], x1: &[f64]) -> Self {
+    /// Of points on a motion from `x0` to `x1`, beyond the boxes of another motion with the start and end
+    /// `other` (three values a point). Not numbers if a coordinate is not finite.
+    pub(super) fn beyond(other: [&[f64]; 2], x0: &[f64], x1: &[f64]) -> Self {
         let mut range = Self {
             low: [f64::INFINITY; 3],
             high: [f64::NEG_INFINITY; 3],
         };
         let mut sum = 0.0;
-        let [r0, r1, x0, x1] = [from[0], from[1], x0, x1].map(|x| x.as_chunks::<3>().0);
+        let [r0, r1, x0, x1] = [other[0], other[1], x0, x1].map(|x| x.as_chunks::<3>().0);
         for ((r, s), (p, q)) in r0.iter().zip(r1).zip(x0.iter().zip(x1)) {
             for k in 0..3 {
                 let low = p[k].min(q[k]) - r[k].min(s[k]);

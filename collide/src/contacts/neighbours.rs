@@ -45,9 +45,9 @@ pub(super) struct Neighbours {
     own_pairs: SelfPairs,
     /// Start, end and middle of the motion that lists were made for, `3V`, metres.
     listed: [Vec<f64>; 3],
-    are_listed: bool,
-    /// Largest displacement along an axis on that motion, at least the skin, metres.
-    length: f64,
+    /// Largest displacement along an axis on that motion, at least the skin, metres; infinite where there are
+    /// no lists.
+    listed_length: f64,
     /// Positions at the end of the motion.
     end: Vec<f64>,
     /// Pairs of the sheet with itself, as the broad phase finds them.
@@ -75,8 +75,7 @@ impl Neighbours {
             skin: SKIN * length,
             own_pairs,
             listed: std::array::from_fn(|_| sheet.x.to_vec()),
-            are_listed: false,
-            length: 0.0,
+            listed_length: f64::INFINITY,
             end: sheet.x.to_vec(),
             candidates: Candidates::default(),
             vertex_face: ByDistance::default(),
@@ -108,7 +107,7 @@ impl Neighbours {
 
     /// The boxes of the sheet at rest, with their tree.
     pub(super) fn at_rest(&mut self, x: &[f64], reach: f64) -> &mut BroadPhase {
-        self.are_listed = false;
+        self.listed_length = f64::INFINITY;
         self.boxes.update(x, x, 0.5 * reach);
         &mut self.boxes
     }
@@ -131,20 +130,27 @@ impl Neighbours {
             }
         }
         let length = dx.iter().fold(self.skin, |m, d| m.max(d.abs()));
-        let is_long = self.length > LONGEST * length;
-        if !self.are_listed || is_long || !self.is_within_skin(x, bodies) {
+        if self.listed_length > LONGEST * length || !self.is_within_skin(x, bodies) {
             self.list(sheet, bodies);
-            self.length = length;
+            self.listed_length = length;
         }
         self.boxes.update_boxes(x, &self.end, 0.5 * reach);
+        if self.own_pairs == SelfPairs::Listed {
+            let far = reach + self.approach(x) + (1.0 - USED) * self.skin;
+            self.far = if far.is_nan() { f64::INFINITY } else { far };
+        }
+    }
+
+    /// Bound on how much nearer two points of the sheet come to each other from the middle of the listed
+    /// motion to some place on the motion from `x` to the end, metres.
+    fn approach(&self, x: &[f64]) -> f64 {
         let [.., middle] = &self.listed;
         let before = Displacements::beyond([middle; 2], x, x).spread();
         let now = Displacements::beyond([x; 2], &self.end, &self.end).spread();
         // Points come nearer by the first; by what `approach` in sheet.rs bounds, once for each primitive,
         // which is the displacement relative to the mean of four points, by no more than twice 3/4 of
         // the second.
-        let far = reach + before + 1.5 * now + (1.0 - USED) * self.skin;
-        self.far = if far.is_nan() { f64::INFINITY } else { far };
+        before + 1.5 * now
     }
 
     /// Whether the motion from `x` to the end leaves the boxes of the lists by no more than the skin.
@@ -172,7 +178,6 @@ impl Neighbours {
         for (m, (x, end)) in middle.iter_mut().zip(x.iter().zip(end)) {
             *m = 0.5 * (x + *end);
         }
-        self.are_listed = true;
         self.boxes.update(x, &self.end, 0.5 * reach + self.skin);
         if self.own_pairs == SelfPairs::Listed {
             self.boxes.self_candidates(&mut self.candidates);
