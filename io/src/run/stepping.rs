@@ -143,8 +143,7 @@ impl Stepping<'_> {
         if report.taut.is_some() {
             return Some(EndReason::Taut);
         }
-        if scene.stop.support_force.is_some() && scene.stop.is_force_reached(&self.support_forces())
-        {
+        if scene.stop.is_force_reached(|| self.support_forces()) {
             return Some(EndReason::SupportForce);
         }
         if let Some(rest) = &scene.stop.rest {

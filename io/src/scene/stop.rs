@@ -43,11 +43,12 @@ impl Default for Stop {
 }
 
 impl Stop {
-    /// Whether one of the forces of the supports (newtons) ends the run.
-    pub fn is_force_reached(&self, supports: &[[f64; 3]]) -> bool {
+    /// Whether one of the forces of the supports (newtons) ends the run. They are asked for only where the
+    /// run may end at one.
+    pub fn is_force_reached(&self, supports: impl FnOnce() -> Vec<[f64; 3]>) -> bool {
         let size = |f: &[f64; 3]| f.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let limit = self.support_force.unwrap_or(f64::INFINITY);
-        supports.iter().any(|f| size(f) > limit)
+        let is_above = |limit| supports().iter().any(|f| size(f) > limit);
+        self.support_force.is_some_and(is_above)
     }
 
     /// Checks the conditions for a run in steps of `step` seconds.

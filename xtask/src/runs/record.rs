@@ -267,8 +267,7 @@ fn record(scene: &FigureScene, files: &mut Files<'_>) -> Result<Found> {
     let mut look = |simulation: &Simulation, report: &StepReport| {
         outcome = recorder.frame(simulation, Some(report));
         bar.step();
-        let ends = || stop.is_force_reached(&supports.of(simulation));
-        if outcome.is_err() || stop.support_force.is_some() && ends() {
+        if outcome.is_err() || stop.is_force_reached(|| supports.of(simulation)) {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
