@@ -282,6 +282,10 @@ mod tests {
         assert!(immobile_vertices(&moving, sheet.positions()).is_empty());
     }
 
+    /// Largest displacement along an axis, metres. Sheets that are displaced by a fifth of it stay nearly flat,
+    /// where length errors leave twenty times as much.
+    const SHAKE: f64 = 0.1;
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
 
@@ -304,7 +308,7 @@ mod tests {
             let rest = sheet.positions();
             let found = immobile_vertices(&model, rest);
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
-            let mut x: Vec<f64> = rest.iter().map(|c| c + rng.random_range(-0.02..0.02)).collect();
+            let mut x: Vec<f64> = rest.iter().map(|c| c + rng.random_range(-SHAKE..SHAKE)).collect();
             for v in &order {
                 let k = 3 * v.index();
                 x[k..k + 3].copy_from_slice(&rest[k..k + 3]);
@@ -314,8 +318,10 @@ mod tests {
                 for v in found {
                     for k in 3 * v.index()..3 * v.index() + 3 {
                         // A length error of 1e-12 leaves 1e-6 of an edge across a straight line of rods, and
-                        // that leaves 1e-3, its root, across a line that ends there.
-                        prop_assert!((x[k] - rest[k]).abs() < 1e-3, "{} by {:e}", v.0, x[k] - rest[k]);
+                        // up to its root across a line that ends there. (At most 1.7e-4 in 1479 cases; half of
+                        // the sheets have a free vertex that is 0.08 away.)
+                        let moved = (x[k] - rest[k]).abs();
+                        prop_assert!(moved < SHAKE / 200.0, "{} by {moved:e}", v.0);
                     }
                 }
             }
