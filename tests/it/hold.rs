@@ -2,8 +2,8 @@
 
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape};
 use isosheet_dynamics::{
-    Checkpoint, Fallback, Method, SheetModel, Simulation, State, StepControl, StepError,
-    StepOutcome,
+    Checkpoint, Fallback, Method, PAPER_GRAVITY, SheetModel, Simulation, State, StepControl,
+    StepError, StepOutcome,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use nalgebra::Isometry3;
@@ -16,7 +16,12 @@ fn flat() -> Sheet {
 
 /// Held at two opposite corners from flat: the halves fall shut, hang taut, and lock.
 fn hanging(sheet: &Sheet) -> SheetModel {
-    SheetModel::new(sheet, 0.1, MassKind::Lumped)
+    hanging_with(sheet, 0.1)
+}
+
+/// As [`hanging`], with a mass in kilograms.
+fn hanging_with(sheet: &Sheet, mass: f64) -> SheetModel {
+    SheetModel::new(sheet, mass, MassKind::Lumped)
         .and_then(|m| m.with_gravity().with_pins(&[VertexId(0), VertexId(24)]))
         .expect("valid")
 }
@@ -36,6 +41,16 @@ fn run(model: SheetModel, sheet: &Sheet, fallback: Fallback) -> Simulation {
         .expect("valid")
 }
 
+/// Runs that a mean is taken of, and the steps of each.
+const STARTS: u8 = 6;
+const STEPS: u8 = 21;
+
+/// Where rods lock, and so what the sheet has lost at the end, depends on round-off: runs whose masses
+/// differ by parts of 1e-9 lose different energies. Of 96 such runs each lost in 21 steps 0.096 J in the mean
+/// with a standard deviation of 0.0063 J, 0.085 J at the least and 0.114 J at the most. (In 61 steps 48 runs
+/// lost 0.085 to 0.186 J, which takes five times as long to find and scatters three times as much.) The mean
+/// of six runs then has a standard deviation of 0.0026 J, and the bound is five of these below the mean.
+/// Sheets that never moved again after they had locked once would have lost 0.064 J in the mean.
 #[test]
 fn a_sheet_whose_rods_lock_is_held_and_says_so() {
     let sheet = flat();
@@ -45,39 +60,79 @@ fn a_sheet_whose_rods_lock_is_held_and_says_so() {
         matches!(error, Some(StepError::StepTooSmall { .. })),
         "{error:?}"
     );
-    let mut run = run(hanging(&sheet), &sheet, Fallback::Hold);
-    let (start, mut held) = (run.energy(), 0);
-    for step in 0..60 {
-        let (before, energy) = (run.state().clone(), run.energy());
+    let losses = (0..STARTS).map(|k| energy_lost(&sheet, k));
+    let mean = losses.sum::<f64>() / f64::from(STARTS);
+    assert!(mean > 0.083, "{mean}");
+}
+
+/// Energy that a run has lost at its end, joules. The runs differ in nothing but round-off.
+fn energy_lost(sheet: &Sheet, k: u8) -> f64 {
+    let mass = 0.1 * (1.0 + f64::from(k) * 1e-9);
+    let mut run = run(hanging_with(sheet, mass), sheet, Fallback::Hold);
+    let start = run.energy();
+    let (mut potential, mut kinetic, mut lost, mut held) = (start, 0.0_f64, 0.0, 0);
+    for step in 0..STEPS {
+        let energy = run.energy();
         let report = run
             .step(H)
-            .unwrap_or_else(|error| panic!("step {step}: {error}"));
-        assert!(report.strain < 1e-12, "step {step}: {:e}", report.strain);
+            .unwrap_or_else(|error| panic!("start {k}, step {step}: {error}"));
+        assert!(report.strain < 1e-12, "{k}, {step}: {:e}", report.strain);
         assert!((run.state().t - f64::from(step + 1) * H).abs() < 1e-12);
-        assert!(report.hamiltonian() <= energy + 1e-3, "step {step}");
+        lost = start - report.hamiltonian();
+        if report.outcome == StepOutcome::Held {
+            assert_eq!(report.residual, 1.0);
+            // The sheet was falling, and all its kinetic energy is lost where it is held.
+            let least = start - potential;
+            assert!(held > 0 || lost > 0.99 * least, "{k}, {report:?}");
+            held += 1;
+        }
+        // A sub-step may gain a tenth of the kinetic energy. Of the largest so far steps of 96 runs gained
+        // 4 % at the most, and so did all steps of a run together.
+        kinetic = kinetic.max(report.kinetic);
+        let gain = 0.1 * kinetic;
+        assert!(report.hamiltonian() <= energy + gain, "{k}, {report:?}");
+        assert!(report.energy_drift <= gain, "{k}, {report:?}");
+        // What it lost is accounted for, but for what the method itself takes: at most 23 % in 96 runs.
+        assert!(report.energy_drift > -0.5 * lost || held == 0, "{report:?}");
+        assert!(report.dissipated > 0.0 || held == 0, "{report:?}");
+        potential = report.potential;
+    }
+    assert!(held > 0, "{k}");
+    // Halves that hang straight down have lost this much.
+    let most = mass * -PAPER_GRAVITY[2] * 0.5_f64.sqrt() / 3.0;
+    assert!(lost < most, "{k}: {lost} of {most}");
+    lost
+}
+
+/// Where steps are not divided, a step in which the sheet is held changes nothing but time and velocities.
+#[test]
+fn a_held_sheet_stays_where_it_is() {
+    let sheet = flat();
+    let control = StepControl {
+        min_fraction: 1.0,
+        ..control(Fallback::Hold)
+    };
+    let mut run = run(hanging(&sheet), &sheet, Fallback::Hold)
+        .with_control(control)
+        .expect("valid");
+    let mut held = 0;
+    for step in 0..STEPS {
+        let before = run.state().clone();
+        let report = run.step(H).expect("held where it locks");
+        assert_eq!(report.substeps, 1);
         if report.outcome != StepOutcome::Held {
             continue;
         }
+        assert!(held > 0 || before.v.iter().any(|v| *v != 0.0));
         held += 1;
         assert_eq!(report.residual, 1.0);
-        if report.substeps == 1 {
-            assert_eq!(report.kinetic, 0.0);
-            assert!(run.state().v.iter().all(|v| *v == 0.0));
-            assert_eq!(run.state().x, before.x, "step {step}");
-            let forces = run.reactions();
-            assert!(forces.iter().all(|r| r.force.norm() == 0.0), "{forces:?}");
-        }
+        assert_eq!(report.kinetic, 0.0);
+        assert!(run.state().v.iter().all(|v| *v == 0.0));
+        assert_eq!(run.state().x, before.x, "step {step}");
+        let forces = run.reactions();
+        assert!(forces.iter().all(|r| r.force.norm() == 0.0), "{forces:?}");
     }
     assert!(held > 0);
-    // What it lost is accounted for.
-    let report = run.step(H).expect("goes on");
-    let fallen = start - report.hamiltonian();
-    // (How far the sheet falls before it is held depends on round-off.)
-    assert!(report.dissipated > 0.0 && fallen > 0.01, "{report:?}");
-    assert!(
-        report.energy_drift <= 1e-9 * fallen && report.energy_drift > -0.5 * fallen,
-        "{report:?}"
-    );
 }
 
 /// Checkpoints before and after held steps continue to the same bits.
