@@ -1,6 +1,7 @@
 //! How the program fails: what is said, what to do about it, and the exit code.
 
 use crate::interrupt::Interrupted;
+use crate::threads::ThreadsError;
 use anyhow::Error;
 use isosheet_coords::ChartError;
 use isosheet_dynamics::{ModelError, SimulationError, StepError};
@@ -55,6 +56,7 @@ fn advice(error: &Error) -> Option<&'static str> {
     let known = [
         advice_of::<ReportError>,
         advice_of::<Interrupted>,
+        advice_of::<ThreadsError>,
         advice_of::<RunError>,
         advice_of::<WriteError>,
         advice_of::<JsonError>,

@@ -26,6 +26,7 @@ mod scale;
 mod selection;
 mod speed_vs_error;
 mod store;
+mod threads;
 mod timing;
 
 use clap::Parser;

@@ -7,6 +7,7 @@ use crate::draw::Series;
 use crate::interrupt;
 use crate::methods::{conservative, damped, energy_momentum};
 use crate::report::{Effort, number};
+use crate::threads::pool;
 use crate::timing::{Pairs, bumped, corner, hanging, on_table};
 use anyhow::Result;
 use isosheet_collide::ContactOptions;
@@ -315,13 +316,9 @@ pub(crate) const THREADS: Case = Case {
 fn differing(run: impl Fn() -> Result<Vec<f64>> + Sync) -> Result<usize> {
     let mut ends = Vec::new();
     for threads in [1, 2, 4] {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()?;
-        ends.push(pool.install(&run)?);
+        ends.push(pool(threads)?.install(&run)?);
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
-    let (a, b) = pool.install(|| rayon::join(&run, &run));
+    let (a, b) = pool(2)?.install(|| rayon::join(&run, &run));
     ends.extend([a?, b?]);
     Ok(ends[1..]
         .iter()

@@ -10,6 +10,7 @@ use row::SolverRow;
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::report::Effort;
+use crate::threads;
 use crate::timing::{Body, STIFFNESS, Sparse};
 use anyhow::Result;
 use elimination::elimination;
@@ -17,6 +18,7 @@ use isosheet_coords::linalg::{LinalgError, SparseLdlt, SparseLlt, SparseLu, norm
 use isosheet_coords::{CartesianChart, Chart, Choice, Linearised, mass_matrix};
 use isosheet_io::MatrixSymmetry;
 use nalgebra::{DMatrix, DVector};
+use rayon::ThreadPool;
 use row::{CRAMER, DENSE_LU, LDLT, MINORS, SCHUR, SOLVERS, SPARSE_LU};
 use std::time::Instant;
 
@@ -80,6 +82,8 @@ struct Task<'a> {
     whole: Sparse,
     /// Velocities by the refined sparse LU.
     exact: Vec<f64>,
+    /// What times of factorisations are measured on.
+    one: ThreadPool,
 }
 
 impl<'a> Task<'a> {
@@ -119,6 +123,7 @@ impl<'a> Task<'a> {
             p,
             whole,
             exact,
+            one: threads::pool(1)?,
         })
     }
 
@@ -225,18 +230,18 @@ impl<'a> Task<'a> {
         let fresh = || Factor::new(name, &matrix, order.as_deref());
         let mut factor = fresh()?;
         let mut outcome = Ok(());
-        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-        let one = one.expect("one thread can be started");
         let mut begin = || {
             outcome = fresh().and_then(|f| {
                 factor = f;
                 factor.factorize()
             });
         };
-        row.first = one.install(|| shortest(limit, &mut begin));
+        row.first = self.one.install(|| shortest(limit, &mut begin));
         outcome?;
         let mut outcome = Ok(());
-        row.again = one.install(|| shortest(limit, || outcome = factor.factorize()));
+        row.again = self
+            .one
+            .install(|| shortest(limit, || outcome = factor.factorize()));
         outcome?;
         let mut solution = Vec::new();
         row.solve = shortest(limit, || solution = self.solve(&mut factor));

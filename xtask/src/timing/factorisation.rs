@@ -1,10 +1,11 @@
 //! What the factorisation of the matrix of a step costs.
 
 use super::matrices::{Body, Sparse};
+use crate::threads;
 use anyhow::Result;
 use isosheet_coords::linalg::{Fill, Ordering, SparseLlt, elimination_order};
 use isosheet_mesh::Sheet;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPool;
 use std::time::Instant;
 
 /// Number of times that a duration is measured, the least of which counts.
@@ -40,10 +41,9 @@ pub(crate) fn order(sheet: &Sheet, ordering: Ordering) -> Result<OrderRow> {
     let mut llt = SparseLlt::with_ordering(pattern, &order)?;
     let symbolic = clock.elapsed().as_secs_f64();
     llt.values_mut().copy_from_slice(&values);
-    let [one, two] = [1, 2].map(|n| ThreadPoolBuilder::new().num_threads(n).build());
-    let numeric = fastest(&one?, &mut llt)?;
+    let numeric = fastest(&threads::pool(1)?, &mut llt)?;
     let factor = llt.factor().to_vec();
-    let two_threads = fastest(&two?, &mut llt)?;
+    let two_threads = fastest(&threads::pool(2)?, &mut llt)?;
     let mut pairs = llt.factor().iter().zip(&factor);
     let same_bits = pairs.all(|(a, b)| a.to_bits() == b.to_bits());
     let (mut rhs, mut solve) = (vec![1.0; llt.order()], f64::INFINITY);
