@@ -5,12 +5,14 @@ use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
 use crate::control::{Decision, Stepping, take_substep};
 use crate::energy_account::{EnergyAccount, Exchange};
 use crate::feasibility::{Excess, excess};
+use crate::history::History;
 use crate::hold::Hold;
 use crate::immobile::immobile_vertices;
 use crate::implicit::ImplicitEuler;
 use crate::integrator::{
     Attempt, ContactSupport, Integrator, Memory, Moment, Proposal, RodDemand, Scene,
 };
+use crate::minimiser::problem::StepEnd;
 use crate::rank::rod_rank;
 use crate::reaction::Balance;
 use crate::report::{StepError, StepOutcome, StepTotals};
@@ -160,6 +162,7 @@ impl Engine {
         let (contact, contacts) = RunContact::new(contact, &self.model, &self.moment.state)?;
         self.contact = Some(contact);
         self.moment.contacts = Some(contacts);
+        self.moment.history.returning_step = 0.0;
         Ok(())
     }
 
@@ -173,17 +176,23 @@ impl Engine {
             Fallback::Hold => Some(Box::new(Hold::new(&self.model))),
         };
         self.control = control;
+        self.moment.history.returning_step = 0.0;
         Ok(())
     }
 
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals) -> Result<(), StepError> {
         let lengths = Subdivision::new(self.state().t, h, self.control.min_fraction);
+        let proposer = if self.moment.history.returning_step == h {
+            Proposer::Fallback
+        } else {
+            Proposer::Method
+        };
         let mut run = Substeps {
             engine: self,
             lengths,
             memory: Memory::All,
-            proposer: Proposer::Method,
+            proposer,
             pending: Pending::default(),
             totals,
         };
@@ -199,6 +208,22 @@ impl Engine {
             }
         }
         Ok(())
+    }
+
+    /// Whether the last sub-step, whose start is the moment of the last proposal, ended where it started with
+    /// the same history, so that the same sub-step would do so for ever.
+    fn has_returned(&self) -> bool {
+        let (start, end) = (&self.proposal.moment, &self.moment);
+        let depends_on_time = self.contact.is_some()
+            || self.model.has_drives()
+            || self.model.has_driven_potentials()
+            || self.model.has_forces();
+        let is_same_state = (&start.state.x, &start.state.v) == (&end.state.x, &end.state.v);
+        let before = History {
+            returning_step: end.history.returning_step,
+            ..start.history.clone()
+        };
+        !depends_on_time && is_same_state && before == end.history
     }
 
     /// Why there is no sub-step: supports that ask for too much, dependent rods, or as the integrator said.
@@ -272,12 +297,23 @@ enum Stop {
     Error(StepError),
 }
 
+impl Substeps<'_> {
+    /// Where the next sub-step may end.
+    fn step_end(&self) -> StepEnd {
+        match self.engine.control.fallback {
+            Fallback::Hold if self.lengths.is_smallest() => StepEnd::Descent,
+            _ => StepEnd::Minimum,
+        }
+    }
+}
+
 impl Stepping for Substeps<'_> {
     type Refusal = StepError;
     type Error = Stop;
     type Report = ();
 
     fn propose(&mut self, h: f64) -> Result<(), StepError> {
+        let end = self.step_end();
         let Engine {
             model,
             contact,
@@ -303,7 +339,7 @@ impl Stepping for Substeps<'_> {
             model,
             contact: contact.as_mut().map(RunContact::step),
         };
-        let attempt = Attempt::new(moment, h, self.memory);
+        let attempt = Attempt::new(moment, h, self.memory).ending_at(end);
         let effort = &mut self.totals.effort;
         let is_fallback = self.proposer == Proposer::Fallback;
         match fallback {
@@ -375,6 +411,10 @@ impl Stepping for Substeps<'_> {
     fn commit(&mut self, h: f64) -> Result<(), Stop> {
         let engine = &mut *self.engine;
         let (step, exchange) = (engine.proposal.account, self.pending.exchange);
+        let is_whole = self.lengths.is_whole();
+        if step.outcome == StepOutcome::Descended {
+            self.totals.dissipated += self.pending.account.loss_since(&engine.account);
+        }
         std::mem::swap(&mut engine.moment, &mut engine.proposal.moment);
         engine.account = self.pending.account;
         engine.has_moved = true;
@@ -406,6 +446,8 @@ impl Stepping for Substeps<'_> {
             totals.dissipated += lost;
             engine.account.spend(lost);
         }
+        let returns = step.outcome == StepOutcome::Held && is_whole && engine.has_returned();
+        engine.moment.history.returning_step = if returns { h } else { 0.0 };
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         Ok(())
     }

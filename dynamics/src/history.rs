@@ -20,6 +20,8 @@ pub(crate) struct History {
     /// Stiffness of the rods in the linear systems at the end of the last step, in units of that of the
     /// masses; zero for methods without such systems and before the first step.
     pub(crate) rod_stiffness: f64,
+    /// Length of a step from here that ends here, with the same history, seconds; zero if none is known.
+    pub(crate) returning_step: f64,
 }
 
 impl History {
@@ -34,6 +36,7 @@ impl History {
         self.multipliers.copy_from(&other.multipliers);
         self.couplings.clone_from(&other.couplings);
         self.rod_stiffness = other.rod_stiffness;
+        self.returning_step = other.returning_step;
     }
 
     /// Sets the state before the present one, in place.

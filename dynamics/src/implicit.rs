@@ -201,6 +201,7 @@ fn two_step(
         h: k * h,
         prediction: &prediction,
         applied: &applied,
+        end: attempt.end,
     };
     let outcome = minimiser.minimise(problem, effort);
     (minimiser.applied, minimiser.prediction) = (applied, prediction);

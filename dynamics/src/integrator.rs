@@ -2,6 +2,7 @@
 
 use crate::contact::{ContactState, ContactWork, StepContact};
 use crate::history::{History, Multipliers};
+use crate::minimiser::problem::StepEnd;
 use crate::reaction::{Balance, ForceTime};
 use crate::report::{SolverEffort, StepError, StepOutcome};
 use crate::{SheetModel, State};
@@ -125,6 +126,8 @@ pub(crate) struct Attempt<'a> {
     pub(crate) state: &'a State,
     /// Its length, seconds. (Negative ones occur inside compositions.)
     pub(crate) h: f64,
+    /// Where it may end.
+    pub(crate) end: StepEnd,
     history: &'a History,
     memory: Memory,
 }
@@ -153,9 +156,15 @@ impl<'a> Attempt<'a> {
         Self {
             state: &start.state,
             h,
+            end: StepEnd::Minimum,
             history: &start.history,
             memory,
         }
+    }
+
+    /// The same sub-step, which may end there.
+    pub(crate) fn ending_at(self, end: StepEnd) -> Self {
+        Self { end, ..self }
     }
 
     /// The state before the present one, for methods that look back.

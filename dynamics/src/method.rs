@@ -164,15 +164,22 @@ pub enum Fallback {
     /// for. Reported as [`StepOutcome::Fallback`](crate::StepOutcome::Fallback); costs the energy that
     /// implicit Euler loses in that step.
     ImplicitEuler(ImplicitOptions),
-    /// Leave the sheet where it is for the rest of the step, with zero velocities, and carry on: the answer
-    /// where the rods of a clamped sheet lock, so that it could move to first order but has no motion.
-    /// Reported as [`StepOutcome::Held`](crate::StepOutcome::Held); the kinetic energy counts as dissipated,
-    /// and the forces of rods and supports are zero. Refused where supports move the sheet, and where bodies
-    /// close a gap or nearly so.
+    /// End the step without a minimum, and carry on: the answer where the rods of a clamped sheet lock, so
+    /// that it could move to first order but has no motion.
     ///
-    /// A solver that finds no motion does not prove that there is none: of clamped sheets that fall
-    /// 0.26 to 0.58 m some stop after a few centimetres. Every rejected step is tried again in shorter steps
-    /// first, so that a larger [`StepControl::min_fraction`], such as 1/16, saves time.
+    /// The smallest sub-step ([`StepControl::min_fraction`]) ends at positions with the rest lengths that are
+    /// lower than its start, if a part of the displacement by Newton's method leads to any
+    /// ([`StepOutcome::Descended`](crate::StepOutcome::Descended); not in contact). Otherwise the sheet stays
+    /// where it is for the rest of the step, with zero velocities
+    /// ([`StepOutcome::Held`](crate::StepOutcome::Held)). What either loses counts as dissipated, and the
+    /// forces of rods are zero. Once the same step has been in vain at the same place, it is not tried again
+    /// there and costs nothing, unless contact, forces, or supports and potentials that depend on time could
+    /// change the answer. Refused where supports move the sheet, and where bodies close a gap or nearly so.
+    ///
+    /// A solver that finds no motion does not prove that there is none: sheets stop that could move on. With
+    /// `min_fraction = 1` no step is divided: all of 200 sheets that are clamped along random lines reach the
+    /// end of two seconds, with 16 factorisations a step in the mean; with smaller fractions they move
+    /// further, at many times the cost.
     Hold,
 }
 

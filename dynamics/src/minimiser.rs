@@ -1,6 +1,7 @@
 //! Minimisation of an implicit step's incremental potential under the length constraints.
 
 mod augmented_lagrangian;
+mod descent;
 mod lagrangian;
 pub(crate) mod problem;
 mod second_order;
@@ -23,7 +24,7 @@ use augmented_lagrangian::{AugmentedLagrangian, Rounds};
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::area_from_lengths;
 use lagrangian::{Lagrangian, Merit};
-use problem::StepProblem;
+use problem::{StepEnd, StepProblem};
 use sqp::Sqp;
 
 /// Part of the largest fold that the tolerance of the lengths allows by which contact at rest may move.
@@ -65,6 +66,8 @@ pub(crate) struct Minimiser {
     /// Stiffness of the rods in the linear systems, in units of that of the masses: that of the step before,
     /// and after a minimisation that of this one. Zero where there was none.
     rod_stiffness: f64,
+    /// Displacement to the iterate at which sequential quadratic programming ended without a minimum.
+    displacement: Vec<f64>,
     /// Where inertia alone would take the sheet.
     pub(crate) prediction: Vec<f64>,
     /// Non-conservative forces, constant over the step.
@@ -112,6 +115,14 @@ pub(crate) struct Minimum {
     pub(crate) outcome: StepOutcome,
 }
 
+impl Minimum {
+    /// None, but a descent: the balance of momentum is not solved, and all of it may be left over.
+    const DESCENT: Self = Self {
+        residual: 1.0,
+        outcome: StepOutcome::Descended,
+    };
+}
+
 /// What a restoration of the lengths is to reach.
 #[derive(Debug, Clone, Copy)]
 struct LengthGoal {
@@ -136,11 +147,16 @@ impl Strategy {
         const SLIVERS: [Strategy; 3] =
             [Strategy::FromPrediction, Strategy::Sqp, Strategy::FromStart];
         let model = problem.model;
-        match (model.isometry(), problem.has_contact(), model.has_drives()) {
+        let list: &[Self] = match (model.isometry(), problem.has_contact(), model.has_drives()) {
             (Isometry::Elastic, _, _) | (_, true, true) => &ALL[1..],
             (Isometry::Rods, false, _) if faces == Faces::Slivers => &SLIVERS,
             _ => &ALL,
-        }
+        };
+        // At rest the last strategy would repeat the one before it.
+        let repeats = faces == Faces::Compact
+            && !problem.has_contact()
+            && problem.prediction == problem.state.x;
+        &list[..list.len() - usize::from(repeats)]
     }
 }
 
@@ -154,6 +170,7 @@ impl Minimiser {
             balance: Balance::with_unassigned(model, ForceTime::End),
             remembered: vec![0.0; model.isometry_rows().len()],
             rod_stiffness: 0.0,
+            displacement: vec![0.0; n],
             prediction: vec![0.0; n],
             applied: vec![0.0; n],
             options,
@@ -241,11 +258,19 @@ impl Minimiser {
             if is_minimum {
                 break;
             }
+            if *strategy == Strategy::Sqp {
+                self.keep_displacement(problem);
+            }
             if let Some(Ok(minimum)) = outcome {
                 let strain = problem.model.constrained_strain(self.x());
                 let residual = minimum.residual;
                 outcome = Some(Err(not_converged(problem, effort, residual, strain)));
             }
+        }
+        if let (Some(Err(_)), StepEnd::Descent, Some(bound)) = (&outcome, problem.end, &bound)
+            && self.find_descent(problem, bound, effort)
+        {
+            outcome = Some(Ok(Minimum::DESCENT));
         }
         let minimum = outcome.expect("there is always a strategy")?;
         let mut work = self.lagrangian.iterate.contact_work(problem.contact());

@@ -20,6 +20,10 @@ pub enum StepOutcome {
     BranchSeeded,
     /// The integrator asked for rejected every sub-step, and implicit Euler took one instead.
     Fallback,
+    /// No minimum was found, and the step ended at positions with the rest lengths where the incremental
+    /// potential is lower than at its start, see [`Fallback::Hold`](crate::Fallback::Hold). The residual is
+    /// 1: the momentum balance was not solved.
+    Descended,
     /// Every sub-step was rejected, and the sheet was left where it was, see
     /// [`Fallback::Hold`](crate::Fallback::Hold). The residual is 1: the momentum balance was not solved.
     Held,
@@ -27,6 +31,14 @@ pub enum StepOutcome {
     Chart,
     /// As `Chart`, and the chart was rebased on the way.
     Rebased,
+}
+
+impl StepOutcome {
+    /// Whether the balance of momentum was solved in every sub-step: the step neither ended short of a minimum
+    /// nor left the sheet where it was.
+    pub fn is_solved(self) -> bool {
+        !matches!(self, Self::Descended | Self::Held)
+    }
 }
 
 /// What one call of [`Simulation::step`](crate::Simulation::step) did.
@@ -59,8 +71,8 @@ pub struct StepReport {
     /// constraints, and by changing driven potentials
     /// ([`Potential::is_driven`](crate::Potential::is_driven)), joules.
     pub work: f64,
-    /// Energy taken out since the start by velocity damping, and by steps in which the sheet was held
-    /// ([`StepOutcome::Held`]), joules.
+    /// Energy taken out since the start by velocity damping, and by steps that ended without a minimum
+    /// ([`StepOutcome::Descended`], [`StepOutcome::Held`]), joules.
     pub dissipated: f64,
     /// Energy lost to friction since the start, in charts to impacts, joules.
     pub friction: f64,

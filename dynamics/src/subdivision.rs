@@ -50,9 +50,19 @@ impl Subdivision {
         self.start + self.h
     }
 
+    /// Whether the next sub-step is the whole step.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.fraction == 1.0
+    }
+
+    /// Whether the next sub-step cannot be halved.
+    pub(crate) fn is_smallest(&self) -> bool {
+        0.5 * self.length() < self.smallest
+    }
+
     /// Halves the next sub-step and returns its length; nothing if it would be too small.
     pub(crate) fn halve(&mut self) -> Option<f64> {
-        if 0.5 * self.length() < self.smallest {
+        if self.is_smallest() {
             return None;
         }
         self.fraction *= 0.5;

@@ -2,8 +2,8 @@
 
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Keyframe, Obstacle, Shape};
 use isosheet_dynamics::{
-    Checkpoint, Fallback, Method, PAPER_GRAVITY, SheetModel, Simulation, State, StepControl,
-    StepError, StepOutcome,
+    Checkpoint, CreaseSprings, Fallback, Method, PAPER_GRAVITY, Profile, SheetModel, Simulation,
+    State, StepControl, StepError, StepOutcome, VertexLoad,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use nalgebra::Isometry3;
@@ -108,13 +108,7 @@ fn energy_lost(sheet: &Sheet, k: u8) -> f64 {
 #[test]
 fn a_held_sheet_stays_where_it_is() {
     let sheet = flat();
-    let control = StepControl {
-        min_fraction: 1.0,
-        ..control(Fallback::Hold)
-    };
-    let mut run = run(hanging(&sheet), &sheet, Fallback::Hold)
-        .with_control(control)
-        .expect("valid");
+    let mut run = undivided(hanging(&sheet), &sheet);
     let mut held = 0;
     for step in 0..STEPS {
         let before = run.state().clone();
@@ -205,4 +199,119 @@ fn a_held_sheet_yields_neither_to_pins_nor_to_bodies() {
         .inspect(|report| assert!(report.gap.is_none_or(|g| g > 0.0)))
         .count();
     assert!(held > 0);
+}
+
+/// A flat sheet with bending stiffness (N m) a quarter of which is clamped along a line that is no mesh line,
+/// in a direction given by an angle to the x axis (radians).
+fn clamped(sheet: &Sheet, angle: f64, rigidity: f64) -> SheetModel {
+    let place = |v: &VertexId| {
+        let [x, y, _] = sheet.position(*v);
+        angle.cos() * x + angle.sin() * y
+    };
+    let mut pins: Vec<VertexId> = sheet.topology().vertex_ids().collect();
+    pins.sort_by(|a, b| place(b).total_cmp(&place(a)));
+    pins.truncate(sheet.topology().vertex_count().div_ceil(4));
+    let bending = CreaseSprings::bending(sheet, rigidity).expect("valid");
+    SheetModel::new(sheet, 0.1, MassKind::Lumped)
+        .map(|m| m.with_potential(bending).with_gravity())
+        .and_then(|m| m.with_damping(2.0)?.with_pins(&pins))
+        .expect("valid")
+}
+
+/// A sheet that is never left without a step.
+fn undivided(model: SheetModel, sheet: &Sheet) -> Simulation {
+    run(model, sheet, Fallback::Hold)
+        .with_control(undivided_control())
+        .expect("valid")
+}
+
+fn undivided_control() -> StepControl {
+    StepControl {
+        min_fraction: 1.0,
+        ..control(Fallback::Hold)
+    }
+}
+
+/// Irregular, and clamped along a line that is no mesh line: no motion is found from the flat state.
+fn locked(sheet: &Sheet) -> SheetModel {
+    clamped(sheet, 0.3, 1e-2)
+}
+
+fn irregular() -> Sheet {
+    generate::delaunay_square(1.0, 0.2, 5).expect("valid")
+}
+
+/// The second step at one place is not tried again, and a run in which all steps are tried moves alike.
+#[test]
+fn a_sheet_that_is_held_for_good_costs_nothing() {
+    let sheet = irregular();
+    let mut run = undivided(locked(&sheet), &sheet);
+    let mut trying = undivided(locked(&sheet), &sheet);
+    let mut resumed = None;
+    for step in 0..6 {
+        let report = run.step(H).expect("held");
+        assert_eq!(report.outcome, StepOutcome::Held);
+        assert_eq!(report.factorisations == 0, step > 0, "{report:?}");
+        // A new control takes nothing over from steps with the control before.
+        trying = trying.with_control(undivided_control()).expect("valid");
+        let tried = trying.step(H).expect("held");
+        assert!(tried.factorisations > 100, "{tried:?}");
+        assert_eq!(
+            (trying.state(), tried.outcome),
+            (run.state(), report.outcome)
+        );
+        // What is known is part of a checkpoint.
+        let earlier: Option<Simulation> = resumed.take();
+        if let Some(mut other) = earlier {
+            assert_eq!(other.step(H).expect("held"), report);
+        }
+        let bytes = run.checkpoint().to_bytes().expect("written");
+        let checkpoint = Checkpoint::from_bytes(&bytes).expect("read");
+        resumed = Some(Simulation::resume(locked(&sheet), None, checkpoint).expect("resumed"));
+    }
+    // Another step is another question.
+    let longer = run.step(2.0 * H).expect("held");
+    assert!(longer.factorisations > 100, "{longer:?}");
+}
+
+/// A load could change with time, so that every step is tried.
+#[test]
+fn a_held_sheet_under_a_load_tries_every_step() {
+    let sheet = irregular();
+    let tip = VertexId(0);
+    let none = Profile::Constant(0.0);
+    let load = VertexLoad::new(sheet.topology(), &[tip], [0.0, 0.0, -1.0], none).expect("valid");
+    let mut run = undivided(locked(&sheet).with_force(load), &sheet);
+    for _ in 0..4 {
+        let report = run.step(H).expect("held");
+        assert_eq!(report.outcome, StepOutcome::Held);
+        assert!(report.factorisations > 100, "{report:?}");
+    }
+}
+
+/// Steps that end without a minimum keep the lengths, do not gain energy, and book what they lose.
+#[test]
+fn a_step_without_a_minimum_ends_below_its_start() {
+    let sheet = generate::isotropic_square(2, 1.0).expect("valid");
+    let mut descended = 0;
+    for angle in [0.3, 1.3, 3.3] {
+        let mut run = undivided(clamped(&sheet, angle, 1e-2), &sheet);
+        let (mut energy, mut before, mut dissipated) = (run.energy(), run.state().clone(), 0.0);
+        for _ in 0..60 {
+            let report = run.step(H).expect("goes on");
+            assert!(report.strain < 1e-12, "{report:?}");
+            if report.outcome == StepOutcome::Descended {
+                descended += 1;
+                assert_eq!(report.residual, 1.0);
+                assert_ne!(run.state().x, before.x);
+                let lost = energy - run.energy();
+                assert!(lost >= 0.0, "{report:?}");
+                let booked = report.dissipated - dissipated;
+                assert!((booked - lost).abs() < 1e-9, "{booked} {lost}");
+            }
+            (energy, dissipated) = (run.energy(), report.dissipated);
+            before.clone_from(run.state());
+        }
+    }
+    assert!(descended > 2, "{descended}");
 }

@@ -24,6 +24,17 @@ pub(crate) struct StepProblem<'a> {
     pub(crate) prediction: &'a [f64],
     /// Non-conservative forces `f`, `3V`, newtons.
     pub(crate) applied: &'a [f64],
+    /// Where the step may end.
+    pub(crate) end: StepEnd,
+}
+
+/// Where a step may end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StepEnd {
+    /// At a minimum of the incremental potential.
+    Minimum,
+    /// Where no strategy finds a minimum, at positions with the rest lengths that are lower than the start.
+    Descent,
 }
 
 impl<'a> StepProblem<'a> {

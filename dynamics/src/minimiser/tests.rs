@@ -1,7 +1,7 @@
 //! The pieces of the minimiser, each against something independent of it.
 
 use super::lagrangian::{Definiteness, Lagrangian, RodLoad};
-use super::problem::StepProblem;
+use super::problem::{StepEnd, StepProblem};
 use crate::constraint::rows::HessianPart;
 use crate::iterate::Iterate;
 use crate::primal::PrimalMatrix;
@@ -57,6 +57,7 @@ impl Scene {
             h: H,
             prediction: &self.prediction,
             applied: &self.applied,
+            end: StepEnd::Minimum,
         }
     }
 

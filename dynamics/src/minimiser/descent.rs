@@ -1,0 +1,66 @@
+//! Ends of steps for which no strategy finds a minimum.
+
+use super::lagrangian::Merit;
+use super::problem::StepProblem;
+use super::{LengthGoal, Minimiser};
+use crate::Isometry;
+use crate::report::SolverEffort;
+use crate::restoration::FirstMatrix;
+
+/// Ratio of successive parts of the displacement, and the smallest part: from there on a step is as good as
+/// none.
+const RATIO: f64 = 0.7;
+const SMALLEST_PART: f64 = 0.05;
+/// Largest number of iterations of a restoration. Two or three suffice away from singular positions, and
+/// hundreds do not at such.
+const MAX_RESTORATION: usize = 6;
+
+impl Minimiser {
+    /// Keeps the displacement of the sheet since the start of the step, for [`Minimiser::find_descent`].
+    pub(super) fn keep_displacement(&mut self, problem: &StepProblem<'_>) {
+        let ends = self.lagrangian.iterate.x().iter().zip(&problem.state.x);
+        for (d, (x, x0)) in self.displacement.iter_mut().zip(ends) {
+            *d = x - x0;
+        }
+    }
+
+    /// Puts the iterate at the largest part of the kept displacement near which there are positions with the
+    /// rest lengths that have a lower incremental potential than the start, `bound`; whether there is one. The
+    /// multipliers become zero.
+    ///
+    /// A sheet of rods descends until it is taut, at positions where the rods are dependent: there are no
+    /// finite multipliers, so that Newton's method does not converge, and a restoration of the lengths halves
+    /// their error at best. A part of the displacement ends before that, at positions where two or three
+    /// iterations restore the lengths; and the next step starts there.
+    pub(super) fn find_descent(
+        &mut self,
+        problem: &mut StepProblem<'_>,
+        bound: &Merit,
+        effort: &mut SolverEffort,
+    ) -> bool {
+        if problem.model.isometry() != Isometry::Rods || problem.has_contact() {
+            return false;
+        }
+        let to = LengthGoal {
+            strain: self.strain_tolerance(problem),
+            max_iterations: MAX_RESTORATION,
+            matrix: FirstMatrix::Assembled,
+        };
+        self.lagrangian.clear_multipliers();
+        let mut part = RATIO;
+        while part >= SMALLEST_PART {
+            let displaced = problem.state.x.iter().zip(&self.displacement);
+            for (x, (x0, d)) in self.lagrangian.iterate.x_mut().iter_mut().zip(displaced) {
+                *x = x0 + part * d;
+            }
+            if self.restore(problem, to, effort) <= to.strain {
+                let now = self.lagrangian.merit(problem);
+                if now.potential < bound.potential - now.round_off {
+                    return true;
+                }
+            }
+            part *= RATIO;
+        }
+        false
+    }
+}
