@@ -94,7 +94,7 @@ impl Rows {
         );
         if summary.held > 0 {
             self.add(
-                "steps in which the sheet was held",
+                "steps in which the sheet was held or stopped short",
                 summary.held.to_string(),
             );
         }

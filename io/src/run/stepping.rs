@@ -7,7 +7,7 @@ use super::summary::{EndReason, Ending};
 use super::{RunError, Tick};
 use crate::format::{FrameData, HistoryRow, HistoryWriter};
 use crate::scene::{FoldTargets, Origins, Scene, SceneError, SceneFile, SupportForces};
-use isosheet_dynamics::{Simulation, StepOutcome, StepReport};
+use isosheet_dynamics::{Simulation, StepReport};
 use nalgebra::Vector3;
 use std::time::Instant;
 
@@ -113,7 +113,7 @@ impl Stepping<'_> {
         progress.iterations += report.iterations as u64;
         progress.factorisations += report.factorisations as u64;
         progress.rejected += report.rejected as u64;
-        progress.held += u64::from(report.outcome == StepOutcome::Held);
+        progress.held += u64::from(!report.outcome.is_solved());
         // An infinite gap means that nothing is within reach.
         if let Some(gap) = report.gap.filter(|gap| gap.is_finite()) {
             progress.gap = Some(progress.gap.map_or(gap, |least| least.min(gap)));

@@ -68,8 +68,9 @@ pub enum Fallback {
     Refuse,
     /// Take the step with implicit Euler, and carry on.
     ImplicitEuler,
-    /// Leave the sheet where it is until the end of the step, at rest, and carry on: for sheets whose rods
-    /// lock at clamps. With `min_fraction = 0.06` locked steps cost less.
+    /// End the step without a balance of forces, and carry on: for sheets whose rods lock at clamps. The sheet
+    /// stops short of where it would fall, or stays where it is, at rest. With `min_fraction = 1` no step is
+    /// divided before that, and runs of locked sheets cost least.
     Hold,
 }
 
