@@ -6,7 +6,9 @@ use crate::report::extremes;
 use crate::runs::{Course, Ending, Plan, unseen};
 use anyhow::Result;
 use isosheet_collide::Contacts;
-use isosheet_dynamics::{Method, Reaction, SheetModel, Simulation, SimulationError, State};
+use isosheet_dynamics::{
+    Method, Reaction, SheetModel, Simulation, SimulationError, State, StepControl,
+};
 use isosheet_mesh::{Sheet, VertexId};
 use std::time::{Duration, Instant};
 
@@ -41,6 +43,7 @@ pub(super) struct Scene {
     pub(super) start: Vec<f64>,
     pub(super) method: Method,
     pub(super) contacts: Option<Contacts>,
+    pub(super) control: StepControl,
 }
 
 impl Scene {
@@ -51,12 +54,18 @@ impl Scene {
             start: sheet.positions().to_vec(),
             method: Method::default(),
             contacts: None,
+            control: StepControl::default(),
         }
     }
 
     /// The same by another method.
     pub(super) fn by(self, method: Method) -> Self {
         Self { method, ..self }
+    }
+
+    /// The same with another control of the steps.
+    pub(super) fn controlled(self, control: StepControl) -> Self {
+        Self { control, ..self }
     }
 
     /// The same from other positions.
@@ -72,7 +81,8 @@ impl Scene {
 
     fn simulation(self) -> Result<Simulation, SimulationError> {
         let start = State::at_rest(self.start);
-        let simulation = Simulation::new(self.model, start, self.method)?;
+        let simulation =
+            Simulation::new(self.model, start, self.method)?.with_control(self.control)?;
         match self.contacts {
             None => Ok(simulation),
             Some(contacts) => simulation.with_contact(contacts),

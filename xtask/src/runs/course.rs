@@ -83,6 +83,8 @@ pub(crate) struct Course {
     pub(crate) cost: Cost,
     /// Most factorisations in one step.
     pub(crate) worst: usize,
+    /// Steps that ended without a minimum, see [`Fallback::Hold`](isosheet_dynamics::Fallback::Hold).
+    pub(crate) unsolved: usize,
     /// Largest relative error of an edge length.
     pub(crate) strain: f64,
     /// Largest violation of the equations of isometry (see [`StepReport::constrained_strain`]).
@@ -105,6 +107,7 @@ impl Course {
         self.cost.add(report);
         self.time = report.t;
         self.worst = self.worst.max(report.factorisations);
+        self.unsolved += usize::from(!report.outcome.is_solved());
         self.strain = self.strain.max(report.strain);
         self.violation = self.violation.max(report.constrained_strain);
         // An infinite gap means that nothing is within reach.
@@ -120,6 +123,7 @@ impl Course {
     pub(crate) fn add_run(&mut self, other: Self) {
         self.cost.add_run(&other.cost);
         self.worst = self.worst.max(other.worst);
+        self.unsolved += other.unsolved;
         self.strain = self.strain.max(other.strain);
         self.violation = self.violation.max(other.violation);
         self.gap = [self.gap, other.gap].into_iter().flatten().reduce(f64::min);
