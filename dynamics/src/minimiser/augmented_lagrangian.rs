@@ -111,9 +111,8 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
                 self.stiffness *= GROWTH;
                 continue;
             }
-            // Where rods lock most restorations use all their iterations in vain: of clamped sheets whose steps
-            // may end without a minimum half as many save a third of all factorisations, and the sheets hang as
-            // deep.
+            // Where rods lock, most restorations use all their iterations in vain. With half as many, clamped
+            // sheets whose steps may end without a minimum need a third fewer factorisations, and hang as deep.
             let most = self.minimiser.options.max_projections;
             let to = LengthGoal {
                 strain: tolerance,

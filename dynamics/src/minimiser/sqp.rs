@@ -39,9 +39,9 @@ const CONSTRAINT_PASSES: usize = 4;
 /// Part of [`ImplicitOptions::max_iterations`](crate::ImplicitOptions::max_iterations) that is the largest
 /// number of steps in contact and where the step need not end at a minimum, 20 by default: a draping sheet
 /// needs three to six steps, a sheet at rest two to six, an impact more where contact cuts them. (Otherwise
-/// all iterations may be used: a hanging sheet of 2000 triangles needs up to 50 at 60 steps a second. Forty clamped
-/// sheets whose steps may end without a minimum need 19 factorisations a step with 20, 25 with 40 and 39 with
-/// 80.)
+/// all iterations may be used: a hanging sheet of 2000 triangles needs up to 50 at 60 steps a second. Forty
+/// clamped sheets whose steps may end without a minimum need 19 factorisations a step with 20, 25 with 40 and
+/// 39 with 80.)
 const FEW: usize = 4;
 /// Edge strain that iterates may have. Hanging sheets of 289 vertices need 9.2, 9.3, 10.0 and 9.7
 /// factorisations a step (means of 24 starts) with 0.01, 0.03, 0.1 and 0.3; of sheets of 2048 and 8192
