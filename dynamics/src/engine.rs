@@ -183,7 +183,8 @@ impl Engine {
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals) -> Result<(), StepError> {
         let lengths = Subdivision::new(self.state().t, h, self.control.min_fraction);
-        let proposer = if self.moment.history.returning_step == h {
+        let returns = self.moment.history.returning_step == h && !self.may_depend_on_time();
+        let proposer = if returns {
             Proposer::Fallback
         } else {
             Proposer::Method
@@ -214,16 +215,20 @@ impl Engine {
     /// the same history, so that the same sub-step would do so for ever.
     fn has_returned(&self) -> bool {
         let (start, end) = (&self.proposal.moment, &self.moment);
-        let depends_on_time = self.contact.is_some()
-            || self.model.has_drives()
-            || self.model.has_driven_potentials()
-            || self.model.has_forces();
         let is_same_state = (&start.state.x, &start.state.v) == (&end.state.x, &end.state.v);
         let before = History {
             returning_step: end.history.returning_step,
             ..start.history.clone()
         };
-        !depends_on_time && is_same_state && before == end.history
+        is_same_state && before == end.history
+    }
+
+    /// Whether anything but the sheet could make a step differ from the same step at another time.
+    fn may_depend_on_time(&self) -> bool {
+        self.contact.is_some()
+            || self.model.has_drives()
+            || self.model.has_driven_potentials()
+            || self.model.has_forces()
     }
 
     /// Why there is no sub-step: supports that ask for too much, dependent rods, or as the integrator said.
@@ -300,8 +305,16 @@ enum Stop {
 impl Substeps<'_> {
     /// Where the next sub-step may end.
     fn step_end(&self) -> StepEnd {
-        match self.engine.control.fallback {
-            Fallback::Hold if self.lengths.is_smallest() => StepEnd::Descent,
+        let Engine {
+            model,
+            contact,
+            control,
+            ..
+        } = &*self.engine;
+        let may_lock =
+            model.isometry() == Isometry::Rods && contact.is_none() && !model.has_drives();
+        match control.fallback {
+            Fallback::Hold if may_lock && self.lengths.is_smallest() => StepEnd::Descent,
             _ => StepEnd::Minimum,
         }
     }

@@ -1,10 +1,10 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
-use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
+use crate::integrator::{Attempt, Integrator, MethodTraits, Moment, Proposal, Scene, StepAccount};
 use crate::minimiser::Minimiser;
 use crate::minimiser::problem::StepProblem;
 use crate::options::OptionsError;
-use crate::report::{SolverEffort, StepError};
+use crate::report::{SolverEffort, StepError, StepOutcome};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use serde::{Deserialize, Serialize};
@@ -27,11 +27,13 @@ pub struct ImplicitOptions {
     /// few units in the last place of the coordinates.
     pub strain_tolerance: f64,
     /// Largest number of Newton iterations of one minimisation: of sequential quadratic programming (a
-    /// quarter of this number in contact; the count begins anew after a renewal of friction or a perturbation
-    /// of a saddle), or of one round of the augmented Lagrangian. Default 80.
+    /// quarter of this number in contact, and where [`Fallback::Hold`](crate::Fallback::Hold) lets a step end
+    /// without a minimum; the count begins anew after a renewal of friction or a perturbation of a saddle), or
+    /// of one round of the augmented Lagrangian. Default 80.
     pub max_iterations: usize,
     /// Largest number of iterations of one restoration of the lengths. Default 400; sequential quadratic
-    /// programming gives up after at most 40 of these.
+    /// programming gives up after at most 40 of these, the augmented Lagrangian after half of them where a step
+    /// may end without a minimum.
     pub max_projections: usize,
     /// Largest change of a normal force of friction, relative to the largest normal force, between its last
     /// two evaluations in a step. Default 1e-3. With 1e-5 sheets that drape need a fifth more factorisations;
@@ -156,7 +158,20 @@ impl Integrator for Bdf2 {
         )?;
         // The damping that follows the step acts on the whole history, or a rate `gamma` would act as
         // `3/2 gamma`: `v1 = 4/3 v0 - 1/3 v_` amplifies what is taken from `v0` alone.
-        let history = &mut proposal.moment.history;
+        let Moment {
+            state: end,
+            history,
+            ..
+        } = &mut proposal.moment;
+        if proposal.account.outcome == StepOutcome::Descended {
+            // The step stopped short as by an impact. With the formula the sheet would go back from there: at
+            // a quarter of a uniform motion `v1` is negative.
+            for ((v, x), x0) in end.v.iter_mut().zip(&end.x).zip(&state.x) {
+                *v = (x - x0) / h;
+            }
+            history.previous = None;
+            return Ok(());
+        }
         history.set_previous(Some(state));
         if let Some(before) = &mut history.previous {
             before.v.iter_mut().for_each(|v| *v *= damping);

@@ -42,7 +42,10 @@ const COMPARISON_SLACK: f64 = 10.0;
 /// |---|---|---|---|
 /// | [`Sqp`] | the start | first | first, unless supports move |
 /// | [`AugmentedLagrangian`] | the prediction, without multipliers | second | second |
-/// | [`AugmentedLagrangian`], exact rounds | the start, without multipliers | last | last |
+/// | [`AugmentedLagrangian`], exact rounds | the start, without multipliers | last, but not at rest | last |
+///
+/// At rest and without contact the last two strategies are the same. Where none ends at a minimum and the step
+/// may end without one ([`StepEnd::Descent`]), it ends at a part of the displacement by [`Sqp`].
 ///
 /// Elastic sheets have no rods that programming would solve for, and are minimised by the last two
 /// strategies. For sheets that are isometric in weak form programming starts at the prediction where there

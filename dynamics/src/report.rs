@@ -351,7 +351,7 @@ impl Advice for StepError {
             } => cause.advice(),
             Self::StepTooSmall { .. } => Some(
                 "model the sheet as elastic (`SheetModel::with_membrane`) or as isometric in weak form \
-                 (`SheetModel::with_weak_isometry`), or let locked sheets stay where they are (`Fallback::Hold`)",
+                 (`SheetModel::with_weak_isometry`), or let locked sheets stop (`Fallback::Hold`)",
             ),
             Self::Chart { source, .. } => source.advice(),
             Self::Linalg { source, .. } => source.advice(),

@@ -327,8 +327,9 @@ impl Simulation {
     /// | energy-momentum | over the sub-step, in the mean |
     /// | RATTLE | at the start of the sub-step, in compositions of the last of its parts |
     ///
-    /// All forces are zero before the first step, after a sub-step of the [`Fallback`](crate::Fallback) and
-    /// in free fall under the energy-momentum method. The force of a rod between two vertices that cannot
+    /// All forces are zero before the first step, after a sub-step of the [`Fallback`](crate::Fallback) or
+    /// without a minimum ([`StepOutcome::Descended`](crate::StepOutcome::Descended)), and in free fall under
+    /// the energy-momentum method. The force of a rod between two vertices that cannot
     /// move is zero, since nothing determines it. Where rods depend on each other, as in a flat sheet, they
     /// can share a load in many ways, and these forces are one of them; their sums at each free vertex are
     /// unique. Without the share of the projection that ends a damped step, which is of the size of the

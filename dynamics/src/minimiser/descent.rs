@@ -3,7 +3,6 @@
 use super::lagrangian::Merit;
 use super::problem::StepProblem;
 use super::{LengthGoal, Minimiser};
-use crate::Isometry;
 use crate::report::SolverEffort;
 use crate::restoration::FirstMatrix;
 
@@ -24,7 +23,7 @@ impl Minimiser {
         }
     }
 
-    /// Puts the iterate at the largest part of the kept displacement near which there are positions with the
+    /// Puts the iterate at the largest of the tried parts of the kept displacement near which there are positions with the
     /// rest lengths that have a lower incremental potential than the start, `bound`; whether there is one. The
     /// multipliers become zero.
     ///
@@ -38,9 +37,6 @@ impl Minimiser {
         bound: &Merit,
         effort: &mut SolverEffort,
     ) -> bool {
-        if problem.model.isometry() != Isometry::Rods || problem.has_contact() {
-            return false;
-        }
         let to = LengthGoal {
             strain: self.strain_tolerance(problem),
             max_iterations: MAX_RESTORATION,

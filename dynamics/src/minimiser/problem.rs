@@ -33,7 +33,8 @@ pub(crate) struct StepProblem<'a> {
 pub(crate) enum StepEnd {
     /// At a minimum of the incremental potential.
     Minimum,
-    /// Where no strategy finds a minimum, at positions with the rest lengths that are lower than the start.
+    /// Where no strategy finds a minimum, at positions with the rest lengths that are lower than the start. For
+    /// sheets of rods without contact.
     Descent,
 }
 

@@ -147,7 +147,7 @@ fn sheets(isometry: Isometry, by: usize, effort: Effort) -> usize {
     match by {
         BDF2 => effort.quick_or(10, 200),
         EULER => effort.quick_or(0, 25),
-        // There is no step that elastic sheets do not find.
+        // Elastic sheets find every step.
         HOLDING if isometry == Isometry::Rods => effort.quick_or(10, 200),
         HOLDING => 0,
         // The projection step is one onto the lengths of rods.
