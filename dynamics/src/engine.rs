@@ -162,7 +162,6 @@ impl Engine {
         let (contact, contacts) = RunContact::new(contact, &self.model, &self.moment.state)?;
         self.contact = Some(contact);
         self.moment.contacts = Some(contacts);
-        self.moment.history.returning_step = 0.0;
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
-use crate::integrator::{Attempt, Integrator, MethodTraits, Moment, Proposal, Scene, StepAccount};
+use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::minimiser::Minimiser;
 use crate::minimiser::problem::StepProblem;
 use crate::options::OptionsError;
@@ -156,23 +156,11 @@ impl Integrator for Bdf2 {
             proposal,
             effort,
         )?;
+        let history = &mut proposal.moment.history;
+        let has_stopped_short = proposal.account.outcome == StepOutcome::Descended;
+        history.set_previous((!has_stopped_short).then_some(state));
         // The damping that follows the step acts on the whole history, or a rate `gamma` would act as
         // `3/2 gamma`: `v1 = 4/3 v0 - 1/3 v_` amplifies what is taken from `v0` alone.
-        let Moment {
-            state: end,
-            history,
-            ..
-        } = &mut proposal.moment;
-        if proposal.account.outcome == StepOutcome::Descended {
-            // The step stopped short as by an impact. With the formula the sheet would go back from there: at
-            // a quarter of a uniform motion `v1` is negative.
-            for ((v, x), x0) in end.v.iter_mut().zip(&end.x).zip(&state.x) {
-                *v = (x - x0) / h;
-            }
-            history.previous = None;
-            return Ok(());
-        }
-        history.set_previous(Some(state));
         if let Some(before) = &mut history.previous {
             before.v.iter_mut().for_each(|v| *v *= damping);
         }
@@ -221,6 +209,12 @@ fn two_step(
     let outcome = minimiser.minimise(problem, effort);
     (minimiser.applied, minimiser.prediction) = (applied, prediction);
     let (minimum, contact) = outcome?;
+    let (b, k) = match minimum.outcome {
+        // A step that stops short does so as by an impact. With the formula the sheet would go back from
+        // there: at a quarter of a uniform motion `v1` is negative.
+        StepOutcome::Descended => (0.0, 1.0),
+        _ => (b, k),
+    };
     let moment = &mut proposal.moment;
     let mut work = 0.0;
     for i in 0..state.x.len() {

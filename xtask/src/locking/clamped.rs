@@ -9,7 +9,7 @@ use super::{Findings, median};
 use crate::draw::{Axis, Drawing};
 use crate::methods::damped;
 use crate::report::{Effort, Table};
-use crate::runs::Plan;
+use crate::runs::{Course, Plan};
 use anyhow::Result;
 use isosheet_dynamics::{Fallback, Method, StepControl};
 use isosheet_mesh::generate::{self, Diagonals};
@@ -286,18 +286,20 @@ fn summary(all: &[Fallen]) -> Table {
     .named("clamped")
 }
 
-/// Mean number of factorisations in the steps that were completed; nothing where none was.
-fn factorisations(fallen: &[&Fallen]) -> Option<f64> {
+/// Mean of a count over the steps that were completed; nothing where none was.
+fn per_step(fallen: &[&Fallen], count: impl Fn(&Course) -> usize) -> Option<f64> {
     let steps: usize = fallen.iter().map(|f| f.course.cost.steps).sum();
-    let factorisations: usize = fallen.iter().map(|f| f.course.cost.factorisations).sum();
-    (steps > 0).then(|| factorisations as f64 / steps as f64)
+    let counted: usize = fallen.iter().map(|f| count(&f.course)).sum();
+    (steps > 0).then(|| counted as f64 / steps as f64)
+}
+
+fn factorisations(fallen: &[&Fallen]) -> Option<f64> {
+    per_step(fallen, |course| course.cost.factorisations)
 }
 
 /// The share of the completed steps that ended without a minimum.
 fn unsolved(fallen: &[&Fallen]) -> Option<f64> {
-    let steps: usize = fallen.iter().map(|f| f.course.cost.steps).sum();
-    let unsolved: usize = fallen.iter().map(|f| f.course.unsolved).sum();
-    (steps > 0).then(|| unsolved as f64 / steps as f64)
+    per_step(fallen, |course| course.unsolved)
 }
 
 /// The kinds of errors with their numbers.
