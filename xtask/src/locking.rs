@@ -24,6 +24,7 @@ mod sample;
 mod scene;
 mod sliding;
 mod targets;
+mod ways;
 
 use crate::draw::Drawing;
 use crate::interrupt;

@@ -5,13 +5,13 @@ use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::sample::{OfModel, Sample, requirements};
 use super::scene::Scene;
+use super::ways::Way;
 use super::{Findings, median};
 use crate::draw::{Axis, Drawing};
 use crate::methods::damped;
 use crate::report::{Effort, Table};
 use crate::runs::{Course, Plan};
 use anyhow::Result;
-use isosheet_dynamics::{Fallback, Method, StepControl};
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{Sheet, VertexId};
 use rand::{RngExt, SeedableRng};
@@ -107,31 +107,11 @@ fn random_sheet(kind: &str, rng: &mut ChaCha8Rng) -> Result<Sheet> {
     })
 }
 
-/// A method, and what it does where it finds no step.
-struct Way {
-    name: &'static str,
-    method: Method,
-    control: StepControl,
-}
-
 /// The damped methods, which end a run where they find no step, and the default method, which ends the step
 /// there without a minimum.
 fn ways() -> Vec<Way> {
-    let ending = damped().map(|(name, method)| Way {
-        name,
-        method,
-        control: StepControl::default(),
-    });
-    let holding = Way {
-        name: "BDF2, holding",
-        method: Method::default(),
-        control: StepControl {
-            min_fraction: 1.0,
-            fallback: Fallback::Hold,
-            ..StepControl::default()
-        },
-    };
-    ending.into_iter().chain([holding]).collect()
+    let ending = damped().into_iter().map(Way::ending);
+    ending.chain([Way::holding()]).collect()
 }
 
 /// The number of a way among [`ways`], and the number of a sheet in the family.
@@ -141,6 +121,9 @@ type Job = (usize, usize);
 const BDF2: usize = 0;
 const EULER: usize = 1;
 const HOLDING: usize = 3;
+
+/// The ways that the plot shows.
+const SHOWN: [usize; 2] = [BDF2, HOLDING];
 
 /// The number of sheets that a model is tried on by a method.
 fn sheets(isometry: Isometry, by: usize, effort: Effort) -> usize {
@@ -332,14 +315,17 @@ fn remarks(all: &[Fallen]) -> Vec<String> {
 /// Factorisations a step of every sheet against its number of vertices, for the default method.
 fn plot(all: &[Fallen]) -> Drawing {
     let panel = |k: usize| {
-        let of = all.iter().filter(|f| f.job.0 == BDF2 && kind(f) == k);
-        let dots = of.map(|f| Dot::of(f, 0, f.vertices as f64, f.cost()));
+        let dots = all.iter().filter(|f| kind(f) == k).filter_map(|f| {
+            let way = SHOWN.iter().position(|by| *by == f.job.0)?;
+            Some(Dot::of(f, way, f.vertices as f64, f.cost()))
+        });
         Panel::new(KINDS[k], dots.collect())
     };
     let x = Axis::round("vertices ~V~", [15.0, 135.0], 4);
     let y = Axis::holding("factorisations a step", all.iter().filter_map(Fallen::cost));
     let panels = (0..KINDS.len()).map(panel).collect();
-    Figure::of_row(x, y, panels, vec!["one sheet".into()], [96.0, 130.0]).draw()
+    let names = SHOWN.map(|by| ways()[by].name.to_owned()).to_vec();
+    Figure::of_row(x, y, panels, names, [96.0, 130.0]).draw()
 }
 
 #[cfg(test)]

@@ -33,7 +33,7 @@ type Hanging = Sample<(u32, Option<f64>)>;
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
     let effort = records.store.effort;
     let duration = effort.quick_or(0.25, 1.0);
-    let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.5, 60.0));
+    let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.5, 150.0));
     let levels: &[u32] = effort.quick_or(&[1, 2], &[2, 3, 4, 5]);
     // The longest runs begin first, so that no core is left alone with one of them.
     let coarser = levels.iter().rev();
