@@ -1,14 +1,14 @@
-//! Charts: one panel each, with axes, series, a legend to the right, and marks of runs that did not end.
+//! Charts: one panel each, with axes, series, a legend to the right, and marks of runs without a value.
 
 use super::{
     Anchor, Axis, Colour, Drawing, Marker, SMALL, Series, Stroke, TEXT, Vertical, palette, text,
 };
 
-/// Heights above the axes of the line of runs that did not end and of the title, points.
+/// Heights above the axes of the line of runs without a value and of the title, points.
 const NOT_ENDED: f64 = 13.0;
 const TITLE: f64 = 9.0;
 
-/// A run that did not end: a mark above the axes.
+/// A run without a value, such as one that did not end: a mark above the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Missing {
     /// Where on the horizontal axis it is.
@@ -38,7 +38,7 @@ pub(crate) struct Chart {
     pub(crate) size: [f64; 2],
     /// Points outside the vertical axis are left out.
     pub(crate) series: Vec<Series>,
-    /// Runs that did not end, on a line above the axes; without it there is no such line.
+    /// Runs without a value, on a line above the axes; without it there is no such line.
     pub(crate) missing: Option<Vec<Missing>>,
     pub(crate) legend: Legend,
 }
@@ -84,7 +84,7 @@ impl Chart {
         Self { legend, ..self }
     }
 
-    /// The same with a line of runs that did not end.
+    /// The same with a line of runs without a value.
     pub(crate) fn with_missing(self, missing: Vec<Missing>) -> Self {
         let missing = Some(missing);
         Self { missing, ..self }
@@ -157,13 +157,13 @@ impl Chart {
         }
     }
 
-    /// The line above the axes with the runs that did not end.
+    /// The line above the axes with the runs without a value.
     fn not_ended(&self, d: &mut Drawing, missing: &[Missing]) {
         let ([width, height], grey) = (self.size, palette::GREY);
         let y = height + NOT_ENDED;
         d.line(&[[0.0, y], [width, y]], Stroke::new(grey, 0.5).dashed());
         let (at, centre) = ([-4.0, y], Vertical::Centre);
-        d.text(at, "did not end", 6.0, Anchor::End, centre, grey);
+        d.text(at, "no value", 6.0, Anchor::End, centre, grey);
         let rim = Stroke::new(palette::WHITE, 0.4);
         for m in missing {
             let x = width * self.x.part(m.x) + m.beside;

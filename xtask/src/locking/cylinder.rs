@@ -191,9 +191,9 @@ fn distance(sheet: &Sheet, x: &[f64]) -> f64 {
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
     let effort = records.store.effort;
     let plan = Plan::new(STEP, 6.0)
-        .within(effort.quick_or(0.3, 4.0))
+        .within(effort.quick_or(0.3, 8.0))
         .until_rest(REST);
-    let sizes: &[usize] = effort.quick_or(&[4], &[4, 8, 16]);
+    let sizes: &[usize] = effort.quick_or(&[4], &[4, 8, 16, 32]);
     let directions: &[f64] = effort.quick_or(&[0.0, 22.5, 45.0], &DIRECTIONS);
     let mut meshes: Vec<Mesh> = Vec::new();
     for pattern in Pattern::ALL {

@@ -24,7 +24,7 @@ pub(super) struct Dot {
     /// Number of the mesh among those that the figure names.
     pub(super) mesh: usize,
     pub(super) x: f64,
-    /// What was measured; nothing of a run that did not end.
+    /// What was measured; nothing of a run that did not end or has no such value.
     pub(super) y: Option<f64>,
 }
 
@@ -165,7 +165,7 @@ impl Figure {
         }
     }
 
-    /// The runs that did not end: models and meshes beside one another.
+    /// The runs without a value: models and meshes beside one another.
     fn missing(&self, panel: &Panel) -> Vec<Missing> {
         // Where lines join the meshes of a model, all of them are at the same places.
         let meshes = match self.joined {
