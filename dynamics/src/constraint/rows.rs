@@ -183,14 +183,9 @@ impl VertexRows {
         }
     }
 
-    /// Scales the multipliers.
-    pub(crate) fn scale(&mut self, ratio: f64) {
-        self.multipliers.iter_mut().for_each(|m| *m *= ratio);
-    }
-
     /// Sets the multipliers to zero.
     pub(crate) fn clear(&mut self) {
-        self.scale(0.0);
+        self.multipliers.fill(Vector3::zeros());
     }
 
     /// Violations relative to the shortest rod at the vertex.

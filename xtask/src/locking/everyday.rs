@@ -290,10 +290,8 @@ fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
     });
     let range = [-0.7, scenes.len() as f64 - 0.3];
     let x = Axis::linear("squares across, or mesh", range, ticks.collect());
-    let costs = all
-        .iter()
-        .filter_map(|d| d.course.cost.factorisations_per_step());
-    let y = Axis::holding("factorisations a step", costs);
+    let drawn = all.iter().filter(|d| d.job.0 == ENDING);
+    let y = Axis::holding("factorisations a step", drawn.filter_map(Day::cost));
     let panel = Panel::new("Everyday scenes", dots.collect());
     let kinds = KINDS.map(str::to_owned).to_vec();
     Figure::of_row(x, y, vec![panel], kinds, [260.0, 150.0]).draw()

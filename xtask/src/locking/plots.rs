@@ -119,7 +119,7 @@ impl Figure {
             meshes: Pattern::ALL.map(|p| p.to_string()).to_vec(),
             guide: "~h~^{2}".into(),
             joined: Joined::Yes,
-            size: [96.0, 130.0],
+            size: [110.0, 130.0],
         }
     }
 
