@@ -5,10 +5,9 @@ use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::sample::{OfModel, Sample, requirements};
 use super::scene::Scene;
-use super::ways::Way;
+use super::ways::{BDF2, EULER, HOLDING, Way, by_default_method, ways};
 use super::{Findings, median};
 use crate::draw::{Axis, Drawing};
-use crate::methods::damped;
 use crate::report::{Effort, Table};
 use crate::runs::{Course, Plan};
 use anyhow::Result;
@@ -86,7 +85,7 @@ impl Clamped {
             .with_damping(DAMPING)?
             .with_pins(&self.pins)?;
         let scene = Scene::flat(model, &self.sheet);
-        Ok(scene.by(way.method).controlled(way.control))
+        Ok(scene.by_way(way))
     }
 }
 
@@ -107,20 +106,8 @@ fn random_sheet(kind: &str, rng: &mut ChaCha8Rng) -> Result<Sheet> {
     })
 }
 
-/// The damped methods, which end a run where they find no step, and the default method, which ends the step
-/// there without a minimum.
-fn ways() -> Vec<Way> {
-    let ending = damped().into_iter().map(Way::ending);
-    ending.chain([Way::holding()]).collect()
-}
-
 /// The number of a way among [`ways`], and the number of a sheet in the family.
 type Job = (usize, usize);
-
-/// The numbers of the default method, of implicit Euler, and of the default method that holds sheets.
-const BDF2: usize = 0;
-const EULER: usize = 1;
-const HOLDING: usize = 3;
 
 /// The ways that the plot shows.
 const SHOWN: [usize; 2] = [BDF2, HOLDING];
@@ -130,8 +117,7 @@ fn sheets(isometry: Isometry, by: usize, effort: Effort) -> usize {
     match by {
         BDF2 => effort.quick_or(10, 200),
         EULER => effort.quick_or(0, 25),
-        // Elastic sheets find every step.
-        HOLDING if isometry == Isometry::Rods => effort.quick_or(10, 200),
+        HOLDING if by_default_method(isometry).contains(&by) => effort.quick_or(10, 200),
         HOLDING => 0,
         // The projection step is one onto the lengths of rods.
         _ if isometry == Isometry::Rods => effort.quick_or(0, 25),
@@ -180,11 +166,8 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
                 super::targets::at_most(of.isometry, &spent, 20.0, &[cost]),
             ]
         };
-        let ways: &[usize] = match of.isometry {
-            Isometry::Rods => &[BDF2, HOLDING],
-            _ => &[BDF2],
-        };
-        ways.iter().copied().flat_map(required).collect()
+        let ways = by_default_method(of.isometry).iter();
+        ways.copied().flat_map(required).collect()
     });
     let findings = Findings {
         tables: vec![summary(&all)],

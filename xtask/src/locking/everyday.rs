@@ -7,12 +7,12 @@ use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::sample::{Sample, requirements};
 use super::scene::Scene;
-use super::ways::Way;
+use super::ways::{BDF2, by_default_method, ways};
 use crate::draw::{Axis, Drawing};
 use crate::report::{Effort, Table};
 use crate::runs::Plan;
 use anyhow::Result;
-use isosheet_dynamics::{Method, PointProfile, Profile, SheetModel};
+use isosheet_dynamics::{PointProfile, Profile, SheetModel};
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{Sheet, VertexId};
 use serde::{Deserialize, Serialize};
@@ -176,17 +176,7 @@ fn rolled(sheet: &Sheet) -> Vec<f64> {
         .collect()
 }
 
-/// The default method, which ends a run where it finds no step, and the same, which ends the step there
-/// without a minimum.
-fn ways() -> [Way; 2] {
-    [Way::ending(("BDF2", Method::default())), Way::holding()]
-}
-
-/// The numbers of these ways.
-const ENDING: usize = 0;
-const HOLDING: usize = 1;
-
-/// The number of a way, and a scene.
+/// The number of a way among [`ways`], and a scene.
 type Job = (usize, Everyday);
 
 /// Heights of the lowest and the highest vertex (metres), and energy of bending (joules) at the end.
@@ -200,25 +190,15 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
     let scenes = Everyday::all(effort);
     let all = records.of_models(
         |isometry| {
-            // Elastic sheets find every step.
-            let ways: &[usize] = match isometry {
-                Isometry::Rods => &[ENDING, HOLDING],
-                _ => &[ENDING],
-            };
             let by = |&by: &usize| scenes.iter().map(move |&scene| (by, scene));
-            ways.iter().flat_map(by).collect()
+            by_default_method(isometry).iter().flat_map(by).collect()
         },
         |isometry, &(by, scene)| {
             let sheet = scene.sheet()?;
             let model = scene.model(isometry, &sheet)?;
             let start = scene.start(&sheet);
-            let Way {
-                method, control, ..
-            } = &ways()[by];
-            let scene_of_way = Scene::flat(model, &sheet)
-                .by(method.clone())
-                .controlled(control.clone());
-            let (course, end) = scene_of_way.from(start).run(&plan)?;
+            let flat = Scene::flat(model, &sheet).by_way(ways().swap_remove(by));
+            let (course, end) = flat.from(start).run(&plan)?;
             let bending = (PAPER_RIGIDITY, &*scene.clamp(&sheet));
             let bending = isometry.bending_energy(&sheet, bending, &end.x)?;
             let measured = (end.heights(), bending);
@@ -230,10 +210,10 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
             let of = of.with(|job| job.0 == by);
             let name = ways()[by].name;
             let quantity = format!("part of the scenes that run to their end, {name}");
-            (!of.all.is_empty()).then(|| of.at_least(&quantity, 1.0, Some(of.share_that_ends())))
+            of.at_least(&quantity, 1.0, Some(of.share_that_ends()))
         };
-        let ended = [ENDING, HOLDING].into_iter().filter_map(ended);
-        ended.chain([of.strain()]).collect()
+        let ways = by_default_method(of.isometry).iter().copied();
+        ways.map(ended).chain([of.strain()]).collect()
     });
     let findings = Findings {
         tables: vec![table(&all, &plan)],
@@ -274,7 +254,7 @@ fn table(all: &[Day], plan: &Plan) -> Table {
 
 /// Factorisations a step of every scene, by the method that ends a run where it finds no step.
 fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
-    let ending = all.iter().filter(|d| d.job.0 == ENDING);
+    let ending = all.iter().filter(|d| d.job.0 == BDF2);
     let dots = ending.filter_map(|d| {
         let scene = d.job.1;
         let place = scenes.iter().position(|s| *s == scene)?;
@@ -290,7 +270,7 @@ fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
     });
     let range = [-0.7, scenes.len() as f64 - 0.3];
     let x = Axis::linear("squares across, or mesh", range, ticks.collect());
-    let drawn = all.iter().filter(|d| d.job.0 == ENDING);
+    let drawn = all.iter().filter(|d| d.job.0 == BDF2);
     let y = Axis::holding("factorisations a step", drawn.filter_map(Day::cost));
     let panel = Panel::new("Everyday scenes", dots.collect());
     let kinds = KINDS.map(str::to_owned).to_vec();

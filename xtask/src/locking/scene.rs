@@ -1,6 +1,7 @@
 //! Scenes with a limit of wall time that holds within a step as well.
 
 use super::limit::{GivenUp, Guard, unless_given_up};
+use super::ways::Way;
 use crate::interrupt::Interrupted;
 use crate::report::extremes;
 use crate::runs::{Course, Ending, Plan, unseen};
@@ -63,9 +64,16 @@ impl Scene {
         Self { method, ..self }
     }
 
-    /// The same with another control of the steps.
-    pub(super) fn controlled(self, control: StepControl) -> Self {
-        Self { control, ..self }
+    /// The same by another method, with what it does where it finds no step.
+    pub(super) fn by_way(self, way: Way) -> Self {
+        let Way {
+            method, control, ..
+        } = way;
+        Self {
+            method,
+            control,
+            ..self
+        }
     }
 
     /// The same from other positions.

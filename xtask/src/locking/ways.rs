@@ -1,5 +1,7 @@
 //! Methods, and what they do where they find no step.
 
+use super::isometry::Isometry;
+use crate::methods::damped;
 use isosheet_dynamics::{Fallback, Method, StepControl};
 
 /// A method, and what it does where it finds no step.
@@ -9,28 +11,37 @@ pub(super) struct Way {
     pub(super) control: StepControl,
 }
 
-impl Way {
-    /// A method that ends the run where it finds no step.
-    pub(super) fn ending((name, method): (&'static str, Method)) -> Self {
-        let control = StepControl::default();
-        Self {
-            name,
-            method,
-            control,
-        }
-    }
-
-    /// The default method, which divides no step, and ends the step without a minimum where it finds none.
-    pub(super) fn holding() -> Self {
-        let control = StepControl {
+/// The damped methods, which end a run where they find no step, and the default method, which divides no
+/// step and ends it there without a minimum.
+pub(super) fn ways() -> Vec<Way> {
+    let ending = damped().map(|(name, method)| Way {
+        name,
+        method,
+        control: StepControl::default(),
+    });
+    let holding = Way {
+        name: "BDF2, holding",
+        method: Method::default(),
+        control: StepControl {
             min_fraction: 1.0,
             fallback: Fallback::Hold,
             ..StepControl::default()
-        };
-        Self {
-            name: "BDF2, holding",
-            method: Method::default(),
-            control,
-        }
+        },
+    };
+    ending.into_iter().chain([holding]).collect()
+}
+
+/// The numbers of the default method, of implicit Euler, and of the default method that holds sheets, among
+/// [`ways`].
+pub(super) const BDF2: usize = 0;
+pub(super) const EULER: usize = 1;
+pub(super) const HOLDING: usize = 3;
+
+/// The ways of the default method that are tried on a model.
+pub(super) fn by_default_method(isometry: Isometry) -> &'static [usize] {
+    match isometry {
+        Isometry::Rods => &[BDF2, HOLDING],
+        // Elastic sheets find every step.
+        _ => &[BDF2],
     }
 }
