@@ -64,6 +64,7 @@ impl Engine {
             return Err(SimulationError::Elastic);
         }
         let integrator = method.build(&model)?;
+        let control = StepControl::default();
         let traits = integrator.traits();
         if traits.demand == RodDemand::Independent
             && let Some(index) = model.constraints().iter().position(|c| c.is_one_sided())
@@ -73,9 +74,9 @@ impl Engine {
         Ok(Self {
             moment: Moment::at(state, &model, traits),
             proposal: Proposal::new(&model, traits),
+            fallback: fallback(&model, &method, &control)?,
             integrator,
-            control: StepControl::default(),
-            fallback: None,
+            control,
             contact: None,
             account: EnergyAccount::default(),
             has_moved: false,
@@ -167,13 +168,7 @@ impl Engine {
 
     pub(crate) fn set_control(&mut self, control: StepControl) -> Result<(), SimulationError> {
         control.validate()?;
-        self.fallback = match &control.fallback {
-            Fallback::Refuse => None,
-            Fallback::ImplicitEuler(o) => {
-                Some(Box::new(ImplicitEuler::new(&self.model, o.clone())?))
-            }
-            Fallback::Hold => Some(Box::new(Hold::new(&self.model))),
-        };
+        self.fallback = fallback(&self.model, &self.method, &control)?;
         self.control = control;
         self.moment.history.returning_step = 0.0;
         Ok(())
@@ -181,7 +176,7 @@ impl Engine {
 
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals) -> Result<(), StepError> {
-        let lengths = Subdivision::new(self.state().t, h, self.control.min_fraction);
+        let lengths = Subdivision::new(self.state().t, h);
         let returns = self.moment.history.returning_step == h && !self.may_depend_on_time();
         let proposer = if returns {
             Proposer::Fallback
@@ -222,6 +217,28 @@ impl Engine {
         is_same_state && before == end.history
     }
 
+    /// Smallest sub-step, as a fraction of a step, of which no minimum may be found.
+    fn hold_fraction(&self) -> f64 {
+        let StepControl {
+            min_fraction,
+            hold_fraction,
+            ..
+        } = self.control;
+        if self.may_lock() {
+            hold_fraction.max(min_fraction)
+        } else {
+            min_fraction
+        }
+    }
+
+    /// Whether the sheet may be held because its rods lock. With contact, where supports move, and for a sheet
+    /// that is supported at one vertex at most, a shorter sub-step is tried before that.
+    fn may_lock(&self) -> bool {
+        let may_hold = self.control.fallback == Fallback::Hold && self.fallback.is_some();
+        let is_clamped = self.model.support_count() > 1 && !self.model.has_drives();
+        may_hold && is_clamped && self.contact.is_none()
+    }
+
     /// Whether anything but the sheet could make a step differ from the same step at another time.
     fn may_depend_on_time(&self) -> bool {
         self.contact.is_some()
@@ -260,7 +277,7 @@ impl Engine {
         }
         Stop::Error(StepError::StepTooSmall {
             t: state.t,
-            min_step: lengths.smallest(),
+            min_step: lengths.part(self.control.min_fraction),
             dependent_rods: dependent.map_or(0, |rank| rank.nearly_dependent),
             cause: Box::new(cause),
         })
@@ -304,17 +321,11 @@ enum Stop {
 impl Substeps<'_> {
     /// Where the next sub-step may end.
     fn step_end(&self) -> StepEnd {
-        let Engine {
-            model,
-            contact,
-            control,
-            ..
-        } = &*self.engine;
-        let may_lock =
-            model.isometry() == Isometry::Rods && contact.is_none() && !model.has_drives();
-        match control.fallback {
-            Fallback::Hold if may_lock && self.lengths.is_smallest() => StepEnd::Descent,
-            _ => StepEnd::Minimum,
+        let engine = &*self.engine;
+        if engine.may_lock() && self.lengths.is_smallest(engine.hold_fraction()) {
+            StepEnd::Descent
+        } else {
+            StepEnd::Minimum
         }
     }
 }
@@ -395,12 +406,19 @@ impl Stepping for Substeps<'_> {
         self.totals.rejected += 1;
         let looks_back = self.memory > Memory::Restart && self.engine.moment.history.looks_back();
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
+        // What a locked sheet lacks is a motion, and not a shorter step.
+        let smallest = match refusal {
+            StepError::NotConverged { .. } | StepError::EnergyGain { .. } => {
+                self.engine.hold_fraction()
+            }
+            _ => self.engine.control.min_fraction,
+        };
         if self.proposer == Proposer::Fallback {
             Decision::Stop(self.engine.stop(&self.lengths, refusal))
         } else if gains_energy && looks_back {
             // Contact came or went, or rods snapped through: the history of the motion does not continue.
             Decision::Restart
-        } else if let Some(shorter) = self.lengths.halve() {
+        } else if let Some(shorter) = self.lengths.halve(smallest) {
             self.memory = self.memory.min(Memory::State);
             Decision::Shorten(shorter)
         } else if self.engine.fallback.is_some() {
@@ -463,6 +481,26 @@ impl Stepping for Substeps<'_> {
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         Ok(())
     }
+}
+
+/// The fallback of a step control, for a sheet that a method moves.
+///
+/// Sheets of rods alone are held, and by the damped methods that minimise: the conservative methods would lose
+/// the energy that they are there to keep.
+fn fallback(
+    model: &SheetModel,
+    method: &Method,
+    control: &StepControl,
+) -> Result<Option<Box<dyn Integrator>>, SimulationError> {
+    Ok(match &control.fallback {
+        Fallback::ImplicitEuler(options) => {
+            Some(Box::new(ImplicitEuler::new(model, options.clone())?))
+        }
+        Fallback::Hold if method.is_minimising() && model.isometry() == Isometry::Rods => {
+            Some(Box::new(Hold::new(model)))
+        }
+        Fallback::Hold | Fallback::Refuse => None,
+    })
 }
 
 /// Refuses a state whose energy is not finite.

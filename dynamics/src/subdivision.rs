@@ -9,8 +9,6 @@ const PATIENCE: usize = 4;
 pub(crate) struct Subdivision {
     start: f64,
     h: f64,
-    /// Smallest sub-step, seconds.
-    smallest: f64,
     /// Length of the next sub-step, as a fraction of the step.
     fraction: f64,
     /// Fraction of the step that is done.
@@ -19,12 +17,11 @@ pub(crate) struct Subdivision {
 }
 
 impl Subdivision {
-    /// Of a step of `h` seconds from the time `start`, in sub-steps of at least the fraction `smallest`.
-    pub(crate) fn new(start: f64, h: f64, smallest: f64) -> Self {
+    /// Of a step of `h` seconds from the time `start`.
+    pub(crate) fn new(start: f64, h: f64) -> Self {
         Self {
             start,
             h,
-            smallest: smallest * h,
             fraction: 1.0,
             done: 0.0,
             patience: 0,
@@ -40,9 +37,9 @@ impl Subdivision {
         self.fraction * self.h
     }
 
-    /// Length of the smallest sub-step, seconds.
-    pub(crate) fn smallest(&self) -> f64 {
-        self.smallest
+    /// Length of a fraction of the step, seconds.
+    pub(crate) fn part(&self, fraction: f64) -> f64 {
+        fraction * self.h
     }
 
     /// Time at the end of the step, seconds.
@@ -55,14 +52,15 @@ impl Subdivision {
         self.fraction == 1.0
     }
 
-    /// Whether the next sub-step cannot be halved.
-    pub(crate) fn is_smallest(&self) -> bool {
-        0.5 * self.length() < self.smallest
+    /// Whether half of the next sub-step is shorter than the fraction `smallest` of the step.
+    pub(crate) fn is_smallest(&self, smallest: f64) -> bool {
+        0.5 * self.fraction < smallest
     }
 
-    /// Halves the next sub-step and returns its length; nothing if it would be too small.
-    pub(crate) fn halve(&mut self) -> Option<f64> {
-        if self.is_smallest() {
+    /// Halves the next sub-step and returns its length; nothing if it would be shorter than the fraction
+    /// `smallest` of the step.
+    pub(crate) fn halve(&mut self, smallest: f64) -> Option<f64> {
+        if self.is_smallest(smallest) {
             return None;
         }
         self.fraction *= 0.5;
@@ -101,14 +99,14 @@ mod tests {
 
     #[test]
     fn sub_steps_end_at_the_step() {
-        let mut steps = Subdivision::new(1.0, 0.3, 1.0 / 64.0);
+        let mut steps = Subdivision::new(1.0, 0.3);
         let mut refusals = 0;
         let (mut t, mut count) = (1.0, 0_usize);
         while !steps.is_finished() {
             // The first sub-step is refused three times, the third one once.
             let refused = [3, 0, 1].get(count).copied().unwrap_or(0);
             for _ in 0..refused {
-                assert!(steps.halve().is_some());
+                assert!(steps.halve(1.0 / 64.0).is_some());
                 refusals += 1;
             }
             let length = steps.length();
@@ -123,10 +121,11 @@ mod tests {
 
     #[test]
     fn halving_ends() {
-        let mut steps = Subdivision::new(0.0, 1.0, 0.25);
-        assert_eq!(steps.halve(), Some(0.5));
-        assert_eq!(steps.halve(), Some(0.25));
-        assert_eq!(steps.halve(), None);
+        let mut steps = Subdivision::new(0.0, 1.0);
+        assert_eq!(steps.halve(1.0), None);
+        assert_eq!(steps.halve(0.25), Some(0.5));
+        assert_eq!(steps.halve(0.25), Some(0.25));
+        assert_eq!(steps.halve(0.25), None);
         assert_eq!(steps.advance(), 0.25);
         assert_eq!(steps.length(), 0.25);
     }

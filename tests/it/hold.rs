@@ -29,6 +29,7 @@ fn hanging_with(sheet: &Sheet, mass: f64) -> SheetModel {
 fn control(fallback: Fallback) -> StepControl {
     StepControl {
         min_fraction: 1.0 / 16.0,
+        hold_fraction: 1.0 / 16.0,
         fallback,
         ..StepControl::default()
     }
@@ -226,10 +227,7 @@ fn undivided(model: SheetModel, sheet: &Sheet) -> Simulation {
 }
 
 fn undivided_control() -> StepControl {
-    StepControl {
-        min_fraction: 1.0,
-        ..control(Fallback::Hold)
-    }
+    StepControl::default()
 }
 
 /// Irregular, and clamped along a line that is no mesh line: no motion is found from the flat state.

@@ -91,8 +91,18 @@ impl Integrator for Scripted {
 /// A sheet in free flight, moved by a scripted integrator that stores one step of history, and a list of
 /// what the integrator was given in each call.
 fn scripted(script: &[Answer], control: StepControl) -> (Engine, Arc<Mutex<Vec<Seen>>>) {
+    scripted_on(&[], script, control)
+}
+
+/// The same with a sheet that has pins. (The integrator takes no notice of them.)
+fn scripted_on(
+    pins: &[VertexId],
+    script: &[Answer],
+    control: StepControl,
+) -> (Engine, Arc<Mutex<Vec<Seen>>>) {
     let sheet = generate::isotropic_square(1, 1.0).unwrap();
     let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped).unwrap();
+    let model = model.with_pins(pins).unwrap();
     let x = sheet.positions().to_vec();
     let v = [0.3, -0.2, 0.5].repeat(x.len() / 3);
     let method = Method::ImplicitEuler(Default::default());
@@ -115,8 +125,16 @@ fn scripted(script: &[Answer], control: StepControl) -> (Engine, Arc<Mutex<Vec<S
 /// The step of the tests, seconds: a power of two, so that sub-steps have no round-off.
 const H: f64 = 0.5;
 
+/// Errors where there is no step.
+fn refusing() -> StepControl {
+    StepControl {
+        fallback: Fallback::Refuse,
+        ..StepControl::default()
+    }
+}
+
 fn attempts(script: &[Answer]) -> (Vec<Seen>, StepTotals) {
-    let (mut engine, seen) = scripted(script, StepControl::default());
+    let (mut engine, seen) = scripted(script, refusing());
     let mut totals = StepTotals::default();
     engine.advance(H, &mut totals).unwrap();
     assert_eq!(engine.state().t, 0.125 + H);
@@ -200,7 +218,7 @@ fn a_step_that_fails_altogether_changes_nothing() {
     for answer in [Answer::Gain, Answer::Diverge] {
         let control = StepControl {
             min_fraction: 1.0 / 16.0,
-            ..StepControl::default()
+            ..refusing()
         };
         let (mut engine, seen) = scripted(&[answer; 20], control);
         let before = bits(&engine.motion());
@@ -233,7 +251,7 @@ fn a_step_that_fails_half_way_keeps_what_was_committed() {
     use Answer::{Accept, Diverge};
     let control = StepControl {
         min_fraction: 0.25,
-        ..StepControl::default()
+        ..refusing()
     };
     // A half is committed; of the other half nothing.
     let mut script = vec![Diverge, Accept];
@@ -293,6 +311,58 @@ fn the_fallback_starts_without_a_history() {
         assert!(bits(&(x, v)) == without);
         let history = &engine.moment.history;
         assert!(history.previous.is_none() && history.multipliers.rods.is_empty());
+    }
+}
+
+/// By default no step of a clamped sheet is divided, and steps of sheets that hang by a vertex are.
+#[test]
+fn clamped_sheets_are_held_before_steps_are_divided() {
+    use Answer::{Diverge, Gain};
+    let lengths = |pins: &[VertexId], script: &[Answer], hold_fraction| {
+        let control = StepControl {
+            hold_fraction,
+            min_fraction: 0.125,
+            ..StepControl::default()
+        };
+        let (mut engine, seen) = scripted_on(pins, script, control);
+        let mut totals = StepTotals::default();
+        engine.advance(H, &mut totals).unwrap();
+        assert_eq!(engine.state().t, 0.125 + H);
+        let is_held = totals.outcome == StepOutcome::Held;
+        let is_at_rest = engine.state().v.iter().all(|v| *v == 0.0);
+        assert_eq!(is_held, is_at_rest, "{script:?}");
+        let seen = seen.lock().unwrap();
+        let lengths = seen.iter().map(|s| s.h / H).collect::<Vec<_>>();
+        (lengths, is_held)
+    };
+    let corners = [0, 20].map(VertexId);
+    let halves = [1.0, 0.5, 0.25, 0.125];
+    // A step that would create energy is tried again without a history.
+    for (refusal, again) in [(Diverge, 0), (Gain, 1)] {
+        for (pins, hold_fraction, tried) in [
+            (&corners[..], 1.0, 1),
+            (&corners[..], 0.25, 3),
+            // Whatever the fraction, where one pin is no clamp.
+            (&corners[..1], 1.0, 4),
+            // Not below the smallest fraction.
+            (&corners[..], 1e-3, 4),
+        ] {
+            let (seen, is_held) = lengths(pins, &[refusal; 5], hold_fraction);
+            let expected = [&vec![1.0; again], &halves[..tried]].concat();
+            assert_eq!((seen, is_held), (expected, true), "{refusal:?}");
+        }
+    }
+}
+
+/// The conservative methods and the projection, which is not a minimisation, refuse as they are told to or not.
+#[test]
+fn methods_that_do_not_minimise_hold_nothing() {
+    let sheet = generate::isotropic_square(1, 1.0).unwrap();
+    for (k, method) in methods().into_iter().enumerate() {
+        let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped).unwrap();
+        let state = State::at_rest(sheet.positions().to_vec());
+        let engine = Engine::new(model, method, state).unwrap();
+        assert_eq!(engine.fallback.is_some(), k < 2, "{:?}", engine.method);
     }
 }
 

@@ -23,9 +23,9 @@ impl Minimiser {
         }
     }
 
-    /// Puts the iterate at the largest of the tried parts of the kept displacement near which there are positions with the
-    /// rest lengths that have a lower incremental potential than the start, `bound`; whether there is one. The
-    /// multipliers become zero.
+    /// Puts the iterate at the largest of the tried parts of the kept displacement near which there are
+    /// positions with the rest lengths that have a lower incremental potential than the start, `bound`; whether
+    /// there is one. The multipliers become zero.
     ///
     /// A sheet of rods descends until it is taut, at positions where the rods are dependent: there are no
     /// finite multipliers, so that Newton's method does not converge, and a restoration of the lengths halves
@@ -49,7 +49,8 @@ impl Minimiser {
             for (x, (x0, d)) in self.lagrangian.iterate.x_mut().iter_mut().zip(displaced) {
                 *x = x0 + part * d;
             }
-            if self.restore(problem, to, effort) <= to.strain {
+            if self.restore(problem, to, effort) <= to.strain && self.has_moved(problem, to.strain)
+            {
                 let now = self.lagrangian.merit(problem);
                 if now.potential < bound.potential - now.round_off {
                     return true;
@@ -58,5 +59,13 @@ impl Minimiser {
             part *= RATIO;
         }
         false
+    }
+
+    /// Whether the iterate has moved by more than the tolerance of the lengths leaves open: a rod of length `l`
+    /// with a relative error `e` lets its ends move across it by `l sqrt(2 e)`.
+    fn has_moved(&self, problem: &StepProblem<'_>, strain: f64) -> bool {
+        let open = (2.0 * strain).sqrt() * problem.model.mean_length();
+        let ends = self.lagrangian.iterate.x().iter().zip(&problem.state.x);
+        ends.into_iter().any(|(x, x0)| (x - x0).abs() > open)
     }
 }

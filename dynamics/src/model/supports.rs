@@ -225,6 +225,12 @@ impl SheetModel {
             .collect()
     }
 
+    /// Number of pinned vertices and of vertex constraints.
+    pub(crate) fn support_count(&self) -> usize {
+        let pins = self.free_index.iter().filter(|i| **i == PINNED).count();
+        pins + self.constraints.len()
+    }
+
     /// Free vertices that rods to pins at rest hold in place at positions `x` (`3V`, metres): those with three
     /// fixed neighbours that are not on a line, those on straight lines of rods between fixed vertices, and
     /// those at the end of such a line which could only turn about other fixed ones. Not all are found; flat

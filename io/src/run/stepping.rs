@@ -147,7 +147,8 @@ impl Stepping<'_> {
             return Some(EndReason::SupportForce);
         }
         if let Some(rest) = &scene.stop.rest {
-            if self.largest_speed() > rest.speed {
+            // A sheet that is held has no balance of forces to rest in.
+            if self.largest_speed() > rest.speed || !report.outcome.is_solved() {
                 self.progress.slow_since = None;
             } else {
                 let since = *self.progress.slow_since.get_or_insert(report.t);

@@ -56,7 +56,7 @@ impl Origins {
                 let remedy = match dependent_rods {
                     0 => "take a smaller `method.step`, more damping, or another `sheet.isometry`",
                     _ => {
-                        "choose `sheet.isometry` weak or membrane, more damping, or another `method.step`"
+                        "choose `sheet.isometry` weak or membrane, more damping, another `method.step`, or `method.fallback` hold"
                     }
                 };
                 return Problem::new(inner.key, error.to_string(), remedy);

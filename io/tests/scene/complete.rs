@@ -89,6 +89,7 @@ const ALL_KEYS: [&str; 5] = [
     max_iterations = 50
     rod_stiffness = 1e5
     min_fraction = 0.1
+    hold_fraction = 0.5
     fallback = "implicit_euler"
     taut = "stop"
     [stop]

@@ -232,7 +232,7 @@ fn neighbouring_boards(
     })?;
     let what = format!("{NEIGHBOURS} checkerboards 1 : 1e8, {state}, {name}");
     f.at_most(format!("{what}: edge strain"), strain, STRAIN);
-    let what = format!("{what}: how many stop within 1 s");
+    let what = format!("{what}: how many stop or are held within 1 s");
     f.at_most(what, f64::from(stopped), MAY_STOP);
     Ok(())
 }

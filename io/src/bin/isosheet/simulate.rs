@@ -91,6 +91,9 @@ impl How {
             );
         } else {
             print_message(format_args!("{}", sentence(event_name, folder, &summary)));
+            if summary.held > 0 {
+                print_message(format_args!("{}", warning(&summary)));
+            }
             if let Some(page) = page(folder) {
                 print_message(format_args!("page: {}", page.display()));
             }
@@ -103,6 +106,17 @@ impl How {
 fn page(folder: &Path) -> Option<PathBuf> {
     let page = folder.join("index.html");
     page.is_file().then_some(page)
+}
+
+/// What to know of a run in which the sheet was held.
+fn warning(summary: &Summary) -> String {
+    format!(
+        "warning: {} of {} ended without a balance of forces: the rods lock, or no motion was found, and the sheet was \
+         held where it was or stopped short\n  = help: choose `sheet.isometry` weak or membrane, or a \
+         smaller `method.hold_fraction`; `method.fallback` refuse ends such runs with an error",
+        summary.held,
+        counted(summary.steps as usize, "step", "steps"),
+    )
 }
 
 fn sentence(what: &str, folder: &Path, summary: &Summary) -> String {
