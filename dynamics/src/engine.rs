@@ -74,7 +74,7 @@ impl Engine {
         Ok(Self {
             moment: Moment::at(state, &model, traits),
             proposal: Proposal::new(&model, traits),
-            fallback: fallback(&model, traits.demand, &control)?,
+            fallback: fallback(&model, &method, &control)?,
             integrator,
             control,
             contact: None,
@@ -168,7 +168,7 @@ impl Engine {
 
     pub(crate) fn set_control(&mut self, control: StepControl) -> Result<(), SimulationError> {
         control.validate()?;
-        self.fallback = fallback(&self.model, self.integrator.traits().demand, &control)?;
+        self.fallback = fallback(&self.model, &self.method, &control)?;
         self.control = control;
         self.moment.history.returning_step = 0.0;
         Ok(())
@@ -483,20 +483,20 @@ impl Stepping for Substeps<'_> {
     }
 }
 
-/// The fallback of a step control, for a sheet that is moved by a method with this demand on its rods.
+/// The fallback of a step control, for a sheet that a method moves.
 ///
-/// Sheets of rods alone are held, and by the damped methods: the conservative ones would lose the energy that
-/// they are there to keep.
+/// Sheets of rods alone are held, and by the methods that minimise: the conservative ones would lose the energy
+/// that they are there to keep, and the projection step divides steps of sheets that do not lock, too.
 fn fallback(
     model: &SheetModel,
-    demand: RodDemand,
+    method: &Method,
     control: &StepControl,
 ) -> Result<Option<Box<dyn Integrator>>, SimulationError> {
     Ok(match &control.fallback {
         Fallback::ImplicitEuler(options) => {
             Some(Box::new(ImplicitEuler::new(model, options.clone())?))
         }
-        Fallback::Hold if demand == RodDemand::Nothing && model.isometry() == Isometry::Rods => {
+        Fallback::Hold if method.is_minimising() && model.isometry() == Isometry::Rods => {
             Some(Box::new(Hold::new(model)))
         }
         Fallback::Hold | Fallback::Refuse => None,

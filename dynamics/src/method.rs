@@ -174,10 +174,10 @@ pub enum Fallback {
     /// End the step without a minimum, and carry on: the answer where the rods of a clamped sheet lock, so
     /// that it could move to first order but has no motion.
     ///
-    /// For sheets of rods with damped methods; for others this is [`Fallback::Refuse`]. Where
+    /// For sheets of rods with BDF2 and implicit Euler; for others this is [`Fallback::Refuse`]. Where
     /// [`StepControl::hold_fraction`] counts, the smallest sub-step ends at positions with the rest lengths that
     /// are lower than its start, if a part of the displacement by Newton's method leads to any
-    /// ([`StepOutcome::Descended`](crate::StepOutcome::Descended); BDF2 and implicit Euler).
+    /// ([`StepOutcome::Descended`](crate::StepOutcome::Descended)).
     /// Otherwise the sheet stays where it is for the rest of the step, with zero velocities
     /// ([`StepOutcome::Held`](crate::StepOutcome::Held)). Energy lost in either counts as dissipated, and the
     /// forces of rods are zero. Once the same step has been in vain at the same place, it is not tried again

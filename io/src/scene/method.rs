@@ -73,7 +73,7 @@ pub enum Fallback {
     ImplicitEuler,
     /// End the step without a balance of forces, and carry on: for sheets whose rods lock at clamps. The sheet
     /// stops short of where it would fall, or stays where it is, at rest, and `summary.json` counts these steps
-    /// as `held`. For rods with damped integrators; otherwise as `refuse`.
+    /// as `held`. For rods with `bdf2` and `implicit_euler`; otherwise as `refuse`.
     #[default]
     Hold,
 }

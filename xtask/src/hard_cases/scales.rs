@@ -197,6 +197,8 @@ fn masses(f: &mut Findings, effort: Effort) -> Result<()> {
                 let check = judge.strain("edge strain in 1 s");
                 if let Some(at) = flutters(name, ratio, bump) {
                     check.limited(FLUTTER, Shortfall::stops(at, "no step of at least"));
+                } else {
+                    judge.balance();
                 }
                 let gain = c.gain / weight;
                 rows.push((vec![state.to_owned(), number(ratio)], name, c, gain));
