@@ -227,7 +227,10 @@ fn undivided(model: SheetModel, sheet: &Sheet) -> Simulation {
 }
 
 fn undivided_control() -> StepControl {
-    StepControl::default()
+    StepControl {
+        hold_fraction: 1.0,
+        ..StepControl::default()
+    }
 }
 
 /// Irregular, and clamped along a line that is no mesh line: no motion is found from the flat state.

@@ -43,11 +43,11 @@ fn immobile_vertices_are_held_and_named() {
 
 /// A sheet that locks is held, and says so.
 #[test]
-fn sheets_that_lock_reach_the_end() {
+fn sheets_that_lock_are_held() {
     let sheet = irregular();
     let mut run = clamped(&sheet, &quarter(&sheet), 1e-2);
     let mut unsolved = 0;
-    for _ in 0..120 {
+    for _ in 0..30 {
         let report = run.step(STEP).expect("goes on");
         assert!(report.strain <= 1e-12, "{report:?}");
         unsolved += u32::from(!report.outcome.is_solved());

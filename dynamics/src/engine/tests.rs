@@ -314,9 +314,10 @@ fn the_fallback_starts_without_a_history() {
     }
 }
 
-/// By default no step of a clamped sheet is divided, and steps of sheets that hang by a vertex are.
+/// Steps of clamped sheets are divided as far as the step control says, and those of sheets that hang by a vertex
+/// as far as any.
 #[test]
-fn clamped_sheets_are_held_before_steps_are_divided() {
+fn clamped_sheets_are_held_where_the_control_says() {
     use Answer::{Diverge, Gain};
     let lengths = |pins: &[VertexId], script: &[Answer], hold_fraction| {
         let control = StepControl {

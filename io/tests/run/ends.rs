@@ -124,7 +124,8 @@ time = 1.0
     let refused = run(dir, &refuse);
     assert_eq!(code(&refused), Some(1), "{}", stderr(&refused));
     assert!(stderr(&refused).contains("or `method.fallback` hold"));
-    let ended = run(dir, &["simulate", "locks.toml", "--out", "held"]);
+    let held = ["--set", "method.hold_fraction=1", "--out", "held"];
+    let ended = run(dir, &[&["simulate", "locks.toml"], &held[..]].concat());
     assert_eq!(code(&ended), Some(0), "{}", stderr(&ended));
     assert!(stderr(&ended).contains("ended without a balance of forces"));
     let summary = summary(&dir.join("held"));

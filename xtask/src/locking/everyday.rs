@@ -22,8 +22,7 @@ pub(super) const ABOUT: &str = "Paper of 80 g/m² with a flexural rigidity of 5e
     Pushed together: a flat strip of 0.30 m x 0.10 m, the first and the last row of squares clamped, one of them moved by 10 % of the free length within 1 s; it has to buckle. \
     Roll: a sheet of 0.30 m x 0.20 m that starts as a roll of radius 0.05 m about mesh lines, one edge clamped, is let go. Banner: a square of 1 m, flat and \
     horizontal, is held at the two corners of one side and swings down. Opposite corners: the same square is held at two opposite corners at their distance in the flat state. \
-    Where no step of rods is found it ends without a minimum, unless supports move; with the method called refusing it is divided, and the run ends if no part of it \
-    is found either.";
+    Where no step of rods is found it is divided, and where no part is found either it ends without a minimum; with the method called undivided it does so at once.";
 
 /// Mass per area of office paper, kg/m2.
 const DENSITY: f64 = 0.08;

@@ -2,7 +2,7 @@
 
 use super::isometry::Isometry;
 use crate::methods::damped;
-use isosheet_dynamics::{Fallback, Method, StepControl};
+use isosheet_dynamics::{Method, StepControl};
 
 /// A method, and what it does where it finds no step.
 pub(super) struct Way {
@@ -11,35 +11,35 @@ pub(super) struct Way {
     pub(super) control: StepControl,
 }
 
-/// The damped methods, which hold sheets of rods where they find no step, and the default method, which divides
-/// such a step and ends the run if no part of it is found either.
+/// The damped methods, which divide a step that they do not find, and the default method, which does not and ends
+/// it without a minimum at once.
 pub(super) fn ways() -> Vec<Way> {
-    let holding = damped().map(|(name, method)| Way {
+    let dividing = damped().map(|(name, method)| Way {
         name,
         method,
         control: StepControl::default(),
     });
-    let refusing = Way {
-        name: "BDF2, refusing",
+    let undivided = Way {
+        name: "BDF2, undivided",
         method: Method::default(),
         control: StepControl {
-            fallback: Fallback::Refuse,
+            hold_fraction: 1.0,
             ..StepControl::default()
         },
     };
-    holding.into_iter().chain([refusing]).collect()
+    dividing.into_iter().chain([undivided]).collect()
 }
 
-/// The numbers of the default method, of implicit Euler, and of the default method that ends a run where it
-/// finds no step, among [`ways`].
+/// The numbers of the default method, of implicit Euler, and of the default method that divides no step, among
+/// [`ways`].
 pub(super) const BDF2: usize = 0;
 pub(super) const EULER: usize = 1;
-pub(super) const REFUSING: usize = 3;
+pub(super) const UNDIVIDED: usize = 3;
 
 /// The ways of the default method that are tried on a model.
 pub(super) fn by_default_method(isometry: Isometry) -> &'static [usize] {
     match isometry {
-        Isometry::Rods => &[BDF2, REFUSING],
+        Isometry::Rods => &[BDF2, UNDIVIDED],
         // Elastic sheets find every step.
         _ => &[BDF2],
     }

@@ -249,7 +249,9 @@ impl Plan {
             course.add(report);
             let enough = look(simulation, report);
             course.speed = largest_speed(simulation);
-            let is_slow = self.rest_speed.is_some_and(|bound| course.speed < bound);
+            // A sheet that is held has no balance of forces to rest in.
+            let is_slow = report.outcome.is_solved()
+                && self.rest_speed.is_some_and(|bound| course.speed < bound);
             quiet = if is_slow { quiet + 1 } else { 0 };
             looking += begun.elapsed();
             let wall = (clock.elapsed() - looking).as_secs_f64();
