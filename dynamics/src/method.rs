@@ -139,15 +139,14 @@ pub struct StepControl {
     pub min_fraction: f64,
     /// Smallest sub-step, as a fraction of the step, before a sheet is held ([`Fallback::Hold`]), if that is
     /// more than `min_fraction`. For sheets with supports at two vertices or more that do not move, and without
-    /// contact: only clamps and taut lines between supports make rods lock. Default 2^-14: a sheet is held only
-    /// where no part of a step is found.
+    /// contact: only clamps and taut lines between supports make rods lock. Default 1: no step is divided, which is
+    /// the cheapest.
     ///
-    /// With 1 no step is divided, which is the cheapest for sheets that lock: 100 that are clamped along random
-    /// lines need 15 factorisations for a step of 1/60 s, 62 with 1/2 and 98 with 1/4. At the end 23 of 100
-    /// hang deeper with 1/2 than with 1, and 9 less deep; with 1/4 these are 29 and 8. Strips that are clamped
-    /// along mesh lines, which do not lock, stop in mid-air with 1.
+    /// Measured with 100 sheets that are clamped along random lines, in steps of 1/60 s: 15 factorisations a
+    /// step with 1, 62 with 1/2 and 98 with 1/4. At the end 23 of 100 sheets hang deeper with 1/2 than with 1,
+    /// and 9 less deep; with 1/4 these are 29 and 8. With 2^-14 single steps take up to 88 000.
     pub hold_fraction: f64,
-    /// What to do when even that is rejected. Default [`Fallback::Hold`].
+    /// What to do when even that is rejected. Default [`Fallback::Refuse`].
     pub fallback: Fallback,
     /// What to do when moving supports ask for more than the rods allow. Default [`Unsatisfiable::Refuse`].
     pub unsatisfiable: Unsatisfiable,
@@ -168,6 +167,7 @@ pub enum Unsatisfiable {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub enum Fallback {
     /// Return [`StepError::StepTooSmall`](crate::StepError::StepTooSmall).
+    #[default]
     Refuse,
     /// Take the step with implicit Euler, which accepts any state, and carry on with the integrator asked
     /// for. Reported as [`StepOutcome::Fallback`](crate::StepOutcome::Fallback); costs the energy that
@@ -189,7 +189,6 @@ pub enum Fallback {
     /// A solver that finds no motion does not prove that there is none: sheets stop that could move on. Steps
     /// with these outcomes do not satisfy the balance of momentum
     /// ([`StepOutcome::is_solved`](crate::StepOutcome::is_solved)).
-    #[default]
     Hold,
 }
 
@@ -197,8 +196,8 @@ impl Default for StepControl {
     fn default() -> Self {
         Self {
             min_fraction: 2.0_f64.powi(-14),
-            hold_fraction: 2.0_f64.powi(-14),
-            fallback: Fallback::Hold,
+            hold_fraction: 1.0,
+            fallback: Fallback::Refuse,
             unsatisfiable: Unsatisfiable::Refuse,
         }
     }

@@ -228,7 +228,7 @@ fn undivided(model: SheetModel, sheet: &Sheet) -> Simulation {
 
 fn undivided_control() -> StepControl {
     StepControl {
-        hold_fraction: 1.0,
+        fallback: Fallback::Hold,
         ..StepControl::default()
     }
 }

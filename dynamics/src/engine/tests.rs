@@ -323,6 +323,7 @@ fn clamped_sheets_are_held_where_the_control_says() {
         let control = StepControl {
             hold_fraction,
             min_fraction: 0.125,
+            fallback: Fallback::Hold,
             ..StepControl::default()
         };
         let (mut engine, seen) = scripted_on(pins, script, control);
@@ -361,7 +362,12 @@ fn methods_that_do_not_minimise_hold_nothing() {
     for (k, method) in methods().into_iter().enumerate() {
         let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped).unwrap();
         let state = State::at_rest(sheet.positions().to_vec());
-        let engine = Engine::new(model, method, state).unwrap();
+        let mut engine = Engine::new(model, method, state).unwrap();
+        let control = StepControl {
+            fallback: Fallback::Hold,
+            ..StepControl::default()
+        };
+        engine.set_control(control).unwrap();
         assert_eq!(engine.fallback.is_some(), k < 2, "{:?}", engine.method);
     }
 }

@@ -29,8 +29,8 @@ pub struct Method {
     /// Smallest part of a step that is tried where whole steps are rejected, from 1e-12 to 1.
     pub min_fraction: f64,
     /// Smallest part of a step that is tried before a clamped sheet of rods is held (`fallback = "hold"`), from
-    /// 1e-12 to 1. With 1 sheets that lock cost least, and some stop that could move on. In contact, where
-    /// supports move, and for sheets that are held at one vertex at most `min_fraction` takes its place.
+    /// 1e-12 to 1. Shorter parts find motions for some sheets, at many times the cost. In contact, where supports
+    /// move, and for sheets that are held at one vertex at most `min_fraction` takes its place.
     pub hold_fraction: f64,
     /// What to do when even that is rejected.
     pub fallback: Fallback,
@@ -68,13 +68,13 @@ pub enum Integrator {
 #[serde(rename_all = "snake_case")]
 pub enum Fallback {
     /// End the run with an error.
+    #[default]
     Refuse,
     /// Take the step with implicit Euler, and carry on.
     ImplicitEuler,
     /// End the step without a balance of forces, and carry on: for sheets whose rods lock at clamps. The sheet
     /// stops short of where it would fall, or stays where it is, at rest, and `summary.json` counts these steps
     /// as `held`. For rods with `bdf2` and `implicit_euler`; otherwise as `refuse`.
-    #[default]
     Hold,
 }
 

@@ -2,7 +2,7 @@
 
 use super::isometry::Isometry;
 use crate::methods::damped;
-use isosheet_dynamics::{Method, StepControl};
+use isosheet_dynamics::{Fallback, Method, StepControl};
 
 /// A method, and what it does where it finds no step.
 pub(super) struct Way {
@@ -11,35 +11,35 @@ pub(super) struct Way {
     pub(super) control: StepControl,
 }
 
-/// The damped methods, which divide a step that they do not find, and the default method, which does not and ends
-/// it without a minimum at once.
+/// The damped methods, which end a run where they find no step, and the default method, which divides no
+/// step and ends it there without a minimum.
 pub(super) fn ways() -> Vec<Way> {
-    let dividing = damped().map(|(name, method)| Way {
+    let ending = damped().map(|(name, method)| Way {
         name,
         method,
         control: StepControl::default(),
     });
-    let undivided = Way {
-        name: "BDF2, undivided",
+    let holding = Way {
+        name: "BDF2, holding",
         method: Method::default(),
         control: StepControl {
-            hold_fraction: 1.0,
+            fallback: Fallback::Hold,
             ..StepControl::default()
         },
     };
-    dividing.into_iter().chain([undivided]).collect()
+    ending.into_iter().chain([holding]).collect()
 }
 
-/// The numbers of the default method, of implicit Euler, and of the default method that divides no step, among
+/// The numbers of the default method, of implicit Euler, and of the default method that holds sheets, among
 /// [`ways`].
 pub(super) const BDF2: usize = 0;
 pub(super) const EULER: usize = 1;
-pub(super) const UNDIVIDED: usize = 3;
+pub(super) const HOLDING: usize = 3;
 
 /// The ways of the default method that are tried on a model.
 pub(super) fn by_default_method(isometry: Isometry) -> &'static [usize] {
     match isometry {
-        Isometry::Rods => &[BDF2, UNDIVIDED],
+        Isometry::Rods => &[BDF2, HOLDING],
         // Elastic sheets find every step.
         _ => &[BDF2],
     }
