@@ -139,8 +139,8 @@ pub struct StepControl {
     pub min_fraction: f64,
     /// Smallest sub-step, as a fraction of the step, before a sheet is held ([`Fallback::Hold`]), if that is
     /// more than `min_fraction`. For sheets with supports at two vertices or more that do not move, and without
-    /// contact: only clamps and taut lines between supports make rods lock. Default 1: no step is divided, which is
-    /// the cheapest.
+    /// contact: only clamps and taut lines between supports make rods lock. Default 1: no step is divided,
+    /// which is the cheapest.
     ///
     /// Measured with 100 sheets that are clamped along random lines, in steps of 1/60 s: 15 factorisations a
     /// step with 1, 62 with 1/2 and 98 with 1/4. At the end 23 of 100 sheets hang deeper with 1/2 than with 1,
@@ -177,11 +177,10 @@ pub enum Fallback {
     /// that it could move to first order but has no motion.
     ///
     /// For sheets of rods with BDF2 and implicit Euler; for others this is [`Fallback::Refuse`]. Where
-    /// [`StepControl::hold_fraction`] counts, the smallest sub-step ends at positions with the rest lengths that
-    /// are lower than its start, if a part of the displacement by Newton's method leads to any
-    /// ([`StepOutcome::Descended`](crate::StepOutcome::Descended)).
-    /// Otherwise the sheet stays where it is for the rest of the step, with zero velocities
-    /// ([`StepOutcome::Held`](crate::StepOutcome::Held)). Energy lost in either counts as dissipated, and the
+    /// [`StepControl::hold_fraction`] counts, the smallest sub-step ends at positions with the rest lengths
+    /// that are lower than its start, if a part of the displacement by Newton's method leads to any
+    /// ([`StepOutcome::Descended`](crate::StepOutcome::Descended)). Otherwise the sheet stays where it is for
+    /// the rest of the step, with zero velocities ([`StepOutcome::Held`](crate::StepOutcome::Held)). Energy lost in either counts as dissipated, and the
     /// forces of rods are zero. Once the same step has been in vain at the same place, it is not tried again
     /// there and costs nothing, unless contact, forces, or supports and potentials that depend on time could
     /// change the answer. Refused where supports move the sheet, and where bodies close a gap or nearly so.

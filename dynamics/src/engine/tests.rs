@@ -314,8 +314,8 @@ fn the_fallback_starts_without_a_history() {
     }
 }
 
-/// Steps of clamped sheets are divided as far as the step control says, and those of sheets that hang by a vertex
-/// as far as any.
+/// Steps of clamped sheets are divided as far as the step control says, and those of sheets that hang by a
+/// vertex as far as any.
 #[test]
 fn clamped_sheets_are_held_where_the_control_says() {
     use Answer::{Diverge, Gain};
