@@ -64,7 +64,6 @@ impl Engine {
             return Err(SimulationError::Elastic);
         }
         let integrator = method.build(&model)?;
-        let control = StepControl::default();
         let traits = integrator.traits();
         if traits.demand == RodDemand::Independent
             && let Some(index) = model.constraints().iter().position(|c| c.is_one_sided())
@@ -74,9 +73,9 @@ impl Engine {
         Ok(Self {
             moment: Moment::at(state, &model, traits),
             proposal: Proposal::new(&model, traits),
-            fallback: fallback(&model, &method, &control)?,
             integrator,
-            control,
+            control: StepControl::default(),
+            fallback: None,
             contact: None,
             account: EnergyAccount::default(),
             has_moved: false,
@@ -168,7 +167,19 @@ impl Engine {
 
     pub(crate) fn set_control(&mut self, control: StepControl) -> Result<(), SimulationError> {
         control.validate()?;
-        self.fallback = fallback(&self.model, &self.method, &control)?;
+        self.fallback = match &control.fallback {
+            Fallback::ImplicitEuler(o) => {
+                Some(Box::new(ImplicitEuler::new(&self.model, o.clone())?))
+            }
+            // The conservative methods would lose the energy that they are there to keep, and the projection
+            // step divides steps of sheets that do not lock, too.
+            Fallback::Hold
+                if self.method.is_minimising() && self.model.isometry() == Isometry::Rods =>
+            {
+                Some(Box::new(Hold::new(&self.model)))
+            }
+            Fallback::Hold | Fallback::Refuse => None,
+        };
         self.control = control;
         self.moment.history.returning_step = 0.0;
         Ok(())
@@ -235,8 +246,10 @@ impl Engine {
     /// that is supported at one vertex at most, a shorter sub-step is tried before that.
     fn may_lock(&self) -> bool {
         let may_hold = self.control.fallback == Fallback::Hold && self.fallback.is_some();
-        let is_clamped = self.model.support_count() > 1 && !self.model.has_drives();
-        may_hold && is_clamped && self.contact.is_none()
+        may_hold
+            && self.contact.is_none()
+            && !self.model.has_drives()
+            && self.model.support_count() > 1
     }
 
     /// Whether anything but the sheet could make a step differ from the same step at another time.
@@ -481,26 +494,6 @@ impl Stepping for Substeps<'_> {
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         Ok(())
     }
-}
-
-/// The fallback of a step control, for a sheet that a method moves.
-///
-/// Sheets of rods alone are held, and by the methods that minimise: the conservative ones would lose the energy
-/// that they are there to keep, and the projection step divides steps of sheets that do not lock, too.
-fn fallback(
-    model: &SheetModel,
-    method: &Method,
-    control: &StepControl,
-) -> Result<Option<Box<dyn Integrator>>, SimulationError> {
-    Ok(match &control.fallback {
-        Fallback::ImplicitEuler(options) => {
-            Some(Box::new(ImplicitEuler::new(model, options.clone())?))
-        }
-        Fallback::Hold if method.is_minimising() && model.isometry() == Isometry::Rods => {
-            Some(Box::new(Hold::new(model)))
-        }
-        Fallback::Hold | Fallback::Refuse => None,
-    })
 }
 
 /// Refuses a state whose energy is not finite.

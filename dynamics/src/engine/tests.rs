@@ -125,16 +125,8 @@ fn scripted_on(
 /// The step of the tests, seconds: a power of two, so that sub-steps have no round-off.
 const H: f64 = 0.5;
 
-/// Errors where there is no step.
-fn refusing() -> StepControl {
-    StepControl {
-        fallback: Fallback::Refuse,
-        ..StepControl::default()
-    }
-}
-
 fn attempts(script: &[Answer]) -> (Vec<Seen>, StepTotals) {
-    let (mut engine, seen) = scripted(script, refusing());
+    let (mut engine, seen) = scripted(script, StepControl::default());
     let mut totals = StepTotals::default();
     engine.advance(H, &mut totals).unwrap();
     assert_eq!(engine.state().t, 0.125 + H);
@@ -218,7 +210,7 @@ fn a_step_that_fails_altogether_changes_nothing() {
     for answer in [Answer::Gain, Answer::Diverge] {
         let control = StepControl {
             min_fraction: 1.0 / 16.0,
-            ..refusing()
+            ..StepControl::default()
         };
         let (mut engine, seen) = scripted(&[answer; 20], control);
         let before = bits(&engine.motion());
@@ -251,7 +243,7 @@ fn a_step_that_fails_half_way_keeps_what_was_committed() {
     use Answer::{Accept, Diverge};
     let control = StepControl {
         min_fraction: 0.25,
-        ..refusing()
+        ..StepControl::default()
     };
     // A half is committed; of the other half nothing.
     let mut script = vec![Diverge, Accept];

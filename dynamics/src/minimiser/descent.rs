@@ -65,7 +65,7 @@ impl Minimiser {
     /// with a relative error `e` lets its ends move across it by `l sqrt(2 e)`.
     fn has_moved(&self, problem: &StepProblem<'_>, strain: f64) -> bool {
         let open = (2.0 * strain).sqrt() * problem.model.mean_length();
-        let ends = self.lagrangian.iterate.x().iter().zip(&problem.state.x);
-        ends.into_iter().any(|(x, x0)| (x - x0).abs() > open)
+        let mut ends = self.lagrangian.iterate.x().iter().zip(&problem.state.x);
+        ends.any(|(x, x0)| (x - x0).abs() > open)
     }
 }

@@ -29,8 +29,8 @@ pub struct Method {
     /// Smallest part of a step that is tried where whole steps are rejected, from 1e-12 to 1.
     pub min_fraction: f64,
     /// Smallest part of a step that is tried before a clamped sheet of rods is held (`fallback = "hold"`), from
-    /// 1e-12 to 1. Shorter parts find motions for some sheets, at many times the cost. In contact, where supports
-    /// move, and for sheets that are held at one vertex at most `min_fraction` takes its place.
+    /// 1e-12 to 1. Shorter parts find motions for some sheets, at many times the cost. In contact, where
+    /// supports move, and for sheets that are held at one vertex at most `min_fraction` takes its place.
     pub hold_fraction: f64,
     /// What to do when even that is rejected.
     pub fallback: Fallback,

@@ -254,8 +254,8 @@ fn table(all: &[Day], plan: &Plan) -> Table {
 
 /// Factorisations a step of every scene, by the method that ends a run where it finds no step.
 fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
-    let ending = all.iter().filter(|d| d.job.0 == BDF2);
-    let dots = ending.filter_map(|d| {
+    let drawn = || all.iter().filter(|d| d.job.0 == BDF2);
+    let dots = drawn().filter_map(|d| {
         let scene = d.job.1;
         let place = scenes.iter().position(|s| *s == scene)?;
         Some(Dot::of(d, scene.kind as usize, place as f64, d.cost()))
@@ -270,8 +270,7 @@ fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
     });
     let range = [-0.7, scenes.len() as f64 - 0.3];
     let x = Axis::linear("squares across, or mesh", range, ticks.collect());
-    let drawn = all.iter().filter(|d| d.job.0 == BDF2);
-    let y = Axis::holding("factorisations a step", drawn.filter_map(Day::cost));
+    let y = Axis::holding("factorisations a step", drawn().filter_map(Day::cost));
     let panel = Panel::new("Everyday scenes", dots.collect());
     let kinds = KINDS.map(str::to_owned).to_vec();
     Figure::of_row(x, y, vec![panel], kinds, [260.0, 150.0]).draw()
