@@ -64,6 +64,7 @@ impl Engine {
             return Err(SimulationError::Elastic);
         }
         let integrator = method.build(&model)?;
+        let control = StepControl::default();
         let traits = integrator.traits();
         if traits.demand == RodDemand::Independent
             && let Some(index) = model.constraints().iter().position(|c| c.is_one_sided())
@@ -73,9 +74,9 @@ impl Engine {
         Ok(Self {
             moment: Moment::at(state, &model, traits),
             proposal: Proposal::new(&model, traits),
+            fallback: fallback(&model, &method, &control)?,
             integrator,
-            control: StepControl::default(),
-            fallback: None,
+            control,
             contact: None,
             account: EnergyAccount::default(),
             has_moved: false,
@@ -167,19 +168,7 @@ impl Engine {
 
     pub(crate) fn set_control(&mut self, control: StepControl) -> Result<(), SimulationError> {
         control.validate()?;
-        self.fallback = match &control.fallback {
-            Fallback::ImplicitEuler(o) => {
-                Some(Box::new(ImplicitEuler::new(&self.model, o.clone())?))
-            }
-            // The conservative methods would lose the energy that they are there to keep, and the projection
-            // step divides steps of sheets that do not lock, too.
-            Fallback::Hold
-                if self.method.is_minimising() && self.model.isometry() == Isometry::Rods =>
-            {
-                Some(Box::new(Hold::new(&self.model)))
-            }
-            Fallback::Hold | Fallback::Refuse => None,
-        };
+        self.fallback = fallback(&self.model, &self.method, &control)?;
         self.control = control;
         self.moment.history.returning_step = 0.0;
         Ok(())
@@ -228,28 +217,11 @@ impl Engine {
         is_same_state && before == end.history
     }
 
-    /// Smallest sub-step, as a fraction of a step, of which no minimum may be found.
-    fn hold_fraction(&self) -> f64 {
-        let StepControl {
-            min_fraction,
-            hold_fraction,
-            ..
-        } = self.control;
-        if self.may_lock() {
-            hold_fraction.max(min_fraction)
-        } else {
-            min_fraction
-        }
-    }
-
-    /// Whether the sheet may be held because its rods lock. With contact, where supports move, and for a sheet
-    /// that is supported at one vertex at most, a shorter sub-step is tried before that.
+    /// Whether the sheet may be held because its rods lock. With contact and where supports move all shorter
+    /// sub-steps are tried before that.
     fn may_lock(&self) -> bool {
         let may_hold = self.control.fallback == Fallback::Hold && self.fallback.is_some();
-        may_hold
-            && self.contact.is_none()
-            && !self.model.has_drives()
-            && self.model.support_count() > 1
+        may_hold && self.contact.is_none() && !self.model.has_drives()
     }
 
     /// Whether anything but the sheet could make a step differ from the same step at another time.
@@ -335,8 +307,10 @@ impl Substeps<'_> {
     /// Where the next sub-step may end.
     fn step_end(&self) -> StepEnd {
         let engine = &*self.engine;
-        if engine.may_lock() && self.lengths.is_smallest(engine.hold_fraction()) {
-            StepEnd::Descent
+        if engine.may_lock() {
+            StepEnd::Descent {
+                after: engine.control.hold_after,
+            }
         } else {
             StepEnd::Minimum
         }
@@ -420,18 +394,20 @@ impl Stepping for Substeps<'_> {
         let looks_back = self.memory > Memory::Restart && self.engine.moment.history.looks_back();
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
         // What a locked sheet lacks is a motion, and not a shorter step.
-        let smallest = match refusal {
+        let is_locked = match refusal {
             StepError::NotConverged { .. } | StepError::EnergyGain { .. } => {
-                self.engine.hold_fraction()
+                let spent = self.totals.effort.factorisations;
+                self.engine.may_lock() && spent >= self.engine.control.hold_after
             }
-            _ => self.engine.control.min_fraction,
+            _ => false,
         };
+        let smallest = self.engine.control.min_fraction;
         if self.proposer == Proposer::Fallback {
             Decision::Stop(self.engine.stop(&self.lengths, refusal))
         } else if gains_energy && looks_back {
             // Contact came or went, or rods snapped through: the history of the motion does not continue.
             Decision::Restart
-        } else if let Some(shorter) = self.lengths.halve(smallest) {
+        } else if !is_locked && let Some(shorter) = self.lengths.halve(smallest) {
             self.memory = self.memory.min(Memory::State);
             Decision::Shorten(shorter)
         } else if self.engine.fallback.is_some() {
@@ -463,6 +439,10 @@ impl Stepping for Substeps<'_> {
         engine.has_moved = true;
         // The end of the step is set by the caller, free of accumulated round-off.
         engine.moment.state.t = self.lengths.advance();
+        if step.outcome == StepOutcome::Descended {
+            // The sheet starts anew from there: refusals before say nothing of the rest of the step.
+            self.lengths.lengthen();
+        }
         let totals = &mut *self.totals;
         if engine.model.has_driven_potentials() {
             let (before, after) = (&engine.proposal.moment.state, &engine.moment.state);
@@ -494,6 +474,29 @@ impl Stepping for Substeps<'_> {
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         Ok(())
     }
+}
+
+/// The fallback of a step control, for a sheet that a method moves.
+///
+/// Only methods that minimise hold sheets: the conservative ones would lose the energy that they are there to keep,
+/// and the projection step divides steps of sheets that do not lock, too. Only rods lock, and only at clamps and at
+/// taut lines between supports, which take supports at two vertices.
+fn fallback(
+    model: &SheetModel,
+    method: &Method,
+    control: &StepControl,
+) -> Result<Option<Box<dyn Integrator>>, SimulationError> {
+    Ok(match &control.fallback {
+        Fallback::ImplicitEuler(o) => Some(Box::new(ImplicitEuler::new(model, o.clone())?)),
+        Fallback::Hold
+            if method.is_minimising()
+                && model.isometry() == Isometry::Rods
+                && model.support_count() > 1 =>
+        {
+            Some(Box::new(Hold::new(model)))
+        }
+        Fallback::Hold | Fallback::Refuse => None,
+    })
 }
 
 /// Refuses a state whose energy is not finite.

@@ -43,13 +43,13 @@
 //! # Limits
 //!
 //! Constraints that leave a vertex no room at all, such as two pins that stretch a straight line of rods
-//! taut, are approached only as far as the square root of round-off allows: a step may be refused there
-//! ([`StepError::StepTooSmall`]); with pins at rest such vertices become pins, and cost nothing, as far as
-//! they are found ([`Simulation::immobile_vertices`]). Sheets of rods that are clamped flat along anything
-//! but a line of the mesh lock as a whole: model them as elastic or in weak form. A banner of 81 vertices
-//! that hangs by two corners may still be refused when it comes to hang straight, exactly flat and taut. So
-//! may one on meshes graded over many orders of magnitude. Conservative runs on fine, nearly flat sheets
-//! are slow: the exact motion flutters on ever smaller scales there.
+//! taut, are approached only as far as the square root of round-off allows. With pins at rest such vertices
+//! become pins, and cost nothing, as far as they are found ([`Simulation::immobile_vertices`]). Elsewhere a
+//! damped step may find no motion: then the sheet is held for this step, or stops short, and
+//! [`StepOutcome::is_solved`] is false ([`Fallback::Hold`]; where supports move the step is refused,
+//! [`StepError::StepTooSmall`]). Sheets of rods that are clamped flat along anything but a line of the mesh lock
+//! as a whole: model them as elastic or in weak form. Conservative runs on fine, nearly flat sheets are slow:
+//! the exact motion flutters on ever smaller scales there.
 //!
 //! # Conventions
 //!

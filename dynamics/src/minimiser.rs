@@ -270,7 +270,9 @@ impl Minimiser {
                 outcome = Some(Err(not_converged(problem, effort, residual, strain)));
             }
         }
-        if let (Some(Err(_)), StepEnd::Descent, Some(bound)) = (&outcome, problem.end, &bound)
+        if let (Some(Err(_)), StepEnd::Descent { after }, Some(bound)) =
+            (&outcome, problem.end, &bound)
+            && effort.factorisations >= after
             && self.find_descent(problem, bound, effort)
         {
             outcome = Some(Ok(Minimum::DESCENT));

@@ -29,7 +29,7 @@ fn hanging_with(sheet: &Sheet, mass: f64) -> SheetModel {
 fn control(fallback: Fallback) -> StepControl {
     StepControl {
         min_fraction: 1.0 / 16.0,
-        hold_fraction: 1.0 / 16.0,
+        hold_after: usize::MAX,
         fallback,
         ..StepControl::default()
     }
@@ -228,7 +228,7 @@ fn undivided(model: SheetModel, sheet: &Sheet) -> Simulation {
 
 fn undivided_control() -> StepControl {
     StepControl {
-        fallback: Fallback::Hold,
+        hold_after: 0,
         ..StepControl::default()
     }
 }

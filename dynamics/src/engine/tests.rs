@@ -56,6 +56,7 @@ impl Integrator for Scripted {
             },
         });
         effort.iterations += 1;
+        effort.factorisations += 1;
         let moment = &mut proposal.moment;
         // A refusal leaves its marks on the whole proposal.
         moment.state.x.fill(f64::NAN);
@@ -306,23 +307,22 @@ fn the_fallback_starts_without_a_history() {
     }
 }
 
-/// Steps of clamped sheets are divided as far as the step control says, and those of sheets that hang by a
-/// vertex as far as any.
+/// Steps of clamped sheets are divided until they have taken as many factorisations as the step control says,
+/// one in each attempt here. Sheets that hang by a vertex are never held.
 #[test]
 fn clamped_sheets_are_held_where_the_control_says() {
     use Answer::{Diverge, Gain};
-    let lengths = |pins: &[VertexId], script: &[Answer], hold_fraction| {
+    let lengths = |pins: &[VertexId], script: &[Answer], hold_after| {
         let control = StepControl {
-            hold_fraction,
+            hold_after,
             min_fraction: 0.125,
-            fallback: Fallback::Hold,
             ..StepControl::default()
         };
         let (mut engine, seen) = scripted_on(pins, script, control);
         let mut totals = StepTotals::default();
-        engine.advance(H, &mut totals).unwrap();
-        assert_eq!(engine.state().t, 0.125 + H);
-        let is_held = totals.outcome == StepOutcome::Held;
+        let is_held = engine.advance(H, &mut totals).is_ok();
+        assert_eq!(is_held, totals.outcome == StepOutcome::Held);
+        assert_eq!(is_held, engine.state().t == 0.125 + H);
         let is_at_rest = engine.state().v.iter().all(|v| *v == 0.0);
         assert_eq!(is_held, is_at_rest, "{script:?}");
         let seen = seen.lock().unwrap();
@@ -333,34 +333,38 @@ fn clamped_sheets_are_held_where_the_control_says() {
     let halves = [1.0, 0.5, 0.25, 0.125];
     // A step that would create energy is tried again without a history.
     for (refusal, again) in [(Diverge, 0), (Gain, 1)] {
-        for (pins, hold_fraction, tried) in [
-            (&corners[..], 1.0, 1),
-            (&corners[..], 0.25, 3),
-            // Whatever the fraction, where one pin is no clamp.
-            (&corners[..1], 1.0, 4),
+        for (pins, hold_after, tried) in [
+            (&corners[..], 0, 1),
+            (&corners[..], 3 + again, 3),
+            // Never, where one pin is no clamp.
+            (&corners[..1], 0, 4),
             // Not below the smallest fraction.
-            (&corners[..], 1e-3, 4),
+            (&corners[..], 100, 4),
         ] {
-            let (seen, is_held) = lengths(pins, &[refusal; 5], hold_fraction);
+            let (seen, is_held) = lengths(pins, &[refusal; 5], hold_after);
             let expected = [&vec![1.0; again], &halves[..tried]].concat();
-            assert_eq!((seen, is_held), (expected, true), "{refusal:?}");
+            assert_eq!((seen, is_held), (expected, pins.len() > 1), "{refusal:?}");
         }
     }
 }
 
 #[test]
-fn methods_that_do_not_minimise_hold_nothing() {
+fn only_methods_that_minimise_hold_sheets() {
     let sheet = generate::isotropic_square(1, 1.0).unwrap();
     for (k, method) in methods().into_iter().enumerate() {
-        let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped).unwrap();
-        let state = State::at_rest(sheet.positions().to_vec());
-        let mut engine = Engine::new(model, method, state).unwrap();
-        let control = StepControl {
-            fallback: Fallback::Hold,
-            ..StepControl::default()
-        };
-        engine.set_control(control).unwrap();
-        assert_eq!(engine.fallback.is_some(), k < 2, "{:?}", engine.method);
+        for pins in [&[][..], &[VertexId(0)], &[VertexId(0), VertexId(24)]] {
+            let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped).unwrap();
+            let model = model.with_pins(pins).unwrap();
+            let state = State::at_rest(sheet.positions().to_vec());
+            let engine = Engine::new(model, method.clone(), state).unwrap();
+            let may_hold = k < 2 && pins.len() > 1;
+            assert_eq!(
+                engine.fallback.is_some(),
+                may_hold,
+                "{pins:?}, {:?}",
+                engine.method
+            );
+        }
     }
 }
 

@@ -118,7 +118,7 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
                 strain: tolerance,
                 max_iterations: match self.problem.end {
                     StepEnd::Minimum => most,
-                    StepEnd::Descent => most.div_ceil(2),
+                    StepEnd::Descent { .. } => most.div_ceil(2),
                 },
                 matrix: FirstMatrix::Assembled,
             };

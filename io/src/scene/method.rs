@@ -28,10 +28,10 @@ pub struct Method {
     pub rod_stiffness: Option<f64>,
     /// Smallest part of a step that is tried where whole steps are rejected, from 1e-12 to 1.
     pub min_fraction: f64,
-    /// Smallest part of a step that is tried before a clamped sheet of rods is held (`fallback = "hold"`), from
-    /// 1e-12 to 1. Shorter parts find motions for some sheets, at many times the cost. In contact, where
-    /// supports move, and for sheets that are held at one vertex at most `min_fraction` takes its place.
-    pub hold_fraction: f64,
+    /// Number of factorisations in a step from which a clamped sheet of rods is held where a part of the step is
+    /// rejected (`fallback = "hold"`), instead of being divided down to `min_fraction`. More find motions for some
+    /// sheets. Without effect in contact and where supports move.
+    pub hold_after: usize,
     /// What to do when even that is rejected.
     pub fallback: Fallback,
     /// What to do when moving supports ask for more than the lengths allow.
@@ -68,13 +68,14 @@ pub enum Integrator {
 #[serde(rename_all = "snake_case")]
 pub enum Fallback {
     /// End the run with an error.
-    #[default]
     Refuse,
     /// Take the step with implicit Euler, and carry on.
     ImplicitEuler,
     /// End the step without a balance of forces, and carry on: for sheets whose rods lock at clamps. The sheet
     /// stops short of where it would fall, or stays where it is, at rest, and `summary.json` counts these steps
-    /// as `held`. For rods with `bdf2` and `implicit_euler`; otherwise as `refuse`.
+    /// as `held`. For rods with supports at two vertices or more, with `bdf2` and `implicit_euler`; otherwise as
+    /// `refuse`.
+    #[default]
     Hold,
 }
 
@@ -101,7 +102,7 @@ impl Default for Method {
             max_iterations: None,
             rod_stiffness: None,
             min_fraction: engine::StepControl::default().min_fraction,
-            hold_fraction: engine::StepControl::default().hold_fraction,
+            hold_after: engine::StepControl::default().hold_after,
             fallback: Fallback::default(),
             taut: Taut::default(),
             chart: None,
@@ -121,7 +122,6 @@ impl Method {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.positive(key.name("step"), self.step, "s");
         checks.within(key.name("min_fraction"), self.min_fraction, [1e-12, 1.0]);
-        checks.within(key.name("hold_fraction"), self.hold_fraction, [1e-12, 1.0]);
         if let Some(tolerance) = self.strain_tolerance {
             checks.within(key.name("strain_tolerance"), tolerance, [1e-15, 1e-2]);
         }
@@ -159,7 +159,7 @@ impl Method {
             ("strain_tolerance", self.strain_tolerance.is_some()),
             ("max_iterations", self.max_iterations.is_some()),
             ("min_fraction", self.min_fraction != usual.min_fraction),
-            ("hold_fraction", self.hold_fraction != usual.hold_fraction),
+            ("hold_after", self.hold_after != usual.hold_after),
             ("fallback", self.fallback != usual.fallback),
             ("taut", self.taut != usual.taut),
         ];
@@ -224,7 +224,7 @@ impl Method {
     fn control(&self) -> engine::StepControl {
         engine::StepControl {
             min_fraction: self.min_fraction,
-            hold_fraction: self.hold_fraction,
+            hold_after: self.hold_after,
             fallback: match self.fallback {
                 Fallback::Refuse => engine::Fallback::Refuse,
                 Fallback::Hold => engine::Fallback::Hold,

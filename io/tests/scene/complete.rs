@@ -89,7 +89,7 @@ const ALL_KEYS: [&str; 5] = [
     max_iterations = 50
     rod_stiffness = 1e5
     min_fraction = 0.1
-    hold_fraction = 0.5
+    hold_after = 500
     fallback = "implicit_euler"
     taut = "stop"
     [stop]

@@ -85,8 +85,8 @@ const NO_ROOM: &str = "The two halves of the sheet fall shut on each other and h
 /// Number of flat sheets at two opposite corners, whose masses differ by half a percent each.
 const SHEETS: u32 = 12;
 
-/// A flat sheet held at two opposite corners, many times. Measured: of 24 sheets implicit Euler stops at 15
-/// to 17 within 1 s, BDF2 at 23 or 24, the projection at all.
+/// A flat sheet held at two opposite corners, many times. Measured: of 24 sheets implicit Euler has to hold 15
+/// to 17 within 1 s, BDF2 23 or 24, and the projection stops in all.
 fn held_at_opposite_corners(f: &mut Findings, flat: &Sheet, pins: [VertexId; 2]) -> Result<()> {
     for (name, method) in damped() {
         let (stopped, strain) = stopped(SHEETS, 60, |k| {
@@ -97,7 +97,7 @@ fn held_at_opposite_corners(f: &mut Findings, flat: &Sheet, pins: [VertexId; 2])
         let least = if name == "implicit Euler" { 3.0 } else { 9.0 };
         let what = format!("{SHEETS} sheets, flat, held at two opposite corners, {name}");
         f.at_most(format!("{what}: edge strain"), strain, STRAIN);
-        let what = format!("{what}: how many stop within 1 s");
+        let what = format!("{what}: how many stop or are held within 1 s");
         f.at_most(what, f64::from(stopped), 0.0)
             .limited(NO_ROOM, Shortfall::Value([least, f64::from(SHEETS)]));
     }
@@ -163,6 +163,10 @@ impl Potential for Pull {
     }
 }
 
+/// Why a sheet that is pulled hard may be held next to where it was.
+const WITHIN_TOLERANCE: &str = "Vertices can move across a taut rod of length l by l sqrt(2e-12) within the tolerance of the lengths. A step ends there, and the \
+                                next ones find no minimum, so that the sheet is held. With a hold_fraction of 2^-14 it returns.";
+
 fn taut(f: &mut Findings, effort: Effort) -> Result<()> {
     let weight = 0.1 * 9.8;
     let steps = effort.pick(20, 120, 600);
@@ -184,11 +188,13 @@ fn taut(f: &mut Findings, effort: Effort) -> Result<()> {
             )?;
             let moved = apart(&end, sheet.positions());
             let pull = number(factor);
-            f.of(
-                &c,
-                format!("hanging M^1 pulled with {pull} times its weight, {name}"),
-            )
-            .at_most(&format!("displacement in {steps} steps, m"), moved, 1e-9);
+            let what = format!("hanging M^1 pulled with {pull} times its weight, {name}");
+            let mut judge = f.of(&c, what);
+            let what = format!("displacement in {steps} steps, m");
+            let check = judge.at_most(&what, moved, 1e-9);
+            if name == "BDF2" && factor == 1e6 {
+                check.limited(WITHIN_TOLERANCE, Shortfall::Value([1e-9, 1e-6]));
+            }
         }
     }
     let frequency = taut_strip(f, 1e6 * weight, effort)?;

@@ -5,7 +5,7 @@ use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::sample::{OfModel, Sample, requirements};
 use super::scene::Scene;
-use super::ways::{BDF2, EULER, HOLDING, Way, by_default_method, ways};
+use super::ways::{BDF2, EULER, REFUSING, Way, by_default_method, ways};
 use super::{Findings, median};
 use crate::draw::{Axis, Drawing};
 use crate::report::{Effort, Table};
@@ -22,7 +22,7 @@ pub(super) const ABOUT: &str = "Flat sheets of 25 to 127 vertices and about 1 m 
     sheet that lies furthest along a random direction is pinned; the rest falls (0.1 kg, 9.8 m/s², damping 2/s, flexural rigidity 10^U(−4, 0) N m with U uniform). \
     A smooth sheet bends along the straight edge of the clamp. A sheet of rods bends along mesh lines only, and the edge of the clamp \
     is one only by chance. The drop is that of the lowest vertex at the end. \
-    Runs of rods end where no step is found; with the method called holding they go on, and the step ends without a minimum.";
+    Where no step of rods is found it ends without a minimum; with the method called refusing it is divided, and the run ends if no part of it is found either.";
 
 /// Kinds of sheets, one after another in the family.
 const KINDS: [&str; 5] = ["union jack", "one-way", "Delaunay", "disk", "rectangle"];
@@ -110,15 +110,15 @@ fn random_sheet(kind: &str, rng: &mut ChaCha8Rng) -> Result<Sheet> {
 type Job = (usize, usize);
 
 /// The ways that the plot shows.
-const SHOWN: [usize; 2] = [BDF2, HOLDING];
+const SHOWN: [usize; 2] = [BDF2, REFUSING];
 
 /// The number of sheets that a model is tried on by a method.
 fn sheets(isometry: Isometry, by: usize, effort: Effort) -> usize {
     match by {
         BDF2 => effort.quick_or(10, 200),
         EULER => effort.quick_or(0, 25),
-        HOLDING if by_default_method(isometry).contains(&by) => effort.quick_or(10, 200),
-        HOLDING => 0,
+        REFUSING if by_default_method(isometry).contains(&by) => effort.quick_or(10, 200),
+        REFUSING => 0,
         // The projection step is one onto the lengths of rods.
         _ if isometry == Isometry::Rods => effort.quick_or(0, 25),
         _ => 0,

@@ -22,7 +22,8 @@ pub(super) const ABOUT: &str = "Paper of 80 g/m² with a flexural rigidity of 5e
     Pushed together: a flat strip of 0.30 m x 0.10 m, the first and the last row of squares clamped, one of them moved by 10 % of the free length within 1 s; it has to buckle. \
     Roll: a sheet of 0.30 m x 0.20 m that starts as a roll of radius 0.05 m about mesh lines, one edge clamped, is let go. Banner: a square of 1 m, flat and \
     horizontal, is held at the two corners of one side and swings down. Opposite corners: the same square is held at two opposite corners at their distance in the flat state. \
-    Runs of rods end where no step is found; with the method called holding they go on, unless supports move, and the step ends without a minimum.";
+    Where no step of rods is found it ends without a minimum, unless supports move; with the method called refusing it is divided, and the run ends if no part of it \
+    is found either.";
 
 /// Mass per area of office paper, kg/m2.
 const DENSITY: f64 = 0.08;
@@ -252,7 +253,7 @@ fn table(all: &[Day], plan: &Plan) -> Table {
     .named("everyday")
 }
 
-/// Factorisations a step of every scene, by the method that ends a run where it finds no step.
+/// Factorisations a step of every scene, by the default method.
 fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
     let drawn = || all.iter().filter(|d| d.job.0 == BDF2);
     let dots = drawn().filter_map(|d| {

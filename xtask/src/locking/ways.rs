@@ -11,35 +11,35 @@ pub(super) struct Way {
     pub(super) control: StepControl,
 }
 
-/// The damped methods, which end a run where they find no step, and the default method, which divides no
-/// step and ends it there without a minimum.
+/// The damped methods, which hold sheets of rods where they find no step, and the default method, which divides
+/// such a step and ends the run if no part of it is found either.
 pub(super) fn ways() -> Vec<Way> {
-    let ending = damped().map(|(name, method)| Way {
+    let holding = damped().map(|(name, method)| Way {
         name,
         method,
         control: StepControl::default(),
     });
-    let holding = Way {
-        name: "BDF2, holding",
+    let refusing = Way {
+        name: "BDF2, refusing",
         method: Method::default(),
         control: StepControl {
-            fallback: Fallback::Hold,
+            fallback: Fallback::Refuse,
             ..StepControl::default()
         },
     };
-    ending.into_iter().chain([holding]).collect()
+    holding.into_iter().chain([refusing]).collect()
 }
 
-/// The numbers of the default method, of implicit Euler, and of the default method that holds sheets, among
-/// [`ways`].
+/// The numbers of the default method, of implicit Euler, and of the default method that ends a run where it
+/// finds no step, among [`ways`].
 pub(super) const BDF2: usize = 0;
 pub(super) const EULER: usize = 1;
-pub(super) const HOLDING: usize = 3;
+pub(super) const REFUSING: usize = 3;
 
 /// The ways of the default method that are tried on a model.
 pub(super) fn by_default_method(isometry: Isometry) -> &'static [usize] {
     match isometry {
-        Isometry::Rods => &[BDF2, HOLDING],
+        Isometry::Rods => &[BDF2, REFUSING],
         // Elastic sheets find every step.
         _ => &[BDF2],
     }
