@@ -291,13 +291,6 @@ impl Judge<'_> {
         self.at_most(quantity, self.course.strain, STRAIN)
     }
 
-    /// The share of the steps of the run that ended without a balance of forces, which is to be zero.
-    pub(super) fn balance(&mut self) -> &mut Check {
-        let share = self.course.unsolved as f64 / self.course.cost.steps as f64;
-        let quantity = "share of steps that end without a balance of forces";
-        self.at_most(quantity, share, 0.0)
-    }
-
     fn check(&mut self, quantity: &str, value: f64, bound: Bound) -> &mut Check {
         let (what, value) = (
             format!("{}: {quantity}", self.what),

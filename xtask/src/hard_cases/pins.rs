@@ -165,7 +165,7 @@ impl Potential for Pull {
 
 /// Why a sheet that is pulled hard may be held next to where it was.
 const WITHIN_TOLERANCE: &str = "Vertices can move across a taut rod of length l by l sqrt(2e-12) within the tolerance of the lengths. A step ends there, and the \
-                                next ones find no minimum, so that the sheet is held. With a hold_fraction of 2^-14 it returns.";
+                                next ones find no minimum, so that the sheet is held. With Fallback::Refuse, which divides these steps, it returns.";
 
 fn taut(f: &mut Findings, effort: Effort) -> Result<()> {
     let weight = 0.1 * 9.8;

@@ -22,7 +22,7 @@ pub(crate) const SIZES: Case = Case {
 
 /// What tiny steps meet near the flat state.
 const TINY_AND_FLAT: &str = "While the folds are still so small that the displacement of a step is near the tolerance of the lengths, the minimisation of a \
-                             damped step does not get below its start: and the sheet is held, or the step refused.";
+                             damped step does not get below its start and refuses it.";
 
 /// Why RATTLE refuses some falls of exactly flat sheets.
 const ROUND_OFF: &str = "RATTLE solves for the rods' impulses also where they are zero; dependent rods answer round-off in their lengths with impulses that \
@@ -133,19 +133,16 @@ fn flat_sheet(f: &mut Findings, (name, method): &Named, effort: Effort) -> Resul
         let (c, _) = go(hanging(1, 0.0, method.clone())?, h, steps)?;
         let what = format!("M^1 from exactly flat, {name}, steps of {} s", number(h));
         let mut judge = f.of(&c, what);
-        // The quick run ends after 3e-5 s.
-        let is_limited = h < 1e-3 && effort != Effort::Quick;
         let check = judge.strain("edge strain");
-        if *name == "projection" {
-            if is_limited {
-                let stops = Shortfall::stops([1.5e-4, 1.5e-3], "Newton's method stopped");
-                check.limited(TINY_AND_FLAT, stops);
-            }
-            continue;
-        }
-        let check = judge.balance();
-        if is_limited {
-            check.limited(TINY_AND_FLAT, Shortfall::Value([1e-4, 1.0]));
+        // Measured from twelve sheets whose masses differ by half a percent each: BDF2 3.9e-4 to 1.9e-3 s,
+        // implicit Euler 2.2e-4 s, projection 4.7e-4 s. The quick run ends after 3e-5 s.
+        let stops = match *name {
+            "BDF2" => Shortfall::stops([2e-4, 3.9e-3], "would create"),
+            "implicit Euler" => Shortfall::stops([6e-5, 6e-4], "would create"),
+            _ => Shortfall::stops([1.5e-4, 1.5e-3], "Newton's method stopped"),
+        };
+        if h < 1e-3 && effort != Effort::Quick {
+            check.limited(TINY_AND_FLAT, stops);
         }
     }
     Ok(())

@@ -187,7 +187,7 @@ type Day = Sample<Job, ([f64; 2], f64)>;
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
     let effort = records.store.effort;
     let duration = effort.quick_or(0.5, 3.0);
-    let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.3, 10.0));
+    let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.3, 40.0));
     let scenes = Everyday::all(effort);
     let all = records.of_models(
         |isometry| {
