@@ -217,11 +217,14 @@ impl Engine {
         is_same_state && before == end.history
     }
 
-    /// Whether the sheet may be held because its rods lock. With contact and where supports move all shorter
-    /// sub-steps are tried before that.
+    /// Whether the sheet may be held because its rods lock. With contact and where supports or potentials are
+    /// driven all shorter sub-steps are tried before that.
     fn may_lock(&self) -> bool {
         let may_hold = self.control.fallback == Fallback::Hold && self.fallback.is_some();
-        may_hold && self.contact.is_none() && !self.model.has_drives()
+        may_hold
+            && self.contact.is_none()
+            && !self.model.has_drives()
+            && !self.model.has_driven_potentials()
     }
 
     /// Whether anything but the sheet could make a step differ from the same step at another time.

@@ -142,7 +142,7 @@ pub struct StepControl {
     ///
     /// An attempt of a sheet that locks takes 220 to 280, so that by default such a sheet is held after the first one,
     /// and a step whose attempts fail early is divided. Measured with 200 sheets that are clamped along random lines,
-    /// in steps of 1/60 s, for 0, 150, 200, 240 and 300: 15.3, 15.9, 16.3, 21.6 and 22.4 factorisations a step. At the end
+    /// in steps of 1/60 s, for 0, 150, 200, 240 and 300: 15.3, 15.9, 16.4, 21.6 and 22.4 factorisations a step. At the end
     /// 0, 7, 9, 23 and 26 sheets hang deeper by a tenth than with 0, and 0, 2, 2, 9 and 10 less deep.
     pub hold_after: usize,
     /// What to do when even that is rejected. Default [`Fallback::Hold`].
@@ -181,7 +181,7 @@ pub enum Fallback {
     /// of the displacement by Newton's method leads to any
     /// ([`StepOutcome::Descended`](crate::StepOutcome::Descended)). Otherwise the sheet stays where it is for
     /// the rest of the step, with zero velocities ([`StepOutcome::Held`](crate::StepOutcome::Held)). Energy lost
-    /// in either counts as dissipated, and the forces of rods are zero. Once the same step has been in vain at the
+    /// in either counts as dissipated, and the forces of rods and supports are zero. Once the same step has been in vain at the
     /// same place, it is not tried again there and costs nothing, unless contact, forces, or supports and
     /// potentials that depend on time could change the answer. Refused where supports move the sheet, and where
     /// bodies close a gap or nearly so.

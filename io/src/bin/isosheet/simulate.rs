@@ -113,7 +113,7 @@ fn warning(summary: &Summary) -> String {
     format!(
         "warning: {} of {} ended without a balance of forces: the rods lock, or no motion was found, and the sheet was \
          held where it was or stopped short\n  = help: choose `sheet.isometry` weak or membrane, or a \
-         larger `method.hold_after`; `method.fallback` refuse ends such runs with an error",
+         larger `method.hold_after`; `method.fallback` refuse divides such steps, and may end with an error",
         summary.held,
         counted(summary.steps as usize, "step", "steps"),
     )
