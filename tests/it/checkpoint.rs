@@ -263,7 +263,7 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 4,
+            found: 7,
             supported: 6
         }
     ));
