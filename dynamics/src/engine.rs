@@ -221,18 +221,17 @@ impl Engine {
     /// driven all shorter sub-steps are tried before that.
     fn may_lock(&self) -> bool {
         let may_hold = self.control.fallback == Fallback::Hold && self.fallback.is_some();
-        may_hold
-            && self.contact.is_none()
-            && !self.model.has_drives()
-            && !self.model.has_driven_potentials()
+        may_hold && !self.is_driven()
+    }
+
+    /// Whether contact, or supports or potentials that change with time, act on the sheet.
+    fn is_driven(&self) -> bool {
+        self.contact.is_some() || self.model.has_drives() || self.model.has_driven_potentials()
     }
 
     /// Whether anything but the sheet could make a step differ from the same step at another time.
     fn may_depend_on_time(&self) -> bool {
-        self.contact.is_some()
-            || self.model.has_drives()
-            || self.model.has_driven_potentials()
-            || self.model.has_forces()
+        self.is_driven() || self.model.has_forces()
     }
 
     /// Why there is no sub-step: supports that ask for too much, dependent rods, or as the integrator said.
@@ -397,13 +396,10 @@ impl Stepping for Substeps<'_> {
         let looks_back = self.memory > Memory::Restart && self.engine.moment.history.looks_back();
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
         // What a locked sheet lacks is a motion, and not a shorter step.
-        let is_locked = match refusal {
-            StepError::NotConverged { .. } | StepError::EnergyGain { .. } => {
-                let spent = self.totals.effort.factorisations;
-                self.engine.may_lock() && spent >= self.engine.control.hold_after
-            }
-            _ => false,
-        };
+        let lacks_motion = gains_energy || matches!(refusal, StepError::NotConverged { .. });
+        let spent = self.totals.effort.factorisations;
+        let is_locked =
+            lacks_motion && self.engine.may_lock() && spent >= self.engine.control.hold_after;
         let smallest = self.engine.control.min_fraction;
         if self.proposer == Proposer::Fallback {
             Decision::Stop(self.engine.stop(&self.lengths, refusal))
@@ -481,9 +477,9 @@ impl Stepping for Substeps<'_> {
 
 /// The fallback of a step control, for a sheet that a method moves.
 ///
-/// Only methods that minimise hold sheets: the conservative ones would lose the energy that they are there to keep,
-/// and the projection step divides steps of sheets that do not lock, too. Only rods lock, and only at clamps and at
-/// taut lines between supports, which take supports at two vertices.
+/// Only methods that minimise hold sheets: the conservative ones would lose the energy that they are there to
+/// keep, and the projection step divides steps of sheets that do not lock, too. Only rods lock, and only at
+/// clamps and at taut lines between supports, which take supports at two vertices.
 fn fallback(
     model: &SheetModel,
     method: &Method,

@@ -138,12 +138,14 @@ pub struct StepControl {
     /// Smallest sub-step, as a fraction of the step asked for. Default 2^-14 (6e-5).
     pub min_fraction: f64,
     /// Number of factorisations in a step from which a sheet is held where a sub-step is refused
-    /// ([`Fallback::Hold`]), and not divided further. Without effect in contact and where supports move. Default 200.
+    /// ([`Fallback::Hold`]), and not divided further. Without effect in contact and where supports or
+    /// potentials are driven. Default 200.
     ///
-    /// An attempt of a sheet that locks takes 220 to 280, so that by default such a sheet is held after the first one,
-    /// and a step whose attempts fail early is divided. Measured with 200 sheets that are clamped along random lines,
-    /// in steps of 1/60 s, for 0, 150, 200, 240 and 300: 15.3, 15.9, 16.4, 21.6 and 22.4 factorisations a step. At the end
-    /// 0, 7, 9, 23 and 26 sheets hang deeper by a tenth than with 0, and 0, 2, 2, 9 and 10 less deep.
+    /// An attempt of a sheet that locks takes 220 to 280, so that by default such a sheet is held after the
+    /// first one, and a step whose attempts fail early is divided. Measured with 200 sheets that are clamped
+    /// along random lines, in steps of 1/60 s, for 0, 150, 200, 240 and 300: 15.3, 15.9, 16.4, 21.6 and 22.4
+    /// factorisations a step. At the end 0, 7, 9, 23 and 26 sheets hang deeper by a tenth than with 0, and 0, 2,
+    /// 2, 9 and 10 less deep.
     pub hold_after: usize,
     /// What to do when even that is rejected. Default [`Fallback::Hold`].
     pub fallback: Fallback,
@@ -174,17 +176,16 @@ pub enum Fallback {
     /// End the step without a minimum, and carry on: the answer where the rods of a clamped sheet lock, so
     /// that it could move to first order but has no motion.
     ///
-    /// For sheets of rods with supports at two vertices or more, with BDF2 and implicit Euler; for others, which do
-    /// not lock, this is [`Fallback::Refuse`]. Where
-    /// [`StepControl::hold_after`] counts, each attempt ends after at most a few hundred factorisations, and a
-    /// sub-step after that number ends at positions with the rest lengths that are lower than its start, if a part
-    /// of the displacement by Newton's method leads to any
+    /// For sheets of rods with supports at two vertices or more, with BDF2 and implicit Euler; for others this
+    /// is [`Fallback::Refuse`]. Where [`StepControl::hold_after`] counts, each attempt ends after at most a few
+    /// hundred factorisations, and a sub-step after that number ends at positions with the rest lengths that
+    /// are lower than its start, if a part of the displacement by Newton's method leads to any
     /// ([`StepOutcome::Descended`](crate::StepOutcome::Descended)). Otherwise the sheet stays where it is for
     /// the rest of the step, with zero velocities ([`StepOutcome::Held`](crate::StepOutcome::Held)). Energy lost
-    /// in either counts as dissipated, and the forces of rods and supports are zero. Once the same step has been in vain at the
-    /// same place, it is not tried again there and costs nothing, unless contact, forces, or supports and
-    /// potentials that depend on time could change the answer. Refused where supports move the sheet, and where
-    /// bodies close a gap or nearly so.
+    /// in either counts as dissipated, and the forces of rods and supports are zero. Once the same step has been
+    /// in vain at the same place, it is not tried again there and costs nothing, unless contact, forces, or
+    /// supports and potentials that depend on time could change the answer. Refused where supports move the
+    /// sheet, and where bodies close a gap or nearly so.
     ///
     /// A solver that finds no motion does not prove that there is none: sheets stop that could move on. Steps
     /// with these outcomes do not satisfy the balance of momentum

@@ -52,15 +52,10 @@ impl Subdivision {
         self.fraction == 1.0
     }
 
-    /// Whether half of the next sub-step is shorter than the fraction `smallest` of the step.
-    pub(crate) fn is_smallest(&self, smallest: f64) -> bool {
-        0.5 * self.fraction < smallest
-    }
-
     /// Halves the next sub-step and returns its length; nothing if it would be shorter than the fraction
     /// `smallest` of the step.
     pub(crate) fn halve(&mut self, smallest: f64) -> Option<f64> {
-        if self.is_smallest(smallest) {
+        if 0.5 * self.fraction < smallest {
             return None;
         }
         self.fraction *= 0.5;

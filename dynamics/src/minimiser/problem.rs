@@ -33,9 +33,9 @@ pub(crate) struct StepProblem<'a> {
 pub(crate) enum StepEnd {
     /// At a minimum of the incremental potential.
     Minimum,
-    /// Where no strategy finds a minimum and the step has taken this number of factorisations, at positions with the
-    /// rest lengths that are lower than the start. For sheets of rods without contact, whose rods may lock: no
-    /// strategy uses all the iterations that it has otherwise.
+    /// Where no strategy finds a minimum and the step has taken this number of factorisations, at positions with
+    /// the rest lengths that are lower than the start. For sheets of rods without contact, whose rods may
+    /// lock: no strategy uses all the iterations that it has otherwise.
     Descent { after: usize },
 }
 

@@ -85,8 +85,8 @@ const NO_ROOM: &str = "The two halves of the sheet fall shut on each other and h
 /// Number of flat sheets at two opposite corners, whose masses differ by half a percent each.
 const SHEETS: u32 = 12;
 
-/// A flat sheet held at two opposite corners, many times. Measured: of 24 sheets implicit Euler has to hold 15
-/// to 17 within 1 s, BDF2 23 or 24, and the projection stops in all.
+/// A flat sheet held at two opposite corners, many times. Measured: of 24 sheets implicit Euler has to hold
+/// 15 to 17 within 1 s, BDF2 23 or 24, and the projection stops in all.
 fn held_at_opposite_corners(f: &mut Findings, flat: &Sheet, pins: [VertexId; 2]) -> Result<()> {
     for (name, method) in damped() {
         let (stopped, strain) = stopped(SHEETS, 60, |k| {

@@ -11,8 +11,8 @@ pub(super) struct Way {
     pub(super) control: StepControl,
 }
 
-/// The damped methods, which hold sheets of rods where they find no step, and the default method, which divides
-/// such a step and ends the run if no part of it is found either.
+/// The damped methods, which hold sheets of rods where they find no step, and the default method with a control
+/// that divides such a step and ends the run if no part of it is found either.
 pub(super) fn ways() -> Vec<Way> {
     let holding = damped().map(|(name, method)| Way {
         name,
@@ -22,12 +22,17 @@ pub(super) fn ways() -> Vec<Way> {
     let refusing = Way {
         name: "BDF2, refusing",
         method: Method::default(),
-        control: StepControl {
-            fallback: Fallback::Refuse,
-            ..StepControl::default()
-        },
+        control: refusing(),
     };
     holding.into_iter().chain([refusing]).collect()
+}
+
+/// Ends a run where no part of a step is found.
+pub(super) fn refusing() -> StepControl {
+    StepControl {
+        fallback: Fallback::Refuse,
+        ..StepControl::default()
+    }
 }
 
 /// The numbers of the default method, of implicit Euler, and of the default method that ends a run where it
