@@ -177,8 +177,8 @@ impl Engine {
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals) -> Result<(), StepError> {
         let lengths = Subdivision::new(self.state().t, h);
-        let returns = self.moment.history.returning_step == h && !self.may_depend_on_time();
-        let proposer = if returns {
+        let is_autonomous = self.is_autonomous(h);
+        let proposer = if is_autonomous && self.moment.history.returning_step == h {
             Proposer::Fallback
         } else {
             Proposer::Method
@@ -186,8 +186,10 @@ impl Engine {
         let mut run = Substeps {
             engine: self,
             lengths,
+            is_autonomous,
             memory: Memory::All,
             proposer,
+            refused: None,
             pending: Pending::default(),
             totals,
         };
@@ -217,21 +219,25 @@ impl Engine {
         is_same_state && before == end.history
     }
 
-    /// Whether the sheet may be held because its rods lock. With contact and where supports or potentials are
-    /// driven all shorter sub-steps are tried before that.
-    fn may_lock(&self) -> bool {
-        let may_hold = self.control.fallback == Fallback::Hold && self.fallback.is_some();
-        may_hold && !self.is_driven()
+    /// Whether a sub-step of `h` seconds may end short of a minimum because the rods of the sheet lock. Where
+    /// supports move, the sheet has to follow all the way.
+    fn may_lock(&self, h: f64) -> bool {
+        self.may_hold() && self.model.supports_rest(self.state(), self.state().t + h)
     }
 
-    /// Whether contact, or supports or potentials that change with time, act on the sheet.
-    fn is_driven(&self) -> bool {
-        self.contact.is_some() || self.model.has_drives() || self.model.has_driven_potentials()
+    /// Whether the fallback holds the sheet.
+    fn may_hold(&self) -> bool {
+        self.control.fallback == Fallback::Hold && self.fallback.is_some()
     }
 
-    /// Whether anything but the sheet could make a step differ from the same step at another time.
-    fn may_depend_on_time(&self) -> bool {
-        self.is_driven() || self.model.has_forces()
+    /// Whether a step of `h` seconds from here would be the same at another time.
+    fn is_autonomous(&mut self, h: f64) -> bool {
+        let t = self.state().t;
+        let bodies_rest = |contact: &mut RunContact| contact.bodies_rest(StepSpan { t0: t, h });
+        !self.model.has_forces()
+            && !self.model.has_driven_potentials()
+            && self.model.supports_rest(self.state(), t + h)
+            && self.contact.as_mut().is_none_or(bodies_rest)
     }
 
     /// Why there is no sub-step: supports that ask for too much, dependent rods, or as the integrator said.
@@ -275,9 +281,13 @@ impl Engine {
 struct Substeps<'a> {
     engine: &'a mut Engine,
     lengths: Subdivision,
+    /// Whether the step would be the same at another time.
+    is_autonomous: bool,
     /// What of the history the next proposal begins with.
     memory: Memory,
     proposer: Proposer,
+    /// The sub-step that the method refused before the fallback was asked, and why.
+    refused: Option<(Subdivision, StepError)>,
     pending: Pending,
     totals: &'a mut StepTotals,
 }
@@ -306,15 +316,28 @@ enum Stop {
 }
 
 impl Substeps<'_> {
-    /// Where the next sub-step may end.
-    fn step_end(&self) -> StepEnd {
+    /// Where a sub-step of `h` seconds may end.
+    fn step_end(&self, h: f64) -> StepEnd {
         let engine = &*self.engine;
-        if engine.may_lock() {
+        if engine.may_lock(h) {
             StepEnd::Descent {
                 after: engine.control.hold_after,
             }
         } else {
             StepEnd::Minimum
+        }
+    }
+
+    /// Goes on with the method and a shorter sub-step where the fallback has none.
+    fn resume_method(&mut self) -> Decision<Stop> {
+        self.proposer = Proposer::Method;
+        let Some((lengths, refusal)) = self.refused.take() else {
+            return Decision::Shorten(self.lengths.length());
+        };
+        self.lengths = lengths;
+        match self.lengths.halve(self.engine.control.min_fraction) {
+            Some(shorter) => Decision::Shorten(shorter),
+            None => Decision::Stop(self.engine.stop(&self.lengths, refusal)),
         }
     }
 }
@@ -325,7 +348,7 @@ impl Stepping for Substeps<'_> {
     type Report = ();
 
     fn propose(&mut self, h: f64) -> Result<(), StepError> {
-        let end = self.step_end();
+        let end = self.step_end(h);
         let Engine {
             model,
             contact,
@@ -399,10 +422,10 @@ impl Stepping for Substeps<'_> {
         let lacks_motion = gains_energy || matches!(refusal, StepError::NotConverged { .. });
         let spent = self.totals.effort.factorisations;
         let is_locked =
-            lacks_motion && self.engine.may_lock() && spent >= self.engine.control.hold_after;
+            lacks_motion && self.engine.may_hold() && spent >= self.engine.control.hold_after;
         let smallest = self.engine.control.min_fraction;
         if self.proposer == Proposer::Fallback {
-            Decision::Stop(self.engine.stop(&self.lengths, refusal))
+            self.resume_method()
         } else if gains_energy && looks_back {
             // Contact came or went, or rods snapped through: the history of the motion does not continue.
             Decision::Restart
@@ -410,6 +433,7 @@ impl Stepping for Substeps<'_> {
             self.memory = self.memory.min(Memory::State);
             Decision::Shorten(shorter)
         } else if self.engine.fallback.is_some() {
+            self.refused = Some((self.lengths.clone(), refusal));
             Decision::FallBack(self.lengths.lengthen())
         } else {
             Decision::Stop(self.engine.stop(&self.lengths, refusal))
@@ -463,14 +487,14 @@ impl Stepping for Substeps<'_> {
             totals.outcome = totals.outcome.max(StepOutcome::Fallback);
         }
         if step.outcome == StepOutcome::Held {
-            // `proposal.moment` is the moment before.
-            let lost = engine.model.kinetic_energy(&engine.proposal.moment.state.v);
-            totals.dissipated += lost;
-            engine.account.spend(lost);
+            totals.dissipated += step.impact;
+            engine.account.spend(step.impact);
         }
-        let returns = step.outcome == StepOutcome::Held && is_whole && engine.has_returned();
+        let is_repeatable = self.is_autonomous && is_whole && step.outcome == StepOutcome::Held;
+        let returns = is_repeatable && engine.has_returned();
         engine.moment.history.returning_step = if returns { h } else { 0.0 };
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
+        self.refused = None;
         Ok(())
     }
 }
@@ -490,7 +514,7 @@ fn fallback(
         Fallback::Hold
             if method.is_minimising()
                 && model.isometry() == Isometry::Rods
-                && model.support_count() > 1 =>
+                && model.supported_vertex_count() > 1 =>
         {
             Some(Box::new(Hold::new(model)))
         }

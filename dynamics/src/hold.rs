@@ -1,28 +1,35 @@
-//! The step that leaves a sheet where it is.
+//! The step that keeps the shape of a sheet.
 
+use crate::SheetModel;
+use crate::constraint::rows::point;
 use crate::contact::StepSpan;
 use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::iterate::Iterate;
+use crate::primal::strain_floor;
 use crate::report::{SolverEffort, StepError, StepOutcome, not_converged};
-use crate::{SheetModel, State};
+use crate::rigid_fit::{RigidFit, balance_as_rigid};
+use crate::state::State;
+use isosheet_mesh::VertexId;
 
-/// Positions stay, velocities become zero, see [`Fallback::Hold`](crate::Fallback::Hold).
+/// The sheet stays where it is or, where its pins move as one rigid body, goes with them, see
+/// [`Fallback::Hold`](crate::Fallback::Hold).
 ///
 /// The positions at the start of a step have the rest lengths and touch nothing, so that the step that ends
 /// there is admissible. It is the answer for a sheet whose rods lock: to first order it can move, and no
-/// motion exists. An impact of this kind takes all the kinetic energy.
+/// motion exists. The step is an impact after which all of the sheet has the velocity of the supports, and
+/// the forces of the supports are those that do this to a rigid body.
 pub(crate) struct Hold {
     iterate: Iterate,
-    /// Work arrays: where the pins are at the end, and no motion.
-    end: Vec<f64>,
-    zeros: Vec<f64>,
+    /// Work arrays: the displacement, and the non-conservative forces or the change of the velocities.
+    displacement: Vec<f64>,
+    applied: Vec<f64>,
 }
 
 /// The momentum balance of a held sheet is not solved: all of it is left over.
 const RESIDUAL: f64 = 1.0;
-/// Violation of the constraints of vertices in mean rod lengths, below which it is as good as none: the default
-/// tolerance of the steps.
-const VIOLATION: f64 = 1e-12;
+/// Strain, and violation of the constraints of vertices in mean rod lengths, below which they are as good as
+/// none: the default tolerance of the steps.
+const TOLERANCE: f64 = 1e-12;
 /// Largest number of parts in which bodies are moved. Ten leave a thousandth of a gap.
 const MAX_PARTS: usize = 10;
 
@@ -31,18 +38,65 @@ impl Hold {
         let n = model.coordinate_count();
         Self {
             iterate: Iterate::new(n),
-            end: vec![0.0; n],
-            zeros: vec![0.0; n],
+            displacement: vec![0.0; n],
+            applied: vec![0.0; n],
         }
     }
 
-    /// Whether the supports of the sheet allow it to stay where it is until time `t`.
-    fn is_supported(&mut self, model: &SheetModel, state: &State, t: f64) -> bool {
-        self.end.copy_from_slice(&state.x);
-        model.place_pins(t, &mut self.end);
+    /// Sets the displacement of the sheet from `state` until time `t`.
+    fn displace(&mut self, model: &SheetModel, state: &State, t: f64) {
+        let x = &state.x;
+        let end = &mut self.displacement;
+        end.copy_from_slice(x);
+        model.place_pins(t, end);
+        if end != x {
+            let ends = |v: VertexId| [point(x, v), point(end, v)];
+            let pins: Vec<_> = model.pins().into_iter().map(ends).collect();
+            let fit = RigidFit::of(&pins);
+            let vertices = model.topology().vertex_ids();
+            for v in vertices.filter(|v| !model.is_pinned(*v)) {
+                let place = fit.apply(&point(x, v));
+                end[3 * v.index()..3 * v.index() + 3].copy_from_slice(place.as_slice());
+            }
+        }
+        for (d, x) in end.iter_mut().zip(x) {
+            *d -= x;
+        }
+    }
+
+    /// Moves sheet and bodies to the end of their motions, as far as nothing is in the way; whether they get
+    /// there. Bodies that come closer are moved in parts, each of which leaves half a gap.
+    fn go(&mut self, scene: &mut Scene<'_>) -> bool {
+        for _ in 0..MAX_PARTS {
+            let contact = scene.contact.as_mut();
+            let part = self.iterate.safe_fraction(contact, &self.displacement);
+            self.iterate.advance_bodies(part);
+            let places = self.iterate.x_mut().iter_mut();
+            for (x, d) in places.zip(&mut self.displacement) {
+                *x += part * *d;
+                *d *= 1.0 - part;
+            }
+            if part == 1.0 {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Whether the iterate has the rest lengths, and satisfies the constraints of vertices, as well as the
+    /// positions at the start of the step.
+    fn is_admissible(&self, model: &SheetModel, state: &State, t: f64) -> bool {
+        let x = self.iterate.x();
+        if *x != state.x {
+            let before = model.constrained_strain(&state.x);
+            let floor = strain_floor(model, state);
+            if model.constrained_strain(x) > before.max(TOLERANCE).max(floor) {
+                return false;
+            }
+        }
         let before = model.largest_violation(state.t, &state.x).unwrap_or(0.0);
-        let after = model.largest_violation(t, &state.x).unwrap_or(0.0);
-        self.end == state.x && after <= before.max(VIOLATION * model.mean_length())
+        let after = model.largest_violation(t, x).unwrap_or(0.0);
+        after <= before.max(TOLERANCE * model.mean_length())
     }
 }
 
@@ -53,53 +107,60 @@ impl Integrator for Hold {
 
     fn propose(
         &mut self,
-        scene: Scene<'_>,
+        mut scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
         effort: &mut SolverEffort,
     ) -> Result<(), StepError> {
-        let Scene { model, mut contact } = scene;
-        let (state, h) = (attempt.state, attempt.h);
+        let (model, state, h) = (scene.model, attempt.state, attempt.h);
         let t = state.t + h;
-        let refusal = || {
-            let strain = model.constrained_strain(&state.x);
-            Err(not_converged(state.t, h, effort, RESIDUAL, strain))
-        };
-        if !self.is_supported(model, state, t) {
-            return refusal();
-        }
         let span = StepSpan { t0: state.t, h };
-        self.iterate.begin(contact.as_mut(), span, &state.x);
-        // Bodies that come closer are moved in parts, each of which leaves half a gap.
-        for _ in 0..MAX_PARTS {
-            if self.iterate.progress() == 1.0 {
-                break;
-            }
-            let part = self.iterate.safe_fraction(contact.as_mut(), &self.zeros);
-            self.iterate.advance_bodies(part);
+        self.displace(model, state, t);
+        self.iterate.begin(scene.contact.as_mut(), span, &state.x);
+        if !self.go(&mut scene) || !self.is_admissible(model, state, t) {
+            let strain = model.constrained_strain(&state.x);
+            return Err(not_converged(state.t, h, effort, RESIDUAL, strain));
         }
-        if self.iterate.progress() < 1.0 {
-            return refusal();
-        }
-        let work = self.iterate.contact_work(contact.as_ref());
+        let contact = self.iterate.contact_work(scene.contact.as_ref());
         let moment = &mut proposal.moment;
-        moment.state.copy_from(state);
-        moment.state.v.fill(0.0);
         moment.state.t = t;
+        moment.state.x.copy_from_slice(self.iterate.x());
+        model.place_pins(t, &mut moment.state.x);
+        model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
+        let mut work = 0.0;
+        for i in 0..state.x.len() {
+            let moved = moment.state.x[i] - state.x[i];
+            moment.state.v[i] = moved / h;
+            work += self.applied[i] * moved;
+        }
         moment.history.previous = None;
         moment.history.multipliers.clear();
         moment.history.rod_stiffness = attempt.rod_stiffness();
         moment.history.couplings.clear();
         let couplings = attempt.couplings();
         moment.history.couplings.extend_from_slice(couplings);
-        moment.balance.clear();
-        moment.balance.unassigned.clear();
+        let State { x, v, .. } = &moment.state;
+        let change = v.iter().zip(&state.v);
+        for (c, (v, v0)) in self.applied.iter_mut().zip(change) {
+            *c = v - v0;
+        }
+        let impact = model.kinetic_energy(&self.applied);
+        let balance = &mut moment.balance;
+        if balance.begin(model, |i| (v[i] - state.v[i]) / h) {
+            balance.add_potentials(model, t, x, 1.0);
+            balance.add_applied(model, state.t, &state.x, &state.v, 1.0);
+            if let Some(terms) = self.iterate.terms(scene.contact.as_ref()) {
+                balance.add_contact(&terms);
+            }
+            balance_as_rigid(balance, model, t, x);
+        }
         moment.set_contacts(self.iterate.contact_state());
         proposal.account = StepAccount {
             residual: RESIDUAL,
-            work: 0.0,
+            work,
+            impact,
             outcome: StepOutcome::Held,
-            contact: work,
+            contact,
         };
         Ok(())
     }

@@ -230,6 +230,7 @@ fn two_step(
     proposal.account = StepAccount {
         residual: minimum.residual,
         work,
+        impact: 0.0,
         outcome: minimum.outcome,
         contact,
     };

@@ -45,6 +45,8 @@ pub(crate) struct StepAccount {
     pub(crate) residual: f64,
     /// Work of the non-conservative forces, joules.
     pub(crate) work: f64,
+    /// Kinetic energy lost in an impact, joules: zero but where a sheet is held.
+    pub(crate) impact: f64,
     /// How the sub-step was obtained.
     pub(crate) outcome: StepOutcome,
     /// What contact did; zero without contact.
@@ -113,6 +115,7 @@ impl StepAccount {
         Self {
             residual,
             work,
+            impact: 0.0,
             outcome,
             contact: ContactWork::default(),
         }

@@ -110,6 +110,7 @@ mod rattle;
 mod reaction;
 mod report;
 mod restoration;
+mod rigid_fit;
 mod rod_forces;
 mod saddle;
 mod simulation;

@@ -24,7 +24,7 @@ use augmented_lagrangian::{AugmentedLagrangian, Rounds};
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::area_from_lengths;
 use lagrangian::{Lagrangian, Merit};
-use problem::{StepEnd, StepProblem};
+use problem::StepProblem;
 use sqp::Sqp;
 
 /// Part of the largest fold that the tolerance of the lengths allows by which contact at rest may move.
@@ -71,6 +71,8 @@ pub(crate) struct Minimiser {
     rod_stiffness: f64,
     /// Displacement to the iterate at which sequential quadratic programming ended without a minimum.
     displacement: Vec<f64>,
+    /// A part of it.
+    part: Vec<f64>,
     /// Where inertia alone would take the sheet.
     pub(crate) prediction: Vec<f64>,
     /// Non-conservative forces, constant over the step.
@@ -174,6 +176,7 @@ impl Minimiser {
             remembered: vec![0.0; model.isometry_rows().len()],
             rod_stiffness: 0.0,
             displacement: vec![0.0; n],
+            part: vec![0.0; n],
             prediction: vec![0.0; n],
             applied: vec![0.0; n],
             options,
@@ -270,9 +273,8 @@ impl Minimiser {
                 outcome = Some(Err(not_converged(problem, effort, residual, strain)));
             }
         }
-        if let (Some(Err(_)), StepEnd::Descent { after }, Some(bound)) =
-            (&outcome, problem.end, &bound)
-            && effort.factorisations >= after
+        if let (Some(Err(_)), Some(bound)) = (&outcome, &bound)
+            && problem.end.may_end_after(effort.factorisations)
             && self.find_descent(problem, bound, effort)
         {
             outcome = Some(Ok(Minimum::DESCENT));

@@ -67,6 +67,12 @@ impl RunContact {
         self.bodies.check()
     }
 
+    /// Whether no body moves in a span of time.
+    pub(crate) fn bodies_rest(&mut self, span: StepSpan) -> bool {
+        self.bodies.update(self.geometry.as_ref(), span);
+        !self.bodies.any_moves()
+    }
+
     /// The barrier, whose stiffness was set at the start of the run.
     pub(crate) fn barrier(&self) -> BarrierPotential {
         self.barrier

@@ -401,6 +401,7 @@ fn propose(engine: &mut Engine, start: &Moment, h: f64) -> Result<Vec<u8>, StepE
         work,
         outcome,
         contact,
+        ..
     } = proposal.account;
     let contact = [
         contact.bodies,

@@ -107,7 +107,9 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
             if !converged {
                 break;
             }
-            if round + 1 < rounds && strain > restores_from {
+            let spent = self.effort.factorisations;
+            let is_last = round + 1 == rounds || self.problem.end.may_end_after(spent);
+            if !is_last && strain > restores_from {
                 self.stiffness *= GROWTH;
                 continue;
             }
@@ -128,6 +130,9 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
                     residual: self.residual,
                     outcome: self.outcome,
                 });
+            }
+            if is_last {
+                break;
             }
             // Constraints at the iterate.
             self.minimiser.lagrangian.merit(self.problem);

@@ -45,11 +45,9 @@ impl Minimiser {
         self.lagrangian.clear_multipliers();
         let mut part = RATIO;
         while part >= SMALLEST_PART {
-            let displaced = problem.state.x.iter().zip(&self.displacement);
-            for (x, (x0, d)) in self.lagrangian.iterate.x_mut().iter_mut().zip(displaced) {
-                *x = x0 + part * d;
-            }
-            if self.restore(problem, to, effort) <= to.strain && self.has_moved(problem, to.strain)
+            if self.displace(problem, part)
+                && self.restore(problem, to, effort) <= to.strain
+                && self.has_moved(problem, to.strain)
             {
                 let now = self.lagrangian.merit(problem);
                 if now.potential < bound.potential - now.round_off {
@@ -59,6 +57,23 @@ impl Minimiser {
             part *= RATIO;
         }
         false
+    }
+
+    /// Puts the iterate at a part of the kept displacement from the start; whether it gets there without
+    /// contact.
+    fn displace(&mut self, problem: &mut StepProblem<'_>, part: f64) -> bool {
+        self.lagrangian.begin(problem);
+        for (p, d) in self.part.iter_mut().zip(&self.displacement) {
+            *p = part * d;
+        }
+        let iterate = &mut self.lagrangian.iterate;
+        if iterate.safe_fraction(problem.contact_mut(), &self.part) < 1.0 {
+            return false;
+        }
+        for (x, p) in iterate.x_mut().iter_mut().zip(&self.part) {
+            *x += p;
+        }
+        true
     }
 
     /// Whether the iterate has moved by more than the tolerance of the lengths leaves open: a rod of length `l`

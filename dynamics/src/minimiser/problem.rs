@@ -34,9 +34,15 @@ pub(crate) enum StepEnd {
     /// At a minimum of the incremental potential.
     Minimum,
     /// Where no strategy finds a minimum and the step has taken this number of factorisations, at positions with
-    /// the rest lengths that are lower than the start. For sheets of rods without contact, whose rods may
-    /// lock: no strategy uses all the iterations that it has otherwise.
+    /// the rest lengths that are lower than the start. For sheets of rods, which may lock: no strategy uses all the iterations that it has otherwise.
     Descent { after: usize },
+}
+
+impl StepEnd {
+    /// Whether a step that has taken so many factorisations may end without a minimum.
+    pub(crate) fn may_end_after(self, factorisations: usize) -> bool {
+        matches!(self, Self::Descent { after } if factorisations >= after)
+    }
 }
 
 impl<'a> StepProblem<'a> {

@@ -1,6 +1,7 @@
 //! Pins and vertex constraints of a model, and their motions.
 
 use super::{ModelError, PINNED, SheetModel};
+use crate::State;
 use crate::constraint::rows::point;
 use crate::constraint::{ConstrainedVertex, VertexConstraint};
 use crate::immobile::immobile_vertices;
@@ -8,6 +9,11 @@ use crate::motion::PointMotion;
 use crate::support::Support;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
+use std::collections::HashSet;
+
+/// Violation of the constraints of vertices in mean rod lengths, below which it is as good as none: the default
+/// tolerance of the steps.
+const VIOLATION: f64 = 1e-12;
 
 /// A pinned vertex in prescribed motion.
 #[derive(Debug)]
@@ -172,6 +178,18 @@ impl SheetModel {
         !self.moving_pins.is_empty() || self.constraints.iter().any(VertexConstraint::moves)
     }
 
+    /// Whether the supports allow the sheet to stay as it is in `state` until time `t`, seconds.
+    pub(crate) fn supports_rest(&self, state: &State, t: f64) -> bool {
+        let at_place =
+            |pin: &MovingPin| pin.motion.position(t)[..] == state.x[3 * pin.vertex..][..3];
+        if !self.moving_pins.iter().all(at_place) {
+            return false;
+        }
+        let before = self.largest_violation(state.t, &state.x).unwrap_or(0.0);
+        let after = self.largest_violation(t, &state.x).unwrap_or(0.0);
+        after <= before.max(VIOLATION * self.mean_length())
+    }
+
     /// Whether anything holds the sheet.
     pub(crate) fn has_supports(&self) -> bool {
         self.free_count < self.free_index.len() || !self.constraints.is_empty()
@@ -225,10 +243,11 @@ impl SheetModel {
             .collect()
     }
 
-    /// Number of pinned vertices and of vertex constraints.
-    pub(crate) fn support_count(&self) -> usize {
-        let pins = self.free_index.iter().filter(|i| **i == PINNED).count();
-        pins + self.constraints.len()
+    /// Number of vertices that are pinned or have a constraint.
+    pub(crate) fn supported_vertex_count(&self) -> usize {
+        let constrained = self.constraints.iter().map(VertexConstraint::vertex);
+        let vertices: HashSet<VertexId> = self.pins().into_iter().chain(constrained).collect();
+        vertices.len()
     }
 
     /// Free vertices that rods to pins at rest hold in place at positions `x` (`3V`, metres): those with three
