@@ -219,12 +219,6 @@ impl Engine {
         is_same_state && before == end.history
     }
 
-    /// Whether a sub-step of `h` seconds may end short of a minimum because the rods of the sheet lock. Where
-    /// supports move, the sheet has to follow all the way.
-    fn may_lock(&self, h: f64) -> bool {
-        self.may_hold() && self.model.supports_rest(self.state(), self.state().t + h)
-    }
-
     /// Whether the fallback holds the sheet.
     fn may_hold(&self) -> bool {
         self.control.fallback == Fallback::Hold && self.fallback.is_some()
@@ -316,10 +310,10 @@ enum Stop {
 }
 
 impl Substeps<'_> {
-    /// Where a sub-step of `h` seconds may end.
-    fn step_end(&self, h: f64) -> StepEnd {
+    /// Where a sub-step may end.
+    fn step_end(&self) -> StepEnd {
         let engine = &*self.engine;
-        if engine.may_lock(h) {
+        if engine.may_hold() {
             StepEnd::Descent {
                 after: engine.control.hold_after,
             }
@@ -348,7 +342,7 @@ impl Stepping for Substeps<'_> {
     type Report = ();
 
     fn propose(&mut self, h: f64) -> Result<(), StepError> {
-        let end = self.step_end(h);
+        let end = self.step_end();
         let Engine {
             model,
             contact,

@@ -138,8 +138,7 @@ pub struct StepControl {
     /// Smallest sub-step, as a fraction of the step asked for. Default 2^-14 (6e-5).
     pub min_fraction: f64,
     /// Number of factorisations in a step from which a sheet is held where a sub-step is refused
-    /// ([`Fallback::Hold`]), and not divided further. Without effect in contact and where supports or
-    /// potentials are driven. Default 200.
+    /// ([`Fallback::Hold`]), and not divided further. Default 200.
     ///
     /// An attempt of a sheet that locks takes 220 to 280, so that by default such a sheet is held after the
     /// first one, and a step whose attempts fail early is divided. Measured with 200 sheets that are clamped
@@ -177,15 +176,20 @@ pub enum Fallback {
     /// that it could move to first order but has no motion.
     ///
     /// For sheets of rods with supports at two vertices or more, with BDF2 and implicit Euler; for others this
-    /// is [`Fallback::Refuse`]. Where [`StepControl::hold_after`] counts, each attempt ends after at most a few
-    /// hundred factorisations, and a sub-step after that number ends at positions with the rest lengths that
-    /// are lower than its start, if a part of the displacement by Newton's method leads to any
-    /// ([`StepOutcome::Descended`](crate::StepOutcome::Descended)). Otherwise the sheet stays where it is for
-    /// the rest of the step, with zero velocities ([`StepOutcome::Held`](crate::StepOutcome::Held)). Energy lost
-    /// in either counts as dissipated, and the forces of rods and supports are zero. Once the same step has been
-    /// in vain at the same place, it is not tried again there and costs nothing, unless contact, forces, or
-    /// supports and potentials that depend on time could change the answer. Refused where supports move the
-    /// sheet, and where bodies close a gap or nearly so.
+    /// is [`Fallback::Refuse`]. Each attempt ends after at most a few hundred factorisations, and a sub-step that
+    /// is refused after [`StepControl::hold_after`] of them ends at positions with the rest lengths that are
+    /// lower than its start, if a part of the displacement by Newton's method leads to any
+    /// ([`StepOutcome::Descended`](crate::StepOutcome::Descended); not where supports or bodies move). Otherwise
+    /// the sheet keeps its shape for the rest of the step ([`StepOutcome::Held`](crate::StepOutcome::Held)): it
+    /// stays where it is, with zero velocities, or goes with its pins where these move as one rigid body. Where
+    /// pins move against each other, a constraint of a vertex moves away, or a body closes a gap, the step is
+    /// divided further.
+    ///
+    /// Energy lost in such a step counts as dissipated, and the forces of the rods are zero. The forces of the
+    /// supports of a held sheet are those that give a rigid body its change of momentum; of all such forces,
+    /// which supports share out in many ways, those with the smallest sum of squares. Once the same step has
+    /// been in vain at the same place, it is not tried again there and costs nothing, unless non-conservative
+    /// forces, or supports, bodies and potentials that depend on time could change the answer.
     ///
     /// A solver that finds no motion does not prove that there is none: sheets stop that could move on. Steps
     /// with these outcomes do not satisfy the balance of momentum

@@ -351,7 +351,8 @@ impl Advice for StepError {
             } => cause.advice(),
             Self::StepTooSmall { .. } => Some(
                 "model the sheet as elastic (`SheetModel::with_membrane`) or as isometric in weak form \
-                 (`SheetModel::with_weak_isometry`), or let locked sheets stop (`Fallback::Hold`)",
+                 (`SheetModel::with_weak_isometry`); BDF2 and implicit Euler hold locked sheets with \
+                 `Fallback::Hold`",
             ),
             Self::Chart { source, .. } => source.advice(),
             Self::Linalg { source, .. } => source.advice(),

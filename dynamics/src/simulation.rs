@@ -298,6 +298,9 @@ impl Simulation {
     /// `b = w^2 / (1 + 2w)` and `k = (1 + w) / (1 + 2w)`. The difference quotient `(p1 - p0) / h` of a BDF2
     /// step is another number, and differs from the sum of the forces by as much as they change in the step.
     ///
+    /// After a step that held the sheet ([`Fallback::Hold`](crate::Fallback::Hold)) the forces are as of implicit
+    /// Euler, and those that act on the sheet as on a rigid body; rods do not enter.
+    ///
     /// The conservative methods keep this balance to round-off. The damped methods leave two things over:
     /// what Newton's method leaves at free vertices, which shrinks with its tolerance, and, where there is
     /// contact, the change of the contact forces by the projection that ends a step, beyond first order.

@@ -6,7 +6,7 @@ use isosheet_dynamics::{
     State, StepControl, StepError, StepOutcome, VertexLoad,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Vector3};
 
 const H: f64 = 1.0 / 60.0;
 
@@ -124,10 +124,24 @@ fn a_held_sheet_stays_where_it_is() {
         assert_eq!(report.kinetic, 0.0);
         assert!(run.state().v.iter().all(|v| *v == 0.0));
         assert_eq!(run.state().x, before.x, "step {step}");
-        let forces = run.reactions();
-        assert!(forces.iter().all(|r| r.force.norm() == 0.0), "{forces:?}");
+        check_resultant(&run, &before);
     }
     assert!(held > 0);
+}
+
+/// The supports of a held sheet give it its change of momentum, and carry its weight.
+fn check_resultant(run: &Simulation, before: &State) {
+    let state = run.state();
+    let masses = &run.model().mass().vertex;
+    let mut expected = Vector3::zeros();
+    for (i, mass) in masses.iter().enumerate() {
+        let velocity = |s: &State| Vector3::from_column_slice(&s.v[3 * i..3 * i + 3]);
+        let change = (velocity(state) - velocity(before)) / (state.t - before.t);
+        expected += *mass * (change - Vector3::from(PAPER_GRAVITY));
+    }
+    let sum: Vector3<f64> = run.reactions().iter().map(|r| r.force).sum();
+    let error = (sum - expected).norm();
+    assert!(error < 1e-9 * (1.0 + expected.norm()), "{sum} {expected}");
 }
 
 /// Checkpoints before and after held steps continue to the same bits.
@@ -205,6 +219,13 @@ fn a_held_sheet_yields_neither_to_pins_nor_to_bodies() {
 /// A flat sheet with bending stiffness (N m) a quarter of which is clamped along a line that is no mesh line,
 /// in a direction given by an angle to the x axis (radians).
 fn clamped(sheet: &Sheet, angle: f64, rigidity: f64) -> SheetModel {
+    let model = stiff(sheet, rigidity).with_damping(2.0);
+    let pins = clamp(sheet, angle);
+    model.and_then(|m| m.with_pins(&pins)).expect("valid")
+}
+
+/// The vertices of the clamp.
+fn clamp(sheet: &Sheet, angle: f64) -> Vec<VertexId> {
     let place = |v: &VertexId| {
         let [x, y, _] = sheet.position(*v);
         angle.cos() * x + angle.sin() * y
@@ -212,10 +233,13 @@ fn clamped(sheet: &Sheet, angle: f64, rigidity: f64) -> SheetModel {
     let mut pins: Vec<VertexId> = sheet.topology().vertex_ids().collect();
     pins.sort_by(|a, b| place(b).total_cmp(&place(a)));
     pins.truncate(sheet.topology().vertex_count().div_ceil(4));
+    pins
+}
+
+fn stiff(sheet: &Sheet, rigidity: f64) -> SheetModel {
     let bending = CreaseSprings::bending(sheet, rigidity).expect("valid");
     SheetModel::new(sheet, 0.1, MassKind::Lumped)
         .map(|m| m.with_potential(bending).with_gravity())
-        .and_then(|m| m.with_damping(2.0)?.with_pins(&pins))
         .expect("valid")
 }
 
@@ -273,6 +297,74 @@ fn a_sheet_that_is_held_for_good_costs_nothing() {
     // Another step is another question.
     let longer = run.step(2.0 * H).expect("held");
     assert!(longer.factorisations > 100, "{longer:?}");
+}
+
+/// Where a clamp that moves as a rigid body locks the sheet, the sheet goes with it.
+#[test]
+fn a_locked_sheet_goes_with_its_clamp() {
+    let sheet = irregular();
+    let mut model = stiff(&sheet, 1e-2);
+    for v in clamp(&sheet, 0.3) {
+        let [x, y, z] = sheet.position(v);
+        let turn = move |t: f64| {
+            let (s, c) = (0.5 * t * t).sin_cos();
+            [c * x + s * z + 0.2 * t * t, y, c * z - s * x]
+        };
+        model = model.with_moving_pin(v, turn).expect("valid");
+    }
+    let pairs = |x: &[f64]| {
+        let n = sheet.topology().vertex_count();
+        let at = |v: usize| Vector3::from_column_slice(&x[3 * v..3 * v + 3]);
+        let pairs = (0..n).flat_map(|i| (0..i).map(move |j| (i, j)));
+        let distances = pairs.map(|(i, j)| (at(i) - at(j)).norm());
+        distances.collect::<Vec<_>>()
+    };
+    let mut run = undivided(model, &sheet);
+    let (mut held, mut drift) = (0, 0.0_f64);
+    for step in 0..30 {
+        let before = run.state().clone();
+        let report = run.step(H).expect("goes with the clamp");
+        assert!(report.strain < 1e-12, "{step}: {report:?}");
+        // The work of the supports is known by the trapezoidal rule.
+        drift = drift.max(report.energy_drift.abs());
+        if report.outcome == StepOutcome::Held && report.substeps == 1 {
+            held += 1;
+            let (start, end) = (pairs(&before.x), pairs(&run.state().x));
+            let change = start.iter().zip(&end).map(|(a, b)| (a - b).abs());
+            assert!(change.fold(0.0, f64::max) < 1e-13, "{step}");
+            check_resultant(&run, &before);
+        }
+    }
+    assert!(held > 10, "{held}");
+    assert!(drift < 1e-3 * run.energy().abs(), "{drift}");
+}
+
+/// A floor, out of reach or not, changes nothing of what a step of a locked sheet may cost.
+#[test]
+fn a_locked_sheet_above_a_floor_is_held() {
+    let sheet = irregular();
+    for z in [-10.0, -0.01] {
+        let model = locked(&sheet);
+        let pose = Isometry3::translation(0.0, 0.0, z);
+        let floor = Obstacle::fixed(Shape::HalfSpace, pose).expect("valid");
+        let contacts = Contacts::new(&model, ContactOptions::for_sheet(&model))
+            .and_then(|c| c.with_body(floor, Coefficients::equal(0.3)))
+            .and_then(|c| c.with_self_contact(Coefficients::equal(0.3)))
+            .expect("valid");
+        let mut run = run(model, &sheet, Fallback::Hold)
+            .with_control(StepControl::default())
+            .and_then(|run| run.with_contact(contacts))
+            .expect("nothing touches");
+        let mut free = 0;
+        for _ in 0..10 {
+            let report = run.step(H).expect("held");
+            assert!(report.strain < 1e-12, "{report:?}");
+            assert!(report.gap.is_none_or(|gap| gap > 0.0), "{report:?}");
+            assert!(report.factorisations < 1000, "{z}: {report:?}");
+            free += u32::from(report.factorisations == 0);
+        }
+        assert!(free > 5, "{z}: {free}");
+    }
 }
 
 /// A load could change with time, so that every step is tried.

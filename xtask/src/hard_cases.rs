@@ -6,6 +6,7 @@
 
 mod case;
 mod charts;
+mod clamps;
 mod flat;
 mod invariance;
 mod locking;
@@ -34,7 +35,7 @@ use rayon::prelude::*;
 use std::time::Instant;
 
 /// The cases in the order of the report.
-static CASES: [&Case; 22] = [
+static CASES: [&Case; 23] = [
     &flat::START,
     &flat::BRANCH,
     &charts::CONDITION,
@@ -57,6 +58,7 @@ static CASES: [&Case; 22] = [
     &invariance::SYMMETRY,
     &invariance::THREADS,
     &locking::DRAPE,
+    &clamps::CLAMPS,
 ];
 
 fn named() -> Vec<(&'static str, &'static Case)> {

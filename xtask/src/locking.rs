@@ -7,7 +7,7 @@
 mod bisection;
 mod buckling;
 mod cantilever;
-mod clamped;
+pub(crate) mod clamped;
 mod compliance;
 mod cylinder;
 mod disk;

@@ -56,7 +56,8 @@ impl Origins {
                 let remedy = match dependent_rods {
                     0 => "take a smaller `method.step`, more damping, or another `sheet.isometry`",
                     _ => {
-                        "choose `sheet.isometry` weak or membrane, more damping, another `method.step`, or `method.fallback` hold"
+                        "choose `sheet.isometry` weak or membrane, more damping, or another `method.step`; \
+                         with `bdf2` and `implicit_euler` leave `method.fallback` at hold"
                     }
                 };
                 return Problem::new(inner.key, error.to_string(), remedy);

@@ -30,7 +30,7 @@ pub struct Method {
     pub min_fraction: f64,
     /// Number of factorisations in a step from which a clamped sheet of rods is held where a part of the step
     /// is rejected (`fallback = "hold"`), instead of being divided down to `min_fraction`. More find motions for
-    /// some sheets. Without effect in contact and where supports or creases are driven.
+    /// some sheets.
     pub hold_after: usize,
     /// What to do when even that is rejected.
     pub fallback: Fallback,
@@ -72,8 +72,8 @@ pub enum Fallback {
     /// Take the step with implicit Euler, and carry on.
     ImplicitEuler,
     /// End the step without a balance of forces, and carry on: for sheets whose rods lock at clamps. The sheet
-    /// stops short of where it would fall, or stays where it is, at rest, and `summary.json` counts these steps
-    /// as `held`. For rods with supports at two vertices or more, with `bdf2` and `implicit_euler`; otherwise
+    /// stops short of where it would fall, or keeps its shape: at rest, or going with a clamp that moves as a
+    /// rigid body. `summary.json` counts these steps as `held`. For rods with supports at two vertices or more, with `bdf2` and `implicit_euler`; otherwise
     /// as `refuse`.
     #[default]
     Hold,

@@ -123,7 +123,7 @@ time = 1.0
     let refuse = ["simulate", "locks.toml", "--set", "method.fallback=refuse"];
     let refused = run(dir, &refuse);
     assert_eq!(code(&refused), Some(1), "{}", stderr(&refused));
-    assert!(stderr(&refused).contains("or `method.fallback` hold"));
+    assert!(stderr(&refused).contains("leave `method.fallback` at hold"));
     let ended = run(dir, &["simulate", "locks.toml", "--out", "held"]);
     assert_eq!(code(&ended), Some(0), "{}", stderr(&ended));
     assert!(stderr(&ended).contains("ended without a balance of forces"));

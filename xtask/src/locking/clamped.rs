@@ -39,16 +39,16 @@ const SEED: u64 = 20;
 
 /// A sheet of the family.
 #[derive(Debug)]
-pub(super) struct Clamped {
-    pub(super) sheet: Sheet,
-    pub(super) pins: Vec<VertexId>,
+pub(crate) struct Clamped {
+    pub(crate) sheet: Sheet,
+    pub(crate) pins: Vec<VertexId>,
     /// Flexural rigidity, N m.
-    pub(super) rigidity: f64,
+    pub(crate) rigidity: f64,
 }
 
 impl Clamped {
     /// The sheet of the given number in the family.
-    pub(super) fn new(number: usize) -> Result<Self> {
+    pub(crate) fn new(number: usize) -> Result<Self> {
         let mut rng = ChaCha8Rng::seed_from_u64(SEED + number as u64);
         let kind = KINDS[number % KINDS.len()];
         let sheet = loop {
