@@ -23,6 +23,11 @@ use crate::{
 };
 use isosheet_mesh::VertexId;
 
+/// How many times [`StepControl::hold_after`] a step takes where supports move, before the sheet is held that
+/// was not so before. A strip of paper that jams in a guide and buckles needs 700 factorisations in one step
+/// with the default of 200, and is not to be held there.
+const DRIVEN: usize = 10;
+
 /// A sheet that a chart-free method moves.
 pub(crate) struct Engine {
     pub(crate) model: SheetModel,
@@ -189,6 +194,7 @@ impl Engine {
             is_autonomous,
             memory: Memory::All,
             proposer,
+            factorisations: 0,
             refused: None,
             pending: Pending::default(),
             totals,
@@ -214,9 +220,19 @@ impl Engine {
         let is_same_state = (&start.state.x, &start.state.v) == (&end.state.x, &end.state.v);
         let before = History {
             returning_step: end.history.returning_step,
+            is_held: end.history.is_held,
             ..start.history.clone()
         };
         is_same_state && before == end.history
+    }
+
+    /// Whether the sheet is expected to lock where a sub-step of `h` seconds fails: where supports rest, or the
+    /// sheet was held just before. Where supports move, the sheet has to follow, and most steps that fail need
+    /// to be divided.
+    fn may_lock(&self, h: f64) -> bool {
+        let state = self.state();
+        let is_likely = self.moment.history.is_held || self.model.supports_rest(state, state.t + h);
+        self.may_hold() && is_likely
     }
 
     /// Whether the fallback holds the sheet.
@@ -280,6 +296,8 @@ struct Substeps<'a> {
     /// What of the history the next proposal begins with.
     memory: Memory,
     proposer: Proposer,
+    /// Number of factorisations in the step up to the last sub-step that was taken.
+    factorisations: usize,
     /// The sub-step that the method refused before the fallback was asked, and why.
     refused: Option<(Subdivision, StepError)>,
     pending: Pending,
@@ -310,16 +328,27 @@ enum Stop {
 }
 
 impl Substeps<'_> {
-    /// Where a sub-step may end.
-    fn step_end(&self) -> StepEnd {
-        let engine = &*self.engine;
-        if engine.may_hold() {
+    /// Where a sub-step of `h` seconds may end.
+    fn step_end(&self, h: f64) -> StepEnd {
+        if self.engine.may_lock(h) {
             StepEnd::Descent {
-                after: engine.control.hold_after,
+                after: self.holds_from(h),
             }
         } else {
             StepEnd::Minimum
         }
+    }
+
+    /// Number of factorisations in the step from which the sheet is held if a sub-step of `h` seconds is
+    /// refused.
+    fn holds_from(&self, h: f64) -> usize {
+        let after = self.engine.control.hold_after;
+        let after = if self.engine.may_lock(h) {
+            after
+        } else {
+            after.saturating_mul(DRIVEN)
+        };
+        self.factorisations.saturating_add(after)
     }
 
     /// Goes on with the method and a shorter sub-step where the fallback has none.
@@ -342,7 +371,7 @@ impl Stepping for Substeps<'_> {
     type Report = ();
 
     fn propose(&mut self, h: f64) -> Result<(), StepError> {
-        let end = self.step_end();
+        let end = self.step_end(h);
         let Engine {
             model,
             contact,
@@ -402,7 +431,7 @@ impl Stepping for Substeps<'_> {
         check_energy(model, after)
     }
 
-    fn decide(&mut self, refusal: StepError, _h: f64) -> Decision<Stop> {
+    fn decide(&mut self, refusal: StepError, h: f64) -> Decision<Stop> {
         if matches!(
             refusal,
             StepError::NonFiniteMotion { .. } | StepError::Body(_)
@@ -414,9 +443,8 @@ impl Stepping for Substeps<'_> {
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
         // What a locked sheet lacks is a motion, and not a shorter step.
         let lacks_motion = gains_energy || matches!(refusal, StepError::NotConverged { .. });
-        let spent = self.totals.effort.factorisations;
-        let is_locked =
-            lacks_motion && self.engine.may_hold() && spent >= self.engine.control.hold_after;
+        let is_spent = self.totals.effort.factorisations >= self.holds_from(h);
+        let is_locked = lacks_motion && is_spent && self.engine.may_hold();
         let smallest = self.engine.control.min_fraction;
         if self.proposer == Proposer::Fallback {
             self.resume_method()
@@ -486,9 +514,11 @@ impl Stepping for Substeps<'_> {
         }
         let is_repeatable = self.is_autonomous && is_whole && step.outcome == StepOutcome::Held;
         let returns = is_repeatable && engine.has_returned();
+        engine.moment.history.is_held = step.outcome == StepOutcome::Held;
         engine.moment.history.returning_step = if returns { h } else { 0.0 };
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         self.refused = None;
+        self.factorisations = self.totals.effort.factorisations;
         Ok(())
     }
 }

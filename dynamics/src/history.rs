@@ -22,6 +22,8 @@ pub(crate) struct History {
     pub(crate) rod_stiffness: f64,
     /// Length of a step from here that ends here, with the same history, seconds; zero if none is known.
     pub(crate) returning_step: f64,
+    /// Whether the sheet was held in the last sub-step, see [`Fallback::Hold`](crate::Fallback::Hold).
+    pub(crate) is_held: bool,
 }
 
 impl History {
@@ -37,6 +39,7 @@ impl History {
         self.couplings.clone_from(&other.couplings);
         self.rod_stiffness = other.rod_stiffness;
         self.returning_step = other.returning_step;
+        self.is_held = other.is_held;
     }
 
     /// Sets the state before the present one, in place.

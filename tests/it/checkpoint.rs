@@ -263,8 +263,8 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 7,
-            supported: 6
+            found: 6,
+            supported: 7
         }
     ));
     // Every other byte is under the checksum, the checksum included.
@@ -278,12 +278,12 @@ fn other_sheets_versions_and_damage_are_refused() {
         assert!(Checkpoint::from_bytes(&bytes[..length]).is_err());
     }
     let text = checkpoint.to_json().expect("encoded");
-    let other = text.replacen("\"version\":6", "\"version\":7", 1);
+    let other = text.replacen("\"version\":7", "\"version\":8", 1);
     assert_eq!(
         Checkpoint::from_json(&other),
         Err(CheckpointError::Version {
-            found: 7,
-            supported: 6
+            found: 8,
+            supported: 7
         })
     );
     assert!(matches!(
