@@ -26,7 +26,7 @@ use isosheet_mesh::VertexId;
 /// How many times [`StepControl::hold_after`] a step takes where supports move, before the sheet is held that
 /// was not so before. A strip of paper that jams in a guide and buckles needs 700 factorisations in one step
 /// with the default of 200, and is not to be held there.
-const DRIVEN: usize = 10;
+const DRIVEN: usize = 5;
 
 /// A sheet that a chart-free method moves.
 pub(crate) struct Engine {
@@ -194,7 +194,6 @@ impl Engine {
             is_autonomous,
             memory: Memory::All,
             proposer,
-            factorisations: 0,
             refused: None,
             pending: Pending::default(),
             totals,
@@ -296,8 +295,6 @@ struct Substeps<'a> {
     /// What of the history the next proposal begins with.
     memory: Memory,
     proposer: Proposer,
-    /// Number of factorisations in the step up to the last sub-step that was taken.
-    factorisations: usize,
     /// The sub-step that the method refused before the fallback was asked, and why.
     refused: Option<(Subdivision, StepError)>,
     pending: Pending,
@@ -343,12 +340,11 @@ impl Substeps<'_> {
     /// refused.
     fn holds_from(&self, h: f64) -> usize {
         let after = self.engine.control.hold_after;
-        let after = if self.engine.may_lock(h) {
+        if self.engine.may_lock(h) {
             after
         } else {
             after.saturating_mul(DRIVEN)
-        };
-        self.factorisations.saturating_add(after)
+        }
     }
 
     /// Goes on with the method and a shorter sub-step where the fallback has none.
@@ -518,7 +514,6 @@ impl Stepping for Substeps<'_> {
         engine.moment.history.returning_step = if returns { h } else { 0.0 };
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         self.refused = None;
-        self.factorisations = self.totals.effort.factorisations;
         Ok(())
     }
 }

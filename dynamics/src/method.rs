@@ -138,7 +138,8 @@ pub struct StepControl {
     /// Smallest sub-step, as a fraction of the step asked for. Default 2^-14 (6e-5).
     pub min_fraction: f64,
     /// Number of factorisations in a step from which a sheet is held where a sub-step is refused
-    /// ([`Fallback::Hold`]), and not divided further. Default 200.
+    /// ([`Fallback::Hold`]), and not divided further; five times as many where supports move and the sheet was
+    /// not held just before. Default 200.
     ///
     /// An attempt of a sheet that locks takes 220 to 280, so that by default such a sheet is held after the
     /// first one, and a step whose attempts fail early is divided. Measured with 200 sheets that are clamped
@@ -176,9 +177,10 @@ pub enum Fallback {
     /// that it could move to first order but has no motion.
     ///
     /// For sheets of rods with supports at two vertices or more, with BDF2 and implicit Euler; for others this
-    /// is [`Fallback::Refuse`]. Each attempt ends after at most a few hundred factorisations, and a sub-step that
-    /// is refused after [`StepControl::hold_after`] of them ends at positions with the rest lengths that are
-    /// lower than its start, if a part of the displacement by Newton's method leads to any
+    /// is [`Fallback::Refuse`]. Where supports rest, and where the sheet was held just before, an attempt ends
+    /// after at most a few hundred factorisations. A sub-step that is refused after
+    /// [`StepControl::hold_after`] factorisations ends at positions with the rest lengths that are lower than
+    /// its start, if a part of the displacement by Newton's method leads to any
     /// ([`StepOutcome::Descended`](crate::StepOutcome::Descended); not where supports or bodies move). Otherwise
     /// the sheet keeps its shape for the rest of the step ([`StepOutcome::Held`](crate::StepOutcome::Held)): it
     /// stays where it is, with zero velocities, or goes with its pins where these move as one rigid body. Where
