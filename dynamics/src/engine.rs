@@ -229,9 +229,8 @@ impl Engine {
     /// sheet was held just before. Where supports move, the sheet has to follow, and most steps that fail need
     /// to be divided.
     fn may_lock(&self, h: f64) -> bool {
-        let state = self.state();
-        let is_likely = self.moment.history.is_held || self.model.supports_rest(state, state.t + h);
-        self.may_hold() && is_likely
+        let rests = || self.model.supports_rest(self.state(), self.state().t + h);
+        self.may_hold() && (self.moment.history.is_held || rests())
     }
 
     /// Whether the fallback holds the sheet.
