@@ -168,6 +168,7 @@ impl Engine {
         let (contact, contacts) = RunContact::new(contact, &self.model, &self.moment.state)?;
         self.contact = Some(contact);
         self.moment.contacts = Some(contacts);
+        self.moment.history.returning_step = 0.0;
         Ok(())
     }
 
@@ -409,7 +410,9 @@ impl Stepping for Substeps<'_> {
             ..Exchange::default()
         };
         if model.has_drives() {
-            let kept = has_moved.then_some(&moment.balance);
+            // The forces of a held step are those of an impact, and their work is known with them alone.
+            let is_held = step.outcome == StepOutcome::Held;
+            let kept = (*has_moved && !is_held).then_some(&moment.balance);
             let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
             let balance = &proposal.moment.balance;
             exchange.supports = balance.drive_work(model, kept, ends.0, ends.1);
@@ -527,16 +530,14 @@ fn fallback(
     method: &Method,
     control: &StepControl,
 ) -> Result<Option<Box<dyn Integrator>>, SimulationError> {
-    Ok(match &control.fallback {
-        Fallback::ImplicitEuler(o) => Some(Box::new(ImplicitEuler::new(model, o.clone())?)),
-        Fallback::Hold
-            if method.is_minimising()
-                && model.isometry() == Isometry::Rods
-                && model.supported_vertex_count() > 1 =>
+    Ok(match (&control.fallback, method) {
+        (Fallback::ImplicitEuler(o), _) => Some(Box::new(ImplicitEuler::new(model, o.clone())?)),
+        (Fallback::Hold, Method::Bdf2(o) | Method::ImplicitEuler(o))
+            if model.isometry() == Isometry::Rods && model.supported_vertex_count() > 1 =>
         {
-            Some(Box::new(Hold::new(model)))
+            Some(Box::new(Hold::new(model, o.strain_tolerance)))
         }
-        Fallback::Hold | Fallback::Refuse => None,
+        (Fallback::Hold | Fallback::Refuse, _) => None,
     })
 }
 

@@ -19,6 +19,7 @@ use isosheet_mesh::VertexId;
 /// motion exists. The step is an impact after which all of the sheet has the velocity of the supports, and
 /// the forces of the supports are those that do this to a rigid body.
 pub(crate) struct Hold {
+    strain_tolerance: f64,
     iterate: Iterate,
     /// Work arrays: the displacement, and the non-conservative forces or the change of the velocities.
     displacement: Vec<f64>,
@@ -27,16 +28,15 @@ pub(crate) struct Hold {
 
 /// The momentum balance of a held sheet is not solved: all of it is left over.
 const RESIDUAL: f64 = 1.0;
-/// Strain, and violation of the constraints of vertices in mean rod lengths, below which they are as good as
-/// none: the default tolerance of the steps.
-const TOLERANCE: f64 = 1e-12;
 /// Largest number of parts in which bodies are moved. Ten leave a thousandth of a gap.
 const MAX_PARTS: usize = 10;
 
 impl Hold {
-    pub(crate) fn new(model: &SheetModel) -> Self {
+    /// For sheets whose accepted steps have strains up to `strain_tolerance`.
+    pub(crate) fn new(model: &SheetModel, strain_tolerance: f64) -> Self {
         let n = model.coordinate_count();
         Self {
+            strain_tolerance,
             iterate: Iterate::new(n),
             displacement: vec![0.0; n],
             applied: vec![0.0; n],
@@ -83,20 +83,18 @@ impl Hold {
         false
     }
 
-    /// Whether the iterate has the rest lengths, and satisfies the constraints of vertices, as well as the
-    /// positions at the start of the step.
+    /// Whether the iterate has the rest lengths to the tolerance of the method, or as well as the positions at
+    /// the start of the step, and satisfies the constraints of vertices as well as these.
     fn is_admissible(&self, model: &SheetModel, state: &State, t: f64) -> bool {
         let x = self.iterate.x();
         if *x != state.x {
             let before = model.constrained_strain(&state.x);
             let floor = strain_floor(model, state);
-            if model.constrained_strain(x) > before.max(TOLERANCE).max(floor) {
+            if model.constrained_strain(x) > before.max(self.strain_tolerance).max(floor) {
                 return false;
             }
         }
-        let before = model.largest_violation(state.t, &state.x).unwrap_or(0.0);
-        let after = model.largest_violation(t, x).unwrap_or(0.0);
-        after <= before.max(TOLERANCE * model.mean_length())
+        model.keeps_constraints(state, t, x)
     }
 }
 

@@ -325,7 +325,7 @@ fn a_locked_sheet_goes_with_its_clamp() {
         let before = run.state().clone();
         let report = run.step(H).expect("goes with the clamp");
         assert!(report.strain < 1e-12, "{step}: {report:?}");
-        // The work of the supports is known by the trapezoidal rule.
+        // The work of the forces that act on a rigid body along the chords of a turn.
         drift = drift.max(report.energy_drift.abs());
         if report.outcome == StepOutcome::Held && report.substeps == 1 {
             held += 1;
@@ -336,7 +336,7 @@ fn a_locked_sheet_goes_with_its_clamp() {
         }
     }
     assert!(held > 10, "{held}");
-    assert!(drift < 1e-3 * run.energy().abs(), "{drift}");
+    assert!(drift < 2e-4 * run.energy().abs(), "{drift}");
 }
 
 /// A floor, out of reach or not, changes nothing of what a step of a locked sheet may cost.

@@ -185,8 +185,14 @@ impl SheetModel {
         if !self.moving_pins.iter().all(at_place) {
             return false;
         }
+        self.keeps_constraints(state, t, &state.x)
+    }
+
+    /// Whether positions `x` (`3V`, metres) at time `t` (seconds) satisfy the constraints of vertices as well as
+    /// `state` does.
+    pub(crate) fn keeps_constraints(&self, state: &State, t: f64, x: &[f64]) -> bool {
         let before = self.largest_violation(state.t, &state.x).unwrap_or(0.0);
-        let after = self.largest_violation(t, &state.x).unwrap_or(0.0);
+        let after = self.largest_violation(t, x).unwrap_or(0.0);
         after <= before.max(VIOLATION * self.mean_length())
     }
 
