@@ -183,7 +183,8 @@ impl Engine {
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals) -> Result<(), StepError> {
         let lengths = Subdivision::new(self.state().t, h);
-        let is_autonomous = self.is_autonomous(h);
+        // Only steps in which a sheet is held are known to return.
+        let is_autonomous = self.may_hold() && self.is_autonomous(h);
         let proposer = if is_autonomous && self.moment.history.returning_step == h {
             Proposer::Fallback
         } else {
@@ -226,9 +227,9 @@ impl Engine {
         is_same_state && before == end.history
     }
 
-    /// Whether the sheet is expected to lock where a sub-step of `h` seconds fails: where supports rest, or the
-    /// sheet was held just before. Where supports move, the sheet has to follow, and most steps that fail need
-    /// to be divided.
+    /// Whether the sheet is expected to lock where a sub-step of `h` seconds fails: where supports rest, or
+    /// the sheet was held just before. Where supports move, the sheet has to follow, and most steps that
+    /// fail need to be divided.
     fn may_lock(&self, h: f64) -> bool {
         let rests = || self.model.supports_rest(self.state(), self.state().t + h);
         self.may_hold() && (self.moment.history.is_held || rests())
@@ -290,7 +291,7 @@ impl Engine {
 struct Substeps<'a> {
     engine: &'a mut Engine,
     lengths: Subdivision,
-    /// Whether the step would be the same at another time.
+    /// Whether the sheet may be held and the step would be the same at another time.
     is_autonomous: bool,
     /// What of the history the next proposal begins with.
     memory: Memory,
@@ -328,9 +329,8 @@ impl Substeps<'_> {
     /// Where a sub-step of `h` seconds may end.
     fn step_end(&self, h: f64) -> StepEnd {
         if self.engine.may_lock(h) {
-            StepEnd::Descent {
-                after: self.holds_from(h),
-            }
+            let after = self.engine.control.hold_after;
+            StepEnd::Descent { after }
         } else {
             StepEnd::Minimum
         }
@@ -506,13 +506,11 @@ impl Stepping for Substeps<'_> {
             engine.moment.history.multipliers.clear();
             totals.outcome = totals.outcome.max(StepOutcome::Fallback);
         }
-        if step.outcome == StepOutcome::Held {
-            totals.dissipated += step.impact;
-            engine.account.spend(step.impact);
-        }
-        let is_repeatable = self.is_autonomous && is_whole && step.outcome == StepOutcome::Held;
-        let returns = is_repeatable && engine.has_returned();
-        engine.moment.history.is_held = step.outcome == StepOutcome::Held;
+        totals.dissipated += step.impact;
+        engine.account.spend(step.impact);
+        let is_held = step.outcome == StepOutcome::Held;
+        let returns = is_held && is_whole && self.is_autonomous && engine.has_returned();
+        engine.moment.history.is_held = is_held;
         engine.moment.history.returning_step = if returns { h } else { 0.0 };
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         self.refused = None;

@@ -1,6 +1,5 @@
 //! The step that keeps the shape of a sheet.
 
-use crate::SheetModel;
 use crate::constraint::rows::point;
 use crate::contact::StepSpan;
 use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
@@ -8,7 +7,7 @@ use crate::iterate::Iterate;
 use crate::primal::strain_floor;
 use crate::report::{SolverEffort, StepError, StepOutcome, not_converged};
 use crate::rigid_fit::{RigidFit, balance_as_rigid};
-use crate::state::State;
+use crate::{SheetModel, State};
 use isosheet_mesh::VertexId;
 
 /// The sheet stays where it is or, where its pins move as one rigid body, goes with them, see

@@ -46,10 +46,10 @@
 //! taut, are approached only as far as the square root of round-off allows. With pins at rest such vertices
 //! become pins, and cost nothing, as far as they are found ([`Simulation::immobile_vertices`]). Elsewhere a
 //! damped step may find no motion: then the sheet is held for this step, or stops short, and
-//! [`StepOutcome::is_solved`] is false ([`Fallback::Hold`]; where supports move against each other the step is
-//! refused, [`StepError::StepTooSmall`]). Sheets of rods that are clamped flat along anything but a line of the mesh
-//! lock as a whole: model them as elastic or in weak form. Conservative runs on fine, nearly flat sheets are
-//! slow: the exact motion flutters on ever smaller scales there.
+//! [`StepOutcome::is_solved`] is false ([`Fallback::Hold`]; where supports move against each other the step
+//! is refused, [`StepError::StepTooSmall`]). Sheets of rods that are clamped flat along anything but a line
+//! of the mesh lock as a whole: model them as elastic or in weak form. Conservative runs on fine, nearly flat
+//! sheets are slow: the exact motion flutters on ever smaller scales there.
 //!
 //! # Conventions
 //!

@@ -4,7 +4,9 @@ use crate::SheetModel;
 use crate::constraint::rows::{add, point};
 use crate::reaction::Balance;
 use isosheet_mesh::VertexId;
-use nalgebra::{Matrix3, Matrix6, Matrix6x3, Rotation3, SymmetricEigen, Vector3, Vector6};
+use nalgebra::{
+    Const, Matrix3, Matrix6, Matrix6x3, Rotation3, SVector, SymmetricEigen, Vector3, Vector6,
+};
 
 /// Largest number of iterations of a fit. The residual of displacements that are rigid falls quadratically:
 /// turns by a tenth of a radian take three iterations.
@@ -38,18 +40,7 @@ impl RigidFit {
                     Matrix3::from_diagonal_element(arm.norm_squared()) - arm * arm.transpose();
                 moment += arm.cross(&(to - target));
             }
-            let eigen = SymmetricEigen::new(inertia);
-            let smallest = ABSENT * eigen.eigenvalues.max();
-            let mut turn = Vector3::zeros();
-            for (value, axis) in eigen
-                .eigenvalues
-                .iter()
-                .zip(eigen.eigenvectors.column_iter())
-            {
-                if *value > smallest {
-                    turn += axis * (axis.dot(&moment) / value);
-                }
-            }
+            let turn = least_norm(&SymmetricEigen::new(inertia), &moment);
             rotation = Rotation3::new(turn) * rotation;
             if turn.norm() <= f64::EPSILON {
                 break;
@@ -155,21 +146,26 @@ fn share(handles: &mut [Handle], wanted: &Vector6<f64>) {
         .iter()
         .map(|h| h.wrench * h.wrench.transpose())
         .sum();
-    let eigen = SymmetricEigen::new(gram);
-    let smallest = ABSENT * eigen.eigenvalues.max();
-    let mut answer = Vector6::zeros();
-    for (value, direction) in eigen
-        .eigenvalues
-        .iter()
-        .zip(eigen.eigenvectors.column_iter())
-    {
-        if *value > smallest {
-            answer += direction * (direction.dot(wanted) / value);
-        }
-    }
+    let answer = least_norm(&SymmetricEigen::new(gram), wanted);
     for handle in handles {
         handle.multipliers = handle.wrench.tr_mul(&answer);
     }
+}
+
+/// The solution of least norm of a symmetric positive semidefinite system, without its [`ABSENT`] directions.
+fn least_norm<const N: usize>(
+    eigen: &SymmetricEigen<f64, Const<N>>,
+    right: &SVector<f64, N>,
+) -> SVector<f64, N> {
+    let smallest = ABSENT * eigen.eigenvalues.max();
+    let directions = eigen.eigenvectors.column_iter();
+    let mut answer = SVector::zeros();
+    for (value, direction) in eigen.eigenvalues.iter().zip(directions) {
+        if *value > smallest {
+            answer += direction * (direction.dot(right) / value);
+        }
+    }
+    answer
 }
 
 #[cfg(test)]

@@ -34,7 +34,8 @@ pub(crate) enum StepEnd {
     /// At a minimum of the incremental potential.
     Minimum,
     /// Where no strategy finds a minimum and the step has taken this number of factorisations, at positions with
-    /// the rest lengths that are lower than the start. For sheets of rods, which may lock: no strategy uses all the iterations that it has otherwise.
+    /// the rest lengths that are lower than the start. For sheets of rods, which may lock: no
+    /// strategy uses all the iterations that it has otherwise.
     Descent { after: usize },
 }
 

@@ -2,7 +2,7 @@
 
 use super::scenes::{FRAME, STRAIN, at_rest, go};
 use super::{Case, Findings};
-use crate::locking::clamped::Clamped;
+use crate::locking::clamped::{Clamped, DAMPING, MASS};
 use crate::report::{Effort, Table, number};
 use crate::runs::Course;
 use anyhow::Result;
@@ -16,7 +16,7 @@ use nalgebra::{Isometry3, Rotation3, Vector3};
 pub(crate) const CLAMPS: Case = Case {
     name: "clamps",
     title: "Clamped sheets above a floor and in moving clamps",
-    expected: "Every run reaches its end with exact lengths and no contact, and no step takes thousands of factorisations. How far a sheet of rods moves \
+    expected: "Every run reaches its end with exact lengths and nothing passed through, and no step is divided without a bound. How far a sheet of rods moves \
                that is clamped along a line that is no mesh line is another question: see the yardsticks of locking.",
     run: clamps,
 };
@@ -40,9 +40,6 @@ const SCENES: [(&str, Scene); 5] = [
     ("clamp turned", Scene::Turn),
 ];
 
-/// Mass of a sheet, kilograms, and rate of its damping, 1/s.
-const MASS: f64 = 0.1;
-const DAMPING: f64 = 2.0;
 const FRICTION: f64 = 0.3;
 
 /// Most factorisations of a step: a clamp that begins to move may take a thousand and a few attempts (measured:

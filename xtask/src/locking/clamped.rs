@@ -28,8 +28,8 @@ pub(super) const ABOUT: &str = "Flat sheets of 25 to 127 vertices and about 1 m 
 const KINDS: [&str; 5] = ["union jack", "one-way", "Delaunay", "disk", "rectangle"];
 
 /// Mass of a sheet, kilograms, and rate of its damping, 1/s.
-const MASS: f64 = 0.1;
-const DAMPING: f64 = 2.0;
+pub(crate) const MASS: f64 = 0.1;
+pub(crate) const DAMPING: f64 = 2.0;
 
 /// Numbers of vertices of the family.
 const VERTICES: std::ops::RangeInclusive<usize> = 25..=127;
