@@ -249,7 +249,7 @@ fn saddle_matrix_is_the_jacobian_of_the_momentum_and_length_equations() {
         assert!(error < 1e-8, "{kind:?}: {error:e}");
         // And the solver inverts that matrix.
         let (mut momentum, mut lengths) = (got, got_rods);
-        let mut effort = crate::report::SolverEffort::default();
+        let mut effort = crate::effort::SolverEffort::default();
         matrix
             .solve(
                 &model,

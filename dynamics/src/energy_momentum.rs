@@ -1,11 +1,12 @@
 //! The energy-momentum integrator.
 
 use crate::constraint::conservative::ConservativeRows;
+use crate::effort::SolverEffort;
 use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::options::OptionsError;
 use crate::primal::{dot, strain_floor, velocity_round_off};
 use crate::reaction::Balance;
-use crate::report::{SolverEffort, StepError, StepOutcome, not_converged};
+use crate::report::{StepError, StepOutcome, not_converged};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
@@ -236,7 +237,7 @@ impl Integrator for EnergyMomentum {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         let (model, state, h) = (scene.model, attempt.state, attempt.h);
         self.begin(model, &attempt);
@@ -295,7 +296,7 @@ impl EnergyMomentum {
         model: &SheetModel,
         state: &State,
         h: f64,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(f64, StepOutcome), StepError> {
         let strain_tolerance = self
             .options
@@ -318,6 +319,7 @@ impl EnergyMomentum {
             let lost = iterations >= QUADRATIC_FROM && residual > QUADRATIC_BELOW;
             if iterations == self.options.max_iterations
                 || lost
+                || !effort.goes_on()
                 || !(residual.is_finite() && strain < 1.0)
             {
                 break false;

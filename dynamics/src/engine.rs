@@ -181,7 +181,7 @@ impl Engine {
     }
 
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
-    pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals) -> Result<(), StepError> {
+    pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals<'_>) -> Result<(), StepError> {
         let lengths = Subdivision::new(self.state().t, h);
         // Only steps in which a sheet is held are known to return.
         let is_autonomous = self.may_hold() && self.is_autonomous(h);
@@ -288,7 +288,7 @@ impl Engine {
 }
 
 /// The sub-steps of one step.
-struct Substeps<'a> {
+struct Substeps<'a, 'w> {
     engine: &'a mut Engine,
     lengths: Subdivision,
     /// Whether the sheet may be held and the step would be the same at another time.
@@ -299,7 +299,7 @@ struct Substeps<'a> {
     /// The sub-step that the method refused before the fallback was asked, and why.
     refused: Option<(Subdivision, StepError)>,
     pending: Pending,
-    totals: &'a mut StepTotals,
+    totals: &'a mut StepTotals<'w>,
 }
 
 /// Who proposes.
@@ -325,7 +325,7 @@ enum Stop {
     Error(StepError),
 }
 
-impl Substeps<'_> {
+impl Substeps<'_, '_> {
     /// Where a sub-step of `h` seconds may end.
     fn step_end(&self, h: f64) -> StepEnd {
         if self.engine.may_lock(h) {
@@ -361,7 +361,7 @@ impl Substeps<'_> {
     }
 }
 
-impl Stepping for Substeps<'_> {
+impl Stepping for Substeps<'_, '_> {
     type Refusal = StepError;
     type Error = Stop;
     type Report = ();
@@ -396,10 +396,15 @@ impl Stepping for Substeps<'_> {
         let attempt = Attempt::new(moment, h, self.memory).ending_at(end);
         let effort = &mut self.totals.effort;
         let is_fallback = self.proposer == Proposer::Fallback;
-        match fallback {
-            Some(fallback) if is_fallback => fallback.propose(scene, attempt, proposal, effort)?,
-            _ => integrator.propose(scene, attempt, proposal, effort)?,
+        effort.t = moment.state.t;
+        let proposed = match fallback {
+            Some(fallback) if is_fallback => fallback.propose(scene, attempt, proposal, effort),
+            _ => integrator.propose(scene, attempt, proposal, effort),
+        };
+        if effort.is_interrupted() {
+            return Err(StepError::Interrupted { t: moment.state.t });
         }
+        proposed?;
         let (before, after) = (&moment.state, &proposal.moment.state);
         let step = &proposal.account;
         let mut exchange = Exchange {
@@ -432,7 +437,7 @@ impl Stepping for Substeps<'_> {
     fn decide(&mut self, refusal: StepError, h: f64) -> Decision<Stop> {
         if matches!(
             refusal,
-            StepError::NonFiniteMotion { .. } | StepError::Body(_)
+            StepError::NonFiniteMotion { .. } | StepError::Body(_) | StepError::Interrupted { .. }
         ) {
             return Decision::Stop(Stop::Error(refusal));
         }

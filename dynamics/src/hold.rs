@@ -2,10 +2,11 @@
 
 use crate::constraint::rows::point;
 use crate::contact::StepSpan;
+use crate::effort::SolverEffort;
 use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::iterate::Iterate;
 use crate::primal::strain_floor;
-use crate::report::{SolverEffort, StepError, StepOutcome, not_converged};
+use crate::report::{StepError, StepOutcome, not_converged};
 use crate::rigid_fit::{RigidFit, balance_as_rigid};
 use crate::{SheetModel, State};
 use isosheet_mesh::VertexId;
@@ -107,7 +108,7 @@ impl Integrator for Hold {
         mut scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         let (model, state, h) = (scene.model, attempt.state, attempt.h);
         let t = state.t + h;

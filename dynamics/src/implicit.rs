@@ -1,10 +1,11 @@
 //! The damped methods: implicit Euler and BDF2 with the constraints in the step.
 
+use crate::effort::SolverEffort;
 use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::minimiser::Minimiser;
 use crate::minimiser::problem::StepProblem;
 use crate::options::OptionsError;
-use crate::report::{SolverEffort, StepError, StepOutcome};
+use crate::report::{StepError, StepOutcome};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use serde::{Deserialize, Serialize};
@@ -103,7 +104,7 @@ impl Integrator for ImplicitEuler {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         proposal.moment.history.previous = None;
         two_step(&mut self.minimiser, scene, attempt, None, proposal, effort)
@@ -141,7 +142,7 @@ impl Integrator for Bdf2 {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         let (state, h) = (attempt.state, attempt.h);
         let previous = attempt
@@ -176,7 +177,7 @@ fn two_step(
     attempt: Attempt<'_>,
     previous: Option<&State>,
     proposal: &mut Proposal,
-    effort: &mut SolverEffort,
+    effort: &mut SolverEffort<'_>,
 ) -> Result<(), StepError> {
     let (state, h) = (attempt.state, attempt.h);
     let w = previous.map_or(0.0, |before| h / (state.t - before.t));

@@ -1,10 +1,11 @@
 //! What all chart-free integrators have in common: they propose, and leave it to the step control to commit.
 
 use crate::contact::{ContactState, ContactWork, StepContact};
+use crate::effort::SolverEffort;
 use crate::history::{History, Multipliers};
 use crate::minimiser::problem::StepEnd;
 use crate::reaction::{Balance, ForceTime};
-use crate::report::{SolverEffort, StepError, StepOutcome};
+use crate::report::{StepError, StepOutcome};
 use crate::{SheetModel, State};
 use serde::{Deserialize, Serialize};
 
@@ -225,7 +226,7 @@ pub(crate) trait Integrator: Send {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError>;
 
     /// What the method asks of a scene and what it can take.

@@ -79,6 +79,7 @@ mod control;
 mod crease;
 #[cfg(test)]
 mod derivative_tests;
+mod effort;
 mod energy_account;
 mod energy_momentum;
 mod engine;
@@ -125,6 +126,7 @@ mod weak_isometry;
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use constraint::VertexConstraint;
 pub use crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
+pub use effort::StepProgress;
 pub use energy_momentum::EnergyMomentumOptions;
 pub use feasibility::Excess;
 pub use implicit::ImplicitOptions;

@@ -13,11 +13,12 @@ mod weak_tests;
 
 use crate::ImplicitOptions;
 use crate::contact::{ContactState, ContactWork};
+use crate::effort::SolverEffort;
 use crate::history::History;
 use crate::integrator::Attempt;
 use crate::primal::strain_floor;
 use crate::reaction::{Balance, ForceTime};
-use crate::report::{self, SolverEffort, StepError, StepOutcome};
+use crate::report::{self, StepError, StepOutcome};
 use crate::restoration::{FirstMatrix, Restoration, RestorationContact, RestorationGoal};
 use crate::{Isometry, SheetModel};
 use augmented_lagrangian::{AugmentedLagrangian, Rounds};
@@ -247,7 +248,7 @@ impl Minimiser {
     pub(crate) fn minimise(
         &mut self,
         mut problem: StepProblem<'_>,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(Minimum, ContactWork), StepError> {
         let problem = &mut problem;
         self.lagrangian.begin(problem);
@@ -299,7 +300,7 @@ impl Minimiser {
         &mut self,
         strategy: Strategy,
         problem: &mut StepProblem<'_>,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<Minimum, StepError> {
         match strategy {
             Strategy::Sqp => {
@@ -354,7 +355,7 @@ impl Minimiser {
         &mut self,
         problem: &mut StepProblem<'_>,
         to: LengthGoal,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> f64 {
         let per = 1.0 / (problem.h * problem.h);
         let is_last = to.strain <= self.strain_tolerance(problem);
@@ -460,7 +461,7 @@ impl Minimiser {
 /// The error of a minimisation that did not converge.
 fn not_converged(
     problem: &StepProblem<'_>,
-    effort: &SolverEffort,
+    effort: &SolverEffort<'_>,
     residual: f64,
     strain: f64,
 ) -> StepError {

@@ -1,5 +1,6 @@
 //! Predict, project onto the lengths, project the velocity.
 
+use crate::effort::SolverEffort;
 use crate::integrator::{
     Attempt, ContactSupport, Integrator, MethodTraits, Proposal, RodDemand, Scene, StepAccount,
 };
@@ -8,7 +9,7 @@ use crate::model::PINNED;
 use crate::options::OptionsError;
 use crate::primal::{PrimalMatrix, strain_floor};
 use crate::reaction::{Balance, ForceTime};
-use crate::report::{SolverEffort, StepError, StepOutcome, not_converged};
+use crate::report::{StepError, StepOutcome, not_converged};
 use crate::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
@@ -128,7 +129,7 @@ impl ProjectionStep {
     fn accelerate(
         &mut self,
         model: &SheetModel,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(), LinalgError> {
         if model.mass().edge.is_none() {
             for (i, a) in self.acceleration.iter_mut().enumerate() {
@@ -158,7 +159,7 @@ impl Integrator for ProjectionStep {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         let (model, state, h) = (scene.model, attempt.state, attempt.h);
         self.predict(model, state, h, effort)?;
@@ -202,7 +203,7 @@ impl ProjectionStep {
         model: &SheetModel,
         state: &State,
         h: f64,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         model.potential_force(state.t, &state.x, &mut self.force);
         model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
@@ -240,7 +241,7 @@ impl ProjectionStep {
         model: &SheetModel,
         state: &State,
         h: f64,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<f64, StepError> {
         let tolerance = self
             .options

@@ -1,13 +1,14 @@
 //! RATTLE and its fourth-order composition.
 
 use crate::constraint::conservative::ConservativeRows;
+use crate::effort::SolverEffort;
 use crate::energy_momentum::mean_pin_velocities;
 use crate::history::Multipliers;
 use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::options::OptionsError;
 use crate::primal::{dot, strain_floor, velocity_round_off};
 use crate::reaction::{Balance, ForceTime};
-use crate::report::{SolverEffort, StepError, StepOutcome, not_converged};
+use crate::report::{StepError, StepOutcome, not_converged};
 use crate::saddle::{SaddleMatrix, System};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
@@ -141,7 +142,7 @@ impl Rattle {
         state: &State,
         multipliers: &mut Multipliers,
         h: f64,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(f64, StepOutcome), StepError> {
         let tolerance = self
             .options
@@ -176,7 +177,9 @@ impl Rattle {
             || strain > tolerance
             || (iterations == 0 && strain > floor)
         {
-            if iterations == self.options.max_iterations || !(residual.is_finite() && strain < 1.0)
+            if iterations == self.options.max_iterations
+                || !effort.goes_on()
+                || !(residual.is_finite() && strain < 1.0)
             {
                 return Err(not_converged(state.t, h, effort, residual, strain));
             }
@@ -322,7 +325,7 @@ impl Rattle {
         state: &mut State,
         multipliers: &mut Multipliers,
         h: f64,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<StepAccount, StepError> {
         model.potential_force(state.t, &state.x, &mut self.force);
         model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
@@ -409,7 +412,7 @@ impl Integrator for Rattle {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         let moment = &mut proposal.moment;
         moment.state.copy_from(attempt.state);
@@ -448,7 +451,7 @@ impl Integrator for RattleComposition {
         scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         let (model, h) = (scene.model, attempt.h);
         let a = 1.0 / (4.0 - 4.0_f64.cbrt());

@@ -2,6 +2,7 @@
 
 use crate::chart::ChartDynamicsError;
 use crate::contact::BodyMotionError;
+use crate::effort::SolverEffort;
 use crate::feasibility::Excess;
 use crate::support::Support;
 use isosheet_coords::linalg::LinalgError;
@@ -296,6 +297,12 @@ pub enum StepError {
         /// Why the last step was rejected.
         cause: Box<StepError>,
     },
+    /// The watch of [`Simulation::step_watched`](crate::Simulation::step_watched) ended the step.
+    #[error("the step was interrupted after t = {t} s")]
+    Interrupted {
+        /// Time of the last accepted sub-step, seconds.
+        t: f64,
+    },
     /// Motion in a chart failed.
     #[error("at t = {t} s: {source}")]
     Chart {
@@ -354,27 +361,21 @@ impl Advice for StepError {
                  (`SheetModel::with_weak_isometry`); BDF2 and implicit Euler hold locked sheets with \
                  `Fallback::Hold`",
             ),
+            Self::Interrupted { .. } => {
+                Some("the state is that of the last accepted sub-step: step on from there")
+            }
             Self::Chart { source, .. } => source.advice(),
             Self::Linalg { source, .. } => source.advice(),
         }
     }
 }
 
-/// Counters of attempted sub-steps, filled also when they fail.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct SolverEffort {
-    /// Newton iterations.
-    pub(crate) iterations: usize,
-    /// Matrix factorisations.
-    pub(crate) factorisations: usize,
-}
-
 /// What was done on the way to the end of a step, kept also if the step fails half-way.
 #[derive(Debug)]
-pub(crate) struct StepTotals {
+pub(crate) struct StepTotals<'w> {
     pub(crate) substeps: usize,
     pub(crate) rejected: usize,
-    pub(crate) effort: SolverEffort,
+    pub(crate) effort: SolverEffort<'w>,
     pub(crate) residual: f64,
     pub(crate) outcome: StepOutcome,
     pub(crate) work: f64,
@@ -383,7 +384,7 @@ pub(crate) struct StepTotals {
     pub(crate) taut: Option<Excess>,
 }
 
-impl Default for StepTotals {
+impl Default for StepTotals<'_> {
     fn default() -> Self {
         Self {
             substeps: 0,
@@ -403,7 +404,7 @@ impl Default for StepTotals {
 pub(crate) fn not_converged(
     t: f64,
     h: f64,
-    effort: &SolverEffort,
+    effort: &SolverEffort<'_>,
     residual: f64,
     strain: f64,
 ) -> StepError {

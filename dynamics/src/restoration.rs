@@ -5,10 +5,10 @@ mod correction;
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
 use crate::contact::StepContact;
+use crate::effort::SolverEffort;
 use crate::iterate::Iterate;
 use crate::model::PINNED;
 use crate::primal::{PrimalMatrix, penalties};
-use crate::report::SolverEffort;
 use crate::unassigned::UnassignedMomentum;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -152,7 +152,7 @@ impl Restoration {
         mut contact: Option<RestorationContact<'_, '_>>,
         iterate: &mut Iterate,
         goal: RestorationGoal<'_>,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> f64 {
         let tolerance = goal.tolerance;
         let (mut penalty, mut slow) = (FIRST_PENALTY, 0_usize);
@@ -175,8 +175,10 @@ impl Restoration {
             if strain <= tolerance || strain.is_nan() {
                 break;
             }
+            if !effort.count_factorisation() {
+                break;
+            }
             effort.iterations += 1;
-            effort.factorisations += 1;
             match self.solve(model, matrix, contact.as_mut(), iterate, penalty) {
                 Solved::Yes => {}
                 Solved::PenaltyTooLarge if penalty > PENALTY_RANGE.0 => {
@@ -417,7 +419,7 @@ impl Restoration {
         x: &[f64],
         v: &mut [f64],
         rates: &[Vector3<f64>],
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> f64 {
         let rods = model.rods();
         for e in 0..rods.len() {
@@ -427,8 +429,7 @@ impl Restoration {
         matrix.assemble(model, x, &self.axial, &self.transverse);
         self.vertex_rows
             .add_equalities(FIRST_PENALTY, &mut matrix.sink(model));
-        effort.factorisations += 1;
-        if matrix.factorize().is_err() {
+        if !effort.count_factorisation() || matrix.factorize().is_err() {
             return f64::INFINITY;
         }
         let mut rate = f64::INFINITY;

@@ -1,10 +1,11 @@
 //! The unsymmetric saddle-point matrix of the conservative integrators.
 
 use crate::constraint::conservative::SaddleBlocks;
+use crate::effort::SolverEffort;
 use crate::layout::{DIAGONAL, FULL, Layout, Slots};
 use crate::model::PINNED;
 use crate::primal::{gather, scatter};
-use crate::report::{SolverEffort, StepOutcome};
+use crate::report::StepOutcome;
 use crate::{HessianSink, SheetModel};
 use isosheet_coords::linalg::{LinalgError, SparseLu};
 use isosheet_mesh::{EdgeId, VertexId};
@@ -230,7 +231,7 @@ impl SaddleMatrix {
         momentum: &mut [f64],
         rods: &mut [f64],
         constraints: &mut [Vector2<f64>],
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<StepOutcome, LinalgError> {
         let mut attempt = |delta: f64| {
             effort.factorisations += 1;

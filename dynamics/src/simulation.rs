@@ -4,6 +4,7 @@ use crate::chart::engine::ChartEngine;
 use crate::chart::{ChartOptions, ChartSimulation};
 use crate::checkpoint::{Checkpoint, CheckpointError, EnergySums, Motion, SheetFingerprint};
 use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact};
+use crate::effort::{SolverEffort, StepProgress};
 use crate::engine::Engine as FreeEngine;
 use crate::reaction::Reaction;
 use crate::report::{StepError, StepReport, StepTotals};
@@ -12,6 +13,7 @@ use crate::start::{check_finite, check_motions, check_state};
 use crate::{Method, SheetModel, State, StepControl};
 use isosheet_coords::Chart;
 use isosheet_mesh::VertexId;
+use std::ops::ControlFlow;
 
 /// A sheet in motion. Owns the model, the state and the integrator.
 ///
@@ -388,6 +390,50 @@ impl Simulation {
     /// # Errors
     /// [`StepError`]; the state is then that of the last accepted sub-step.
     pub fn step(&mut self, h: f64) -> Result<StepReport, StepError> {
+        self.advance(h, StepTotals::default())
+    }
+
+    /// As [`Simulation::step`], watched: before each factorisation, in a chart before each sub-step, the
+    /// closure sees what has been done of the step, and may end it. The result does not depend on a watch that
+    /// lets the step go on.
+    ///
+    /// ```
+    /// # use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepError};
+    /// # use isosheet_mesh::{MassKind, VertexId, generate};
+    /// # use std::ops::ControlFlow;
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// # let sheet = generate::isotropic_square(1, 0.21)?;
+    /// # let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?
+    /// #     .with_gravity()
+    /// #     .with_pins(&[VertexId(20)])?;
+    /// # let start = State::at_rest(sheet.positions().to_vec());
+    /// let mut simulation = Simulation::new(model, start, Method::default())?;
+    /// let mut watch = |progress: &isosheet_dynamics::StepProgress| match progress.factorisations {
+    ///     0 => ControlFlow::Continue(()),
+    ///     _ => ControlFlow::Break(()),
+    /// };
+    /// let step = simulation.step_watched(1.0 / 60.0, &mut watch);
+    /// assert_eq!(step, Err(StepError::Interrupted { t: 0.0 }));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Simulation::step`]; [`StepError::Interrupted`] if the watch ended the step.
+    pub fn step_watched(
+        &mut self,
+        h: f64,
+        watch: &mut dyn FnMut(&StepProgress) -> ControlFlow<()>,
+    ) -> Result<StepReport, StepError> {
+        let effort = SolverEffort::watched(watch);
+        let totals = StepTotals {
+            effort,
+            ..StepTotals::default()
+        };
+        self.advance(h, totals)
+    }
+
+    fn advance(&mut self, h: f64, mut totals: StepTotals<'_>) -> Result<StepReport, StepError> {
         let start = self.state().t;
         check_finite(self.state())?;
         if !(h.is_finite() && h > 0.0) || start + h <= start {
@@ -395,7 +441,6 @@ impl Simulation {
         }
         self.check_forces()?;
         let end = start + h;
-        let mut totals = StepTotals::default();
         let done = match &mut self.engine {
             Engine::Free(engine) => engine.advance(h, &mut totals),
             Engine::Chart(chart) => chart.advance(end, &mut totals),
@@ -428,7 +473,7 @@ impl Simulation {
     }
 
     /// What a step of `h` seconds did.
-    fn report(&self, h: f64, totals: &StepTotals) -> StepReport {
+    fn report(&self, h: f64, totals: &StepTotals<'_>) -> StepReport {
         let model = self.model();
         let State { t, x, v } = self.state();
         let (kinetic, potential) = (model.kinetic_energy(v), self.potential_energy());

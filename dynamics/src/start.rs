@@ -1,10 +1,11 @@
 //! Making and checking states to start from.
 
 use crate::constraint::rows::point;
+use crate::effort::SolverEffort;
 use crate::iterate::Iterate;
 use crate::options::OptionsError;
 use crate::primal::PrimalMatrix;
-use crate::report::{SolverEffort, StepError};
+use crate::report::StepError;
 use crate::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::support::Support;
 use crate::{SheetModel, SimulationError, State};

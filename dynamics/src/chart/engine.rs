@@ -93,7 +93,11 @@ impl ChartEngine {
     }
 
     /// Advances to the time `end`.
-    pub(crate) fn advance(&mut self, end: f64, totals: &mut StepTotals) -> Result<(), StepError> {
+    pub(crate) fn advance(
+        &mut self,
+        end: f64,
+        totals: &mut StepTotals<'_>,
+    ) -> Result<(), StepError> {
         let (chart, state) = (&mut self.simulation, &mut self.state);
         let start = state.t;
         self.contact_forces.clear();
@@ -112,6 +116,10 @@ impl ChartEngine {
             let left = end - chart.time();
             if left <= TIME_ROUND_OFF * end.abs() {
                 break Ok(());
+            }
+            totals.effort.t = chart.time();
+            if !totals.effort.goes_on() {
+                break Err(StepError::Interrupted { t: chart.time() });
             }
             if totals.substeps + totals.rejected >= limit {
                 let t = chart.time();

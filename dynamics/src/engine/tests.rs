@@ -3,8 +3,9 @@
 
 use super::*;
 use crate::contact_tests::{Floor, model, sheet};
+use crate::effort::SolverEffort;
 use crate::integrator::{MethodTraits, StepAccount};
-use crate::report::{SolverEffort, not_converged};
+use crate::report::not_converged;
 use isosheet_mesh::{MassKind, generate};
 use serde::Serialize;
 use std::sync::{Arc, Mutex};
@@ -40,7 +41,7 @@ impl Integrator for Scripted {
         _scene: Scene<'_>,
         attempt: Attempt<'_>,
         proposal: &mut Proposal,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
         let mut seen = self.seen.lock().unwrap();
         let answer = self.script.get(seen.len()).copied();
@@ -126,7 +127,7 @@ fn scripted_on(
 /// The step of the tests, seconds: a power of two, so that sub-steps have no round-off.
 const H: f64 = 0.5;
 
-fn attempts(script: &[Answer]) -> (Vec<Seen>, StepTotals) {
+fn attempts(script: &[Answer]) -> (Vec<Seen>, StepTotals<'static>) {
     let (mut engine, seen) = scripted(script, StepControl::default());
     let mut totals = StepTotals::default();
     engine.advance(H, &mut totals).unwrap();

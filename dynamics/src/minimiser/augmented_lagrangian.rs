@@ -5,7 +5,8 @@ use super::lagrangian::{Definiteness, Merit, RodLoad};
 use super::problem::{StepEnd, StepProblem};
 use super::{LengthGoal, Minimiser, Minimum, not_converged};
 use crate::constraint::rows::HessianPart;
-use crate::report::{SolverEffort, StepError, StepOutcome};
+use crate::effort::SolverEffort;
+use crate::report::{StepError, StepOutcome};
 use crate::restoration::FirstMatrix;
 
 /// Part of the promised decrease that has to come true (Armijo's condition).
@@ -49,22 +50,22 @@ pub(super) enum Rounds {
 /// "Numerical Optimization", 2006, Sec. 17.3). At the end the lengths are restored exactly.
 ///
 /// Positive definite at any rank of the rods, and with no need of finite multipliers.
-pub(super) struct AugmentedLagrangian<'a, 'b> {
+pub(super) struct AugmentedLagrangian<'a, 'b, 'w> {
     minimiser: &'a mut Minimiser,
     problem: &'a mut StepProblem<'b>,
     rounds: Rounds,
-    effort: &'a mut SolverEffort,
+    effort: &'a mut SolverEffort<'w>,
     stiffness: f64,
     residual: f64,
     outcome: StepOutcome,
 }
 
-impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
+impl<'a, 'b, 'w> AugmentedLagrangian<'a, 'b, 'w> {
     pub(super) fn new(
         minimiser: &'a mut Minimiser,
         problem: &'a mut StepProblem<'b>,
         rounds: Rounds,
-        effort: &'a mut SolverEffort,
+        effort: &'a mut SolverEffort<'w>,
     ) -> Self {
         Self {
             stiffness: minimiser.options.stiffness,
@@ -208,17 +209,8 @@ impl<'a, 'b> AugmentedLagrangian<'a, 'b> {
         let lagrangian = &mut self.minimiser.lagrangian;
         lagrangian.set_gradient(self.problem);
         self.effort.iterations += 1;
-        let hessian = lagrangian
-            .factorize(
-                self.problem,
-                RodLoad::Estimates,
-                HessianPart::Full,
-                self.effort,
-            )
-            .map_err(|source| StepError::Linalg {
-                t: self.problem.state.t,
-                source,
-            })?;
+        let (load, part) = (RodLoad::Estimates, HessianPart::Full);
+        let hessian = lagrangian.factorize(self.problem, load, part, self.effort)?;
         if hessian == Definiteness::Modified {
             self.outcome = self.outcome.max(StepOutcome::Globalised);
         }

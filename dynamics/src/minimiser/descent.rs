@@ -3,7 +3,7 @@
 use super::lagrangian::Merit;
 use super::problem::StepProblem;
 use super::{LengthGoal, Minimiser};
-use crate::report::SolverEffort;
+use crate::effort::SolverEffort;
 use crate::restoration::FirstMatrix;
 
 /// Ratio of successive parts of the displacement, and the smallest part: from there on a step is as good as
@@ -35,7 +35,7 @@ impl Minimiser {
         &mut self,
         problem: &mut StepProblem<'_>,
         bound: &Merit,
-        effort: &mut SolverEffort,
+        effort: &mut SolverEffort<'_>,
     ) -> bool {
         let to = LengthGoal {
             strain: self.strain_tolerance(problem),

@@ -3,12 +3,13 @@
 use super::problem::StepProblem;
 use crate::constraint::rows::{HessianPart, VertexRows};
 use crate::contact::StepSpan;
+use crate::effort::SolverEffort;
 use crate::isometry_rows::RowScale;
 use crate::iterate::Iterate;
 use crate::model::PINNED;
 use crate::multipliers::{LinearisedRows, MultiplierGoal, MultiplierSolver};
 use crate::primal::{PrimalMatrix, dot, penalties};
-use crate::report::SolverEffort;
+use crate::report::StepError;
 use crate::{Isometry, SheetModel};
 use isosheet_coords::linalg::LinalgError;
 use nalgebra::Vector3;
@@ -308,16 +309,25 @@ impl Lagrangian {
     /// potentials.
     ///
     /// # Errors
-    /// [`LinalgError`] if even that cannot be factorised, which takes a coefficient that is not a number.
+    /// [`StepError::Linalg`] if even that cannot be factorised, which takes a coefficient that is not a number;
+    /// [`StepError::Interrupted`].
     pub(super) fn factorize(
         &mut self,
         problem: &StepProblem<'_>,
         load: RodLoad,
         part: HessianPart,
-        effort: &mut SolverEffort,
-    ) -> Result<Definiteness, LinalgError> {
+        effort: &mut SolverEffort<'_>,
+    ) -> Result<Definiteness, StepError> {
+        let t0 = problem.state.t;
+        let failed = |source| StepError::Linalg { t: t0, source };
+        let mut count = || match effort.count_factorisation() {
+            true => Ok(()),
+            false => Err(StepError::Interrupted { t: t0 }),
+        };
         if let Some(terms) = self.iterate.terms(problem.contact()) {
-            self.matrix.make_room(problem.model, &terms)?;
+            self.matrix
+                .make_room(problem.model, &terms)
+                .map_err(failed)?;
         }
         for e in 0..self.c.len() {
             self.axial[e] = self.penalty(e);
@@ -330,7 +340,7 @@ impl Lagrangian {
             RodLoad::Estimates => self.transverse.copy_from_slice(&self.density),
         }
         if part == HessianPart::Full {
-            effort.factorisations += 1;
+            count()?;
             self.assemble(problem, HessianPart::Full);
             self.add_potentials(problem);
             if self.matrix.factorize().is_ok() {
@@ -338,16 +348,16 @@ impl Lagrangian {
             }
         }
         self.project_rods(problem.model, load);
-        effort.factorisations += 1;
+        count()?;
         self.assemble(problem, HessianPart::PositiveSemidefinite);
         let (t, x) = (problem.t(), self.iterate.x());
         let scale = problem.h * problem.h;
         self.matrix
             .add_semidefinite_potentials(problem.model, t, x, scale);
         if self.matrix.factorize().is_err() {
-            effort.factorisations += 1;
+            count()?;
             self.assemble(problem, HessianPart::PositiveSemidefinite);
-            self.matrix.factorize()?;
+            self.matrix.factorize().map_err(failed)?;
         }
         Ok(Definiteness::Modified)
     }

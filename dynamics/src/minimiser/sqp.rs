@@ -5,8 +5,8 @@ use super::problem::{StepEnd, StepProblem};
 use super::{LengthGoal, Minimiser, Strategy};
 use crate::Isometry;
 use crate::constraint::rows::HessianPart;
+use crate::effort::SolverEffort;
 use crate::multipliers::MultiplierGoal;
-use crate::report::SolverEffort;
 use crate::restoration::FirstMatrix;
 
 /// Stiffnesses of the rods in the linear systems, in units of that of the masses. The systems are
@@ -96,10 +96,10 @@ const ARMIJO: f64 = 1e-4;
 /// A sheet that lies flat is held up by rods that are nearly dependent, with multipliers that grow as the
 /// inverse of its fold angles; the augmented Lagrangian needs a dozen rounds to find them. Here they are the
 /// solution of a linear system, and motions that are small or blocked by contact converge in a few steps.
-pub(super) struct Sqp<'a, 'b> {
+pub(super) struct Sqp<'a, 'b, 'w> {
     minimiser: &'a mut Minimiser,
     problem: &'a mut StepProblem<'b>,
-    effort: &'a mut SolverEffort,
+    effort: &'a mut SolverEffort<'w>,
     limits: Limits,
     /// Steps left before the iteration counts as failed.
     steps_left: usize,
@@ -129,11 +129,11 @@ struct Direction {
     hessian: Definiteness,
 }
 
-impl<'a, 'b> Sqp<'a, 'b> {
+impl<'a, 'b, 'w> Sqp<'a, 'b, 'w> {
     pub(super) fn new(
         minimiser: &'a mut Minimiser,
         problem: &'a mut StepProblem<'b>,
-        effort: &'a mut SolverEffort,
+        effort: &'a mut SolverEffort<'w>,
     ) -> Self {
         // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that
         // mends lengths against the barrier.

@@ -3,9 +3,9 @@
 use super::lagrangian::{Definiteness, Lagrangian, RodLoad};
 use super::problem::{StepEnd, StepProblem};
 use crate::constraint::rows::HessianPart;
+use crate::effort::SolverEffort;
 use crate::iterate::Iterate;
 use crate::primal::PrimalMatrix;
-use crate::report::SolverEffort;
 use crate::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::{CreaseSprings, SheetModel, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};

@@ -3,7 +3,7 @@
 use super::lagrangian::{Lagrangian, RodLoad};
 use super::problem::{StepEnd, StepProblem};
 use crate::constraint::rows::HessianPart;
-use crate::report::SolverEffort;
+use crate::effort::SolverEffort;
 use crate::{PlateBending, SheetModel, State, WeakIsometry};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 

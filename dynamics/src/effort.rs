@@ -1,0 +1,158 @@
+//! The work that a step takes, and who watches it.
+
+use std::fmt;
+use std::ops::ControlFlow;
+
+/// What has been done so far of a step that is under way, see
+/// [`Simulation::step_watched`](crate::Simulation::step_watched).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepProgress {
+    /// Time that the accepted sub-steps have reached, seconds.
+    pub t: f64,
+    /// Newton iterations of the step, those of rejected sub-steps included.
+    pub iterations: usize,
+    /// Matrix factorisations of the step, those of rejected sub-steps included.
+    pub factorisations: usize,
+}
+
+/// Is asked between factorisations whether a step goes on.
+type Watch<'w> = &'w mut dyn FnMut(&StepProgress) -> ControlFlow<()>;
+
+/// Counters of attempted sub-steps, filled also when they fail.
+#[derive(Default)]
+pub(crate) struct SolverEffort<'w> {
+    /// Newton iterations.
+    pub(crate) iterations: usize,
+    /// Matrix factorisations.
+    pub(crate) factorisations: usize,
+    /// Start of the sub-step that is attempted, seconds.
+    pub(crate) t: f64,
+    watch: Option<Watch<'w>>,
+    is_interrupted: bool,
+}
+
+impl<'w> SolverEffort<'w> {
+    /// No work yet, watched.
+    pub(crate) fn watched(watch: Watch<'w>) -> Self {
+        Self {
+            watch: Some(watch),
+            ..Self::default()
+        }
+    }
+
+    /// Whether the watch has ended the step. What an integrator proposes after that has no meaning.
+    pub(crate) fn is_interrupted(&self) -> bool {
+        self.is_interrupted
+    }
+
+    /// Asks the watch whether the step goes on. Once it has said no, the answer stays no.
+    pub(crate) fn goes_on(&mut self) -> bool {
+        let progress = StepProgress {
+            t: self.t,
+            iterations: self.iterations,
+            factorisations: self.factorisations,
+        };
+        if let Some(watch) = &mut self.watch
+            && !self.is_interrupted
+        {
+            self.is_interrupted = watch(&progress).is_break();
+        }
+        !self.is_interrupted
+    }
+
+    /// Counts a factorisation that is about to be made; false if the step has been interrupted, and nothing
+    /// is to be factorised.
+    pub(crate) fn count_factorisation(&mut self) -> bool {
+        let goes_on = self.goes_on();
+        self.factorisations += usize::from(goes_on);
+        goes_on
+    }
+}
+
+impl fmt::Debug for SolverEffort<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SolverEffort")
+            .field("iterations", &self.iterations)
+            .field("factorisations", &self.factorisations)
+            .field("is_interrupted", &self.is_interrupted)
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{EnergyMomentumOptions, Method, SheetModel, Simulation, State, StepError};
+    use crate::{ProjectionStepOptions, RattleOptions, leave_flat};
+    use isosheet_mesh::{MassKind, VertexId, generate};
+
+    const H: f64 = 1.0 / 240.0;
+
+    /// A folded sheet that hangs at a corner.
+    fn hanging(method: Method) -> Simulation {
+        let sheet = generate::isotropic_square(2, 0.21).unwrap();
+        let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)
+            .unwrap()
+            .with_gravity()
+            .with_pins(&[VertexId(0)])
+            .unwrap();
+        let mut x = sheet.positions().to_vec();
+        leave_flat(&model, &mut x, 0.1, 1).unwrap();
+        Simulation::new(model, State::at_rest(x), method).unwrap()
+    }
+
+    fn methods() -> Vec<Method> {
+        vec![
+            Method::default(),
+            Method::ImplicitEuler(crate::ImplicitOptions::default()),
+            Method::Projection(ProjectionStepOptions::default()),
+            Method::EnergyMomentum(EnergyMomentumOptions::default()),
+            Method::Rattle(RattleOptions::default()),
+        ]
+    }
+
+    /// A watch sees the work grow and changes nothing; wherever it ends a step, the state is that of the last
+    /// sub-step, and from there the motion goes on as if it had never been interrupted.
+    #[test]
+    fn an_interrupted_step_leaves_no_trace() {
+        for method in methods() {
+            let mut plain = hanging(method.clone());
+            let mut watched = hanging(method.clone());
+            let mut interrupted = hanging(method.clone());
+            for _ in 0..2 {
+                let mut seen: Vec<StepProgress> = Vec::new();
+                let mut watch = |progress: &StepProgress| {
+                    seen.push(*progress);
+                    ControlFlow::Continue(())
+                };
+                let report = watched.step_watched(H, &mut watch).unwrap();
+                assert_eq!(plain.step(H).unwrap(), report);
+                assert!(!seen.is_empty(), "{method:?}");
+                assert!(seen.is_sorted_by_key(|p| p.factorisations + p.iterations));
+                let last = seen.last().unwrap();
+                assert!(last.factorisations <= report.factorisations);
+                for end in 0..seen.len().min(12) {
+                    let start = interrupted.state().clone();
+                    let mut asked = 0;
+                    let mut watch = |_: &StepProgress| {
+                        asked += 1;
+                        match asked > end {
+                            true => ControlFlow::Break(()),
+                            false => ControlFlow::Continue(()),
+                        }
+                    };
+                    let error = interrupted.step_watched(H, &mut watch).unwrap_err();
+                    assert_eq!(error, StepError::Interrupted { t: start.t });
+                    assert_eq!(interrupted.state(), &start);
+                    assert_eq!(
+                        asked,
+                        end + 1,
+                        "a watch that has ended a step is not asked again"
+                    );
+                }
+                interrupted.step(H).unwrap();
+                assert_eq!(interrupted.state(), plain.state());
+            }
+        }
+    }
+}
