@@ -5,6 +5,7 @@ use crate::condition::{self, ConditionArgs};
 use crate::failure::EXIT_CODES;
 use crate::hard_cases::{self, HardCasesArgs};
 use crate::locking::{self, LockingArgs};
+use crate::measured::{self, MeasuredArgs};
 use crate::reproduce::{self, ReproduceArgs};
 use crate::scale::{self, ScaleArgs};
 use crate::speed_vs_error::{self, SpeedArgs};
@@ -59,6 +60,11 @@ pub(crate) enum Command {
     /// prints a table. The exit code is 0 unless a case fails that is not declared an open limitation.
     /// Finished cases are kept, as in `reproduce-figures`.
     HardCases(HardCasesArgs),
+    /// Copy what the reports have measured into the book and the README
+    ///
+    /// Each report writes DIR/measured.md, unless it is quick. This command copies these files to docs/measured, whose
+    /// parts the book includes, and fills the marked blocks of README.md.
+    Measured(MeasuredArgs),
     /// Build the program of the 3D page of a run, io/view/dist, from io/view/src with npm and esbuild
     ///
     /// Only needed after a change of io/view; needs Node.js 20 or newer and the npm registry.
@@ -75,6 +81,7 @@ impl Command {
             Self::Scale(args) => scale::run(args),
             Self::Locking(args) => locking::run(args),
             Self::HardCases(args) => hard_cases::run(args),
+            Self::Measured(args) => measured::run(args),
             Self::BundleView(args) => bundle_view::run(args),
         }
     }

@@ -3,7 +3,7 @@
 use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Marker, Series, palette, row};
 use crate::interrupt;
 use crate::progress::Progress;
-use crate::report::{Cell, Effort, Table};
+use crate::report::{Cell, Effort, Part, Table, excerpt};
 use crate::store::{Remake, Store};
 use anyhow::Result;
 use clap::Args;
@@ -65,6 +65,11 @@ pub(crate) fn run(args: &ConditionArgs) -> Result<()> {
     data(&rows).write_to(&store.path("condition.csv"))?;
     let title = "Condition number of the mass matrix against the mesh level in three charts";
     store.write("condition.svg", plot(&rows).to_svg(title).as_bytes())?;
+    excerpt::write(
+        &store,
+        "condition-table",
+        &[Part::table("table", &table(&rows))],
+    )?;
     print!("{}", table(&rows).text());
     for file in ["condition.csv", "condition.svg"] {
         println!("{}", store.path(file).display());

@@ -33,6 +33,8 @@ pub(crate) enum ReportError {
     OtherReport { folder: PathBuf, of: String },
     #[error("cases failed, or their open limitations are not as declared: {names}")]
     Cases { names: String },
+    #[error("{} has no part called {part}", file.display())]
+    Part { file: PathBuf, part: String },
 }
 
 impl Advice for ReportError {
@@ -40,6 +42,9 @@ impl Advice for ReportError {
         Some(match self {
             Self::NotQuick { .. } | Self::OtherReport { .. } => "choose another folder with --out",
             Self::Cases { .. } => "see their sections of the page",
+            Self::Part { .. } => {
+                "run the whole report, without --quick, and `cargo xtask measured` again"
+            }
         })
     }
 }
@@ -85,7 +90,7 @@ fn code(error: &Error) -> u8 {
         if let Some(report) = cause.downcast_ref() {
             return Some(match report {
                 ReportError::NotQuick { .. } | ReportError::OtherReport { .. } => 4,
-                ReportError::Cases { .. } => 1,
+                ReportError::Cases { .. } | ReportError::Part { .. } => 1,
             });
         }
         if cause.is::<WriteError>() || cause.is::<std::io::Error>() {

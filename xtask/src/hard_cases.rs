@@ -27,7 +27,7 @@ use crate::draw::{Chart, Drawing, Series};
 use crate::failure::ReportError;
 use crate::interrupt;
 use crate::progress;
-use crate::report::{Effort, FullOptions, one_of};
+use crate::report::{Effort, FullOptions, excerpt, one_of};
 use crate::store::{Files, Store, Unit};
 use anyhow::Result;
 use clap::Args;
@@ -92,6 +92,7 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<()> {
         let records: Vec<Record> = CASES.iter().filter_map(kept).collect();
         print!("{}", page::text(&records));
         page::write(&store, &records)?;
+        excerpt::write(&store, "hard-cases", &page::excerpt(&records))?;
         let failed = records.iter().filter(|r| r.verdict().is_failure());
         let names: Vec<&str> = failed.map(|r| r.name.as_str()).collect();
         if names.is_empty() {

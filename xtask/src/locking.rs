@@ -28,7 +28,7 @@ mod ways;
 
 use crate::draw::Drawing;
 use crate::interrupt;
-use crate::report::{Options, Page, Section, Table, list, machine, one_of, plot};
+use crate::report::{Options, Page, Part, Section, Table, excerpt, list, machine, one_of, plot};
 use crate::store::{Files, Store, Unit};
 use anyhow::Result;
 use clap::Args;
@@ -58,6 +58,8 @@ struct Record {
     section: Section,
     /// Tables and remarks for a terminal.
     text: String,
+    /// Its tables for the book.
+    excerpt: Vec<Part>,
     targets: Vec<Target>,
 }
 
@@ -106,12 +108,18 @@ impl Yardstick {
                 @for table in &found.tables { (table) }
             }
         };
+        let excerpt = found
+            .tables
+            .iter()
+            .map(|t| Part::table(&t.name, t))
+            .collect();
         let tables = found.tables.iter().map(Table::text);
         let texts: Vec<String> = tables.chain(found.remarks).collect();
         Ok(Record {
             name: self.name.to_owned(),
             section: section.into(),
             text: texts.join("\n"),
+            excerpt,
             targets: found.targets,
         })
     }
@@ -214,6 +222,9 @@ fn write(store: &Store) -> Result<()> {
     let summary = targets::table(&targets);
     summary.write_to(&store.path("tables/targets.csv"))?;
     write_json(&store.path("targets.json"), &targets)?;
+    let mut parts = vec![Part::table("targets", &targets::by_model(&targets))];
+    parts.extend(records.iter().flat_map(|r| r.excerpt.clone()));
+    excerpt::write(store, "locking", &parts)?;
     let body = html! {
         p { (INTRODUCTION) }
         p {

@@ -6,6 +6,7 @@
 //! * `scale`: time, memory and fill of a step, and the cost of whole runs, against the size of the mesh.
 //! * `locking`: how much stiffer than a smooth sheet a triangulated one is.
 //! * `hard-cases`: what the solvers do where others break.
+//! * `measured`: what the reports measured, as numbers of the book and the README.
 //! * `bundle-view`: the program of the 3D page of a run.
 
 mod bundle_view;
@@ -17,6 +18,7 @@ mod figures;
 mod hard_cases;
 mod interrupt;
 mod locking;
+mod measured;
 mod methods;
 mod progress;
 mod report;

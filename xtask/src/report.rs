@@ -2,6 +2,7 @@
 
 mod cost;
 mod effort;
+pub(crate) mod excerpt;
 mod machine;
 mod number;
 mod options;
@@ -11,6 +12,7 @@ mod table;
 
 pub(crate) use cost::Cost;
 pub(crate) use effort::Effort;
+pub(crate) use excerpt::Part;
 pub(crate) use machine::machine;
 pub(crate) use number::{exponent, extremes, number, order_line, percent, rounded, short};
 pub(crate) use options::{FullOptions, Options, one_of};

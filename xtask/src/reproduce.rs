@@ -3,7 +3,7 @@
 use crate::figures::{self, Made};
 use crate::interrupt;
 use crate::progress;
-use crate::report::{Options, Page, Section};
+use crate::report::{Options, Page, Part, Section, excerpt};
 use crate::selection::{self, PAPER};
 use crate::store::{Store, Unit};
 use anyhow::Result;
@@ -27,11 +27,13 @@ pub(crate) struct ReproduceArgs {
     pub(crate) options: Options,
 }
 
-/// What is kept of a figure: its section of the page and its part of `summary.json`.
+/// What is kept of a figure: its section of the page, its part of `summary.json` and its tables.
 #[derive(Debug, Serialize, Deserialize)]
 struct Record {
     section: Section,
     summary: Value,
+    /// Its tables for the book.
+    excerpt: Vec<Part>,
 }
 
 /// Runs the command.
@@ -58,6 +60,7 @@ fn make(store: &Store, figure: u8) -> Result<()> {
         Ok(Record {
             section: section(figure, &made).into(),
             summary: summary(figure, &made, store),
+            excerpt: tables(figure, &made),
         })
     })?;
     Ok(())
@@ -73,6 +76,8 @@ fn write(store: &Store) -> Result<()> {
         &store.path("summary.json"),
         &json!({ "version": version, "effort": store.effort, "figures": figures }),
     )?;
+    let parts: Vec<Part> = records.iter().flat_map(|r| r.excerpt.clone()).collect();
+    excerpt::write(store, "reproduce-figures", &parts)?;
     let body = html! {
         p {
             "Every picture is computed by isosheet. Beside each: what is shown in Y.-J. Liu, K. Tang and A. Joneja, "
@@ -94,6 +99,13 @@ fn summary(figure: u8, made: &Made, store: &Store) -> Value {
         "pictures": made.pictures.iter().map(|p| &p.path).collect::<Vec<_>>(),
         "pages": made.pages.iter().map(|p| &p.path).collect::<Vec<_>>(), "facts": made.facts,
     })
+}
+
+/// The tables of a figure for the book: `fig10-1`, `fig10-2`.
+fn tables(figure: u8, made: &Made) -> Vec<Part> {
+    let numbered = (1..).zip(&made.tables);
+    let part = |(k, table)| Part::table(format!("fig{figure:02}-{k}"), table);
+    numbered.map(part).collect()
 }
 
 fn section(n: u8, made: &Made) -> Markup {

@@ -12,7 +12,7 @@ mod whole_report;
 
 use crate::interrupt;
 use crate::progress::Progress;
-use crate::report::FullOptions;
+use crate::report::{FullOptions, Part, excerpt};
 use crate::timing::{Measured, Work};
 use anyhow::Result;
 use clap::Args;
@@ -87,6 +87,17 @@ pub(crate) fn run(args: &ScaleArgs) -> Result<()> {
     let plot = plot::plot(&results);
     store.write("scale.svg", plot.to_svg(PICTURE).as_bytes())?;
     store.write("scale.png", &plot.to_png(PICTURE)?)?;
+    let parts = [
+        Part::table("steps", &tables::steps(&results.hanging)),
+        Part::table("draping", &tables::draping(&results.draping)),
+        Part::list(
+            "runs",
+            &SCENES
+                .map(|s| whole_report::findings(&results.whole_of(s)))
+                .concat(),
+        ),
+    ];
+    excerpt::write(&store, "scale", &parts)?;
     print!("{}", page::text(&results));
     page::page(&results).write(&store, "scale.html")
 }

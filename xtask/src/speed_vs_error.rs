@@ -18,7 +18,8 @@ mod tablecloth;
 mod verdict;
 
 use crate::interrupt;
-use crate::report::{Effort, FullOptions, Page, Section, Table, list, machine, one_of, plot};
+use crate::report::{Effort, FullOptions, Page, Part as Excerpt, Section, Table};
+use crate::report::{excerpt, list, machine, one_of, plot};
 use crate::store::{Files, Store, Unit};
 use crate::timing::SHOWN;
 use analysis::{ENERGY, POSITION};
@@ -89,6 +90,8 @@ struct Record {
     section: Section,
     /// What it says among the conclusions of the whole report.
     conclusions: Vec<String>,
+    /// Tables for the book.
+    excerpt: Vec<Excerpt>,
     /// Of a problem: whether the default is on the fronts of position and energy error, of all methods and of
     /// those that take flat states.
     on_front: Option<[[bool; 2]; 2]>,
@@ -112,6 +115,9 @@ pub(crate) fn run(args: &SpeedArgs) -> Result<()> {
     interrupt::afterwards(made, || {
         let kept = |part| store.earlier(&unit(&store, part));
         let records: Vec<Record> = all().filter_map(kept).collect();
+        let mut parts = vec![Excerpt::list("fronts", &fronts(&records))];
+        parts.extend(records.iter().flat_map(|r| r.excerpt.clone()));
+        excerpt::write(&store, "speed-vs-error", &parts)?;
         page(&records).write(&store, "index.html")
     })
 }
@@ -124,7 +130,7 @@ fn unit(store: &Store, part: Part) -> Unit {
 fn make(part: Part, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
     let name = part.name();
     let mut keep = |table: &Table| table.clone().named(name).write(files);
-    let (mut conclusions, mut on_front) = (Vec::new(), None);
+    let (mut conclusions, mut on_front, mut excerpt) = (Vec::new(), None, Vec::new());
     let inside = match part {
         Part::Problem(problem) => {
             let study = study::make(problem, effort)?;
@@ -154,6 +160,11 @@ fn make(part: Part, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
             let table = hanging::table(&rows);
             keep(&table)?;
             conclusions = hanging::comparisons(&rows);
+            excerpt.push(Excerpt::table(
+                name,
+                &table.select(&table.caption, IN_THE_BOOK),
+            ));
+            excerpt.push(Excerpt::table("default", &hanging::default(&rows)));
             html! {
                 h2 { "The hanging sheet" }
                 p { (hanging::ABOUT) }
@@ -167,6 +178,8 @@ fn make(part: Part, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
             let table = tablecloth::table(&rows);
             keep(&table)?;
             conclusions = tablecloth::conclusions(&rows);
+            let names = format!("contact {IN_THE_BOOK} smallest_gap_m");
+            excerpt.push(Excerpt::table(name, &table.select(&table.caption, &names)));
             html! {
                 h2 { "The tablecloth" }
                 p { (tablecloth::ABOUT) }
@@ -193,9 +206,14 @@ fn make(part: Part, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
         name: name.to_owned(),
         section: html! { section id=(name) { (inside) } }.into(),
         conclusions,
+        excerpt,
         on_front,
     })
 }
+
+/// The columns of runs that the book shows.
+const IN_THE_BOOK: &str = "mesh vertices method step_s wall_s_per_simulated_s times_fastest_exact strain energy_balance \
+    failure";
 
 /// Page of the repository on what other programs took for the same scenes.
 const ELSEWHERE: &str = "docs/measured-elsewhere.md";
@@ -265,6 +283,7 @@ mod tests {
             name: name.into(),
             section: Section::default(),
             conclusions: vec!["said".into()],
+            excerpt: Vec::new(),
             on_front,
         };
         let problems = ["a", "b"].map(|name| record(name, Some([[name == "a", true]; 2])));

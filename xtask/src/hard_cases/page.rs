@@ -1,7 +1,7 @@
 //! The report: DIR/index.html, DIR/verdicts.csv, DIR/verdicts.json and the table on the terminal.
 
 use super::case::{Bound, Case, Check, Record, Verdict};
-use crate::report::{Page, Picture, Table, number};
+use crate::report::{Page, Part, Picture, Table, number};
 use crate::store::Store;
 use anyhow::Result;
 use isosheet_io::write_json;
@@ -71,15 +71,63 @@ fn page(records: &[Record]) -> Page {
     }
 }
 
-fn summary(records: &[Record]) -> Markup {
+/// How many checks of some cases passed, are open limitations and failed.
+fn counts(records: &[Record]) -> String {
     let checks = || of_all(records).map(|(_, c)| c);
     let count = |v: Verdict| checks().filter(|c| c.verdict() == v).count();
     let failed = checks().filter(|c| c.verdict().is_failure()).count();
+    let (cases, all) = (records.len(), checks().count());
+    let [passed, open] = [Verdict::Passed, Verdict::Limitation].map(count);
+    format!(
+        "{cases} cases, {all} checks: {passed} passed, {open} open limitations, {failed} failed."
+    )
+}
+
+/// What the book shows: the counts, every case, and the checks that did not pass.
+pub(super) fn excerpt(records: &[Record]) -> Vec<Part> {
+    let passed = |r: &Record| {
+        let checks = r.checks.iter();
+        checks.filter(|c| c.verdict() == Verdict::Passed).count()
+    };
+    let cases = Table::of(
+        "The cases, and what a naive method does in each.",
+        records,
+        &[
+            ("case", &|r| r.name.as_str().into()),
+            ("situation", &|r| r.title.as_str().into()),
+            ("checks", &|r| r.checks.len().into()),
+            ("passed", &|r| passed(r).into()),
+            ("naive method", &|r| naive_word(r).into()),
+        ],
+    );
+    let open = of_all(records).filter(|(_, c)| c.verdict() != Verdict::Passed);
+    let why = |c: &Check| {
+        let declared = c.limitation.as_ref();
+        declared
+            .map_or("not declared", |l| l.why.as_str())
+            .to_owned()
+    };
+    let limitations = Table::of(
+        "The checks that did not pass.",
+        open,
+        &[
+            ("case", &|(r, _)| r.name.as_str().into()),
+            ("check", &|(_, c)| c.what.as_str().into()),
+            ("measured", &|(_, c)| measured(c).into()),
+            ("bound", &|(_, c)| c.bound.text().into()),
+            ("why", &|(_, c)| why(c).into()),
+        ],
+    );
+    vec![
+        Part::text("counts", counts(records)),
+        Part::table("cases", &cases),
+        Part::table("limitations", &limitations),
+    ]
+}
+
+fn summary(records: &[Record]) -> Markup {
     html! {
-        p {
-            (records.len()) " cases, " (checks().count()) " checks: " (count(Verdict::Passed)) " passed, "
-            (count(Verdict::Limitation)) " open limitations, " (failed) " failed."
-        }
+        p { (counts(records)) }
         div.scroll { table {
             thead { tr { th { "Case" } th { "Checks" } th { "Naive method" } th { "isosheet" } } }
             tbody { @for r in records { tr {

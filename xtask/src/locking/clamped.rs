@@ -170,7 +170,7 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)>
         ways.copied().flat_map(required).collect()
     });
     let findings = Findings {
-        tables: vec![summary(&all)],
+        tables: vec![totals(&all), summary(&all)],
         files: vec![runs(&all, &plan)],
         remarks: remarks(&all),
         targets,
@@ -250,6 +250,47 @@ fn summary(all: &[Fallen]) -> Table {
         ],
     )
     .named("clamped")
+}
+
+/// Depth of a sheet against that of the same sheet of elastic paper: from the first on it hangs as paper does,
+/// below the second it hardly moves.
+const AS_DEEP: f64 = 0.8;
+const HARDLY: f64 = 0.1;
+
+/// The sheets by model and method, and how deep they hang.
+fn totals(all: &[Fallen]) -> Table {
+    let depth = |f: &Fallen| f.course.is_good().then_some(f.measured.1);
+    let papers = all
+        .iter()
+        .filter(|f| f.isometry == Isometry::Paper && f.job.0 == BDF2);
+    let paper: BTreeMap<usize, f64> = papers.filter_map(|f| Some((f.job.1, depth(f)?))).collect();
+    let mut groups: BTreeMap<(Isometry, usize), Vec<&Fallen>> = BTreeMap::new();
+    for f in all {
+        groups.entry((f.isometry, f.job.0)).or_default().push(f);
+    }
+    let share = |f: &&&Fallen| Some(depth(f)? / paper.get(&f.job.1)?);
+    let count = |group: &[&Fallen], is_such: fn(f64) -> bool| {
+        let shares = group.iter().filter_map(|f| share(&f));
+        shares.filter(|s| is_such(*s)).count()
+    };
+    Table::of(
+        format!(
+            "Clamped sheets by model. Sheets that end at {AS_DEEP} of the depth of the same sheet of elastic paper or deeper hang \
+             as paper does; those at less than {HARDLY} hardly move"
+        ),
+        groups.into_values().map(split),
+        &[
+            ("model", &|(g, ..)| g[0].isometry.to_string().into()),
+            ("method", &|(g, ..)| method(g[0]).into()),
+            ("sheets", &|(g, ..)| g.len().into()),
+            ("reach the end", &|(_, good, _)| good.len().into()),
+            ("hang as paper", &|(g, ..)| count(g, |s| s >= AS_DEEP).into()),
+            ("hardly move", &|(g, ..)| count(g, |s| s < HARDLY).into()),
+            ("factorisations per step", &|(g, ..)| factorisations(g).into()),
+            ("steps without a minimum", &|(g, ..)| unsolved(g).into()),
+        ],
+    )
+    .named("clamped-totals")
 }
 
 /// Mean of a count over the steps that were completed; nothing where none was.

@@ -1,7 +1,7 @@
 //! What a model of isometry is required to reach, and what was measured.
 
 use super::isometry::Isometry;
-use crate::report::Table;
+use crate::report::{Cell, Table, number};
 use crate::runs::Course;
 use serde::{Deserialize, Serialize};
 
@@ -133,6 +133,49 @@ pub(super) fn table(targets: &[(String, Target)]) -> Table {
     .named("targets")
 }
 
+/// All requirements with a column for each model; values that meet them are bold.
+pub(super) fn by_model(targets: &[(String, Target)]) -> Table {
+    let models = Isometry::ALL.map(|model| model.to_string());
+    let head = ["yardstick", "quantity", "required"];
+    let head: Vec<&str> = head
+        .into_iter()
+        .chain(models.iter().map(String::as_str))
+        .collect();
+    let mut table = Table::new(
+        "Measured against target: the worst of all runs that the requirement names, bold where it is met. A dash: \
+         one of these runs did not end, or the model is not asked.",
+        &head,
+    );
+    let key = |(yardstick, t): &(String, Target)| {
+        let required = format!("{} {}", t.side.words(), number(t.bound));
+        [yardstick.clone(), t.quantity.clone(), required]
+    };
+    let mut keys: Vec<[String; 3]> = Vec::new();
+    for target in targets {
+        if !keys.contains(&key(target)) {
+            keys.push(key(target));
+        }
+    }
+    for row in keys {
+        let of = |model: Isometry| {
+            let found = targets.iter().find(|t| t.1.model == model && key(t) == row);
+            let value = found.and_then(|(_, t)| Some((t.measured?, t.is_met())));
+            Cell::from(value.map(|(value, is_met)| match is_met {
+                true => format!("**{}**", number(value)),
+                false => number(value),
+            }))
+        };
+        let values = Isometry::ALL.map(of);
+        table.push(
+            row.iter()
+                .map(|name| Cell::from(name.as_str()))
+                .chain(values)
+                .collect(),
+        );
+    }
+    table
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -154,6 +197,13 @@ mod tests {
         let csv = table(&[("y".into(), worst)]).csv().unwrap();
         let text = String::from_utf8(csv).unwrap();
         assert!(text.ends_with("y,q,rods,at most,2,5,no\n"), "{text}");
+        let pair = [
+            ("y".into(), at_most(Isometry::Rods, "q", 2.0, &[Some(5.0)])),
+            ("y".into(), at_most(Isometry::Weak, "q", 2.0, &[Some(1.0)])),
+        ];
+        let text = by_model(&pair).text();
+        let row: Vec<&str> = text.lines().last().unwrap().split_whitespace().collect();
+        assert_eq!(row, ["y", "q", "at", "most", "2", "5", "–", "–", "**1**"]);
     }
 
     #[test]

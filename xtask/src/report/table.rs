@@ -71,7 +71,7 @@ impl Cell {
     }
 
     /// Rounded, for people.
-    fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         match self {
             Self::Number(value) => number(*value),
             Self::Text(text) => text.clone(),

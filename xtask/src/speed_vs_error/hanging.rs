@@ -84,6 +84,26 @@ pub(super) fn table(rows: &[Measured]) -> Table {
     )
 }
 
+/// The runs of the default with its default step, for the README.
+pub(super) fn default(rows: &[Measured]) -> Table {
+    let ((method, _), step) = &methods()[0];
+    let is_default = |r: &&Measured| r.method == *method && r.step == *step;
+    Table::of(
+        "A square sheet that hangs by a corner and moves for one second, in steps of 1/60 s on one core.",
+        rows.iter().filter(is_default),
+        &[
+            ("vertices", &|r| r.mesh.vertices.into()),
+            ("wall time, s", &|r| r.course.cost.wall.into()),
+            ("largest relative error of a length", &|r| {
+                r.course.strain.into()
+            }),
+            ("change of energy, part of that released", &|r| {
+                r.balance().into()
+            }),
+        ],
+    )
+}
+
 fn of_one_mesh(a: &Measured, b: &Measured) -> bool {
     a.mesh.level == b.mesh.level
 }
