@@ -156,8 +156,3 @@ pub use support::Support;
 pub use weak_isometry::{WeakIsometry, WeakIsometryError};
 
 pub use nalgebra;
-
-/// The code of the README is compiled and run as a test.
-#[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-struct Readme;

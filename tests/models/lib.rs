@@ -43,4 +43,7 @@ mod book {
 
     #[doc = include_str!("../../docs/methods.md")]
     pub struct Methods;
+
+    #[doc = include_str!("../../docs/rust.md")]
+    pub struct InRust;
 }

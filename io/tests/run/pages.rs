@@ -260,15 +260,15 @@ fn bodies_curves_and_surfaces_are_on_the_page() {
     assert_eq!(result["exceptions"], serde_json::json!([]));
 }
 
-/// The scene of the README with other people's meshes: a sheet that falls on a ball.
+/// The scene of the book with other people's meshes: a sheet that falls on a ball.
 #[test]
 fn meshes_of_other_people_become_a_page_in_one_command() {
     let Some(data) = std::env::var_os("ISOSHEET_DATA") else {
         eprintln!("skipped: ISOSHEET_DATA is not set");
         return;
     };
-    let readme = include_str!("../../../README.md");
-    let (_, scene) = readme.split_once("```toml\n").unwrap();
+    let page = include_str!("../../../docs/own-mesh.md");
+    let (_, scene) = page.split_once("```toml\nversion").unwrap();
     let (scene, _) = scene.split_once("```").unwrap();
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
@@ -279,7 +279,7 @@ fn meshes_of_other_people_become_a_page_in_one_command() {
     for (from, to) in meshes {
         fs::copy(Path::new(&data).join(from), dir.join(to)).unwrap();
     }
-    fs::write(dir.join("cloth.toml"), scene).unwrap();
+    fs::write(dir.join("cloth.toml"), format!("version{scene}")).unwrap();
     let edits = [
         "sheet.mesh.file.scale=1.0",
         "sheet.placement.position=[0.0, -0.5, 0.51]",

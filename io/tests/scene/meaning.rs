@@ -10,7 +10,7 @@ use isosheet_io::scene::{Scene, SceneFile, StartingPoint};
 use std::io::Write;
 use std::path::Path;
 
-/// The scene of the first program of the README gives the bits of that program.
+/// The scene of the first program of docs/rust.md gives the bits of that program.
 #[test]
 fn a_scene_is_the_simulation_that_it_says() {
     let text = "version = 1
