@@ -356,6 +356,29 @@ fn plot(all: &[Fallen]) -> Drawing {
 mod tests {
     use super::*;
 
+    /// Depths are compared with those of the same sheet of paper.
+    #[test]
+    fn totals_count_sheets_that_hang_as_paper_does() {
+        let fallen = |isometry, number, drop| Fallen {
+            isometry,
+            job: (BDF2, number),
+            vertices: 25,
+            course: Course::default(),
+            measured: (1e-3, drop),
+        };
+        let of = |isometry, drops: [f64; 3]| {
+            let numbered = (0..).zip(drops);
+            let all = numbered.map(|(number, drop)| fallen(isometry, number, drop));
+            all.collect::<Vec<_>>()
+        };
+        let paper = of(Isometry::Paper, [0.4, 0.5, 0.2]);
+        let all = [of(Isometry::Rods, [0.39, 0.04, 0.1]), paper].concat();
+        let table = totals(&all);
+        let counts = |row: usize| table.rows[row][2..6].to_vec();
+        assert_eq!(counts(0), [3, 3, 1, 1_usize].map(Into::into));
+        assert_eq!(counts(1), [3, 3, 3, 0_usize].map(Into::into));
+    }
+
     #[test]
     fn the_family_is_what_it_says() {
         for number in 0..50 {
