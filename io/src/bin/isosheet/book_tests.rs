@@ -16,7 +16,7 @@ fn lines(page: &str) -> Vec<String> {
             .filter(|&k| k == 0 || l[..k].ends_with(' '))?;
         let whole = !l[..at].contains("cargo");
         whole.then(|| {
-            let command = l[at..].split([';', '#', '|']).next();
+            let command = l[at..].split([';', '#', '|', '>']).next();
             with_first_value(&l[..at], command.unwrap_or_default())
         })
     });
