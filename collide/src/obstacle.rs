@@ -5,6 +5,7 @@ use crate::signed_distance::{self, SignedDistance};
 use crate::surface::TriangleSurface;
 use isosheet_dynamics::{MotionError, RigidMotion, RigidProfile};
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -50,7 +51,7 @@ pub enum Shape {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ObstacleError {
     /// A length is not positive.
-    #[error("{shape}: {name} is {value} m")]
+    #[error("{shape}: {name} is {value} m", value = given(*value))]
     Length {
         /// The shape.
         shape: &'static str,

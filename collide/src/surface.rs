@@ -4,6 +4,7 @@ use crate::contact_mesh::{ContactMesh, ContactMeshError};
 use crate::distance::{Closest, Feature, point_triangle};
 use crate::signed_distance::SignedDistance;
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::{brief, given};
 use nalgebra::{Matrix3, Vector3};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
@@ -51,7 +52,7 @@ pub enum SurfaceError {
     #[error("{0} coordinates are not three for each vertex")]
     Coordinates(usize),
     /// A coordinate is not finite.
-    #[error("coordinate {axis} (0 = x) of vertex {vertex} is {value}")]
+    #[error("coordinate {axis} (0 = x) of vertex {vertex} is {value}", value = given(*value))]
     NotFinite {
         /// The vertex.
         vertex: usize,
@@ -70,7 +71,7 @@ pub enum SurfaceError {
         face: usize,
     },
     /// A length of a surface made by formula is not positive.
-    #[error("{name} is {value} m")]
+    #[error("{name} is {value} m", value = given(*value))]
     Length {
         /// The length.
         name: &'static str,
@@ -86,7 +87,10 @@ pub enum SurfaceError {
         problem: &'static str,
     },
     /// A closed surface is inside out.
-    #[error("the faces of the closed surface point inwards (volume {volume} m^3)")]
+    #[error(
+        "the faces of the closed surface point inwards (volume {volume} m^3)",
+        volume = brief(*volume)
+    )]
     Inward {
         /// Signed volume.
         volume: f64,

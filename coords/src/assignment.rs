@@ -24,6 +24,7 @@ mod rules;
 pub use options::{AssignmentOptions, Degenerate};
 pub use rules::{Assignment, Closure, Placing, Rule};
 
+use isosheet_mesh::wording::brief;
 use isosheet_mesh::{Advice, Sheet, VertexId};
 use propagation::Propagation;
 use thiserror::Error;
@@ -69,7 +70,7 @@ pub enum AssignmentError {
         expected: usize,
     },
     /// An option is out of range.
-    #[error("option volume is {volume}")]
+    #[error("option volume is {volume}", volume = brief(*volume))]
     Volume {
         /// Its value.
         volume: f64,

@@ -13,6 +13,7 @@ use crate::placement_error::PlacementError;
 use crate::realise::RealiseError;
 use crate::row_pattern::RowPattern;
 use crate::system::{RodSystem, SystemError};
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, MeshError, VertexId};
 use nalgebra::DMatrix;
 use thiserror::Error;
@@ -65,8 +66,9 @@ pub enum ChartError {
     },
     /// Newton's method for positions did not converge.
     #[error(
-        "positions were not found in {iterations} Newton steps: residual {residual:e} (relative), \
-         tolerance {tolerance:e}"
+        "positions were not found in {iterations} Newton steps: residual {residual} (relative), \
+         tolerance {tolerance}",
+        residual = brief(*residual), tolerance = given(*tolerance)
     )]
     NotConverged {
         /// Steps taken.
@@ -78,8 +80,9 @@ pub enum ChartError {
     },
     /// The chart is too ill-conditioned to give digits.
     #[error(
-        "the mass matrix of the chart has condition number {condition:e}, above the limit {limit:e}: \
-         the answer would be noise"
+        "the mass matrix of the chart has condition number {condition}, above the limit {limit}: \
+         the answer would be noise",
+        condition = brief(*condition), limit = given(*limit)
     )]
     IllConditioned {
         /// Condition number of C.

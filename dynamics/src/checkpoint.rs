@@ -7,6 +7,7 @@ use crate::integrator::Moment;
 use crate::{Isometry, Method, SheetModel, StepControl};
 use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -291,7 +292,8 @@ pub enum CheckpointError {
     /// A number of the state is not finite.
     #[error(
         "{what} of the checkpoint have the value {value} at index {index}: the checkpoint was \
-         changed from outside"
+         changed from outside",
+        value = given(*value)
     )]
     NotFinite {
         /// Which array.

@@ -3,6 +3,7 @@
 
 use crate::profile::{Profile, ProfileError};
 use crate::{HessianSink, Potential};
+use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Sheet, Topology, VertexId};
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
@@ -107,7 +108,7 @@ pub enum CreaseError {
         edge: EdgeId,
     },
     /// A stiffness is negative or not finite.
-    #[error("the spring at {edge} has stiffness {stiffness} N m")]
+    #[error("the spring at {edge} has stiffness {stiffness} N m", stiffness = given(*stiffness))]
     Stiffness {
         /// The edge.
         edge: EdgeId,
@@ -123,7 +124,7 @@ pub enum CreaseError {
         source: ProfileError,
     },
     /// A constant rest angle is beyond a fold that is shut.
-    #[error("the spring at {edge} rests at {angle} rad")]
+    #[error("the spring at {edge} rests at {angle} rad", angle = given(*angle))]
     Angle {
         /// The edge.
         edge: EdgeId,
@@ -131,7 +132,7 @@ pub enum CreaseError {
         angle: f64,
     },
     /// A flexural rigidity is negative or not finite.
-    #[error("the flexural rigidity is {rigidity} N m")]
+    #[error("the flexural rigidity is {rigidity} N m", rigidity = given(*rigidity))]
     Rigidity {
         /// The rigidity given, N m.
         rigidity: f64,

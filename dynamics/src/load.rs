@@ -2,6 +2,7 @@
 
 use crate::potential::Force;
 use crate::profile::{Profile, ProfileError};
+use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, Topology, VertexId};
 use nalgebra::Vector3;
 
@@ -12,7 +13,10 @@ pub enum LoadError {
     #[error("the size of the load cannot be used: {0}")]
     Profile(#[from] ProfileError),
     /// The direction is zero or not finite.
-    #[error("the direction of the load is [{x}, {y}, {z}]")]
+    #[error(
+        "the direction of the load is [{x}, {y}, {z}]",
+        x = given(*x), y = given(*y), z = given(*z)
+    )]
     Direction {
         /// Along x.
         x: f64,
@@ -30,7 +34,7 @@ pub enum LoadError {
         vertex_count: usize,
     },
     /// A weight is not finite.
-    #[error("vertex {vertex} has the weight {weight} kg")]
+    #[error("vertex {vertex} has the weight {weight} kg", weight = given(*weight))]
     Weight {
         /// The vertex, from 0.
         vertex: usize,

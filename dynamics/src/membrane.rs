@@ -2,6 +2,7 @@
 
 use crate::constraint::rows::point;
 use crate::{HessianSink, Potential};
+use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -9,13 +10,13 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MembraneError {
     /// The stiffness is not positive or not finite.
-    #[error("the membrane stiffness is {stiffness} N/m")]
+    #[error("the membrane stiffness is {stiffness} N/m", stiffness = given(*stiffness))]
     Stiffness {
         /// The stiffness given, N/m.
         stiffness: f64,
     },
     /// Poisson's ratio is out of range.
-    #[error("Poisson's ratio is {ratio}")]
+    #[error("Poisson's ratio is {ratio}", ratio = given(*ratio))]
     Poisson {
         /// The ratio given.
         ratio: f64,

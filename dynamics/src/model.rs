@@ -8,6 +8,7 @@ use crate::membrane::Membrane;
 use crate::motion::MotionError;
 use crate::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
 use crate::weak_isometry::{WeakIsometry, WeakRows};
+use isosheet_mesh::wording::given;
 use isosheet_mesh::{
     Advice, LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
 };
@@ -28,7 +29,7 @@ pub enum ModelError {
         vertex_count: usize,
     },
     /// A vertex has no mass.
-    #[error("{vertex} has mass {mass} kg")]
+    #[error("{vertex} has mass {mass} kg", mass = given(*mass))]
     Mass {
         /// The vertex.
         vertex: VertexId,
@@ -60,7 +61,7 @@ pub enum ModelError {
         vertex_count: usize,
     },
     /// The damping rate is negative or not finite.
-    #[error("damping rate is {rate}")]
+    #[error("damping rate is {rate}", rate = given(*rate))]
     Damping {
         /// The rate given, 1/s.
         rate: f64,

@@ -8,6 +8,7 @@ pub use rigid::{AxisRotation, Keyframe, Kinematics, RigidDisplacement, RigidMoti
 
 use crate::profile::{Profile, ProfileError};
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -17,7 +18,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MotionError {
     /// A number is not finite.
-    #[error("{name} has the component {value}")]
+    #[error("{name} has the component {value}", value = given(*value))]
     NotFinite {
         /// The vector or rotation.
         name: &'static str,
@@ -39,7 +40,7 @@ pub enum MotionError {
     #[error("the motion has no keyframes")]
     Empty,
     /// A time or pose is not finite.
-    #[error("keyframe {index} at t = {t} s has a time or pose that is not finite")]
+    #[error("keyframe {index} at t = {t} s has a time or pose that is not finite", t = given(*t))]
     Keyframe {
         /// The keyframe, from 0.
         index: usize,
@@ -47,7 +48,10 @@ pub enum MotionError {
         t: f64,
     },
     /// Times do not increase.
-    #[error("keyframe {index} at t = {t} s does not come after t = {previous} s")]
+    #[error(
+        "keyframe {index} at t = {t} s does not come after t = {previous} s",
+        t = given(*t), previous = given(*previous)
+    )]
     Order {
         /// The keyframe, from 0.
         index: usize,
@@ -57,7 +61,7 @@ pub enum MotionError {
         previous: f64,
     },
     /// The sense of a rotation is ambiguous.
-    #[error("the body turns by half a turn up to keyframe {index} at t = {t} s")]
+    #[error("the body turns by half a turn up to keyframe {index} at t = {t} s", t = given(*t))]
     HalfTurn {
         /// The keyframe, from 0.
         index: usize,

@@ -1,10 +1,14 @@
 //! Options that are out of range.
 
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
 
 /// An option that makes no sense.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("option {name} is {value}, outside the range from {min} to {max}")]
+#[error(
+    "option {name} is {value}, outside the range from {min} to {max}",
+    value = given(*value), min = given(*min), max = given(*max)
+)]
 pub struct OptionsError {
     /// Name of the option.
     pub name: &'static str,

@@ -5,6 +5,7 @@ mod stencil;
 mod tests;
 
 use crate::{HessianSink, Potential};
+use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Sheet, VertexId};
 use nalgebra::Matrix3;
 use std::collections::BTreeMap;
@@ -14,7 +15,7 @@ use stencil::Stencils;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlateBendingError {
     /// The flexural rigidity is negative or not finite.
-    #[error("the flexural rigidity is {rigidity} N m")]
+    #[error("the flexural rigidity is {rigidity} N m", rigidity = given(*rigidity))]
     Rigidity {
         /// The rigidity given, N m.
         rigidity: f64,

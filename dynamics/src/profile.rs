@@ -1,6 +1,7 @@
 //! Scalar functions of time as data: what prescribed motions, driven creases and loads are made of.
 
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -109,7 +110,7 @@ pub enum Interpolation {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ProfileError {
     /// A parameter is not finite.
-    #[error("`{name}` is {value}")]
+    #[error("`{name}` is {value}", value = given(*value))]
     NotFinite {
         /// The parameter.
         name: &'static str,
@@ -117,7 +118,10 @@ pub enum ProfileError {
         value: f64,
     },
     /// A change takes no time.
-    #[error("the change begins at {begin} s and ends at {end} s")]
+    #[error(
+        "the change begins at {begin} s and ends at {end} s",
+        begin = given(*begin), end = given(*end)
+    )]
     Duration {
         /// The beginning, seconds.
         begin: f64,
@@ -128,7 +132,7 @@ pub enum ProfileError {
     #[error("the profile has no keyframes")]
     NoKeyframes,
     /// A keyframe is not finite.
-    #[error("keyframe {index} is [{t}, {value}]")]
+    #[error("keyframe {index} is [{t}, {value}]", t = given(*t), value = given(*value))]
     Keyframe {
         /// The keyframe, from 0.
         index: usize,
@@ -138,7 +142,10 @@ pub enum ProfileError {
         value: f64,
     },
     /// The times of the keyframes do not increase.
-    #[error("keyframe {index} at t = {t} s does not come after the one before at t = {previous} s")]
+    #[error(
+        "keyframe {index} at t = {t} s does not come after the one before at t = {previous} s",
+        t = given(*t), previous = given(*previous)
+    )]
     Order {
         /// The later keyframe, from 0.
         index: usize,

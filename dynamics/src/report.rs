@@ -6,6 +6,7 @@ use crate::effort::SolverEffort;
 use crate::feasibility::Excess;
 use crate::support::Support;
 use isosheet_coords::linalg::LinalgError;
+use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{Advice, EdgeId, VertexId};
 
 /// How a step was obtained.
@@ -109,7 +110,7 @@ impl StepReport {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// The step size makes no sense.
-    #[error("the step size is {h} s at t = {t} s")]
+    #[error("the step size is {h} s at t = {t} s", h = brief(*h), t = brief(*t))]
     StepSize {
         /// The step size given, seconds.
         h: f64,
@@ -117,13 +118,13 @@ pub enum StepError {
         t: f64,
     },
     /// The time of the state is not finite.
-    #[error("the time of the state is {t} s")]
+    #[error("the time of the state is {t} s", t = brief(*t))]
     Time {
         /// The time given, seconds.
         t: f64,
     },
     /// An energy or the work of a force is not finite.
-    #[error("{quantity} is {value} J at t = {t} s")]
+    #[error("{quantity} is {value} J at t = {t} s", value = brief(*value), t = brief(*t))]
     NonFiniteEnergy {
         /// Which one.
         quantity: &'static str,
@@ -135,7 +136,8 @@ pub enum StepError {
     /// No positions with the rest lengths were found.
     #[error(
         "no positions with the rest lengths were found near the ones given: the best have edge \
-         strain {strain:e} after {iterations} iterations, {tolerance:e} was asked for"
+         strain {strain} after {iterations} iterations, {tolerance} was asked for",
+        strain = brief(*strain), tolerance = given(*tolerance)
     )]
     Projection {
         /// Relative edge length error reached.
@@ -146,7 +148,10 @@ pub enum StepError {
         iterations: usize,
     },
     /// A position or velocity of the state is not finite.
-    #[error("{vertex} has position or velocity {value} at t = {t} s")]
+    #[error(
+        "{vertex} has position or velocity {value} at t = {t} s",
+        value = brief(*value), t = brief(*t)
+    )]
     NonFiniteState {
         /// The vertex.
         vertex: VertexId,
@@ -156,7 +161,10 @@ pub enum StepError {
         t: f64,
     },
     /// A prescribed motion is not finite.
-    #[error("the prescribed motion of {support} gives {value} at t = {t} s")]
+    #[error(
+        "the prescribed motion of {support} gives {value} at t = {t} s",
+        value = brief(*value), t = brief(*t)
+    )]
     NonFiniteMotion {
         /// What moves.
         support: Support,
@@ -169,7 +177,10 @@ pub enum StepError {
     #[error(transparent)]
     Body(#[from] BodyMotionError),
     /// The start state is not where a support has it.
-    #[error("{support} is {distance} m away from its vertex at t = {t} s")]
+    #[error(
+        "{support} is {distance} m away from its vertex at t = {t} s",
+        distance = brief(*distance), t = brief(*t)
+    )]
     OffSupport {
         /// The support.
         support: Support,
@@ -179,7 +190,10 @@ pub enum StepError {
         t: f64,
     },
     /// A potential or force returned a value that is not finite.
-    #[error("a potential or force is {value} at {vertex}, t = {t} s")]
+    #[error(
+        "a potential or force is {value} at {vertex}, t = {t} s",
+        value = brief(*value), t = brief(*t)
+    )]
     NonFiniteForce {
         /// The vertex.
         vertex: VertexId,
@@ -189,7 +203,10 @@ pub enum StepError {
         t: f64,
     },
     /// The start state does not have the rest lengths.
-    #[error("{edge} is {length} m long at t = {t} s, its rest length is {rest} m")]
+    #[error(
+        "{edge} of {rest} m is {} at t = {t} s",
+        off_by(length - rest), rest = brief(*rest), t = brief(*t)
+    )]
     OffConstraints {
         /// The worst edge.
         edge: EdgeId,
@@ -202,8 +219,9 @@ pub enum StepError {
     },
     /// The start state of a sheet that is isometric in weak form does not satisfy its equations.
     #[error(
-        "the strain around {vertex} is {strain:e} in the mean at t = {t} s, which the isometry in \
-         weak form does not allow"
+        "the strain around {vertex} is {strain} in the mean at t = {t} s, which the isometry in \
+         weak form does not allow",
+        strain = brief(*strain), t = brief(*t)
     )]
     OffWeakIsometry {
         /// The worst vertex.
@@ -215,8 +233,9 @@ pub enum StepError {
     },
     /// Newton's method did not converge.
     #[error(
-        "Newton's method stopped at residual {residual:e}, edge strain {strain:e} after {iterations} \
-         iterations at t = {t} s, h = {h} s"
+        "Newton's method stopped at residual {residual}, edge strain {strain} after {iterations} \
+         iterations at t = {t} s, h = {h} s",
+        residual = brief(*residual), strain = brief(*strain), t = brief(*t), h = brief(*h)
     )]
     NotConverged {
         /// Time at the start of the step, seconds.
@@ -233,7 +252,8 @@ pub enum StepError {
     /// A damped step would have created energy.
     #[error(
         "a step of {h} s at t = {t} s would create {gain} J (kinetic energy {kinetic} J): rods in \
-         compression snap through faster than the step resolves"
+         compression snap through faster than the step resolves",
+        h = brief(*h), t = brief(*t), gain = brief(*gain), kinetic = brief(*kinetic)
     )]
     EnergyGain {
         /// Time at the start of the step, seconds.
@@ -246,7 +266,10 @@ pub enum StepError {
         kinetic: f64,
     },
     /// A step would have ended in contact.
-    #[error("a step of {h} s at t = {t} s would close the smallest gap to {gap} m")]
+    #[error(
+        "a step of {h} s at t = {t} s would close the smallest gap to {gap} m",
+        h = brief(*h), t = brief(*t), gap = brief(*gap)
+    )]
     Contact {
         /// Time at the start of the step, seconds.
         t: f64,
@@ -259,7 +282,8 @@ pub enum StepError {
     #[error(
         "the length constraints are dependent or nearly so at t = {t} s ({rank_deficiency} \
          redundant, smallest singular value of the rigidity matrix with unit rods \
-         {smallest_singular_value:e}): this integrator has no unique rod forces there"
+         {smallest_singular_value}): this integrator has no unique rod forces there",
+        t = brief(*t), smallest_singular_value = brief(*smallest_singular_value)
     )]
     RankDeficient {
         /// Time, seconds.
@@ -273,7 +297,8 @@ pub enum StepError {
     /// Moving supports ask for more than the rods allow.
     #[error(
         "{} asks for {} m more than the rods allow at t = {} s (the taut state at t = {t} s is kept)",
-        excess.support, excess.distance, excess.t
+        excess.support, brief(excess.distance), brief(excess.t),
+        t = brief(*t)
     )]
     Unsatisfiable {
         /// Time of the last state, seconds.
@@ -284,7 +309,8 @@ pub enum StepError {
     /// Even the smallest step allowed was rejected.
     #[error(
         "no step of at least {min_step} s was accepted at t = {t} s{}; last reason: {cause}",
-        locking(*.dependent_rods)
+        locking(*.dependent_rods),
+        min_step = brief(*min_step), t = brief(*t)
     )]
     StepTooSmall {
         /// Time, seconds.
@@ -304,7 +330,7 @@ pub enum StepError {
         t: f64,
     },
     /// Motion in a chart failed.
-    #[error("at t = {t} s: {source}")]
+    #[error("at t = {t} s: {source}", t = brief(*t))]
     Chart {
         /// Time, seconds.
         t: f64,
@@ -312,7 +338,7 @@ pub enum StepError {
         source: Box<ChartDynamicsError>,
     },
     /// The linear algebra failed.
-    #[error("linear solve failed at t = {t} s: {source}")]
+    #[error("linear solve failed at t = {t} s: {source}", t = brief(*t))]
     Linalg {
         /// Time, seconds.
         t: f64,
@@ -417,10 +443,17 @@ pub(crate) fn not_converged(
     }
 }
 
+/// By how much a length is off, in words.
+fn off_by(by: f64) -> String {
+    let side = if by < 0.0 { "short" } else { "long" };
+    format!("{} m too {side}", brief(by.abs()))
+}
+
 /// How many rods depend on others, where some do.
 fn locking(dependent_rods: usize) -> String {
     if dependent_rods == 0 {
         return String::new();
     }
-    format!(", where {dependent_rods} rods depend on others and may lock")
+    let rods = counted(dependent_rods, "rod depends", "rods depend");
+    format!(", where {rods} on others and may lock")
 }

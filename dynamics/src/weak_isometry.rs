@@ -11,6 +11,7 @@ pub(crate) use blocks::{Block, BlockRows, RingBlocks};
 pub(crate) use rows::WeakRows;
 
 use crate::membrane::{Membrane, MembraneError};
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, FaceId, Sheet, VertexId};
 use plane::RestPlane;
 
@@ -30,7 +31,8 @@ const MEMBRANE_PER_BENDING: f64 = 100.0;
 pub enum WeakIsometryError {
     /// The rest shape is not flat.
     #[error(
-        "the rest shape is not a plane: {vertex} is {distance} m away from the plane of the others"
+        "the rest shape is not a plane: {vertex} is {distance} m away from the plane of the others",
+        distance = brief(*distance)
     )]
     NotFlat {
         /// The vertex furthest from the plane.
@@ -48,7 +50,7 @@ pub enum WeakIsometryError {
     #[error(transparent)]
     Membrane(#[from] MembraneError),
     /// The flexural rigidity is not positive or not finite.
-    #[error("the flexural rigidity is {rigidity} N m")]
+    #[error("the flexural rigidity is {rigidity} N m", rigidity = given(*rigidity))]
     Rigidity {
         /// The rigidity given, N m.
         rigidity: f64,

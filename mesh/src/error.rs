@@ -1,6 +1,7 @@
 //! What can be wrong with a mesh: each error names the element, the value and the remedy.
 
 use crate::Advice;
+use crate::wording::{brief, given};
 use thiserror::Error;
 
 use crate::{EdgeId, FaceId, VertexId};
@@ -150,7 +151,7 @@ pub enum MeshError {
         expected: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("coordinate {} of {vertex} is {value}", ["x", "y", "z"][*axis])]
+    #[error("coordinate {} of {vertex} is {value}", ["x", "y", "z"][*axis], value = given(*value))]
     NonFinite {
         /// The vertex.
         vertex: VertexId,
@@ -161,8 +162,11 @@ pub enum MeshError {
     },
     /// The corners of a face lie on a line, or at one point.
     #[error(
-        "{face} has no area: its altitude over its longest edge is {relative_altitude:e} of that \
-         edge ({longest:e} long), less than {limit:e}"
+        "{face} has no area: its altitude over its longest edge is {relative_altitude} of that \
+         edge ({longest} long), less than {limit}",
+        relative_altitude = brief(*relative_altitude),
+        longest = brief(*longest),
+        limit = given(*limit)
     )]
     ZeroAreaFace {
         /// The face.
@@ -176,8 +180,9 @@ pub enum MeshError {
     },
     /// A length or area over- or underflows.
     #[error(
-        "{edge} has length {length:e} m, outside the range 1e-70 to 1e70 m in which squared areas \
-         can be formed"
+        "{edge} has length {length} m, outside the range 1e-70 to 1e70 m in which squared areas \
+         can be formed",
+        length = brief(*length)
     )]
     LengthOutOfRange {
         /// The edge.
@@ -187,8 +192,9 @@ pub enum MeshError {
     },
     /// The angles about an interior vertex do not add up to a full turn.
     #[error(
-        "the angles about {vertex} add up to 2 pi minus {defect:.3e} rad, more than {tolerance:e} \
-         from a full turn, so the sheet cannot be laid flat there"
+        "the angles about {vertex} add up to 2 pi minus {defect:.3e} rad, more than {tolerance} \
+         from a full turn, so the sheet cannot be laid flat there",
+        tolerance = given(*tolerance)
     )]
     NotDevelopable {
         /// The vertex.
@@ -199,7 +205,7 @@ pub enum MeshError {
         tolerance: f64,
     },
     /// A mass or density is not a positive number.
-    #[error("the {what} is {value}")]
+    #[error("the {what} is {value}", value = given(*value))]
     NotPositive {
         /// Which quantity.
         what: &'static str,

@@ -38,6 +38,7 @@ mod sheet;
 mod testing;
 mod topology;
 mod vec3;
+pub mod wording;
 
 pub use advice::Advice;
 pub use angles::{

@@ -5,6 +5,7 @@ use isosheet_dynamics::SheetModel;
 use isosheet_dynamics::contact::{
     BarrierError, BarrierPotential, ContactLaws, FrictionError, Stiffness,
 };
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, area_from_lengths};
 use thiserror::Error;
 
@@ -47,7 +48,8 @@ pub enum ContactsError {
     /// The activation distance is lost in the round-off of distances.
     #[error(
         "distances cannot tell the activation distance {activation} m from the thickness {thickness} \
-         m"
+         m",
+        activation = given(*activation), thickness = given(*thickness)
     )]
     Resolution {
         /// The activation distance.
@@ -70,7 +72,8 @@ pub enum ContactsError {
     /// Neighbouring parts of a flat sheet would repel each other.
     #[error(
         "face {face} is only {height} m high, and the sheet repels itself up to {reach} m \
-         (activation and thickness)"
+         (activation and thickness)",
+        height = brief(*height), reach = brief(*reach)
     )]
     Reach {
         /// The face.

@@ -1,6 +1,7 @@
 //! Why a sparse direct solver fails.
 
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::brief;
 
 /// Why a sparse factorisation or solve failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -17,7 +18,8 @@ pub enum LinalgError {
     },
     /// The matrix is singular, structurally or to working precision.
     #[error(
-        "matrix of order {order} is singular to working precision (backward error {backward_error:e})"
+        "matrix of order {order} is singular to working precision (backward error {backward_error})",
+        backward_error = brief(*backward_error)
     )]
     Singular {
         /// Order of the matrix.

@@ -2,6 +2,7 @@
 
 use crate::assignment::Closure;
 use crate::placement_error::PlacementError;
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, AngleTriple, EdgeId, VertexId};
 use thiserror::Error;
 
@@ -11,8 +12,9 @@ pub enum RealiseError {
     /// Eq. 10 is violated at an edge: its two triangles cannot be closed.
     #[error(
         "Eq. 10 is violated at {edge}, {vertex} cannot be placed: angles alpha {:.6}, beta {:.6}, gamma {:.6} rad \
-         (|alpha - beta| <= gamma <= alpha + beta needed; squared height {height_squared:e})",
-        angles.alpha, angles.beta, angles.gamma
+         (|alpha - beta| <= gamma <= alpha + beta needed; squared height {height_squared})",
+        angles.alpha, angles.beta, angles.gamma,
+        height_squared = brief(*height_squared)
     )]
     Incompatible {
         /// The common edge of the two triangles.
@@ -35,8 +37,11 @@ pub enum RealiseError {
         source: PlacementError,
     },
     /// The coordinates do not satisfy the closure equations.
-    #[error("{count} closure edges do not have their lengths: the worst is {} with strain {strain:e} \
-         (tolerance {tolerance:e})", worst.edge)]
+    #[error(
+        "{count} closure edges do not have their lengths: the worst is {} with strain {strain} \
+         (tolerance {tolerance})", worst.edge,
+        strain = brief(*strain), tolerance = given(*tolerance)
+    )]
     Closure {
         /// Number of closure edges.
         count: usize,
@@ -58,7 +63,7 @@ pub enum RealiseError {
         expected: usize,
     },
     /// A value is not finite.
-    #[error("{what} has the value {value} at index {index}")]
+    #[error("{what} has the value {value} at index {index}", value = given(*value))]
     NotFinite {
         /// Which argument.
         what: &'static str,
@@ -69,8 +74,9 @@ pub enum RealiseError {
     },
     /// A tolerance is out of range.
     #[error(
-        "option {name} is {value:e}, outside the range from 2.2e-16, the round-off of a length, to \
-         {max:e}"
+        "option {name} is {value}, outside the range from 2.2e-16, the round-off of a length, to \
+         {max}",
+        value = given(*value), max = given(*max)
     )]
     Tolerance {
         /// Name of the option.

@@ -3,6 +3,7 @@
 use crate::contact::BodyMotionError;
 use crate::support::Support;
 use isosheet_coords::ChartError;
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, VertexId};
 use thiserror::Error;
 
@@ -13,7 +14,7 @@ pub enum ChartDynamicsError {
     #[error(transparent)]
     Chart(#[from] ChartError),
     /// An option is out of range.
-    #[error("{option} is {value}")]
+    #[error("{option} is {value}", value = given(*value))]
     Option {
         /// Name of the option.
         option: &'static str,
@@ -50,7 +51,10 @@ pub enum ChartDynamicsError {
         dimension: usize,
     },
     /// The position given at the start has the wrong lengths.
-    #[error("the largest edge strain of the initial state is {strain:e}, above {limit:e}")]
+    #[error(
+        "the largest edge strain of the initial state is {strain}, above {limit}",
+        strain = brief(*strain), limit = given(*limit)
+    )]
     Strained {
         /// Largest strain.
         strain: f64,
@@ -96,7 +100,8 @@ pub enum ChartDynamicsError {
     /// Closure equations cannot be met.
     #[error(
         "at t = {t} s {support} is {distance} m off: the {equations} closure equations, of rank \
-         {rank}, cannot be met together with the edge lengths"
+         {rank}, cannot be met together with the edge lengths",
+        t = brief(*t), distance = brief(*distance)
     )]
     Closure {
         /// Time, seconds.
@@ -112,8 +117,9 @@ pub enum ChartDynamicsError {
     },
     /// The way on is closed by contact.
     #[error(
-        "at t = {t} s no step above {h:e} s keeps the sheet out of contact: it is caught between \
-         bodies or pins that move into each other, or the explicit scheme has become unstable"
+        "at t = {t} s no step above {h} s keeps the sheet out of contact: it is caught between \
+         bodies or pins that move into each other, or the explicit scheme has become unstable",
+        t = brief(*t), h = brief(*h)
     )]
     Contact {
         /// Time, seconds.
@@ -124,7 +130,8 @@ pub enum ChartDynamicsError {
     /// One call of [`Simulation::step`](crate::Simulation::step) takes too long.
     #[error(
         "{limit} steps, with those rejected, went no further than t = {t} s (near a singularity of \
-         the chart a step control crawls)"
+         the chart a step control crawls)",
+        t = brief(*t)
     )]
     TooManySteps {
         /// Time reached, seconds.
@@ -134,7 +141,11 @@ pub enum ChartDynamicsError {
     },
     /// The step control went below its smallest step.
     #[error(
-        "at t = {t} s no step above {minimum:e} s keeps the change of the energy below {tolerance:e} J (it is {change:e} J): {cause}"
+        "at t = {t} s no step above {minimum} s keeps the change of the energy below {tolerance} J (it is {change} J): {cause}",
+        t = brief(*t),
+        minimum = brief(*minimum),
+        tolerance = given(*tolerance),
+        change = brief(*change)
     )]
     StepTooSmall {
         /// Time, seconds.
@@ -150,8 +161,9 @@ pub enum ChartDynamicsError {
     },
     /// The implicit equation for the momenta did not converge.
     #[error(
-        "the momenta of the symplectic Euler step did not converge (change {change:e}) at step {h:e} \
-         s"
+        "the momenta of the symplectic Euler step did not converge (change {change}) at step {h} \
+         s",
+        change = brief(*change), h = brief(*h)
     )]
     Momenta {
         /// Step, seconds.
@@ -161,7 +173,8 @@ pub enum ChartDynamicsError {
     },
     /// The edge lengths have drifted too far.
     #[error(
-        "at t = {t} s the largest edge strain is {strain:e}, above {limit:e}: the scheme has diverged"
+        "at t = {t} s the largest edge strain is {strain}, above {limit}: the scheme has diverged",
+        t = brief(*t), strain = brief(*strain), limit = given(*limit)
     )]
     Diverged {
         /// Time, seconds.
@@ -175,7 +188,10 @@ pub enum ChartDynamicsError {
     #[error(transparent)]
     Body(#[from] BodyMotionError),
     /// A prescribed motion of a support is not finite.
-    #[error("the prescribed motion of {support} gives {value} at t = {t} s")]
+    #[error(
+        "the prescribed motion of {support} gives {value} at t = {t} s",
+        value = brief(*value), t = brief(*t)
+    )]
     Motion {
         /// What moves.
         support: Support,
@@ -185,7 +201,10 @@ pub enum ChartDynamicsError {
         t: f64,
     },
     /// A state is not finite.
-    #[error("the state is not finite at t = {t} s: the step is too large for this scheme")]
+    #[error(
+        "the state is not finite at t = {t} s: the step is too large for this scheme",
+        t = brief(*t)
+    )]
     NotFinite {
         /// Time, seconds.
         t: f64,

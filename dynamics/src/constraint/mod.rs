@@ -15,6 +15,7 @@ pub use spline::Spline;
 pub use surface::{Cylinder, Plane, SignedDistanceField, Sphere, Surface, SurfacePoint};
 
 use crate::motion::{MotionError, RigidMotion};
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, VertexId};
 use nalgebra::{Matrix2x3, Matrix3, Vector3};
 
@@ -22,7 +23,7 @@ use nalgebra::{Matrix2x3, Matrix3, Vector3};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ConstraintError {
     /// A number is not finite, or not positive where it has to be.
-    #[error("{what} is {value}")]
+    #[error("{what} is {value}", value = given(*value))]
     Number {
         /// Which one.
         what: &'static str,
@@ -58,7 +59,8 @@ pub enum ConstraintError {
     /// A corner cannot be rounded.
     #[error(
         "the corner at point {point} cannot be rounded with radius {radius} m between the sides \
-         beside it: at most {largest} m fit"
+         beside it: at most {largest} m fit",
+        radius = given(*radius), largest = brief(*largest)
     )]
     Corner {
         /// The point.

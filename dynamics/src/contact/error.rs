@@ -2,6 +2,7 @@
 
 use super::BarrierError;
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::brief;
 use std::fmt;
 
 /// Two things that touch, by name.
@@ -38,7 +39,8 @@ impl fmt::Display for ContactPair {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "the prescribed motion of body {body} gives {value} at t = {t} s (a component of its pose, \
-         or of a velocity by differences about that time)"
+         or of a velocity by differences about that time)",
+    value = brief(*value), t = brief(*t)
 )]
 pub struct BodyMotionError {
     /// The body, in the order in which they were added.
@@ -62,7 +64,7 @@ pub enum ContactError {
     #[error(transparent)]
     Motion(#[from] BodyMotionError),
     /// Something touches or passes through.
-    #[error("{pair} touch at t = {t} s (gap {gap} m)")]
+    #[error("{pair} touch at t = {t} s (gap {gap} m)", t = brief(*t), gap = brief(*gap))]
     Touching {
         /// What touches.
         pair: ContactPair,

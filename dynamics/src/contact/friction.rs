@@ -1,6 +1,7 @@
 //! Smoothed Coulomb friction.
 
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -73,7 +74,8 @@ pub enum FrictionError {
     /// A coefficient is negative or not a number.
     #[error(
         "the friction coefficients {rest} (static) and {sliding} (kinetic) are not both numbers of \
-         at least 0"
+         at least 0",
+        rest = given(*rest), sliding = given(*sliding)
     )]
     Coefficient {
         /// Static coefficient.
@@ -82,7 +84,10 @@ pub enum FrictionError {
         sliding: f64,
     },
     /// The kinetic coefficient exceeds the static one.
-    #[error("the kinetic coefficient {sliding} is above the static coefficient {rest}")]
+    #[error(
+        "the kinetic coefficient {sliding} is above the static coefficient {rest}",
+        sliding = given(*sliding), rest = given(*rest)
+    )]
     Order {
         /// Static coefficient.
         rest: f64,

@@ -1,6 +1,7 @@
 //! The history of a run: one row per step.
 
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::brief;
 use std::fs::File;
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -63,7 +64,10 @@ pub enum HistoryError {
     #[error(transparent)]
     File(#[from] WriteError),
     /// A value is NaN or infinite.
-    #[error("{column} at t = {t} s is {value}, and the row was not written")]
+    #[error(
+        "{column} at t = {t} s is {value}, and the row was not written",
+        t = brief(*t), value = brief(*value)
+    )]
     NotFinite {
         /// The column.
         column: &'static str,

@@ -1,6 +1,7 @@
 //! JSON files such as a run's summary.
 
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -19,7 +20,10 @@ pub enum JsonError {
     #[error(transparent)]
     File(#[from] WriteError),
     /// A number is NaN or infinite, which JSON cannot hold.
-    #[error("{field} is {value}, which cannot be written to {}", path.display())]
+    #[error(
+        "{field} is {value}, which cannot be written to {}", path.display(),
+        value = given(*value)
+    )]
     NotFinite {
         /// The file.
         path: PathBuf,

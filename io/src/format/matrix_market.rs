@@ -1,6 +1,7 @@
 //! Sparse matrices as Matrix Market files, for other programs to solve.
 
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
@@ -42,7 +43,10 @@ pub enum MatrixMarketError {
         symmetry: MatrixSymmetry,
     },
     /// An entry is NaN or infinite.
-    #[error("entry {index} (row {row}, column {column}) is {value}, and nothing was written")]
+    #[error(
+        "entry {index} (row {row}, column {column}) is {value}, and nothing was written",
+        value = given(*value)
+    )]
     NotFinite {
         /// Position in the list of entries.
         index: usize,

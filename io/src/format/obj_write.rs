@@ -1,5 +1,6 @@
 //! Writing Wavefront OBJ files.
 
+use isosheet_mesh::wording::given;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -23,7 +24,10 @@ pub enum ObjWriteError {
         vertices: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("coordinate {} of {vertex} is {value}, and the file was not written", ["x", "y", "z"][*axis])]
+    #[error(
+        "coordinate {} of {vertex} is {value}, and the file was not written", ["x", "y", "z"][*axis],
+        value = given(*value)
+    )]
     NotFinite {
         /// The vertex.
         vertex: VertexId,

@@ -1,6 +1,7 @@
 //! Why a picture cannot be made.
 
 use isosheet_collide::ObstacleError;
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, VertexId};
 
 /// Why a picture cannot be made.
@@ -32,7 +33,7 @@ pub enum PictureError {
         size: [usize; 2],
     },
     /// An angle of the viewer is out of range.
-    #[error("the {name} is {value} degrees")]
+    #[error("the {name} is {value} degrees", value = given(*value))]
     Angle {
         /// Which angle.
         name: &'static str,
@@ -40,7 +41,7 @@ pub enum PictureError {
         value: f64,
     },
     /// The wires have no width.
-    #[error("wires have the width {width}")]
+    #[error("wires have the width {width}", width = brief(*width))]
     Wire {
         /// The width given, pixels.
         width: f64,
@@ -54,7 +55,7 @@ pub enum PictureError {
         vertices: usize,
     },
     /// A coordinate is not finite.
-    #[error("{vertex} is at {value}")]
+    #[error("{vertex} is at {value}", value = given(*value))]
     NotFinite {
         /// The vertex.
         vertex: VertexId,

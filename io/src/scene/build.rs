@@ -2,9 +2,10 @@
 
 use super::error::SceneError;
 use super::folding::FoldTargets;
+use super::key::Key;
 use super::mesh::{Mesh, RestMesh};
 use super::pose::{Motion, Pose};
-use super::problem::{Key, Problem};
+use super::problem::Problem;
 use super::sheet::{Bending, Isometry};
 use super::supports::{Hold, frame_motion};
 use super::{Origins, Scene, Setup};
@@ -14,6 +15,7 @@ use isosheet_dynamics::{
     RigidProfile, SheetModel, SimulationError, State, VertexConstraint, VertexLoad, WeakIsometry,
     leave_flat, project_positions,
 };
+use isosheet_mesh::wording::counted;
 use isosheet_mesh::{Advice, MassKind, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3};
 use std::path::Path;
@@ -163,17 +165,16 @@ impl<'a> Builder<'a> {
             let field = field.map_err(at(&key))?;
             self.change(|m| Ok(m.with_force(field)), at::<SimulationError>(&key))?;
         }
-        self.count(forces.load.len(), "load");
-        self.count(forces.acceleration.len(), "field of acceleration");
+        self.count(forces.load.len(), "load", "loads");
+        let fields = ["field of acceleration", "fields of acceleration"];
+        self.count(forces.acceleration.len(), fields[0], fields[1]);
         Ok(())
     }
 
     /// Names something that is modelled some times, if it is.
-    fn count(&mut self, number: usize, what: &str) {
-        match number {
-            0 => {}
-            1 => self.modelled.push(format!("1 {what}")),
-            n => self.modelled.push(format!("{n} {what}s")),
+    fn count(&mut self, number: usize, one: &str, more: &str) {
+        if number > 0 {
+            self.modelled.push(counted(number, one, more));
         }
     }
 
@@ -214,7 +215,7 @@ impl<'a> Builder<'a> {
                 self.origins.pins.extend(vertices.iter().map(|&v| (v, k)));
             }
         }
-        self.count(self.scene.support.len(), "support");
+        self.count(self.scene.support.len(), "support", "supports");
         Ok(())
     }
 
@@ -299,7 +300,7 @@ impl<'a> Builder<'a> {
                 at::<SimulationError>(&key),
             )?;
         }
-        self.count(self.scene.crease.len(), "crease");
+        self.count(self.scene.crease.len(), "crease", "creases");
         Ok(())
     }
 
@@ -410,7 +411,7 @@ impl<'a> Builder<'a> {
             let coefficients = Coefficients::equal(obstacle.friction);
             contacts = contacts.with_body(body, coefficients).map_err(at(&key))?;
         }
-        self.count(obstacles.len(), "obstacle");
+        self.count(obstacles.len(), "obstacle", "obstacles");
         if scene.contact.self_contact {
             let coefficients = Coefficients::equal(scene.contact.friction);
             contacts = contacts

@@ -1,5 +1,6 @@
 //! What makes a replay or its options unusable.
 
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, TopologyError};
 use thiserror::Error;
 
@@ -27,7 +28,7 @@ pub enum ViewError {
         expected: usize,
     },
     /// A number is NaN or infinite, or so large that differences of such numbers are infinite.
-    #[error("{what}: entry {index} is {value}")]
+    #[error("{what}: entry {index} is {value}", value = given(*value))]
     NotFinite {
         /// The list that has the number.
         what: String,
@@ -37,7 +38,10 @@ pub enum ViewError {
         value: f64,
     },
     /// Times go backwards.
-    #[error("{what}: entry {index} is {time} s after {before} s")]
+    #[error(
+        "{what}: entry {index} is {time} s after {before} s",
+        time = brief(*time), before = brief(*before)
+    )]
     Time {
         /// The list of times.
         what: String,
@@ -63,7 +67,7 @@ pub enum ViewError {
         vertices: usize,
     },
     /// A length of a body is not positive.
-    #[error("{what}: {name} is {value} m")]
+    #[error("{what}: {name} is {value} m", value = given(*value))]
     BodyLength {
         /// The body.
         what: String,
@@ -79,7 +83,7 @@ pub enum ViewError {
         what: String,
     },
     /// A quaternion does not have the length 1.
-    #[error("{what}: the quaternion of pose {index} has the length {norm}")]
+    #[error("{what}: the quaternion of pose {index} has the length {norm}", norm = brief(*norm))]
     Rotation {
         /// The body.
         what: String,
@@ -89,7 +93,7 @@ pub enum ViewError {
         norm: f64,
     },
     /// A logarithmic scale has no place for a negative number.
-    #[error("{what}: entry {index} is {value}, which has no logarithm")]
+    #[error("{what}: entry {index} is {value}, which has no logarithm", value = given(*value))]
     Negative {
         /// The list that has the number.
         what: String,

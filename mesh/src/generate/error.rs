@@ -1,6 +1,7 @@
 //! Arguments that no sheet can be made from.
 
 use crate::Advice;
+use crate::wording::{brief, given};
 use thiserror::Error;
 
 use crate::MeshError;
@@ -22,7 +23,7 @@ pub enum GenerateError {
         max: usize,
     },
     /// A length is not a positive number.
-    #[error("{name} is {value}")]
+    #[error("{name} is {value}", value = given(*value))]
     Size {
         /// The name of the argument.
         name: &'static str,
@@ -30,7 +31,10 @@ pub enum GenerateError {
         value: f64,
     },
     /// An angle is out of range.
-    #[error("{name} is {value} rad, which is not between {min} and {max}")]
+    #[error(
+        "{name} is {value} rad, which is not between {min} and {max}",
+        value = given(*value), min = given(*min), max = given(*max)
+    )]
     Angle {
         /// The name of the argument.
         name: &'static str,
@@ -48,7 +52,10 @@ pub enum GenerateError {
         problem: &'static str,
     },
     /// Two lengths are in the wrong order.
-    #[error("{small} is {small_value} and {large} is {large_value}")]
+    #[error(
+        "{small} is {small_value} and {large} is {large_value}",
+        small_value = brief(*small_value), large_value = brief(*large_value)
+    )]
     Order {
         /// The name of the argument that must be smaller.
         small: &'static str,

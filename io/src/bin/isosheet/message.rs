@@ -1,11 +1,7 @@
 //! Text for people.
 
+pub(crate) use isosheet_io::mesh::wording::counted;
 use std::io::Write;
-
-/// A number of things: `1 frame`, `2 frames`.
-pub(crate) fn counted(count: usize, one: &str, more: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { more })
-}
 
 /// Writes a line to standard error. Nothing happens where nobody reads it any more, as behind `2>&1 | head`:
 /// the work goes on.

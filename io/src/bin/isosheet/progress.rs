@@ -2,7 +2,7 @@
 
 use crate::exit::Format;
 use crate::interrupt;
-use crate::message::print_message;
+use crate::message::{counted, print_message};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use isosheet_io::run::{Beginning, Tick, Watch};
 use serde_json::{Value, json};
@@ -80,7 +80,9 @@ impl Watch for Progress {
             n => format!(", continued after step {n}"),
         };
         print_message(format_args!(
-            "{vertices} vertices: {modelled}; {of} steps{from}"
+            "{}: {modelled}; {}{from}",
+            counted(*vertices, "vertex", "vertices"),
+            counted(*of as usize, "step", "steps")
         ));
         if std::io::stderr().is_terminal() {
             let bar = ProgressBar::with_draw_target(Some(*of), ProgressDrawTarget::stderr());

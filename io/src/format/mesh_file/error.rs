@@ -1,5 +1,6 @@
 //! What can be wrong with a mesh file.
 
+use isosheet_mesh::wording::given;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -69,7 +70,7 @@ pub enum MeshFileProblem {
         extension: String,
     },
     /// The option `weld` is not a length.
-    #[error("the tolerance for welding vertices is {tolerance}")]
+    #[error("the tolerance for welding vertices is {tolerance}", tolerance = given(*tolerance))]
     WeldTolerance {
         /// The value.
         tolerance: f64,
@@ -115,7 +116,10 @@ pub enum MeshFileProblem {
         found: String,
     },
     /// A coordinate is NaN or infinite.
-    #[error("coordinate {} of vertex {vertex} is {value}", ["x", "y", "z"][*axis])]
+    #[error(
+        "coordinate {} of vertex {vertex} is {value}", ["x", "y", "z"][*axis],
+        value = given(*value)
+    )]
     NonFinite {
         /// The vertex, counted as the file does: from 1 in OBJ, from 0 in all others.
         vertex: usize,
@@ -127,7 +131,8 @@ pub enum MeshFileProblem {
     /// A weight other than 1.
     #[error(
         "vertex {vertex} has the weight {weight}, and weights, which belong to curves, are not \
-         supported"
+         supported",
+        weight = given(*weight)
     )]
     Weight {
         /// The vertex, counted from 1.

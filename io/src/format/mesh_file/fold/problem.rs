@@ -2,6 +2,7 @@
 
 use super::FoldFrame;
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::brief;
 use thiserror::Error;
 
 /// What a FOLD file says does not fit together.
@@ -83,7 +84,7 @@ pub enum FoldProblem {
         found: String,
     },
     /// A fold angle out of range.
-    #[error("edge {edge} has the fold angle {degrees} degrees")]
+    #[error("edge {edge} has the fold angle {degrees} degrees", degrees = brief(*degrees))]
     Angle {
         /// The edge, from 0.
         edge: usize,

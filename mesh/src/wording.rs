@@ -1,0 +1,72 @@
+//! Numbers in messages.
+
+use std::fmt;
+
+/// Shows a number with three significant digits, and with an exponent where it would be long without one:
+/// `0.0167`, `1.02e-6`, `-12300`. For values that were computed, whose further digits say nothing.
+pub fn brief(value: f64) -> impl fmt::Display {
+    let rounded = match value.is_finite() {
+        true => format!("{value:.2e}").parse().unwrap_or(value),
+        false => value,
+    };
+    given(rounded)
+}
+
+/// Shows a number with all its digits, and with an exponent where it would be long without one: `0.25`,
+/// `1e-300`. For values that somebody wrote, who wants to find them again.
+pub fn given(value: f64) -> impl fmt::Display {
+    Given(value)
+}
+
+struct Given(f64);
+
+impl fmt::Display for Given {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = *self;
+        match value.abs() {
+            // Five digits before the point and two zeros behind it are read at a glance.
+            size if size == 0.0 || !size.is_finite() || (1e-3..1e5).contains(&size) => {
+                write!(f, "{value}")
+            }
+            _ => write!(f, "{value:e}"),
+        }
+    }
+}
+
+/// A number of things: `1 step`, `2 steps`.
+pub fn counted(count: usize, one: &str, more: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { more })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_keep_three_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-1.0, "-1"),
+            (1.0 / 60.0, "0.0167"),
+            (12_345.678, "12300"),
+            (99_960.0, "1e5"),
+            (-0.001_017_252, "-0.00102"),
+            (0.000_001_017_252_604_166_7, "1.02e-6"),
+            (4.94e-324, "4.94e-324"),
+            (1e300, "1e300"),
+            (f64::MAX, "1.8e308"),
+            (f64::INFINITY, "inf"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(brief(value).to_string(), text);
+        }
+        assert_eq!(given(0.016_666_6).to_string(), "0.0166666");
+        assert_eq!(given(-1e-300).to_string(), "-1e-300");
+    }
+
+    #[test]
+    fn one_thing_is_no_plural() {
+        assert_eq!(counted(1, "step", "steps"), "1 step");
+        assert_eq!(counted(0, "step", "steps"), "0 steps");
+    }
+}
