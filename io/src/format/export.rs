@@ -90,11 +90,13 @@ pub enum SeriesFormat {
     /// A table with a line for each vertex of each frame, `.csv`: frame, time, vertex, x, y, z and the fields
     /// of vertices, with all digits.
     Csv,
+    /// A numpy archive, `.npz`: a [`Trajectory`](super::Trajectory) of these frames, with all digits.
+    Npz,
 }
 
 impl SeriesFormat {
     /// All formats.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Obj,
         Self::Fold,
         Self::Glb,
@@ -102,6 +104,7 @@ impl SeriesFormat {
         Self::Pc2,
         Self::Pvd,
         Self::Csv,
+        Self::Npz,
     ];
 
     /// The extension, without a dot.
@@ -114,6 +117,7 @@ impl SeriesFormat {
             Self::Pc2 => "pc2",
             Self::Pvd => "pvd",
             Self::Csv => "csv",
+            Self::Npz => "npz",
         }
     }
 }
@@ -170,6 +174,10 @@ pub fn write_series(path: &Path, series: &Series<'_>) -> Result<Exported, Export
         SeriesFormat::Pc2 => pc2::write_series(path, series)?,
         SeriesFormat::Pvd => vtk::write_series(path, series)?,
         SeriesFormat::Csv => csv::write_series(path, series)?,
+        SeriesFormat::Npz => {
+            series.chosen()?.write(path)?;
+            vec![path.to_owned()]
+        }
     };
     Ok(Exported { files, frames })
 }

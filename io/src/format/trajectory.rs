@@ -1,19 +1,17 @@
 //! Trajectories as numpy archives.
 
+mod archive;
 mod data;
 
 pub use data::FrameData;
 
+use archive::{ArchiveReader, ArchiveWriter};
 use data::Quantity;
-use std::fs::File;
+use isosheet_mesh::wording::{brief, given};
 use std::io;
 use std::path::{Path, PathBuf};
 
 use isosheet_mesh::{Advice, Sheet, VertexId};
-use npyz::WriterBuilder;
-use npyz::npz::{NpzArchive, NpzWriter};
-use npyz::zip::DateTime;
-use npyz::zip::write::FileOptions;
 use thiserror::Error;
 
 use crate::format::atomic::{WriteError, write_atomically};
@@ -61,7 +59,10 @@ pub enum TrajectoryError {
         vertices: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("coordinate {} of {vertex} in frame {frame} is {value}, and the frame was not recorded", ["x", "y", "z"][*axis])]
+    #[error(
+        "coordinate {} of {vertex} in frame {frame} is {value}, and the frame was not recorded", ["x", "y", "z"][*axis],
+        value = given(*value)
+    )]
     NotFinite {
         /// The frame.
         frame: usize,
@@ -86,7 +87,8 @@ pub enum TrajectoryError {
     },
     /// A value is NaN or infinite.
     #[error(
-        "value {index} of `{array}` in frame {frame} is {value}, and the frame was not recorded"
+        "value {index} of `{array}` in frame {frame} is {value}, and the frame was not recorded",
+        value = given(*value)
     )]
     DataNotFinite {
         /// The frame.
@@ -99,7 +101,10 @@ pub enum TrajectoryError {
         value: f64,
     },
     /// Time does not go forward.
-    #[error("frame {frame} has the time {t} s after {before} s")]
+    #[error(
+        "frame {frame} has the time {t} s after {before} s",
+        t = brief(*t), before = brief(*before)
+    )]
     Time {
         /// The frame.
         frame: usize,
@@ -220,6 +225,29 @@ impl Trajectory {
         Ok(())
     }
 
+    /// The trajectory of some of the frames, in the order of time.
+    pub(super) fn subset(&self, frames: &[usize]) -> Result<Self, TrajectoryError> {
+        let mut subset = Self {
+            vertex_count: self.vertex_count,
+            t: Vec::new(),
+            x: Vec::new(),
+            faces: self.faces.clone(),
+            edges: self.edges.clone(),
+            rest_lengths: self.rest_lengths.clone(),
+            data: Default::default(),
+        };
+        for &k in frames {
+            let data = FrameData {
+                rod_forces: self.rod_forces(k).unwrap_or_default(),
+                contact_forces: self.contact_forces(k).unwrap_or_default(),
+                gaps: self.gaps(k).unwrap_or_default(),
+            };
+            let x = &self.x[3 * self.vertex_count * k..3 * self.vertex_count * (k + 1)];
+            subset.push_with(self.t[k], x, &data)?;
+        }
+        Ok(subset)
+    }
+
     /// The numbers of a quantity in one frame.
     fn size(&self, quantity: Quantity) -> usize {
         quantity.size(self.vertex_count, self.edges.len())
@@ -299,41 +327,23 @@ impl Trajectory {
     pub fn write(&self, path: &Path) -> Result<(), TrajectoryError> {
         let (frames, vertices) = (self.t.len() as u64, self.vertex_count as u64);
         Ok(write_atomically(path, |w| {
-            let mut npz = NpzWriter::new(w);
-            put(&mut npz, "t", &[frames], self.t.iter().copied())?;
-            put(
-                &mut npz,
-                "x",
-                &[frames, vertices, 3],
-                self.x.iter().copied(),
-            )?;
-            put(
-                &mut npz,
-                "faces",
-                &[self.faces.len() as u64, 3],
-                self.faces.iter().flatten().copied(),
-            )?;
-            put(
-                &mut npz,
-                "edges",
-                &[self.edges.len() as u64, 2],
-                self.edges.iter().flatten().copied(),
-            )?;
-            put(
-                &mut npz,
-                "rest_lengths",
-                &[self.rest_lengths.len() as u64],
-                self.rest_lengths.iter().copied(),
-            )?;
+            let mut npz = ArchiveWriter::new(w);
+            npz.put("t", &[frames], self.t.iter().copied())?;
+            npz.put("x", &[frames, vertices, 3], self.x.iter().copied())?;
+            let faces = self.faces.iter().flatten().copied();
+            npz.put("faces", &[self.faces.len() as u64, 3], faces)?;
+            let edges = self.edges.iter().flatten().copied();
+            npz.put("edges", &[self.edges.len() as u64, 2], edges)?;
+            let lengths = self.rest_lengths.iter().copied();
+            npz.put("rest_lengths", &[self.rest_lengths.len() as u64], lengths)?;
             for (quantity, kept) in Quantity::ALL.into_iter().zip(&self.data) {
                 if !kept.is_empty() {
                     let frame = quantity.shape(self.vertex_count, self.edges.len());
                     let shape = [&[frames], &frame[..]].concat();
-                    put(&mut npz, quantity.name(), &shape, kept.iter().copied())?;
+                    npz.put(quantity.name(), &shape, kept.iter().copied())?;
                 }
             }
-            npz.zip_writer().finish()?;
-            Ok(())
+            npz.finish()
         })?)
     }
 
@@ -347,17 +357,17 @@ impl Trajectory {
             path: path.to_owned(),
             source,
         };
-        let mut npz = NpzArchive::open(path).map_err(read_error)?;
+        let mut npz = ArchiveReader::open(path).map_err(read_error)?;
         let array = |array, problem: String| TrajectoryError::Array {
             path: path.to_owned(),
             array,
             problem,
         };
-        let (t_shape, t) = get::<f64>(&mut npz, path, "t", 1)?;
-        let (x_shape, x) = get::<f64>(&mut npz, path, "x", 3)?;
-        let (faces_shape, faces) = get::<u32>(&mut npz, path, "faces", 2)?;
-        let (edges_shape, edges) = get::<u32>(&mut npz, path, "edges", 2)?;
-        let (lengths_shape, rest_lengths) = get::<f64>(&mut npz, path, "rest_lengths", 1)?;
+        let (t_shape, t) = npz.get::<f64>("t", 1)?;
+        let (x_shape, x) = npz.get::<f64>("x", 3)?;
+        let (faces_shape, faces) = npz.get::<u32>("faces", 2)?;
+        let (edges_shape, edges) = npz.get::<u32>("edges", 2)?;
+        let (lengths_shape, rest_lengths) = npz.get::<f64>("rest_lengths", 1)?;
         let (frames, vertices, rods) = (t_shape[0], x_shape[1], edges_shape[0]);
         for (name, shape, expected) in [
             ("x", &x_shape, vec![frames, vertices, 3]),
@@ -374,7 +384,7 @@ impl Trajectory {
         for (quantity, kept) in Quantity::ALL.into_iter().zip(&mut data) {
             let frame = quantity.shape(vertices as usize, rods as usize);
             let expected = [&[frames], &frame[..]].concat();
-            let found = get_if_there::<f64>(&mut npz, path, quantity.name(), expected.len())?;
+            let found = npz.get_if_there::<f64>(quantity.name(), expected.len())?;
             let Some((shape, values)) = found else {
                 continue;
             };
@@ -410,82 +420,6 @@ impl Trajectory {
             data,
         })
     }
-}
-
-fn put<W: io::Write + io::Seek, T: npyz::AutoSerialize>(
-    npz: &mut NpzWriter<W>,
-    name: &str,
-    shape: &[u64],
-    values: impl Iterator<Item = T>,
-) -> io::Result<()> {
-    // A fixed date (that of an empty entry, 1980), so that equal runs give equal files.
-    let options = FileOptions::default().last_modified_time(DateTime::default());
-    let mut writer = npz
-        .array(name, options)?
-        .default_dtype()
-        .shape(shape)
-        .begin_nd()?;
-    writer.extend(values)?;
-    writer.finish()
-}
-
-type Shaped<T> = (Vec<u64>, Vec<T>);
-
-fn get<T: npyz::Deserialize>(
-    npz: &mut NpzArchive<io::BufReader<File>>,
-    path: &Path,
-    name: &'static str,
-    dimensions: usize,
-) -> Result<Shaped<T>, TrajectoryError> {
-    let found = get_if_there(npz, path, name, dimensions)?;
-    found.ok_or_else(|| TrajectoryError::Array {
-        path: path.to_owned(),
-        array: name,
-        problem: "it is missing".to_owned(),
-    })
-}
-
-fn get_if_there<T: npyz::Deserialize>(
-    npz: &mut NpzArchive<io::BufReader<File>>,
-    path: &Path,
-    name: &'static str,
-    dimensions: usize,
-) -> Result<Option<Shaped<T>>, TrajectoryError> {
-    let error = |problem: String| TrajectoryError::Array {
-        path: path.to_owned(),
-        array: name,
-        problem,
-    };
-    let Some(npy) = npz.by_name(name).map_err(|e| error(e.to_string()))? else {
-        return Ok(None);
-    };
-    let shape = npy.shape().to_vec();
-    if shape.len() != dimensions {
-        return Err(error(format!(
-            "it has {} dimensions, {dimensions} expected",
-            shape.len()
-        )));
-    }
-    if npy.header().order() != npyz::Order::C {
-        return Err(error(
-            "it is stored by columns; save it with numpy.ascontiguousarray".to_owned(),
-        ));
-    }
-    let expected = shape.iter().try_fold(1u64, |n, &k| n.checked_mul(k));
-    let expected = expected.ok_or_else(|| error(format!("its shape {shape:?} is impossible")))?;
-    let values = npy
-        .try_data::<T>()
-        .map_err(|npy| error(format!("its type is {:?}", npy.dtype().descr())))?;
-    let values: Vec<T> = values
-        .collect::<Result<_, _>>()
-        .map_err(|e| error(e.to_string()))?;
-    if values.len() as u64 != expected {
-        return Err(error(format!(
-            "it holds {} values, {expected} expected",
-            values.len()
-        )));
-    }
-    Ok(Some((shape, values)))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What can be wrong with a mesh or a series that is to be written.
 
-use crate::format::WriteError;
+use crate::format::{TrajectoryError, WriteError};
+use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, TopologyError, VertexId};
 use thiserror::Error;
 
@@ -49,7 +50,7 @@ pub enum ExportError {
         b: VertexId,
     },
     /// A rest length is not positive.
-    #[error("the edge between {a} and {b} has the rest length {length} m")]
+    #[error("the edge between {a} and {b} has the rest length {length} m", length = brief(*length))]
     RestLength {
         /// One end.
         a: VertexId,
@@ -69,7 +70,7 @@ pub enum ExportError {
         expected: usize,
     },
     /// A value of a field is NaN or infinite.
-    #[error("value {index} of the field {name:?} is {value}")]
+    #[error("value {index} of the field {name:?} is {value}", value = given(*value))]
     FieldNotFinite {
         /// The field.
         name: String,
@@ -85,7 +86,10 @@ pub enum ExportError {
         name: String,
     },
     /// A coordinate is not finite.
-    #[error("coordinate {} of {vertex} is {value}, and the file was not written", ["x", "y", "z"][*axis])]
+    #[error(
+        "coordinate {} of {vertex} is {value}, and the file was not written", ["x", "y", "z"][*axis],
+        value = given(*value)
+    )]
     NotFinite {
         /// The vertex.
         vertex: VertexId,
@@ -95,7 +99,10 @@ pub enum ExportError {
         value: f64,
     },
     /// A coordinate is too large for the 32-bit floats of the format.
-    #[error("coordinate {} of {vertex} is {value}, too large for the 32-bit floats of this format", ["x", "y", "z"][*axis])]
+    #[error(
+        "coordinate {} of {vertex} is {value}, too large for the 32-bit floats of this format", ["x", "y", "z"][*axis],
+        value = given(*value)
+    )]
     SinglePrecision {
         /// The vertex.
         vertex: VertexId,
@@ -127,6 +134,9 @@ pub enum ExportError {
     /// The file could not be written.
     #[error(transparent)]
     File(#[from] WriteError),
+    /// The frames could not be written as a trajectory.
+    #[error(transparent)]
+    Trajectory(#[from] TrajectoryError),
 }
 
 impl Advice for ExportError {
@@ -147,6 +157,7 @@ impl Advice for ExportError {
             Self::IndexOutOfRange { .. } => Some("correct the mesh"),
             Self::TooLarge { .. } => Some("write fewer frames, or use another format"),
             Self::File(error) => error.advice(),
+            Self::Trajectory(error) => error.advice(),
             Self::MissingEdge { .. } | Self::Count { .. } => None,
         }
     }

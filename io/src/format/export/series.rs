@@ -1,8 +1,8 @@
 //! Frames of a moving sheet that are to be written.
 
 use super::ExportError;
-use crate::format::Trajectory;
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
+use crate::format::{Trajectory, TrajectoryError};
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{EdgeId, Topology, VertexId, fold_angle};
 
@@ -168,6 +168,11 @@ impl<'a> Series<'a> {
         }
         self.fields.push(field);
         Ok(self)
+    }
+
+    /// The frames that are written as a trajectory of their own.
+    pub(super) fn chosen(&self) -> Result<Trajectory, TrajectoryError> {
+        self.trajectory.subset(&self.frames)
     }
 
     /// The frames of the trajectory that are written.

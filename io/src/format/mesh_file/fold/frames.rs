@@ -9,6 +9,11 @@ use std::fmt;
 /// A frame of a FOLD file: its number, from 0, or its title in quotes. Frame 0 is the key frame, whose keys
 /// are those of the file itself; frame 1 is the first entry of `file_frames`. A title is the `frame_title` of
 /// one frame.
+///
+/// ```toml
+/// [sheet.mesh]
+/// file = { path = "crane.fold", frame = "flat pattern" }
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "scene", derive(schemars::JsonSchema))]
 #[serde(
