@@ -6,11 +6,12 @@
 //! |---|---|
 //! | `scene.toml` | the scene as it is run, edits included; mesh files are copied to `meshes/` |
 //! | `history.csv` | one row for each step ([`HistoryRow`](crate::HistoryRow)) |
-//! | `trajectory.npz` | the frames ([`Trajectory`](crate::Trajectory)), at the end |
+//! | `trajectory.npz` | the frames ([`Trajectory`](crate::Trajectory)), when the run ends, fails or is stopped |
 //! | `obj/` | the frames as OBJ files, at the end, if the scene asks for them |
 //! | `index.html` | the 3D page of the run ([`view`](crate::view)), unless the scene says `page = false` |
 //! | `summary.json` | what came of it ([`Summary`]), last: a folder that has it is complete |
-//! | `frames.bin`, `checkpoint.bin` | what is needed to go on; the trajectory replaces the frames |
+//! | `frames.bin` | the frames with checksums, from which a lost trajectory is written again |
+//! | `checkpoint.bin` | what is needed to go on |
 //! | `run.lock` | locked while a process works in the folder |
 //!
 //! A folder with a complete run of the same scene is left as it is. One with a part of it is continued, and
@@ -57,7 +58,7 @@ use checkpoint::Progress;
 use folder::{Contents, Material, RunFolder};
 use frames::{FrameFile, FrameShape, read_frames};
 use page::write_page_of;
-use recording::{open_scene, trajectory_of};
+use recording::{open_scene, read_trajectory};
 use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -152,7 +153,13 @@ pub fn simulate(
     let setup = file.build()?;
     let modelled = setup.modelled.clone();
     let (open, saved) = match RunFolder::open(folder, &material)? {
-        Contents::Complete => return already_complete(folder, material.hash),
+        Contents::Complete(open) => {
+            let lost = !open.path(RunFolder::TRAJECTORY).is_file();
+            if file.scene().output.trajectory && lost {
+                write_trajectory(&open, &setup.sheet, FrameShape::of(&setup))?;
+            }
+            return already_complete(folder, material.hash);
+        }
         Contents::Empty(open) => (open, None),
         Contents::Partial(open) => {
             let saved = checkpoint::read(&open.path(RunFolder::CHECKPOINT))?;
@@ -178,7 +185,20 @@ pub fn simulate(
         modelled: facts.modelled.clone(),
         vertices: facts.sheet.topology().vertex_count(),
     });
-    let interval = file.scene().output.checkpoint_interval;
+    let advanced = advance(&mut stepping, watch);
+    if file.scene().output.trajectory {
+        let written = write_trajectory(&open, &facts.sheet, facts.frame);
+        // The failure of the run is what has to be said.
+        advanced.and(written)?;
+    } else {
+        advanced?;
+    }
+    finish(file, &open, &facts, &stepping.progress)
+}
+
+/// Takes steps until the run ends or the watcher asks for a stop.
+fn advance(stepping: &mut Stepping<'_>, watch: &mut dyn Watch) -> Result<(), RunError> {
+    let interval = stepping.file.scene().output.checkpoint_interval;
     // More seconds than a duration can hold are as good as never.
     let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
     while stepping.progress.ending.is_none() {
@@ -188,11 +208,21 @@ pub fn simulate(
         if due || go_on.is_break() || stepping.progress.ending.is_some() {
             stepping.save()?;
         }
-        if go_on.is_break() && stepping.progress.ending.is_none() {
-            return Ok(Outcome::Interrupted);
+        if go_on.is_break() {
+            break;
         }
     }
-    finish(file, &open, &facts, &stepping.progress)
+    Ok(())
+}
+
+/// Writes the frames of a run as a trajectory.
+fn write_trajectory(
+    folder: &RunFolder,
+    sheet: &isosheet_mesh::Sheet,
+    shape: FrameShape,
+) -> Result<(), RunError> {
+    let trajectory = read_trajectory(&folder.path(RunFolder::FRAMES), sheet, shape)?;
+    Ok(trajectory.write(&folder.path(RunFolder::TRAJECTORY))?)
 }
 
 /// Continues the run in a folder, with the scene that is stored there.
@@ -275,12 +305,11 @@ fn resume<'a>(
     clock: Instant,
 ) -> Result<Stepping<'a>, RunError> {
     let (origins, folding) = (setup.origins.clone(), setup.folding.clone());
-    let path = folder.path(RunFolder::FRAMES);
-    let frames = FrameFile::resume(&path, progress.frames, FrameShape::of(&setup));
-    let frames = frames.map_err(|e| RunError::Damaged {
-        path,
-        problem: e.to_string(),
-    })?;
+    let frames = FrameFile::resume(
+        &folder.path(RunFolder::FRAMES),
+        progress.frames,
+        FrameShape::of(&setup),
+    )?;
     let simulation = setup.resume(checkpoint)?;
     let count = file.scene().support.len();
     Ok(Stepping {
@@ -297,7 +326,7 @@ fn resume<'a>(
     })
 }
 
-/// Writes the files that only a complete run has, the summary last.
+/// Writes the files that only a complete run has, the summary last. A run that has not ended was stopped.
 fn finish(
     file: &SceneFile,
     folder: &RunFolder,
@@ -309,20 +338,10 @@ fn finish(
     };
     let clock = Instant::now();
     let topology = facts.sheet.topology();
-    let path = folder.path(RunFolder::FRAMES);
-    let frames = read_frames(&path, facts.frame);
-    let frames = frames.map_err(|source| RunError::Read {
-        path: path.clone(),
-        source,
-    })?;
     let output = &file.scene().output;
-    if output.trajectory {
-        let trajectory = trajectory_of(&facts.sheet, &frames)?;
-        trajectory.write(&folder.path(RunFolder::TRAJECTORY))?;
-    }
     if output.obj {
-        let obj = folder.path(RunFolder::OBJ);
-        for (k, frame) in frames.iter().enumerate() {
+        let (path, obj) = (folder.path(RunFolder::FRAMES), folder.path(RunFolder::OBJ));
+        for (k, frame) in read_frames(&path, facts.frame)?.iter().enumerate() {
             write_obj(&frame_path(&obj, k), topology, &frame.x)?;
         }
     }
@@ -349,10 +368,6 @@ fn finish(
         write_page_before(folder, &summary)?;
     }
     write_json(&folder.path(RunFolder::SUMMARY), &summary)?;
-    if output.trajectory {
-        // The run is complete; a frame file that stays does no harm.
-        let _ = std::fs::remove_file(path);
-    }
     Ok(Outcome::Complete(Box::new(summary)))
 }
 

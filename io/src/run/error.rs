@@ -74,6 +74,20 @@ pub enum RunError {
         /// What is wrong.
         problem: String,
     },
+    /// A frame of the run is damaged.
+    #[error("{}: frame {frame} is damaged, its checksum is wrong", path.display())]
+    DamagedFrame {
+        /// The file.
+        path: PathBuf,
+        /// The number of the frame, from 0.
+        frame: u64,
+    },
+    /// The file with the frames of the run is gone.
+    #[error("{} is missing, which has the frames of the run", path.display())]
+    NoFrames {
+        /// The file.
+        path: PathBuf,
+    },
     /// The run was begun by another version of the program, which does not compute the same bits.
     #[error(
         "the run in {} was begun by version {begun} of the program, this is {}", folder.display(), env!("CARGO_PKG_VERSION")
@@ -125,7 +139,13 @@ impl Advice for RunError {
                 "check the permissions and the free space, or choose another folder with --out",
             ),
             Self::NoRun { .. } => Some("name the folder that `isosheet simulate` wrote"),
-            Self::Damaged { .. } => Some("delete the folder and run the scene again"),
+            Self::Damaged { .. } | Self::NoFrames { .. } => {
+                Some("delete the folder and run the scene again")
+            }
+            Self::DamagedFrame { .. } => Some(
+                "give the `simulate` command again, which takes up a run that is not complete at its last \
+                 checkpoint; if it names the same frame, delete the folder and run the scene again",
+            ),
             Self::OtherVersion { .. } => {
                 Some("continue it with that version, or run the scene in another folder with --out")
             }

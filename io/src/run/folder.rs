@@ -89,7 +89,7 @@ fn hash(scene: &Scene, meshes: &[(PathBuf, Vec<u8>)]) -> SceneHash {
 /// What is in a folder at the start.
 pub(crate) enum Contents {
     /// A complete run of the same scene.
-    Complete,
+    Complete(RunFolder),
     /// Nothing that could be continued.
     Empty(RunFolder),
     /// A checkpoint of the same scene.
@@ -120,14 +120,15 @@ impl RunFolder {
         root.join(Self::SCENE).is_file() && root.join(LOCK).is_file()
     }
 
-    /// Whether the folder holds a complete run of the scene. A complete run is not touched: its folder may be
-    /// read-only.
+    /// Whether the folder holds a complete run of the scene with all its files. Such a run is not touched: its
+    /// folder may be read-only.
     pub(crate) fn is_complete(root: &Path, material: &Material<'_>) -> Result<bool, RunError> {
         let complete = root.join(Self::SUMMARY).is_file() && root.join(LOCK).is_file();
         if complete {
             check_scene(root, material)?;
         }
-        Ok(complete)
+        let trajectory = &material.file.scene().output.trajectory;
+        Ok(complete && (!trajectory || root.join(Self::TRAJECTORY).is_file()))
     }
 
     /// Creates the folder when missing, locks it and says what is in it.
@@ -164,7 +165,7 @@ impl RunFolder {
         }
         // Another process may have completed the run before the lock was free.
         if root.join(Self::SUMMARY).is_file() {
-            return Ok(Contents::Complete);
+            return Ok(Contents::Complete(folder));
         }
         if root.join(Self::CHECKPOINT).is_file() {
             return Ok(Contents::Partial(folder));

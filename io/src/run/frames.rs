@@ -1,14 +1,23 @@
-//! The frames of a run while it goes on: one file that grows.
+//! The frames of a run: one file that grows while it goes on.
 
+use super::RunError;
 use crate::format::{FrameData, WriteError};
 use crate::scene::Setup;
+use crc::{CRC_64_XZ, Crc};
 use std::fs::File;
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// A file of frames of equal length: time (seconds), positions (`3V`, metres) and, of runs that have them,
-/// the forces of the rods (newtons, tension positive), the forces of contact (`3V`, newtons) and the gaps of
-/// the vertices (metres), little-endian `f64`.
+/// First bytes of the file; the last two are the version of the format.
+const MAGIC: &[u8; 8] = b"isofrm01";
+
+/// Sum over a frame.
+const SUM: Crc<u64> = Crc::<u64>::new(&CRC_64_XZ);
+
+/// A file of frames of equal length: after the eight bytes `isofrm01`, for each frame time (seconds),
+/// positions (`3V`, metres) and, of runs that have them, the forces of the rods (newtons, tension positive),
+/// the forces of contact (`3V`, newtons) and the gaps of the vertices (metres), as little-endian `f64`, and
+/// the CRC-64 of these bytes.
 #[derive(Debug)]
 pub(crate) struct FrameFile {
     path: PathBuf,
@@ -65,15 +74,20 @@ impl FrameShape {
         }
     }
 
+    /// Length of a frame with its sum.
     fn bytes(self) -> usize {
-        8 * (1 + self.coordinates + self.rod_forces + 4 * self.gaps)
+        8 * (2 + self.coordinates + self.rod_forces + 4 * self.gaps)
     }
 }
 
 impl FrameFile {
     /// Starts a new file.
     pub(crate) fn create(path: &Path) -> Result<Self, WriteError> {
-        let file = File::create(path).map_err(|source| WriteError::Write {
+        let begun = File::create(path).and_then(|mut file| {
+            file.write_all(MAGIC)?;
+            Ok(file)
+        });
+        let file = begun.map_err(|source| WriteError::Write {
             path: path.to_owned(),
             source,
         })?;
@@ -88,17 +102,28 @@ impl FrameFile {
     /// Continues a file after its first `count` frames; what follows them is cut off.
     ///
     /// # Errors
-    /// [`io::Error`] if the file cannot be opened or has fewer frames.
-    pub(crate) fn resume(path: &Path, count: u64, shape: FrameShape) -> io::Result<Self> {
-        let mut file = File::options().write(true).open(path)?;
-        let length = count * shape.bytes() as u64;
-        let found = file.metadata()?.len();
-        if found < length {
-            let problem = format!("it has {found} bytes, {length} were written");
-            return Err(io::Error::other(problem));
+    /// [`RunError`] if the file cannot be opened, has fewer frames, or one of them is damaged.
+    pub(crate) fn resume(path: &Path, count: u64, shape: FrameShape) -> Result<Self, RunError> {
+        let mut frames = Frames::open(path, shape)?;
+        for k in 0..count {
+            if frames.next_record()?.is_none() {
+                return Err(RunError::Damaged {
+                    path: path.to_owned(),
+                    problem: format!("it ends after frame {k}, {count} were written"),
+                });
+            }
         }
-        file.set_len(length)?;
-        file.seek(SeekFrom::End(0))?;
+        let length = MAGIC.len() as u64 + count * shape.bytes() as u64;
+        let opened = File::options().write(true).open(path);
+        let continued = opened.and_then(|mut file| {
+            file.set_len(length)?;
+            file.seek(SeekFrom::End(0))?;
+            Ok(file)
+        });
+        let file = continued.map_err(|source| WriteError::Write {
+            path: path.to_owned(),
+            source,
+        })?;
         Ok(Self {
             path: path.to_owned(),
             file,
@@ -125,6 +150,8 @@ impl FrameFile {
             let bytes = numbers.iter().flat_map(|c| c.to_le_bytes());
             self.record.extend(bytes);
         }
+        let sum = SUM.checksum(&self.record);
+        self.record.extend(sum.to_le_bytes());
         let written = self.file.write_all(&self.record);
         written.map_err(|source| self.failed(source))?;
         self.count += 1;
@@ -144,30 +171,112 @@ impl FrameFile {
     }
 }
 
-/// Reads all whole frames.
-pub(crate) fn read_frames(path: &Path, shape: FrameShape) -> io::Result<Vec<Frame>> {
-    let bytes = std::fs::read(path)?;
-    let frame = |record: &[u8]| {
-        let mut numbers = record
-            .as_chunks::<8>()
-            .0
-            .iter()
-            .map(|b| f64::from_le_bytes(*b));
-        Frame {
+/// The frames of a file, one after the other.
+struct Frames<'a> {
+    path: &'a Path,
+    shape: FrameShape,
+    file: BufReader<File>,
+    /// How many were read.
+    count: u64,
+    record: Vec<u8>,
+}
+
+impl<'a> Frames<'a> {
+    fn open(path: &'a Path, shape: FrameShape) -> Result<Self, RunError> {
+        let read = |source: io::Error| match source.kind() {
+            ErrorKind::NotFound => RunError::NoFrames {
+                path: path.to_owned(),
+            },
+            _ => RunError::Read {
+                path: path.to_owned(),
+                source,
+            },
+        };
+        let mut file = BufReader::new(File::open(path).map_err(read)?);
+        let mut magic = [0; MAGIC.len()];
+        let found = read_whole(&mut file, &mut magic).map_err(read)?;
+        if !found || magic != *MAGIC {
+            return Err(RunError::Damaged {
+                path: path.to_owned(),
+                problem: "it is not a file of frames of this version".to_owned(),
+            });
+        }
+        Ok(Self {
+            path,
+            shape,
+            file,
+            count: 0,
+            record: vec![0; shape.bytes()],
+        })
+    }
+
+    /// The numbers of the next frame as bytes; none at the end of the file, where the last frame may be a part
+    /// of one.
+    fn next_record(&mut self) -> Result<Option<&[u8]>, RunError> {
+        let path = || self.path.to_owned();
+        let found = read_whole(&mut self.file, &mut self.record);
+        if !found.map_err(|source| RunError::Read {
+            path: path(),
+            source,
+        })? {
+            return Ok(None);
+        }
+        let frame = self.count;
+        self.count += 1;
+        match self.record.split_last_chunk::<8>() {
+            Some((numbers, sum)) if SUM.checksum(numbers).to_le_bytes() == *sum => {
+                Ok(Some(numbers))
+            }
+            _ => Err(RunError::DamagedFrame {
+                path: path(),
+                frame,
+            }),
+        }
+    }
+
+    fn next_frame(&mut self) -> Result<Option<Frame>, RunError> {
+        let shape = self.shape;
+        let Some(record) = self.next_record()? else {
+            return Ok(None);
+        };
+        let numbers = record.as_chunks::<8>().0.iter();
+        let mut numbers = numbers.map(|bytes| f64::from_le_bytes(*bytes));
+        Ok(Some(Frame {
             t: numbers.next().unwrap_or_default(),
             x: numbers.by_ref().take(shape.coordinates).collect(),
             rod_forces: numbers.by_ref().take(shape.rod_forces).collect(),
             contact_forces: numbers.by_ref().take(3 * shape.gaps).collect(),
             gaps: numbers.collect(),
-        }
-    };
-    let records = bytes.chunks_exact(shape.bytes());
-    Ok(records.map(frame).collect())
+        }))
+    }
+}
+
+/// Fills a buffer; false where the file ends before.
+fn read_whole(file: &mut impl Read, buffer: &mut [u8]) -> io::Result<bool> {
+    match file.read_exact(buffer) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// Reads all whole frames.
+///
+/// # Errors
+/// [`RunError`] if the file cannot be read or a frame is damaged.
+pub(crate) fn read_frames(path: &Path, shape: FrameShape) -> Result<Vec<Frame>, RunError> {
+    let mut frames = Frames::open(path, shape)?;
+    let mut all = Vec::new();
+    while let Some(frame) = frames.next_frame()? {
+        all.push(frame);
+    }
+    Ok(all)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use isosheet_mesh::Advice;
 
     #[test]
     fn frames_come_back_and_continue_where_they_are_told() {
@@ -207,5 +316,47 @@ mod tests {
         assert_eq!(resumed.count(), 3);
         assert_eq!(read_frames(&path, shape).unwrap(), frames[..3]);
         assert!(FrameFile::resume(&path, 4, shape).is_err());
+    }
+
+    #[test]
+    fn every_damaged_byte_is_noticed() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("frames.bin");
+        let shape = FrameShape {
+            coordinates: 3,
+            rod_forces: 0,
+            gaps: 0,
+        };
+        let mut file = FrameFile::create(&path).unwrap();
+        for k in 0..3 {
+            file.append(f64::from(k), &[1.0, 2.0, 3.0], &FrameData::default())
+                .unwrap();
+        }
+        let whole = std::fs::read(&path).unwrap();
+        assert_eq!(whole.len(), MAGIC.len() + 3 * shape.bytes());
+        for at in 0..whole.len() {
+            let mut damaged = whole.clone();
+            damaged[at] ^= 0x10;
+            std::fs::write(&path, &damaged).unwrap();
+            let error = read_frames(&path, shape).unwrap_err();
+            let of_frame = at.checked_sub(MAGIC.len()).map(|at| at / shape.bytes());
+            match (of_frame, &error) {
+                (None, RunError::Damaged { .. }) => {}
+                (Some(at), RunError::DamagedFrame { frame, .. }) => assert_eq!(*frame, at as u64),
+                _ => panic!("byte {at}: {error}"),
+            }
+            assert!(error.advice().is_some());
+            // What follows the frames that a run continues after does not count.
+            let resumed = FrameFile::resume(&path, 1, shape);
+            assert_eq!(
+                resumed.is_ok(),
+                of_frame.is_some_and(|k| k >= 1),
+                "byte {at}"
+            );
+        }
+        // As versions without sums wrote it.
+        std::fs::write(&path, &whole[MAGIC.len()..]).unwrap();
+        let error = read_frames(&path, shape).unwrap_err();
+        assert!(error.to_string().contains("of this version"), "{error}");
     }
 }

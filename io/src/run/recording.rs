@@ -1,7 +1,7 @@
 //! What a run recorded, complete or not.
 
 use super::folder::RunFolder;
-use super::frames::{Frame, FrameShape, read_frames};
+use super::frames::{FrameShape, read_frames};
 use super::{RunError, Summary};
 use crate::format::{HistoryRow, Trajectory, read_history, read_json};
 use crate::scene::SceneFile;
@@ -36,25 +36,27 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Reads the folder of a run. That of a run that goes on, or that was interrupted, has the frames up to
-    /// now.
+    /// Reads the folder of a run. That of a run that goes on, that failed or was interrupted has the frames up
+    /// to now.
     ///
     /// # Errors
     /// [`RunError::NoRun`] if the folder is not that of a run, [`RunError`] if a file cannot be read.
     pub fn read(folder: &Path) -> Result<Self, RunError> {
         let scene = open_scene(folder)?;
         let setup = scene.build()?;
-        let complete = folder.join(RunFolder::TRAJECTORY);
-        let trajectory = if complete.is_file() {
-            Trajectory::read(&complete)?
-        } else {
-            let path = folder.join(RunFolder::FRAMES);
-            let frames = read_frames(&path, FrameShape::of(&setup));
-            let frames = frames.map_err(|source| RunError::Read { path, source })?;
-            trajectory_of(&setup.sheet, &frames)?
-        };
         let summary = folder.join(RunFolder::SUMMARY);
         let summary = summary.is_file().then(|| read_json(&summary)).transpose()?;
+        let whole = folder.join(RunFolder::TRAJECTORY);
+        // The trajectory of a run that goes on is that of its last stop.
+        let trajectory = if summary.is_some() && whole.is_file() {
+            Trajectory::read(&whole)?
+        } else {
+            read_trajectory(
+                &folder.join(RunFolder::FRAMES),
+                &setup.sheet,
+                FrameShape::of(&setup),
+            )?
+        };
         Ok(Self {
             name: name_of(folder),
             immobile: setup.model.immobile_vertices(&setup.start.x),
@@ -94,10 +96,14 @@ pub(crate) fn open_scene(folder: &Path) -> Result<SceneFile, RunError> {
     Ok(SceneFile::read(&path, &[])?)
 }
 
-/// The trajectory of some frames.
-pub(crate) fn trajectory_of(sheet: &Sheet, frames: &[Frame]) -> Result<Trajectory, RunError> {
+/// The trajectory of the frames in a file.
+pub(crate) fn read_trajectory(
+    path: &Path,
+    sheet: &Sheet,
+    shape: FrameShape,
+) -> Result<Trajectory, RunError> {
     let mut trajectory = Trajectory::new(sheet);
-    for frame in frames {
+    for frame in read_frames(path, shape)? {
         trajectory.push_with(frame.t, &frame.x, &frame.data())?;
     }
     Ok(trajectory)

@@ -1,9 +1,9 @@
 //! Runs that are stopped and continued.
 
 use crate::{assert_same, code, killed, run, started, stderr, with_scene};
-use isosheet_io::read_history;
 use isosheet_io::run::Recording;
 use isosheet_io::scene::StartingPoint;
+use isosheet_io::{Trajectory, read_history};
 #[cfg(unix)]
 use std::process::Command;
 
@@ -101,6 +101,8 @@ fn ctrl_c_writes_a_checkpoint_and_the_same_command_continues() {
     assert!(rows > 100);
     // One row and one frame are those of the start; a frame is taken after every 17th step.
     assert_eq!(partial.trajectory.len(), 1 + (rows - 1) / 17);
+    let written = Trajectory::read(&dir.join("stopped/trajectory.npz")).unwrap();
+    assert_eq!(written, partial.trajectory);
     let done = run(dir, &["resume", "stopped", "--threads", "2"]);
     assert_eq!(code(&done), Some(0), "{}", stderr(&done));
     assert_same(&dir.join("whole"), &dir.join("stopped"));

@@ -41,12 +41,12 @@ fn mesh_files_are_converted() {
     let said = done(dir, &["convert", "a.off", "b.ply"]);
     assert_eq!(
         said,
-        "b.ply: 5 vertices and 3 faces, 1 polygons cut into triangles\n"
+        "b.ply: 5 vertices and 3 faces, 1 polygon cut into triangles\n"
     );
     let read = |name: &str| read_mesh(&dir.join(name)).unwrap();
     assert_eq!(read("b.ply").positions, read("a.off").positions);
     let said = done(dir, &["convert", "b.ply", "c.fold", "--weld", "0.002"]);
-    assert_eq!(said, "c.fold: 4 vertices and 3 faces, 1 vertices welded\n");
+    assert_eq!(said, "c.fold: 4 vertices and 3 faces, 1 vertex welded\n");
     for (from, to) in [("c.fold", "d.stl"), ("d.stl", "e.glb"), ("e.glb", "F.OBJ")] {
         done(dir, &["convert", from, to]);
         assert_eq!(read(to).faces.len(), 3, "{to}");

@@ -30,6 +30,7 @@ Files that are written of a run:
   .pvd    VTK, one .vtp for each frame in a folder, with strain, fold angle, forces and gaps (ParaView)
   .obj    one file for each frame in a folder of that name
   .csv    a line for each vertex of each frame, with force of contact and gap
+  .npz    a numpy archive of all frames, as trajectory.npz of the run
   .png    a shaded picture of one frame (--frame K, the last one without it)
   .svg    the same as a vector drawing
   .apng   shaded pictures of all frames as an animation in real time (browsers)
@@ -109,6 +110,8 @@ impl Convert {
             format!("{} is the {what} that is read", output.display())
         } else if is_run && is_same_file(&input.join("history.csv"), output) {
             format!("{} is the history of the run", output.display())
+        } else if is_run && is_same_file(&input.join("trajectory.npz"), output) {
+            format!("{} is the trajectory of the run", output.display())
         } else if is_run
             && self.is_folder_written()
             && is_same_file(input, &output.with_extension(""))
@@ -211,24 +214,31 @@ impl Convert {
         })?;
         let changes = mesh.changes;
         let notes = [
-            (mesh.polygons, "polygons cut into triangles"),
-            (changes.welded_vertices, "vertices welded"),
-            (changes.collapsed_faces, "faces without area removed"),
-            (changes.reversed_faces, "clockwise faces reversed"),
-            (changes.vertices_at_cuts, "vertices added at cuts"),
+            (mesh.polygons, ["polygon", "polygons"], "cut into triangles"),
+            (changes.welded_vertices, VERTICES, "welded"),
+            (changes.collapsed_faces, FACES, "without area removed"),
+            (
+                changes.reversed_faces,
+                FACES,
+                "reversed, which were clockwise",
+            ),
+            (changes.vertices_at_cuts, VERTICES, "added at cuts"),
         ];
-        let notes = notes.iter().filter(|(count, _)| *count > 0);
+        let notes = notes.iter().filter(|(count, ..)| *count > 0);
         let notes: String = notes
-            .map(|(count, what)| format!(", {count} {what}"))
+            .map(|(count, [one, more], what)| format!(", {} {what}", counted(*count, one, more)))
             .collect();
         to_stdout(&format!(
-            "{}: {} vertices and {} faces{notes}\n",
+            "{}: {} and {}{notes}\n",
             self.output.display(),
-            mesh.vertex_count(),
-            mesh.faces.len()
+            counted(mesh.vertex_count(), VERTICES[0], VERTICES[1]),
+            counted(mesh.faces.len(), FACES[0], FACES[1])
         ))
     }
 }
+
+const VERTICES: [&str; 2] = ["vertex", "vertices"];
+const FACES: [&str; 2] = ["face", "faces"];
 
 /// The file that was asked for.
 fn last(files: &[PathBuf]) -> &Path {

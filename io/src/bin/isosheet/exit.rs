@@ -153,6 +153,8 @@ impl From<RunError> for Failure {
             | RunError::SceneFile(_)
             | RunError::NoRun { .. }
             | RunError::Damaged { .. }
+            | RunError::DamagedFrame { .. }
+            | RunError::NoFrames { .. }
             | RunError::Page(_)
             | RunError::Read { .. } => Code::Input,
             _ => Code::Output,
