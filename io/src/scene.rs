@@ -37,6 +37,7 @@ mod error;
 mod folding;
 mod forces;
 mod form;
+mod key;
 mod mesh;
 mod method;
 mod obstacles;
@@ -56,6 +57,7 @@ mod stop;
 mod support_forces;
 mod supports;
 mod toml_problem;
+mod unit;
 
 pub use chart::{
     Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,
@@ -63,11 +65,12 @@ pub use chart::{
 };
 pub use contact::Contact;
 pub use creases::{Crease, CreaseEdges, PatternEdges};
-pub use edit::EditError;
+pub use edit::{EditError, EditProblem};
 pub use engine_problem::Origins;
 pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use forces::{Acceleration, Forces, Load};
+pub use key::{Key, KeyError, KeyPart};
 pub use mesh::{Diagonals, Mesh, MeshFile, PolygonFaces, UpAxis};
 pub use method::{Fallback, Integrator, Method, Taut};
 pub use obstacles::{Obstacle, Shape, Wall};
@@ -77,7 +80,7 @@ pub use pattern::{
     AlikeCreases, DegreeFour, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
 };
 pub use pose::{Motion, Pose, Rotation, Turn};
-pub use problem::{Key, KeyPart, Problem};
+pub use problem::Problem;
 pub use profile::{Change, Course, Interpolation, Profile};
 pub use reference::{reference_page, schema};
 pub use selection::Selection;

@@ -84,7 +84,7 @@ impl Stepping<'_> {
         let number = self.progress.steps + 1;
         let h = step_length(scene, number);
         let report = self.simulation.step(h).map_err(|error| {
-            let problem = SceneError::from(self.origins.of_step(&error));
+            let problem = SceneError::from(self.origins.of_failed_step(&error, &self.simulation));
             RunError::Step(problem.in_text(self.file.text()))
         })?;
         self.progress.steps = number;

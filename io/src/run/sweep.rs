@@ -25,7 +25,7 @@ pub(crate) use table::SweepTable;
 
 use super::folder::holds_other_files;
 use crate::format::write_atomically;
-use crate::scene::{SceneFile, SceneFileError};
+use crate::scene::{KeyPart, SceneFile, SceneFileError};
 use engine::shell_word;
 use std::fs;
 use std::io::{ErrorKind, Write};
@@ -77,13 +77,13 @@ impl Sweep {
         if variations.is_empty() {
             return Err(SweepError::NoKeys);
         }
-        let names: Vec<_> = variations.iter().map(Variation::names).collect();
-        for (j, second) in names.iter().enumerate() {
-            let contained = |first: &Vec<String>| {
+        let places: Vec<_> = variations.iter().map(|v| v.place().parts()).collect();
+        for (j, second) in places.iter().enumerate() {
+            let contained = |first: &&[KeyPart]| {
                 let common = first.len().min(second.len());
                 first[..common] == second[..common]
             };
-            if let Some(i) = names[..j].iter().position(contained) {
+            if let Some(i) = places[..j].iter().position(contained) {
                 return Err(SweepError::SameKey {
                     first: variations[i].key().to_owned(),
                     second: variations[j].key().to_owned(),

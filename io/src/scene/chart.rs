@@ -1,6 +1,8 @@
 //! Motion in a chart: Hamilton's equations in system coordinates.
 
-use super::problem::{Checks, Key};
+use super::key::Key;
+use super::problem::Checks;
+use super::unit::Unit;
 use isosheet_coords::assignment::Degenerate;
 use isosheet_coords::{
     AssignmentOptions, CartesianChart, ChartError, Choice, FrontChart, RodSystem,
@@ -14,6 +16,15 @@ use serde::{Deserialize, Serialize};
 
 /// How the motion is computed with `integrator = "chart"`. Neither of the charts exists in a flat state: a
 /// sheet that starts flat needs `sheet.start.perturbation`.
+///
+/// ```toml
+/// [sheet.start]
+/// perturbation = 0.1
+///
+/// [method]
+/// integrator = "chart"
+/// chart = { scheme = "runge_kutta4", substep = { fixed = 0.001 } }
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Chart {
@@ -101,6 +112,12 @@ pub enum ChartSolver {
 }
 
 /// The length of a part of a step. The last part ends with the step.
+///
+/// ```toml
+/// [method]
+/// integrator = "chart"
+/// chart = { substep = { adaptive = { tolerance = 1e-4, min = 1e-6, max = 0.001 } } }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Substep {
@@ -151,16 +168,16 @@ impl Chart {
             checks.report(key.name("substep"), message, remedy);
         }
         match self.substep {
-            Substep::Fixed(h) => checks.positive(key.name("substep.fixed"), h, "s"),
+            Substep::Fixed(h) => checks.positive(key.name("substep.fixed"), h, Unit::Second),
             Substep::Adaptive {
                 tolerance,
                 min,
                 max,
             } => {
                 let key = key.name("substep.adaptive");
-                checks.positive(key.name("tolerance"), tolerance, "J");
-                checks.positive(key.name("min"), min, "s");
-                checks.positive(key.name("max"), max, "s");
+                checks.positive(key.name("tolerance"), tolerance, Unit::Joule);
+                checks.positive(key.name("min"), min, Unit::Second);
+                checks.positive(key.name("max"), max, Unit::Second);
                 if min > max {
                     let message =
                         format!("the shortest part of {min} s is longer than the longest");

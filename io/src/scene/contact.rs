@@ -1,12 +1,21 @@
 //! Contact of the sheet with itself and with obstacles.
 
-use super::problem::{Checks, Key};
+use super::key::Key;
+use super::problem::Checks;
+use super::unit::Unit;
 use isosheet_collide::{ContactOptions, Stiffness};
 use isosheet_dynamics::SheetModel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Contact. Without obstacles and without self-contact nothing of it is modelled.
+///
+/// ```toml
+/// [contact]
+/// self_contact = true
+/// friction = 0.3
+/// activation = 0.001
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Contact {
@@ -25,11 +34,11 @@ pub struct Contact {
 
 impl Contact {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.not_negative(key.name("friction"), self.friction, "");
+        checks.not_negative(key.name("friction"), self.friction, Unit::One);
         let lengths = [
-            ("activation", self.activation, "m"),
-            ("stiffness", self.stiffness, "J"),
-            ("rest_speed", self.rest_speed, "m/s"),
+            ("activation", self.activation, Unit::Metre),
+            ("stiffness", self.stiffness, Unit::Joule),
+            ("rest_speed", self.rest_speed, Unit::MetrePerSecond),
         ];
         for (name, value, unit) in lengths {
             if let Some(value) = value {

@@ -1,9 +1,11 @@
 //! Creases with rest angles.
 
+use super::key::Key;
 use super::pattern::EdgeRoles;
-use super::problem::{Checks, Key, Problem};
+use super::problem::{Checks, Problem};
 use super::profile::Profile;
 use super::selection::size;
+use super::unit::Unit;
 use isosheet_dynamics::CreaseSpring;
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
@@ -11,6 +13,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Torsion springs along some edges, with the same rest angle, which may be driven.
+///
+/// ```toml
+/// [[crease]]
+/// at = { line = { from = [0, 0.1, 0], to = [0.2, 0.1, 0] } }
+/// stiffness = 0.01
+/// angle = { ramp = { to = 90, end = 1 } }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Crease {
@@ -25,6 +34,12 @@ pub struct Crease {
 }
 
 /// Which edges a crease consists of. Points are those of the rest shape before it is placed.
+///
+/// ```toml
+/// [[crease]]
+/// at = { line = { from = [0, 0.1, 0], to = [0.2, 0.1, 0] } }
+/// stiffness = 0.01
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum CreaseEdges {
@@ -63,16 +78,16 @@ const ON_LINE: f64 = 1e-6;
 
 impl Crease {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.not_negative(key.name("stiffness"), self.stiffness, "N");
-        self.angle.check(key.name("angle"), checks);
+        checks.not_negative(key.name("stiffness"), self.stiffness, Unit::Newton);
+        self.angle.check(key.name("angle"), Unit::Degree, checks);
         if let Profile::Constant(angle) = self.angle
             && angle.is_finite()
         {
             checks.within(key.name("angle"), angle, [-180.0, 180.0]);
         }
         if let CreaseEdges::Line { from, to } = &self.at {
-            checks.finite(key.name("at.line.from"), from);
-            checks.finite(key.name("at.line.to"), to);
+            checks.finite(key.name("at.line.from"), from, Unit::Metre);
+            checks.finite(key.name("at.line.to"), to, Unit::Metre);
             if from == to {
                 let message = "the line begins where it ends";
                 checks.report(key.name("at.line.to"), message, "give two different points");

@@ -1,35 +1,56 @@
 //! Edits of a scene by `key=value`.
 
+use super::key::{Key, KeyError, KeyPart};
 use isosheet_mesh::Advice;
 use thiserror::Error;
-use toml_edit::{DocumentMut, Item, Value};
+use toml_edit::{DocumentMut, Item, Table, Value};
 
 /// An edit that cannot be made.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum EditError {
-    /// There is no equals sign, or no key before it.
-    #[error("`{edit}` is not of the form key=value")]
-    Form {
-        /// The edit.
-        edit: String,
-    },
+#[error("`{edit}`: {problem}")]
+pub struct EditError {
+    /// The edit.
+    pub edit: String,
+    /// Why it cannot be made.
+    pub problem: EditProblem,
+}
+
+/// Why an edit cannot be made.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum EditProblem {
+    /// There is no equals sign.
+    #[error("it is not of the form key=value")]
+    Form,
+    /// What is before the equals sign is not a key.
+    #[error(transparent)]
+    Key(#[from] KeyError),
     /// A key on the way is a value that has no keys, or a list that has no such entry.
-    #[error("`{edit}`: the scene has no place `{place}`")]
+    #[error("the scene has no place `{place}`")]
     Place {
-        /// The edit.
-        edit: String,
         /// The key up to where it fails.
-        place: String,
+        place: Key,
+    },
+    /// An entry of a list of tables would become something else.
+    #[error("the entries of `{list}` are tables")]
+    NoTable {
+        /// The key of the list.
+        list: Key,
     },
 }
 
 impl Advice for EditError {
     fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::Form { .. } => Some("write for example `stop.time=0.5`"),
-            Self::Place { .. } => {
+        match &self.problem {
+            EditProblem::Form => Some("write for example `stop.time=0.5`"),
+            EditProblem::Key(error) => error.advice(),
+            EditProblem::Place { .. } => {
                 Some("count the entries of lists from 0, for example `obstacle[0].friction=0.3`")
             }
+            EditProblem::NoTable { .. } => Some(
+                "write all keys of the entry in braces, for example \
+                 `obstacle[0]={ shape = { sphere = { radius = 0.1 } } }`, or change one of its keys, \
+                 `obstacle[0].friction=0.3`",
+            ),
         }
     }
 }
@@ -38,36 +59,69 @@ impl Advice for EditError {
 /// names need no quotes.
 pub(crate) fn apply(document: &mut DocumentMut, edits: &[String]) -> Result<(), EditError> {
     for edit in edits {
-        let form = || EditError::Form { edit: edit.clone() };
-        let (key, value) = edit.split_once('=').ok_or_else(form)?;
-        // `list[1]` is read as `list.1`.
-        let key = key.trim().replace('[', ".").replace(']', "");
-        let names: Vec<&str> = key.split('.').collect();
-        if names.iter().any(|n| n.is_empty()) {
-            return Err(form());
-        }
-        let value = value.trim();
-        let value: Value = value.parse().unwrap_or_else(|_| Value::from(value));
-        let mut item: &mut Item = document.as_item_mut();
-        for (k, name) in names.iter().enumerate() {
-            item = descend(item, name).ok_or_else(|| EditError::Place {
-                edit: edit.clone(),
-                place: names[..=k].join("."),
-            })?;
-        }
-        *item = Item::Value(value);
+        make(document, edit).map_err(|problem| EditError {
+            edit: edit.clone(),
+            problem,
+        })?;
     }
     Ok(())
 }
 
-/// The item of a name or number in another one; keys of tables are made where they are missing.
-fn descend<'a>(item: &'a mut Item, name: &str) -> Option<&'a mut Item> {
-    match item {
-        Item::None => Some(&mut item[name]),
-        Item::Table(_) | Item::Value(Value::InlineTable(_)) => Some(&mut item[name]),
-        Item::ArrayOfTables(_) | Item::Value(Value::Array(_)) => {
-            item.get_mut(name.parse::<usize>().ok()?)
-        }
-        Item::Value(_) => None,
+fn make(document: &mut DocumentMut, edit: &str) -> Result<(), EditProblem> {
+    let (key, value) = edit.split_once('=').ok_or(EditProblem::Form)?;
+    let key: Key = key.trim().parse()?;
+    let value = value.trim();
+    let value: Value = value.parse().unwrap_or_else(|_| Value::from(value));
+    set(document.as_item_mut(), &key, value)
+}
+
+/// Sets the value at a key; tables on the way are made where they are missing.
+fn set(mut item: &mut Item, key: &Key, value: Value) -> Result<(), EditProblem> {
+    let mut place = Key::root();
+    for part in key.parts() {
+        let list = place.clone();
+        place = place.part(part);
+        let is_last = place == *key;
+        item = match (item, part) {
+            // An entry of a list of tables stays a table: the text has no place for another item there.
+            (Item::ArrayOfTables(tables), KeyPart::Entry(k)) if is_last => {
+                let table = tables.get_mut(*k).ok_or(EditProblem::Place { place })?;
+                let Value::InlineTable(new) = value else {
+                    return Err(EditProblem::NoTable { list });
+                };
+                replace(table, new.into_table());
+                return Ok(());
+            }
+            (item, part) => descend(item, part).ok_or_else(|| EditProblem::Place {
+                place: place.clone(),
+            })?,
+        };
+    }
+    *item = Item::Value(value);
+    Ok(())
+}
+
+/// Puts a table where another one is in the text, with the comments before it.
+fn replace(table: &mut Table, mut new: Table) {
+    *new.decor_mut() = table.decor().clone();
+    new.set_position(table.position());
+    *table = new;
+}
+
+/// The item at a part of a key in another one; keys of tables are made where they are missing.
+fn descend<'a>(item: &'a mut Item, part: &KeyPart) -> Option<&'a mut Item> {
+    match (item, part) {
+        (
+            item @ (Item::None | Item::Table(_) | Item::Value(Value::InlineTable(_))),
+            KeyPart::Name(name),
+        ) => Some(&mut item[name.as_str()]),
+        (
+            item @ (Item::ArrayOfTables(_) | Item::Value(Value::Array(_))),
+            KeyPart::Entry(number),
+        ) => item.get_mut(*number),
+        _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,9 +1,12 @@
 //! Errors of the engine as problems of the scene.
 
-use super::problem::{Key, Problem};
+use super::key::Key;
+use super::problem::Problem;
 use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
-use isosheet_dynamics::{Excess, SheetModel, SimulationError, StepError, Support};
+use isosheet_dynamics::{Excess, SheetModel, Simulation, SimulationError, StepError, Support};
 use isosheet_mesh::VertexId;
+use isosheet_mesh::wording::brief;
+use nalgebra::Vector3;
 use std::collections::HashMap;
 
 /// Which entry of the scene made what in the engine.
@@ -13,6 +16,15 @@ pub struct Origins {
     pub(crate) pins: HashMap<VertexId, usize>,
     /// The support of each vertex constraint.
     pub(crate) constraints: Vec<usize>,
+}
+
+/// Two supports that come closer to each other.
+struct Meeting {
+    supports: [usize; 2],
+    /// Metres.
+    distance: f64,
+    /// By how much the distance shrinks, m/s.
+    rate: f64,
 }
 
 impl Origins {
@@ -41,6 +53,66 @@ impl Origins {
         let number = self.support(support);
         let list = Key::root().name("support");
         number.map_or(list.clone(), |k| list.entry(k))
+    }
+
+    /// A step of a simulation that failed. Supports that leave the sheet no room are named.
+    pub fn of_failed_step(&self, error: &StepError, simulation: &Simulation) -> Problem {
+        let is_without_room = matches!(
+            error,
+            StepError::StepTooSmall { .. }
+                | StepError::Contact { .. }
+                | StepError::NotConverged { .. }
+        );
+        let meeting = is_without_room.then(|| self.meeting_supports(simulation));
+        let Some(Meeting {
+            supports,
+            distance,
+            rate,
+        }) = meeting.flatten()
+        else {
+            return self.of_step(error);
+        };
+        let list = Key::root().name("support");
+        let [first, second] = supports.map(|k| list.entry(k));
+        let message = format!(
+            "`{first}` and `{second}` are driven into each other: they are {} m apart, less than an edge of the sheet \
+             is long, and come closer by {} m/s; {error}",
+            brief(distance),
+            brief(rate)
+        );
+        let remedy = "shorten their motions, so that the sheet has room between them";
+        Problem::new(second.name("hold"), message, remedy)
+    }
+
+    /// Two supports whose pins come closer to each other and are less than the mean length of an edge apart:
+    /// rods make no narrower fold. Of several such pairs the one that is closest.
+    fn meeting_supports(&self, simulation: &Simulation) -> Option<Meeting> {
+        let state = simulation.state();
+        let [x, v] = [&state.x, &state.v].map(|a| a.as_chunks::<3>().0);
+        let vector = |of: &[[f64; 3]], [a, b]: [VertexId; 2]| {
+            Vector3::from(of[b.index()]) - Vector3::from(of[a.index()])
+        };
+        let edges = simulation.model().topology().edges();
+        let mean = edges.iter().map(|&e| vector(x, e).norm()).sum::<f64>() / edges.len() as f64;
+        let mut pins: Vec<_> = self.pins.iter().collect();
+        pins.sort();
+        let mut closest: Option<Meeting> = None;
+        for (k, &(&a, &first)) in pins.iter().enumerate() {
+            for &(&b, &second) in &pins[k + 1..] {
+                let apart = vector(x, [a, b]);
+                let distance = apart.norm();
+                let limit = closest.as_ref().map_or(mean, |c| c.distance);
+                let rate = -vector(v, [a, b]).dot(&apart) / distance;
+                if first != second && distance < limit && rate > 0.0 {
+                    closest = Some(Meeting {
+                        supports: [first.min(second), first.max(second)],
+                        distance,
+                        rate,
+                    });
+                }
+            }
+        }
+        closest
     }
 
     /// A step that failed, at the place of the scene that is to blame as far as that is known.
@@ -137,8 +209,9 @@ fn of_contact(error: &ContactError) -> Problem {
         } => Problem::new(
             root.name("obstacle").entry(*body),
             format!(
-                "the obstacle touches the sheet at vertex {vertex} at the start (gap {gap} m, thickness of the \
-                 sheet taken off)"
+                "the obstacle touches the sheet at vertex {vertex} at the start (gap {} m, thickness of the \
+                 sheet taken off)",
+                brief(*gap)
             ),
             "move the obstacle or the sheet (`sheet.placement`): contact keeps a gap, it does not make one",
         ),
@@ -149,8 +222,9 @@ fn of_contact(error: &ContactError) -> Problem {
         } => Problem::new(
             root.name("contact.self_contact"),
             format!(
-                "the sheet touches itself at the vertices {first} and {second} at the start (gap {gap} m, \
-                 thickness taken off)"
+                "the sheet touches itself at the vertices {first} and {second} at the start (gap {} m, \
+                 thickness taken off)",
+                brief(*gap)
             ),
             "open the sheet there, give it less `sheet.thickness`, or leave out self-contact",
         ),

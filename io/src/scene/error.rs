@@ -1,6 +1,7 @@
 //! Errors of a scene, shown at their place in its text.
 
-use super::problem::{Key, KeyPart, Problem};
+use super::key::{Key, KeyPart};
+use super::problem::Problem;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use isosheet_mesh::Advice;
 use serde::Serialize;

@@ -1,9 +1,11 @@
 //! Folding to the angles of a FOLD file.
 
 use super::Mesh;
+use super::key::Key;
 use super::mesh::MeshFile;
-use super::problem::{Checks, Key, Problem};
+use super::problem::{Checks, Problem};
 use super::profile::{Change, Course, Profile};
+use super::unit::Unit;
 use crate::format::{EdgeAssignment, FoldFrame};
 use isosheet_dynamics::{CreaseSpring, RestAngle};
 use isosheet_mesh::{EdgeId, Sheet, Topology, VertexId, fold_angle};
@@ -22,6 +24,12 @@ use std::path::Path;
 /// Mountains and valleys are driven to the angles that `edges_foldAngle` gives them; edges of the kinds `F`
 /// and `J` and the cuts of polygons stay flat; `U`, and `B` inside the sheet, are driven where their angle is
 /// not 0 and move freely elsewhere.
+///
+/// ```toml
+/// [folding]
+/// stiffness = 0.05
+/// time = 2
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Folding {
@@ -109,10 +117,10 @@ impl FoldTargets {
 
 impl Folding {
     pub(crate) fn check(&self, mesh: &Mesh, key: &Key, checks: &mut Checks) {
-        checks.positive(key.name("time"), self.time, "s");
-        checks.positive(key.name("stiffness"), self.stiffness, "N");
+        checks.positive(key.name("time"), self.time, Unit::Second);
+        checks.positive(key.name("stiffness"), self.stiffness, Unit::Newton);
         if let Some(stiffness) = self.flat_stiffness {
-            checks.positive(key.name("flat_stiffness"), stiffness, "N");
+            checks.positive(key.name("flat_stiffness"), stiffness, Unit::Newton);
         }
         checks.within(key.name("part"), self.part, [-1.0, 1.0]);
         if !matches!(mesh, Mesh::File(_)) {

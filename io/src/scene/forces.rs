@@ -1,16 +1,29 @@
 //! Forces on the sheet.
 
-use super::problem::{Checks, Key};
+use super::key::Key;
+use super::problem::Checks;
 use super::profile::Profile;
 use super::selection::Selection;
+use super::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Forces on the sheet besides those of supports and contact.
+///
+/// ```toml
+/// [forces]
+/// gravity = [0, 0, -9.81]
+///
+/// [[forces.load]]
+/// at = { vertices = [0] }
+/// direction = [1, 0, 0]
+/// size = 0.01
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Forces {
     /// Acceleration of gravity, m/s2: `[0, 0, -9.81]` on earth. Without it there is no gravity.
+    #[schemars(example = [0.0, 0.0, -9.81])]
     pub gravity: Option<[f64; 3]>,
     /// Loads on vertices.
     pub load: Vec<Load>,
@@ -19,6 +32,13 @@ pub struct Forces {
 }
 
 /// A load that some vertices share equally.
+///
+/// ```toml
+/// [[forces.load]]
+/// at = { vertices = [0, 1] }
+/// direction = [0, 0, 1]
+/// size = { ramp = { to = 0.05, end = 0.5 } }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
@@ -31,6 +51,12 @@ pub struct Load {
 }
 
 /// A uniform acceleration of the whole sheet.
+///
+/// ```toml
+/// [[forces.acceleration]]
+/// direction = [1, 0, 0]
+/// size = { sine = { amplitude = 3, frequency = 2 } }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Acceleration {
@@ -43,18 +69,20 @@ pub struct Acceleration {
 impl Forces {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         if let Some(gravity) = &self.gravity {
-            checks.finite(key.name("gravity"), gravity);
+            checks.finite(key.name("gravity"), gravity, Unit::MetrePerSquareSecond);
         }
         for (k, load) in self.load.iter().enumerate() {
             let key = key.name("load").entry(k);
             load.at.check(&key.name("at"), checks);
             checks.direction(key.name("direction"), &load.direction);
-            load.size.check(key.name("size"), checks);
+            load.size.check(key.name("size"), Unit::Newton, checks);
         }
         for (k, field) in self.acceleration.iter().enumerate() {
             let key = key.name("acceleration").entry(k);
             checks.direction(key.name("direction"), &field.direction);
-            field.size.check(key.name("size"), checks);
+            field
+                .size
+                .check(key.name("size"), Unit::MetrePerSquareSecond, checks);
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Where the mesh of a sheet comes from.
 
+use super::key::Key;
 use super::outline::Outline;
 use super::pattern::{
     DegreeFour, EdgeRoles, Hypar, Kresling, Miura, SquareTwist, Waterbomb, Yoshimura,
 };
-use super::problem::{Checks, Key, Problem};
+use super::problem::{Checks, Problem};
+use super::unit::Unit;
 use crate::format::{
     self, FoldFrame, FoldProblem, MeshFileError, MeshFileProblem, MeshOptions, Polygons,
     SeparateBuffers, read_mesh_with,
@@ -17,6 +19,11 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Where a mesh comes from. Generated ones are flat in the plane z = 0.
+///
+/// ```toml
+/// [sheet]
+/// mesh = { rectangle = { width = 0.297, height = 0.21, columns = 12, rows = 8, diagonals = "rising" } }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Mesh {
@@ -102,6 +109,11 @@ pub enum Mesh {
 }
 
 /// A mesh in a file.
+///
+/// ```toml
+/// [sheet]
+/// mesh = { file = { path = "crane.fold", scale = 0.001, frame = 0 } }
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshFile {
@@ -173,7 +185,7 @@ impl MeshFile {
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.positive(key.name("scale"), self.scale, "m");
+        checks.positive(key.name("scale"), self.scale, Unit::Metre);
         if self.path.as_os_str().is_empty() {
             checks.report(key.name("path"), "the path is empty", "name a mesh file");
         }
@@ -259,7 +271,8 @@ impl Mesh {
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         let key = key.name(self.name());
-        let mut length = |name: &str, value: f64| checks.positive(key.name(name), value, "m");
+        let mut length =
+            |name: &str, value: f64| checks.positive(key.name(name), value, Unit::Metre);
         match self {
             Self::Square { side, .. } => length("side", *side),
             Self::Rectangle {

@@ -1,8 +1,10 @@
 //! How the motion is computed.
 
 use super::chart::Chart;
-use super::problem::{Checks, Key};
+use super::key::Key;
+use super::problem::Checks;
 use super::setup::Integration;
+use super::unit::Unit;
 use isosheet_dynamics as engine;
 use isosheet_dynamics::{
     EnergyMomentumOptions, ImplicitOptions, ProjectionStepOptions, RattleOptions,
@@ -11,6 +13,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Integrator, step and tolerances.
+///
+/// ```toml
+/// [method]
+/// integrator = "implicit_euler"
+/// step = 0.005
+/// fallback = "refuse"
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Method {
@@ -120,7 +129,7 @@ impl Integrator {
 
 impl Method {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.positive(key.name("step"), self.step, "s");
+        checks.positive(key.name("step"), self.step, Unit::Second);
         checks.within(key.name("min_fraction"), self.min_fraction, [1e-12, 1.0]);
         if let Some(tolerance) = self.strain_tolerance {
             checks.within(key.name("strain_tolerance"), tolerance, [1e-15, 1e-2]);

@@ -1,9 +1,11 @@
 //! Bodies that the sheet meets.
 
+use super::key::Key;
 use super::mesh::MeshFile;
 use super::outline::Outline;
 use super::pose::{Motion, Pose};
-use super::problem::{Checks, Key, Problem};
+use super::problem::{Checks, Problem};
+use super::unit::Unit;
 use isosheet_collide as collide;
 use isosheet_collide::{SurfaceError, TriangleSurface, rounded_line};
 use schemars::JsonSchema;
@@ -12,6 +14,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// A body at rest or in prescribed motion.
+///
+/// ```toml
+/// [[obstacle]]
+/// shape = { box = { size = [0.5, 0.5, 0.3] } }
+/// pose = { position = [0, 0, -0.2] }
+/// motion = { z = { smooth_step = { to = 0.1, end = 1 } } }
+/// friction = 0.3
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Obstacle {
@@ -29,6 +39,12 @@ pub struct Obstacle {
 }
 
 /// The form of a body in its own frame.
+///
+/// ```toml
+/// [[obstacle]]
+/// shape = { capsule = { radius = 0.05, length = 0.3 } }
+/// pose = { position = [0, 0, -0.1], turn = { axis = [1, 0, 0], angle = 90 } }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Shape {
@@ -83,6 +99,12 @@ pub enum Shape {
 }
 
 /// A thin wall with two sides.
+///
+/// ```toml
+/// [[obstacle]]
+/// shape = { wall = { line = [[0, 0], [0.3, 0], [0.5, 0.2]], corner_radius = 0.1, width = 0.4 } }
+/// pose = { position = [0, 0, -1] }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wall {
@@ -122,12 +144,13 @@ impl Obstacle {
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         let shape = key.name("shape").name(self.shape.name());
-        let mut length = |name: &str, value: f64| checks.positive(shape.name(name), value, "m");
+        let mut length =
+            |name: &str, value: f64| checks.positive(shape.name(name), value, Unit::Metre);
         match &self.shape {
             Shape::HalfSpace => {}
             Shape::Box { size } => {
                 for (k, extent) in size.iter().enumerate() {
-                    checks.positive(shape.name("size").entry(k), *extent, "m");
+                    checks.positive(shape.name("size").entry(k), *extent, Unit::Metre);
                 }
             }
             Shape::Sphere { radius } => length("radius", *radius),
@@ -154,22 +177,22 @@ impl Obstacle {
             } => {
                 length("outer", *outer);
                 length("opening", *opening);
-                checks.number(shape.name("bottom"), *bottom);
-                checks.number(shape.name("top"), *top);
+                checks.number(shape.name("bottom"), *bottom, Unit::Metre);
+                checks.number(shape.name("top"), *top, Unit::Metre);
             }
             Shape::Wall(wall) => {
                 length("width", wall.width);
                 for (k, point) in wall.line.iter().enumerate() {
-                    checks.finite(shape.name("line").entry(k), point);
+                    checks.finite(shape.name("line").entry(k), point, Unit::Metre);
                 }
                 checks.count(shape.name("line"), wall.line.len(), 2);
-                checks.not_negative(shape.name("corner_radius"), wall.corner_radius, "m");
+                checks.not_negative(shape.name("corner_radius"), wall.corner_radius, Unit::Metre);
             }
             Shape::File(file) => file.check(&shape, checks),
         }
         self.pose.check(&key.name("pose"), checks);
         self.motion.check(&key.name("motion"), checks);
-        checks.not_negative(key.name("friction"), self.friction, "");
+        checks.not_negative(key.name("friction"), self.friction, Unit::One);
     }
 
     /// The body; files are relative to `folder`.

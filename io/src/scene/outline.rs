@@ -1,6 +1,8 @@
 //! Outlines in the plane.
 
-use super::problem::{Checks, Key};
+use super::key::Key;
+use super::problem::Checks;
+use super::unit::Unit;
 use isosheet_mesh::generate::regular_outline;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -19,6 +21,12 @@ pub enum Outline {
 }
 
 /// A polygon by formula.
+///
+/// ```toml
+/// [sheet.mesh.polygon_rings]
+/// outline = { regular = { sides = 6, radius = 0.1 } }
+/// rings = 5
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum OutlineShape {
@@ -52,13 +60,13 @@ impl Outline {
         match self {
             Self::Corners(corners) => {
                 for (k, corner) in corners.iter().enumerate() {
-                    checks.finite(key.entry(k), corner);
+                    checks.finite(key.entry(k), corner, Unit::Metre);
                 }
                 checks.count(key.clone(), corners.len(), 3);
             }
             Self::Shape(OutlineShape::Regular { sides, radius }) => {
                 checks.count(key.name("regular.sides"), *sides, 3);
-                checks.positive(key.name("regular.radius"), *radius, "m");
+                checks.positive(key.name("regular.radius"), *radius, Unit::Metre);
             }
         }
     }
@@ -107,7 +115,8 @@ impl JsonSchema for Outline {
         let shape = generator.subschema_for::<OutlineShape>();
         json_schema!({
             "description": "A polygon in the xy plane: the list of its corners in order, x and y in metres, or an \
-                `OutlineShape`.",
+                `OutlineShape`.\n\n```toml\n[sheet.mesh.polygon]\noutline = [[0, 0], [0.3, 0], [0.2, 0.2]]\n\
+                spacing = 0.02\n```",
             "anyOf": [corners, shape],
         })
     }

@@ -1,10 +1,18 @@
 //! What a run writes.
 
-use super::problem::{Checks, Key};
+use super::key::Key;
+use super::problem::Checks;
+use super::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What a run writes, besides the history and the summary.
+///
+/// ```toml
+/// [output]
+/// frames_per_second = 60
+/// obj = true
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Output {
@@ -37,9 +45,9 @@ impl Default for Output {
 impl Output {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         let rate = self.frames_per_second;
-        checks.positive(key.name("frames_per_second"), rate, "1/s");
+        checks.positive(key.name("frames_per_second"), rate, Unit::PerSecond);
         let interval = self.checkpoint_interval;
-        checks.not_negative(key.name("checkpoint_interval"), interval, "s");
+        checks.not_negative(key.name("checkpoint_interval"), interval, Unit::Second);
     }
 
     /// Number of steps of `h` seconds from one frame to the next, at least one.

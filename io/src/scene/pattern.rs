@@ -1,6 +1,8 @@
 //! Crease patterns by formula.
 
-use super::problem::{Checks, Key};
+use super::key::Key;
+use super::problem::Checks;
+use super::unit::Unit;
 use isosheet_mesh::EdgeId;
 use isosheet_mesh::generate::{
     FoldAssignment, FoldPattern, GenerateError, degree_four, hypar, kresling, miura, miura_zigzags,
@@ -12,6 +14,15 @@ use serde::{Deserialize, Serialize};
 
 /// Miura's crease pattern, with mountains and valleys (K. Miura, *Method of packaging and deployment of large
 /// membranes in space*, 1985).
+///
+/// ```toml
+/// [sheet.mesh.miura]
+/// columns = 6
+/// rows = 4
+/// straight = 0.05
+/// zigzag = 0.05
+/// angle = 60
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Miura {
@@ -29,6 +40,13 @@ pub struct Miura {
 
 /// Four triangles round a vertex that folds flat: creases 1 to 4 lead from vertex 0 at the origin to the
 /// vertices 1 to 4, the first one along x.
+///
+/// ```toml
+/// [sheet.mesh.degree_four]
+/// sectors = [60, 90]
+/// radius = 0.1
+/// alike = "odd"
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DegreeFour {
@@ -54,6 +72,13 @@ pub enum AlikeCreases {
 /// The waterbomb tessellation: a rectangle of squares whose diagonals are valleys and whose sides and middle
 /// lines are mountains. Odd rows are moved by half a square. The pattern is that of Y. Chen, H. Feng, J. Ma,
 /// R. Peng and Z. You, *Symmetric waterbomb origami*, Proc. R. Soc. A 472, 2016.
+///
+/// ```toml
+/// [sheet.mesh.waterbomb]
+/// columns = 4
+/// rows = 4
+/// side = 0.04
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Waterbomb {
@@ -68,6 +93,14 @@ pub struct Waterbomb {
 /// Yoshimura's pattern: bands of isosceles triangles, whose bases are valleys and whose sides are mountains
 /// (Y. Yoshimura, *On the mechanism of buckling of a circular cylindrical shell under axial compression*,
 /// NACA TM 1390, 1955).
+///
+/// ```toml
+/// [sheet.mesh.yoshimura]
+/// columns = 6
+/// rows = 4
+/// base = 0.06
+/// height = 0.02
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Yoshimura {
@@ -83,6 +116,15 @@ pub struct Yoshimura {
 
 /// Kresling's pattern: parallelograms whose sides are mountains and whose longer diagonals are valleys (B.
 /// Kresling, *Natural twist buckling in shells*, IASS-IACM 2008).
+///
+/// ```toml
+/// [sheet.mesh.kresling]
+/// columns = 6
+/// rows = 2
+/// base = 0.05
+/// side = 0.06
+/// angle = 60
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Kresling {
@@ -101,6 +143,12 @@ pub struct Kresling {
 /// The pleated hyperbolic paraboloid: concentric squares about the origin, mountains and valleys in turn. The
 /// trapezoids between them are cut as in E. Demaine, M. Demaine, V. Hart, G. Price and T. Tachi,
 /// *(Non)existence of pleated folds*, Graphs and Combinatorics 27, 2011.
+///
+/// ```toml
+/// [sheet.mesh.hypar]
+/// side = 0.2
+/// rings = 8
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hypar {
@@ -111,6 +159,13 @@ pub struct Hypar {
 }
 
 /// The square twist: a square about the origin from whose sides pleats lead to the edges of the sheet.
+///
+/// ```toml
+/// [sheet.mesh.square_twist]
+/// side = 0.2
+/// square = 0.05
+/// angle = 30
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SquareTwist {
@@ -142,8 +197,8 @@ impl From<&FoldPattern> for EdgeRoles {
 
 impl Miura {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.positive(key.name("straight"), self.straight, "m");
-        checks.positive(key.name("zigzag"), self.zigzag, "m");
+        checks.positive(key.name("straight"), self.straight, Unit::Metre);
+        checks.positive(key.name("zigzag"), self.zigzag, Unit::Metre);
         checks.count(key.name("columns"), self.columns, 1);
         checks.count(key.name("rows"), self.rows, 1);
         check_angle(key.name("angle"), self.angle, 90.0, checks);
@@ -178,7 +233,7 @@ impl Miura {
 
 impl DegreeFour {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.positive(key.name("radius"), self.radius, "m");
+        checks.positive(key.name("radius"), self.radius, Unit::Metre);
         for (k, sector) in self.sectors.iter().enumerate() {
             check_angle(key.name("sectors").entry(k), *sector, 180.0, checks);
         }
@@ -214,7 +269,7 @@ impl Waterbomb {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.count(key.name("columns"), self.columns, 1);
         checks.count(key.name("rows"), self.rows, 1);
-        checks.positive(key.name("side"), self.side, "m");
+        checks.positive(key.name("side"), self.side, Unit::Metre);
     }
 
     /// The flat sheet with its mountains and valleys.
@@ -230,8 +285,8 @@ impl Yoshimura {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.count(key.name("columns"), self.columns, 1);
         checks.count(key.name("rows"), self.rows, 1);
-        checks.positive(key.name("base"), self.base, "m");
-        checks.positive(key.name("height"), self.height, "m");
+        checks.positive(key.name("base"), self.base, Unit::Metre);
+        checks.positive(key.name("height"), self.height, Unit::Metre);
     }
 
     /// The flat sheet with its mountains and valleys.
@@ -247,8 +302,8 @@ impl Kresling {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.count(key.name("columns"), self.columns, 1);
         checks.count(key.name("rows"), self.rows, 1);
-        checks.positive(key.name("base"), self.base, "m");
-        checks.positive(key.name("side"), self.side, "m");
+        checks.positive(key.name("base"), self.base, Unit::Metre);
+        checks.positive(key.name("side"), self.side, Unit::Metre);
         check_angle(key.name("angle"), self.angle, 90.0, checks);
     }
 
@@ -265,7 +320,7 @@ impl Kresling {
 impl Hypar {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         checks.count(key.name("rings"), self.rings, 1);
-        checks.positive(key.name("side"), self.side, "m");
+        checks.positive(key.name("side"), self.side, Unit::Metre);
     }
 
     /// The flat sheet with its mountains and valleys.
@@ -279,8 +334,8 @@ impl Hypar {
 
 impl SquareTwist {
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.positive(key.name("side"), self.side, "m");
-        checks.positive(key.name("square"), self.square, "m");
+        checks.positive(key.name("side"), self.side, Unit::Metre);
+        checks.positive(key.name("square"), self.square, Unit::Metre);
         check_angle(key.name("angle"), self.angle, 90.0, checks);
     }
 

@@ -1,13 +1,20 @@
 //! Where things are and how they move.
 
-use super::problem::{Checks, Key};
+use super::key::Key;
+use super::problem::Checks;
 use super::profile::Profile;
+use super::unit::Unit;
 use isosheet_dynamics::{AxisRotation, RigidDisplacement};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A rotation about an axis through the origin, by the right-hand rule.
+///
+/// ```toml
+/// [sheet.placement]
+/// turn = { axis = [0, 0, 1], angle = 45 }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Turn {
@@ -18,6 +25,11 @@ pub struct Turn {
 }
 
 /// A pose: first the turn about the origin, then the translation.
+///
+/// ```toml
+/// [sheet]
+/// placement = { position = [0, 0, 0.3], turn = { axis = [1, 0, 0], angle = 90 } }
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Pose {
@@ -46,15 +58,24 @@ impl Pose {
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        checks.finite(key.name("position"), &self.position);
+        checks.finite(key.name("position"), &self.position, Unit::Metre);
         if let Some(turn) = &self.turn {
             checks.direction(key.name("turn.axis"), &turn.axis);
-            checks.number(key.name("turn.angle"), turn.angle);
+            checks.number(key.name("turn.angle"), turn.angle, Unit::Degree);
         }
     }
 }
 
 /// A prescribed rigid motion: a rotation, then a translation by three displacements.
+///
+/// ```toml
+/// [[support]]
+/// at = { vertices = [0] }
+///
+/// [support.hold.moving_pin]
+/// z = { smooth_step = { to = 0.1, end = 1 } }
+/// rotation = { centre = [0, 0, 0], axis = [1, 0, 0], angle = { ramp = { to = 90, end = 1 } } }
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Motion {
@@ -69,6 +90,14 @@ pub struct Motion {
 }
 
 /// A rotation about an axis of fixed direction. The axis moves with the translation.
+///
+/// ```toml
+/// [[obstacle]]
+/// shape = { cylinder = { radius = 0.05, height = 0.5 } }
+///
+/// [obstacle.motion]
+/// rotation = { centre = [0, 0, 0], axis = [0, 0, 1], angle = { run_up = { rate = 90, end = 0.5 } } }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rotation {
@@ -97,14 +126,16 @@ impl Motion {
     }
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
-        self.x.check(key.name("x"), checks);
-        self.y.check(key.name("y"), checks);
-        self.z.check(key.name("z"), checks);
+        self.x.check(key.name("x"), Unit::Metre, checks);
+        self.y.check(key.name("y"), Unit::Metre, checks);
+        self.z.check(key.name("z"), Unit::Metre, checks);
         if let Some(rotation) = &self.rotation {
             let key = key.name("rotation");
-            checks.finite(key.name("centre"), &rotation.centre);
+            checks.finite(key.name("centre"), &rotation.centre, Unit::Metre);
             checks.direction(key.name("axis"), &rotation.axis);
-            rotation.angle.check(key.name("angle"), checks);
+            rotation
+                .angle
+                .check(key.name("angle"), Unit::Degree, checks);
         }
     }
 }

@@ -1,63 +1,11 @@
 //! What is wrong with a scene, and where.
 
+use super::key::Key;
+use super::unit::Unit;
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
 use std::fmt;
 use std::ops::Range;
-
-/// A place in a scene: the names of keys and the numbers of list entries that lead to it. Written as
-/// `obstacle[1].shape.sphere.radius`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Key(Vec<KeyPart>);
-
-/// One step of a [`Key`].
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum KeyPart {
-    /// The name of a key.
-    Name(String),
-    /// The number of a list entry, from 0.
-    Entry(usize),
-}
-
-impl Key {
-    /// The scene as a whole.
-    pub fn root() -> Self {
-        Self::default()
-    }
-
-    /// The key of the given name below this one. Dots separate several names.
-    #[must_use]
-    pub fn name(&self, names: &str) -> Self {
-        let mut parts = self.0.clone();
-        parts.extend(names.split('.').map(|n| KeyPart::Name(n.to_owned())));
-        Self(parts)
-    }
-
-    /// The entry with the given number, from 0, of the list at this key.
-    #[must_use]
-    pub fn entry(&self, number: usize) -> Self {
-        let mut parts = self.0.clone();
-        parts.push(KeyPart::Entry(number));
-        Self(parts)
-    }
-
-    /// The way from the root.
-    pub fn parts(&self) -> &[KeyPart] {
-        &self.0
-    }
-}
-
-impl fmt::Display for Key {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (k, part) in self.0.iter().enumerate() {
-            match part {
-                KeyPart::Name(name) if k == 0 => f.write_str(name)?,
-                KeyPart::Name(name) => write!(f, ".{name}")?,
-                KeyPart::Entry(number) => write!(f, "[{number}]")?,
-            }
-        }
-        Ok(())
-    }
-}
 
 /// Something that is wrong with a scene. Shown as key and message, without the remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -104,18 +52,17 @@ impl fmt::Display for Problem {
 }
 
 /// A number with its unit, if it has one.
-fn quantity(value: f64, unit: &str) -> String {
-    match unit {
-        "" => value.to_string(),
-        unit => format!("{value} {unit}"),
-    }
+fn quantity(value: f64, unit: Unit) -> String {
+    format!("{} {}", given(value), unit.symbol())
+        .trim_end()
+        .to_owned()
 }
 
 /// A remedy that names the unit, if there is one.
-fn in_unit(remedy: &str, unit: &str) -> String {
-    match unit {
+fn in_unit(remedy: &str, unit: Unit) -> String {
+    match unit.symbol() {
         "" => remedy.to_owned(),
-        unit => format!("{remedy}, in {unit}"),
+        symbol => format!("{remedy}, in {symbol}"),
     }
 }
 
@@ -135,35 +82,52 @@ impl Checks {
         self.problems.push(Problem::new(key, message, remedy));
     }
 
-    /// A finite number above zero.
-    pub(crate) fn positive(&mut self, key: Key, value: f64, unit: &str) {
-        if !(value.is_finite() && value > 0.0) {
-            let message = format!(
-                "`{key}` is {}, which is not a positive number",
-                quantity(value, unit)
-            );
-            self.report(key, message, in_unit("give a number above 0", unit));
+    /// A number above zero, in the range of its unit.
+    pub(crate) fn positive(&mut self, key: Key, value: f64, unit: Unit) {
+        if value.is_finite() && value > 0.0 {
+            let least = unit.range().least;
+            return self.in_range(key, value, least, unit);
         }
+        let value = quantity(value, unit);
+        let message = format!("`{key}` is {value}, which is not a positive number");
+        self.report(key, message, in_unit("give a number above 0", unit));
     }
 
-    /// A finite number of at least zero.
-    pub(crate) fn not_negative(&mut self, key: Key, value: f64, unit: &str) {
-        if !(value.is_finite() && value >= 0.0) {
-            let value = quantity(value, unit);
-            let message = format!("`{key}` is {value}, which is less than 0 or not finite");
-            self.report(key, message, in_unit("give 0 or a positive number", unit));
+    /// A number of at least zero, in the range of its unit.
+    pub(crate) fn not_negative(&mut self, key: Key, value: f64, unit: Unit) {
+        if value.is_finite() && value >= 0.0 {
+            return self.in_range(key, value, 0.0, unit);
         }
+        let value = quantity(value, unit);
+        let message = format!("`{key}` is {value}, which is less than 0 or not finite");
+        self.report(key, message, in_unit("give 0 or a positive number", unit));
+    }
+
+    /// A finite number whose size is between `least` and the most of its unit.
+    fn in_range(&mut self, key: Key, value: f64, least: f64, unit: Unit) {
+        let range = unit.range();
+        if (least..=range.most).contains(&value.abs()) {
+            return;
+        }
+        let sign = if value < 0.0 { "-" } else { "" };
+        let (bound, side) = match value.abs() > range.most {
+            true => (range.most, "at most"),
+            false => (least, "at least"),
+        };
+        let message = format!(
+            "`{key}` is {}, which is out of range",
+            quantity(value, unit)
+        );
+        let remedy = in_unit(&format!("give {side} {sign}{}", given(bound)), unit);
+        self.report(key, message, format!("{remedy}: {}", range.reason));
     }
 
     /// A number from `least` to `most`.
     pub(crate) fn within(&mut self, key: Key, value: f64, [least, most]: [f64; 2]) {
         if !(least..=most).contains(&value) {
-            let message = format!("`{key}` is {value}, which is out of range");
-            self.report(
-                key,
-                message,
-                format!("give a number from {least} to {most}"),
-            );
+            let message = format!("`{key}` is {}, which is out of range", given(value));
+            let remedy = format!("give a number from {} to {}", given(least), given(most));
+            self.report(key, message, remedy);
         }
     }
 
@@ -179,27 +143,32 @@ impl Checks {
         self.report(key.clone(), format!("`{key}` is {value}"), remedy);
     }
 
-    /// A finite number.
-    pub(crate) fn number(&mut self, key: Key, value: f64) {
-        if !value.is_finite() {
-            let message = format!("`{key}` is {value}");
-            self.report(key, message, "give a finite number");
+    /// A finite number that is not above the range of its unit.
+    pub(crate) fn number(&mut self, key: Key, value: f64, unit: Unit) {
+        if value.is_finite() {
+            return self.in_range(key, value, 0.0, unit);
         }
+        let message = format!("`{key}` is {}", given(value));
+        self.report(key, message, "give a finite number");
     }
 
-    /// Finite components.
-    pub(crate) fn finite(&mut self, key: Key, vector: &[f64]) {
+    /// Finite components that are not above the range of their unit.
+    pub(crate) fn finite(&mut self, key: Key, vector: &[f64], unit: Unit) {
         if let Some((k, value)) = vector.iter().enumerate().find(|(_, c)| !c.is_finite()) {
-            let message = format!("`{key}` has the component {value}");
-            self.report(key.entry(k), message, "give finite numbers");
+            let message = format!("`{key}` has the component {}", given(*value));
+            return self.report(key.entry(k), message, "give finite numbers");
+        }
+        for (k, value) in vector.iter().enumerate() {
+            self.in_range(key.entry(k), *value, 0.0, unit);
         }
     }
 
     /// Finite components that are not all zero.
     pub(crate) fn direction(&mut self, key: Key, vector: &[f64; 3]) {
         let length2: f64 = vector.iter().map(|c| c * c).sum();
-        if !vector.iter().all(|c| c.is_finite()) {
-            self.finite(key, vector);
+        if let Some((k, value)) = vector.iter().enumerate().find(|(_, c)| !c.is_finite()) {
+            let message = format!("`{key}` has the component {}", given(*value));
+            self.report(key.entry(k), message, "give finite numbers");
         } else if !length2.is_normal() {
             let message =
                 format!("`{key}` has no direction: its length is zero, or its square out of range");

@@ -1,6 +1,8 @@
 //! Functions of time.
 
-use super::problem::{Checks, Key};
+use super::key::Key;
+use super::problem::Checks;
+use super::unit::Unit;
 use isosheet_dynamics as engine;
 use isosheet_dynamics::ProfileError;
 use isosheet_mesh::Advice;
@@ -22,6 +24,12 @@ pub enum Profile {
 }
 
 /// A value that changes with time.
+///
+/// ```toml
+/// [[forces.acceleration]]
+/// direction = [1, 0, 0]
+/// size = { sine = { amplitude = 3, frequency = 2 } }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Course {
@@ -66,6 +74,13 @@ pub enum Course {
 }
 
 /// A change from one value to another.
+///
+/// ```toml
+/// [[crease]]
+/// at = { line = { from = [0, 0.1, 0], to = [0.2, 0.1, 0] } }
+/// stiffness = 0.01
+/// angle = { smooth_step = { from = 0, to = 120, begin = 0.2, end = 1.2 } }
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
@@ -184,8 +199,40 @@ impl Profile {
         self.scaled(1.0_f64.to_radians())
     }
 
-    pub(crate) fn check(&self, key: Key, checks: &mut Checks) {
+    /// Times and values, of which any may be out of range.
+    fn numbers(&self) -> (Vec<f64>, Vec<f64>) {
+        let course = match self {
+            Self::Constant(value) => return (Vec::new(), vec![*value]),
+            Self::Course(course) => course,
+        };
+        match course {
+            Course::Ramp(c) | Course::SmoothStep(c) => (vec![c.begin, c.end], vec![c.from, c.to]),
+            Course::RunUp {
+                from,
+                rate,
+                begin,
+                end,
+            } => (vec![*begin, *end], vec![*from, rate * (end - begin)]),
+            Course::Sine {
+                mean, amplitude, ..
+            } => (Vec::new(), vec![*mean, *amplitude]),
+            Course::Keyframes { keys, .. } => keys.iter().map(|[t, value]| (*t, *value)).unzip(),
+        }
+    }
+
+    /// Checks the course; `unit` is that of what it drives.
+    pub(crate) fn check(&self, key: Key, unit: Unit, checks: &mut Checks) {
         let Err(error) = self.as_given().validate() else {
+            let (times, values) = self.numbers();
+            for time in times {
+                checks.number(key.clone(), time, Unit::Second);
+            }
+            for value in values {
+                checks.number(key.clone(), value, unit);
+            }
+            if let Self::Course(Course::Sine { frequency, .. }) = self {
+                checks.number(key.name("sine.frequency"), *frequency, Unit::PerSecond);
+            }
             return;
         };
         let form = match self {
@@ -269,7 +316,8 @@ impl JsonSchema for Profile {
         json_schema!({
             "description": "A function of time: a number, which stands for the same value at all times, or a \
                 `Course`. Its unit is that of what it drives: metres for a displacement, degrees for an angle, \
-                newtons for a load.",
+                newtons for a load.\n\n```toml\n[[forces.load]]\nat = { vertices = [0] }\ndirection = [0, 0, 1]\n\
+                size = { ramp = { to = 0.05, end = 0.5 } }\n```",
             "anyOf": [{ "type": "number" }, course],
         })
     }

@@ -1,35 +1,146 @@
 //! The reference of scene files, made of the structs that read them.
 
-use super::Scene;
+use super::unit::{Range, Unit};
+use super::{Scene, StartingPoint};
+use isosheet_mesh::wording::given;
 use serde_json::{Map, Value};
+use std::collections::BTreeSet;
 
 /// The JSON schema of scene files, for editors that complete and check TOML.
 pub fn schema() -> Value {
+    let mut schema = documented_schema();
+    remove_examples(&mut schema);
+    schema
+}
+
+/// The schema with the examples in TOML that the documentation of the structs has.
+fn documented_schema() -> Value {
     let mut schema = schemars::schema_for!(Scene).to_value();
     schema["title"] = "A scene of isosheet".into();
     schema
 }
 
-/// The reference page of scene files in Markdown: every key with value, default and meaning.
+/// How an example begins in a description.
+const EXAMPLE: &str = "```toml\n";
+
+/// Removes the examples from all descriptions.
+fn remove_examples(part: &mut Value) {
+    match part {
+        Value::Object(entries) => {
+            if let Some(Value::String(text)) = entries.get_mut("description")
+                && let Some((before, _)) = text.split_once(EXAMPLE)
+            {
+                *text = before.trim_end().to_owned();
+            }
+            entries.values_mut().for_each(remove_examples);
+        }
+        Value::Array(entries) => entries.iter_mut().for_each(remove_examples),
+        _ => {}
+    }
+}
+
+/// The reference page of scene files in Markdown: every key with value, default and meaning, in the order of
+/// a scene file, and an example for each table.
 pub fn reference_page() -> String {
-    let schema = schema();
+    let schema = documented_schema();
     let mut page = String::from(INTRODUCTION);
     page.push_str("\n## The scene\n\n");
+    page.push_str(&format!("{EXAMPLE}{}```\n\n", StartingPoint::Drape.text()));
     object_table(&mut page, &schema);
-    let none = Map::new();
-    let parts = schema["$defs"].as_object().unwrap_or(&none);
-    for (name, part) in parts {
-        page.push_str(&format!("\n## {name}\n\n{}\n\n", text_of(part)));
-        if let Some(choices) = choices(part) {
-            choice_table(&mut page, choices);
-        } else if part["properties"].is_object() {
-            object_table(&mut page, part);
-        } else {
-            page.push_str(&format!("Value: {}.\n", kind_of(part)));
+    let mut told = BTreeSet::new();
+    for property in schema["properties"].as_object().into_iter().flatten() {
+        for name in references(property.1) {
+            section(&mut page, &schema["$defs"], &name, 2, &mut told);
         }
     }
+    ranges(&mut page);
     page
 }
+
+/// The section of a part and those of the parts that its keys refer to, unless they were told before.
+fn section(
+    page: &mut String,
+    parts: &Value,
+    name: &str,
+    level: usize,
+    told: &mut BTreeSet<String>,
+) {
+    if !told.insert(name.to_owned()) {
+        return;
+    }
+    let part = &parts[name];
+    page.push_str(&format!(
+        "\n{} {name}\n\n{}\n\n",
+        "#".repeat(level),
+        text_of(part)
+    ));
+    let description = part["description"].as_str().unwrap_or_default();
+    if let Some((_, example)) = description.split_once(EXAMPLE) {
+        page.push_str(&format!("{EXAMPLE}{}\n\n", example.trim_end()));
+    }
+    if let Some(choices) = choices(part) {
+        choice_table(page, choices);
+    } else if part["properties"].is_object() {
+        object_table(page, part);
+    } else {
+        page.push_str(&format!("Value: {}.\n", kind_of(part)));
+    }
+    for inner in references(part) {
+        section(page, parts, &inner, 3, told);
+    }
+}
+
+/// The parts that a part refers to, in the order of its keys.
+fn references(part: &Value) -> Vec<String> {
+    match part {
+        Value::Object(entries) => {
+            let own = entries.get("$ref").and_then(Value::as_str);
+            let own = own.and_then(|r| r.rsplit('/').next()).map(str::to_owned);
+            let inner = entries.iter().filter(|(name, _)| *name != "$defs");
+            own.into_iter()
+                .chain(inner.flat_map(|(_, value)| references(value)))
+                .collect()
+        }
+        Value::Array(entries) => entries.iter().flat_map(references).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The ranges of numbers by their units.
+fn ranges(page: &mut String) {
+    page.push_str(RANGES);
+    for unit in Unit::ALL {
+        let Range {
+            least,
+            most,
+            reason,
+        } = unit.range();
+        let least = if least > 0.0 {
+            given(least).to_string()
+        } else {
+            String::new()
+        };
+        let symbol = match unit.symbol() {
+            "" => "coefficients of friction",
+            symbol => symbol,
+        };
+        page.push_str(&format!(
+            "| {symbol} | {least} | {} | {reason} |\n",
+            given(most)
+        ));
+    }
+}
+
+const RANGES: &str = "
+## Ranges
+
+A number beyond the range of its unit is refused. The bounds are far beyond everything that a sheet is made of, and near
+enough for the squares, cubes and quotients of a step neither to overflow nor to vanish. The smallest size holds for
+numbers that have to be above zero.
+
+| unit | smallest | largest | for comparison |
+|---|---|---|---|
+";
 
 const INTRODUCTION: &str = "\
 # Scene files
@@ -40,7 +151,7 @@ without `forces.gravity` there is no gravity, without obstacles and self-contact
 
 `isosheet new NAME --kind hanging|drape|stamp|feed|fold` writes a commented scene to start from, `isosheet check
 SCENE` says what is wrong with one, and `--set key=value` changes a key for one run, for example
-`--set stop.time=0.5 --set obstacle[0].friction=0.3`. An unknown key is an error, which names the nearest known one.
+`--set stop.time=0.5 --set 'obstacle[0].friction=0.3'`. An unknown key is an error, which names the nearest known one.
 
 Where a key has several choices, a choice with keys of its own is a table with one entry
 (`shape = { sphere = { radius = 0.1 } }`), and one without keys is its name (`shape = \"half_space\"`).
@@ -49,7 +160,8 @@ Where a key has several choices, a choice with keys of its own is a table with o
 with the mesh files, `history.csv`, `trajectory.npz`, `obj/` if it is asked for, `index.html`, and last
 `summary.json`. The page `index.html` shows the run in 3D and plays it, in any browser and without a connection;
 `isosheet page DIR` makes it anew, of a run that is not complete too. A run that was stopped is continued by the
-same command, or by `isosheet resume DIR`.
+same command, or by `isosheet resume DIR`. Runs that failed or were stopped have `trajectory.npz`, too; where it was
+deleted, the same command or `isosheet convert DIR x.npz` writes it again.
 
 `isosheet sweep SCENE --over stop.time=1,2 --over sheet.damping=0.5,1,2 -j 2` runs all combinations of the values, here
 two at a time, in the folders `NAME-sweep/000`, `001` and so on; `NAME-sweep/runs.csv` is the table of the runs.
@@ -94,7 +206,7 @@ fn rows(page: &mut String, prefix: &str, object: &Value) {
             None | Some(Value::Null) => "none".to_owned(),
             Some(Value::Object(_)) => "see there".to_owned(),
             Some(Value::Array(entries)) if entries.is_empty() => "none".to_owned(),
-            Some(value) => format!("`{}`", toml_value(value)),
+            Some(value) => format!("`{}`", as_written(value)),
         };
         let (kind, text) = (kind_of(property), text_of(property));
         page.push_str(&format!(
@@ -128,9 +240,10 @@ fn choice_table(page: &mut String, choices: &[Value]) {
     }
 }
 
-/// The description of a part in one line.
+/// The description of a part in one line, without its example.
 fn text_of(part: &Value) -> String {
     let text = part["description"].as_str().unwrap_or_default();
+    let text = text.split(EXAMPLE).next().unwrap_or_default();
     let words: Vec<&str> = text.split_whitespace().collect();
     words.join(" ").replace('|', "\\|")
 }
@@ -181,7 +294,28 @@ fn plural(kind: &str) -> String {
     }
 }
 
-/// A default as it is written in a scene.
-fn toml_value(value: &Value) -> String {
-    value.to_string().replace(',', ", ")
+/// A default or an example as one writes it in a scene; the inverse of a whole number as a fraction.
+pub(crate) fn as_written(value: &Value) -> String {
+    match value {
+        Value::Number(number) => number
+            .as_f64()
+            .map_or_else(|| number.to_string(), number_as_written),
+        Value::Array(entries) => {
+            let entries: Vec<String> = entries.iter().map(as_written).collect();
+            format!("[{}]", entries.join(", "))
+        }
+        other => other.to_string(),
+    }
+}
+
+/// Most digits that anybody writes.
+const DIGITS: usize = 8;
+
+fn number_as_written(value: f64) -> String {
+    let text = given(value).to_string();
+    let inverse = (1.0 / value).round();
+    match text.len() > DIGITS && 1.0 / inverse == value {
+        true => format!("1/{inverse}"),
+        false => text,
+    }
 }

@@ -1,12 +1,19 @@
 //! Which vertices are meant.
 
-use super::problem::{Checks, Key, Problem};
+use super::key::Key;
+use super::problem::{Checks, Problem};
+use super::unit::Unit;
 use isosheet_mesh::{Topology, VertexId};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Some vertices of the sheet. Points and regions are in space, where the sheet is at the start; regions
 /// include their boundary, with an allowance of 1e-9 of the size of the sheet for round-off.
+///
+/// ```toml
+/// [[support]]
+/// at = { box = { min = [-0.01, -0.01, -0.01], max = [0.01, 1, 0.01] } }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Selection {
@@ -44,13 +51,13 @@ impl Selection {
             Self::All | Self::Boundary | Self::Vertices(_) => {}
             Self::Nearest(points) => {
                 for (k, point) in points.iter().enumerate() {
-                    checks.finite(key.name("nearest").entry(k), point);
+                    checks.finite(key.name("nearest").entry(k), point, Unit::Metre);
                 }
             }
             Self::Box { min, max } => {
                 let key = key.name("box");
-                checks.finite(key.name("min"), min);
-                checks.finite(key.name("max"), max);
+                checks.finite(key.name("min"), min, Unit::Metre);
+                checks.finite(key.name("max"), max, Unit::Metre);
                 if let Some(k) = (0..3).find(|&k| min[k] > max[k]) {
                     let message =
                         format!("the box begins at {} m and ends at {} m", min[k], max[k]);
@@ -62,7 +69,7 @@ impl Selection {
                 }
             }
             Self::HalfSpace { point, normal } => {
-                checks.finite(key.name("half_space.point"), point);
+                checks.finite(key.name("half_space.point"), point, Unit::Metre);
                 checks.direction(key.name("half_space.normal"), normal);
             }
         }

@@ -1,12 +1,23 @@
 //! The sheet: mesh, material, placement and start.
 
+use super::key::Key;
 use super::mesh::{Mesh, MeshFile};
 use super::pose::Pose;
-use super::problem::{Checks, Key};
+use super::problem::Checks;
+use super::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The sheet.
+///
+/// ```toml
+/// [sheet]
+/// mesh = { square = { side = 0.21, level = 2 } }
+/// density = 0.08
+/// thickness = 0.0001
+/// bending = { plate = { rigidity = 5e-4 } }
+/// damping = 2
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sheet {
@@ -45,6 +56,11 @@ fn paper_density() -> f64 {
 }
 
 /// What keeps the lengths.
+///
+/// ```toml
+/// [sheet]
+/// isometry = { membrane = { stiffness = 3e5, poisson = 0.3 } }
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Isometry {
@@ -70,6 +86,11 @@ pub enum Isometry {
 }
 
 /// What resists bending.
+///
+/// ```toml
+/// [sheet]
+/// bending = { plate = { rigidity = 5e-4 } }
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Bending {
@@ -91,6 +112,11 @@ pub enum Bending {
 }
 
 /// How the sheet starts.
+///
+/// ```toml
+/// [sheet]
+/// start = { perturbation = 0.01, seed = 1 }
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Start {
@@ -123,12 +149,16 @@ impl Sheet {
 
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         self.mesh.check(&key.name("mesh"), checks);
-        checks.positive(key.name("density"), self.density, "kg/m2");
+        checks.positive(
+            key.name("density"),
+            self.density,
+            Unit::KilogramPerSquareMetre,
+        );
         if let Some(mass) = self.mass {
-            checks.positive(key.name("mass"), mass, "kg");
+            checks.positive(key.name("mass"), mass, Unit::Kilogram);
         }
-        checks.not_negative(key.name("thickness"), self.thickness, "m");
-        checks.not_negative(key.name("damping"), self.damping, "1/s");
+        checks.not_negative(key.name("thickness"), self.thickness, Unit::Metre);
+        checks.not_negative(key.name("damping"), self.damping, Unit::PerSecond);
         self.isometry.check(&key.name("isometry"), checks);
         self.bending.check(&key.name("bending"), checks);
         if matches!(self.isometry, Isometry::Weak { stiffness: None })
@@ -158,12 +188,16 @@ impl Isometry {
         match self {
             Self::Rods | Self::Weak { stiffness: None } => {}
             Self::Membrane { stiffness, poisson } => {
-                checks.positive(key.name("membrane.stiffness"), *stiffness, "N/m");
+                checks.positive(
+                    key.name("membrane.stiffness"),
+                    *stiffness,
+                    Unit::NewtonPerMetre,
+                );
                 checks.within(key.name("membrane.poisson"), *poisson, [0.0, 0.5]);
             }
             Self::Weak {
                 stiffness: Some(stiffness),
-            } => checks.positive(key.name("weak.stiffness"), *stiffness, "N/m"),
+            } => checks.positive(key.name("weak.stiffness"), *stiffness, Unit::NewtonPerMetre),
         }
     }
 }
@@ -183,6 +217,6 @@ impl Bending {
             Self::Plate { .. } => "plate.rigidity",
             Self::Hinges { .. } => "hinges.rigidity",
         };
-        checks.positive(key.name(name), self.rigidity(), "N m");
+        checks.positive(key.name(name), self.rigidity(), Unit::NewtonMetre);
     }
 }

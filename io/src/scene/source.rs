@@ -2,8 +2,9 @@
 
 use super::edit::{self, EditError};
 use super::error::{SceneError, SceneText};
-use super::form::misplaced_lists;
-use super::problem::{Key, Problem};
+use super::form::form_problems;
+use super::key::Key;
+use super::problem::Problem;
 use super::toml_problem::{syntax_problem, toml_problem};
 use super::{Scene, Setup};
 use crate::format::MeshFormat;
@@ -11,6 +12,7 @@ use isosheet_mesh::{Advice, generate::FoldAssignment};
 use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
+use toml::de::DeTable;
 use toml_edit::{DocumentMut, Value};
 
 /// A scene with its text, and the folder that its paths are relative to.
@@ -100,11 +102,11 @@ impl SceneFile {
             edit::apply(&mut document, edits)?;
             text.text = document.to_string();
         }
+        if let Ok(table) = DeTable::parse(&text.text) {
+            SceneError::of(form_problems(table.get_ref())).map_err(|e| e.in_text(&text))?;
+        }
         let scene: Scene = toml::from_str(&text.text)
             .map_err(|e| SceneError::from(toml_problem(&e)).in_text(&text))?;
-        if let Ok(value) = toml::from_str(&text.text) {
-            SceneError::of(misplaced_lists(&value)).map_err(|e| e.in_text(&text))?;
-        }
         scene.validate().map_err(|e| e.in_text(&text))?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         Ok(Self {

@@ -1,6 +1,9 @@
 //! When a run ends.
 
-use super::problem::{Checks, Key};
+use super::key::Key;
+use super::problem::Checks;
+use super::unit::Unit;
+use isosheet_mesh::wording::{brief, given};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +12,12 @@ use serde::{Deserialize, Serialize};
 const MOST_STEPS: f64 = 1e9;
 
 /// When a run ends: at the first of these conditions that holds after a step.
+///
+/// ```toml
+/// [stop]
+/// time = 5
+/// rest = { speed = 0.001, duration = 0.2 }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Stop {
@@ -22,6 +31,11 @@ pub struct Stop {
 }
 
 /// Rest: all vertices are slow for some time.
+///
+/// ```toml
+/// [stop]
+/// rest = { speed = 0.001, duration = 0.2 }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rest {
@@ -53,20 +67,25 @@ impl Stop {
 
     /// Checks the conditions for a run in steps of `step` seconds.
     pub(crate) fn check(&self, step: f64, key: &Key, checks: &mut Checks) {
-        checks.positive(key.name("time"), self.time, "s");
+        checks.positive(key.name("time"), self.time, Unit::Second);
         let steps = self.time / step;
         if step > 0.0 && self.time.is_finite() && steps > MOST_STEPS {
             let time = self.time;
-            let message = format!("{time:e} s in steps of {step:e} s are {steps:.3e} steps");
+            let message = format!(
+                "{} s in steps of {} s are {} steps",
+                given(time),
+                given(step),
+                brief(steps)
+            );
             let remedy = "choose a shorter time or a longer `method.step`, for at most 1e9 steps";
             checks.report(key.name("time"), message, remedy);
         }
         if let Some(rest) = &self.rest {
-            checks.positive(key.name("rest.speed"), rest.speed, "m/s");
-            checks.positive(key.name("rest.duration"), rest.duration, "s");
+            checks.positive(key.name("rest.speed"), rest.speed, Unit::MetrePerSecond);
+            checks.positive(key.name("rest.duration"), rest.duration, Unit::Second);
         }
         if let Some(force) = self.support_force {
-            checks.positive(key.name("support_force"), force, "N");
+            checks.positive(key.name("support_force"), force, Unit::Newton);
         }
     }
 }

@@ -1,8 +1,10 @@
 //! What holds the sheet.
 
+use super::key::Key;
 use super::pose::Motion;
-use super::problem::{Checks, Key, Problem};
+use super::problem::{Checks, Problem};
 use super::selection::Selection;
+use super::unit::Unit;
 use isosheet_dynamics::constraint::{
     Circle, ConstraintError, Cylinder, Line, Plane, Polyline, Side, Sphere, Spline,
 };
@@ -13,6 +15,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Vertices that are held in the same way.
+///
+/// ```toml
+/// [[support]]
+/// at = { vertices = [0, 4] }
+///
+/// [[support]]
+/// at = "boundary"
+/// hold = { surface = { shape = { plane = { point = [0, 0, 0], normal = [0, 0, 1] } } } }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
@@ -24,6 +35,12 @@ pub struct Support {
 }
 
 /// How vertices are held.
+///
+/// ```toml
+/// [[support]]
+/// at = { vertices = [0] }
+/// hold = { moving_pin = { x = { smooth_step = { to = 0.05, end = 0.5 } } } }
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Hold {
@@ -54,6 +71,12 @@ pub enum Hold {
 }
 
 /// A curve.
+///
+/// ```toml
+/// [[support]]
+/// at = { vertices = [0] }
+/// hold = { curve = { shape = { line = { point = [0, 0, 0], direction = [1, 0, 0] } } } }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Curve {
@@ -97,7 +120,7 @@ impl Curve {
         let before = checks.problems.len();
         match self {
             Self::Line { point, direction } => {
-                checks.finite(key.name("point"), point);
+                checks.finite(key.name("point"), point, Unit::Metre);
                 checks.direction(key.name("direction"), direction);
             }
             Self::Circle {
@@ -105,16 +128,16 @@ impl Curve {
                 normal,
                 radius,
             } => {
-                checks.finite(key.name("centre"), centre);
+                checks.finite(key.name("centre"), centre, Unit::Metre);
                 checks.direction(key.name("normal"), normal);
-                checks.positive(key.name("radius"), *radius, "m");
+                checks.positive(key.name("radius"), *radius, Unit::Metre);
             }
             Self::Polyline {
                 points,
                 corner_radius,
             } => {
                 check_points(points, key, checks);
-                checks.positive(key.name("corner_radius"), *corner_radius, "m");
+                checks.positive(key.name("corner_radius"), *corner_radius, Unit::Metre);
             }
             Self::Spline { points } | Self::ClosedSpline { points } => {
                 check_points(points, key, checks);
@@ -133,11 +156,17 @@ impl Curve {
 
 fn check_points(points: &[[f64; 3]], key: &Key, checks: &mut Checks) {
     for (k, point) in points.iter().enumerate() {
-        checks.finite(key.name("points").entry(k), point);
+        checks.finite(key.name("points").entry(k), point, Unit::Metre);
     }
 }
 
 /// A surface.
+///
+/// ```toml
+/// [[support]]
+/// at = { vertices = [0] }
+/// hold = { surface = { shape = { plane = { point = [0, 0, 0], normal = [0, 0, 1] } }, side = "outside" } }
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Surface {
@@ -171,21 +200,21 @@ impl Surface {
         let before = checks.problems.len();
         match self {
             Self::Plane { point, normal } => {
-                checks.finite(key.name("point"), point);
+                checks.finite(key.name("point"), point, Unit::Metre);
                 checks.direction(key.name("normal"), normal);
             }
             Self::Sphere { centre, radius } => {
-                checks.finite(key.name("centre"), centre);
-                checks.positive(key.name("radius"), *radius, "m");
+                checks.finite(key.name("centre"), centre, Unit::Metre);
+                checks.positive(key.name("radius"), *radius, Unit::Metre);
             }
             Self::Cylinder {
                 point,
                 axis,
                 radius,
             } => {
-                checks.finite(key.name("point"), point);
+                checks.finite(key.name("point"), point, Unit::Metre);
                 checks.direction(key.name("axis"), axis);
-                checks.positive(key.name("radius"), *radius, "m");
+                checks.positive(key.name("radius"), *radius, Unit::Metre);
             }
         }
         // What no number alone is to blame for.

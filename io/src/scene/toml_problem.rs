@@ -1,6 +1,7 @@
 //! What the readers of TOML say, in words of scenes.
 
-use super::problem::{Key, Problem};
+use super::key::Key;
+use super::problem::Problem;
 
 /// A text that is no TOML.
 pub(crate) fn syntax_problem(error: &toml_edit::TomlError) -> Problem {
@@ -24,9 +25,6 @@ pub(crate) fn toml_problem(error: &toml::de::Error) -> Problem {
 /// Message and remedy.
 fn in_words(full: &str) -> (String, String) {
     let message = full.lines().next().unwrap_or_default();
-    if let Some((bad, known)) = unexpected_keys(message) {
-        return (format!("unknown key `{bad}`"), suggestion(bad, &known));
-    }
     if let Some((found, expected)) = wrong_type(message) {
         let (expected, remedy) = expected_in_words(expected);
         let message = match found {
@@ -37,9 +35,6 @@ fn in_words(full: &str) -> (String, String) {
     }
     let names: Vec<&str> = full.split('`').skip(1).step_by(2).collect();
     match names.split_first() {
-        Some((bad, known)) if message.starts_with("unknown field") => {
-            (format!("unknown key `{bad}`"), suggestion(bad, known))
-        }
         Some((bad, known)) if message.starts_with("unknown variant") => {
             (format!("unknown choice `{bad}`"), suggestion(bad, known))
         }
@@ -52,14 +47,6 @@ fn in_words(full: &str) -> (String, String) {
             "docs/scene.md describes all keys, https://toml.io the syntax".to_owned(),
         ),
     }
-}
-
-/// The first unknown key and all known ones of the other form of that message, which the choices of an
-/// enumeration have.
-fn unexpected_keys(message: &str) -> Option<(&str, Vec<&str>)> {
-    let names = message.strip_prefix("unexpected keys in table: ")?;
-    let (bad, known) = names.split_once(", available keys: ")?;
-    Some((bad.split(", ").next()?, known.split(", ").collect()))
 }
 
 /// What was found and what was expected, in the words of the reader.
@@ -133,7 +120,7 @@ fn expected_list(expected: &str) -> (String, &'static str) {
 }
 
 /// The nearest known name, and all of them.
-fn suggestion(bad: &str, known: &[&str]) -> String {
+pub(crate) fn suggestion(bad: &str, known: &[&str]) -> String {
     let all = known.iter().map(|k| format!("`{k}`")).collect::<Vec<_>>();
     let all = all.join(", ");
     let nearest = known

@@ -103,6 +103,49 @@ hold = { moving_pin = { x = { ramp = { to = 0.1, end = 1 } } } }
     assert_eq!(summary(&dir.join("stop")).ending.reason, EndReason::Taut);
 }
 
+/// Two clamps at the ends of a strip that move towards and through each other.
+#[test]
+fn clamps_that_are_driven_into_each_other_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = "version = 1
+[sheet]
+mesh = { rectangle = { width = 0.2, height = 0.05, columns = 8, rows = 2 } }
+bending = { plate = { rigidity = 5e-4 } }
+damping = 5
+start = { perturbation = 0.01, seed = 1 }
+[[support]]
+at = { box = { min = [-0.01, -1, -1], max = [0.03, 1, 1] } }
+hold = { moving_pin = { x = { ramp = { to = 0.2, end = 1 } } } }
+[[support]]
+at = { box = { min = [0.17, -1, -1], max = [0.21, 1, 1] } }
+hold = { moving_pin = { x = { ramp = { to = -0.2, end = 1 } } } }
+[contact]
+self_contact = true
+[method]
+step = 0.005
+";
+    fs::write(dir.join("clamps.toml"), scene).unwrap();
+    let failed = run(dir, &["simulate", "clamps.toml"]);
+    let said = stderr(&failed);
+    assert_eq!(code(&failed), Some(1), "{said}");
+    for part in [
+        "`support[0]` and `support[1]` are driven into each other",
+        "--> clamps.toml:12:8",
+        "room between them",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    // No number of the message has more than three digits, or four before the point.
+    let message = said.lines().find(|line| line.starts_with("error")).unwrap();
+    let is_digit = |c: char| c.is_ascii_digit();
+    for number in message.split(|c: char| !is_digit(c) && c != '.') {
+        let digits = number.trim_matches('0').replace('.', "");
+        let is_long = digits.trim_start_matches('0').len() > 3;
+        assert!(!(number.contains('.') && is_long), "{number}: {message}");
+    }
+}
+
 /// From flat at two opposite corners the halves of a sheet fall shut and hang taut, where its rods lock.
 #[test]
 fn a_sheet_that_locks_is_held_unless_the_scene_refuses() {

@@ -30,6 +30,18 @@ fn blocks(page: &str, language: &str) -> Vec<String> {
     found
 }
 
+/// A part of a scene with the version, and with a sheet if it has none.
+fn completed(part: &str) -> String {
+    let mut scene: toml::Table = toml::from_str(part).unwrap_or_else(|e| panic!("{e}\n{part}"));
+    scene.insert("version".to_owned(), toml::Value::Integer(1));
+    let empty = toml::Value::Table(toml::Table::new());
+    let sheet = scene.entry("sheet").or_insert(empty);
+    let sheet = sheet.as_table_mut().expect("the sheet is a table");
+    let square: toml::Table = toml::from_str("square = { side = 0.2, level = 1 }").expect("TOML");
+    sheet.entry("mesh").or_insert(toml::Value::Table(square));
+    toml::to_string(&scene).expect("TOML")
+}
+
 #[test]
 fn the_scenes_of_the_book_can_start() {
     let (mut whole, mut parts) = (0, 0);
@@ -38,7 +50,7 @@ fn the_scenes_of_the_book_can_start() {
         for block in blocks(&page, "toml") {
             let text = match block.starts_with("version = 1\n") {
                 true => block.clone(),
-                false => format!("version = 1\n{block}"),
+                false => completed(&block),
             };
             let scene = SceneFile::parse(text, &path, &[]);
             let scene = scene.unwrap_or_else(|e| panic!("{}: {e}\n{block}", path.display()));

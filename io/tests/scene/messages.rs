@@ -206,6 +206,155 @@ fn all_range_errors_are_reported_at_once() {
 }
 
 #[test]
+fn all_unknown_keys_are_reported_at_once_in_their_order() {
+    let wrong = RIGHT
+        .replace("density = 0.1", "densty = 0.1")
+        .replace("radius = 0.1", "radus = 0.1")
+        .replace("[stop]", "[stp]")
+        .replace("at = {", "whre = {");
+    let found = problems(&wrong);
+    let said: Vec<_> = found.iter().map(|p| (p.line, p.key.as_str())).collect();
+    let expected = [
+        (Some(4), "sheet.densty"),
+        (Some(6), "support[0].whre"),
+        (Some(8), "obstacle[0].shape.sphere.radus"),
+        (Some(10), "stp"),
+    ];
+    assert_eq!(said, expected);
+    let remedies = ["`density`", "`at`", "`radius`", "`stop`"];
+    for (problem, right) in found.iter().zip(remedies) {
+        let remedy = problem.remedy.as_deref().unwrap();
+        assert!(remedy.contains(right), "{problem:?}");
+    }
+}
+
+/// What is written in another form than the scene has: a table for a list, a list for a table, a number for a
+/// vector.
+#[test]
+fn other_forms_are_told_the_right_one() {
+    let gravity = "[forces]\ngravity = 9.81\n";
+    let load = "[forces.load]\nat = \"all\"\ndirection = [0, 0, 1]\nsize = 1\n";
+    let cases = [
+        (
+            RIGHT.replace("[[obstacle]]", "[obstacle]"),
+            [7, 1],
+            "`[[obstacle]]` in double",
+        ),
+        (
+            RIGHT.replace("[[support]]", "[support]"),
+            [5, 1],
+            "`[[support]]` in double",
+        ),
+        (
+            RIGHT.replace("[stop]", "[[stop]]"),
+            [10, 1],
+            "below `[stop]`",
+        ),
+        (
+            format!("{RIGHT}{gravity}"),
+            [13, 11],
+            "`gravity = [0, 0, -9.81]`",
+        ),
+        (
+            format!("{RIGHT}{load}"),
+            [12, 1],
+            "`[[forces.load]]` in double",
+        ),
+        (
+            RIGHT.replace("[0, 0, -1]", "-1"),
+            [9, 21],
+            "along x, y and z in brackets",
+        ),
+        (
+            RIGHT.replace("vertices = [0]", "vertices = 0"),
+            [6, 19],
+            "in brackets",
+        ),
+    ];
+    for (text, place, remedy) in cases {
+        let found = problems(&text);
+        let [problem] = &found[..] else {
+            panic!("{remedy}: {found:?}");
+        };
+        assert_eq!(
+            [problem.line, problem.column],
+            place.map(Some),
+            "{problem:?}"
+        );
+        let said = problem.remedy.as_deref().unwrap();
+        assert!(said.contains(remedy), "{problem:?}");
+    }
+}
+
+/// Sizes far beyond those of any sheet are refused, with the reason.
+#[test]
+fn absurd_magnitudes_are_refused() {
+    let mass = "density = 0.1\nmass = 1e-300";
+    for (right, wrong, key, remedy) in [
+        (
+            "density = 0.1",
+            "density = 1e-300",
+            "sheet.density",
+            "give at least 1e-9, in kg/m2: graphene",
+        ),
+        (
+            "density = 0.1",
+            "density = 1e300",
+            "sheet.density",
+            "give at most 1e9, in kg/m2",
+        ),
+        ("density = 0.1", mass, "sheet.mass", "in kg:"),
+        (
+            "radius = 0.1",
+            "radius = 1e-200",
+            "obstacle[0].shape.sphere.radius",
+            "1e-12, in m",
+        ),
+        (
+            "-1] }",
+            "-1e200] }",
+            "obstacle[0].pose.position[2]",
+            "at most -1e12, in m",
+        ),
+        ("time = 0.1", "time = 1e-100", "stop.time", "1e-15, in s"),
+    ] {
+        let found = problems(&RIGHT.replace(right, wrong));
+        let about: Vec<_> = found.iter().map(|p| p.key.as_str()).collect();
+        assert_eq!(about, [key], "{found:?}");
+        assert!(
+            found[0].remedy.as_deref().unwrap().contains(remedy),
+            "{found:?}"
+        );
+        assert!(found[0].message.contains("out of range"), "{found:?}");
+    }
+}
+
+/// `--set` of a whole entry is what the scene has, and what is saved of it.
+#[test]
+fn edits_of_whole_entries_are_made_or_refused() {
+    let path = Path::new("test.toml");
+    let edited = |edit: &str| SceneFile::parse(RIGHT.into(), path, &[edit.to_owned()]);
+    let whole = "obstacle[0]={ shape = \"half_space\", pose = { position = [0, 0, -2] } }";
+    let file = edited(whole).unwrap();
+    let bodies = &file.scene().obstacle;
+    assert_eq!((bodies.len(), bodies[0].pose.position[2]), (1, -2.0));
+    assert_eq!(parse(&file.text().text).unwrap().scene(), file.scene());
+    let moved = edited("support[0]={ at = { vertices = [24] } }").unwrap();
+    assert_eq!(moved.scene().support.len(), 1);
+    for refused in ["obstacle[0]={shape=..}", "obstacle[0]=1", "support[0]=[]"] {
+        let Err(SceneFileError::Edit(error)) = edited(refused) else {
+            panic!("{refused} is accepted");
+        };
+        assert!(error.to_string().contains(refused), "{error}");
+    }
+    // A table without its keys is a wrong scene.
+    assert!(matches!(
+        edited("obstacle[0]={}"),
+        Err(SceneFileError::Scene(_))
+    ));
+}
+
+#[test]
 fn methods_that_do_not_fit_and_double_supports_are_refused() {
     let rattle = format!("{RIGHT}[method]\nintegrator = \"rattle\"\n");
     let found = problems(&rattle);

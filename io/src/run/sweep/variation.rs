@@ -1,5 +1,6 @@
 //! A key of a scene and the values that a sweep gives it.
 
+use crate::scene::{Key, KeyError};
 use isosheet_mesh::Advice;
 use std::fmt;
 use std::str::FromStr;
@@ -20,6 +21,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Variation {
     key: String,
+    place: Key,
     values: Vec<String>,
 }
 
@@ -27,12 +29,15 @@ pub struct Variation {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum VariationError {
-    /// There is no equals sign, or no key before it.
+    /// There is no equals sign.
     #[error("`{text}` is not of the form key=a,b,c")]
     Form {
         /// The text.
         text: String,
     },
+    /// What is before the equals sign is not a key.
+    #[error(transparent)]
+    Key(#[from] KeyError),
     /// A value is empty.
     #[error("value {number} of `{key}` is empty")]
     Empty {
@@ -67,6 +72,7 @@ impl Advice for VariationError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::Form { .. } => Some("write for example `stop.time=0.5,1,2`"),
+            Self::Key(error) => error.advice(),
             Self::Empty { .. } => Some("take out the comma, or write \"\" for an empty text"),
             Self::Open { .. } => Some("close it"),
             Self::Twice { .. } => Some("give it once, since both runs would be the same"),
@@ -88,10 +94,9 @@ impl Variation {
         &self.values
     }
 
-    /// The names on the way to the key, with `list[1]` as `list` and `1`.
-    pub(crate) fn names(&self) -> Vec<String> {
-        let key = self.key.replace('[', ".").replace(']', "");
-        key.split('.').map(|n| n.trim().to_owned()).collect()
+    /// The place of the key in a scene.
+    pub(crate) fn place(&self) -> &Key {
+        &self.place
     }
 }
 
@@ -104,9 +109,7 @@ impl FromStr for Variation {
         };
         let (key, values) = text.split_once('=').ok_or_else(form)?;
         let key = key.trim().to_owned();
-        if key.is_empty() {
-            return Err(form());
-        }
+        let place = key.parse()?;
         if text.chars().any(char::is_control) {
             return Err(VariationError::Control { key });
         }
@@ -122,7 +125,7 @@ impl FromStr for Variation {
             }
             values.push(value);
         }
-        Ok(Self { key, values })
+        Ok(Self { key, place, values })
     }
 }
 
@@ -213,7 +216,9 @@ mod tests {
         type E = VariationError;
         let error = |text: &str| text.parse::<Variation>().unwrap_err();
         assert!(matches!(error("stop.time"), E::Form { .. }));
-        assert!(matches!(error(" =1"), E::Form { .. }));
+        for key in [" ", "obstacle[0.friction", "obstacle[0]].friction", "a..b"] {
+            assert!(matches!(error(&format!("{key}=1")), E::Key(_)), "{key}");
+        }
         assert!(matches!(error("a="), E::Empty { number: 1, .. }));
         assert!(matches!(error("a=1,,2"), E::Empty { number: 2, .. }));
         for open in ["a=[1,2", "a=1]", "a=\"x", "a='x,y", "a={b=\"}\"", "a=\"\\"] {
@@ -221,12 +226,5 @@ mod tests {
         }
         assert!(matches!(error("a=1,2,1"), E::Twice { .. }));
         assert!(matches!(error("a=\"x\ny\""), E::Control { .. }));
-    }
-
-    #[test]
-    fn numbers_in_brackets_are_names() {
-        let v: Variation = "obstacle[1].friction=0".parse().unwrap();
-        assert_eq!(v.names(), ["obstacle", "1", "friction"]);
-        assert_eq!(v.to_string(), "obstacle[1].friction=0");
     }
 }
