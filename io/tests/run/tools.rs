@@ -53,6 +53,22 @@ fn new_check_info_and_completions() {
 }
 
 #[test]
+fn names_of_no_file_and_impossible_numbers_of_threads_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["..", ".", "", "a/", "a/.", "a/..", "/"] {
+        let refused = run(dir.path(), &["new", name]);
+        assert_eq!(code(&refused), Some(2), "{name}: {}", stderr(&refused));
+    }
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
+    fs::write(dir.path().join("s.toml"), StartingPoint::Hanging.text()).unwrap();
+    for threads in ["0", "1025", "100000", "-1", "x"] {
+        let refused = run(dir.path(), &["simulate", "s.toml", "--threads", threads]);
+        assert_eq!(code(&refused), Some(2), "{threads}: {}", stderr(&refused));
+    }
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+}
+
+#[test]
 fn meshes_are_checked_and_repaired() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
@@ -119,6 +135,54 @@ fn meshes_are_checked_and_repaired() {
     let refused = run(dir, &["check", "fan.obj", "--fix", "no.obj"]);
     assert_eq!(code(&refused), Some(3));
     assert!(!dir.join("no.obj").exists());
+}
+
+/// A closed solid is a valid sheet of rods, and a file in millimetres a valid sheet of kilometres.
+#[test]
+fn sheets_that_cannot_do_what_was_meant_are_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+    fs::write(dir.join("solid.obj"), tetrahedron).unwrap();
+    let square = |side: u32| format!("v 0 0 0\nv {side} 0 0\nv 0 {side} 0\nf 1 2 3\n");
+    let beside = format!("{tetrahedron}{}", square(9).replace("1 2 3", "5 6 7"));
+    fs::write(dir.join("two.obj"), beside).unwrap();
+    fs::write(dir.join("wide.obj"), square(800)).unwrap();
+    fs::write(dir.join("right.obj"), square(2)).unwrap();
+    let scene = |name: &str, more: &str| {
+        format!("version = 1\n[sheet]\nmesh = {{ file = {{ path = \"{name}\"{more} }} }}\n")
+    };
+    fs::write(dir.join("wide.toml"), scene("wide.obj", "")).unwrap();
+    fs::write(
+        dir.join("scaled.toml"),
+        scene("wide.obj", ", scale = 0.001"),
+    )
+    .unwrap();
+    fs::write(dir.join("solid.toml"), scene("solid.obj", "")).unwrap();
+    let elastic = "isometry = { membrane = { stiffness = 1e5 } }\n";
+    fs::write(dir.join("elastic.toml"), scene("solid.obj", "") + elastic).unwrap();
+    let closed = ["surface is closed", "cannot bend"];
+    let wide = ["800 m wide", "scale = 0.001"];
+    let cases: [(&str, &[&str]); 8] = [
+        ("solid.obj", &closed),
+        ("solid.toml", &closed),
+        ("elastic.toml", &[]),
+        ("two.obj", &["1 of the 2 parts", "cannot bend"]),
+        ("wide.obj", &wide),
+        ("wide.toml", &wide),
+        ("scaled.toml", &[]),
+        ("right.obj", &[]),
+    ];
+    for (file, parts) in cases {
+        let check = run(dir, &["check", file]);
+        assert_eq!(code(&check), Some(0), "{file}: {}", stderr(&check));
+        let text = String::from_utf8_lossy(&check.stdout).into_owned();
+        assert!(
+            parts.iter().all(|part| text.contains(part)),
+            "{file}: {text}"
+        );
+        assert_eq!(text.contains("note: "), !parts.is_empty(), "{file}: {text}");
+    }
 }
 
 /// The scenes of the figures are scenes like any other.

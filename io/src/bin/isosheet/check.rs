@@ -2,11 +2,13 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::hints;
 use crate::info::{describe_scene, is_scene, refuse_folder};
+use crate::message::counted;
 use crate::write::{is_same_file, to_stdout};
 use clap::Args;
 use isosheet_io::mesh::Sheet;
-use isosheet_io::scene::SceneFile;
+use isosheet_io::scene::{Isometry, Mesh, SceneFile};
 use isosheet_io::{
     Advice, MeshFile, MeshFileError, MeshFileProblem, MeshOptions, Polygons, read_mesh_with,
     write_mesh,
@@ -35,9 +37,18 @@ impl Check {
         let scene = SceneFile::read(&self.file, &[])?;
         let setup = scene.build()?;
         let text = describe_scene(&setup);
+        let sheet = &scene.scene().sheet;
+        let closed = match sheet.isometry {
+            Isometry::Rods => hints::closed(&setup.sheet),
+            Isometry::Membrane { .. } | Isometry::Weak { .. } => String::new(),
+        };
+        let wide = match &sheet.mesh {
+            Mesh::File(file) if file.scale == 1.0 => hints::wide(&setup.sheet),
+            _ => String::new(),
+        };
         setup.start()?;
         to_stdout(&format!(
-            "{}: a scene that can start\n{text}",
+            "{}: a scene that can start\n{text}{closed}{wide}",
             self.file.display()
         ))
     }
@@ -51,8 +62,10 @@ impl Check {
         let mesh = read(&self.file, Polygons::Refuse)?;
         match mesh.clone().into_sheet() {
             Ok(sheet) => to_stdout(&format!(
-                "{name}: a sheet of {}\n{}",
+                "{name}: a sheet of {}\n{}{}{}",
                 counts(&sheet),
+                hints::closed(&sheet),
+                hints::wide(&sheet),
                 what_merging_does(mesh)
             )),
             Err(error) => {
@@ -75,7 +88,7 @@ impl Check {
             .map_err(|e| (format!("{name}: {e}"), e.advice()));
         let polygons = match mesh.polygons {
             0 => String::new(),
-            n => format!("{n} polygons cut into triangles, "),
+            n => format!("{} cut into triangles, ", counted(n, "polygon", "polygons")),
         };
         let repaired = repair.and_then(|repair| match mesh.clone().into_sheet() {
             Ok(sheet) => Ok((mesh, sheet, repair.to_string())),
@@ -163,8 +176,8 @@ fn counts(sheet: &Sheet) -> String {
         n => format!(" in {n} parts"),
     };
     format!(
-        "{} vertices and {} faces{parts}",
-        t.vertex_count(),
-        t.face_count()
+        "{} and {}{parts}",
+        counted(t.vertex_count(), "vertex", "vertices"),
+        counted(t.face_count(), "face", "faces")
     )
 }

@@ -7,6 +7,7 @@ mod collect;
 mod convert;
 mod exit;
 mod gallery;
+mod hints;
 mod info;
 mod interrupt;
 mod message;

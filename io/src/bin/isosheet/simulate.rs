@@ -45,9 +45,12 @@ struct How {
     #[arg(long)]
     json: bool,
     /// Number of threads; the results do not depend on it
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    threads: usize,
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    threads: u16,
 }
+
+/// Most threads: more than the cores of any machine with common memory, so that a larger number is a mistake.
+const MOST_THREADS: i64 = 1024;
 
 impl How {
     fn format(&self) -> Format {
@@ -60,7 +63,7 @@ impl How {
 
     fn prepare(&self) -> Done {
         interrupt::install()?;
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.max(1));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(self.threads));
         let threads = |e| Failure::new(Code::Step, format!("cannot start the threads: {e}"));
         pool.build_global().map_err(threads)
     }

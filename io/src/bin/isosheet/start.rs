@@ -3,9 +3,11 @@
 use crate::Done;
 use crate::exit::{Code, Failure};
 use crate::message::print_message;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use isosheet_io::scene::StartingPoint;
 use isosheet_io::write_atomically;
+use std::ffi::OsStr;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -13,6 +15,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct New {
     /// The name of the scene; the file is NAME.toml in the current folder
+    #[arg(value_parser = PathBufValueParser::new().try_map(file_name))]
     name: PathBuf,
     /// What it shows
     #[arg(long, value_enum, default_value_t = Kind::Hanging)]
@@ -31,6 +34,19 @@ enum Kind {
     Feed,
     /// Miura's crease pattern, folded by driven angles
     Fold,
+}
+
+/// Refuses a path that does not end in the name of a file, such as `..` or `scenes/`.
+fn file_name(path: PathBuf) -> Result<PathBuf, &'static str> {
+    let end = |name: &OsStr| {
+        path.as_os_str()
+            .as_encoded_bytes()
+            .ends_with(name.as_encoded_bytes())
+    };
+    match path.file_name().is_some_and(end) {
+        true => Ok(path),
+        false => Err("it does not end in a name; write for example `cloth` or `scenes/cloth`"),
+    }
 }
 
 impl New {
