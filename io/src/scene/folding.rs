@@ -26,6 +26,9 @@ use std::path::Path;
 /// not 0 and move freely elsewhere.
 ///
 /// ```toml
+/// [sheet]
+/// mesh = { file = { path = "crane.fold" } }
+///
 /// [folding]
 /// stiffness = 0.05
 /// time = 2
