@@ -324,7 +324,7 @@ pub enum StepError {
         cause: Box<StepError>,
     },
     /// The watch of [`Simulation::step_watched`](crate::Simulation::step_watched) ended the step.
-    #[error("the step was interrupted after t = {t} s")]
+    #[error("the step was interrupted after t = {t} s", t = brief(*t))]
     Interrupted {
         /// Time of the last accepted sub-step, seconds.
         t: f64,

@@ -7,7 +7,7 @@ pub use data::FrameData;
 
 use archive::{ArchiveReader, ArchiveWriter};
 use data::Quantity;
-use isosheet_mesh::wording::{brief, given};
+use isosheet_mesh::wording::given;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -103,7 +103,7 @@ pub enum TrajectoryError {
     /// Time does not go forward.
     #[error(
         "frame {frame} has the time {t} s after {before} s",
-        t = brief(*t), before = brief(*before)
+        t = given(*t), before = given(*before)
     )]
     Time {
         /// The frame.

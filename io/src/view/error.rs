@@ -40,7 +40,7 @@ pub enum ViewError {
     /// Times go backwards.
     #[error(
         "{what}: entry {index} is {time} s after {before} s",
-        time = brief(*time), before = brief(*before)
+        time = given(*time), before = given(*before)
     )]
     Time {
         /// The list of times.

@@ -1,7 +1,7 @@
 //! What can be wrong with a mesh or a series that is to be written.
 
 use crate::format::{TrajectoryError, WriteError};
-use isosheet_mesh::wording::{brief, given};
+use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{Advice, TopologyError, VertexId};
 use thiserror::Error;
 
@@ -25,7 +25,10 @@ pub enum ExportError {
     #[error("the trajectory has no frames")]
     NoFrames,
     /// There is no such frame.
-    #[error("there is no frame {frame}: the trajectory has {count} frames, counted from 0")]
+    #[error(
+        "there is no frame {frame}: the trajectory has {}, counted from 0",
+        counted(*count, "frame", "frames")
+    )]
     NoFrame {
         /// The frame.
         frame: usize,
