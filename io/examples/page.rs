@@ -101,6 +101,7 @@ fn gaps(positions: &[Vec<f64>]) -> Field {
         unit: "m".into(),
         place: Place::Vertex,
         scale: Scale::Linear,
+        note: String::new(),
         values: positions
             .iter()
             .map(|x| x.chunks_exact(3).map(gap).collect())

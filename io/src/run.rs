@@ -16,7 +16,7 @@
 //!
 //! A folder with a complete run of the same scene is left as it is. One with a part of it is continued, and
 //! gives the same bits as a run without a stop. A folder with another scene, with other files, or in use by
-//! another process is refused. When the process is killed, at most the steps since the last checkpoint are
+//! another process is refused; [`simulate_anew`] deletes the run of another scene. When the process is killed, at most the steps since the last checkpoint are
 //! lost ([`Output::checkpoint_interval`](crate::scene::Output::checkpoint_interval)).
 //!
 //! A [`Sweep`] makes many runs of one scene, and [`Collection`] makes one table of their summaries.
@@ -38,6 +38,7 @@ mod replay;
 mod stepping;
 mod summary;
 mod sweep;
+mod warning;
 
 pub use collect::Collection;
 pub use error::RunError;
@@ -50,12 +51,13 @@ pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation, VariationError};
+pub use warning::RunWarning;
 
 use crate::format::{HistoryWriter, frame_path, read_json, write_json, write_obj};
 use crate::scene::{SceneFile, Setup, SupportForces};
 use crate::view::PageOptions;
 use checkpoint::Progress;
-use folder::{Contents, Material, RunFolder};
+use folder::{Contents, Existing, Material, RunFolder};
 use frames::{FrameFile, FrameShape, read_frames};
 use page::write_page_of;
 use recording::{open_scene, read_trajectory};
@@ -145,14 +147,37 @@ pub fn simulate(
     folder: &Path,
     watch: &mut dyn Watch,
 ) -> Result<Outcome, RunError> {
+    simulate_in(file, folder, Existing::Continue, watch)
+}
+
+/// Runs a scene in a folder from the start. A run that the folder holds, of whatever scene, is deleted before:
+/// the files that [`simulate`] writes, and no others.
+///
+/// # Errors
+/// As [`simulate`]. A folder that is not that of a run, or in which another process works, is refused, and
+/// nothing is deleted there.
+pub fn simulate_anew(
+    file: &SceneFile,
+    folder: &Path,
+    watch: &mut dyn Watch,
+) -> Result<Outcome, RunError> {
+    simulate_in(file, folder, Existing::Delete, watch)
+}
+
+fn simulate_in(
+    file: &SceneFile,
+    folder: &Path,
+    existing: Existing,
+    watch: &mut dyn Watch,
+) -> Result<Outcome, RunError> {
     let clock = Instant::now();
     let material = Material::read(file)?;
-    if RunFolder::is_complete(folder, &material)? {
+    if existing == Existing::Continue && RunFolder::is_complete(folder, &material)? {
         return already_complete(folder, material.hash);
     }
     let setup = file.build()?;
     let modelled = setup.modelled.clone();
-    let (open, saved) = match RunFolder::open(folder, &material)? {
+    let (open, saved) = match RunFolder::open(folder, &material, existing)? {
         Contents::Complete(open) => {
             let lost = !open.path(RunFolder::TRAJECTORY).is_file();
             if file.scene().output.trajectory && lost {

@@ -3,10 +3,14 @@
 #[path = "shared/headless.rs"]
 mod headless;
 
+#[path = "shared/devtools.rs"]
+mod devtools;
+
 mod view {
     mod browser;
     mod decoder;
     mod encoding;
     mod errors;
+    mod keys;
     mod scenes;
 }

@@ -132,7 +132,9 @@ impl Advice for RunError {
             Self::Scene(error) => error.advice(),
             Self::Step(error) => error.advice(),
             Self::SceneFile(error) => error.advice(),
-            Self::OtherScene { .. } => Some("choose another folder with --out"),
+            Self::OtherScene { .. } => {
+                Some("replace it with --force, or choose another folder with --out")
+            }
             Self::Foreign { .. } => Some("choose an empty or a new folder with --out"),
             Self::Busy { .. } => Some("wait for it or choose another folder with --out"),
             Self::Unwritable { .. } => Some(
@@ -140,15 +142,15 @@ impl Advice for RunError {
             ),
             Self::NoRun { .. } => Some("name the folder that `isosheet simulate` wrote"),
             Self::Damaged { .. } | Self::NoFrames { .. } => {
-                Some("delete the folder and run the scene again")
+                Some("run the scene again with --force, which replaces the run")
             }
             Self::DamagedFrame { .. } => Some(
                 "give the `simulate` command again, which takes up a run that is not complete at its last \
-                 checkpoint; if it names the same frame, delete the folder and run the scene again",
+                 checkpoint; if it names the same frame, run the scene again with --force",
             ),
-            Self::OtherVersion { .. } => {
-                Some("continue it with that version, or run the scene in another folder with --out")
-            }
+            Self::OtherVersion { .. } => Some(
+                "continue it with that version, replace it with --force, or choose another folder with --out",
+            ),
             Self::Read { .. } => Some("check the path"),
             Self::Write(error) => error.advice(),
             Self::History(error) => error.advice(),

@@ -96,6 +96,15 @@ pub(crate) enum Contents {
     Partial(RunFolder),
 }
 
+/// What becomes of a run that a folder holds at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Existing {
+    /// A run of the same scene is continued, one of another scene is refused.
+    Continue,
+    /// It is deleted.
+    Delete,
+}
+
 /// The folder of a run, locked against other processes.
 #[derive(Debug)]
 pub(crate) struct RunFolder {
@@ -132,7 +141,11 @@ impl RunFolder {
     }
 
     /// Creates the folder when missing, locks it and says what is in it.
-    pub(crate) fn open(root: &Path, material: &Material<'_>) -> Result<Contents, RunError> {
+    pub(crate) fn open(
+        root: &Path,
+        material: &Material<'_>,
+        existing: Existing,
+    ) -> Result<Contents, RunError> {
         let unwritable = |source| RunError::Unwritable {
             folder: root.to_owned(),
             source,
@@ -158,6 +171,9 @@ impl RunFolder {
             _lock: lock,
         };
         folder.remove_parts().map_err(unwritable)?;
+        if existing == Existing::Delete {
+            folder.delete_run().map_err(unwritable)?;
+        }
         // The scene is stored after the mesh files.
         let stored = root.join(Self::SCENE).is_file();
         if stored {
@@ -182,6 +198,31 @@ impl RunFolder {
         folders
             .iter()
             .try_for_each(|folder| remove_unfinished(folder))
+    }
+
+    /// Deletes the files of a run, and no others. The summary is the first, so that what is left after a kill
+    /// is not taken for a complete run.
+    fn delete_run(&self) -> io::Result<()> {
+        let files = [
+            Self::SUMMARY,
+            Self::CHECKPOINT,
+            Self::PAGE,
+            Self::TRAJECTORY,
+            Self::FRAMES,
+            Self::HISTORY,
+            Self::SCENE,
+        ];
+        let folders = [Self::OBJ, MESHES];
+        let deleted = files.map(|name| fs::remove_file(self.path(name)));
+        let deleted = deleted.into_iter();
+        let deleted = deleted.chain(folders.map(|name| fs::remove_dir_all(self.path(name))));
+        for result in deleted {
+            match result {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+        Ok(())
     }
 
     pub(crate) fn root(&self) -> &Path {

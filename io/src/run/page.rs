@@ -26,15 +26,15 @@ impl Recording {
             title: self.name.clone(),
             pins: self.pins.iter().map(|v| v.0).collect(),
             immobile: self.immobile.iter().map(|v| v.0).collect(),
-            summary: self.rows(),
+            summary: self.facts(),
             scene: self.scene.text().text.clone(),
             reproduce: self.reproduce(),
             ..replay
         })
     }
 
-    /// The table of the page.
-    fn rows(&self) -> Vec<(String, String)> {
+    /// What came of the run so far as names and values: the table of the page.
+    pub fn facts(&self) -> Vec<(String, String)> {
         let mut rows = Rows(Vec::new());
         rows.add("modelled", self.modelled.join(", "));
         match &self.summary {

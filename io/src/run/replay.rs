@@ -148,6 +148,7 @@ impl Field {
             unit: "m".into(),
             place: Place::Vertex,
             scale: Scale::Logarithmic,
+            note: String::new(),
             values: times.iter().zip(positions).map(of_frame).collect(),
         }
     }

@@ -7,7 +7,7 @@
 //! | `runs.csv` | the runs: number, folder, and the value of every key of the sweep |
 //! | `commands.txt` | a line of shell for each run, which simulates the scene with its edits |
 //! | `000`, `001`, ... | the folders of the runs |
-//! | `000.log`, `001.log`, ... | what the runs said, where `isosheet sweep -j` ran them |
+//! | `000.log`, `001.log`, ... | what the runs said, where `isosheet sweep` ran them |
 //!
 //! The last key changes fastest. Values that are added to the first key add runs at the end and keep the
 //! numbers of all others.
@@ -161,7 +161,7 @@ impl Sweep {
     /// Checks that every run can start, as `isosheet check` does it.
     ///
     /// # Errors
-    /// [`SweepError::Scene`] if the scene file cannot be read, [`SweepError::Refused`] with all that is wrong
+    /// [`SweepError::Scene`] if the scene file cannot be read or an edit cannot be made, [`SweepError::Refused`] with all that is wrong
     /// in any run.
     pub fn check(&self) -> Result<(), SweepError> {
         let path = Path::new(&self.scene);
@@ -177,8 +177,11 @@ impl Sweep {
                     .start()?;
                 Ok(())
             };
-            let Err(error) = start() else {
-                continue;
+            let error = match start() {
+                Ok(()) => continue,
+                // An edit that no scene can take says what is wrong by itself.
+                Err(error @ SceneFileError::Edit(_)) => return Err(error.into()),
+                Err(error) => error,
             };
             let problem = RefusedRuns::problem_of(&error);
             match refused.iter_mut().find(|r| r.problem == problem) {

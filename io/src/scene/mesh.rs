@@ -389,7 +389,7 @@ fn read_sheet(file: &MeshFile, key: &Key, folder: &Path) -> Result<RestMesh, Pro
     let mesh = file.read(key, folder)?;
     let sheet = Sheet::new(mesh.positions.clone(), &mesh.faces).map_err(|error| {
         let path = file.path.display();
-        let remedy = format!("`isosheet check {path} --fix FILE` repairs what can be repaired");
+        let remedy = format!("`isosheet check {path} --fix -o FILE` repairs what can be repaired");
         Problem::new(key.name("path"), format!("{path}: {error}"), remedy)
     })?;
     let assignments = mesh.fold_assignments(sheet.topology());

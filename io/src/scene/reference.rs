@@ -159,31 +159,32 @@ Where a key has several choices, a choice with keys of its own is a table with o
 `isosheet simulate` writes the folder `NAME-run` (`--out` names another one): `scene.toml` as it was run, `meshes/`
 with the mesh files, `history.csv`, `trajectory.npz`, `obj/` if it is asked for, `index.html`, and last
 `summary.json`. The page `index.html` shows the run in 3D and plays it, in any browser and without a connection;
-`isosheet page DIR` makes it anew, of a run that is not complete too. A run that was stopped is continued by the
-same command, or by `isosheet resume DIR`. Runs that failed or were stopped have `trajectory.npz`, too; where it was
-deleted, the same command or `isosheet convert DIR x.npz` writes it again.
+`isosheet page DIR` makes it anew, of a run that is not complete too, and `isosheet info DIR` says what came of the run.
+A run that was stopped is continued by the same command, or by `isosheet resume DIR`. After an edit of the scene
+`isosheet simulate SCENE --force` replaces the run. Runs that failed or were stopped have `trajectory.npz`, too; where
+it was deleted, the same command or `isosheet convert DIR x.npz` writes it again.
 
-`isosheet sweep SCENE --over stop.time=1,2 --over sheet.damping=0.5,1,2 -j 2` runs all combinations of the values, here
-two at a time, in the folders `NAME-sweep/000`, `001` and so on; `NAME-sweep/runs.csv` is the table of the runs.
-Without `-j` it prints what GNU parallel, Slurm or Snakemake need to run them. The same command again continues what was
-stopped or killed, and values may be added at the end of the first key. `isosheet collect NAME-sweep --out all.csv`
-makes one table of the keys and of all `summary.json`, with a row for each run.
+`isosheet sweep SCENE --over stop.time=1,2 --over sheet.damping=0.5,1,2` runs all combinations of the values in the
+folders `NAME-sweep/000`, `001` and so on, as many at a time as the machine has cores, or as `-j` says;
+`NAME-sweep/runs.csv` is the table of the runs. With `--engine parallel`, `slurm` or `snakemake` it prints instead what
+GNU parallel, Slurm or Snakemake need to run them. The same command again continues what was stopped or killed, and
+values may be added at the end of the first key. `isosheet collect NAME-sweep --out all.csv` makes one table of the keys
+and of all `summary.json`, with a row for each run.
 
 The exit codes:
 
 | code | meaning |
 |---|---|
-| 0 | done; of `simulate`, the run is complete; of `sweep -j`, all runs are |
+| 0 | done; of `simulate`, the run is complete; of `sweep`, all runs are |
 | 1 | a step of the simulation failed |
-| 2 | the command line is wrong |
+| 2 | the command line is wrong, or does not fit to the files that it names |
 | 3 | the scene or the mesh is wrong, or a file cannot be read |
 | 4 | the folder holds the run of another scene or version, another sweep, or other files |
 | 5 | another process is writing to the folder |
 | 6 | a file or a folder cannot be written |
 | 130 | stopped by Ctrl-C, or a run of a sweep was killed; the same command continues |
 
-This page and `scene.schema.json`, the JSON schema for editors, are made by `isosheet reference DIR` of the
-structs that read scenes.
+This page and `scene.schema.json`, the JSON schema for editors, are made of the structs that read scenes.
 ";
 
 const HEAD: &str = "| key | value | default | meaning |\n|---|---|---|---|\n";

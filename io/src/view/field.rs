@@ -46,6 +46,8 @@ pub struct Field {
     pub place: Place,
     /// The scale of its colours.
     pub scale: Scale,
+    /// What to know of the values, a sentence that is shown with them; empty if there is nothing.
+    pub note: String,
     /// The values in each frame (T lists with one value for each vertex, edge or face).
     pub values: Vec<Vec<f64>>,
 }
@@ -102,6 +104,7 @@ impl Field {
             unit: String::new(),
             place: Place::Edge,
             scale: Scale::Logarithmic,
+            note: String::new(),
             values,
         })
     }
@@ -118,6 +121,8 @@ impl Field {
             unit: "N".into(),
             place: Place::Edge,
             scale: Scale::Signed,
+            note: "Where rods depend on each other, as in a flat part of the sheet, their forces are not unique."
+                .into(),
             values: values?,
         })
     }
@@ -136,6 +141,7 @@ impl Field {
                 unit: unit.into(),
                 place: Place::Vertex,
                 scale,
+                note: String::new(),
                 values: values?,
             })
         };

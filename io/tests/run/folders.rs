@@ -92,6 +92,66 @@ fn a_complete_folder_ends_at_once_and_is_not_touched() {
     assert!(summary.largest_strain < 2e-12);
 }
 
+/// `--force` replaces the run of a scene that was edited, and a complete one, and leaves alone what no run wrote.
+#[test]
+fn force_replaces_a_run_and_nothing_else() {
+    let dir = with_scene(StartingPoint::Fold);
+    let dir = dir.path();
+    let short = ["simulate", "scene.toml", "--set", "stop.time=0.2"];
+    let done = run(dir, &[&short[..], &["--set", "output.obj=true"]].concat());
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let out = dir.join("scene-run");
+    assert!(out.join("obj").is_dir());
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    let refused = run(dir, &short);
+    assert_eq!(code(&refused), Some(4), "{}", stderr(&refused));
+    assert!(stderr(&refused).contains("--force"), "{}", stderr(&refused));
+    let replaced = run(dir, &[&short[..], &["--force"]].concat());
+    assert_eq!(code(&replaced), Some(0), "{}", stderr(&replaced));
+    let whole = run(dir, &[&short[..], &["--out", "whole"]].concat());
+    assert_eq!(code(&whole), Some(0), "{}", stderr(&whole));
+    assert_same(&dir.join("whole"), &out);
+    assert!(!out.join("obj").exists(), "files of the run before");
+    assert_eq!(fs::read_to_string(out.join("notes.txt")).unwrap(), "mine");
+    // A complete run of the same scene is run again.
+    let again = run(dir, &[&short[..], &["--force", "--json"]].concat());
+    let lines = String::from_utf8(again.stdout).unwrap();
+    assert!(lines.contains("\"event\":\"complete\""), "{lines}");
+    fs::create_dir(dir.join("mine")).unwrap();
+    fs::write(dir.join("mine/scene.toml"), "dear").unwrap();
+    let foreign = run(dir, &[&short[..], &["--force", "--out", "mine"]].concat());
+    assert_eq!(code(&foreign), Some(4), "{}", stderr(&foreign));
+    assert_eq!(fs::read_dir(dir.join("mine")).unwrap().count(), 1);
+}
+
+/// A run that failed, and one in use: the first is replaced, the second is not.
+#[test]
+fn force_replaces_a_run_that_failed_and_none_in_use() {
+    let dir = with_scene(StartingPoint::Stamp);
+    let dir = dir.path();
+    let scene = "version = 1
+sheet.mesh = { rectangle = { width = 0.2, height = 0.1, columns = 2, rows = 1 } }
+support = [
+    { at = { vertices = [0, 3] } },
+    { at = { vertices = [2, 5] }, hold = { moving_pin = { x = { ramp = { to = 0.1, end = 1 } } } } },
+]
+stop.time = 0.1
+";
+    fs::write(dir.join("taut.toml"), scene).unwrap();
+    assert_eq!(code(&run(dir, &["simulate", "taut.toml"])), Some(1));
+    fs::write(dir.join("taut.toml"), scene.replace("to = 0.1", "to = 0")).unwrap();
+    assert_eq!(code(&run(dir, &["simulate", "taut.toml"])), Some(4));
+    let mended = run(dir, &["simulate", "taut.toml", "--force"]);
+    assert_eq!(code(&mended), Some(0), "{}", stderr(&mended));
+    let simulate = ["simulate", "scene.toml", "-o", "run"];
+    let mut child = started(dir, &simulate, "run", 2);
+    let second = run(dir, &[&simulate[..], &["--force"]].concat());
+    assert_eq!(code(&second), Some(5), "{}", stderr(&second));
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(dir.join("run/scene.toml").is_file());
+}
+
 #[test]
 fn folders_that_cannot_be_written_are_told() {
     let dir = with_scene(StartingPoint::Fold);

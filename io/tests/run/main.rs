@@ -1,5 +1,6 @@
 //! The command: runs that are killed and continued, folders in use, exit codes.
 
+mod command_line;
 mod contact_data;
 mod continuing;
 mod convert;
@@ -41,6 +42,10 @@ fn code(output: &Output) -> Option<i32> {
 
 fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
 /// A folder with one of the scenes to start from.

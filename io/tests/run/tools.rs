@@ -77,11 +77,11 @@ fn meshes_are_checked_and_repaired() {
     let check = run(dir, &["check", "soup.obj"]);
     assert_eq!(code(&check), Some(3));
     assert!(
-        stderr(&check).contains("--fix FILE2` repairs this"),
+        stderr(&check).contains("--fix -o FILE2` repairs this"),
         "{}",
         stderr(&check)
     );
-    let fix = run(dir, &["check", "soup.obj", "--fix", "sheet.obj"]);
+    let fix = run(dir, &["check", "soup.obj", "--fix", "-o", "sheet.obj"]);
     assert_eq!(code(&fix), Some(0), "{}", stderr(&fix));
     let sheet = read_sheet(&dir.join("sheet.obj")).unwrap();
     assert_eq!((sheet.topology().vertex_count(), sheet.area()), (4, 1.0));
@@ -95,7 +95,7 @@ fn meshes_are_checked_and_repaired() {
         stderr(&refused)
     );
     assert_eq!(
-        code(&run(dir, &["check", "quad.obj", "--fix", "cut.ply"])),
+        code(&run(dir, &["check", "quad.obj", "--fix", "-o", "cut.ply"])),
         Some(0)
     );
     // Two triangles that touch along a side are a sheet of two parts; merging joins them. Three that touch
@@ -109,7 +109,7 @@ fn meshes_are_checked_and_repaired() {
         "{text}"
     );
     assert_eq!(
-        code(&run(dir, &["check", "touch.obj", "--fix", "one.obj"])),
+        code(&run(dir, &["check", "touch.obj", "--fix", "-o", "one.obj"])),
         Some(0)
     );
     assert_eq!(
@@ -121,7 +121,7 @@ fn meshes_are_checked_and_repaired() {
     );
     let up = "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 7 8 9\n";
     fs::write(dir.join("three.obj"), format!("{touching}{up}")).unwrap();
-    let kept = run(dir, &["check", "three.obj", "--fix", "kept.obj"]);
+    let kept = run(dir, &["check", "three.obj", "--fix", "-o", "kept.obj"]);
     assert_eq!(code(&kept), Some(0), "{}", stderr(&kept));
     assert_eq!(
         read_sheet(&dir.join("kept.obj"))
@@ -132,7 +132,7 @@ fn meshes_are_checked_and_repaired() {
     );
     let fan = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
     fs::write(dir.join("fan.obj"), fan).unwrap();
-    let refused = run(dir, &["check", "fan.obj", "--fix", "no.obj"]);
+    let refused = run(dir, &["check", "fan.obj", "--fix", "-o", "no.obj"]);
     assert_eq!(code(&refused), Some(3));
     assert!(!dir.join("no.obj").exists());
 }

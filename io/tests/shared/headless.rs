@@ -11,7 +11,7 @@ const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "c
 /// How long a browser may take: some seconds suffice on an idle machine.
 const PATIENCE: Duration = Duration::from_secs(180);
 
-fn browser() -> Option<&'static str> {
+pub(crate) fn browser() -> Option<&'static str> {
     let runs = |name: &&str| {
         let mut command = Command::new(name);
         command

@@ -150,6 +150,7 @@ fn texts_are_shown_as_they_are_and_the_pointer_finds_the_sheet() {
         "Face",
         "strain (edge)",
         "depth <b>&\u{e4} (vertex)",
+        "Forces <i>& are one choice.",
     ] {
         assert!(text.contains(part), "{text} lacks {part}");
     }

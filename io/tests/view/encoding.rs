@@ -273,6 +273,7 @@ fn a_sheet_that_does_not_move_and_constant_fields_are_kept() {
             unit: String::new(),
             place: Place::Face,
             scale,
+            note: String::new(),
             values: vec![vec![value; count]; 3],
         }];
         let data = document(&replay.to_html().unwrap());

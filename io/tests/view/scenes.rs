@@ -36,6 +36,7 @@ pub(crate) fn waving(level: u32, frames: usize) -> Replay {
             unit: "m".into(),
             place: Place::Vertex,
             scale: Scale::Linear,
+            note: String::new(),
             values: positions.iter().map(depths).collect(),
         },
         Field {
@@ -43,6 +44,7 @@ pub(crate) fn waving(level: u32, frames: usize) -> Replay {
             unit: "N".into(),
             place: Place::Edge,
             scale: Scale::Signed,
+            note: "Forces <i>& are one choice.".into(),
             values: (0..frames)
                 .map(|k| forces(sheet.topology().edge_count(), k))
                 .collect(),

@@ -25,6 +25,7 @@ export function describe(replay, found) {
     if (quantity.key.startsWith("field-")) {
       const index = { vertex, edge, face }[quantity.place];
       lines.push(`${quantity.label} (${quantity.place}): ${withUnit(quantity.value(index), quantity.unit)}`);
+      if (quantity.note) lines.push(quantity.note);
     }
   }
   return lines;

@@ -8,6 +8,7 @@ const $ = (id) => document.getElementById(id);
 export function showLegend(quantity) {
   $("legend").hidden = !quantity.map;
   if (!quantity.map) return;
+  $("legend").title = quantity.note ?? "";
   const [low, high] = quantity.range();
   $("legend-name").textContent =
     quantity.label +

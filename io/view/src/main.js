@@ -2,9 +2,11 @@
 
 import "uplot/dist/uPlot.min.css";
 import "./view.css";
+import { Address } from "./address.js";
 import { decode } from "./decode.js";
 import { number } from "./format.js";
 import { Hover } from "./hover.js";
+import { listenToKeys, releaseControls } from "./keys.js";
 import { showLegend } from "./legend.js";
 import { Player } from "./player.js";
 import { Plots } from "./plots.js";
@@ -40,7 +42,9 @@ class Page {
       this.plots.build();
     });
     this.player.seek(0);
+    this.address = new Address(this);
     this.changed();
+    this.stage.controls.addEventListener("change", () => this.address.changed());
   }
 
   /** Brings everything that shows the frame up to date. */
@@ -53,6 +57,7 @@ class Page {
     $("time").textContent = `${number(replay.time)} s · ${replay.frame + 1}/${replay.frames}`;
     $("play").textContent = player.playing ? "\u275A\u275A" : "\u25B6";
     $("play").setAttribute("aria-label", player.playing ? "Pause" : "Play");
+    this.address.changed();
   }
 
   connect() {
@@ -86,9 +91,20 @@ class Page {
       $(id).addEventListener("change", () => {
         act($(id).checked);
         stage.request();
+        this.address.changed();
       });
     }
-    document.addEventListener("keydown", (event) => this.key(event));
+    releaseControls();
+    const step = (frames) => (isTen) => player.seek(replay.frame + (isTen ? 10 : 1) * frames);
+    listenToKeys({
+      " ": () => player.toggle(),
+      ArrowLeft: step(-1),
+      ArrowRight: step(1),
+      Home: () => player.seek(0),
+      End: () => player.seek(replay.frames - 1),
+      r: () => stage.resetCamera(),
+      f: () => stage.frameSheet(),
+    });
   }
 
   colourBy(key) {
@@ -96,54 +112,25 @@ class Page {
     $("colour").value = quantity.key;
     this.stage.setQuantity(quantity);
     showLegend(quantity);
+    this.address.changed();
   }
 
   showBodies(look) {
     $("bodies").value = LOOKS.includes(look) ? look : LOOKS[0];
     this.stage.showBodies($("bodies").value);
     this.hover.update();
-  }
-
-  key(event) {
-    // Controls have keys of their own: arrows change a choice, space presses a button.
-    const taken = event.target.closest(event.key === " " ? "select, button, summary, input" : "select");
-    if (event.ctrlKey || event.metaKey || event.altKey || taken) return;
-    const { player, replay, stage } = this,
-      step = event.shiftKey ? 10 : 1;
-    const acts = {
-      " ": () => player.toggle(),
-      ArrowLeft: () => player.seek(replay.frame - step),
-      ArrowRight: () => player.seek(replay.frame + step),
-      Home: () => player.seek(0),
-      End: () => player.seek(replay.frames - 1),
-      r: () => stage.resetCamera(),
-      f: () => stage.frameSheet(),
-    };
-    const act = acts[event.key] ?? acts[event.key.toLowerCase()];
-    if (!act) return;
-    event.preventDefault();
-    act();
-  }
-
-  /** The choices that the address names, as in `index.html#frame=20&colour=fold`. */
-  choose(choices) {
-    if (choices.has("colour")) this.colourBy(choices.get("colour"));
-    if (choices.has("bodies")) this.showBodies(choices.get("bodies"));
-    if (choices.has("frame")) this.player.seek(Number(choices.get("frame")) || 0);
-    for (const id of ["edges", "wireframe", "rest"]) {
-      if (choices.has(id) && $(id).checked !== (choices.get(id) === "1")) $(id).click();
-    }
+    this.address.changed();
   }
 }
 
 async function main() {
-  const choices = new URLSearchParams(location.hash.slice(1));
+  const isTest = new URLSearchParams(location.hash.slice(1)).has("selftest");
   const exceptions = watchErrors();
   const data = await decode(JSON.parse($("replay").textContent));
   const page = new Page(new Replay(data));
   $("message").hidden = true;
-  page.choose(choices);
-  if (choices.has("selftest"))
+  page.address.read();
+  if (isTest)
     document.body.dataset.selftest = JSON.stringify(await selfTest(page, exceptions));
 }
 

@@ -164,6 +164,7 @@ function fieldQuantity(replay, field, k) {
   return {
     key: `field-${k}`,
     label: field.name,
+    note: field.note,
     unit: field.unit,
     place: field.place,
     map: SEQUENTIAL,
@@ -191,6 +192,7 @@ function forceQuantity(replay, field, k) {
   return {
     key: `field-${k}`,
     label: field.name,
+    note: field.note,
     unit: field.unit,
     place: field.place,
     map: hasSigns ? DIVERGING : SEQUENTIAL,

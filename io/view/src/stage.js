@@ -170,6 +170,29 @@ export class Stage {
     this.frameBox(this.box, direction);
   }
 
+  /** Where the camera is and what it looks at, in metres: six numbers with commas. */
+  cameraText() {
+    // A ten-thousandth of what is framed cannot be seen.
+    const digits = Math.min(Math.max(Math.ceil(4 - Math.log10(this.size)), 0), 20);
+    const ends = [this.camera.position, this.controls.target];
+    const metres = ends.flatMap((p) => p.toArray().map((c, k) => c * this.size + this.centre[k]));
+    // The sum has no negative zero.
+    return metres.map((c) => Number(c.toFixed(digits)) + 0).join(",");
+  }
+
+  /** Puts the camera where six numbers say, in metres: its position and what it looks at. */
+  lookFrom(metres) {
+    const [position, target] = [0, 3].map((from) =>
+      new Vector3(...metres.slice(from, from + 3).map((c, k) => (c - this.centre[k]) / this.size)),
+    );
+    const isPlace = metres.length === 6 && metres.every(Number.isFinite);
+    if (!isPlace || position.distanceTo(target) < NEAREST) return;
+    this.controls.target.copy(target);
+    this.camera.position.copy(position);
+    this.controls.update();
+    this.request();
+  }
+
   /** Moves the camera along its direction of view to where the sheet, as it is now, fills the view. */
   frameSheet() {
     const box = new Box3().setFromArray(this.positions);

@@ -1,7 +1,7 @@
 //! The lines of shell in the hand-written pages are command lines that the parser takes.
 
 use crate::Cli;
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use std::fs;
 use std::path::Path;
 
@@ -67,4 +67,50 @@ fn the_commands_of_the_book_are_known() {
         }
     }
     assert!(known > 15, "{known} lines were found");
+}
+
+/// The command lines of the examples of a help text, without what follows them behind two or more blanks.
+fn examples(help: &str) -> Vec<String> {
+    let commands = help.lines().filter_map(|line| {
+        let line = line.strip_prefix("  ")?;
+        let command = line.split("  ").next()?;
+        let command = command.split(['|', '>']).next()?;
+        command
+            .starts_with("isosheet ")
+            .then(|| command.trim().to_owned())
+    });
+    commands.collect()
+}
+
+/// Every help text begins with examples, and the parser takes all of them. The completion script and what
+/// `--help` does not show have none.
+#[test]
+fn help_begins_with_examples_that_are_known() {
+    let mut cli = Cli::command();
+    let shown: Vec<String> = cli
+        .get_subcommands()
+        .filter(|c| !c.is_hide_set() && c.get_name() != "completions")
+        .map(|c| c.get_name().to_owned())
+        .collect();
+    assert!(shown.len() >= 10 && !shown.iter().any(|name| name == "reference"));
+    for name in &shown {
+        let command = cli.find_subcommand_mut(name).expect("a subcommand");
+        let help = command.render_long_help().to_string();
+        assert!(help.starts_with("Examples:\n"), "{help}");
+        let examples = examples(&help);
+        let of_command = examples.iter().filter(|e| e.contains(name.as_str()));
+        assert!(of_command.count() > 0, "{help}");
+    }
+    let all = shown.iter().map(|name| {
+        let command = cli.find_subcommand_mut(name).expect("a subcommand");
+        command.render_long_help().to_string()
+    });
+    let all: Vec<String> = all.collect();
+    let whole = cli.render_long_help().to_string();
+    assert!(whole.starts_with("Examples:\n"), "{whole}");
+    for line in all.iter().chain([&whole]).flat_map(|help| examples(help)) {
+        if let Err(error) = Cli::try_parse_from(words(&line)) {
+            panic!("{line}\n{error}");
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use crate::Done;
 use crate::exit::{Code, Failure};
 use crate::hints;
-use crate::info::{describe_scene, is_scene, refuse_folder};
+use crate::info::{describe_scene, is_scene, refuse_edits, refuse_folder};
 use crate::message::counted;
 use crate::write::{is_same_file, to_stdout};
 use clap::Args;
@@ -15,14 +15,28 @@ use isosheet_io::{
 };
 use std::path::{Path, PathBuf};
 
+const EXAMPLES: &str = "\
+Examples:
+  isosheet check cloth.toml                        whether the scene can start, and what is wrong if it cannot
+  isosheet check cloth.toml --set stop.time=2      the same with another value of a key
+  isosheet check soup.obj                          whether the mesh is a sheet
+  isosheet check soup.obj --fix -o sheet.obj       repair it";
+
 /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
 #[derive(Debug, Args)]
+#[command(before_help = EXAMPLES)]
 pub(crate) struct Check {
     /// A scene (.toml) or a mesh (OBJ, OFF, STL, PLY, FOLD, glTF)
     file: PathBuf,
-    /// Write the repaired mesh to this other file, in the format of its extension
-    #[arg(long, value_name = "FILE2")]
-    fix: Option<PathBuf>,
+    /// Of a scene, change a key before, as `isosheet simulate` does
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    edits: Vec<String>,
+    /// Of a mesh, repair what can be repaired, and write it to the file of --out
+    #[arg(long, requires = "out")]
+    fix: bool,
+    /// The file to write the repaired mesh to, in the format of its extension
+    #[arg(short, long, value_name = "FILE", requires = "fix")]
+    out: Option<PathBuf>,
 }
 
 impl Check {
@@ -30,11 +44,11 @@ impl Check {
         if !is_scene(&self.file) {
             return self.check_mesh();
         }
-        if self.fix.is_some() {
+        if self.fix {
             let message = "--fix repairs mesh files, and this is a scene";
-            return Err(Failure::new(Code::Input, message).remedy("correct a scene by hand"));
+            return Err(Failure::misuse(message).remedy("correct a scene by hand"));
         }
-        let scene = SceneFile::read(&self.file, &[])?;
+        let scene = SceneFile::read(&self.file, &self.edits)?;
         let setup = scene.build()?;
         let text = describe_scene(&setup);
         let sheet = &scene.scene().sheet;
@@ -55,8 +69,9 @@ impl Check {
 
     fn check_mesh(&self) -> Done {
         refuse_folder(&self.file)?;
+        refuse_edits(&self.edits)?;
         let name = self.file.display();
-        if let Some(fixed) = &self.fix {
+        if let Some(fixed) = &self.out {
             return self.fix_mesh(fixed);
         }
         let mesh = read(&self.file, Polygons::Refuse)?;
@@ -79,7 +94,7 @@ impl Check {
         let name = self.file.display();
         if is_same_file(&self.file, fixed) {
             let message = format!("{} is the file that is read", fixed.display());
-            return Err(Failure::new(Code::Input, message).remedy("choose another name"));
+            return Err(Failure::misuse(message).remedy("choose another name"));
         }
         let given = read(&self.file, Polygons::Triangulate)?;
         let mut mesh = given.clone();
@@ -122,7 +137,7 @@ impl Check {
 fn what_merging_does(mut mesh: MeshFile) -> String {
     match mesh.repair() {
         Ok(repair) if !repair.is_nothing() => {
-            format!("note: `--fix FILE2` would join parts that touch: {repair}\n")
+            format!("note: `--fix -o FILE2` would join parts that touch: {repair}\n")
         }
         _ => String::new(),
     }
@@ -137,7 +152,7 @@ fn read(path: &Path, polygons: Polygons) -> Result<MeshFile, Failure> {
         let failure = Failure::of(Code::Input, &error);
         match error.problem {
             MeshFileProblem::Polygon { .. } => failure.remedy(
-                "`--fix FILE2` cuts polygons into triangles: their new edges are lines along which the sheet can \
+                "`--fix -o FILE2` cuts polygons into triangles: their new edges are lines along which the sheet can \
                  fold",
             ),
             _ => failure,
@@ -159,7 +174,7 @@ fn what_repair_does(mut mesh: MeshFile, problem: &MeshFileError, path: &Path) ->
     };
     match mesh.into_sheet() {
         Ok(_) => format!(
-            "`isosheet check {} --fix FILE2` repairs this: {repair}",
+            "`isosheet check {} --fix -o FILE2` repairs this: {repair}",
             path.display()
         ),
         Err(error) => {

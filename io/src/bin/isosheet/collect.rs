@@ -2,22 +2,28 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use crate::message::{counted, print_message};
+use crate::message::{counted, print_message, print_result};
 use crate::write::{bytes_to_stdout, is_same_file};
 use clap::Args;
 use isosheet_io::run::Collection;
 use std::path::PathBuf;
 
+const EXAMPLES: &str = "\
+Examples:
+  isosheet collect cloth-sweep -o cloth.csv              one table of a sweep
+  isosheet collect runs/a runs/b --allow-incomplete      a table of two folders, on standard output";
+
 /// Make one table (CSV) of the summaries of runs and sweeps
 ///
 /// The table has a row for each run: its folder, the keys of its sweep, and all of its `summary.json`.
 #[derive(Debug, Args)]
+#[command(before_help = EXAMPLES)]
 pub(crate) struct Collect {
     /// Folders of sweeps and of runs
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
     /// The file to write [default: standard output]
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Make the table without the runs that are not complete
     #[arg(long)]
@@ -41,12 +47,11 @@ impl Collect {
         match &self.out {
             Some(path) => {
                 collection.write(path)?;
-                print_message(format_args!(
+                print_result(format_args!(
                     "{}: {}",
                     path.display(),
                     counted(collection.row_count(), "run", "runs")
-                ));
-                Ok(())
+                ))
             }
             None => bytes_to_stdout(&collection.to_csv()),
         }
@@ -63,7 +68,7 @@ impl Collect {
             None => Ok(()),
             Some(file) => {
                 let message = format!("{} belongs to the sweep or the run", file.display());
-                Err(Failure::new(Code::Input, message).remedy("choose another name"))
+                Err(Failure::misuse(message).remedy("choose another name"))
             }
         }
     }

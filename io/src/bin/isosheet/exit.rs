@@ -11,9 +11,9 @@ use std::process::ExitCode;
 /// The exit codes, as `--help` shows them.
 pub(crate) const EXIT_CODES: &str = "\
 Exit codes:
-  0    done; of `simulate`, the run is complete; of `sweep -j`, all runs are
+  0    done; of `simulate`, the run is complete; of `sweep`, all runs are
   1    a step of the simulation failed
-  2    the command line is wrong
+  2    the command line is wrong, or does not fit to the files that it names
   3    the scene or the mesh is wrong, or a file cannot be read
   4    the folder holds the run of another scene or version, another sweep, or other files
   5    another process is writing to the folder
@@ -90,6 +90,11 @@ impl Failure {
         }
     }
 
+    /// A command line that makes no sense.
+    pub(crate) fn misuse(message: impl ToString) -> Self {
+        Self::new(Code::CommandLine, message)
+    }
+
     /// The failure that an error describes, with its advice.
     pub(crate) fn of(code: Code, error: &impl Advice) -> Self {
         Self {
@@ -149,6 +154,7 @@ impl From<RunError> for Failure {
             | RunError::OtherVersion { .. }
             | RunError::Foreign { .. } => Code::OtherScene,
             RunError::Busy { .. } => Code::Busy,
+            RunError::SceneFile(SceneFileError::Edit(_)) => Code::CommandLine,
             RunError::Scene(_)
             | RunError::SceneFile(_)
             | RunError::NoRun { .. }

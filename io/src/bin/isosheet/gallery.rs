@@ -2,22 +2,32 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use crate::message::{counted, print_message};
+use crate::message::{counted, print_message, print_result};
+use crate::open::open_page;
 use clap::Args;
 use isosheet_io::run::{Gallery, GalleryError};
 use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  isosheet gallery cloth-sweep --open          the runs of a sweep on one page, in a browser
+  isosheet gallery . -o cloths                 all runs beneath the current folder, in the folder cloths";
 
 /// Make one page of many runs: pictures, key numbers and links to the pages that play them
 ///
 /// The folder that is written refers to nothing outside of it, so that it can be moved or sent.
 #[derive(Debug, Args)]
+#[command(before_help = EXAMPLES)]
 pub(crate) struct GalleryArgs {
     /// Folders of runs, or folders with runs anywhere beneath them
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
     /// The folder to write
-    #[arg(long, value_name = "DIR", default_value = "gallery")]
+    #[arg(short, long, value_name = "DIR", default_value = "gallery")]
     out: PathBuf,
+    /// Open the page in a browser
+    #[arg(long)]
+    open: bool,
 }
 
 impl GalleryArgs {
@@ -33,11 +43,15 @@ impl GalleryArgs {
         for (folder, reason) in &gallery.left_out {
             print_message(format_args!("left out: {}: {reason}", folder.display()));
         }
-        print_message(format_args!(
+        let page = self.out.join("index.html");
+        print_result(format_args!(
             "{}: {}",
-            self.out.join("index.html").display(),
+            page.display(),
             counted(gallery.entries.len(), "run", "runs")
-        ));
+        ))?;
+        if self.open {
+            open_page(&page);
+        }
         Ok(())
     }
 }

@@ -2,19 +2,32 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::simulate::print_warnings;
 use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::dynamics::{SheetModel, rod_rank};
 use isosheet_io::mesh::{Dof, MassKind, Sheet};
+use isosheet_io::run::Recording;
 use isosheet_io::scene::{SceneFile, Setup};
 use isosheet_io::{MeshFileProblem, read_sheet};
 use std::path::{Path, PathBuf};
 
-/// Print counts, degrees of freedom, boundary loops and sizes
+const EXAMPLES: &str = "\
+Examples:
+  isosheet info cloth-run                          how the run ended, or how far it has come
+  isosheet info cloth.toml                         counts, degrees of freedom and sizes of the sheet of a scene
+  isosheet info cloth.toml --set sheet.mesh.square.level=3
+  isosheet info sheet.obj                          the same of a mesh";
+
+/// Say what came of a run, or print counts, degrees of freedom, boundary loops and sizes of a sheet
 #[derive(Debug, Args)]
+#[command(before_help = EXAMPLES)]
 pub(crate) struct Info {
     /// A scene (.toml), a mesh (OBJ, OFF, STL, PLY, FOLD, glTF) or the folder of a run
     file: PathBuf,
+    /// Of a scene, change a key before, as `isosheet simulate` does
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    edits: Vec<String>,
 }
 
 /// Whether a file is a scene by its name; everything else is read as a mesh.
@@ -31,15 +44,24 @@ pub(crate) fn refuse_folder(path: &Path) -> Done {
     Err(Failure::new(Code::Input, message).remedy("name a scene or a mesh file"))
 }
 
+/// Refuses changes of keys where there is no scene to change.
+pub(crate) fn refuse_edits(edits: &[String]) -> Done {
+    if edits.is_empty() {
+        return Ok(());
+    }
+    let message = "--set changes keys of a scene, and this is none";
+    Err(Failure::misuse(message).remedy("leave it out, or name a scene"))
+}
+
 impl Info {
     pub(crate) fn run(&self) -> Done {
-        let scene = match self.file.join("scene.toml") {
-            scene if scene.is_file() => scene,
-            _ => self.file.clone(),
-        };
-        if is_scene(&scene) {
-            let setup = SceneFile::read(&scene, &[])?.build()?;
+        if is_scene(&self.file) {
+            let setup = SceneFile::read(&self.file, &self.edits)?.build()?;
             return to_stdout(&describe_scene(&setup));
+        }
+        refuse_edits(&self.edits)?;
+        if self.file.join("scene.toml").is_file() {
+            return describe_run(&self.file);
         }
         refuse_folder(&self.file)?;
         let sheet = read_sheet(&self.file).map_err(|e| match e.problem {
@@ -57,6 +79,28 @@ impl Info {
             .map_err(|e| Failure::of(Code::Input, &e))?;
         to_stdout(&describe_sheet(&sheet, &model, sheet.positions()))
     }
+}
+
+/// Prints what came of a run, and what its scene is like.
+fn describe_run(folder: &Path) -> Done {
+    let recording = Recording::read(folder)?;
+    let facts = recording.facts();
+    let width = facts.iter().map(|(name, _)| name.len()).max();
+    let lines = facts.iter().map(|(name, value)| {
+        let width = width.unwrap_or_default();
+        format!("{name:width$}  {value}\n")
+    });
+    let setup = recording.scene.build()?;
+    to_stdout(&format!(
+        "{}\n{}\nThe scene:\n{}",
+        folder.display(),
+        lines.collect::<String>(),
+        describe_scene(&setup)
+    ))?;
+    if let Some(summary) = &recording.summary {
+        print_warnings(summary);
+    }
+    Ok(())
 }
 
 /// A scene in a few lines.

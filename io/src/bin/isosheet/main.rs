@@ -11,6 +11,7 @@ mod hints;
 mod info;
 mod interrupt;
 mod message;
+mod open;
 mod page;
 mod pictures;
 mod progress;
@@ -22,13 +23,26 @@ mod write;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use exit::{EXIT_CODES, Failure};
+use message::Verbosity;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+const EXAMPLES: &str = "\
+Examples:
+  isosheet new cloth --kind drape              write a scene to start from: cloth.toml
+  isosheet simulate cloth.toml --open          run it in the folder cloth-run, and open its 3D page
+  isosheet info cloth-run                      say what came of it
+  isosheet convert cloth-run cloth.usda        write it for Blender; .pvd for ParaView, .apng as a film ...
+  isosheet sweep cloth.toml --over sheet.density=0.1,0.2
+                                               run the scene with both values
+  isosheet check cloth.toml                    say what is wrong with a scene or a mesh file";
+
 /// Simulates sheets that bend and crease but never stretch.
 #[derive(Debug, Parser)]
-#[command(name = "isosheet", version, after_help = EXIT_CODES)]
+#[command(name = "isosheet", version, before_help = EXAMPLES, after_help = EXIT_CODES)]
 struct Cli {
+    #[command(flatten)]
+    verbosity: Verbosity,
     #[command(subcommand)]
     command: Command,
 }
@@ -39,7 +53,7 @@ enum Command {
     Simulate(simulate::Simulate),
     /// Continue the run in a folder, with the scene that is stored there
     Resume(simulate::Resume),
-    /// Run a scene with all combinations of some values, here or by GNU parallel, Slurm or Snakemake
+    /// Run a scene with all combinations of some values, on all cores or by GNU parallel, Slurm or Snakemake
     Sweep(sweep::SweepArgs),
     /// Make one table of the summaries of runs and sweeps
     Collect(collect::Collect),
@@ -49,7 +63,7 @@ enum Command {
     Gallery(gallery::GalleryArgs),
     /// Say what a scene or a mesh file is, what is wrong with it and how to repair it
     Check(check::Check),
-    /// Print counts, degrees of freedom, boundary loops and sizes of the sheet of a scene or a mesh file
+    /// Say what came of a run, or what the sheet of a scene or a mesh file is like
     Info(info::Info),
     /// Convert a mesh file to another format, or a run to files of other programs
     Convert(convert::Convert),
@@ -61,6 +75,7 @@ enum Command {
         shell: clap_complete::Shell,
     },
     /// Write the reference of scene files: scene.md and the JSON schema scene.schema.json
+    #[command(hide = true)]
     Reference {
         /// The folder
         dir: PathBuf,
@@ -69,6 +84,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
+    cli.verbosity.choose();
     let done = match cli.command {
         Command::Simulate(simulate) => simulate.run(),
         Command::Resume(resume) => resume.run(),

@@ -2,25 +2,35 @@
 
 use crate::Done;
 use crate::exit::Failure;
-use crate::message::print_message;
+use crate::message::print_result;
+use crate::open::open_page;
 use clap::Args;
 use isosheet_io::run::write_page;
 use isosheet_io::view::PageOptions;
 use std::path::PathBuf;
 
+const EXAMPLES: &str = "\
+Examples:
+  isosheet page cloth-run --open              make the page of a run anew, and open it in a browser
+  isosheet page cloth-run -o cloth.html       write it to another file, which can be sent to somebody";
+
 /// Make the 3D page of a run, complete or not
 ///
 /// `isosheet simulate` ends with this page, unless the scene has `output.page = false`.
 #[derive(Debug, Args)]
+#[command(before_help = EXAMPLES)]
 pub(crate) struct Page {
     /// The folder of the run
     dir: PathBuf,
     /// The file to write [default: index.html in the folder of the run]
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Largest size of the page: of a run that needs more, fewer frames are kept
     #[arg(long, value_name = "BYTES", default_value_t = PageOptions::default().budget)]
     budget: usize,
+    /// Open the page in a browser
+    #[arg(long)]
+    open: bool,
 }
 
 impl Page {
@@ -33,11 +43,14 @@ impl Page {
             budget: self.budget,
         };
         let size = write_page(&self.dir, &file, &options).map_err(Failure::from)?;
-        print_message(format_args!(
+        print_result(format_args!(
             "page: {} ({} kB)",
             file.display(),
             size.div_ceil(1000)
-        ));
+        ))?;
+        if self.open {
+            open_page(&file);
+        }
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::exit::Format;
 use crate::interrupt;
-use crate::message::{counted, print_message};
+use crate::message::{counted, is_quiet, is_verbose, print_progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use isosheet_io::run::{Beginning, Tick, Watch};
 use serde_json::{Value, json};
@@ -79,12 +79,12 @@ impl Watch for Progress {
             0 => String::new(),
             n => format!(", continued after step {n}"),
         };
-        print_message(format_args!(
+        print_progress(format_args!(
             "{}: {modelled}; {}{from}",
             counted(*vertices, "vertex", "vertices"),
             counted(*of as usize, "step", "steps")
         ));
-        if std::io::stderr().is_terminal() {
+        if std::io::stderr().is_terminal() && !is_quiet() && !is_verbose() {
             let bar = ProgressBar::with_draw_target(Some(*of), ProgressDrawTarget::stderr());
             let template = "{wide_bar} {pos}/{len} steps, {per_sec}, {eta} left";
             if let Ok(style) = ProgressStyle::with_template(template) {
@@ -109,9 +109,11 @@ impl Watch for Progress {
                     "strain": tick.strain, "gap": tick.gap, "rate": rate, "left": left,
                 }));
             }
-            Format::Text if self.bar.is_none() && self.last.elapsed() >= LINES => {
+            Format::Text
+                if self.bar.is_none() && (is_verbose() || self.last.elapsed() >= LINES) =>
+            {
                 self.last = Instant::now();
-                print_message(format_args!(
+                print_progress(format_args!(
                     "step {} of {}, t = {:.4} s, {rate:.1} steps/s, {left:.0} s left",
                     tick.steps, tick.of, tick.t
                 ));

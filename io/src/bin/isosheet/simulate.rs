@@ -3,34 +3,53 @@
 use crate::Done;
 use crate::exit::{Code, Failure, Format};
 use crate::interrupt;
-use crate::message::{counted, print_message};
+use crate::message::{counted, print_message, print_result};
+use crate::open::open_page;
 use crate::progress::{Progress, event};
 use clap::Args;
-use isosheet_io::run::{Outcome, RunError, Summary, resume_folder, simulate};
+use isosheet_io::Advice;
+use isosheet_io::run::{Outcome, RunError, Summary, resume_folder, simulate, simulate_anew};
 use isosheet_io::scene::SceneFile;
 use serde_json::json;
 use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  isosheet simulate cloth.toml --open                  run a scene in the folder cloth-run, and look at it
+  isosheet simulate cloth.toml --force                 run it from the start, after an edit for example
+  isosheet simulate cloth.toml --set contact.friction=0.8 -o rough
+                                                       run it with another value, in the folder rough";
 
 /// Run a scene
 ///
 /// A folder with a complete run of the same scene is left as it is, and one with a part of it is continued:
 /// the same command line may be given again at any time.
 #[derive(Debug, Args)]
+#[command(before_help = EXAMPLES)]
 pub(crate) struct Simulate {
     /// The scene file
     scene: PathBuf,
     /// The folder to write to [default: the name of the scene with `-run`, in the current folder]
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Change a key of the scene, for example `stop.time=0.5` or `obstacle[0].friction=0.3`
     #[arg(long = "set", value_name = "KEY=VALUE")]
     edits: Vec<String>,
+    /// Run from the start, and delete the run that the folder holds before: that of a scene that was edited
+    /// since, one that failed, or a complete one
+    #[arg(long)]
+    force: bool,
     #[command(flatten)]
     how: How,
 }
 
+const RESUME_EXAMPLES: &str = "\
+Examples:
+  isosheet resume cloth-run                    continue a run that was stopped, without its scene file";
+
 /// Continue a run
 #[derive(Debug, Args)]
+#[command(before_help = RESUME_EXAMPLES)]
 pub(crate) struct Resume {
     /// The folder of the run
     dir: PathBuf,
@@ -44,12 +63,16 @@ struct How {
     /// Write one JSON object a line to stdout instead of text
     #[arg(long)]
     json: bool,
-    /// Number of threads; the results do not depend on it
+    /// Number of threads, at most 1024; the results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     threads: u16,
+    /// Open the page of the run in a browser, at its end
+    #[arg(long)]
+    open: bool,
 }
 
-/// Most threads: more than the cores of any machine with common memory, so that a larger number is a mistake.
+/// Most threads of a run: more than the cores of any machine with one memory. A larger number is a mistake,
+/// and systems end processes that start tens of thousands of threads.
 const MOST_THREADS: i64 = 1024;
 
 impl How {
@@ -87,19 +110,26 @@ impl How {
                 return Err(failure.remedy("the same command continues"));
             }
         };
+        let page = page(folder);
         if self.json {
-            let page = page(folder);
-            event(
-                &json!({ "event": event_name, "folder": folder, "page": page, "summary": summary }),
-            );
+            let warnings: Vec<String> =
+                summary.warnings().iter().map(Advice::with_advice).collect();
+            event(&json!({
+                "event": event_name, "folder": folder, "page": page, "summary": summary, "warnings": warnings,
+            }));
         } else {
-            print_message(format_args!("{}", sentence(event_name, folder, &summary)));
-            if summary.held > 0 {
-                print_message(format_args!("{}", warning(&summary)));
+            print_result(format_args!("{}", sentence(event_name, folder, &summary)))?;
+            print_warnings(&summary);
+            if let Some(page) = &page {
+                print_result(format_args!("page: {}", page.display()))?;
             }
-            if let Some(page) = page(folder) {
-                print_message(format_args!("page: {}", page.display()));
-            }
+        }
+        match page {
+            Some(page) if self.open => open_page(&page),
+            None if self.open => print_message(format_args!(
+                "warning: the run has no page to open\n  = help: leave `output.page` of the scene at true"
+            )),
+            _ => {}
         }
         Ok(())
     }
@@ -111,15 +141,14 @@ fn page(folder: &Path) -> Option<PathBuf> {
     page.is_file().then_some(page)
 }
 
-/// What to know of a run in which the sheet was held.
-fn warning(summary: &Summary) -> String {
-    format!(
-        "warning: {} of {} ended without a balance of forces: the rods lock, or no motion was found, and the sheet was \
-         held where it was or stopped short\n  = help: choose `sheet.isometry` weak or membrane, or a \
-         larger `method.hold_after`; `method.fallback` refuse divides such steps, and may end with an error",
-        summary.held,
-        counted(summary.steps as usize, "step", "steps"),
-    )
+/// Says what to know before the results of a run are used.
+pub(crate) fn print_warnings(summary: &Summary) {
+    for warning in summary.warnings() {
+        print_message(format_args!("warning: {warning}"));
+        if let Some(advice) = warning.advice() {
+            print_message(format_args!("  = help: {advice}"));
+        }
+    }
 }
 
 fn sentence(what: &str, folder: &Path, summary: &Summary) -> String {
@@ -157,8 +186,9 @@ impl Simulate {
             .clone()
             .unwrap_or_else(|| default_folder(&self.scene));
         self.how.prepare()?;
+        let run = if self.force { simulate_anew } else { simulate };
         self.how
-            .show(&folder, |progress| simulate(&scene, &folder, progress))
+            .show(&folder, |progress| run(&scene, &folder, progress))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use crate::message::print_message;
+use crate::message::print_result;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use isosheet_io::scene::StartingPoint;
@@ -11,12 +11,23 @@ use std::ffi::OsStr;
 use std::io::Write;
 use std::path::PathBuf;
 
+const EXAMPLES: &str = "\
+Examples:
+  isosheet new cloth                           a sheet of paper that hangs by one corner, in cloth.toml
+  isosheet new cloth --kind drape              a cloth that drapes over a box
+  isosheet new -o scenes/punch.toml --kind stamp";
+
 /// Write a commented scene to start from
 #[derive(Debug, Args)]
+#[command(before_help = EXAMPLES)]
 pub(crate) struct New {
     /// The name of the scene; the file is NAME.toml in the current folder
+    #[arg(required_unless_present = "out", conflicts_with = "out")]
     #[arg(value_parser = PathBufValueParser::new().try_map(file_name))]
-    name: PathBuf,
+    name: Option<PathBuf>,
+    /// The file to write [default: NAME.toml]
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
     /// What it shows
     #[arg(long, value_enum, default_value_t = Kind::Hanging)]
     kind: Kind,
@@ -51,10 +62,7 @@ fn file_name(path: PathBuf) -> Result<PathBuf, &'static str> {
 
 impl New {
     pub(crate) fn run(&self) -> Done {
-        let mut path = self.name.clone();
-        if path.extension().is_none_or(|e| e != "toml") {
-            path.as_mut_os_string().push(".toml");
-        }
+        let path = self.path();
         if path.exists() {
             let message = format!("{} exists", path.display());
             return Err(Failure::new(Code::Output, message).remedy("choose another name"));
@@ -69,10 +77,21 @@ impl New {
         .text();
         write_atomically(&path, |w| w.write_all(text.as_bytes()))
             .map_err(|e| Failure::of(Code::Output, &e))?;
-        print_message(format_args!(
+        print_result(format_args!(
             "wrote {path}; run it with `isosheet simulate {path}`",
             path = path.display()
-        ));
-        Ok(())
+        ))
+    }
+
+    /// The file to write: the name of a scene gets its extension, the file of `--out` is taken as it is.
+    fn path(&self) -> PathBuf {
+        if let Some(out) = &self.out {
+            return out.clone();
+        }
+        let mut path = self.name.clone().unwrap_or_default();
+        if path.extension().is_none_or(|e| e != "toml") {
+            path.as_mut_os_string().push(".toml");
+        }
+        path
     }
 }

@@ -2,30 +2,37 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use crate::message::{counted, print_message};
+use crate::message::{counted, print_progress};
 use crate::workers;
 use crate::write::to_stdout;
 use clap::{Args, ValueEnum};
 use isosheet_io::run::{Engine, Sweep, Variation};
 use std::ffi::OsStr;
+use std::num::{NonZero, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
 /// What the command does, as `--help` shows it.
 const HELP: &str = "\
-The folder has runs.csv (a row for each run) and commands.txt (a line of shell for each run). Without -j nothing
-is run: the lines for other programs are printed, of one program with --engine:
+The folder has runs.csv (a row for each run) and commands.txt (a line of shell for each run). With --engine nothing
+is run: what the other program needs is printed.
+The same line again, after a kill or a failure, leaves complete runs as they are and continues the others.
+`isosheet collect DIR` makes one table of the results. The exit code is 0 if all runs are complete, 130 after
+Ctrl-C or if a run was killed, and otherwise that of the first run that failed.";
+
+const EXAMPLES: &str = "\
+Examples:
+  isosheet sweep s.toml --over sheet.density=0.1,0.2         two runs, on all cores
+  isosheet sweep s.toml --over stop.time=1,2 --over contact.friction=0,0.3 -j 1 -o study
+                                                             four runs, one at a time, in the folder study
   isosheet sweep s.toml --over stop.time=1,2 --engine parallel | sh
   isosheet sweep s.toml --over stop.time=1,2 --engine slurm > job.sh && sbatch job.sh
-  isosheet sweep s.toml --over stop.time=1,2 --engine snakemake > Snakefile && snakemake -j 8
-The same line again, after a kill or a failure, leaves complete runs as they are and continues the others.
-`isosheet collect DIR` makes one table of the results. With -j the exit code is 0 if all runs are complete, 130
-after Ctrl-C or if a run was killed, and otherwise that of the first run that failed.";
+  isosheet sweep s.toml --over stop.time=1,2 --engine snakemake > Snakefile && snakemake -j 8";
 
 /// Run a scene with all combinations of some values
 ///
 /// All runs are checked before anything is written or run.
 #[derive(Debug, Args)]
-#[command(after_help = HELP)]
+#[command(before_help = EXAMPLES, after_help = HELP)]
 pub(crate) struct SweepArgs {
     /// The scene file
     scene: PathBuf,
@@ -37,12 +44,12 @@ pub(crate) struct SweepArgs {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     edits: Vec<String>,
     /// The folder to write to [default: the name of the scene with `-sweep`, in the current folder]
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Run the sweep here, N runs at a time, each in a process of its own
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    jobs: Option<u32>,
-    /// Print what this program needs to run the sweep, and nothing else
+    /// Run N of the runs at a time, each in a process of its own [default: as many as the machine has cores]
+    #[arg(short, long, value_name = "N")]
+    jobs: Option<NonZero<usize>>,
+    /// Run nothing, and print what this program needs to run the sweep
     #[arg(long, value_enum, conflicts_with = "jobs")]
     engine: Option<EngineName>,
 }
@@ -75,24 +82,17 @@ impl SweepArgs {
         let program = this_program()?;
         sweep.write(&word_for(&program)?)?;
         let count = counted(sweep.len(), "run", "runs");
-        print_message(format_args!("{count} in {}", folder.display()));
-        match (self.jobs, self.engine) {
-            (Some(jobs), _) => workers::run(&sweep, &program, jobs),
-            (None, Some(engine)) => to_stdout(&engine.engine().text(&sweep)),
-            (None, None) => to_stdout(&all_engines(&sweep)),
+        print_progress(format_args!("{count} in {}", folder.display()));
+        match self.engine {
+            Some(engine) => to_stdout(&engine.engine().text(&sweep)),
+            None => workers::run(&sweep, &program, self.jobs.unwrap_or_else(all_cores)),
         }
     }
 }
 
-/// What every program needs, with headings.
-fn all_engines(sweep: &Sweep) -> String {
-    let parts = [
-        ("GNU parallel (--engine parallel)", Engine::Parallel),
-        ("Slurm (--engine slurm)", Engine::Slurm),
-        ("Snakemake (--engine snakemake)", Engine::Snakemake),
-    ];
-    let parts = parts.map(|(name, engine)| format!("# {name}\n{}", engine.text(sweep)));
-    parts.join("\n")
+/// The number of cores that the process may use; one where the system does not say.
+fn all_cores() -> NonZero<usize> {
+    std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)
 }
 
 /// The folder of a sweep without `--out`: `drape-sweep` in the current folder for `scenes/drape.toml`.

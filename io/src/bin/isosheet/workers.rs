@@ -4,10 +4,11 @@
 use crate::Done;
 use crate::exit::{Code, Failure};
 use crate::interrupt;
-use crate::message::{counted, print_message};
+use crate::message::{counted, is_verbose, print_message, print_progress, print_result};
 use isosheet_io::run::{Sweep, SweepRun};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
+use std::num::NonZero;
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::Mutex;
@@ -21,7 +22,7 @@ struct Failed {
 }
 
 /// Runs a sweep, so many runs at a time. After Ctrl-C no other run is begun.
-pub(crate) fn run(sweep: &Sweep, program: &Path, jobs: u32) -> Done {
+pub(crate) fn run(sweep: &Sweep, program: &Path, jobs: NonZero<usize>) -> Done {
     interrupt::install()?;
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let failed = Mutex::new(Vec::new());
@@ -37,7 +38,7 @@ pub(crate) fn run(sweep: &Sweep, program: &Path, jobs: u32) -> Done {
             let (folder, edits) = (&run.folder, run.edits.join(", "));
             let head = format!("{count} of {}: run {folder} ({edits})", sweep.len());
             match outcome {
-                Ok(()) => print_message(format_args!("{head}: complete")),
+                Ok(()) => print_progress(format_args!("{head}: complete")),
                 Err((code, message)) => {
                     print_message(format_args!("{head}: {message}"));
                     let entry = Failed { run, code, message };
@@ -47,7 +48,7 @@ pub(crate) fn run(sweep: &Sweep, program: &Path, jobs: u32) -> Done {
         }
     };
     std::thread::scope(|scope| {
-        let most = sweep.len().min(jobs as usize);
+        let most = sweep.len().min(jobs.get());
         for _ in 0..most {
             scope.spawn(work);
         }
@@ -65,12 +66,11 @@ fn ending(sweep: &Sweep, done: usize, mut failed: Vec<Failed>) -> Done {
         return Err(Failure::new(Code::Interrupted, message).remedy("the same command continues"));
     }
     let Some(first) = failed.first() else {
-        print_message(format_args!(
+        return print_result(format_args!(
             "complete: {} in {}",
             counted(sweep.len(), "run", "runs"),
             sweep.folder().display()
         ));
-        return Ok(());
     };
     let message = format!(
         "{} of {} runs failed, the first one is run {}: {}",
@@ -92,12 +92,13 @@ fn simulate(sweep: &Sweep, run: &SweepRun, program: &Path) -> Result<(), (Code, 
     let log = File::options().create(true).append(true).open(&path);
     let log = log.map_err(unwritable)?;
     let before = log.metadata().map_err(unwritable)?.len();
+    let results = log.try_clone().map_err(unwritable)?;
     let mut command = Command::new(program);
     command.args(sweep.arguments(run));
-    command
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(log);
+    if is_verbose() {
+        command.arg("--verbose");
+    }
+    command.stdin(Stdio::null()).stdout(results).stderr(log);
     let status = command.status().map_err(|e| {
         let message = format!(
             "cannot start {}: {e}; run the sweep anew",

@@ -1,0 +1,240 @@
+//! The command line by the usual conventions: what is misuse, what goes where, what is said.
+
+use crate::{code, isosheet, run, stderr, stdout, with_scene};
+use isosheet_io::scene::StartingPoint;
+use std::fs;
+use std::path::Path;
+
+/// A folder with a scene, its run of 0.1 s, and a mesh.
+fn with_run() -> tempfile::TempDir {
+    let dir = with_scene(StartingPoint::Fold);
+    let short = ["simulate", "scene.toml", "--set", "stop.time=0.1", "-q"];
+    let done = run(dir.path(), &short);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    fs::write(dir.path().join("sheet.obj"), mesh).unwrap();
+    dir
+}
+
+/// What the parser refuses and what the command itself refuses end alike, and nothing is written.
+#[test]
+fn misuse_ends_with_exit_code_2() {
+    let dir = with_run();
+    let dir = dir.path();
+    let before = fs::read_dir(dir).unwrap().count();
+    let lines = [
+        "simulate",
+        "simulate scene.toml --set stop.time",
+        "simulate scene.toml --set obstacle[0].friction=1",
+        "simulate scene.toml --threads 0",
+        "simulate scene.toml --threads 100000",
+        "simulate scene.toml -q -v",
+        "check scene.toml --fix",
+        "check scene.toml --fix -o fixed.toml",
+        "check sheet.obj --fix -o sheet.obj",
+        "check sheet.obj -o fixed.obj",
+        "check sheet.obj --set stop.time=1",
+        "check scene.toml --set stop",
+        "info sheet.obj --set stop.time=1",
+        "info scene-run --set stop.time=1",
+        "new",
+        "new ..",
+        "new a -o b.toml",
+        "sweep scene.toml",
+        "sweep scene.toml --over stop.time=1 -j 0",
+        "sweep scene.toml --over obstacle[0].friction=1",
+        "collect scene-run -o scene-run/summary.json",
+        "unknown",
+    ];
+    for line in lines {
+        let words: Vec<&str> = line.split(' ').collect();
+        let output = run(dir, &words);
+        assert_eq!(code(&output), Some(2), "{line}: {}", stderr(&output));
+        assert!(stderr(&output).starts_with("error: "), "{line}");
+        assert!(output.stdout.is_empty(), "{line}");
+    }
+    assert_eq!(fs::read_dir(dir).unwrap().count(), before);
+}
+
+/// Results are on standard output, progress is on standard error and can be left out or be told in full.
+#[test]
+fn results_and_progress_are_kept_apart() {
+    let dir = with_scene(StartingPoint::Fold);
+    let dir = dir.path();
+    let simulate = |more: &[&str]| {
+        let short = [
+            "simulate",
+            "scene.toml",
+            "--set",
+            "stop.time=0.1",
+            "--force",
+        ];
+        let output = run(dir, &[&short[..], more].concat());
+        assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+        [stdout(&output), stderr(&output)]
+    };
+    let [result, progress] = simulate(&[]);
+    let lines: Vec<&str> = result.lines().collect();
+    assert!(lines[0].starts_with("complete: 6 steps"), "{result}");
+    assert_eq!(lines[1..], ["page: scene-run/index.html"]);
+    assert!(progress.contains("vertices: ") && progress.contains("; 6 steps"));
+    assert_eq!(progress.lines().count(), 1, "{progress}");
+    let [result, progress] = simulate(&["--quiet"]);
+    assert!(result.starts_with("complete: 6 steps"), "{result}");
+    assert_eq!(progress, "");
+    let [_, progress] = simulate(&["-v"]);
+    let steps = progress.lines().filter(|l| l.starts_with("step "));
+    assert_eq!(steps.count(), 6, "{progress}");
+    let [result, progress] = simulate(&["--set", "stop.time=0.01"]);
+    assert!(result.starts_with("complete: 1 step to"), "{result}");
+    assert!(progress.contains("; 1 step\n"), "{progress}");
+}
+
+/// Every subcommand that writes takes `-o`.
+#[test]
+fn out_has_one_meaning() {
+    let dir = with_run();
+    let dir = dir.path();
+    let lines = [
+        ("new -o own.toml --kind drape", "own.toml"),
+        (
+            "simulate scene.toml --set stop.time=0.1 -o a",
+            "a/summary.json",
+        ),
+        (
+            "sweep scene.toml --over stop.time=0.1 -o b",
+            "b/000/summary.json",
+        ),
+        ("collect b -o b.csv", "b.csv"),
+        ("page a -o a.html", "a.html"),
+        ("gallery a -o c", "c/index.html"),
+        ("check sheet.obj --fix -o fixed.ply", "fixed.ply"),
+        ("convert a -o a.glb", "a.glb"),
+        ("convert a a.usda", "a.usda"),
+    ];
+    for (line, file) in lines {
+        let words: Vec<&str> = line.split(' ').collect();
+        let output = run(dir, &words);
+        assert_eq!(code(&output), Some(0), "{line}: {}", stderr(&output));
+        assert!(dir.join(file).is_file(), "{line}");
+        assert!(!stdout(&output).is_empty(), "{line} says what it wrote");
+    }
+}
+
+#[test]
+fn check_and_info_take_edits_and_info_describes_a_run() {
+    let dir = with_run();
+    let dir = dir.path();
+    let checked = run(dir, &["check", "scene.toml", "--set", "stop.time=-1"]);
+    assert_eq!(code(&checked), Some(3), "{}", stderr(&checked));
+    let edit = "sheet.mesh={ square = { side = 1.0, level = 0 } }";
+    let drape = run(dir, &["new", "drape", "--kind", "drape"]);
+    assert_eq!(code(&drape), Some(0));
+    let info = run(dir, &["info", "drape.toml", "--set", edit]);
+    assert_eq!(code(&info), Some(0), "{}", stderr(&info));
+    assert!(stdout(&info).contains("9, of these 8"), "{}", stdout(&info));
+    let info = run(dir, &["info", "scene-run"]);
+    assert_eq!(code(&info), Some(0), "{}", stderr(&info));
+    let text = stdout(&info);
+    for part in [
+        "scene-run\n",
+        "at 0.1000 s: the whole time has passed",
+        "largest strain",
+        "wall time",
+        "The scene:\nvertices ",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    fs::remove_file(dir.join("scene-run/summary.json")).unwrap();
+    let info = run(dir, &["info", "scene-run"]);
+    let text = stdout(&info);
+    assert!(text.contains("not complete: up to 0.1000 s"), "{text}");
+}
+
+/// A program in the place of the one that opens pages notes what it is asked to open.
+#[cfg(target_os = "linux")]
+#[test]
+fn open_opens_the_page() {
+    use std::os::unix::fs::PermissionsExt;
+    let dir = with_scene(StartingPoint::Fold);
+    let dir = dir.path();
+    let opener = dir.join("xdg-open");
+    fs::write(
+        &opener,
+        "#!/bin/sh\nprintf %s \"$1\" > \"$OPENED.part\"\nmv \"$OPENED.part\" \"$OPENED\"\n",
+    )
+    .unwrap();
+    fs::set_permissions(&opener, fs::Permissions::from_mode(0o755)).unwrap();
+    let opened = |out: &str, line: &[&str]| {
+        let note = dir.join(out);
+        let path = format!("{}:/usr/bin:/bin", dir.display());
+        let mut command = isosheet(dir);
+        let output = command
+            .args(line)
+            .env("PATH", path)
+            .env("OPENED", &note)
+            .output()
+            .unwrap();
+        assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+        let begun = std::time::Instant::now();
+        while !note.is_file() {
+            assert!(begun.elapsed().as_secs() < 60, "nothing was opened");
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        fs::read_to_string(note).unwrap()
+    };
+    let page = |path: &str| dir.join(path).canonicalize().unwrap().display().to_string();
+    let simulate = ["simulate", "scene.toml", "--set", "stop.time=0.1", "--open"];
+    assert_eq!(opened("one", &simulate), page("scene-run/index.html"));
+    let line = ["page", "scene-run", "-o", "p.html", "--open"];
+    assert_eq!(opened("two", &line), page("p.html"));
+    let line = ["gallery", "scene-run", "--open"];
+    assert_eq!(opened("three", &line), page("gallery/index.html"));
+}
+
+/// A soft membrane that hangs by its upper edge stretches beyond what the model is meant for.
+#[test]
+fn a_sheet_that_stretches_too_far_is_warned_of() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = |stiffness: &str| {
+        format!(
+            "version = 1
+            [sheet]
+            mesh = {{ rectangle = {{ width = 0.1, height = 0.4, columns = 2, rows = 8 }} }}
+            density = 0.1
+            damping = 20
+            isometry = {{ membrane = {{ stiffness = {stiffness} }} }}
+            [[support]]
+            at = {{ box = {{ min = [-1, 0.399, -1], max = [1, 1, 1] }} }}
+            [forces]
+            gravity = [0, -9.81, 0]
+            [stop]
+            time = 1"
+        )
+    };
+    // The weight is 0.4 N a metre of width, which stretches the uppermost row by it over the stiffness.
+    for (stiffness, warned) in [("4.0", true), ("4e3", false)] {
+        fs::write(dir.join("hang.toml"), scene(stiffness)).unwrap();
+        let output = run(dir, &["simulate", "hang.toml", "--force", "-q"]);
+        assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+        let said = stderr(&output);
+        assert_eq!(
+            said.matches("warning: the sheet stretched by ").count(),
+            usize::from(warned),
+            "{said}"
+        );
+        assert_eq!(
+            said.contains("= help: give the sheet the stiffness"),
+            warned,
+            "{said}"
+        );
+        assert_eq!(said.is_empty(), !warned, "{said}");
+        assert_info_warns(dir, warned);
+    }
+}
+
+fn assert_info_warns(dir: &Path, warned: bool) {
+    let info = run(dir, &["info", "hang-run"]);
+    assert_eq!(stderr(&info).contains("the sheet stretched by "), warned);
+}
