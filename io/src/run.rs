@@ -106,10 +106,31 @@ pub struct Tick {
     pub gap: Option<f64>,
 }
 
+/// How far a step has come that is under way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepPart {
+    /// The number of the step, from 1.
+    pub step: u64,
+    /// Most steps of the whole run.
+    pub of: u64,
+    /// The part of the step that accepted sub-steps have reached, from 0 to 1.
+    pub part: f64,
+    /// Accepted sub-steps of the step.
+    pub substeps: usize,
+    /// Matrix factorisations of the step, those of rejected sub-steps included.
+    pub factorisations: usize,
+}
+
 /// Watches a run.
 pub trait Watch {
     /// Called before the first step.
     fn begin(&mut self, _beginning: &Beginning) {}
+
+    /// Called between the factorisations of a step. [`ControlFlow::Break`] gives the step up, writes a
+    /// checkpoint of the state before it and stops.
+    fn within_step(&mut self, _part: &StepPart) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 
     /// Called after every step. [`ControlFlow::Break`] writes a checkpoint and stops.
     fn step(&mut self, tick: &Tick) -> ControlFlow<()>;
@@ -227,7 +248,9 @@ fn advance(stepping: &mut Stepping<'_>, watch: &mut dyn Watch) -> Result<(), Run
     // More seconds than a duration can hold are as good as never.
     let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
     while stepping.progress.ending.is_none() {
-        let tick = stepping.step()?;
+        let Some(tick) = stepping.step(watch)? else {
+            break;
+        };
         let go_on = watch.step(&tick);
         let due = stepping.clock.elapsed() >= interval;
         if due || go_on.is_break() || stepping.progress.ending.is_some() {

@@ -4,10 +4,10 @@ use super::checkpoint::{self, Progress};
 use super::folder::RunFolder;
 use super::frames::FrameFile;
 use super::summary::{EndReason, Ending};
-use super::{RunError, Tick};
+use super::{RunError, StepPart, Tick, Watch};
 use crate::format::{FrameData, HistoryRow, HistoryWriter};
 use crate::scene::{FoldTargets, Origins, Scene, SceneError, SceneFile, SupportForces};
-use isosheet_dynamics::{Simulation, StepReport};
+use isosheet_dynamics::{Checkpoint, Simulation, StepError, StepProgress, StepReport};
 use nalgebra::Vector3;
 use std::time::Instant;
 
@@ -78,15 +78,42 @@ impl Stepping<'_> {
         Ok(self.frames.append(state.t, &state.x, &data)?)
     }
 
-    /// Takes and records a step. Says what has been reached.
-    pub(crate) fn step(&mut self) -> Result<Tick, RunError> {
+    /// Takes and records a step. Says what has been reached, or nothing if the watch gave the step up: then a
+    /// checkpoint of the state before it is written.
+    pub(crate) fn step(&mut self, watch: &mut dyn Watch) -> Result<Option<Tick>, RunError> {
         let scene = self.file.scene();
         let number = self.progress.steps + 1;
         let h = step_length(scene, number);
-        let report = self.simulation.step(h).map_err(|error| {
-            let problem = SceneError::from(self.origins.of_failed_step(&error, &self.simulation));
-            RunError::Step(problem.in_text(self.file.text()))
-        })?;
+        let before = self.simulation.checkpoint();
+        let start = self.simulation.state().t;
+        let mut part = StepPart {
+            step: number,
+            of: step_count(scene),
+            part: 0.0,
+            substeps: 0,
+            factorisations: 0,
+        };
+        let mut reached = start;
+        let mut ask = |progress: &StepProgress| {
+            if progress.t > reached {
+                reached = progress.t;
+                part.substeps += 1;
+            }
+            part.part = ((reached - start) / h).min(1.0);
+            part.factorisations = progress.factorisations;
+            watch.within_step(&part)
+        };
+        let report = match self.simulation.step_watched(h, &mut ask) {
+            Ok(report) => report,
+            Err(StepError::Interrupted { .. }) => {
+                self.write_checkpoint(&before)?;
+                return Ok(None);
+            }
+            Err(error) => {
+                let problem = SceneError::from(self.origins.of_failed_step(&error, &self.simulation));
+                return Err(RunError::Step(problem.in_text(self.file.text())));
+            }
+        };
         self.progress.steps = number;
         self.count(&report);
         self.history.append(&self.row(&report))?;
@@ -98,13 +125,13 @@ impl Stepping<'_> {
         if let Some(reason) = reason {
             self.progress.ending = Some(self.ending(reason, &report));
         }
-        Ok(Tick {
+        Ok(Some(Tick {
             t: report.t,
             steps: number,
             of: step_count(scene),
             strain: report.strain,
             gap: report.gap.filter(|gap| gap.is_finite()),
-        })
+        }))
     }
 
     fn count(&mut self, report: &StepReport) {
@@ -191,6 +218,11 @@ impl Stepping<'_> {
 
     /// Writes a checkpoint, after everything that it counts is on the disk.
     pub(crate) fn save(&mut self) -> Result<(), RunError> {
+        self.write_checkpoint(&self.simulation.checkpoint())
+    }
+
+    /// Writes a checkpoint of the simulation after the steps that are recorded.
+    fn write_checkpoint(&mut self, simulation: &Checkpoint) -> Result<(), RunError> {
         self.history.sync()?;
         self.frames.sync()?;
         self.progress.history = self.history.length();
@@ -198,6 +230,6 @@ impl Stepping<'_> {
         self.progress.wall += self.clock.elapsed().as_secs_f64();
         self.clock = Instant::now();
         let path = self.folder.path(RunFolder::CHECKPOINT);
-        checkpoint::write(&path, &self.progress, &self.simulation.checkpoint())
+        checkpoint::write(&path, &self.progress, simulation)
     }
 }

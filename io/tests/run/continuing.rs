@@ -1,9 +1,10 @@
 //! Runs that are stopped and continued.
 
 use crate::{assert_same, code, killed, run, started, stderr, with_scene};
-use isosheet_io::run::Recording;
-use isosheet_io::scene::StartingPoint;
+use isosheet_io::run::{Outcome, Recording, StepPart, Tick, Watch, simulate};
+use isosheet_io::scene::{SceneFile, StartingPoint};
 use isosheet_io::{Trajectory, read_history};
+use std::ops::ControlFlow;
 #[cfg(unix)]
 use std::process::Command;
 
@@ -106,4 +107,104 @@ fn ctrl_c_writes_a_checkpoint_and_the_same_command_continues() {
     let done = run(dir, &["resume", "stopped", "--threads", "2"]);
     assert_eq!(code(&done), Some(0), "{}", stderr(&done));
     assert_same(&dir.join("whole"), &dir.join("stopped"));
+}
+
+/// Gives a run up when it was asked so many times between factorisations.
+struct GiveUp {
+    asks: usize,
+    /// How far the step had come then.
+    at: Option<StepPart>,
+}
+
+impl Watch for GiveUp {
+    fn within_step(&mut self, part: &StepPart) -> ControlFlow<()> {
+        if self.asks > 0 {
+            self.asks -= 1;
+            return ControlFlow::Continue(());
+        }
+        self.at = Some(*part);
+        ControlFlow::Break(())
+    }
+
+    fn step(&mut self, _: &Tick) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// Steps of 0.3 s are divided into sub-steps; the run is given up in the middle of them.
+#[test]
+fn a_run_that_is_stopped_within_steps_continues_to_the_same_bits() {
+    let dir = with_scene(StartingPoint::Feed);
+    let dir = dir.path();
+    let edits = ["stop.time=0.6", "method.step=0.3"].map(String::from);
+    let scene = SceneFile::read(&dir.join("scene.toml"), &edits).unwrap();
+    let go_on = |_: &Tick| ControlFlow::Continue(());
+    let whole = simulate(&scene, &dir.join("whole"), &mut { go_on }).unwrap();
+    assert!(matches!(whole, Outcome::Complete(_)));
+    let mut within_substeps = false;
+    for asks in [0, 7, 200, 400, 600] {
+        let mut watch = GiveUp { asks, at: None };
+        let outcome = simulate(&scene, &dir.join("stopped"), &mut watch).unwrap();
+        assert_eq!(outcome, Outcome::Interrupted);
+        let at = watch.at.unwrap();
+        within_substeps |= at.substeps > 0 && at.part > 0.0 && at.part < 1.0;
+        assert!(at.of == 2 && at.step <= 2, "{at:?}");
+    }
+    assert!(within_substeps, "no step was given up after a sub-step");
+    let done = simulate(&scene, &dir.join("stopped"), &mut { go_on }).unwrap();
+    assert!(matches!(done, Outcome::Complete(_)));
+    assert_same(&dir.join("whole"), &dir.join("stopped"));
+}
+
+/// A single step of minutes says how far it has come, and Ctrl-C ends it at once.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_is_heard_within_a_step() {
+    use std::io::{BufRead, BufReader};
+    use std::process::Stdio;
+    use std::time::{Duration, Instant};
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = "version = 1
+        [sheet]
+        mesh = { square = { side = 1.0, level = 4 } }
+        damping = 0.1
+        [[support]]
+        at = { vertices = [0] }
+        [forces]
+        gravity = [0, 0, -9.81]
+        [method]
+        step = 60
+        [stop]
+        time = 60";
+    std::fs::write(dir.join("long.toml"), scene).unwrap();
+    for command in [&["simulate", "long.toml"][..], &["resume", "long-run"]] {
+        let mut child = crate::isosheet(dir)
+            .args(command)
+            .arg("--json")
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let mut events =
+            lines.map(|l| serde_json::from_str::<serde_json::Value>(&l.unwrap()).unwrap());
+        let within = events
+            .find(|e| e["event"] == "within step")
+            .expect("an event within the step");
+        assert!(within["factorisations"].as_u64().unwrap() > 0, "{within}");
+        assert!(within["part"].as_f64().unwrap() < 1.0, "{within}");
+        let interrupt = Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status();
+        assert!(interrupt.unwrap().success());
+        let begun = Instant::now();
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+        // A factorisation takes some milliseconds; the rest is patience with a busy machine.
+        assert!(
+            begun.elapsed() < Duration::from_secs(10),
+            "{:?}",
+            begun.elapsed()
+        );
+    }
 }

@@ -1,7 +1,7 @@
 //! The pages of runs.
 
 use crate::headless::self_test;
-use crate::{code, killed, run, stderr, summary, with_scene};
+use crate::{code, killed, run, stderr, stdout, summary, with_scene};
 use isosheet_io::mesh::generate;
 use isosheet_io::run::Recording;
 use isosheet_io::scene::StartingPoint;
@@ -44,7 +44,7 @@ fn a_run_ends_with_its_page_which_can_be_made_again() {
     fs::remove_file(&page).unwrap();
     let again = run(dir, &["page", "scene-run"]);
     assert_eq!(code(&again), Some(0), "{}", stderr(&again));
-    assert!(stderr(&again).contains("scene-run/index.html"));
+    assert!(stdout(&again).contains("scene-run/index.html"));
     assert!(fs::read(&page).unwrap() == made, "another page");
 
     let data = data(&page);
@@ -96,7 +96,7 @@ fn a_scene_can_do_without_a_page() {
     let done = run(dir, &without);
     assert_eq!(code(&done), Some(0), "{}", stderr(&done));
     assert!(!dir.join("scene-run/index.html").exists());
-    assert!(!stderr(&done).contains("page:"), "{}", stderr(&done));
+    assert!(!stdout(&done).contains("page:"), "{}", stdout(&done));
     let made = run(dir, &["page", "scene-run", "--out", "mine.html"]);
     assert_eq!(code(&made), Some(0), "{}", stderr(&made));
     assert_eq!(data(&dir.join("mine.html"))["frames"], 46);
@@ -296,7 +296,7 @@ fn meshes_of_other_people_become_a_page_in_one_command() {
         ],
     );
     assert_eq!(code(&done), Some(0), "{}", stderr(&done));
-    assert!(stderr(&done).contains("page: cloth-run/index.html"));
+    assert!(stdout(&done).contains("page: cloth-run/index.html"));
     let kinds = kinds_of_bodies(&dir.join("cloth-run/index.html"));
     assert_eq!(kinds, ["mesh"]);
     let sheet = replay(&dir.join("cloth-run"));

@@ -313,7 +313,7 @@ fn wrong_keys_and_values_are_refused_before_anything_runs() {
         Some(2)
     );
     assert_eq!(code(&sweep(&[])), Some(2));
-    let place = sweep(&["--over", "obstacle[0].friction=0.1,0.2"]);
+    let place = sweep(&["--over", "stop.time.x=0.1,0.2"]);
     assert_eq!(code(&place), Some(2), "{}", stderr(&place));
     let both = ["--over", "stop.time=1", "-j", "1", "--engine", "slurm"];
     assert_eq!(code(&sweep(&both)), Some(2));

@@ -36,9 +36,16 @@ Files that are written of a run:
   .apng   shaded pictures of all frames as an animation in real time (browsers)
 A file that exists is replaced, unless it is the one that is read. docs/formats.md says more.";
 
+const EXAMPLES: &str = "\
+Examples:
+  isosheet convert cloth-run cloth.usda        a run for Blender, with its bodies
+  isosheet convert cloth-run cloth.apng        a run as a film
+  isosheet convert cloth-run end.png           a picture of its last frame
+  isosheet convert sheet.obj sheet.fold        a mesh in another format";
+
 /// Convert a mesh file to another format, or a run to files of other programs
 #[derive(Debug, Args)]
-#[command(after_help = FORMATS)]
+#[command(before_help = EXAMPLES, after_help = FORMATS)]
 pub(crate) struct Convert {
     /// A mesh file, the folder of a run, or a trajectory (.npz)
     input: PathBuf,

@@ -1,4 +1,4 @@
-//! Ctrl-C: the first one asks the run to stop after the step, a second one ends the process at once.
+//! Ctrl-C: the first one asks the run to stop, which it does within a step, a second one ends the process at once.
 
 use crate::exit::{Code, Failure};
 use std::sync::atomic::{AtomicBool, Ordering};

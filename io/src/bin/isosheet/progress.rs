@@ -4,7 +4,7 @@ use crate::exit::Format;
 use crate::interrupt;
 use crate::message::{counted, is_quiet, is_verbose, print_progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use isosheet_io::run::{Beginning, Tick, Watch};
+use isosheet_io::run::{Beginning, StepPart, Tick, Watch};
 use serde_json::{Value, json};
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
@@ -22,6 +22,8 @@ pub(crate) struct Progress {
     bar: Option<ProgressBar>,
     begun: Instant,
     last: Instant,
+    /// When the last step ended.
+    stepped: Instant,
     /// Steps that other processes took before.
     before: u64,
 }
@@ -33,6 +35,7 @@ impl Progress {
             bar: None,
             begun: Instant::now(),
             last: Instant::now(),
+            stepped: Instant::now(),
             before: 0,
         }
     }
@@ -59,7 +62,8 @@ pub(crate) fn event(event: &Value) {
 
 impl Watch for Progress {
     fn begin(&mut self, beginning: &Beginning) {
-        (self.begun, self.last) = (Instant::now(), Instant::now());
+        self.begun = Instant::now();
+        (self.last, self.stepped) = (self.begun, self.begun);
         self.before = beginning.steps;
         let modelled = beginning.modelled.join(", ");
         let Beginning {
@@ -86,7 +90,7 @@ impl Watch for Progress {
         ));
         if std::io::stderr().is_terminal() && !is_quiet() && !is_verbose() {
             let bar = ProgressBar::with_draw_target(Some(*of), ProgressDrawTarget::stderr());
-            let template = "{wide_bar} {pos}/{len} steps, {per_sec}, {eta} left";
+            let template = "{wide_bar} {pos}/{len} steps, {per_sec}, {eta} left {msg}";
             if let Ok(style) = ProgressStyle::with_template(template) {
                 bar.set_style(style);
             }
@@ -96,10 +100,40 @@ impl Watch for Progress {
         }
     }
 
+    fn within_step(&mut self, part: &StepPart) -> ControlFlow<()> {
+        if let Some(bar) = &self.bar
+            && self.stepped.elapsed() >= EVENTS
+        {
+            bar.set_message(in_words(part));
+        }
+        let shows = match self.format {
+            Format::Json => self.last.elapsed() >= EVENTS,
+            Format::Text => self.bar.is_none() && self.last.elapsed() >= LINES,
+        };
+        if shows {
+            self.last = Instant::now();
+            match self.format {
+                Format::Json => event(&json!({
+                    "event": "within step", "step": part.step, "of": part.of, "part": part.part,
+                    "substeps": part.substeps, "factorisations": part.factorisations,
+                })),
+                Format::Text => print_progress(format_args!(
+                    "step {} of {} is under way: {}",
+                    part.step,
+                    part.of,
+                    in_words(part)
+                )),
+            }
+        }
+        go_on()
+    }
+
     fn step(&mut self, tick: &Tick) -> ControlFlow<()> {
         if let Some(bar) = &self.bar {
             bar.set_position(tick.steps);
+            bar.set_message("");
         }
+        self.stepped = Instant::now();
         let [rate, left] = self.rate(tick);
         match self.format {
             Format::Json if self.last.elapsed() >= EVENTS || tick.steps == tick.of => {
@@ -120,10 +154,24 @@ impl Watch for Progress {
             }
             _ => {}
         }
-        if interrupt::requested() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        go_on()
+    }
+}
+
+/// How far a step has come.
+fn in_words(part: &StepPart) -> String {
+    format!(
+        "{:.0} % in {}, {}",
+        100.0 * part.part,
+        counted(part.substeps, "sub-step", "sub-steps"),
+        counted(part.factorisations, "factorisation", "factorisations")
+    )
+}
+
+/// Whether Ctrl-C was not pressed.
+fn go_on() -> ControlFlow<()> {
+    match interrupt::requested() {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
     }
 }
