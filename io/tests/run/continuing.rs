@@ -109,17 +109,16 @@ fn ctrl_c_writes_a_checkpoint_and_the_same_command_continues() {
     assert_same(&dir.join("whole"), &dir.join("stopped"));
 }
 
-/// Gives a run up when it was asked so many times between factorisations.
-struct GiveUp {
-    asks: usize,
+/// Gives a run up within a step, as soon as a condition holds.
+struct GiveUp<F> {
+    when: F,
     /// How far the step had come then.
     at: Option<StepPart>,
 }
 
-impl Watch for GiveUp {
+impl<F: FnMut(&StepPart) -> bool> Watch for GiveUp<F> {
     fn within_step(&mut self, part: &StepPart) -> ControlFlow<()> {
-        if self.asks > 0 {
-            self.asks -= 1;
+        if !(self.when)(part) {
             return ControlFlow::Continue(());
         }
         self.at = Some(*part);
@@ -131,7 +130,7 @@ impl Watch for GiveUp {
     }
 }
 
-/// Steps of 0.3 s are divided into sub-steps; the run is given up in the middle of them.
+/// Steps of 0.3 s are divided into sub-steps; the run is given up before, between and after them.
 #[test]
 fn a_run_that_is_stopped_within_steps_continues_to_the_same_bits() {
     let dir = with_scene(StartingPoint::Feed);
@@ -141,16 +140,19 @@ fn a_run_that_is_stopped_within_steps_continues_to_the_same_bits() {
     let go_on = |_: &Tick| ControlFlow::Continue(());
     let whole = simulate(&scene, &dir.join("whole"), &mut { go_on }).unwrap();
     assert!(matches!(whole, Outcome::Complete(_)));
-    let mut within_substeps = false;
-    for asks in [0, 7, 200, 400, 600] {
-        let mut watch = GiveUp { asks, at: None };
+    let stopped = |when: fn(&StepPart) -> bool| {
+        let mut watch = GiveUp { when, at: None };
         let outcome = simulate(&scene, &dir.join("stopped"), &mut watch).unwrap();
         assert_eq!(outcome, Outcome::Interrupted);
-        let at = watch.at.unwrap();
-        within_substeps |= at.substeps > 0 && at.part > 0.0 && at.part < 1.0;
-        assert!(at.of == 2 && at.step <= 2, "{at:?}");
-    }
-    assert!(within_substeps, "no step was given up after a sub-step");
+        watch.at.unwrap()
+    };
+    let at = stopped(|_| true);
+    assert_eq!((at.step, at.of, at.substeps), (1, 2, 0));
+    assert_eq!((at.part, at.factorisations), (0.0, 0));
+    let at = stopped(|part| part.factorisations >= 200);
+    assert_eq!(at.factorisations, 200);
+    let at = stopped(|part| part.substeps > 0);
+    assert!(at.part > 0.0 && at.part < 1.0, "{at:?}");
     let done = simulate(&scene, &dir.join("stopped"), &mut { go_on }).unwrap();
     assert!(matches!(done, Outcome::Complete(_)));
     assert_same(&dir.join("whole"), &dir.join("stopped"));
