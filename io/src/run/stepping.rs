@@ -110,7 +110,8 @@ impl Stepping<'_> {
                 return Ok(None);
             }
             Err(error) => {
-                let problem = SceneError::from(self.origins.of_failed_step(&error, &self.simulation));
+                let problem =
+                    SceneError::from(self.origins.of_failed_step(&error, &self.simulation));
                 return Err(RunError::Step(problem.in_text(self.file.text())));
             }
         };
