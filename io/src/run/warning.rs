@@ -2,6 +2,7 @@
 
 use super::Summary;
 use isosheet_mesh::Advice;
+use isosheet_mesh::wording::{brief, counted};
 use thiserror::Error;
 
 /// A reason why the results of a complete run may not be those of a real sheet.
@@ -11,7 +12,7 @@ pub enum RunWarning {
     /// The sheet was held where it was, or stopped short.
     #[error(
         "{held} of {} ended without a balance of forces: the rods lock, or no motion was found, and the sheet was held \
-         where it was or stopped short", steps_of(*.steps)
+         where it was or stopped short", counted(*.steps as usize, "step", "steps")
     )]
     Held {
         /// Steps that ended so.
@@ -66,15 +67,6 @@ impl Summary {
     }
 }
 
-fn steps_of(steps: u64) -> String {
-    format!("{steps} step{}", if steps == 1 { "" } else { "s" })
-}
-
-/// A strain in percent, with two digits where it is small.
 fn percent(strain: f64) -> String {
-    let percent = 100.0 * strain;
-    match percent < 10.0 && percent.fract() != 0.0 {
-        true => format!("{percent:.1} %"),
-        false => format!("{percent:.0} %"),
-    }
+    format!("{} %", brief(100.0 * strain))
 }
