@@ -143,7 +143,8 @@ impl Engine {
 
     /// Forces of the rods in the last accepted sub-step; `None` where the method does not solve for them.
     pub(crate) fn rod_forces(&self) -> Option<Vec<f64>> {
-        rod_forces(&self.model, &self.method, &self.moment.history.multipliers)
+        let Moment { state, history, .. } = &self.moment;
+        rod_forces(&self.model, &self.method, &history.multipliers, &state.x)
     }
 
     /// Vertices that became pins at the start because they cannot move.

@@ -192,3 +192,51 @@ fn there_are_no_forces_without_rods_or_multipliers() {
     run.step(1e-2).unwrap();
     assert_eq!(run.rod_forces(), None);
 }
+
+/// Forces of rods that depend on each other are the least ones that balance what the sheet carries: in a flat
+/// sheet that lies between pins, where any self-stress could be added, and in a tablecloth, whose flat parts would
+/// carry weight with a thousand times its size.
+#[test]
+fn forces_of_dependent_rods_are_of_the_size_of_their_load() {
+    let sheet = generate::isotropic_square(2, 1.0).unwrap();
+    let t = sheet.topology();
+    let corner = |v: &VertexId| {
+        let p = point(sheet.positions(), v.index());
+        (p.x - 0.5).abs() > 0.4 && (p.y - 0.5).abs() > 0.4
+    };
+    let pins: Vec<VertexId> = t.vertex_ids().filter(corner).collect();
+    let pinned = model(&sheet, &pins);
+    // A load in the plane of the sheet, and a state of stress besides that loads no free vertex.
+    let x = sheet.positions();
+    let mut random = 0.3_f64;
+    let given: Vec<f64> = t
+        .edges()
+        .iter()
+        .map(|ends| {
+            random = (random * 7919.0).fract();
+            let is_free = ends.iter().any(|v| !pins.contains(v));
+            if is_free { 1e4 * (random - 0.5) } else { 0.0 }
+        })
+        .collect();
+    let least = super::least_forces(&pinned, x, &given).unwrap();
+    let norm = |f: &[f64]| f.iter().map(|f| f * f).sum::<f64>().sqrt();
+    assert!(norm(&least) < 0.9 * norm(&given));
+    let load = |forces: &[f64]| {
+        let mut load = vec![0.0; x.len()];
+        let w: Vec<f64> = forces
+            .iter()
+            .zip(pinned.rods().lengths())
+            .map(|(f, l)| f / l)
+            .collect();
+        pinned.rods().apply_transpose_add(x, &w, &mut load);
+        pinned.clear_pinned(&mut load);
+        load
+    };
+    let (expected, found) = (load(&given), load(&least));
+    for (a, b) in expected.iter().zip(&found) {
+        assert!((a - b).abs() < 1e-9 * norm(&expected), "{a} {b}");
+    }
+    // Least: what is left of the given forces is orthogonal to it.
+    let rest: f64 = given.iter().zip(&least).map(|(g, l)| (g - l) * l).sum();
+    assert!(rest.abs() < 1e-9 * norm(&given).powi(2), "{rest}");
+}
