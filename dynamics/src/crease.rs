@@ -6,6 +6,7 @@ use crate::{HessianSink, Potential};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Sheet, Topology, VertexId};
 use nalgebra::Vector3;
+use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::sync::Arc;
@@ -96,6 +97,54 @@ pub struct CreaseSpring {
     pub stiffness: f64,
     /// The angle at which it exerts no moment.
     pub rest: RestAngle,
+}
+
+impl CreaseSpring {
+    /// Makes springs those of creases in a sheet with bending stiffness, in place: a crease replaces what
+    /// resists bending at its edge.
+    ///
+    /// The dihedral angle of the two faces at an edge is the fold of the crease and the bend of the sheet over
+    /// these faces, `theta = theta_c + M / k_s`, with the stiffness `k_s = D l_e^2 / A_e` of the sheet
+    /// ([`CreaseSprings::bending`]). Springs of stiffness `k_i` at the edge, which carry the moment `M = sum k_i
+    /// (rest_i - theta_c)` together, act on that angle with `k_i k_s / (k_s + sum k_i)`: springs in series. A
+    /// sheet that nothing loads rests at the rest angle of its crease, flat on both sides; a crease that is much
+    /// stiffer than the sheet bends like the sheet. The sheet itself is made without stiffness at these edges
+    /// ([`CreaseSprings::bending_beside`], [`PlateBending::creased`](crate::PlateBending::creased)).
+    ///
+    /// `rigidity` is the flexural rigidity `D` in newton metres; with zero the springs stay as they are.
+    pub fn put_in_sheet<'a>(
+        springs: impl IntoIterator<Item = &'a mut Self>,
+        sheet: &Sheet,
+        rigidity: f64,
+    ) {
+        if rigidity == 0.0 {
+            return;
+        }
+        let springs: Vec<&mut Self> = springs.into_iter().collect();
+        let mut sums = vec![0.0; sheet.topology().edge_count()];
+        for spring in &springs {
+            if let Some(sum) = sums.get_mut(spring.edge.index()) {
+                *sum += spring.stiffness;
+            }
+        }
+        for spring in springs {
+            let sum = sums.get(spring.edge.index());
+            if let Some((sum, own)) = sum.zip(sheet_stiffness(sheet, rigidity, spring.edge)) {
+                spring.stiffness *= own / (own + sum);
+            }
+        }
+    }
+}
+
+/// The stiffness `D l_e^2 / A_e` of a sheet across an edge, newton metres per radian; nothing where there is
+/// one face or no edge.
+fn sheet_stiffness(sheet: &Sheet, rigidity: f64, edge: EdgeId) -> Option<f64> {
+    let length = sheet.lengths().get(edge.index())?;
+    let [Some(left), Some(right)] = sheet.topology().edge_faces(edge) else {
+        return None;
+    };
+    let area = sheet.face_areas()[left.index()] + sheet.face_areas()[right.index()];
+    Some(rigidity * length.powi(2) / area)
 }
 
 /// Why springs cannot be made.
@@ -208,22 +257,33 @@ impl CreaseSprings {
     /// # Errors
     /// [`CreaseError::Rigidity`].
     pub fn bending(sheet: &Sheet, rigidity: f64) -> Result<Self, CreaseError> {
+        Self::bending_beside(sheet, rigidity, &[])
+    }
+
+    /// As [`CreaseSprings::bending`], without springs at the edges of creases, where the springs of
+    /// [`CreaseSpring::put_in_sheet`] take their place.
+    ///
+    /// # Errors
+    /// [`CreaseError::Rigidity`].
+    pub fn bending_beside(
+        sheet: &Sheet,
+        rigidity: f64,
+        creases: &[EdgeId],
+    ) -> Result<Self, CreaseError> {
         if !(rigidity.is_finite() && rigidity >= 0.0) {
             return Err(CreaseError::Rigidity { rigidity });
         }
         let t = sheet.topology();
-        let mut springs = Vec::new();
-        for edge in t.edge_ids() {
-            if let [Some(left), Some(right)] = t.edge_faces(edge) {
-                let area = sheet.face_areas()[left.index()] + sheet.face_areas()[right.index()];
-                springs.push(CreaseSpring {
-                    edge,
-                    stiffness: rigidity * sheet.lengths()[edge.index()].powi(2) / area,
-                    rest: 0.0.into(),
-                });
-            }
-        }
-        Self::new(t, springs)
+        let creases: BTreeSet<EdgeId> = creases.iter().copied().collect();
+        let beside = t.edge_ids().filter(|edge| !creases.contains(edge));
+        let springs = beside.filter_map(|edge| {
+            Some(CreaseSpring {
+                edge,
+                stiffness: sheet_stiffness(sheet, rigidity, edge)?,
+                rest: 0.0.into(),
+            })
+        });
+        Self::new(t, springs.collect())
     }
 
     /// Moments `k (rest - theta)` of the springs at time `t` and positions `x`, newton metres, in the order

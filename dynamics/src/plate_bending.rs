@@ -28,13 +28,21 @@ pub enum PlateBendingError {
         /// Number of vertices.
         count: usize,
     },
+    /// An edge of a crease does not exist.
+    #[error("{edge} is named as a crease, but the sheet has {count} edges")]
+    NoEdge {
+        /// The edge.
+        edge: EdgeId,
+        /// Number of edges.
+        count: usize,
+    },
 }
 
 impl Advice for PlateBendingError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::Rigidity { .. } => Some("give a finite one of at least 0"),
-            Self::NoVertex { .. } => None,
+            Self::NoVertex { .. } | Self::NoEdge { .. } => None,
         }
     }
 }
@@ -99,6 +107,21 @@ impl PlateBending {
         rigidity: f64,
         clamped: &[VertexId],
     ) -> Result<Self, PlateBendingError> {
+        Self::creased(sheet, rigidity, clamped, &[])
+    }
+
+    /// As [`PlateBending::clamped`], of a sheet with creases: at the edges `creases` the slopes of the two sides
+    /// are independent, as at free edges, and no fit of slopes reaches across. What resists folding there are
+    /// the springs of the creases ([`CreaseSpring::put_in_sheet`](crate::CreaseSpring::put_in_sheet)).
+    ///
+    /// # Errors
+    /// [`PlateBendingError`].
+    pub fn creased(
+        sheet: &Sheet,
+        rigidity: f64,
+        clamped: &[VertexId],
+        creases: &[EdgeId],
+    ) -> Result<Self, PlateBendingError> {
         if !(rigidity.is_finite() && rigidity >= 0.0) {
             return Err(PlateBendingError::Rigidity { rigidity });
         }
@@ -106,7 +129,11 @@ impl PlateBending {
         if let Some(&vertex) = clamped.iter().find(|v| v.index() >= count) {
             return Err(PlateBendingError::NoVertex { vertex, count });
         }
-        let stencils = Stencils::new(sheet, rigidity, clamped);
+        let edges = sheet.topology().edge_count();
+        if let Some(&edge) = creases.iter().find(|e| e.index() >= edges) {
+            return Err(PlateBendingError::NoEdge { edge, count: edges });
+        }
+        let stencils = Stencils::new(sheet, rigidity, clamped, creases);
         let mut at_vertices = vec![0.0; count];
         let mut others = BTreeMap::<[u32; 2], f64>::new();
         for stencil in stencils.iter() {

@@ -58,12 +58,21 @@ impl Iterator for Stencil<'_> {
 type Combination = Vec<(VertexId, f64)>;
 
 impl Stencils {
-    pub(super) fn new(sheet: &Sheet, rigidity: f64, clamped: &[VertexId]) -> Self {
+    pub(super) fn new(
+        sheet: &Sheet,
+        rigidity: f64,
+        clamped: &[VertexId],
+        creases: &[EdgeId],
+    ) -> Self {
         let topology = sheet.topology();
         let clamps = Clamps::new(sheet, clamped);
+        let mut is_creased = vec![false; topology.edge_count()];
+        for edge in creases {
+            is_creased[edge.index()] = true;
+        }
         let slopes: Vec<_> = topology
             .edge_ids()
-            .map(|e| slope(sheet, &clamps, e))
+            .map(|e| slope(sheet, &clamps, &is_creased, e))
             .collect();
         let mut stencils = Self {
             starts: vec![0],
@@ -144,8 +153,11 @@ fn place(
 }
 
 /// The derivative of the positions at the midpoint of an edge along the normal that points out of its left
-/// face; nothing at free edges.
-fn slope(sheet: &Sheet, clamps: &Clamps, edge: EdgeId) -> Option<Combination> {
+/// face; nothing at free edges and at creases.
+fn slope(sheet: &Sheet, clamps: &Clamps, is_creased: &[bool], edge: EdgeId) -> Option<Combination> {
+    if is_creased[edge.index()] {
+        return None;
+    }
     let topology = sheet.topology();
     let [a, b] = topology.edges()[edge.index()];
     let half = Vector2::new(0.5 * sheet.lengths()[edge.index()], 0.0);
@@ -165,7 +177,7 @@ fn slope(sheet: &Sheet, clamps: &Clamps, edge: EdgeId) -> Option<Combination> {
     }
     let mean = patch_size(sheet, [left, right]);
     for _ in 0..MAX_RINGS {
-        grow(sheet, &mut patch);
+        grow(sheet, is_creased, &mut patch);
         if let Some(slope) = fit(&points(&patch, clamps), mean) {
             return Some(slope);
         }
@@ -200,8 +212,8 @@ fn slope_of_face(face: &Unfolded) -> Combination {
     ]
 }
 
-/// Adds the faces that share an edge with the patch.
-fn grow(sheet: &Sheet, patch: &mut Vec<(FaceId, Unfolded)>) {
+/// Adds the faces that share an edge with the patch which is no crease.
+fn grow(sheet: &Sheet, is_creased: &[bool], patch: &mut Vec<(FaceId, Unfolded)>) {
     let topology = sheet.topology();
     for i in 0..patch.len() {
         let (f, corners) = patch[i];
@@ -209,7 +221,8 @@ fn grow(sheet: &Sheet, patch: &mut Vec<(FaceId, Unfolded)>) {
             let (p, q) = (corners[k], corners[(k + 1) % 3]);
             let edge = topology.find_edge(p.0, q.0).expect("an edge of a face");
             let across = topology.edge_faces(edge).into_iter().flatten();
-            for g in across.filter(|g| *g != f) {
+            let across = across.filter(|g| *g != f && !is_creased[edge.index()]);
+            for g in across {
                 if patch.iter().all(|(other, _)| *other != g) {
                     patch.push((g, place(sheet, g, q, p)));
                 }

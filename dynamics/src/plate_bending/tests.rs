@@ -1,6 +1,6 @@
 use super::*;
-use crate::SheetModel;
 use crate::primal::PrimalMatrix;
+use crate::{CreaseSpring, CreaseSprings, SheetModel};
 use isosheet_mesh::generate::{self, Diagonals};
 use isosheet_mesh::{MassKind, Sheet};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector3};
@@ -148,49 +148,139 @@ fn gradient_and_hessian_are_derivatives_of_the_energy() {
     }
 }
 
-/// Tip deflection of a strip of length 0.3 m under a uniform load, linear theory, of `q L^4 / (8 D)`; a
-/// quarter of the strip is clamped.
-fn cantilever(cells: usize, diagonals: Diagonals, jitter: f64) -> f64 {
+/// Collects the entries of a Hessian for displacements along z.
+struct Upwards<'a> {
+    sheet: &'a Sheet,
+    matrix: DMatrix<f64>,
+}
+
+impl HessianSink for Upwards<'_> {
+    fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>) {
+        self.matrix[(v.index(), v.index())] += block[(2, 2)];
+    }
+
+    fn add_edge(&mut self, edge: EdgeId, block: &Matrix3<f64>) {
+        let [a, b] = self.sheet.topology().edges()[edge.index()];
+        self.add_pair(a, b, block);
+    }
+
+    fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
+        self.matrix[(a.index(), b.index())] += block[(2, 2)];
+        self.matrix[(b.index(), a.index())] += block[(2, 2)];
+    }
+}
+
+/// Tip deflection of a strip of length 0.3 m and flexural rigidity 1 under a uniform load of 1, linear theory; a
+/// quarter of the strip is clamped. Half way to its end is a crease, if it has a stiffness.
+fn cantilever(cells: usize, diagonals: Diagonals, jitter: f64, crease: Option<f64>) -> f64 {
     let (length, overhang) = (0.3, 0.1);
     let size = [length + overhang, 0.1];
     let sheet = strip([4 * cells, cells], size, diagonals, jitter, overhang);
-    let x = sheet.positions();
-    let count = sheet.topology().vertex_count();
+    let (t, x) = (sheet.topology(), sheet.positions());
+    let count = t.vertex_count();
     let is_pinned = |v: usize| x[3 * v] < overhang + 1e-9;
     let pins = (0..count).filter(|v| is_pinned(*v));
     let pins: Vec<_> = pins.map(|v| VertexId(u32::try_from(v).unwrap())).collect();
-    let plate = PlateBending::clamped(&sheet, 1.0, &pins).unwrap();
+    let on_line = |v: &VertexId| (x[3 * v.index()] - overhang - 0.5 * length).abs() < 1e-9;
+    let spring = |edge: EdgeId| {
+        let is_inside = !t.is_boundary_edge(edge) && t.edges()[edge.index()].iter().all(on_line);
+        Some(CreaseSpring {
+            edge,
+            stiffness: crease.filter(|_| is_inside)? * sheet.lengths()[edge.index()],
+            rest: 0.0.into(),
+        })
+    };
+    let mut springs: Vec<_> = t.edge_ids().filter_map(spring).collect();
+    let creases: Vec<_> = springs.iter().map(|s| s.edge).collect();
+    assert_eq!(creases.len(), crease.map_or(0, |_| cells));
+    CreaseSpring::put_in_sheet(&mut springs, &sheet, 1.0);
+    let springs = CreaseSprings::new(t, springs).unwrap();
+    let plate = PlateBending::creased(&sheet, 1.0, &pins, &creases).unwrap();
+    let matrix = DMatrix::zeros(count, count);
+    let mut upwards = Upwards {
+        sheet: &sheet,
+        matrix,
+    };
+    plate.add_hessian(0.0, x, &mut upwards);
+    springs.add_hessian(0.0, x, &mut upwards);
     let free: Vec<usize> = (0..count).filter(|v| !is_pinned(*v)).collect();
-    let n = free.len();
-    let mut column = vec![usize::MAX; count];
-    for (i, v) in free.iter().enumerate() {
-        column[*v] = i;
+    let k = upwards.matrix.select_rows(&free).select_columns(&free);
+    let model = SheetModel::new(&sheet, sheet.area(), MassKind::Lumped).unwrap();
+    let load = DVector::from_iterator(free.len(), free.iter().map(|v| model.mass().vertex[*v]));
+    let deflection = k.cholesky().expect("positive definite").solve(&load);
+    let tip = free.iter().zip(deflection.iter());
+    let tip: Vec<f64> = tip
+        .filter(|(v, _)| x[3 * **v] > size[0] - 1e-9)
+        .map(|(_, d)| *d)
+        .collect();
+    tip.iter().sum::<f64>() / tip.len() as f64
+}
+
+/// Without a crease `q L^4 / (8 D)`. A crease of stiffness `k` per length turns by `M / k` with the moment `M = q
+/// (L/2)^2 / 2` of the outer half, which hangs `L/2 M / k` deeper.
+#[test]
+fn a_crease_is_in_series_with_the_sheet() {
+    let length = 0.3_f64;
+    for diagonals in [Diagonals::UnionJack, Diagonals::Falling, Diagonals::Rising] {
+        for k in [0.3, 3.0, 30.0, 1e9] {
+            let exact = length.powi(4) / 8.0 + length.powi(3) / (16.0 * k);
+            let error = |cells| (cantilever(cells, diagonals, 0.0, Some(k)) / exact - 1.0).abs();
+            let errors = [2, 4, 8].map(error);
+            let what = format!("{diagonals:?} {k}: {errors:?}");
+            assert!(errors[2] < 0.02, "{what}");
+            assert!(
+                errors[2] < 0.65 * errors[1] && errors[1] < 0.65 * errors[0],
+                "{what}"
+            );
+        }
     }
-    let mut k = DMatrix::zeros(n, n);
-    let mut add = |a: usize, b: usize, value: f64| {
-        if column[a] < n && column[b] < n {
-            k[(column[a], column[b])] += value;
-            if a != b {
-                k[(column[b], column[a])] += value;
+}
+
+/// A strip of two flat panels that meet in a crease at its rest angle has no energy and no force, whatever the
+/// stiffness of sheet and crease and the size of the mesh.
+#[test]
+fn a_sheet_rests_at_the_rest_angle_of_its_crease() {
+    let angle = 1.5_f64;
+    for cells in [1, 2, 4] {
+        let size = [4.0, 1.0];
+        let sheet = strip([4 * cells, cells], size, Diagonals::UnionJack, 0.2, 2.0);
+        let (t, flat) = (sheet.topology(), sheet.positions());
+        let on_line = |v: &VertexId| (flat[3 * v.index()] - 2.0).abs() < 1e-9;
+        let creases: Vec<_> = t
+            .edge_ids()
+            .filter(|&e| !t.is_boundary_edge(e) && t.edges()[e.index()].iter().all(on_line))
+            .collect();
+        assert_eq!(creases.len(), cells);
+        let mut x = flat.to_vec();
+        for p in x.as_chunks_mut::<3>().0 {
+            if p[0] > 2.0 {
+                let beyond = p[0] - 2.0;
+                (p[0], p[2]) = (2.0 + beyond * angle.cos(), beyond * angle.sin());
             }
         }
-    };
-    for (v, value) in plate.at_vertices.iter().enumerate() {
-        add(v, v, *value);
+        let found = isosheet_mesh::fold_angle(t, &x, creases[0]).unwrap();
+        assert!((found.abs() - angle).abs() < 1e-12);
+        for k in [1e-3, 1.0, 1e3] {
+            let spring = |&edge: &EdgeId| CreaseSpring {
+                edge,
+                stiffness: k * sheet.lengths()[edge.index()],
+                rest: found.into(),
+            };
+            let mut springs: Vec<_> = creases.iter().map(spring).collect();
+            CreaseSpring::put_in_sheet(&mut springs, &sheet, 1.0);
+            let parts: [Box<dyn Potential>; 3] = [
+                Box::new(CreaseSprings::new(t, springs).unwrap()),
+                Box::new(CreaseSprings::bending_beside(&sheet, 1.0, &creases).unwrap()),
+                Box::new(PlateBending::creased(&sheet, 1.0, &[], &creases).unwrap()),
+            ];
+            for part in parts {
+                let mut force = vec![0.0; x.len()];
+                part.add_gradient(0.0, &x, &mut force);
+                assert!(part.energy(0.0, &x) < 1e-18 * (1.0 + k));
+                assert!(force.iter().all(|f| f.abs() < 1e-9 * (1.0 + k)));
+            }
+        }
     }
-    for (edge, value) in &plate.at_edges {
-        let [a, b] = sheet.topology().edges()[edge.index()];
-        add(a.index(), b.index(), *value);
-    }
-    for ([a, b], value) in &plate.at_pairs {
-        add(a.index(), b.index(), *value);
-    }
-    let model = SheetModel::new(&sheet, sheet.area(), MassKind::Lumped).unwrap();
-    let load = DVector::from_iterator(n, free.iter().map(|v| model.mass().vertex[*v]));
-    let deflection = k.cholesky().expect("positive definite").solve(&load);
-    let tip = (0..count).filter(|v| x[3 * v] > size[0] - 1e-9);
-    let (sum, tips) = tip.fold((0.0, 0.0), |(s, t), v| (s + deflection[column[v]], t + 1.0));
-    sum / tips / (length.powi(4) / 8.0)
 }
 
 #[test]
@@ -201,7 +291,9 @@ fn a_cantilever_bends_as_a_plate_does_on_any_mesh() {
         (Diagonals::Rising, 0.2),
         (Diagonals::UnionJack, 0.2),
     ] {
-        let errors = [2, 4, 8].map(|cells| (cantilever(cells, diagonals, jitter) - 1.0).abs());
+        let exact = 0.3_f64.powi(4) / 8.0;
+        let errors =
+            [2, 4, 8].map(|cells| (cantilever(cells, diagonals, jitter, None) / exact - 1.0).abs());
         let what = format!("{diagonals:?} {jitter}: {errors:?}");
         assert!(errors[1] < 1e-2 && errors[2] < 3e-3, "{what}");
         assert!((errors[0] / errors[2]).log2() / 2.0 > 1.5, "{what}");
@@ -221,6 +313,9 @@ fn bad_input_is_refused() {
     let error = PlateBending::clamped(&sheet, 1.0, &[VertexId(9)]).unwrap_err();
     let (vertex, count) = (VertexId(9), 9);
     assert_eq!(error, PlateBendingError::NoVertex { vertex, count });
+    let error = PlateBending::creased(&sheet, 1.0, &[], &[EdgeId(16)]).unwrap_err();
+    let (edge, count) = (EdgeId(16), 16);
+    assert_eq!(error, PlateBendingError::NoEdge { edge, count });
 }
 
 /// Meshes too small for a fit: two faces of the unit square that fold by a small angle `theta` about their

@@ -1,5 +1,6 @@
 //! From a scene to a simulation.
 
+use super::creases::{EdgeFolds, FoldSprings};
 use super::error::SceneError;
 use super::folding::FoldTargets;
 use super::key::Key;
@@ -16,7 +17,7 @@ use isosheet_dynamics::{
     leave_flat, project_positions,
 };
 use isosheet_mesh::wording::counted;
-use isosheet_mesh::{Advice, MassKind, Sheet, VertexId};
+use isosheet_mesh::{Advice, EdgeId, MassKind, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3};
 use std::path::Path;
 
@@ -31,10 +32,10 @@ impl Scene {
         let mut builder = Builder::new(self, folder)?;
         builder.add_forces()?;
         builder.add_supports()?;
-        builder.add_bending()?;
-        builder.add_creases()?;
         builder.mend_lengths();
-        builder.add_folding(folder)?;
+        let springs = builder.fold_springs(folder)?;
+        builder.add_bending(&springs.creases())?;
+        builder.add_springs(springs)?;
         builder.add_isometry()?;
         builder.perturb()?;
         let (contacts, obstacles) = builder.contacts(folder)?;
@@ -265,19 +266,19 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    fn add_bending(&mut self) -> Result<(), SceneError> {
+    fn add_bending(&mut self, creases: &[EdgeId]) -> Result<(), SceneError> {
         let key = Key::root().name("sheet.bending");
         match self.scene.sheet.bending {
             Bending::None => Ok(()),
             Bending::Plate { rigidity } => {
                 let clamped = self.model().pins();
-                let plate = PlateBending::clamped(&self.rest.sheet, rigidity, &clamped);
+                let plate = PlateBending::creased(&self.rest.sheet, rigidity, &clamped, creases);
                 let plate = plate.map_err(at(&key))?;
                 self.modelled.push("bending stiffness of a plate".into());
                 self.change(|m| Ok(m.with_potential(plate)), at::<SimulationError>(&key))
             }
             Bending::Hinges { rigidity } => {
-                let springs = CreaseSprings::bending(&self.rest.sheet, rigidity);
+                let springs = CreaseSprings::bending_beside(&self.rest.sheet, rigidity, creases);
                 let springs = springs.map_err(at(&key))?;
                 self.modelled.push("bending stiffness at edges".into());
                 self.change(
@@ -288,11 +289,30 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn add_creases(&mut self) -> Result<(), SceneError> {
+    /// The springs of the creases and of `[folding]`.
+    fn fold_springs(&mut self, folder: &Path) -> Result<FoldSprings, SceneError> {
+        let mut springs = FoldSprings::default();
         for (k, crease) in self.scene.crease.iter().enumerate() {
             let key = Key::root().name("crease").entry(k);
             let roles = self.rest.roles.as_ref();
-            let springs = crease.springs(&key, &self.unplaced, roles)?;
+            let found = crease.springs(&key, &self.unplaced, roles)?;
+            springs.add(key, crease.folds(), found);
+        }
+        if let (Some(folding), Mesh::File(file)) = (&self.scene.folding, &self.scene.sheet.mesh) {
+            let key = Key::root().name("folding");
+            let targets = folding.targets(&key, file, &self.unplaced, folder)?;
+            let [driven, flat] = folding.springs(&targets, &self.rest.sheet, &self.x);
+            springs.add(key.clone(), EdgeFolds::Yes, driven);
+            springs.add(key, EdgeFolds::No, flat);
+            self.folding = Some(targets);
+        }
+        let rigidity = self.scene.sheet.bending.rigidity();
+        springs.put_in_sheet(&self.rest.sheet, rigidity);
+        Ok(springs)
+    }
+
+    fn add_springs(&mut self, springs: FoldSprings) -> Result<(), SceneError> {
+        for (key, springs) in springs.into_groups() {
             let springs = CreaseSprings::new(self.rest.sheet.topology(), springs);
             let springs = springs.map_err(at(&key))?;
             self.change(
@@ -301,25 +321,9 @@ impl<'a> Builder<'a> {
             )?;
         }
         self.count(self.scene.crease.len(), "crease", "creases");
-        Ok(())
-    }
-
-    fn add_folding(&mut self, folder: &Path) -> Result<(), SceneError> {
-        let (Some(folding), Mesh::File(file)) = (&self.scene.folding, &self.scene.sheet.mesh)
-        else {
-            return Ok(());
-        };
-        let key = Key::root().name("folding");
-        let targets = folding.targets(&key, file, &self.unplaced, folder)?;
-        let springs = folding.springs(&targets, &self.rest.sheet, &self.x);
-        let springs = CreaseSprings::new(self.rest.sheet.topology(), springs);
-        let springs = springs.map_err(at(&key))?;
-        self.change(
-            |m| Ok(m.with_potential(springs)),
-            at::<SimulationError>(&key),
-        )?;
-        self.modelled.push("folding to given angles".into());
-        self.folding = Some(targets);
+        if self.folding.is_some() {
+            self.modelled.push("folding to given angles".into());
+        }
         Ok(())
     }
 

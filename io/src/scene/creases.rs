@@ -11,6 +11,7 @@ use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{EdgeId, Sheet, VertexId};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// Torsion springs along some edges, with the same rest angle, which may be driven.
 ///
@@ -25,7 +26,8 @@ use serde::{Deserialize, Serialize};
 pub struct Crease {
     /// Which edges.
     pub at: CreaseEdges,
-    /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre).
+    /// Torsional stiffness of a metre of crease, N (newton metres per radian and metre). It takes the place of
+    /// the bending stiffness of the sheet along the crease; springs `at = { pattern = "flat" }` act besides it.
     pub stiffness: f64,
     /// Fold angle at rest, degrees: 0 for flat, positive for a valley as seen from the side from which faces
     /// are counter-clockwise, negative for a mountain.
@@ -54,6 +56,48 @@ pub enum CreaseEdges {
     },
     /// Edges of a crease pattern by what they are meant to do.
     Pattern(PatternEdges),
+}
+
+/// Whether the sheet folds at an edge that has a spring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum EdgeFolds {
+    /// A crease: its spring takes the place of the bending stiffness of the sheet there.
+    Yes,
+    /// The spring keeps the edge flat, besides the bending stiffness of the sheet.
+    No,
+}
+
+/// The springs of a scene, in groups by the keys that they come from.
+#[derive(Default)]
+pub(crate) struct FoldSprings {
+    groups: Vec<(Key, EdgeFolds, Vec<CreaseSpring>)>,
+}
+
+impl FoldSprings {
+    pub(crate) fn add(&mut self, key: Key, folds: EdgeFolds, springs: Vec<CreaseSpring>) {
+        if !springs.is_empty() {
+            self.groups.push((key, folds, springs));
+        }
+    }
+
+    /// The edges at which the sheet folds, each once.
+    pub(crate) fn creases(&self) -> Vec<EdgeId> {
+        let creases = self.groups.iter().filter(|g| g.1 == EdgeFolds::Yes);
+        let edges = creases.flat_map(|(_, _, springs)| springs.iter().map(|s| s.edge));
+        edges.collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
+    /// Has the springs of creases replace the bending stiffness of the sheet at their edges.
+    pub(crate) fn put_in_sheet(&mut self, sheet: &Sheet, rigidity: f64) {
+        let creases = self.groups.iter_mut().filter(|g| g.1 == EdgeFolds::Yes);
+        let springs = creases.flat_map(|(_, _, springs)| springs);
+        CreaseSpring::put_in_sheet(springs, sheet, rigidity);
+    }
+
+    pub(crate) fn into_groups(self) -> impl Iterator<Item = (Key, Vec<CreaseSpring>)> {
+        let groups = self.groups.into_iter();
+        groups.map(|(key, _, springs)| (key, springs))
+    }
 }
 
 /// Edges of a crease pattern.
@@ -92,6 +136,14 @@ impl Crease {
                 let message = "the line begins where it ends";
                 checks.report(key.name("at.line.to"), message, "give two different points");
             }
+        }
+    }
+
+    /// Whether the sheet folds along this crease, which may also be there to keep panels flat.
+    pub(crate) fn folds(&self) -> EdgeFolds {
+        match self.at {
+            CreaseEdges::Pattern(PatternEdges::Flat) => EdgeFolds::No,
+            _ => EdgeFolds::Yes,
         }
     }
 

@@ -197,13 +197,14 @@ impl Folding {
         Ok(targets)
     }
 
-    /// The springs that drive a sheet to targets from positions `x` (`3V`, metres).
+    /// The springs that drive creases to targets from positions `x` (`3V`, metres), and those that keep edges
+    /// flat.
     pub(crate) fn springs(
         &self,
         targets: &FoldTargets,
         sheet: &Sheet,
         x: &[f64],
-    ) -> Vec<CreaseSpring> {
+    ) -> [Vec<CreaseSpring>; 2] {
         let spring = |edge: EdgeId, stiffness: f64, target: f64| CreaseSpring {
             edge,
             stiffness: stiffness * sheet.lengths()[edge.index()],
@@ -216,7 +217,7 @@ impl Folding {
         let driven = driven.map(|&(edge, target)| spring(edge, self.stiffness, target));
         let flat = targets.flat.iter();
         let flat = flat.map(|&edge| spring(edge, flat_stiffness, 0.0));
-        driven.chain(flat).collect()
+        [driven.collect(), flat.collect()]
     }
 
     /// The rest angle of a spring that goes from one angle to another, radians.
