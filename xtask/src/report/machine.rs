@@ -12,7 +12,8 @@ pub(crate) fn machine() -> String {
     };
     let name = field("model name").unwrap_or_else(|| std::env::consts::ARCH.to_owned());
     let clock = field("cpu MHz")
-        .map(|mhz| format!(", {mhz} MHz"))
+        .and_then(|mhz| mhz.parse::<f64>().ok())
+        .map(|mhz| format!(", {mhz:.0} MHz"))
         .unwrap_or_default();
     format!("{name}{clock}, {cores} cores")
 }
