@@ -68,3 +68,8 @@ pub use surface::{SurfaceError, TriangleSurface, rounded_line};
 
 #[doc(no_inline)]
 pub use isosheet_dynamics::{Keyframe, MotionError, RigidMotion};
+
+/// The code of the README is compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

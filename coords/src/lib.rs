@@ -82,3 +82,8 @@ pub use system::{RodSystem, SystemError};
 
 /// Dense matrices of the signatures, such as [`Chart::jacobian`]'s.
 pub use nalgebra;
+
+/// The code of the README is compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

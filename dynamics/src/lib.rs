@@ -156,3 +156,8 @@ pub use support::Support;
 pub use weak_isometry::{WeakIsometry, WeakIsometryError};
 
 pub use nalgebra;
+
+/// The code of the README is compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -43,3 +43,8 @@ pub mod run;
 
 #[cfg(feature = "view")]
 pub mod view;
+
+/// The code of the README is compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

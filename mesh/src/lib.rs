@@ -56,3 +56,8 @@ pub use mass::{MassKind, MassMatrix};
 pub use repair::orient_consistently;
 pub use sheet::Sheet;
 pub use topology::Topology;
+
+/// The code of the README is compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

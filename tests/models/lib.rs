@@ -35,9 +35,12 @@ pub fn max_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |m, (a, b)| m.max((a - b).abs()))
 }
 
-/// The Rust samples of the book, compiled and run as documentation tests.
+/// The Rust samples of the book and of the README, compiled and run as documentation tests.
 #[cfg(doctest)]
 mod book {
+    #[doc = include_str!("../README.md")]
+    pub struct Readme;
+
     #[doc = include_str!("../../docs/start.md")]
     pub struct Start;
 
