@@ -24,6 +24,7 @@
 
 mod checkpoint;
 mod collect;
+mod commit;
 mod constraints;
 mod error;
 #[cfg(feature = "picture")]
@@ -41,6 +42,7 @@ mod sweep;
 mod warning;
 
 pub use collect::Collection;
+pub use commit::note_commit;
 pub use error::RunError;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
@@ -396,7 +398,7 @@ fn finish(
     let summary = Summary {
         program: "isosheet".into(),
         version: env!("CARGO_PKG_VERSION").into(),
-        commit: option_env!("ISOSHEET_COMMIT").map(str::to_owned),
+        commit: commit::noted(),
         scene: facts.hash.to_string(),
         wall_time: progress.wall + clock.elapsed().as_secs_f64(),
         modelled: facts.modelled.clone(),

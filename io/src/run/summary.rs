@@ -10,7 +10,7 @@ pub struct Summary {
     pub program: String,
     /// Its version.
     pub version: String,
-    /// The commit that it was built from, if it was known then.
+    /// The commit that it was built from, if the program said so ([`note_commit`](super::note_commit)).
     pub commit: Option<String>,
     /// Hash of the scene and the mesh files that it names; see [`SceneHash`](super::SceneHash).
     pub scene: String,

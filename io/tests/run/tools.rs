@@ -1,11 +1,12 @@
 //! The subcommands around runs.
 
-use crate::{code, run, stderr};
+use crate::{code, run, stderr, with_scene};
 use isosheet_io::run::Summary;
 use isosheet_io::scene::StartingPoint;
 use isosheet_io::{read_json, read_sheet};
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 #[test]
 fn new_check_info_and_completions() {
@@ -212,4 +213,27 @@ fn scenes_of_the_figures_are_checked_and_run() {
     assert_eq!(code(&output), Some(0), "{}", stderr(&output));
     let summary: Summary = read_json(&folder.path().join("run/summary.json")).unwrap();
     assert_eq!((summary.steps, summary.frames), (30, 31));
+}
+
+/// The summary names the commit that the command was built from, where it was built in a repository.
+#[test]
+fn the_summary_names_the_commit() {
+    let git = |arguments: &[&str]| {
+        let mut git = Command::new("git");
+        let output = git
+            .args(arguments)
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .output()
+            .ok()?;
+        let text = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        output.status.success().then_some(text)
+    };
+    let is_source = git(&["ls-files", "--error-unmatch", "build.rs"]).is_some();
+    let head = is_source.then(|| git(&["rev-parse", "HEAD"])).flatten();
+    let dir = with_scene(StartingPoint::Hanging);
+    let dir = dir.path();
+    let simulate = ["simulate", "scene.toml", "--set", "stop.time=0.05"];
+    assert_eq!(code(&run(dir, &simulate)), Some(0));
+    let summary: Summary = read_json(&dir.join("scene-run/summary.json")).unwrap();
+    assert_eq!(summary.commit, head);
 }

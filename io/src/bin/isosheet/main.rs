@@ -4,6 +4,7 @@
 mod book_tests;
 mod check;
 mod collect;
+mod commit;
 mod convert;
 mod exit;
 mod gallery;
@@ -85,6 +86,9 @@ enum Command {
 fn main() -> ExitCode {
     let cli = Cli::parse();
     cli.verbosity.choose();
+    if let Some(commit) = commit::commit() {
+        isosheet_io::run::note_commit(commit);
+    }
     let done = match cli.command {
         Command::Simulate(simulate) => simulate.run(),
         Command::Resume(resume) => resume.run(),
