@@ -3,8 +3,10 @@
 //! The files are not part of the repository. Point `ISOSHEET_DATA` at the folder that has them; without it
 //! these tests say that they were skipped.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+#[path = "shared/skip.rs"]
+mod skip;
+
+use std::path::PathBuf;
 
 use isosheet_io::{
     Advice, EdgeAssignment, MeshFileError, MeshFileProblem, MeshFormat, MeshOptions, parse_mesh,
@@ -14,15 +16,7 @@ use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{Dof, EdgeId, MeshError, Sheet, TopologyError, orient_consistently};
 
 fn folder(name: &str) -> Option<PathBuf> {
-    match std::env::var_os("ISOSHEET_DATA") {
-        Some(root) => Some(Path::new(&root).join(name)),
-        None => {
-            // The test harness keeps what `println!` and `eprintln!` write to itself.
-            let _ = std::io::stderr()
-                .write_all(b"skipped, as ISOSHEET_DATA is not set: a test of io/tests/data.rs\n");
-            None
-        }
-    }
+    skip::data_folder().map(|root| root.join(name))
 }
 
 fn refused(r: Result<Sheet, MeshFileError>) -> MeshFileProblem {

@@ -2,6 +2,8 @@
 
 #[path = "shared/headless.rs"]
 mod headless;
+#[path = "shared/skip.rs"]
+mod skip;
 
 #[path = "shared/devtools.rs"]
 mod devtools;

@@ -2,6 +2,10 @@
 //!
 //! This takes minutes, and runs if `ISOSHEET_WHEEL` is set and `python3` and `maturin` are installed.
 
+#[path = "shared/skip.rs"]
+mod skip;
+
+use skip::{runs, skipped};
 use std::path::Path;
 use std::process::Command;
 
@@ -13,20 +17,15 @@ fn output(command: &mut Command) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-fn is_installed(program: &str) -> bool {
-    let version = Command::new(program).arg("--version").output();
-    version.is_ok_and(|v| v.status.success())
-}
-
 #[test]
 fn the_wheel_installs_the_command() {
     if std::env::var_os("ISOSHEET_WHEEL").is_none() {
-        eprintln!("skipped: ISOSHEET_WHEEL is not set");
+        skipped("wheel", "ISOSHEET_WHEEL is not set");
         return;
     }
     for program in ["python3", "maturin"] {
-        if !is_installed(program) {
-            eprintln!("skipped: {program} is not installed");
+        if !runs(program, &["--version"]) {
+            skipped("wheel", &format!("{program} is not installed"));
             return;
         }
     }

@@ -332,14 +332,12 @@ mod tests {
         assert_eq!(boundary, [0, 1, 2, 3, 4]);
     }
 
+    /// This takes 30 ms; an algorithm of quadratic cost would take minutes.
     #[test]
-    fn large_mesh_builds_fast() {
-        let start = std::time::Instant::now();
+    fn a_large_mesh_is_built() {
         let s = crate::generate::isotropic_square(7, 1.0).unwrap();
         let t = s.topology();
         assert_eq!((t.face_count(), t.vertex_count()), (131_072, 66_049));
-        // About 30 ms optimised; the limit only catches a wrong complexity.
-        assert!(start.elapsed().as_secs_f64() < 2.0, "{:?}", start.elapsed());
     }
 
     proptest! {

@@ -4,44 +4,37 @@
 //! usd-core, vtk or bpy (otherwise `python3` is tried), and `NODE_PATH` the folder that has the package
 //! gltf-validator. What is missing is skipped, with a word about it.
 
+#[path = "../shared/skip.rs"]
+mod skip;
+
 use isosheet_io::mesh::Sheet;
 use isosheet_io::mesh::generate::{self, Diagonals};
 use isosheet_io::{
     FieldSupport, FrameData, MeshFile, Series, SeriesField, SeriesOptions, Trajectory, read_mesh,
     write_mesh, write_series,
 };
-use std::io::Write;
+use skip::{runs, skipped};
 use std::path::Path;
 use std::process::Command;
 
-/// Runs a script with arguments; false if the packages it needs are missing.
-fn python(packages: &str, script: &str, arguments: &[&Path]) -> bool {
-    let name = std::env::var_os("ISOSHEET_PYTHON").unwrap_or_else(|| "python3".into());
-    let probe = Command::new(&name)
-        .args(["-c", &format!("import {packages}")])
-        .output();
-    if !probe.is_ok_and(|o| o.status.success()) {
-        return skipped(packages);
+/// Runs a script with arguments, if there are the packages that it needs: numpy, and one more at most.
+fn python(packages: &str, script: &str, arguments: &[&Path]) {
+    let name = std::env::var("ISOSHEET_PYTHON").unwrap_or_else(|_| "python3".into());
+    if !runs(&name, &["-c", &format!("import {packages}")]) {
+        let need = packages.rsplit(", ").next().unwrap_or(packages);
+        return skipped(need, &format!("{name} does not import {packages}"));
     }
     let output = Command::new(&name)
         .args(["-c", script])
         .args(arguments)
         .output();
-    succeeded(output.expect("Python starts"))
+    succeeded(output.expect("Python starts"));
 }
 
-fn skipped(what: &str) -> bool {
-    // The test harness keeps what `println!` and `eprintln!` write to itself.
-    let text = format!("skipped, as there is no {what}: a test of io/tests/readback\n");
-    let _ = std::io::stderr().write_all(text.as_bytes());
-    false
-}
-
-fn succeeded(output: std::process::Output) -> bool {
+fn succeeded(output: std::process::Output) {
     let [out, err] =
         [output.stdout, output.stderr].map(|t| String::from_utf8_lossy(&t).into_owned());
     assert!(output.status.success(), "{out}{err}");
-    true
 }
 
 /// A strip that is rolled up and stretched by a hundredth at the end, in frames at uneven times.
@@ -82,12 +75,8 @@ fn mesh_of(sheet: &Sheet, folder: &Path) -> MeshFile {
 
 #[test]
 fn khronos_accepts_the_gltf_files() {
-    let probe = Command::new("node")
-        .args(["-e", "require('gltf-validator')"])
-        .output();
-    if !probe.is_ok_and(|o| o.status.success()) {
-        skipped("gltf-validator");
-        return;
+    if !runs("node", &["-e", "require('gltf-validator')"]) {
+        return skipped("gltf-validator", "node does not find the package");
     }
     let folder = tempfile::tempdir().expect("a folder");
     let (sheet, trajectory) = run();

@@ -1,6 +1,7 @@
 //! Folding to the angles of a FOLD file from the book's scene to the page.
 
 use crate::headless::self_test;
+use crate::skip::data_folder;
 use crate::{code, run, stderr, summary};
 use std::fs;
 use std::path::Path;
@@ -18,13 +19,12 @@ fn scene_of_the_book() -> String {
 /// Somebody else's sheet is folded by one command, its page plays, and the summary says what the text does.
 #[test]
 fn a_sheet_of_others_is_folded_by_one_command() {
-    let Some(data) = std::env::var_os("ISOSHEET_DATA") else {
-        eprintln!("skipped: ISOSHEET_DATA is not set");
+    let Some(data) = data_folder() else {
         return;
     };
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
-    let file = Path::new(&data).join("fold/miura_herringbone_8x8_tri.fold");
+    let file = data.join("fold/miura_herringbone_8x8_tri.fold");
     fs::copy(file, dir.join("miura.fold")).unwrap();
     fs::write(dir.join("scene.toml"), scene_of_the_book()).unwrap();
     let output = run(dir, &["simulate", "scene.toml"]);

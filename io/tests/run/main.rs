@@ -12,6 +12,8 @@ mod gallery;
 mod headless;
 mod pages;
 mod rod_forces;
+#[path = "../shared/skip.rs"]
+mod skip;
 mod sweeps;
 mod tools;
 mod trajectories;

@@ -1,6 +1,7 @@
 //! The pages of runs.
 
 use crate::headless::self_test;
+use crate::skip::data_folder;
 use crate::{code, killed, run, stderr, stdout, summary, with_scene};
 use isosheet_io::mesh::generate;
 use isosheet_io::run::Recording;
@@ -263,8 +264,7 @@ fn bodies_curves_and_surfaces_are_on_the_page() {
 /// The scene of the book with other people's meshes: a sheet that falls on a ball.
 #[test]
 fn meshes_of_other_people_become_a_page_in_one_command() {
-    let Some(data) = std::env::var_os("ISOSHEET_DATA") else {
-        eprintln!("skipped: ISOSHEET_DATA is not set");
+    let Some(data) = data_folder() else {
         return;
     };
     let page = include_str!("../../../docs/own-mesh.md");
@@ -277,7 +277,7 @@ fn meshes_of_other_people_become_a_page_in_one_command() {
         ("tools/sphere_1k.obj", "table.obj"),
     ];
     for (from, to) in meshes {
-        fs::copy(Path::new(&data).join(from), dir.join(to)).unwrap();
+        fs::copy(data.join(from), dir.join(to)).unwrap();
     }
     fs::write(dir.join("cloth.toml"), format!("version{scene}")).unwrap();
     let edits = [

@@ -9,6 +9,8 @@ mod formulas;
 mod keys;
 mod meaning;
 mod messages;
+#[path = "../shared/skip.rs"]
+mod skip;
 mod values;
 mod wrong;
 

@@ -1,5 +1,6 @@
 //! A scene is the simulation that it says.
 
+use crate::skip::data_folder;
 use crate::{parse, simulation};
 use isosheet_io::dynamics::nalgebra::Vector3;
 use isosheet_io::dynamics::{
@@ -7,7 +8,6 @@ use isosheet_io::dynamics::{
 };
 use isosheet_io::mesh::{MassKind, VertexId, fold_angle, generate};
 use isosheet_io::scene::{Scene, SceneFile, StartingPoint};
-use std::io::Write;
 use std::path::Path;
 
 /// The scene of the first program of docs/rust.md gives the bits of that program.
@@ -172,22 +172,10 @@ fn a_scene_written_by_a_program_is_read_as_the_same() {
     }
 }
 
-/// The folder with other people's files, if the environment names it.
-fn data() -> Option<std::path::PathBuf> {
-    let root = std::env::var_os("ISOSHEET_DATA");
-    if root.is_none() {
-        // The test harness keeps what `println!` and `eprintln!` write to itself.
-        let _ = std::io::stderr().write_all(
-            b"skipped, as ISOSHEET_DATA is not set: a test of io/tests/scene/meaning.rs\n",
-        );
-    }
-    root.map(Into::into)
-}
-
 /// Somebody else's sheet over somebody else's tool.
 #[test]
 fn an_obj_sheet_drapes_over_a_tool_mesh() {
-    let Some(data) = data() else {
+    let Some(data) = data_folder() else {
         return;
     };
     let text = "version = 1

@@ -1,6 +1,7 @@
 //! A browser without a window. Tests that need one run where Chromium or Chrome is installed, and say so
 //! where it is not.
 
+use crate::skip::{runs, skipped};
 use serde_json::Value;
 use std::fs::File;
 use std::path::Path;
@@ -12,21 +13,13 @@ const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "c
 const PATIENCE: Duration = Duration::from_secs(180);
 
 pub(crate) fn browser() -> Option<&'static str> {
-    let runs = |name: &&str| {
-        let mut command = Command::new(name);
-        command
-            .arg("--version")
-            .stdout(Stdio::null())
-            .stderr(Stdio::null());
-        command.status().is_ok_and(|status| status.success())
-    };
-    BROWSERS.into_iter().find(runs)
+    BROWSERS.into_iter().find(|name| runs(name, &["--version"]))
 }
 
 /// What the test of itself of a page says in a window of the given size, or `None` without a browser.
 pub(crate) fn self_test(page: &str, window: &str) -> Option<Value> {
     let Some(browser) = browser() else {
-        eprintln!("skipped: none of {BROWSERS:?} is installed");
+        skipped("browser", &format!("none of {BROWSERS:?} is installed"));
         return None;
     };
     let folder = tempfile::tempdir().unwrap();
