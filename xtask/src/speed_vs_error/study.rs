@@ -372,8 +372,11 @@ mod tests {
         assert!(svg.contains("RATTLE composition"));
         assert_eq!(study.table().rows.len(), Scheme::all().len());
         assert_eq!(study.solver_table().rows.len(), 6);
-        // Second order shows in a few milliseconds already.
-        let order = order(&study.points, "RATTLE", POSITION, study.reference.doubt());
+        // Second order shows in a few milliseconds already; a busy machine may take longer than the quick limit.
+        let schemes = Scheme::all();
+        let rattle = schemes.iter().find(|s| s.name == "RATTLE").unwrap();
+        let points = sweep(Problem::Pendulum, rattle, &study.reference, 0.2).unwrap();
+        let order = order(&points, "RATTLE", POSITION, study.reference.doubt());
         assert!(order.is_some_and(|o| (o - 2.0).abs() < 0.2), "{order:?}");
         // Lengths: exact for us, drifting for the published scheme.
         let strain = |name: &str| {
