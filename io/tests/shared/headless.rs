@@ -12,16 +12,18 @@ const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "c
 /// How long a browser may take: some seconds suffice on an idle machine.
 const PATIENCE: Duration = Duration::from_secs(180);
 
+/// A browser that starts. Without one the test is skipped.
 pub(crate) fn browser() -> Option<&'static str> {
-    BROWSERS.into_iter().find(|name| runs(name, &["--version"]))
+    let browser = BROWSERS.into_iter().find(|name| runs(name, &["--version"]));
+    if browser.is_none() {
+        skipped("browser", &format!("none of {BROWSERS:?} is installed"));
+    }
+    browser
 }
 
 /// What the test of itself of a page says in a window of the given size, or `None` without a browser.
 pub(crate) fn self_test(page: &str, window: &str) -> Option<Value> {
-    let Some(browser) = browser() else {
-        skipped("browser", &format!("none of {BROWSERS:?} is installed"));
-        return None;
-    };
+    let browser = browser()?;
     let folder = tempfile::tempdir().unwrap();
     let (html, dump) = (
         folder.path().join("page.html"),
