@@ -3,6 +3,7 @@
 use crate::bundle_view::{self, BundleViewArgs};
 use crate::condition::{self, ConditionArgs};
 use crate::failure::EXIT_CODES;
+use crate::gallery::{self, GalleryArgs};
 use crate::hard_cases::{self, HardCasesArgs};
 use crate::locking::{self, LockingArgs};
 use crate::measured::{self, MeasuredArgs};
@@ -26,8 +27,8 @@ pub(crate) enum Command {
     /// Make the figures and the table of Liu, Tang and Joneja 2007 with this workspace
     ///
     /// Figures 1-15 are those of the paper; 16, a paper jam, and 17, origami, are applications that it only
-    /// names. Writes DIR/index.html (self-contained), DIR/figures, DIR/runs and DIR/summary.json. What is
-    /// already there and was made by the same program with the same options is kept; Ctrl-C stops at the next
+    /// names. Writes DIR/index.html (small pictures are inside and open the files beside it), DIR/figures,
+    /// DIR/scenes, DIR/runs and DIR/summary.json. What is already there and was made by the same program with the same options is kept; Ctrl-C stops at the next
     /// frame, and the same command continues.
     ReproduceFigures(ReproduceArgs),
     /// Tabulate and plot the condition numbers of three systems of coordinates, by mesh level
@@ -39,20 +40,22 @@ pub(crate) enum Command {
     ///
     /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG). What is already
     /// there and was made by the same program with the same effort is kept. Times are wall times on one core:
-    /// leave the machine alone meanwhile.
+    /// leave the machine alone meanwhile. The exit code is 0 unless an order or a length is not as the
+    /// documentation says.
     SpeedVsError(SpeedArgs),
     /// Measure what steps and whole runs cost as the mesh is refined, without and with contact: time, memory,
     /// fill, fitted powers
     ///
     /// Writes DIR/scale.html (self-contained), DIR/scale.csv, DIR/draping.csv, DIR/runs.csv, DIR/scale.svg
-    /// and DIR/scale.png and prints the tables.
+    /// and DIR/scale.png and prints the tables. What was measured is kept, as in `reproduce-figures`. The exit
+    /// code is 0 unless a count, a length or a gap is not as it has to be.
     Scale(ScaleArgs),
     /// Measure how much a triangulated sheet locks: how much stiffer it is than a smooth one, by yardsticks
     /// with references
     ///
     /// Writes DIR/index.html (self-contained), DIR/tables (CSV) and DIR/plots (SVG and PNG) and prints the
     /// tables. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not end is an entry
-    /// of a table: the exit code says whether the report was made.
+    /// of a table. The exit code is 0 unless a requirement is missed that is not declared to be.
     Locking(LockingArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///
@@ -65,6 +68,11 @@ pub(crate) enum Command {
     /// Each report writes DIR/measured.md, unless it is quick. This command copies these files to docs/measured, whose
     /// parts the book includes, and fills the marked blocks of README.md.
     Measured(MeasuredArgs),
+    /// Make the pictures of the README: ten scenes that anybody can run, and a film of one of them
+    ///
+    /// Writes DIR/gallery.png and DIR/film.png (an animated PNG) and keeps the runs in DIR/runs. The scenes
+    /// are those of `isosheet new` and of `xtask/scenes`.
+    Gallery(GalleryArgs),
     /// Build the program of the 3D page of a run, io/view/dist, from io/view/src with npm and esbuild
     ///
     /// Only needed after a change of io/view; needs Node.js 20 or newer and the npm registry.
@@ -82,6 +90,7 @@ impl Command {
             Self::Locking(args) => locking::run(args),
             Self::HardCases(args) => hard_cases::run(args),
             Self::Measured(args) => measured::run(args),
+            Self::Gallery(args) => gallery::run(args),
             Self::BundleView(args) => bundle_view::run(args),
         }
     }

@@ -1,6 +1,8 @@
 //! `condition-table`: condition numbers of the mass matrix in three charts, by mesh level.
 
-use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Marker, Series, palette, row};
+use crate::draw::{
+    Axis, Chart, Charts, Colour, Legend, Marker, Series, Vector, palette, superscript,
+};
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::report::{Cell, Effort, Part, Table, excerpt};
@@ -135,7 +137,7 @@ fn table(rows: &[ConditionRow]) -> Table {
 }
 
 /// The table as a plot, one panel for each state.
-pub(crate) fn plot(rows: &[ConditionRow]) -> Drawing {
+pub(crate) fn plot(rows: &[ConditionRow]) -> Charts {
     let last = rows.iter().map(|r| r.level).max().unwrap_or(0);
     let all = || rows.iter().map(|r| r.condition).chain([1.0]);
     let ends = [-0.2, f64::from(last) + 0.2];
@@ -147,15 +149,14 @@ pub(crate) fn plot(rows: &[ConditionRow]) -> Drawing {
         let mut series: Vec<Series> = CHARTS.iter().map(of_chart).collect();
         let limit = ends.map(|x| [x, 1.0 / f64::EPSILON]).to_vec();
         series.push(Series::guide("1/ε of f64", limit));
-        let ticks = (0..=last).map(|k| (f64::from(k), format!("~M~^{{{k}}}")));
-        let x = Axis::linear("mesh", ends, ticks.collect());
-        let y = Axis::holding("condition number of ~C~", all());
+        let ticks = (0..=last).map(|k| (f64::from(k), format!("M{}", superscript(k))));
+        let x = Axis::named("mesh", ends, ticks.collect());
+        let y = Axis::decades("condition number of C", all());
         Chart::new(x, y, [170.0, 150.0], series).titled(title)
     };
     let noise = panel((BentState::Noise, "out-of-plane noise"));
     let cylinder = panel((BentState::Cylinder, "bent to a cylinder"));
-    let panels = [noise.with_legend(Legend::None), cylinder].map(|p| p.draw());
-    row(&panels, 24.0)
+    Charts::row([noise.with_legend(Legend::None), cylinder])
 }
 
 #[cfg(test)]

@@ -1,10 +1,12 @@
-//! Vector drawings: a display list in points (1/72 inch), y upwards, written as SVG.
+//! Vector drawings, charts by plotters, and shaded pictures.
+//!
+//! A drawing is a display list in points (1/72 inch), y upwards. Drawings and charts are written as SVG.
 
-mod axes;
+mod axis;
 mod chart;
 mod colour;
 mod drawing;
-mod layout;
+mod marker;
 mod series;
 mod shaded;
 mod sheet;
@@ -12,13 +14,14 @@ pub(crate) mod spatial;
 mod svg;
 mod text;
 
-pub(crate) use axes::Axis;
-pub(crate) use chart::{Chart, Legend, Missing};
+pub(crate) use axis::{Axis, superscript};
+pub(crate) use chart::{Chart, Charts, Legend, Missing};
 pub(crate) use colour::{Colour, palette};
-pub(crate) use drawing::{Anchor, Drawing, Stroke, Vertical};
-pub(crate) use layout::{column, row};
-pub(crate) use series::{Line, Marker, Series};
+pub(crate) use drawing::{Anchor, Drawing, Stroke, Vertical, column, row};
+pub(crate) use marker::Marker;
+pub(crate) use series::{Line, Series};
 pub(crate) use shaded::{Shot, Viewpoint};
 pub(crate) use sheet::{flat_edges, flat_faces, plan};
 pub(crate) use spatial::View;
+pub(crate) use svg::Vector;
 pub(crate) use text::{SMALL, TEXT};

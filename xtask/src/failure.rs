@@ -17,7 +17,7 @@ use std::process::ExitCode;
 pub(crate) const EXIT_CODES: &str = "\
 Exit codes:
   0    everything that was asked for is there
-  1    a run failed, or a hard case that is not declared an open limitation
+  1    a run failed, or a hard case or a requirement that is not declared an open limitation
   2    the command line is wrong
   4    the folder holds other files, another report, or full results that quick ones would replace
   5    another process is writing to the folder
@@ -35,6 +35,8 @@ pub(crate) enum ReportError {
     Cases { names: String },
     #[error("{} has no part called {part}", file.display())]
     Part { file: PathBuf, part: String },
+    #[error("requirements are missed: {names}")]
+    Missed { names: String },
 }
 
 impl Advice for ReportError {
@@ -45,6 +47,7 @@ impl Advice for ReportError {
             Self::Part { .. } => {
                 "run the whole report, without --quick, and `cargo xtask measured` again"
             }
+            Self::Missed { .. } => "see the table of requirements on the page",
         })
     }
 }
@@ -90,7 +93,9 @@ fn code(error: &Error) -> u8 {
         if let Some(report) = cause.downcast_ref() {
             return Some(match report {
                 ReportError::NotQuick { .. } | ReportError::OtherReport { .. } => 4,
-                ReportError::Cases { .. } | ReportError::Part { .. } => 1,
+                ReportError::Cases { .. }
+                | ReportError::Part { .. }
+                | ReportError::Missed { .. } => 1,
             });
         }
         if cause.is::<WriteError>() || cause.is::<std::io::Error>() {
@@ -147,5 +152,7 @@ mod tests {
         let error = Error::from(StepError::StepSize { h: 0.0, t: 1.0 }).context("run");
         assert_eq!(code(&error), 1);
         assert_eq!(code(&Error::from(Interrupted)), 130);
+        let names = "sliding: smallest gap".to_owned();
+        assert_eq!(code(&Error::from(ReportError::Missed { names })), 1);
     }
 }

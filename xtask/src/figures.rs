@@ -27,7 +27,7 @@ mod style;
 
 use crate::draw::{Anchor, Drawing, Vertical, palette};
 use crate::report::{Effort, Picture, Table};
-use crate::runs::FigureScene;
+use crate::runs::{FigureScene, RunSummary};
 use crate::store::{Files, Store};
 use anyhow::Result;
 use serde_json::Value;
@@ -43,6 +43,8 @@ pub(crate) struct Play {
     /// What tells it from the other pages of the figure.
     pub(crate) label: String,
     pub(crate) page: String,
+    /// Path and text of its scene file.
+    pub(crate) scene: (String, String),
     /// The last frame as a PNG file.
     pub(crate) thumbnail: Picture,
 }
@@ -53,11 +55,12 @@ pub(crate) struct Made {
     pub(crate) title: Cow<'static, str>,
     /// What the paper shows.
     pub(crate) paper: Cow<'static, str>,
-    /// What is measured here.
-    pub(crate) measured: String,
+    /// What is seen here.
+    pub(crate) here: Cow<'static, str>,
     pub(crate) pictures: Vec<Picture>,
     /// Pages that play its runs.
     pub(crate) pages: Vec<Play>,
+    /// What was measured; all but the first are folded away on the page.
     pub(crate) tables: Vec<Table>,
     /// The numbers, for programs.
     pub(crate) facts: Value,
@@ -71,6 +74,7 @@ impl Made {
         }
         for play in &self.pages {
             files.write(&play.path, play.page.as_bytes())?;
+            files.write(&play.scene.0, play.scene.1.as_bytes())?;
             play.thumbnail.write(files)?;
         }
         Ok(())
@@ -125,6 +129,35 @@ fn through_itself(scene: &FigureScene) -> &'static str {
     } else {
         ", passing through itself"
     }
+}
+
+/// Quantities with what was measured of them.
+fn measured(rows: impl IntoIterator<Item = (&'static str, String)>) -> Table {
+    let rows = rows
+        .into_iter()
+        .map(|(name, value)| vec![name.to_owned(), value]);
+    Table::new("Measured", &["quantity", "value"]).with_texts(rows)
+}
+
+/// What the course of a run was.
+fn course(run: &RunSummary) -> [(&'static str, String); 4] {
+    let course = &run.course;
+    let steps = format!(
+        "{} frames, {} rejected steps",
+        course.cost.steps, course.cost.rejected
+    );
+    [
+        ("simulated", format!("{:.1} s, {steps}", course.time)),
+        (
+            "wall seconds for a simulated second",
+            format!("{:.2}", run.slowness()),
+        ),
+        (
+            "largest strain of an edge",
+            format!("{:.0e}", course.strain),
+        ),
+        ("smallest gap", gap(course.gap)),
+    ]
 }
 
 /// A smallest gap in words.

@@ -23,12 +23,12 @@ mod steps;
 
 pub(crate) use case::{Case, Findings, Record, Shortfall};
 
-use crate::draw::{Chart, Drawing, Series};
+use crate::draw::{Chart, Charts, Series};
 use crate::failure::ReportError;
 use crate::interrupt;
 use crate::progress;
 use crate::report::{Effort, FullOptions, excerpt, one_of};
-use crate::store::{Files, Store, Unit};
+use crate::store::{Files, Kept, Store, Unit};
 use anyhow::Result;
 use clap::Args;
 use rayon::prelude::*;
@@ -88,11 +88,12 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<()> {
         .collect();
     let made = results.into_iter().try_for_each(|made| made.map(drop));
     interrupt::afterwards(made, || {
-        let kept = |case: &&Case| store.kept(&unit(&store, case));
-        let records: Vec<Record> = CASES.iter().filter_map(kept).collect();
-        print!("{}", page::text(&records));
-        page::write(&store, &records)?;
-        excerpt::write(&store, "hard-cases", &page::excerpt(&records))?;
+        let units = CASES.iter().map(|case| unit(&store, case));
+        let kept: Kept<Record> = store.all_kept(units.collect());
+        let records = &kept.records;
+        print!("{}", page::text(records));
+        page::write(&store, &kept)?;
+        excerpt::write(&store, "hard-cases", &page::excerpt(records))?;
         let failed = records.iter().filter(|r| r.verdict().is_failure());
         let names: Vec<&str> = failed.map(|r| r.name.as_str()).collect();
         if names.is_empty() {
@@ -107,13 +108,13 @@ pub(crate) fn run(args: &HardCasesArgs) -> Result<()> {
 const SIZE: [f64; 2] = [230.0, 150.0];
 
 /// A chart with logarithmic axes.
-fn log_log(x: &str, y: &str, series: Vec<Series>) -> Drawing {
-    Chart::log_log(x, y, SIZE, series).draw()
+fn log_log(x: &str, y: &str, series: Vec<Series>) -> Charts {
+    Chart::log_log(x, y, SIZE, series).into()
 }
 
 /// A chart whose vertical axis is logarithmic.
-fn semi_log(x: &str, y: &str, series: Vec<Series>) -> Drawing {
-    Chart::semi_log(x, y, SIZE, series).draw()
+fn semi_log(x: &str, y: &str, series: Vec<Series>) -> Charts {
+    Chart::semi_log(x, y, SIZE, series).into()
 }
 
 fn unit(store: &Store, case: &Case) -> Unit {

@@ -10,14 +10,15 @@ mod cantilever;
 pub(crate) mod clamped;
 mod compliance;
 mod cylinder;
+mod declared;
 mod disk;
+mod dots;
 mod drape;
 mod everyday;
 mod isometry;
 mod iterations;
 mod limit;
 pub(crate) mod meshes;
-mod plots;
 mod records;
 mod rim;
 mod sample;
@@ -26,12 +27,14 @@ mod sliding;
 mod targets;
 mod ways;
 
-use crate::draw::Drawing;
+use crate::draw::Charts;
 use crate::interrupt;
-use crate::report::{Options, Page, Part, Section, Table, excerpt, list, machine, one_of, plot};
-use crate::store::{Files, Store, Unit};
+use crate::report::{Options, Page, Part, Section, Table, demand, excerpt, exponent};
+use crate::report::{list, machine, one_of, plot, requirements};
+use crate::store::{Files, Kept, Store, Unit};
 use anyhow::Result;
 use clap::Args;
+use declared::declared;
 use isosheet_io::write_json;
 use maud::html;
 use records::Records;
@@ -64,7 +67,7 @@ struct Record {
 }
 
 /// Applies a yardstick: what it found, and its figure.
-type Make = fn(&Records<'_>) -> Result<(Findings, Option<Drawing>)>;
+type Make = fn(&Records<'_>) -> Result<(Findings, Option<Charts>)>;
 
 /// A yardstick.
 #[derive(Debug)]
@@ -94,11 +97,11 @@ impl Yardstick {
     /// Applies the yardstick and writes its tables and its figure.
     fn apply(&self, store: &Store, files: &mut Files<'_>) -> Result<Record> {
         let part = self.name;
-        let (found, drawing) = (self.make)(&Records { store, part })?;
+        let (found, charts) = (self.make)(&Records { store, part })?;
         for table in found.tables.iter().chain(&found.files) {
             table.write(files)?;
         }
-        let figure = drawing.map(|drawing| plot(files, self.name, &drawing, self.title));
+        let figure = charts.map(|charts| plot(files, self.name, &charts, self.title));
         let section = html! {
             section id=(self.name) {
                 h2 { (self.title) }
@@ -180,6 +183,18 @@ fn median(mut values: Vec<f64>) -> f64 {
     0.5 * (values[(n - 1) / 2] + values[n / 2])
 }
 
+/// Fitted power of the errors above `floor`, the level of round-off and of the solver's tolerances, below
+/// which an error says nothing; nothing from fewer than two.
+fn order(points: &[[f64; 2]], floor: f64) -> Option<f64> {
+    let is_positive = |point: &[f64; 2]| point.iter().all(|v| v.is_finite() && *v > 0.0);
+    let all = points.iter().copied();
+    let above: Vec<[f64; 2]> = all.filter(|p| is_positive(p) && p[1] > floor).collect();
+    if above.len() < 2 {
+        return None;
+    }
+    exponent(&above)
+}
+
 /// Arguments of `locking`.
 #[derive(Debug, Args)]
 pub(crate) struct LockingArgs {
@@ -210,16 +225,23 @@ pub(crate) fn run(args: &LockingArgs) -> Result<()> {
 
 /// Writes the page, `tables/targets.csv` and `targets.json` of all yardsticks applied so far.
 fn write(store: &Store) -> Result<()> {
-    let kept = |yardstick: &Yardstick| store.earlier(&yardstick.unit(store));
-    let records: Vec<Record> = YARDSTICKS.iter().filter_map(kept).collect();
+    let units = YARDSTICKS.iter().map(|yardstick| yardstick.unit(store));
+    let Kept::<Record> { records, left_out } = store.all_kept(units.collect());
     let of = |r: &'_ Record| {
         r.targets
             .iter()
-            .map(|t| (r.name.clone(), t.clone()))
+            .map(|t| {
+                let why = declared(&r.name, t, store.effort).map(str::to_owned);
+                let target = Target {
+                    declared: why,
+                    ..t.clone()
+                };
+                (r.name.clone(), target)
+            })
             .collect::<Vec<_>>()
     };
     let targets: Vec<(String, Target)> = records.iter().flat_map(of).collect();
-    let summary = targets::table(&targets);
+    let summary = requirements(CAPTION, &targets);
     summary.write_to(&store.path("tables/targets.csv"))?;
     write_json(&store.path("targets.json"), &targets)?;
     let mut parts = vec![Part::table("targets", &targets::by_model(&targets))];
@@ -234,8 +256,16 @@ fn write(store: &Store) -> Result<()> {
         section #targets { h2 { "Measured against target" } (summary) }
         @for record in &records { (record.section) }
     };
-    Page::new("Yardsticks of locking", body).write(store, "index.html")
+    let page = Page {
+        left_out,
+        ..Page::new("Yardsticks of locking", body)
+    };
+    page.write(store, "index.html")?;
+    demand(&targets)
 }
+
+const CAPTION: &str = "Measured against target. A number is the worst of all runs that the requirement names; where it is missing, one of these runs \
+    did not end";
 
 const INTRODUCTION: &str = "A triangle mesh whose edges are rigid rods has only B − 3 ways to deform (B: edges on the boundary) and folds only \
     along mesh lines. It is too stiff, or cannot move at all, where a smooth inextensible sheet bends in another direction: it locks. The \
@@ -247,6 +277,14 @@ const INTRODUCTION: &str = "A triangle mesh whose edges are rigid rods has only 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn orders_need_two_values_above_the_floor() {
+        let points = [[0.1, 0.02], [0.2, 0.08], [0.4, 0.0], [0.8, f64::NAN]];
+        assert!((order(&points, 0.0).unwrap() - 2.0).abs() < 1e-12);
+        assert_eq!(order(&points, 0.05), None);
+        assert_eq!(order(&points[1..], 0.0), None);
+    }
 
     #[test]
     fn medians() {

@@ -7,6 +7,7 @@
 //! * `locking`: how much stiffer than a smooth sheet a triangulated one is.
 //! * `hard-cases`: what the solvers do where others break.
 //! * `measured`: what the reports measured, as numbers of the book and the README.
+//! * `gallery`: pictures of ten scenes, and a film.
 //! * `bundle-view`: the program of the 3D page of a run.
 
 mod bundle_view;
@@ -15,6 +16,7 @@ mod condition;
 mod draw;
 mod failure;
 mod figures;
+mod gallery;
 mod hard_cases;
 mod interrupt;
 mod locking;

@@ -8,6 +8,7 @@ mod number;
 mod options;
 mod page;
 mod picture;
+mod requirement;
 mod table;
 
 pub(crate) use cost::Cost;
@@ -18,4 +19,5 @@ pub(crate) use number::{exponent, extremes, number, order_line, percent, rounded
 pub(crate) use options::{FullOptions, Options, one_of};
 pub(crate) use page::{Page, Section, list};
 pub(crate) use picture::{Picture, plot};
+pub(crate) use requirement::{Bound, LENGTHS, Requirement, demand, requirements};
 pub(crate) use table::{Cell, Table};

@@ -5,7 +5,7 @@ use crate::interrupt;
 use crate::progress;
 use crate::report::{Options, Page, Part, Section, excerpt};
 use crate::selection::{self, PAPER};
-use crate::store::{Store, Unit};
+use crate::store::{Kept, Store, Unit};
 use anyhow::Result;
 use clap::Args;
 use isosheet_io::write_json;
@@ -68,13 +68,13 @@ fn make(store: &Store, figure: u8) -> Result<()> {
 
 /// Writes `index.html` and `summary.json` of all figures made so far.
 fn write(store: &Store) -> Result<()> {
-    let kept = |figure| store.earlier(&unit(store, figure));
-    let records: Vec<Record> = selection::all().filter_map(kept).collect();
+    let units = selection::all().map(|figure| unit(store, figure));
+    let Kept::<Record> { records, left_out } = store.all_kept(units.collect());
     let figures: Vec<&Value> = records.iter().map(|r| &r.summary).collect();
     let version = env!("CARGO_PKG_VERSION");
     write_json(
         &store.path("summary.json"),
-        &json!({ "version": version, "effort": store.effort, "figures": figures }),
+        &json!({ "version": version, "effort": store.effort, "figures": figures, "left_out": left_out }),
     )?;
     let parts: Vec<Part> = records.iter().flat_map(|r| r.excerpt.clone()).collect();
     excerpt::write(store, "reproduce-figures", &parts)?;
@@ -82,12 +82,14 @@ fn write(store: &Store) -> Result<()> {
         p {
             "Every picture is computed by isosheet. Beside each: what is shown in Y.-J. Liu, K. Tang and A. Joneja, "
             i { "Modeling dynamic developable meshes by the Hamilton principle" } ", Computer-Aided Design 39 (2007) "
-            "719–731, and what is measured here. SI units, z upwards."
+            "719–731, and what is measured here. Pictures open in full; those of runs open pages that play them in 3D, and "
+            code { "isosheet simulate" } " runs their scene files. SI units, z upwards."
         }
         @for record in &records { (record.section) }
     };
     let page = Page {
         heading: "Dynamic developable meshes: the figures reproduced",
+        left_out,
         ..Page::new("Figures of Liu, Tang and Joneja 2007, reproduced", body)
     };
     page.write(store, "index.html")
@@ -95,7 +97,7 @@ fn write(store: &Store) -> Result<()> {
 
 fn summary(figure: u8, made: &Made, store: &Store) -> Value {
     json!({
-        "figure": figure, "title": made.title, "effort": store.effort, "paper": made.paper, "measured": made.measured,
+        "figure": figure, "title": made.title, "effort": store.effort, "paper": made.paper, "here": made.here,
         "pictures": made.pictures.iter().map(|p| &p.path).collect::<Vec<_>>(),
         "pages": made.pages.iter().map(|p| &p.path).collect::<Vec<_>>(), "facts": made.facts,
     })
@@ -117,18 +119,20 @@ fn section(n: u8, made: &Made) -> Markup {
     html! {
         section id={ "fig" (n) } {
             h2 { (kind) " " (n) ". " (made.title) }
-            @for picture in &made.pictures { figure { (picture.inside) } }
+            p { (made.paper) " " (made.here) }
+            div.pictures { @for picture in &made.pictures { (picture.inside) } }
             @if !made.pages.is_empty() {
-                p { b { "Turn it round and play it:" } }
-                div.play { @for play in &made.pages {
+                div.play { @for play in &made.pages { figure {
                     a href={ (play.path) (play.choices) } { (play.thumbnail.inside) (play.label) }
-                } }
+                    figcaption { a href=(play.scene.0) { "scene file" } }
+                } } }
             }
-            div.texts {
-                p { b { "The paper" } (made.paper) }
-                p { b { "Here" } (made.measured) }
+            @if let [first, more @ ..] = made.tables.as_slice() {
+                (first)
+                @if !more.is_empty() {
+                    details { summary { "More measurements" } @for table in more { (table) } }
+                }
             }
-            @for table in &made.tables { (table) }
         }
     }
 }
@@ -149,7 +153,7 @@ mod tests {
         let made = Made {
             title: "A < B".into(),
             paper: "said".into(),
-            measured: "seen".into(),
+            here: "seen".into(),
             pictures: vec![
                 Picture::svg("a", &drawing, "a"),
                 png("b.png", "b \"quoted\""),
@@ -159,6 +163,7 @@ mod tests {
                 choices: "#bodies=glass",
                 label: "M<2>".into(),
                 page: String::new(),
+                scene: ("scenes/a.toml".into(), String::new()),
                 thumbnail: png("fig10-a-end.png", "Figure 10, M<2>, at the end"),
             }],
             tables: vec![Table::new("t", &["x"]).with_texts([vec!["<1>".into()]])],
@@ -171,6 +176,7 @@ mod tests {
             "width=\"143.00pt\" height=\"13.00pt\"",
             "alt=\"b &quot;quoted&quot;\" src=\"data:image/png;base64,AQID\"",
             "<td>&lt;1&gt;</td>",
+            "<a href=\"scenes/a.toml\">scene file</a>",
             "<a href=\"fig10-a.html#bodies=glass\"><img alt=\"Figure 10, M&lt;2&gt;, at the end\" \
              src=\"data:image/png;base64,AQID\">M&lt;2&gt;</a>",
         ] {

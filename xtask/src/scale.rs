@@ -1,21 +1,25 @@
 //! `scale`: what steps and whole runs cost as the mesh is refined.
 
+mod charts;
 mod drape;
 mod findings;
 mod page;
-mod plot;
+mod required;
 mod steps;
 mod tables;
 mod timed;
 mod whole;
 mod whole_report;
 
-use crate::interrupt;
+use crate::draw::Vector;
 use crate::progress::Progress;
-use crate::report::{FullOptions, Part, excerpt};
+use crate::report::{FullOptions, Part, demand, excerpt};
+use crate::store::Store;
 use crate::timing::{Measured, Work};
 use anyhow::Result;
 use clap::Args;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::ops::RangeInclusive;
 use whole::SCENES;
 
@@ -75,7 +79,7 @@ const PICTURE: &str = "Time, memory and fill of a step against the number of ver
 /// Runs the command.
 pub(crate) fn run(args: &ScaleArgs) -> Result<()> {
     let store = args.options.open("scale")?;
-    let results = measured(&Extent::of(args))?;
+    let results = measured(&Extent::of(args), &store)?;
     let whole: Vec<&Measured> = results.whole.iter().collect();
     for (name, table) in [
         ("scale.csv", tables::hanging(&results.hanging)),
@@ -84,7 +88,7 @@ pub(crate) fn run(args: &ScaleArgs) -> Result<()> {
     ] {
         table.write_to(&store.path(name))?;
     }
-    let plot = plot::plot(&results);
+    let plot = charts::charts(&results);
     store.write("scale.svg", plot.to_svg(PICTURE).as_bytes())?;
     store.write("scale.png", &plot.to_png(PICTURE)?)?;
     let parts = [
@@ -99,11 +103,14 @@ pub(crate) fn run(args: &ScaleArgs) -> Result<()> {
     ];
     excerpt::write(&store, "scale", &parts)?;
     print!("{}", page::text(&results));
-    page::page(&results).write(&store, "scale.html")
+    let required = required::required(&results);
+    page::page(&results, &required).write(&store, "scale.html")?;
+    demand(&required)
 }
 
 /// Single steps first, coarse to fine, so that the peak of the memory is that of the level; then whole runs.
-fn measured(extent: &Extent) -> Result<Results> {
+/// Those of a mesh are kept as soon as they are measured.
+fn measured(extent: &Extent, store: &Store) -> Result<Results> {
     let mut results = Results {
         hanging: Vec::new(),
         draping: Vec::new(),
@@ -111,25 +118,36 @@ fn measured(extent: &Extent) -> Result<Results> {
         limit: extent.limit,
     };
     for level in extent.steps.clone() {
-        interrupt::check()?;
-        let bar = Progress::start(format!("M^{level}"), 2);
-        results.hanging.push(steps::measure(level, STEPS)?);
-        bar.step();
-        results.draping.push(draping(level)?);
-        bar.finish("hanging and draping measured");
+        let title = format!("hanging sheet M^{level}");
+        let hanging = kept(store, title, || steps::measure(level, STEPS))?;
+        results.hanging.push(hanging);
+        let title = format!("draping sheet M^{level}");
+        results.draping.push(kept(store, title, || draping(level))?);
     }
     for level in extent.runs.clone() {
-        let bar = Progress::start(format!("whole runs of M^{level}"), SCENES.len());
         for scene in SCENES {
-            interrupt::check()?;
-            results
-                .whole
-                .extend(whole::measure(scene, level, extent.limit)?);
-            bar.step();
+            let title = format!("whole runs of M^{level}, {}", whole::name(scene));
+            let measure = || whole::measure(scene, level, extent.limit);
+            results.whole.extend(kept(store, title, measure)?);
         }
-        bar.finish("measured");
     }
     Ok(results)
+}
+
+/// What was measured before under a title, or is now.
+fn kept<T: Serialize + DeserializeOwned>(
+    store: &Store,
+    title: String,
+    measure: impl FnOnce() -> Result<T>,
+) -> Result<T> {
+    let name = title.replace(|c: char| !c.is_alphanumeric(), "-");
+    let unit = store.unit(name, title);
+    store.keep(&unit, |_| {
+        let bar = Progress::start(&unit.title, 1);
+        let found = measure()?;
+        bar.finish("measured");
+        Ok(found)
+    })
 }
 
 /// The fastest of some runs, or of one where that takes long.
@@ -156,3 +174,26 @@ const STEPS: usize = 3;
 
 /// Longest time for the steps of a draping sheet, seconds.
 const PATIENCE: f64 = 120.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Effort;
+    use crate::store::Remake;
+    use std::cell::Cell;
+
+    #[test]
+    fn what_was_measured_is_kept_unless_the_user_insists() {
+        let folder = tempfile::tempdir().unwrap();
+        let count = Cell::new(0);
+        for (remake, measurements) in [(Remake::Never, 1), (Remake::Never, 1), (Remake::Once, 2)] {
+            let store = Store::open(folder.path(), "scale", Effort::Quick, remake).unwrap();
+            let measure = || {
+                count.set(count.get() + 1);
+                steps::measure(0, 1)
+            };
+            let row = kept(&store, "hanging sheet M^0".into(), measure).unwrap();
+            assert_eq!((row.vertices, count.get()), (9, measurements));
+        }
+    }
+}

@@ -18,9 +18,9 @@ mod tablecloth;
 mod verdict;
 
 use crate::interrupt;
-use crate::report::{Effort, FullOptions, Page, Part as Excerpt, Section, Table};
-use crate::report::{excerpt, list, machine, one_of, plot};
-use crate::store::{Files, Store, Unit};
+use crate::report::{Effort, FullOptions, Page, Part as Excerpt, Requirement, Section, Table};
+use crate::report::{demand, excerpt, list, machine, one_of, plot, requirements};
+use crate::store::{Files, Kept, Store, Unit};
 use crate::timing::SHOWN;
 use analysis::{ENERGY, POSITION};
 use anyhow::Result;
@@ -95,6 +95,7 @@ struct Record {
     /// Of a problem: whether the default is on the fronts of position and energy error, of all methods and of
     /// those that take flat states.
     on_front: Option<[[bool; 2]; 2]>,
+    requirements: Vec<Requirement>,
 }
 
 /// Runs the command.
@@ -113,12 +114,16 @@ pub(crate) fn run(args: &SpeedArgs) -> Result<()> {
         Ok(())
     });
     interrupt::afterwards(made, || {
-        let kept = |part| store.earlier(&unit(&store, part));
-        let records: Vec<Record> = all().filter_map(kept).collect();
+        let units = all().map(|part| unit(&store, part));
+        let Kept { records, left_out } = store.all_kept(units.collect());
         let mut parts = vec![Excerpt::list("fronts", &fronts(&records))];
         parts.extend(records.iter().flat_map(|r| r.excerpt.clone()));
         excerpt::write(&store, "speed-vs-error", &parts)?;
-        page(&records).write(&store, "index.html")
+        let requirements = required(&records);
+        table(&requirements).write_to(&store.path("tables/targets.csv"))?;
+        let page = page(&records);
+        Page { left_out, ..page }.write(&store, "index.html")?;
+        demand(&requirements)
     })
 }
 
@@ -130,7 +135,8 @@ fn unit(store: &Store, part: Part) -> Unit {
 fn make(part: Part, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
     let name = part.name();
     let mut keep = |table: &Table| table.clone().named(name).write(files);
-    let (mut conclusions, mut on_front, mut excerpt) = (Vec::new(), None, Vec::new());
+    let (mut conclusions, mut on_front) = (Vec::new(), None);
+    let (mut excerpt, mut requirements) = (Vec::new(), Vec::new());
     let inside = match part {
         Part::Problem(problem) => {
             let study = study::make(problem, effort)?;
@@ -140,6 +146,7 @@ fn make(part: Part, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
             if verdict::concerns(problem) {
                 conclusions.push(verdict::words(&study));
             }
+            requirements = study.requirements();
             let fronts = [POSITION, ENERGY].map(|m| study.default_on_front(m));
             on_front = Some(fronts.map(|fronts| fronts.map(|front| front.is_some())));
             html! {
@@ -208,12 +215,28 @@ fn make(part: Part, effort: Effort, files: &mut Files<'_>) -> Result<Record> {
         conclusions,
         excerpt,
         on_front,
+        requirements,
     })
 }
 
 /// The columns of runs that the book shows.
 const IN_THE_BOOK: &str = "mesh vertices method step_s wall_s_per_simulated_s times_fastest_exact strain energy_balance \
     failure";
+/// The requirements of all parts.
+fn required(records: &[Record]) -> Vec<(String, Requirement)> {
+    let of = |r: &Record| {
+        let named = r.requirements.iter().map(|q| (r.name.clone(), q.clone()));
+        named.collect::<Vec<_>>()
+    };
+    records.iter().flat_map(of).collect()
+}
+
+fn table(all: &[(String, Requirement)]) -> Table {
+    requirements(
+        "Orders and lengths against what the documentation says",
+        all,
+    )
+}
 
 /// Page of the repository on what other programs took for the same scenes.
 const ELSEWHERE: &str = "docs/measured-elsewhere.md";
@@ -239,7 +262,7 @@ fn page(records: &[Record]) -> Page {
     conclusions.extend(records.iter().flat_map(|r| r.conclusions.clone()));
     let body = html! {
         p { (INTRODUCTION) " Machine: " (machine()) "." }
-        section { h2 { "Conclusions" } (list(&conclusions)) }
+        section { h2 { "Conclusions" } (list(&conclusions)) (table(&required(records))) }
         @for record in records { (record.section) }
     };
     Page::new("Speed against error", body)
@@ -285,6 +308,7 @@ mod tests {
             conclusions: vec!["said".into()],
             excerpt: Vec::new(),
             on_front,
+            requirements: Vec::new(),
         };
         let problems = ["a", "b"].map(|name| record(name, Some([[name == "a", true]; 2])));
         let all = fronts(&problems);

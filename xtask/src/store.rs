@@ -64,6 +64,17 @@ pub(crate) struct Unit {
     pub(crate) options: Value,
 }
 
+/// What is up to date of a report: only results of this build, so that all of a page were made alike.
+#[derive(Debug)]
+pub(crate) struct Kept<T> {
+    pub(crate) records: Vec<T>,
+    /// Titles of the units that another build made, or whose files are gone.
+    pub(crate) left_out: Vec<String>,
+}
+
+/// What is said of units that are left out.
+const OUTDATED: &str = "left out: another build of the program made it, or its files are gone";
+
 /// Whether units that are up to date are made again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Remake {
@@ -216,9 +227,18 @@ impl Store {
         serde_json::from_value(stamp.facts).ok()
     }
 
-    /// What a unit found that was made with the same options, by whichever program.
-    pub(crate) fn earlier<T: DeserializeOwned>(&self, unit: &Unit) -> Option<T> {
-        serde_json::from_value(self.stamp(unit)?.facts).ok()
+    /// What is up to date of some units, and which of them have results that are not.
+    pub(crate) fn all_kept<T: DeserializeOwned>(&self, units: Vec<Unit>) -> Kept<T> {
+        let (mut records, mut left_out) = (Vec::new(), Vec::new());
+        for unit in units {
+            if let Some(found) = self.kept(&unit) {
+                records.push(found);
+            } else if self.stamp(&unit).is_some() {
+                progress::note(&unit.title, OUTDATED);
+                left_out.push(unit.title);
+            }
+        }
+        Kept { records, left_out }
     }
 
     /// Removes all units with their files.
@@ -321,13 +341,35 @@ mod tests {
         assert_eq!(store.kept::<Vec<f64>>(&unit(1)), None, "another layout");
         assert_eq!(make(2, 0.7).unwrap(), 0.7);
         assert_eq!(names(&folder.path().join("runs/one")), ["0.7"]);
-        assert_eq!(store.earlier::<f64>(&unit(1)), None);
         fs::remove_file(folder.path().join("tables/one.csv")).unwrap();
         assert_eq!(store.kept::<f64>(&unit(2)), None, "a file is missing");
-        assert_eq!(store.earlier::<f64>(&unit(2)), Some(0.7));
         let failed = store.keep(&unit(2), |_| Err::<f64, _>(anyhow::anyhow!("lost")));
         assert_eq!(format!("{:#}", failed.unwrap_err()), "first: lost");
-        assert_eq!(store.earlier::<f64>(&unit(2)), None, "made again next time");
+        assert!(store.stamp(&unit(2)).is_none(), "made again next time");
+    }
+
+    /// Results of another build are not shown beside those of this one.
+    #[test]
+    fn results_of_another_build_are_left_out_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut store = open(folder.path()).unwrap();
+        let named = |name: &str| Unit {
+            name: name.into(),
+            title: format!("the {name}"),
+            ..unit(1)
+        };
+        store.keep(&named("old"), |_| Ok(1.0)).unwrap();
+        store.program += 1;
+        store.keep(&named("new"), |_| Ok(2.0)).unwrap();
+        let units = || ["old", "new", "missing"].map(named).to_vec();
+        let kept: Kept<f64> = store.all_kept(units());
+        assert_eq!(
+            (kept.records, kept.left_out),
+            (vec![2.0], vec!["the old".to_owned()])
+        );
+        store.keep(&named("old"), |_| Ok(3.0)).unwrap();
+        let kept: Kept<f64> = store.all_kept(units());
+        assert_eq!((kept.records, kept.left_out), (vec![3.0, 2.0], Vec::new()));
     }
 
     #[test]

@@ -45,6 +45,21 @@ fn folder() -> (TempDir, PathBuf) {
     (folder, out)
 }
 
+/// The text of each figure of a page has at most three sentences.
+fn assert_short(page: &str) {
+    let sections = page.split("</h2><p>").skip(1);
+    let texts: Vec<&str> = sections.filter_map(|s| s.split("</p>").next()).collect();
+    assert!(!texts.is_empty());
+    for text in texts {
+        // "Fig. 7" and "Sec. 1" end no sentence.
+        let ends = text.split(". ").skip(1);
+        let ends = ends
+            .filter(|next| next.starts_with(char::is_uppercase))
+            .count();
+        assert!(ends < 3, "{text}");
+    }
+}
+
 /// Names in a folder that start with a dot and are not the program's own records.
 fn leftovers(out: &Path) -> Vec<String> {
     let names = |folder: &Path| -> Vec<String> {
@@ -74,6 +89,7 @@ fn makes_figures_and_skips_them_when_run_again() {
     assert_written(&out, 500, &files);
     let page = read(out.join("index.html"));
     assert_eq!(page.matches("<section").count(), 2);
+    assert_short(&page);
     assert!(page.contains("<svg") && !page.contains("<script") && !page.contains("<link"));
     let summary = read_json(out.join("summary.json"));
     assert_eq!(summary["figures"][1]["facts"]["pair"]["total"], 7);
@@ -141,6 +157,10 @@ fn a_quick_run_of_everything_writes_readable_runs() {
     );
     let page = read(out.join("index.html"));
     assert!(page.contains("data:image/png;base64,") && page.contains("33.33"));
+    assert_short(&page);
+    // Small pictures open the full ones, and every run has its scene.
+    assert!(page.contains("<a href=\"figures/fig11.png\"><img"));
+    assert!(out.join("scenes/crumple-m1-contact.toml").exists());
     assert!(page.contains("Made with <code>--quick</code>"));
     // Every run has a page of its own beside the report, which has all that it needs.
     let played = [
@@ -358,6 +378,12 @@ fn yardsticks_of_locking_are_kept() {
     let page = read(out.join("index.html"));
     assert!(page.contains("id=\"cylinder\"") && page.contains("id=\"sliding\""));
     assert!(!page.contains("<script") && !page.contains("<link") && !page.contains("NaN"));
+    // What the documentation says is asked for in quick form, too.
+    let targets = read(out.join("tables/targets.csv"));
+    assert!(
+        targets.contains("sliding,\"smallest gap, m\",rods,above,0,"),
+        "{targets}"
+    );
     // Coulomb's law, to within the four halvings of the quick form.
     let table = read(out.join("tables/sliding.csv"));
     for row in table.lines().skip(1) {

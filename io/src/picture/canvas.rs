@@ -59,27 +59,6 @@ impl Image {
         }
     }
 
-    /// The picture made smaller by averaging squares of `n` x `n` pixels.
-    pub(super) fn reduced(&self, n: usize) -> Self {
-        let mut out = Self::white(self.width / n, self.height / n);
-        let weight = 1.0 / (n * n) as f32;
-        for y in 0..out.height {
-            for x in 0..out.width {
-                let mut sum = [0.0; 3];
-                for row in 0..n {
-                    let start = (y * n + row) * self.width + x * n;
-                    for p in &self.pixels[start..start + n] {
-                        for k in 0..3 {
-                            sum[k] += p[k];
-                        }
-                    }
-                }
-                out.pixels[y * out.width + x] = sum.map(|s| s * weight);
-            }
-        }
-        out
-    }
-
     /// Copies another picture in, its upper left corner at (x, y).
     pub(super) fn paste(&mut self, other: &Self, x: usize, y: usize) {
         for row in 0..other.height.min(self.height.saturating_sub(y)) {

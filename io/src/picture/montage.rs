@@ -19,6 +19,32 @@ const LABEL: f64 = 39.0;
 /// Height of the strip below each picture that holds its label, pixels.
 const STRIP: usize = 84;
 
+impl Image {
+    /// The picture made smaller by averaging squares of `n` x `n` pixels.
+    ///
+    /// # Panics
+    /// If `n` is 0.
+    pub fn reduced(&self, n: usize) -> Self {
+        let mut out = Self::white(self.width / n, self.height / n);
+        let weight = 1.0 / (n * n) as f32;
+        for y in 0..out.height {
+            for x in 0..out.width {
+                let mut sum = [0.0; 3];
+                for row in 0..n {
+                    let start = (y * n + row) * self.width + x * n;
+                    for p in &self.pixels[start..start + n] {
+                        for k in 0..3 {
+                            sum[k] += p[k];
+                        }
+                    }
+                }
+                out.pixels[y * out.width + x] = sum.map(|s| s * weight);
+            }
+        }
+        out
+    }
+}
+
 /// Puts pictures of one size into rows of `columns`.
 ///
 /// # Errors

@@ -1,12 +1,27 @@
-//! Charts: one panel each, with axes, series, a legend to the right, and marks of runs without a value.
+//! Charts by plotters: axes, ticks, series, error bars, a legend to the right, marks of runs without a value.
 
-use super::{
-    Anchor, Axis, Colour, Drawing, Marker, SMALL, Series, Stroke, TEXT, Vertical, palette, text,
-};
+use super::axis::Axis;
+use super::colour::{Colour, palette};
+use super::marker::Marker;
+use super::series::{Line, Series};
+use super::svg::{FAMILY, Vector, paper};
+use super::text::{SMALL, TEXT};
+use maud::{Markup, PreEscaped};
+use plotters::backend::SVGBackend;
+use plotters::chart::ChartBuilder;
+use plotters::coord::Shift;
+use plotters::drawing::{DrawingArea, IntoDrawingArea};
+use plotters::element::{EmptyElement, ErrorBar, PathElement, Polygon, Text};
+use plotters::prelude::{DashedLineSeries, LineSeries, SeriesLabelPosition};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color, IntoFont, RGBAColor, ShapeStyle, TextStyle};
+use std::error::Error;
 
-/// Heights above the axes of the line of runs without a value and of the title, points.
-const NOT_ENDED: f64 = 13.0;
-const TITLE: f64 = 9.0;
+/// Units of the backend, which rounds to whole ones, for a point.
+const UNITS: f64 = 10.0;
+
+/// The SVG backend divides sizes of fonts by this.
+const FONT_DIVISOR: f64 = 1.24;
 
 /// A run without a value, such as one that did not end: a mark above the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,17 +46,42 @@ pub(crate) enum Legend {
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
     /// Written above; none when empty.
-    pub(crate) title: String,
-    pub(crate) x: Axis,
-    pub(crate) y: Axis,
+    title: String,
+    x: Axis,
+    y: Axis,
     /// Size of the area inside the axes, points.
-    pub(crate) size: [f64; 2],
+    size: [f64; 2],
     /// Points outside the vertical axis are left out.
-    pub(crate) series: Vec<Series>,
+    series: Vec<Series>,
     /// Runs without a value, on a line above the axes; without it there is no such line.
-    pub(crate) missing: Option<Vec<Missing>>,
-    pub(crate) legend: Legend,
+    missing: Option<Vec<Missing>>,
+    legend: Legend,
 }
+
+/// Charts in rows.
+#[derive(Clone, Debug)]
+pub(crate) struct Charts(pub(crate) Vec<Vec<Chart>>);
+
+/// Sizes of what is around the area inside the axes, points: labels of the axes, title, line of runs without
+/// a value, free room, and what a legend needs besides its lines and names.
+const LEFT: f64 = 42.0;
+const BELOW: f64 = 28.0;
+const TITLE: f64 = 14.0;
+const NOT_ENDED: f64 = 20.0;
+const ROOM: f64 = 8.0;
+const LEGEND: f64 = 26.0;
+
+/// Length of the lines of a legend, points.
+const SAMPLE: f64 = 18.0;
+
+/// Lengths of dashes and of the gaps between them, points.
+const DASH: [f64; 2] = [2.6, 2.0];
+
+/// The largest number of ticks that plotters chooses for an axis.
+const TICKS: usize = 7;
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Drawn = Result<(), Box<dyn Error>>;
 
 impl Chart {
     /// A chart with a legend and without a title.
@@ -59,8 +99,8 @@ impl Chart {
 
     /// A chart with logarithmic axes that hold all points; values that are not positive are left out.
     pub(crate) fn log_log(x: &str, y: &str, size: [f64; 2], series: Vec<Series>) -> Self {
-        let x = Axis::holding(x, values(&series, 0));
-        let y = Axis::holding(y, values(&series, 1));
+        let x = Axis::decades(x, values(&series, 0));
+        let y = Axis::decades(y, values(&series, 1));
         Self::new(x, y, size, series)
     }
 
@@ -68,9 +108,8 @@ impl Chart {
     /// positive are left out.
     pub(crate) fn semi_log(x: &str, y: &str, size: [f64; 2], series: Vec<Series>) -> Self {
         let high = values(&series, 0).fold(f64::MIN_POSITIVE, f64::max);
-        let x = Axis::round(x, [0.0, high], 5);
-        let y = Axis::holding(y, values(&series, 1));
-        Self::new(x, y, size, series)
+        let y = Axis::decades(y, values(&series, 1));
+        Self::new(Axis::linear(x, [0.0, high]), y, size, series)
     }
 
     /// The same with a title.
@@ -90,90 +129,269 @@ impl Chart {
         Self { missing, ..self }
     }
 
-    /// The drawing, its origin at the lower left corner of the area inside the axes.
-    pub(crate) fn draw(&self) -> Drawing {
-        let mut d = Drawing::new();
-        self.axes(&mut d);
-        for s in &self.series {
-            let on_axis = s.points.iter().filter(|p| self.y.holds(p[1]));
-            let points: Vec<[f64; 2]> = on_axis.map(|p| self.place(*p)).collect();
-            s.draw(&mut d, &points, &points);
-        }
-        if self.legend == Legend::Right {
-            self.names(&mut d);
-        }
-        let ([width, mut top], ink) = (self.size, palette::INK);
-        if let Some(missing) = &self.missing {
-            top += NOT_ENDED;
-            self.not_ended(&mut d, missing);
-        }
+    /// Heights above the area inside the axes, points: of the title, and of the line of runs without a value.
+    fn above(&self) -> [f64; 2] {
+        let title = if self.title.is_empty() { 0.0 } else { TITLE };
+        let missing = self.missing.as_ref().map_or(ROOM, |_| NOT_ENDED);
+        [title, missing]
+    }
+
+    /// Width to the right of the area inside the axes, points.
+    fn beside(&self) -> f64 {
+        let lengths = self.named().map(|s| s.name.chars().count());
+        // Letters are about half as wide as high.
+        let legend = |n| LEGEND + SAMPLE + 0.53 * SMALL * n as f64;
+        lengths.max().map_or(2.0 * ROOM, legend)
+    }
+
+    /// Size with everything around the axes, points.
+    fn outer(&self) -> [f64; 2] {
+        let ([w, h], [title, missing]) = (self.size, self.above());
+        [LEFT + w + self.beside(), title + missing + h + BELOW]
+    }
+
+    /// The series of the legend.
+    fn named(&self) -> impl Iterator<Item = &Series> {
+        let has_legend = self.legend == Legend::Right;
+        let is_named = move |s: &&Series| has_legend && !s.name.is_empty();
+        self.series.iter().filter(is_named)
+    }
+
+    fn draw(&self, area: &Area<'_>) -> Drawn {
+        let [title, missing] = self.above().map(units);
+        let (head, body) = area.split_vertically(title);
         if !self.title.is_empty() {
-            let (at, middle) = ([0.5 * width, top + TITLE], Anchor::Middle);
-            d.text(at, &self.title, TEXT, middle, Vertical::Above, ink);
+            let size = (units(self.size[0]), title);
+            let middle = head.shrink((units(LEFT), 0), size);
+            middle.titled(&self.title, font(TEXT, palette::INK))?;
         }
-        d
-    }
-
-    /// Where a point is in the drawing.
-    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [w, h] = self.size;
-        [w * self.x.part(x), h * self.y.part(y)]
-    }
-
-    /// Lines, ticks and labels of the axes.
-    fn axes(&self, d: &mut Drawing) {
-        let ([w, h], ink) = (self.size, palette::INK);
-        let frame = Stroke::new(ink, 0.6);
-        let grid = Stroke::new(palette::PALE, 0.4);
-        for (value, text) in &self.x.ticks {
-            let x = self.x.part(*value) * w;
-            d.line(&[[x, 0.0], [x, -3.0]], frame);
-            d.text([x, -5.0], text, SMALL, Anchor::Middle, Vertical::Below, ink);
+        let (left, side) = body.split_horizontally(units(LEFT + self.size[0] + ROOM));
+        let mut chart = ChartBuilder::on(&left)
+            .margin_top(missing)
+            .margin_right(units(ROOM))
+            .y_label_area_size(units(LEFT))
+            .x_label_area_size(units(BELOW))
+            .build_cartesian_2d(self.x.clone(), self.y.clone())?;
+        chart
+            .configure_mesh()
+            .disable_x_mesh()
+            .max_light_lines(0)
+            .x_labels(TICKS)
+            .y_labels(TICKS)
+            .set_all_tick_mark_size(units(3.0))
+            .bold_line_style(stroke(palette::PALE, 0.4))
+            .axis_style(stroke(palette::INK, 0.6))
+            .label_style(font(SMALL, palette::INK))
+            .axis_desc_style(font(TEXT, palette::INK))
+            .x_desc(&self.x.label)
+            .y_desc(&self.y.label)
+            .draw()?;
+        for s in &self.series {
+            let holds = |p: &&[f64; 2]| self.x.holds(p[0]) && self.y.holds(p[1]);
+            let points = s.points.iter().filter(holds).map(|p| (p[0], p[1]));
+            let (look, line) = (s.look(), stroke(s.colour, 1.1));
+            match s.line {
+                Line::None => {}
+                Line::Solid => {
+                    chart.draw_series(LineSeries::new(points.clone(), line))?;
+                }
+                Line::Dashed => {
+                    let [on, off] = DASH.map(units);
+                    chart.draw_series(DashedLineSeries::new(points.clone(), on, off, line))?;
+                }
+            }
+            let bar = |b: &[f64; 4]| {
+                ErrorBar::new_vertical(b[0], b[1], b[2], b[3], line, units(5.0) as u32)
+            };
+            chart.draw_series(s.bars.iter().map(bar))?;
+            let marked = points.filter(|_| s.marker.is_some()).map(|p| {
+                let [rim, inside] = look.symbol(2.4);
+                EmptyElement::at(p) + rim + inside
+            });
+            chart.draw_series(marked)?;
         }
-        let mut widest: f64 = 0.0;
-        for (value, text) in &self.y.ticks {
-            let y = self.y.part(*value) * h;
-            d.line(&[[0.0, y], [w, y]], grid);
-            d.line(&[[0.0, y], [-3.0, y]], frame);
-            d.text([-5.0, y], text, SMALL, Anchor::End, Vertical::Centre, ink);
-            widest = widest.max(text::width(text, SMALL));
-        }
-        d.line(&[[0.0, h], [0.0, 0.0], [w, 0.0]], frame);
-        let (at, below) = ([0.5 * w, -17.0], Vertical::Below);
-        d.text(at, &self.x.label, TEXT, Anchor::Middle, below, ink);
-        d.text_upwards([-12.0 - widest, 0.5 * h], &self.y.label, TEXT, ink);
-    }
-
-    /// The legend.
-    fn names(&self, d: &mut Drawing) {
-        let [w, h] = self.size;
-        let named = self.series.iter().filter(|s| !s.name.is_empty());
-        for (k, s) in named.enumerate() {
-            let y = h - 6.0 - 12.5 * k as f64;
-            let (a, b) = (w + 14.0, w + 32.0);
-            s.draw(d, &[[a, y], [b, y]], &[[0.5 * (a + b), y]]);
-            let (at, start, ink) = ([b + 5.0, y], Anchor::Start, palette::INK);
-            d.text(at, &s.name, SMALL, start, Vertical::Centre, ink);
-        }
-    }
-
-    /// The line above the axes with the runs without a value.
-    fn not_ended(&self, d: &mut Drawing, missing: &[Missing]) {
-        let ([width, height], grey) = (self.size, palette::GREY);
-        let y = height + NOT_ENDED;
-        d.line(&[[0.0, y], [width, y]], Stroke::new(grey, 0.5).dashed());
-        let (at, centre) = ([-4.0, y], Vertical::Centre);
-        d.text(at, "no value", 6.0, Anchor::End, centre, grey);
-        let rim = Stroke::new(palette::WHITE, 0.4);
+        self.draw_legend(&side)?;
+        let Some(missing) = &self.missing else {
+            return Ok(());
+        };
+        let top = chart.plotting_area();
+        let place = |x: f64| top.map_coordinate(&(x, self.y.ends()[1]));
+        let [(left, y), (right, _)] = self.x.ends().map(place);
+        let (y, grey) = (y - units(NOT_ENDED - ROOM), stroke(palette::GREY, 0.5));
+        let screen = body.use_screen_coord();
+        screen.draw(&PathElement::new([(left, y), (right, y)], grey))?;
+        let words = font(6.0, palette::GREY).pos(Pos::new(HPos::Right, VPos::Center));
+        screen.draw(&Text::new("no value", (left - units(4.0), y), words))?;
         for m in missing {
-            let x = width * self.x.part(m.x) + m.beside;
-            m.marker.draw(d, [x, y], 1.8, m.colour, rim);
+            let look = Look {
+                colour: m.colour,
+                marker: Some(m.marker),
+                line: Line::None,
+            };
+            let ([rim, inside], (x, _)) = (look.symbol(1.8), place(m.x));
+            screen.draw(&(EmptyElement::at((x + units(m.beside), y)) + rim + inside))?;
         }
+        Ok(())
+    }
+
+    /// The names of the series in an area beside the axes.
+    fn draw_legend(&self, side: &Area<'_>) -> Drawn {
+        if self.named().next().is_none() {
+            return Ok(());
+        }
+        let axis = || 0.0..1.0;
+        let mut legend = ChartBuilder::on(side).build_cartesian_2d(axis(), axis())?;
+        for s in self.named() {
+            let (look, none) = (s.look(), Vec::<PathElement<(f64, f64)>>::new());
+            legend
+                .draw_series(none)?
+                .label(&s.name)
+                .legend(move |(x, y)| {
+                    let ([rim, inside], [start, end]) = (look.symbol(2.4), look.sample());
+                    let middle = (x + units(0.5 * SAMPLE), y);
+                    EmptyElement::at(middle) + start + end + rim + inside
+                });
+        }
+        legend
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperLeft)
+            .margin(units(2.0))
+            .legend_area_size(units(SAMPLE + 4.0))
+            .label_font(font(SMALL, palette::INK))
+            .draw()?;
+        Ok(())
+    }
+}
+
+/// How a series looks.
+#[derive(Clone, Copy, Debug)]
+struct Look {
+    colour: Colour,
+    marker: Option<Marker>,
+    line: Line,
+}
+
+impl Series {
+    fn look(&self) -> Look {
+        Look {
+            colour: self.colour,
+            marker: self.marker,
+            line: self.line,
+        }
+    }
+}
+
+impl Look {
+    /// The symbol, a white rim below it; invisible without a marker.
+    fn symbol(self, radius: f64) -> [Polygon<(i32, i32)>; 2] {
+        let of = |radius: f64, colour: Colour| {
+            let corners = self.marker.unwrap_or(Marker::Disc).corners(radius);
+            let corners = corners.into_iter().map(|[x, y]| (units(x), units(-y)));
+            let alpha = self.marker.map_or(0.0, |_| colour.alpha);
+            Polygon::new(corners.collect::<Vec<_>>(), rgba(colour.alpha(alpha)))
+        };
+        [of(radius + 0.5, palette::WHITE), of(radius, self.colour)]
+    }
+
+    /// The two halves of the line in a legend.
+    fn sample(self) -> [PathElement<(i32, i32)>; 2] {
+        let gap = if self.line == Line::Dashed { 0.15 } else { 0.0 };
+        let alpha = if self.line == Line::None { 0.0 } else { 1.0 };
+        let line = stroke(self.colour.alpha(alpha), 1.1);
+        let halves = [[-0.5, -gap], [gap, 0.5]];
+        halves.map(|ends| PathElement::new(ends.map(|x| (units(x * SAMPLE), 0)), line))
+    }
+}
+
+impl Charts {
+    /// Charts side by side.
+    pub(crate) fn row(charts: impl IntoIterator<Item = Chart>) -> Self {
+        Self(vec![charts.into_iter().collect()])
+    }
+
+    /// Charts below each other.
+    pub(crate) fn column(charts: impl IntoIterator<Item = Chart>) -> Self {
+        Self(charts.into_iter().map(|chart| vec![chart]).collect())
+    }
+
+    fn draw(&self, svg: &mut String) -> Result<[f64; 2], Box<dyn Error>> {
+        let height = |row: &Vec<Chart>| row.iter().map(|c| c.outer()[1]).fold(0.0, f64::max);
+        let width = |row: &Vec<Chart>| row.iter().map(|c| c.outer()[0]).sum();
+        let size = [
+            self.0.iter().map(width).fold(1.0, f64::max),
+            self.0
+                .iter()
+                .map(|row| height(row) + ROOM)
+                .sum::<f64>()
+                .max(1.0),
+        ];
+        let [w, h] = size.map(|s| units(s) as u32);
+        let root = SVGBackend::with_string(svg, (w, h)).into_drawing_area();
+        let mut y = 0.0;
+        for row in &self.0 {
+            let mut x = 0.0;
+            for chart in row {
+                let outer = chart.outer();
+                let [x0, y0, w, h] = [x, y, outer[0], outer[1]].map(units);
+                chart.draw(&root.clone().shrink((x0, y0), (w, h)))?;
+                x += outer[0];
+            }
+            y += height(row) + ROOM;
+        }
+        root.present()?;
+        Ok(size)
+    }
+}
+
+impl From<Chart> for Charts {
+    fn from(chart: Chart) -> Self {
+        Self::row([chart])
+    }
+}
+
+impl Vector for Charts {
+    fn document(&self, title: &str, factor: f64) -> Markup {
+        let mut svg = String::new();
+        let drawn = self.draw(&mut svg);
+        // The backend writes to memory, and sizes of texts are estimated without fonts.
+        let size = drawn.expect("nothing that can fail is asked of the backend");
+        paper(
+            title,
+            (size, factor),
+            size.map(|s| f64::from(units(s))),
+            &PreEscaped(svg),
+        )
+    }
+}
+
+fn units(points: f64) -> i32 {
+    (points * UNITS).round() as i32
+}
+
+fn rgba(
+    Colour {
+        rgb: [r, g, b],
+        alpha,
+    }: Colour,
+) -> RGBAColor {
+    RGBAColor(r, g, b, alpha)
+}
+
+fn stroke(colour: Colour, width: f64) -> ShapeStyle {
+    rgba(colour).stroke_width(units(width) as u32)
+}
+
+fn font(size: f64, colour: Colour) -> TextStyle<'static> {
+    let font = (FAMILY, size * UNITS * FONT_DIVISOR).into_font();
+    TextStyle {
+        color: rgba(colour).to_backend_color(),
+        ..font.into()
     }
 }
 
 /// One coordinate of all points.
 fn values(series: &[Series], k: usize) -> impl Iterator<Item = f64> + '_ {
-    let of = move |s: &Series| s.points.iter().map(|p| p[k]).collect::<Vec<_>>();
-    series.iter().flat_map(of)
+    series
+        .iter()
+        .flat_map(move |s| s.points.iter().map(move |p| p[k]))
 }

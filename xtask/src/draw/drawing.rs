@@ -37,13 +37,11 @@ impl Stroke {
 pub(crate) enum Anchor {
     Start,
     Middle,
-    End,
 }
 
 /// Where a text lies relative to the given position, vertically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Vertical {
-    Above,
     Centre,
     Below,
 }
@@ -64,22 +62,14 @@ pub(crate) enum Item {
         radius: f64,
         fill: Colour,
     },
-    /// `at` is on the baseline; `turned` by 90 degrees counter-clockwise for the labels of vertical axes.
+    /// `at` is on the baseline.
     Text {
         at: [f64; 2],
         text: String,
         size: f64,
         anchor: Anchor,
         colour: Colour,
-        turned: Turned,
     },
-}
-
-/// The direction of a text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Turned {
-    No,
-    Upwards,
 }
 
 /// An axis-parallel rectangle.
@@ -198,7 +188,6 @@ impl Drawing {
         colour: Colour,
     ) {
         let drop = match vertical {
-            Vertical::Above => 0.0,
             Vertical::Centre => 0.35 * size,
             Vertical::Below => 0.72 * size,
         };
@@ -208,7 +197,6 @@ impl Drawing {
             size,
             anchor,
             colour,
-            turned: Turned::No,
         });
     }
 
@@ -216,18 +204,6 @@ impl Drawing {
     pub(crate) fn label(&mut self, at: [f64; 2], text: &str, colour: Colour) {
         let (size, middle) = (text::TEXT, Anchor::Middle);
         self.text(at, text, size, middle, Vertical::Centre, colour);
-    }
-
-    /// A text that runs upwards, centred at `at`, which lies to the right of it.
-    pub(crate) fn text_upwards(&mut self, at: [f64; 2], text: &str, size: f64, colour: Colour) {
-        self.items.push(Item::Text {
-            at,
-            text: text.to_owned(),
-            size,
-            anchor: Anchor::Middle,
-            colour,
-            turned: Turned::Upwards,
-        });
     }
 
     /// Another drawing, moved.
@@ -262,26 +238,58 @@ impl Drawing {
                     text,
                     size,
                     anchor,
-                    turned,
                     ..
                 } => {
                     let (before, after) = match anchor {
                         Anchor::Start => (0.0, 1.0),
                         Anchor::Middle => (0.5, 0.5),
-                        Anchor::End => (1.0, 0.0),
                     };
                     let w = text::width(text, *size);
                     let (low, high) = text::extent(text, *size);
-                    for (along, across) in [(-before * w, -low), (after * w, high)] {
-                        let p = match turned {
-                            Turned::No => [at[0] + along, at[1] + across],
-                            Turned::Upwards => [at[0] - across, at[1] + along],
-                        };
-                        r.add(p, 0.0);
-                    }
+                    r.add([at[0] - before * w, at[1] - low], 0.0);
+                    r.add([at[0] + after * w, at[1] + high], 0.0);
                 }
             }
         }
         r
+    }
+}
+
+/// Panels from left to right with a gap between their bounds, their origins in line.
+pub(crate) fn row(panels: &[Drawing], gap: f64) -> Drawing {
+    let (mut all, mut x) = (Drawing::new(), 0.0);
+    for panel in panels {
+        let b = panel.bounds();
+        all.place(panel, [x - b.min[0], 0.0]);
+        x += b.width() + gap;
+    }
+    all
+}
+
+/// Panels from top to bottom with a gap between their bounds, their origins in line.
+pub(crate) fn column(panels: &[Drawing], gap: f64) -> Drawing {
+    let (mut all, mut y) = (Drawing::new(), 0.0);
+    for panel in panels {
+        let b = panel.bounds();
+        all.place(panel, [0.0, y - b.max[1]]);
+        y -= b.height() + gap;
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::palette;
+
+    #[test]
+    fn panels_do_not_overlap() {
+        let mut square = Drawing::new();
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        square.polygon(&corners, palette::INK);
+        let panels = [square.clone(), square];
+        let (r, c) = (row(&panels, 3.0).bounds(), column(&panels, 3.0).bounds());
+        assert_eq!((r.width(), r.height()), (7.0, 2.0));
+        assert_eq!((c.width(), c.height()), (2.0, 7.0));
     }
 }

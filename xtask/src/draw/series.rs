@@ -1,41 +1,7 @@
-//! Points of a chart, and how they are shown.
+//! Series of points in charts, and how they are shown.
 
 use super::colour::{Colour, palette};
-use super::drawing::{Drawing, Stroke};
-
-/// The symbol of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Marker {
-    Disc,
-    Square,
-    Triangle,
-    Diamond,
-}
-
-impl Marker {
-    /// Draws the symbol with its middle at `p`; `radius` is that of the disc of about the same area.
-    pub(crate) fn draw(
-        self,
-        drawing: &mut Drawing,
-        p: [f64; 2],
-        radius: f64,
-        fill: Colour,
-        rim: Stroke,
-    ) {
-        let corners: &[[f64; 2]] = match self {
-            Self::Disc => return drawing.disc(p, radius, fill, rim),
-            Self::Square => &[[-0.88, -0.88], [0.88, -0.88], [0.88, 0.88], [-0.88, 0.88]],
-            Self::Triangle => &[[-1.12, -0.76], [1.12, -0.76], [0.0, 1.24]],
-            Self::Diamond => &[[0.0, -1.25], [1.25, 0.0], [0.0, 1.25], [-1.25, 0.0]],
-        };
-        let points: Vec<[f64; 2]> = corners
-            .iter()
-            .map(|c| [p[0] + radius * c[0], p[1] + radius * c[1]])
-            .collect();
-        drawing.polygon(&points, fill);
-        drawing.outline(&points, rim);
-    }
-}
+use super::marker::Marker;
 
 /// Points joined by a line.
 #[derive(Clone, Debug)]
@@ -46,6 +12,16 @@ pub(crate) struct Series {
     pub(crate) colour: Colour,
     pub(crate) marker: Option<Marker>,
     pub(crate) line: Line,
+    /// Error bars: place, lower end, mean, upper end.
+    pub(crate) bars: Vec<[f64; 4]>,
+}
+
+/// The line through the points of a series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Line {
+    None,
+    Solid,
+    Dashed,
 }
 
 /// Colours and symbols of the series of a plot, in order.
@@ -67,6 +43,7 @@ impl Series {
             colour,
             marker: None,
             line: Line::Solid,
+            bars: Vec::new(),
         }
     }
 
@@ -80,8 +57,7 @@ impl Series {
 
     /// A line with symbols, the style by its place `k` among the series of a chart.
     pub(crate) fn styled(k: usize, name: &str, points: Vec<[f64; 2]>) -> Self {
-        let (colour, marker) = STYLES[k % STYLES.len()];
-        Self::line(name, colour, points).marked(marker)
+        Self::curve(k, name, points).marked(STYLES[k % STYLES.len()].1)
     }
 
     /// As [`Series::styled`], without symbols.
@@ -105,27 +81,4 @@ impl Series {
         let line = Line::Dashed;
         Self { line, ..self }
     }
-
-    /// Draws the line through places of the drawing, and the symbols there.
-    pub(super) fn draw(&self, d: &mut Drawing, line: &[[f64; 2]], symbols: &[[f64; 2]]) {
-        let solid = Stroke::new(self.colour, 1.1);
-        match self.line {
-            Line::None => {}
-            Line::Solid => d.line(line, solid),
-            Line::Dashed => d.line(line, solid.dashed()),
-        }
-        let rim = Stroke::new(palette::WHITE, 0.5);
-        for p in symbols.iter().filter(|_| self.marker.is_some()) {
-            self.marker
-                .inspect(|m| m.draw(d, *p, 2.4, self.colour, rim));
-        }
-    }
-}
-
-/// The line through the points of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Line {
-    None,
-    Solid,
-    Dashed,
 }

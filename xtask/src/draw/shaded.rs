@@ -31,19 +31,30 @@ pub(crate) struct Viewpoint {
 }
 
 impl Viewpoint {
-    /// The pictures, all of one size.
-    fn pictures(&self, shots: &[Shot<'_>]) -> Result<Vec<Image>> {
+    /// The camera that has everything in view, and the ratio of width to height that fits.
+    fn camera(&self, shots: &[Shot<'_>], aspect: Option<f64>) -> (Camera, f64) {
         let sheets = shots.iter().flat_map(|s| s.x.as_chunks::<3>().0);
         let bodies = shots.iter().flat_map(|s| &s.solids);
         let bodies = bodies.flat_map(|b| b.points.iter().copied());
         let bodies = bodies.map(|[x, y, z]| [x, y, z.max(-self.depth)]);
         let points = sheets.copied().chain(bodies);
         let camera = Camera::new([0.0; 3], self.azimuth, self.elevation, 1.0, self.distance);
-        let aspect = camera.aspect(points.clone());
-        let camera = camera.framing(points, aspect, 0.04);
+        let aspect = aspect.unwrap_or_else(|| camera.aspect(points.clone()));
+        (camera.framing(points, aspect, 0.04), aspect)
+    }
+
+    /// The pictures, all of the size that fits.
+    fn pictures(&self, shots: &[Shot<'_>]) -> Result<Vec<Image>> {
+        let (_, aspect) = self.camera(shots, None);
         let width = (self.height as f64 * aspect).round().max(1.0) as usize;
+        self.frame(shots, [width, self.height])
+    }
+
+    /// The pictures in a size, pixels.
+    pub(crate) fn frame(&self, shots: &[Shot<'_>], size: [usize; 2]) -> Result<Vec<Image>> {
+        let (camera, _) = self.camera(shots, Some(size[0] as f64 / size[1] as f64));
         let look = Look {
-            size: [width, self.height],
+            size,
             ..Look::default()
         };
         let picture = |shot: &Shot<'_>| {
@@ -59,13 +70,13 @@ impl Viewpoint {
         shots.iter().map(picture).collect()
     }
 
-    /// The pictures with their labels in rows, as a PNG file.
-    pub(crate) fn montage(&self, shots: Vec<Shot<'_>>, columns: usize) -> Result<Vec<u8>> {
+    /// The pictures with their labels in rows.
+    pub(crate) fn montage(&self, shots: Vec<Shot<'_>>, columns: usize) -> Result<Image> {
         let images = self.pictures(&shots)?.into_iter();
         let labels = shots.into_iter().map(|shot| shot.label);
         let labelled = images.zip(labels);
         let labelled = labelled.map(|(image, label)| Labelled { image, label });
-        Ok(montage(&labelled.collect::<Vec<_>>(), columns)?.to_png()?)
+        Ok(montage(&labelled.collect::<Vec<_>>(), columns)?)
     }
 
     /// One picture as a PNG file.

@@ -1,6 +1,6 @@
 //! Writing a drawing as SVG, and as PNG: the SVG file, rasterised with a font that comes with the program.
 
-use super::drawing::{Anchor, Drawing, Item, Turned};
+use super::drawing::{Anchor, Drawing, Item};
 use super::text::{Piece, Script, pieces};
 use super::{Colour, palette};
 use anyhow::Result;
@@ -11,41 +11,58 @@ use maud::{Markup, html};
 const MARGIN: f64 = 2.0;
 
 /// Fonts by falling preference; every system has one of them.
-const FAMILY: &str = "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
+pub(super) const FAMILY: &str = "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
 
 /// Pixels of a PNG file for a pixel of the SVG file, of which there are 96 to the inch: 216 to the inch,
 /// enough for print in a column.
 const SCALE: f32 = 216.0 / 96.0;
 
-impl Drawing {
-    /// The drawing as an SVG document whose size is that of its contents; `title` is read by screen readers.
-    pub(crate) fn to_svg(&self, title: &str) -> String {
+/// What is written as SVG: drawings and charts.
+pub(crate) trait Vector {
+    /// An SVG document as part of a page, larger by a factor; `title` is read by screen readers.
+    fn document(&self, title: &str, factor: f64) -> Markup;
+
+    /// The same as a file, in its own size.
+    fn to_svg(&self, title: &str) -> String {
         self.document(title, 1.0).into_string()
     }
 
-    /// The same as part of a page, larger by a factor.
-    pub(crate) fn document(&self, title: &str, factor: f64) -> Markup {
+    /// The same as a PNG file.
+    ///
+    /// No fonts of the system are used, so that equal drawings give equal files everywhere.
+    fn to_png(&self, title: &str) -> Result<Vec<u8>> {
+        Ok(svg_to_png(&self.to_svg(title), SCALE)?)
+    }
+}
+
+/// The size of a document is that of its contents.
+impl Vector for Drawing {
+    fn document(&self, title: &str, factor: f64) -> Markup {
         let bounds = self.bounds();
         let corner = [bounds.min[0] - MARGIN, bounds.max[1] + MARGIN];
         let size = [bounds.width(), bounds.height()].map(|s| s + 2.0 * MARGIN);
-        let [width, height] = size.map(|s| format!("{:.2}pt", factor * s));
-        let seen = format!("0 0 {:.2} {:.2}", size[0], size[1]);
         let place = |p: &[f64; 2]| [p[0] - corner[0], corner[1] - p[1]];
-        html! {
-            svg xmlns="http://www.w3.org/2000/svg" width=(width) height=(height) role="img" aria-label=(title)
-                viewBox=(seen) font-family=(FAMILY) fill="none" stroke-linecap="round" stroke-linejoin="round" {
-                // White paper: dark lines on a dark viewer's page would vanish.
-                rect width="100%" height="100%" fill=(hex(palette::WHITE)) {}
-                @for item in &self.items { (element(item, &place)) }
-            }
-        }
+        let items = html! { @for item in &self.items { (element(item, &place)) } };
+        paper(title, (size, factor), size, &items)
     }
+}
 
-    /// The drawing as a PNG file; `title` as for [`Drawing::to_svg`].
-    ///
-    /// No fonts of the system are used, so that equal drawings give equal files everywhere.
-    pub(crate) fn to_png(&self, title: &str) -> Result<Vec<u8>> {
-        Ok(svg_to_png(&self.to_svg(title), SCALE)?)
+/// A document of a size in points, enlarged by a factor, with contents that fill `seen` in units of their own.
+pub(super) fn paper(
+    title: &str,
+    (size, factor): ([f64; 2], f64),
+    seen: [f64; 2],
+    contents: &Markup,
+) -> Markup {
+    let [width, height] = size.map(|s| format!("{:.2}pt", factor * s));
+    let seen = format!("0 0 {:.2} {:.2}", seen[0], seen[1]);
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" width=(width) height=(height) role="img" aria-label=(title)
+            viewBox=(seen) font-family=(FAMILY) fill="none" stroke-linecap="round" stroke-linejoin="round" {
+            // White paper: dark lines on a dark viewer's page would vanish.
+            rect width="100%" height="100%" fill=(hex(palette::WHITE)) {}
+            (contents)
+        }
     }
 }
 
@@ -100,18 +117,14 @@ fn element(item: &Item, place: &impl Fn(&[f64; 2]) -> [f64; 2]) -> Markup {
             size,
             anchor,
             colour,
-            turned,
         } => {
             let [x, y] = place(at).map(points);
             let anchor = match anchor {
                 Anchor::Start => "start",
                 Anchor::Middle => "middle",
-                Anchor::End => "end",
             };
-            let turn = (*turned == Turned::Upwards).then(|| format!("rotate(-90 {x} {y})"));
             html! {
-                text x=(x) y=(y) font-size=(size) text-anchor=(anchor) fill=(hex(*colour)) fill-opacity=[opacity(*colour)]
-                    transform=[turn] { (spans(&pieces(text), *size)) }
+                text x=(x) y=(y) font-size=(size) text-anchor=(anchor) fill=(hex(*colour)) fill-opacity=[opacity(*colour)] { (spans(&pieces(text), *size)) }
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::marks::{self, Marks};
 use super::show::View;
-use super::{Effort, Made, Picture, Play, through_itself};
+use super::{Effort, Made, Picture, Play, Table, course, measured, through_itself};
 use crate::runs::{self, FigureScene, Hanging, Run, RunSummary, Shape};
 use crate::store::Store;
 use anyhow::Result;
@@ -37,11 +37,11 @@ pub(super) fn make(figure: u8, level: u32, store: &Store) -> Result<Made> {
     let mut made = Made {
         title: ["Crumpled paper, M¹", "Crumpled paper, M²"][level as usize - 1].into(),
         paper: PAPER[level as usize - 1].into(),
-        measured: describe(&run, &free, store.effort)?,
+        here: "A square of office paper falls from exactly flat and horizontal; the side that was above is warm, the other one blue.".into(),
         pictures: vec![picture(&format!("fig{figure:02}.png"), &run, store.effort)?],
         pages: vec![page(figure, &run, store.effort)?],
+        tables: vec![describe(&run, &free, store.effort)?],
         facts: json!({ "run": run.summary, "without_contact": free }),
-        ..Made::default()
     };
     if figure == 12 {
         add_softness_and_marks(&mut made, store)?;
@@ -51,8 +51,8 @@ pub(super) fn make(figure: u8, level: u32, store: &Store) -> Result<Made> {
 
 const PAPER: [&str; 2] = [
     "A piece of paper modelled by M¹ is held at its left-upper corner, falls and crumples.",
-    "The same with the finer mesh M², which looks softer, as more degrees of freedom let it be. Crumpling leaves very localised marks \
-     with a typical crescent shape (Amar and Pomeau).",
+    "The same with the finer mesh M², which looks softer, as more degrees of freedom let it be; crumpling leaves very localised \
+     marks with a typical crescent shape (Amar and Pomeau).",
 ];
 
 /// What Fig. 12 has beside Fig. 11: a finer mesh, softness by mesh, and marks.
@@ -62,17 +62,14 @@ fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
         let picture = picture("fig12-m3.png", &finer, store.effort)?;
         made.pictures.push(picture);
         made.pages.push(page(12, &finer, store.effort)?);
-        made.measured += " Below it the same with M³, which the paper does not show, and what softer means in numbers.";
+        made.here += " The second sequence is of M³, which the paper does not show.";
     }
     let part = super::softness::make(store.effort, without_contact)?;
     let all = concentration(store)?;
     let alt = "How much of the fold angles the sharpest edges carry over time, and how many of the final marks are there already";
     let plot = Picture::svg("fig12-marks", &marks::plot(&all), alt);
     made.pictures.extend([part.picture, plot]);
-    made.tables = vec![part.table, marks::table(&all)];
-    made.measured += " Permanent marks: the model has neither bending stiffness nor memory, so that no fold is permanent by itself; what it \
-                      shows is where folds gather and whether they stay there (last plot and table). ";
-    made.measured += &marks::crescents(&all);
+    made.tables.extend([part.table, marks::table(&all)]);
     made.facts["softness"] = part.facts;
     made.facts["marks"] = json!(all);
     Ok(())
@@ -89,40 +86,50 @@ fn concentration(store: &Store) -> Result<Vec<Marks>> {
     levels.iter().map(of).collect()
 }
 
-fn describe(run: &Run, free: &RunSummary, effort: Effort) -> Result<String> {
+/// What was measured of a run; `free` is the sheet that may pass through itself.
+fn describe(run: &Run, free: &RunSummary, effort: Effort) -> Result<Table> {
     let (scene, s) = (&run.scene, &run.summary);
     let (hanging, mass) = (Hanging::of(scene)?, runs::mass(scene)?);
-    let end = if effort == Effort::Quick {
-        "Cut short.".to_owned()
-    } else {
-        let shape = Shape::of(&hanging, run.end())?;
-        format!(
-            "At the end the kinetic energy is {:.0e} of the potential energy released; the centre of mass hangs {:.3} sides below \
-             the pin (a rigid plate: {:.3}).",
-            s.motion_left,
-            shape.centre_depth,
-            runs::PLATE
-        )
-    };
-    Ok(format!(
-        "A square of office paper, {:.0} mm, {:.0} g/m² ({:.2} g), lumped masses, {} with velocity damping {:.0}/s, contact of the sheet \
-         with itself with friction {}, {:.1} s from exactly flat and horizontal; {} frames of 1/60 s with {} rejected steps; largest \
-         edge strain {:.0e}, smallest gap {}. Warm: the side that was above; blue: below. {:.2} s of wall time per simulated second, \
-         {:.1} times that of the sheet that may pass through itself. {end}",
-        1e3 * hanging.side,
-        1e3 * mass / hanging.sheet.area(),
-        1e3 * mass,
-        method_name(scene.scene().method.integrator),
-        scene.scene().sheet.damping,
-        scene.scene().contact.friction,
-        s.course.time,
-        s.course.cost.steps,
-        s.course.cost.rejected,
-        s.course.strain,
-        super::gap(s.course.gap),
-        s.slowness(),
-        s.slowness() / free.slowness().max(1e-12),
-    ))
+    let mut rows = vec![
+        (
+            "sheet",
+            format!(
+                "{:.0} mm, {:.0} g/m² ({:.2} g), lumped masses",
+                1e3 * hanging.side,
+                1e3 * mass / hanging.sheet.area(),
+                1e3 * mass
+            ),
+        ),
+        (
+            "method",
+            format!(
+                "{}, damping {:.0}/s, friction with itself {}",
+                method_name(scene.scene().method.integrator),
+                scene.scene().sheet.damping,
+                scene.scene().contact.friction
+            ),
+        ),
+    ];
+    rows.extend(course(s));
+    let times = s.slowness() / free.slowness().max(1e-12);
+    rows.push((
+        "times as long as without self-contact",
+        format!("{times:.1}"),
+    ));
+    if effort != Effort::Quick {
+        let depth = Shape::of(&hanging, run.end())?.centre_depth;
+        rows.extend([
+            (
+                "kinetic energy at the end, of the potential energy released",
+                format!("{:.0e}", s.motion_left),
+            ),
+            (
+                "depth of the centre of mass at the end",
+                format!("{depth:.3} sides (a rigid plate: {:.3})", runs::PLATE),
+            ),
+        ]);
+    }
+    Ok(measured(rows))
 }
 
 /// The integrator in words.

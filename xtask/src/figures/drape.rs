@@ -5,7 +5,7 @@ use super::cloths::{Layout, irregular, octagon, polygon, rectangle, ringed};
 use super::folds::{Folds, Hem};
 use super::show::View;
 use super::{Effort, Made, Picture, Play, Table, through_itself, whole_percent};
-use crate::draw::{Axis, Chart, Drawing, Legend, Marker, Series, column, palette, row};
+use crate::draw::{Axis, Chart, Charts, Legend, Marker, Series, palette};
 use crate::report::Cell;
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
@@ -82,7 +82,7 @@ const VIEW: View = View {
 
 /// The page that plays the run of a cloth.
 pub(super) fn page(figure: u8, label: &str, run: &Run, effort: Effort) -> Result<Play> {
-    let (label, free) = (label.replace('~', ""), through_itself(&run.scene));
+    let (label, free) = (label, through_itself(&run.scene));
     VIEW.play(run, effort, figure, &format!("draped cloth, {label}{free}"))
 }
 
@@ -114,7 +114,8 @@ fn fold_table(all: &[Draped]) -> Table {
                   times size of the fold angle. At the corners: within one mean edge of a line from a table corner to its cloth \
                   corner. Strongest edges: the fewest that carry half of the bending. Angle with the nearest of these \
                   lines: weighted by bending (in brackets: of all edges, what the mesh alone gives). Drop: how far the hem hangs below the table, of its distance \
-                  from the table in the flat cloth.",
+                  from the table in the flat cloth. Triangles whose edges keep their lengths leave a cloth only as many internal degrees of freedom as it has \
+                  boundary edges less three: it cannot shear as woven cloth does.",
         all,
         &[
             ("cloth", &|d| d.label.as_str().into()),
@@ -139,53 +140,8 @@ fn fold_table(all: &[Draped]) -> Table {
     )
 }
 
-/// Bending at the corner lines that is this many times as dense as on the mean of the overhang makes
-/// principal folds.
-const PRINCIPAL: f64 = 1.25;
-
-/// Whether folds gather at the corners, in words.
-fn at_corners(all: &[Draped]) -> String {
-    let list = |principal: bool| {
-        let with = all
-            .iter()
-            .filter(|d| (d.folds.density_at_corners >= PRINCIPAL) == principal);
-        let names: Vec<String> = with
-            .map(|d| format!("{} ({:.1})", d.label, d.folds.density_at_corners))
-            .collect();
-        names.join(", ")
-    };
-    let (yes, no) = (list(true), list(false));
-    let none = "none of them".to_owned();
-    let gathered = if yes.is_empty() { &none } else { &yes };
-    let rest = if no.is_empty() {
-        String::new()
-    } else {
-        format!("; hardly so: {no}")
-    };
-    format!(
-        "Principal folds from table corners to cloth corners, with bending at least {PRINCIPAL} times as dense as on the mean of the overhang: {gathered}{rest}."
-    )
-}
-
-/// Why these cloths hang less steeply than woven ones, in words.
-fn locking<'a>(all: impl Iterator<Item = &'a Draped>) -> String {
-    let (mut dof, mut drop) = ([i64::MAX, 0], [f64::INFINITY, 0.0_f64]);
-    for d in all {
-        dof = [dof[0].min(d.internal), dof[1].max(d.internal)];
-        drop = [drop[0].min(d.drop), drop[1].max(d.drop)];
-    }
-    format!(
-        "Triangles whose edges keep their lengths leave a cloth only as many internal degrees of freedom as it has boundary edges less three, here {} to {}: \
-         it cannot shear as woven cloth does, and its hem hangs by {} to {} of what it could.",
-        dof[0],
-        dof[1],
-        whole_percent(drop[0]),
-        whole_percent(drop[1])
-    )
-}
-
 /// Bending density by distance from the corner lines.
-fn profiles(all: &[Draped]) -> Drawing {
+fn profiles(all: &[Draped]) -> Charts {
     let looks = [
         (palette::VERMILION, Marker::Square),
         (palette::BLUE, Marker::Disc),
@@ -200,32 +156,40 @@ fn profiles(all: &[Draped]) -> Drawing {
         Series::line(&d.label, colour, d.folds.profile.clone()).marked(marker)
     };
     let series = all.iter().zip(looks).map(of).collect();
-    let y = Axis::round("bending (mean = 1)", [0.0, top], 4);
-    Chart::new(Axis::round(label, [0.0, far], 6), y, [230.0, 130.0], series).draw()
+    let y = Axis::linear("bending (mean = 1)", [0.0, top]);
+    Chart::new(Axis::linear(label, [0.0, far]), y, [230.0, 130.0], series).into()
 }
 
-/// What holds for a run, in words.
-fn describe(d: &Draped, effort: Effort) -> String {
-    let r = &d.run.summary;
-    let rest = match (r.at_rest_from, effort) {
-        (Some(t), _) => format!("at rest from {t:.1} s on"),
-        (None, Effort::Quick) => "cut short".to_owned(),
-        (None, _) => format!(
-            "kinetic energy at the end {:.0e} of the potential energy released",
-            r.motion_left
-        ),
-    };
-    format!(
-        "{}: {rest}, {:.2} s of wall time per simulated second, largest strain {:.0e}, smallest gap {}.",
-        d.label,
-        r.slowness(),
-        r.course.strain,
-        super::gap(r.course.gap),
+/// What holds for each run.
+fn runs_table(all: &[&Draped]) -> Table {
+    Table::of(
+        CONDITIONS,
+        all,
+        &[
+            ("cloth", &|d| d.label.as_str().into()),
+            ("V/F", &|d| mesh(d)),
+            ("at rest from", &|d| {
+                let time = d.run.summary.at_rest_from;
+                time.map(|t| format!("{t:.1} s")).into()
+            }),
+            ("kinetic energy left", &|d| {
+                format!("{:.0e}", d.run.summary.motion_left).into()
+            }),
+            ("wall s per simulated s", &|d| {
+                format!("{:.2}", d.run.summary.slowness()).into()
+            }),
+            ("largest strain", &|d| {
+                format!("{:.0e}", d.run.summary.course.strain).into()
+            }),
+            ("smallest gap", &|d| {
+                super::gap(d.run.summary.course.gap).into()
+            }),
+        ],
     )
 }
 
 const CONDITIONS: &str = "Cloth of 0.2 kg/m², velocity damping 2/s, friction 0.3 with the table and itself, self-contact on, gap below which contact acts 5 mm; \
-                          let go exactly flat 5 mm above the table, 8 s. At rest: kinetic energy below 1e-6 of the potential energy released, to the end of the run. ";
+                          let go exactly flat 5 mm above the table, 8 s. At rest: kinetic energy below 1e-6 of the potential energy released, to the end of the run.";
 
 pub(super) fn fig14(store: &Store) -> Result<Made> {
     let effort = store.effort;
@@ -236,18 +200,13 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
         drape("irregular", irregular(effort)?, store)?,
     ];
     let alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
-    let words: Vec<String> = all.iter().map(|d| describe(d, effort)).collect();
     Ok(Made {
         title: "Rectangular cloth on a rectangular table".into(),
-        paper: "A rectangular plastic tablecloth draped over a rectangular table with M², and with a second resolution: the principal folds run from the \
-                table corners to the cloth corners.".into(),
-        measured: format!(
-            "{CONDITIONS}The cloth is 1.2 m x 0.9 m, the table 0.58 m x 0.435 m. The diagonals of M^k lead through the corners of the table, so the \
-             mesh could favour what is to be shown: an irregular triangulation, which has no such lines, is the check. {} {} {}",
-            at_corners(&all),
-            locking(all.iter()),
-            words.join(" ")
-        ),
+        paper: "A rectangular plastic tablecloth is draped over a rectangular table with M², and with a second resolution: the principal folds run from \
+                the table corners to the cloth corners.".into(),
+        here: "The diagonals of the regular meshes lead through the corners of the table and could favour what is to be shown: the irregular \
+               triangulation, which has no such lines, is the check."
+            .into(),
         pictures: vec![
             all[0].picture("fig14.png", effort)?,
             all[1].picture("fig14-fine.png", effort)?,
@@ -255,7 +214,7 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
             Picture::svg("fig14-folds", &profiles(&all), alt),
         ],
         pages: pages(14, all.iter(), effort)?,
-        tables: vec![fold_table(&all)],
+        tables: vec![fold_table(&all), runs_table(&all.iter().collect::<Vec<_>>())],
         facts: json!(all.iter().map(Draped::facts).collect::<Vec<_>>()),
     })
 }
@@ -281,14 +240,14 @@ fn fig15_cloths(store: &Store) -> Result<(Vec<Draped>, Vec<Draped>, usize)> {
     for &n in sides {
         let label = match n {
             48 => "round".to_owned(),
-            _ => format!("~n~ = {n}"),
+            _ => format!("n = {n}"),
         };
         let scene = polygon(&format!("drape-{n}-gon"), n, spacing, effort)?;
         polygons.push(drape(&label, scene, store)?);
     }
     let round = polygons.len() - 1;
     for &(n, rings) in effort.quick_or(&RINGS[2..3], &RINGS) {
-        let label = format!("~n~ = {n}, rings");
+        let label = format!("n = {n}, rings");
         polygons.push(drape(&label, ringed(n, rings, effort)?, store)?);
     }
     Ok((octagons, polygons, round))
@@ -299,20 +258,13 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
     let alt = "Distance of the hem from the axis, that of the flat cloth = 1, by angle, for polygons with more and more corners";
     let folds_alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
     let all = || octagons.iter().chain(&polygons);
-    let words = all().map(|d| describe(d, store.effort).replace('~', ""));
-    let words: Vec<String> = words.collect();
     Ok(Made {
         title: "Octagonal cloth on an octagonal table".into(),
-        paper: "An octagonal plastic tablecloth (244/440) draped over an octagonal table, with two resolutions: principal folds from table corners to cloth corners. For n-gonal \
-                cloths on n-gonal tables with more and more corners the paper infers that uniform folding patterns will occur.".into(),
-        measured: format!(
-            "{CONDITIONS}Cloths of circumscribed radius 0.6 m on tables of 0.33 m. Folds of the hem are outward bulges of its distance from the axis, divided by that of the flat cloth, that stand out by more than 0.02. A cloth folds along mesh lines: in the irregular triangulations and in 244/440, \
-             a lattice of triangles, none runs from a table corner to its cloth corner; the last mesh, concentric rings of triangles, has these lines among its edges. {} {} {} {}",
-            at_corners(&octagons),
-            uniform(&polygons),
-            locking(all()),
-            words.join(" ")
-        ),
+        paper: "An octagonal plastic tablecloth (244/440) is draped over an octagonal table: principal folds run from table corners to cloth corners, and for \
+                more and more corners the paper infers that uniform folding patterns will occur.".into(),
+        here: "In the irregular meshes and in 244/440, a lattice of triangles, no mesh line runs from a table corner to its cloth corner, and in \
+               the meshes of concentric rings some do."
+            .into(),
         pictures: vec![
             octagons[0].picture("fig15.png", store.effort)?,
             octagons[1].picture("fig15-fine.png", store.effort)?,
@@ -322,7 +274,11 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
             Picture::svg("fig15-hems", &hems(&polygons), alt),
         ],
         pages: pages(15, all(), store.effort)?,
-        tables: vec![fold_table(&octagons), hem_table(&polygons)],
+        tables: vec![
+            fold_table(&octagons),
+            hem_table(&polygons),
+            runs_table(&all().collect::<Vec<_>>()),
+        ],
         facts: json!({
             "octagons": octagons.iter().map(Draped::facts).collect::<Vec<_>>(),
             "polygons": polygons.iter().map(Draped::facts).collect::<Vec<_>>(),
@@ -333,41 +289,18 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
 /// Spacing and size of folds that spread by less than this part of their means make a uniform pattern.
 const UNIFORM: f64 = 0.2;
 
-/// Whether the folds become uniform towards the round cloth, in words.
-fn uniform(all: &[Draped]) -> String {
-    let even = |d: &&Draped| {
-        d.hem.folds > 1 && d.hem.spacing_spread < UNIFORM && d.hem.size_spread < UNIFORM
-    };
-    let names: Vec<String> = all
-        .iter()
-        .filter(even)
-        .map(|d| d.label.replace('~', ""))
-        .collect();
-    let which = if names.is_empty() {
-        "none of them".to_owned()
-    } else {
-        names.join(", ")
-    };
-    format!(
-        "Patterns whose folds are spaced and sized alike to {}: {which}.",
-        whole_percent(UNIFORM)
-    )
-}
-
 /// The hems of the polygons, one small plot each.
-fn hems(all: &[Draped]) -> Drawing {
+fn hems(all: &[Draped]) -> Charts {
     let plot = |d: &Draped| {
         let ticks = [0.0, 180.0, 360.0].map(|a| (a, format!("{a:.0}")));
         let label = format!("angle (°), {}", d.label);
-        let x = Axis::linear(&label, [0.0, 360.0], ticks.to_vec());
-        let y = Axis::round("distance", [0.5, 1.0], 3);
+        let x = Axis::named(&label, [0.0, 360.0], ticks.to_vec());
+        let y = Axis::linear("distance", [0.5, 1.0]);
         let hem = Series::line("", palette::BLUE, d.hem.curve.clone());
-        let chart = Chart::new(x, y, [120.0, 60.0], vec![hem]);
-        chart.with_legend(Legend::None).draw()
+        Chart::new(x, y, [120.0, 60.0], vec![hem]).with_legend(Legend::None)
     };
-    let plots: Vec<Drawing> = all.iter().map(plot).collect();
-    let rows: Vec<Drawing> = plots.chunks(3).map(|c| row(c, 20.0)).collect();
-    column(&rows, 16.0)
+    let charts: Vec<Chart> = all.iter().map(plot).collect();
+    Charts(charts.chunks(3).map(<[Chart]>::to_vec).collect())
 }
 
 fn hem_table(all: &[Draped]) -> Table {
@@ -375,14 +308,25 @@ fn hem_table(all: &[Draped]) -> Table {
     Table::of(
         "Polygonal cloths on polygonal tables, irregular meshes of one spacing and meshes of rings: folds of the hem at rest. Spreads are standard deviations over means, of \
                   the angles between neighbouring folds and of how far the folds stand out: both are 0 for a uniform pattern. Wave: the wave number with the \
-                  largest part of the variance of the hem's relative distance from the axis, and that part.",
+                  largest part of the variance of the hem's relative distance from the axis, and that part. Folds are outward bulges of the hem's distance from \
+                  the axis, divided by that of the flat cloth, that stand out by more than 0.02; a pattern is uniform where both spreads are below 20 %.",
         all,
         &[
-            ("cloth", &|d| d.label.replace('~', "").into()),
+            ("cloth", &|d| d.label.as_str().into()),
             ("V/F", &|d| mesh(d)),
             ("folds", &|d| d.hem.folds.to_string().into()),
             ("spread of spacing", &|d| part(d.hem.spacing_spread)),
             ("spread of size", &|d| part(d.hem.size_spread)),
+            ("uniform", &|d| {
+                let Hem {
+                    folds,
+                    spacing_spread,
+                    size_spread,
+                    ..
+                } = d.hem;
+                let is_uniform = folds > 1 && spacing_spread.max(size_spread) < UNIFORM;
+                if is_uniform { "yes" } else { "no" }.into()
+            }),
             ("wave", &|d| {
                 let (wave, share) = d.hem.wave;
                 format!("{wave} ({})", whole_percent(share)).into()

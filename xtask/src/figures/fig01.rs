@@ -1,6 +1,6 @@
 //! Fig. 1: refinement by the 1-4 split.
 
-use super::{Made, caption, style, svg};
+use super::{Made, Table, caption, style, svg};
 use crate::draw::{Drawing, Stroke, TEXT, flat_edges, flat_faces, palette, row};
 use anyhow::{Result, ensure};
 use isosheet_mesh::generate::{anisotropic_grid, split_1_4};
@@ -16,10 +16,21 @@ pub(super) fn make() -> Result<Made> {
     }
     let mut panels = Vec::new();
     let mut facts = Vec::new();
+    let head = [
+        "split",
+        "V",
+        "E",
+        "F",
+        "boundary edges",
+        "DOF",
+        "DOF by Lemma 1",
+    ];
+    let mut table = Table::new("Counted on the meshes", &head);
     for (k, sheet) in sheets.iter().enumerate() {
         let t = sheet.topology();
         let dof = Dof::of(t).total;
         let boundary = t.boundary_edge_count();
+        let mut lemma = None;
         if k > 0 {
             let before = sheets[k - 1].topology();
             let expected = Dof::of(before).total + before.boundary_edge_count() as i64;
@@ -27,7 +38,17 @@ pub(super) fn make() -> Result<Made> {
                 dof == expected,
                 "Lemma 1 fails at step {k}: {dof} instead of {expected}"
             );
+            lemma = Some(expected as f64);
         }
+        table.push(vec![
+            k.into(),
+            t.vertex_count().into(),
+            t.edge_count().into(),
+            t.face_count().into(),
+            boundary.into(),
+            (dof as f64).into(),
+            lemma.into(),
+        ]);
         let coarser = k.checked_sub(1).map(|j| &sheets[j]);
         let mut d = panel(sheet, coarser);
         let counts = format!(
@@ -50,10 +71,9 @@ pub(super) fn make() -> Result<Made> {
         title: "Refinement by the 1–4 split".into(),
         paper: "A mesh is refined by splitting every triangle into four; Lemma 1 says that each step adds as many degrees of \
                 freedom as the coarser mesh has boundary edges.".into(),
-        measured: "The split applied three times to two triangles. New edges are drawn in blue. Counted on the meshes: \
-                   DOF 7, 11, 19, 35 with 4, 8, 16, 32 boundary edges, as Lemma 1 says at each step."
-            .into(),
+        here: "The split is applied three times to two triangles; new edges are blue.".into(),
         pictures: svg(1, &all, alt),
+        tables: vec![table],
         facts: json!({ "levels": facts }),
         ..Made::default()
     })

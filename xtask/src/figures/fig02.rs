@@ -1,7 +1,7 @@
 //! Fig. 2: external and internal degrees of freedom.
 
 use super::sketch::{PLACED, Sketch, captioned};
-use super::{Made, style, svg};
+use super::{Made, degrees, style, svg};
 use crate::draw::spatial::arc;
 use crate::draw::{Stroke, palette};
 use anyhow::Result;
@@ -58,9 +58,11 @@ pub(super) fn make() -> Result<Made> {
         title: "External and internal degrees of freedom".into(),
         paper: "A single triangle only moves rigidly (six external degrees of freedom); two triangles with a common edge have \
                 a seventh, internal one: the fold about that edge.".into(),
-        measured: "Counted on the two meshes: 6 = 6 + 0 and 7 = 6 + 1. The arrow is the path of the far vertex when the one \
-                   internal coordinate changes from flat to 51.6°."
-            .into(),
+        here: format!(
+            "The arrow is the path of the far vertex when the one internal coordinate changes from flat to {}.",
+            degrees(FOLD)
+        )
+        .into(),
         pictures: svg(2, &all, alt),
         facts: json!({ "triangle": facts[0], "pair": facts[1], "fold": FOLD }),
         ..Made::default()

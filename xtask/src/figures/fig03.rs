@@ -1,6 +1,6 @@
 //! Fig. 3: the directions in which a mesh folds.
 
-use super::{Made, caption, style, svg};
+use super::{Made, Table, caption, style, svg};
 use crate::draw::{
     Colour, Drawing, SMALL, Stroke, TEXT, flat_edges, flat_faces, palette, plan, row,
 };
@@ -43,19 +43,25 @@ pub(super) fn make() -> Result<Made> {
     let gaps = [16.0, 34.0];
     let pairs: Vec<Drawing> = panels.chunks(2).map(|pair| row(pair, gaps[0])).collect();
     let all = row(&pairs, gaps[1]);
-    let anisotropy = |k: usize| facts[k]["anisotropy"].as_f64().unwrap_or(f64::NAN);
+    let anisotropy = Table::of(
+        "Anisotropy |Σ l exp(2iφ)| / Σ l of the crease lines (length l, direction φ)",
+        ["one-way grid", "union jack"].into_iter().zip(&facts),
+        &[
+            ("mesh", &|(name, _)| (*name).into()),
+            ("anisotropy", &|(_, facts)| {
+                facts["anisotropy"].as_f64().into()
+            }),
+        ],
+    );
     let alt = "Crease lines of the one-way grid and of the union-jack grid with their directions";
     Ok(Made {
         title: "Folding directions".into(),
         paper: "Meshes refined by the 1–4 split fold horizontally, vertically and along the diagonal from lower right to upper \
                 left, but not along the other diagonal: the pattern is anisotropic.".into(),
-        measured: format!(
-            "Straight crease lines from boundary to boundary, found on the meshes and coloured by direction; the bars at the right \
-             are their total lengths by direction, in sides of the square. The one-way grid has none at 45°, the union jack has all \
-             four directions. Anisotropy |Σ l exp(2iφ)| / Σ l: {:.3} and {:.3}.",
-            anisotropy(0),
-            anisotropy(1)
-        ),
+        here: "Straight crease lines from boundary to boundary are found on the meshes and coloured by direction; the bars are \
+               their total lengths by direction."
+            .into(),
+        tables: vec![anisotropy],
         pictures: svg(3, &all, alt),
         facts: json!({ "one_way": facts[0], "union_jack": facts[1] }),
         ..Made::default()

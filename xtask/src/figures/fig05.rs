@@ -62,27 +62,19 @@ pub(super) fn make() -> Result<Made> {
             ("α + β", &|r| degrees(r.2.alpha + r.2.beta).into()),
             ("γ⁰", &|r| degrees(r.1).into()),
             ("γᵗ", &|r| degrees(r.2.gamma).into()),
+            ("fold by these three", &|r| degrees(r.2.fold()).into()),
             ("γᵗ ≤ α + β", &|r| {
                 let holds = r.2.gamma <= r.2.alpha + r.2.beta;
                 if holds { "holds" } else { "violated" }.into()
             }),
         ],
     );
-    let [one, two] = triples[1];
     let alt = "A pair of triangles at rest and folded, with the angles alpha, beta and gamma at both ends";
     Ok(Made {
         title: "Angle triples and the compatibility condition".into(),
         paper: "Two triangles that share an edge can only fold about it, so γᵗ ≤ α + β = γ⁰ at either end (Eq. 10), and one end's \
                 condition implies the other's.".into(),
-        measured: format!(
-            "Angles measured on a pair folded by {}: γᵗ = {} at one end and {} at the other. The fold angle follows from either triple \
-             alone: {} and {}.",
-            degrees(fold.abs()),
-            degrees(one.gamma),
-            degrees(two.gamma),
-            degrees(one.fold()),
-            degrees(two.fold()),
-        ),
+        here: format!("The angles are measured on a pair that is folded by {}.", degrees(fold.abs())).into(),
         pictures: svg(5, &all, alt),
         tables: vec![table],
         facts: json!({

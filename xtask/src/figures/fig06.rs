@@ -1,7 +1,7 @@
 //! Fig. 6: the three placement functions.
 
 use super::sketch::{PLACED, Sketch, captioned};
-use super::{Made, style, svg};
+use super::{Made, measured, style, svg};
 use crate::draw::spatial::{arc, axpy, dot, norm, sub, unit};
 use crate::draw::{Drawing, Stroke, palette};
 use anyhow::{Result, ensure};
@@ -26,11 +26,10 @@ pub(super) fn make() -> Result<Made> {
         title: "Basic geometric relations".into(),
         paper: "A vertex with one known neighbour takes two spherical coordinates, with two known neighbours one angle, with three \
                 none.".into(),
-        measured: format!(
-            "Known vertices blue, placed vertices red, all placed by the functions h, g and f of the library. (a) the two arcs are \
-             the coordinates. (b) five values of the one coordinate. (c) three known vertices of a pair of triangles folded by 55°; \
-             the ghost is the mirror image, the other solution. f returns the vertex to {error:.0e} of its first edge length."
-        ),
+        here: "Known vertices are blue, and placed vertices red: the arcs of (a) are the two coordinates, (b) has five values of \
+               the one coordinate, and the ghost of (c) is the other solution, the mirror image."
+            .into(),
+        tables: vec![measured([("f returns the vertex to its first place, to (edge lengths)", format!("{error:.0e}"))])],
         pictures: svg(6, &all, alt),
         facts: json!({ "f_error": error }),
         ..Made::default()

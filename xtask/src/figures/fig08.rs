@@ -1,6 +1,6 @@
 //! Fig. 8: fronts and rules of the assignment.
 
-use super::{Made, caption, style, svg};
+use super::{Made, caption, measured, style, svg};
 use crate::draw::{
     Anchor, Colour, Drawing, Marker, SMALL, Stroke, TEXT, Vertical, flat_edges, flat_faces,
     palette, plan, row,
@@ -57,15 +57,16 @@ pub(super) fn make() -> Result<Made> {
         title: "Assignment of system coordinates".into(),
         paper: "From the left-upper corner, front after front, each vertex is placed by the rule that its known neighbours \
                 allow; the number of coordinates is the number of degrees of freedom.".into(),
-        measured: format!(
-            "sys_coord_assnmt_single on M¹: {} fronts; 3 coordinates for the start vertex, {} vertex by rule h with two, {} by rule g with \
-             one, {} by rule f with none: {} = DOF. Every rod is used exactly once, by the end that is placed later (b).",
-            assignment.front_count(),
-            count('h'),
-            count('g'),
-            count('f'),
-            assignment.dof(),
-        ),
+        here: "sys_coord_assnmt_single is applied to M¹; every rod is used exactly once, by the end that is placed later (b)."
+            .into(),
+        tables: vec![measured([
+            ("fronts", assignment.front_count().to_string()),
+            ("vertices by rule h, two coordinates each", count('h').to_string()),
+            ("vertices by rule g, one coordinate each", count('g').to_string()),
+            ("vertices by rule f, no coordinate", count('f').to_string()),
+            ("coordinates, three of the start vertex included", assignment.dof().to_string()),
+            ("degrees of freedom", dof.to_string()),
+        ])],
         pictures: svg(8, &all, alt),
         facts: json!({
             "dof": dof, "fronts": assignment.front_count(), "h": count('h'), "g": count('g'), "f": count('f'),

@@ -1,7 +1,7 @@
 //! Fig. 9: the construction of function g.
 
 use super::sketch::{PLACED, Sketch};
-use super::{Made, style, svg};
+use super::{Made, degrees, measured, style, svg};
 use crate::draw::spatial::{angle_arc, arc, axpy, cross, dot, norm, sub, unit};
 use crate::draw::{Stroke, palette};
 use anyhow::{Result, ensure};
@@ -79,13 +79,14 @@ pub(super) fn make() -> Result<Made> {
         title: "Construction of function g".into(),
         paper: "The rest triangle is turned by A(θ) so that its edge lies on the known edge at time t, then by A(q) about that edge: \
                 the system coordinate q places the third vertex.".into(),
-        measured: format!(
-            "The rest triangle (left), aligned with the known edge by θ = {:.1}° about r (blue), and turned by q = {:.1}° (orange), by the \
-             Euler parameters of the paper. The library's g, which takes the same lengths and q but no rotation matrix, \
-             gives the same place to {error:.0e} of the edge length.",
-            theta.to_degrees(),
-            Q.to_degrees()
-        ),
+        here: "The rest triangle (left) is aligned with the known edge by θ about r (blue) and turned by q (orange), by the Euler \
+               parameters of the paper; the function g of the library has the same lengths and q, but no rotation matrix."
+            .into(),
+        tables: vec![measured([
+            ("θ", degrees(theta)),
+            ("q", degrees(Q)),
+            ("distance of the two places (edge lengths)", format!("{error:.0e}")),
+        ])],
         pictures: svg(9, &d.drawing, alt),
         facts: json!({ "theta": theta, "q": Q, "difference": error }),
         ..Made::default()

@@ -2,9 +2,10 @@
 
 use super::feed::{Feed, INNER, OUTER, PLATE};
 use super::show::View;
-use super::{Effort, Made, Picture, Table};
+use super::{Effort, Made, Picture, Table, measured};
 use crate::draw::{
-    Anchor, Axis, Chart, Colour, Drawing, Series, Stroke, TEXT, Vertical, column, palette, row,
+    Anchor, Axis, Chart, Charts, Colour, Drawing, Series, Stroke, TEXT, Vertical, column, palette,
+    row,
 };
 use crate::report::Cell;
 use crate::runs::{FigureScene, Run};
@@ -202,49 +203,64 @@ fn newtons(force: f64) -> String {
     }
 }
 
-/// What happens in front of the plate, in words; `passing` is a force that the strip never needs to pass.
-fn describe(jam: &Fed, passing: f64) -> String {
+/// What happens in front of the plate; `passing` is a force that the strip never needs to pass.
+fn describe(jam: &Fed, passing: f64) -> Vec<(&'static str, String)> {
     let (Some(arrival), Some((k, force))) = (jam.arrival(), jam.buckle(passing)) else {
-        return "The run is too short for the strip to reach the plate.".into();
+        return vec![(
+            "the strip reaches the plate",
+            "not in this run, which is too short".into(),
+        )];
     };
-    let mm = |frame: usize| 1e3 * jam.feed_length_at(frame);
+    let mm = |frame: usize| format!("{:.1} mm", 1e3 * jam.feed_length_at(frame));
     let column = jam.column(k);
-    let [clamped, hinged] = jam.euler(column);
-    let again = match jam.buckles(passing).len() - 1 {
-        0 => "the force grows again".to_owned(),
-        1 => "the force grows again, and falls once more as the strip folds into shorter waves"
-            .to_owned(),
-        more => format!(
-            "the force grows again, and falls {more} more times as the strip folds into shorter waves"
-        ),
-    };
+    let [clamped, hinged] = jam.euler(column).map(newtons);
     let last = jam.profiles.len() - 1;
     let [x, turn] = jam.sharpest(last);
-    let fate = if jam.jammed {
+    let end = if jam.jammed {
         format!(
-            "At {:.1} mm the force passes {} N, at which the nip is taken to slip: there the run ends",
+            "{}: the force passes {} N, and the nip slips",
             mm(last),
             jam.feed.limit
         )
     } else {
-        format!("The nip stops at {:.1} mm", mm(last))
+        mm(last)
     };
-    format!(
-        "With the outlet blocked, the leading edge reaches the plate when the nip has moved {:.1} mm. The strip then settles against the outer wall all \
-         along the bend, and the force grows until the straight part between nip and bend buckles at {:.1} mm and {}. It is {:.0} mm long there; Euler's load is \
-         {} with both ends clamped and {} with one hinged, and the bend is something between. The walls stop the buckle; {again}. {fate}, with {} inflections in the straight part and the sharpest bend, {:.0}° over {:.0} mm, \
-         {:.0} mm before the bend of the guide.",
-        mm(arrival),
-        mm(k),
-        newtons(force),
-        1e3 * column,
-        newtons(clamped),
-        newtons(hinged),
-        jam.inflections(last),
-        turn.abs().to_degrees(),
-        1e3 * jam.feed.size[0] / jam.feed.cells[0] as f64,
-        -1e3 * x,
-    )
+    vec![
+        (
+            "displacement at which the strip reaches the plate",
+            mm(arrival),
+        ),
+        (
+            "displacement and force at which it buckles between nip and bend",
+            format!("{}, {}", mm(k), newtons(force)),
+        ),
+        (
+            "length of the straight part there",
+            format!("{:.0} mm", 1e3 * column),
+        ),
+        (
+            "Euler's load of this length: both ends clamped, one hinged",
+            format!("{clamped}, {hinged}"),
+        ),
+        (
+            "further falls of the force, into shorter waves",
+            (jam.buckles(passing).len() - 1).to_string(),
+        ),
+        ("displacement at the end", end),
+        (
+            "inflections in the straight part at the end",
+            jam.inflections(last).to_string(),
+        ),
+        (
+            "sharpest bend at the end",
+            format!(
+                "{:.0}° over {:.0} mm, {:.0} mm before the bend of the guide",
+                turn.abs().to_degrees(),
+                1e3 * jam.feed.size[0] / jam.feed.cells[0] as f64,
+                -1e3 * x
+            ),
+        ),
+    ]
 }
 
 fn table(all: &[Fed]) -> Table {
@@ -312,16 +328,30 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     let alt_force = "Force of the nip over its displacement in four guides";
     let alt_side = "The strip from the side at five times in each of the four guides";
     let (s, of_scene) = (&jam.feed, jam.run.scene.scene());
-    let through = all.iter().take(JAM).map(|f| {
-        let [fed, peak] = f.peak();
-        format!(
-            "{:.0} mm: {} at {:.0} mm",
-            1e3 * f.feed.radius(),
-            newtons(peak),
-            1e3 * fed
-        )
-    });
-    let through: Vec<String> = through.collect();
+    let mut rows = vec![
+        (
+            "strip of office paper",
+            format!(
+                "{:.0} mm x {:.0} mm, {:.0} g/m², flexural rigidity {:.0e} N m, {}/{} vertices/faces",
+                1e3 * s.size[0],
+                1e3 * s.size[1],
+                1e3 * of_scene.sheet.density,
+                s.rigidity,
+                jam.run.summary.vertices,
+                jam.run.summary.faces
+            ),
+        ),
+        (
+            "guide",
+            format!(
+                "walls {:.0} mm apart, friction {} with them and itself",
+                1e3 * s.channel(),
+                of_scene.contact.friction
+            ),
+        ),
+        ("speed of the nip", format!("{} m/s", s.speed())),
+    ];
+    rows.extend(describe(jam, passing));
     let side: Vec<Drawing> = all.iter().map(side_view).collect::<Result<_>>()?;
     let side = column(&[row(&side[..2], 30.0), row(&side[2..], 30.0)], 24.0);
     let page = |f: &Fed| {
@@ -330,36 +360,22 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     };
     Ok(Made {
         title: "Paper jam".into(),
-        paper: "The simulation of a paper jam is named as an application for the design of printers (Sec. 1); none is shown.".into(),
-        measured: format!(
-            "A strip of office paper ({:.0} mm x {:.0} mm, {:.0} g/m², flexural rigidity {:.0e} N m, {}/{} vertices/faces) starts flat between two walls \
-             {:.0} mm apart that turn downwards by 90°. A nip holds its last two rungs straight and moves along at {} m/s; friction {} with the walls and \
-             itself. The walls are drawn without the outer one. Bends let the strip through with a largest force of (radius of the middle line: force) {}: even where \
-             the strip meets the outer wall steeply, it bows and slips past. {} In the side view time goes from blue to vermilion. Every frame of all runs has a strain below 1e-10 and a positive gap.",
-            1e3 * s.size[0],
-            1e3 * s.size[1],
-            1e3 * of_scene.sheet.density,
-            s.rigidity,
-            jam.run.summary.vertices,
-            jam.run.summary.faces,
-            1e3 * s.channel(),
-            s.speed(),
-            of_scene.contact.friction,
-            through.join(", "),
-            describe(jam, passing),
-        ),
+        paper: "The simulation of a paper jam is named as an application for the design of printers (Sec. 1), and none is shown.".into(),
+        here: "A strip that starts flat is pushed between two walls that turn downwards by 90°; bends let it through unless the outlet is \
+               blocked (in the side view time goes from blue to vermilion)."
+            .into(),
         pictures: vec![
             view(s).picture(&jam.run, store.effort, ["fig16.png", alt], &times)?,
             Picture::svg("fig16-force", &force_plot(&all), alt_force),
             Picture::svg("fig16-side", &side, alt_side),
         ],
         pages: all.iter().map(page).collect::<Result<_>>()?,
-        tables: vec![table(&all)],
+        tables: vec![measured(rows), table(&all)],
         facts: json!(all.iter().map(|f| f.facts(passing)).collect::<Vec<_>>()),
     })
 }
 
-fn force_plot(all: &[Fed]) -> Drawing {
+fn force_plot(all: &[Fed]) -> Charts {
     let displacements = all.iter().flat_map(|f| &f.force).map(|p| 1e3 * p[0]);
     let far = displacements.fold(1e-3, f64::max);
     let top = all.iter().map(|f| f.peak()[1]).fold(1e-6, f64::max);
@@ -368,9 +384,9 @@ fn force_plot(all: &[Fed]) -> Drawing {
         Series::line(&f.label(), colour, points.collect())
     };
     let series = all.iter().zip(COLOURS).map(of).collect();
-    let x = Axis::round("displacement of the nip (mm)", [0.0, far], 6);
-    let y = Axis::round("force of the nip (N)", [0.0, 1.05 * top], 5);
-    Chart::new(x, y, [250.0, 140.0], series).draw()
+    let x = Axis::linear("displacement of the nip (mm)", [0.0, far]);
+    let y = Axis::linear("force of the nip (N)", [0.0, 1.05 * top]);
+    Chart::new(x, y, [250.0, 140.0], series).into()
 }
 
 /// Points of a drawing for a metre.

@@ -2,7 +2,7 @@
 
 use super::crescent::Crescent;
 use super::{Table, whole_percent};
-use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Series, palette, row};
+use crate::draw::{Axis, Chart, Charts, Colour, Legend, Series, palette};
 use crate::report::Cell;
 use isosheet_io::Trajectory;
 use isosheet_mesh::{EdgeId, Sheet, fold_angle};
@@ -104,51 +104,28 @@ impl Marks {
 const COLOURS: [Colour; 3] = [palette::VERMILION, palette::GREEN, palette::BLUE];
 
 /// The shares over time, and how many of the final marks are there already.
-pub(super) fn plot(all: &[Marks]) -> Drawing {
+pub(super) fn plot(all: &[Marks]) -> Charts {
     let ends = all.iter().filter_map(|m| Some(m.shares.last()?[0]));
     let end = ends.fold(0.0, f64::max);
-    let panel = |label: &str, column: usize| {
+    let panel = |label: &str, column: usize, guide: Option<Series>| {
         let of = |(m, colour): (&Marks, Colour)| {
             let points = m.shares.iter().map(|s| [s[0], 100.0 * s[column]]);
             Series::line(&m.name, colour, points.collect())
         };
-        let series: Vec<Series> = all.iter().zip(COLOURS).map(of).collect();
-        let x = Axis::round("time (s)", [0.0, end], 4);
-        let y = Axis::round(label, [0.0, 100.0], 5);
+        let series = all.iter().zip(COLOURS).map(of).chain(guide).collect();
+        let x = Axis::linear("time (s)", [0.0, end]);
+        let y = Axis::linear(label, [0.0, 100.0]);
         Chart::new(x, y, [165.0, 118.0], series)
     };
-    let mut left = panel("share of fold angle (%)", 1);
     let normal = [0.0, end].map(|t| [t, 100.0 * NORMAL]).to_vec();
-    left.series.push(Series::guide("normal", normal));
-    let right = panel("final marks present (%)", 2).with_legend(Legend::None);
-    row(&[left.draw(), right.draw()], 26.0)
+    let normal = Series::guide("normal", normal);
+    let left = panel("share of fold angle (%)", 1, Some(normal));
+    let right = panel("final marks present (%)", 2, None).with_legend(Legend::None);
+    Charts::row([left, right])
 }
 
 /// A mark is an arc if the circle leaves at most this part of the mean square distance from the line.
 const ARC: f64 = 0.5;
-
-/// Whether the largest mark on the finest mesh is a crescent, in words.
-pub(super) fn crescents(all: &[Marks]) -> String {
-    let largest = all
-        .iter()
-        .rev()
-        .find_map(|m| Some((&m.name, m.shape.as_ref()?)));
-    let Some((name, c)) = largest else {
-        return "No connected mark is large enough to have a shape.".to_owned();
-    };
-    let verdict = if c.straightness <= ARC {
-        "is an arc, as of a crescent"
-    } else {
-        "is no clear arc, so that crescents are not what this mesh shows"
-    };
-    format!(
-        "The largest connected mark on {name} has {} edges and {verdict}: a circle, seen from its centre over {:.0}°, leaves {:.0} % of the mean \
-         square distance from the best line.",
-        c.edges,
-        c.opening.to_degrees(),
-        100.0 * c.straightness
-    )
-}
 
 pub(super) fn table(all: &[Marks]) -> Table {
     let caption = format!(
@@ -156,10 +133,13 @@ pub(super) fn table(all: &[Marks]) -> Table {
              folds were equal, {:.0} % if they were normally distributed), and how many of the edges that are sharpest at the end are among \
              the sharpest earlier (to 1 %, as symmetric folds are equal). Late: mean over the second half of the run. The largest connected mark at the end is compared, in the flat \
              sheet, with the arc of a crescent: the angle in which the centre of the best circle sees it (a straight fold: near zero), and \
-             what is left of its mean square distance from the best line when the line is bent to the circle (an arc: 0 %).",
+             what is left of its mean square distance from the best line when the line is bent to the circle (0 %: a perfect arc, at most {:.0} %: \
+             an arc). The model has neither bending stiffness nor memory: no fold is permanent by itself, and the table shows where folds gather and \
+             whether they stay there.",
         100.0 * SHARPEST,
         100.0 * SHARPEST,
-        100.0 * NORMAL
+        100.0 * NORMAL,
+        100.0 * ARC
     );
     let shape = |m: &Marks, f: fn(&Crescent) -> String| Cell::from(m.shape.as_ref().map(f));
     let share = |part: f64| Cell::from(whole_percent(part));
@@ -184,6 +164,11 @@ pub(super) fn table(all: &[Marks]) -> Table {
             }),
             ("left by the arc", &|m| {
                 shape(m, |c| whole_percent(c.straightness))
+            }),
+            ("an arc", &|m| {
+                shape(m, |c| {
+                    if c.straightness <= ARC { "yes" } else { "no" }.into()
+                })
             }),
         ],
     )

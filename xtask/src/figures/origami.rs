@@ -1,8 +1,8 @@
 //! Beyond the paper: crease patterns folded by driven angles.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play, degrees};
-use crate::draw::{Axis, Chart, Colour, Drawing, Marker, Series, palette, row};
+use super::{Effort, Made, Picture, Play, course, degrees, measured};
+use crate::draw::{Axis, Chart, Charts, Colour, Marker, Series, palette};
 use crate::runs::{FigureScene, Run, RunSummary};
 use crate::store::Store;
 use anyhow::{Context, Result, bail};
@@ -165,11 +165,11 @@ fn exact_curve(name: &str, points: Vec<[f64; 2]>) -> Series {
 
 /// A fold angle from 0 to 150 degrees.
 fn fold_axis(label: &str) -> Axis {
-    Axis::round(label, [0.0, 150.0], 5)
+    Axis::linear(label, [0.0, 150.0])
 }
 
 /// The fold of the straight creases and the size of the sheet over the fold of the zigzags.
-fn folds_plot(exact: &origami::Miura, folded: &[Folded]) -> Drawing {
+fn folds_plot(exact: &origami::Miura, folded: &[Folded]) -> Charts {
     let thetas = (0..=80).map(|k| 0.5 * FULL * f64::from(k) / 80.0);
     let thetas: Vec<f64> = thetas.collect();
     let curve = |name: &str, f: &dyn Fn(f64) -> f64| {
@@ -194,7 +194,7 @@ fn folds_plot(exact: &origami::Miura, folded: &[Folded]) -> Drawing {
     let (along, across) = (measured(&|m| m.size[0]), measured(&|m| m.size[1]));
     let sizes = Chart::new(
         fold_axis("fold of the zigzags (°)"),
-        Axis::round("size (flat = 1)", [0.0, 1.0], 5),
+        Axis::linear("size (flat = 1)", [0.0, 1.0]),
         size,
         vec![
             curve("exact", &|t| exact.panel(t)[0] / flat[0]),
@@ -203,7 +203,7 @@ fn folds_plot(exact: &origami::Miura, folded: &[Folded]) -> Drawing {
             Series::dots("across", palette::GREEN, Marker::Triangle, across),
         ],
     );
-    row(&[angles.draw(), sizes.draw()], 24.0)
+    Charts::row([angles, sizes])
 }
 
 /// A vertex of degree four in one of its two modes.
@@ -268,19 +268,6 @@ impl Vertex {
     }
 }
 
-/// What a run did, in words.
-fn describe(r: &RunSummary) -> String {
-    format!(
-        "{} frames, {} rejected sub-steps, {:.2} s of wall time, largest strain {:.0e}, work of the drive {:.2e} J, of which the balance lacks {:.1e} J",
-        r.course.cost.steps,
-        r.course.cost.rejected,
-        r.course.cost.wall,
-        r.course.strain,
-        r.energy.work,
-        r.energy.drift
-    )
-}
-
 pub(super) fn make(store: &Store) -> Result<Made> {
     let whole = Run::of(store, miura(store.effort)?)?;
     let (run, miura) = (&whole.summary, miura_of(&whole.scene)?);
@@ -295,8 +282,8 @@ pub(super) fn make(store: &Store) -> Result<Made> {
         vertices.push(Vertex::of(mode, store)?);
     }
     let branches = Chart::new(
-        Axis::round("fold of crease 1 (°)", [0.0, 160.0], 4),
-        Axis::round("fold of crease 2 (°)", [-160.0, 0.0], 4),
+        Axis::linear("fold of crease 1 (°)", [0.0, 160.0]),
+        Axis::linear("fold of crease 2 (°)", [-160.0, 0.0]),
         [190.0, 150.0],
         vertices.iter().flat_map(|v| v.series.clone()).collect(),
     );
@@ -305,6 +292,53 @@ pub(super) fn make(store: &Store) -> Result<Made> {
         let nearest = (0..folded.len()).min_by(|a, b| off(a).total_cmp(&off(b)));
         whole.trajectory.times()[nearest.unwrap_or(0)]
     });
+    let mut rows = vec![
+        (
+            "sheet",
+            format!(
+                "{}/{} vertices/faces, panels of 20 mm with an angle of 60°, 80 g/m², no gravity",
+                run.vertices, run.faces
+            ),
+        ),
+        (
+            "fold of the zigzags from which errors count",
+            degrees(LEAST),
+        ),
+        (
+            "error of tan(s/2) = cos 60° tan(z/2) at the straight creases",
+            format!("{:.0e} rad", errors[0]),
+        ),
+        (
+            "fold of the panels, which are flat",
+            format!("{:.0e} rad", errors[1]),
+        ),
+        (
+            "difference of distances from the rigid pattern: inertia of the panels",
+            format!("{:.0e} m", errors[2]),
+        ),
+        (
+            "fold of the zigzags half a second after the drive has stopped",
+            degrees(last.zigzag),
+        ),
+        (
+            "fold of the straight creases then, and its error",
+            format!("{}, {:.0e} rad", degrees(last.straight), last.errors[0]),
+        ),
+        (
+            "vertex of degree four, creases 1 and 3 alike: largest error",
+            format!("{:.0e} rad", vertices[0].error),
+        ),
+        (
+            "vertex of degree four, creases 2 and 4 alike: largest error",
+            format!("{:.0e} rad", vertices[1].error),
+        ),
+    ];
+    let (work, lack) = (run.energy.work, run.energy.drift);
+    rows.push((
+        "work of the drive, and what the balance lacks",
+        format!("{work:.2e} J, {lack:.1e} J"),
+    ));
+    rows.extend(course(run));
     let alt = "A flat sheet with a Miura pattern folds up";
     let alt_folds = "Fold of the straight creases, and size of the sheet, over the fold of the zigzags: simulated and exact";
     let alt_vertex = "Fold of the second crease of a vertex over that of the first in its two modes: simulated and exact";
@@ -312,35 +346,17 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     pages.extend(vertices.iter().map(|v| v.page.clone()));
     Ok(Made {
         title: "Origami: crease patterns folded by driven angles".into(),
-        paper: "Origami is named as an application (Sec. 1): how can a model be folded from one sheet of paper? No crease pattern is folded.".into(),
-        measured: format!(
-            "A Miura pattern ({}/{} vertices/faces, panels of 20 mm with an angle of 60°, 80 g/m², no gravity) starts exactly flat. Springs \
-             drive the zigzag creases alone, to 150° in 2 s, valleys and mountains by their sign; the straight creases are free hinges, and springs ten times \
-             as stiff keep the panels flat. Geometry folds the rest: once the zigzags are folded by more than {}, every straight crease has the \
-             fold tan(s/2) = cos 60° tan(z/2) to {:.0e} rad, the panels are flat to {:.0e} rad, and every distance between two vertices is that of \
-             the rigid pattern to {:.0e} m: the inertia of the moving panels. Half a second after the drive has stopped the zigzags are folded by {}, the straight creases by {}, {:.0e} rad from the exact angle. {}. A vertex of degree four with \
-             sectors of 1 and 1.5 rad has two ways to leave the flat state: the same crease pattern goes one way or the other by its assignment of \
-             mountains and valleys. One crease is driven; on the others a spring a hundred times as weak pulls to the right side by the wrong angle. All \
-             angles are those of the closed form to {:.0e} rad (creases 1 and 3 alike) and {:.0e} rad (2 and 4 alike). There is no self-contact: both patterns fold flat, and nothing touches before.",
-            run.vertices,
-            run.faces,
-            degrees(LEAST),
-            errors[0],
-            errors[1],
-            errors[2],
-            degrees(last.zigzag),
-            degrees(last.straight),
-            last.errors[0],
-            describe(run),
-            vertices[0].error,
-            vertices[1].error,
-        ),
+        paper: "Origami is named as an application (Sec. 1), and no crease pattern is folded.".into(),
+        here: "Springs drive the zigzag creases of a flat sheet alone, and geometry folds the rest; a vertex of degree four leaves the flat state one \
+               way or the other by its mountains and valleys."
+            .into(),
         pictures: vec![
             VIEW.picture(&whole, store.effort, ["fig17.png", alt], &times)?,
             Picture::svg("fig17-folds", &folds_plot(&exact, &folded), alt_folds),
-            Picture::svg("fig17-vertex", &branches.draw(), alt_vertex),
+            Picture::svg("fig17-vertex", &Charts::from(branches), alt_vertex),
         ],
         pages,
+        tables: vec![measured(rows)],
         facts: json!({
             "run": run,
             "errors": { "straight_rad": errors[0], "panels_rad": errors[1], "distances_m": errors[2] },
@@ -348,6 +364,5 @@ pub(super) fn make(store: &Store) -> Result<Made> {
             "vertices": vertices.iter().map(|v| json!({ "run": v.run, "error_rad": v.error, "end_rad": v.end })).collect::<Vec<_>>(),
             "name": whole.scene.name(),
         }),
-        ..Made::default()
     })
 }

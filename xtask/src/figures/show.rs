@@ -81,8 +81,7 @@ impl View {
     ) -> Result<Picture> {
         let shots = self.shots(run, &choose(run.trajectory.times(), times))?;
         let seen = self.from(effort.quick_or(170, 470));
-        let bytes = seen.montage(shots, self.columns)?;
-        Ok(Picture::png(file, bytes, alt))
+        Picture::shaded(file, &seen.montage(shots, self.columns)?, alt)
     }
 
     /// The page that plays a run, with what tells it from the other runs of the figure.
@@ -110,6 +109,10 @@ impl View {
         let end = self.from(THUMBNAIL).single(last)?;
         let alt = format!("Figure {figure}, {label}, at the end");
         Ok(Play {
+            scene: (
+                format!("scenes/{}.toml", scene.name()),
+                scene.text().to_owned(),
+            ),
             path: format!("{name}.html"),
             choices: if is_hidden { "#bodies=glass" } else { "" },
             label: label.to_owned(),

@@ -1,7 +1,7 @@
 //! How soft a sheet is, by mesh level: what the paper says of Figs. 11 and 12 by eye.
 
 use super::{Effort, Picture, Table, whole_percent};
-use crate::draw::{Axis, Chart, Drawing, Marker, Series, palette, row};
+use crate::draw::{Axis, Chart, Charts, Marker, Series, palette, superscript};
 use crate::report::extremes;
 use crate::runs::{self, FigureScene, Member};
 use anyhow::Result;
@@ -66,6 +66,10 @@ fn freedom(level: u32) -> Result<Vec<[f64; 2]>> {
 }
 
 impl Level {
+    fn name(&self) -> String {
+        format!("M{}", superscript(self.level))
+    }
+
     fn early(&self) -> f64 {
         let nearest = self
             .freedom
@@ -116,38 +120,33 @@ pub(super) fn make(
     })
 }
 
-fn plots(all: &[Level]) -> Drawing {
+fn plots(all: &[Level]) -> Charts {
     let size = [165.0, 118.0];
-    let x = Axis::round("time (s)", [0.03, 0.12], 5);
-    let y = Axis::round("freedom of the fall", [0.0, 1.0], 4);
+    let x = Axis::linear("time (s)", [0.03, 0.12]);
+    let y = Axis::linear("freedom of the fall", [0.0, 1.0]);
     let left = Chart::new(x, y, size, all.iter().flat_map(freedom_series).collect());
     let place = |l: &Level| f64::from(l.level);
-    let each = |l: &Level| {
-        l.values(bending)
-            .into_iter()
-            .map(|v| [place(l), v])
-            .collect()
+    let bar = |l: &Level| {
+        let values = l.values(bending);
+        let [low, high] = extremes(values.iter().copied()).unwrap_or_default();
+        [place(l), low, mean(&values), high]
     };
-    let cloud: Vec<[f64; 2]> = all
-        .iter()
-        .flat_map(|l: &Level| -> Vec<_> { each(l) })
-        .collect();
-    let means = all.iter().map(|l| [place(l), mean(&l.values(bending))]);
-    let top = 1.1 * cloud.iter().map(|p| p[1]).fold(0.0, f64::max);
-    let ticks = all
-        .iter()
-        .map(|l| (place(l), format!("~M~^{{{}}}", l.level)));
+    let bars: Vec<[f64; 4]> = all.iter().map(bar).collect();
+    let means = bars.iter().map(|b| [b[0], b[2]]).collect();
+    let top = 1.1 * bars.iter().map(|b| b[3]).fold(0.0, f64::max);
+    let ticks = all.iter().map(|l| (place(l), l.name()));
     let last = all.last().map_or(0.0, place);
+    let bending = Series {
+        bars,
+        ..Series::line("mean and range", palette::BLUE, means).marked(Marker::Square)
+    };
     let right = Chart::new(
-        Axis::linear("mesh", [-0.25, last + 0.25], ticks.collect()),
-        Axis::round("total bending (rad · side)", [0.0, top], 4),
+        Axis::named("mesh", [-0.25, last + 0.25], ticks.collect()),
+        Axis::linear("total bending (rad · side)", [0.0, top]),
         size,
-        vec![
-            Series::dots("each fall", palette::SKY, Marker::Disc, cloud.clone()),
-            Series::line("mean", palette::INK, means.collect()).marked(Marker::Square),
-        ],
+        vec![bending],
     );
-    row(&[left.draw(), right.draw()], 26.0)
+    Charts::row([left, right])
 }
 
 fn bending(fall: &Member) -> f64 {
@@ -164,11 +163,10 @@ fn freedom_series(l: &Level) -> [Series; 3] {
     ];
     let (colour, marker) = looks[l.level as usize % looks.len()];
     let marked = l.freedom.iter().skip(20).step_by(40).copied();
-    let name = format!("~M~^{{{}}}", l.level);
     [
         Series::line("", colour, l.freedom.clone()),
         Series::dots("", colour, marker, marked.collect()),
-        Series::line(&name, colour, Vec::new()).marked(marker),
+        Series::line(&l.name(), colour, Vec::new()).marked(marker),
     ]
 }
 
@@ -194,9 +192,7 @@ fn table(all: &[Level]) -> Table {
         caption,
         all,
         &[
-            ("mesh", &|l| {
-                format!("M{}", ["⁰", "¹", "²", "³"][l.level as usize % 4]).into()
-            }),
+            ("mesh", &|l| l.name().into()),
             ("V/F", &|l| format!("{}/{}", l.vertices, l.faces).into()),
             ("internal DOF", &|l| l.internal.to_string().into()),
             ("freedom of the fall", &|l| whole_percent(l.early()).into()),

@@ -1,8 +1,8 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play};
-use crate::draw::{Axis, Chart, Series, palette};
+use super::{Effort, Made, Picture, Play, course, measured};
+use crate::draw::{Axis, Chart, Charts, Series, palette};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::Result;
@@ -69,49 +69,65 @@ pub(super) fn make(store: &Store) -> Result<Made> {
     let times = STROKES.map(|s| s * full);
     let plot = plot(&curve, weight, 1e3 * stroke, peak);
     let alt = "Force of the sheet on the die over its stroke";
+    let millimetres = |length: f64| format!("{:.0} mm", 1e3 * length);
+    let mut rows = vec![
+        (
+            "blank",
+            format!(
+                "{:.1} m wide, {density:.1} kg/m² (half a millimetre of steel)",
+                blank.area().sqrt()
+            ),
+        ),
+        (
+            "opening of the frame",
+            millimetres(value("/obstacle/1/shape/frame/opening")?),
+        ),
+        (
+            "width of the die",
+            millimetres(value("/obstacle/0/shape/box/size/0")?),
+        ),
+        (
+            "speed and stroke of the die",
+            format!("{}/s, {}", millimetres(speed), millimetres(stroke)),
+        ),
+        (
+            "width of the holders, and their height above the frame",
+            format!(
+                "{}, {}",
+                millimetres(value("/obstacle/2/shape/box/size/1")?),
+                millimetres(clearance)
+            ),
+        ),
+        (
+            "friction on all tools",
+            scene.obstacle[DIE].friction.to_string(),
+        ),
+        ("largest force on the die", format!("{peak:.1} N")),
+        ("weight of the blank", format!("{weight:.1} N")),
+    ];
+    rows.extend(course(run));
     Ok(Made {
         title: "Sheet metal stamping".into(),
         paper: "A square die punches a sheet (M³, 289/512) upwards; the sequence shows how the buckled developable surface is formed.".into(),
-        measured: format!(
-            "A blank of {:.1} m and {:.1} kg/m² (half a millimetre of steel) lies on a frame with a square opening of {:.0} mm; a die of {:.0} mm rises through it at \
-             {:.0} mm/s. Holding: friction {} on all tools, weight, and four holders (not drawn) {:.0} mm wide above the middles of the frame's \
-             sides, {:.0} mm above it. An isometric sheet can move under these: it draws in at the sides, and the corners are free to buckle. A clamped \
-             boundary could not draw in at all. Over the stroke of {:.0} mm the force on the die grows from nothing to at most {peak:.1} N; the blank weighs {weight:.1} N. \
-             {}/{} vertices/faces, {} frames of 1/60 s, {} rejected sub-steps, {:.1} s of wall time per simulated second, largest strain {:.0e}, \
-             smallest gap {}. The holding conditions of the paper are not known.",
-            blank.area().sqrt(),
-            density,
-            1e3 * value("/obstacle/1/shape/frame/opening")?,
-            1e3 * value("/obstacle/0/shape/box/size/0")?,
-            1e3 * speed,
-            scene.obstacle[DIE].friction,
-            1e3 * value("/obstacle/2/shape/box/size/1")?,
-            1e3 * clearance,
-            1e3 * stroke,
-            run.vertices,
-            run.faces,
-            run.course.cost.steps,
-            run.course.cost.rejected,
-            run.slowness(),
-            run.course.strain,
-            super::gap(run.course.gap),
-        ),
+        here: "Four holders above the sides of the frame, which are not drawn, let the blank draw in at the sides and buckle at the \
+               corners; the holding conditions of the paper are not known."
+            .into(),
+        tables: vec![measured(rows)],
         pictures: vec![
             VIEW.picture(&whole, store.effort, ["fig13.png", pressed], &times)?,
-            Picture::svg("fig13-force", &plot.draw(), alt),
+            Picture::svg("fig13-force", &plot, alt),
         ],
         pages: vec![page(13, &whole, store.effort)?],
         facts: json!({ "run": run, "peak_force": peak, "weight": weight, "stroke_mm_and_force_n": curve }),
-        ..Made::default()
     })
 }
 
-fn plot(curve: &[[f64; 2]], weight: f64, stroke: f64, peak: f64) -> Chart {
-    let x = Axis::round("stroke (mm)", [0.0, stroke], 5);
-    let y = Axis::round("force on the die (N)", [0.0, 1.1 * peak.max(weight)], 5);
+fn plot(curve: &[[f64; 2]], weight: f64, stroke: f64, peak: f64) -> Charts {
+    let x = Axis::linear("stroke (mm)", [0.0, stroke]);
+    let y = Axis::linear("force on the die (N)", [0.0, 1.1 * peak.max(weight)]);
     let series = vec![
         Series::line("force", palette::BLUE, curve.to_vec()),
         Series::guide("weight", vec![[0.0, weight], [stroke, weight]]),
     ];
-    Chart::new(x, y, [230.0, 130.0], series)
+    Chart::new(x, y, [230.0, 130.0], series).into()
 }

@@ -1,7 +1,7 @@
 //! What a hard case is, and what is found in it.
 
 use super::scenes::STRAIN;
-use crate::draw::Drawing;
+use crate::draw::Charts;
 use crate::report::{Effort, Picture, Section, Table, number};
 use crate::runs::Course;
 use anyhow::Result;
@@ -262,8 +262,8 @@ impl Findings {
         }
     }
 
-    /// A drawing.
-    pub(super) fn drawing(&mut self, file: &str, drawing: &Drawing, alt: &str) {
+    /// Charts.
+    pub(super) fn drawing(&mut self, file: &str, drawing: &Charts, alt: &str) {
         self.pictures.push(Picture::svg(file, drawing, alt));
     }
 }

@@ -106,7 +106,7 @@ fn fall() -> Result<Picture> {
     };
     let alt = "M^2 released from exactly flat and horizontal, held at a corner (BDF2, 1/60 s). Warm: the upper side at the start; blue: \
                the lower one.";
-    Ok(Picture::png("flat-start.png", seen.montage(shots, 6)?, alt))
+    Picture::shaded("flat-start.png", &seen.montage(shots, 6)?, alt)
 }
 
 pub(crate) const BRANCH: Case = Case {

@@ -2,7 +2,7 @@
 
 use super::case::{Bound, Case, Check, Record, Verdict};
 use crate::report::{Page, Part, Picture, Table, number};
-use crate::store::Store;
+use crate::store::{Kept, Store};
 use anyhow::Result;
 use isosheet_io::write_json;
 use maud::{Markup, html};
@@ -16,7 +16,8 @@ figcaption{font-size:.85rem;color:#666;margin-top:.4rem}h3{font-size:.85rem;font
 section p{margin:.1rem 0 .4rem}ul{margin:.1rem 0 .4rem;padding-left:1.1rem}td.number{white-space:nowrap}";
 
 /// Writes the three files.
-pub(super) fn write(store: &Store, records: &[Record]) -> Result<()> {
+pub(super) fn write(store: &Store, kept: &Kept<Record>) -> Result<()> {
+    let (records, left_out) = (&kept.records, kept.left_out.clone());
     checks(records).write_to(&store.path("verdicts.csv"))?;
     let check = |c: &Check| {
         json!({ "what": c.what, "value": c.value, "bound": c.bound, "verdict": c.verdict(),
@@ -29,9 +30,11 @@ pub(super) fn write(store: &Store, records: &[Record]) -> Result<()> {
     };
     let cases: Vec<_> = records.iter().map(case).collect();
     let version = env!("CARGO_PKG_VERSION");
-    let all = json!({ "version": version, "effort": store.effort, "cases": cases });
+    let all =
+        json!({ "version": version, "effort": store.effort, "cases": cases, "left_out": left_out });
     write_json(&store.path("verdicts.json"), &all)?;
-    page(records).write(store, "index.html")
+    let page = page(records);
+    Page { left_out, ..page }.write(store, "index.html")
 }
 
 /// What was measured, for people.

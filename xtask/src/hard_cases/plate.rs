@@ -79,8 +79,8 @@ fn held(f: &mut Findings) -> Result<()> {
         let t = 0.01 * f64::from(k);
         [t, exact(0.5 * altitude, t)]
     };
-    let x = Axis::round("time, s", [0.0, END], 4);
-    let y = Axis::round("angle, rad", [-1.5, 1.5], 6);
+    let x = Axis::linear("time, s", [0.0, END]);
+    let y = Axis::linear("angle, rad", [-1.5, 1.5]);
     let series = vec![
         Series::curve(1, "lumped", lumped_curve),
         Series::curve(0, "consistent", consistent_curve),
@@ -89,7 +89,7 @@ fn held(f: &mut Findings) -> Result<()> {
     let swing = Chart::new(x, y, [230.0, 120.0], series);
     let alt =
         "A triangle held at an edge: angle over time, and the exact motion of the uniform plate";
-    f.drawing("plate-held", &swing.draw(), alt);
+    f.drawing("plate-held", &swing.into(), alt);
     Ok(())
 }
 

@@ -2,14 +2,14 @@
 
 use super::Findings;
 use super::bisection::{Bracket, Verdict, search};
+use super::dots::{Dot, Figure, Panel};
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
-use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::sample::{Sample, requirements};
 use super::scene::Scene;
 use super::ways::refusing;
-use crate::draw::{Axis, Drawing};
+use crate::draw::{Axis, Charts};
 use crate::methods::implicit_euler;
 use crate::report::{Effort, Table};
 use crate::runs::{Course, Plan};
@@ -119,7 +119,7 @@ fn bounds() -> [f64; 2] {
 }
 
 /// Runs the yardstick.
-pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
     let effort = records.store.effort;
     let duration = effort.quick_or(5.0, 20.0);
     let plan = Plan::new(STEP, duration)
@@ -200,7 +200,7 @@ fn error(b: &Buckled) -> Option<f64> {
 }
 
 /// The critical loads over the meshes, with the two bounds.
-fn plot(all: &[Buckled], patterns: &[(Pattern, f64)], sizes: &[usize]) -> Drawing {
+fn plot(all: &[Buckled], patterns: &[(Pattern, f64)], sizes: &[usize]) -> Charts {
     let dots = all.iter().filter_map(|b| {
         let (pattern, degrees, across) = b.job;
         let place = patterns.iter().position(|p| *p == (pattern, degrees))? as f64;
@@ -219,8 +219,8 @@ fn plot(all: &[Buckled], patterns: &[(Pattern, f64)], sizes: &[usize]) -> Drawin
         .map(|(k, p)| (k as f64, name(p)));
     let ends = [-0.6, patterns.len() as f64 - 0.4];
     let loads = [15.0, 20.0, 25.0, 30.0, 40.0, 60.0].map(|l| (l, format!("{l}")));
-    let x = Axis::linear("mesh", ends, ticks.collect());
-    let y = Axis::at("critical load ~qL~^{3} / (~Dw~)", loads.to_vec());
+    let x = Axis::named("mesh", ends, ticks.collect());
+    let y = Axis::at("critical load qL³ / (Dw)", loads.to_vec());
     let panel = Panel {
         guides: bounds().map(|b| ends.map(|x| [x, b]).to_vec()).to_vec(),
         ..Panel::new("Lateral buckling", dots.collect())

@@ -1,14 +1,14 @@
 //! The drop of a heavy strip against the exact elastica, on meshes turned against the strip.
 
-use super::Findings;
 use super::cylinder::DIRECTIONS;
+use super::dots::{Dot, Figure, Panel};
 use super::isometry::{Isometry, Material};
 use super::meshes::{Pattern, Strip};
-use super::plots::{Dot, Figure, Panel, order};
 use super::records::Records;
 use super::sample::{OfModel, Sample, requirements};
 use super::scene::{End, Scene};
-use crate::draw::{Axis, Drawing};
+use super::{Findings, order};
+use crate::draw::{Axis, Charts};
 use crate::methods::implicit_euler;
 use crate::report::{Table, extremes, number};
 use crate::runs::Plan;
@@ -92,7 +92,7 @@ fn combinations(directions: &[f64]) -> Vec<Job> {
 }
 
 /// Runs the yardstick.
-pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
     let effort = records.store.effort;
     let plan = Plan::new(STEP, effort.quick_or(3.0, 10.0)).within(effort.quick_or(0.3, 4.0));
     let plan = plan.until_rest(REST);
@@ -229,7 +229,7 @@ fn remark(isometry: Isometry, all: &[Hung]) -> String {
 }
 
 /// The error against the spacing, a panel for every direction and a row for every rigidity.
-fn plot(all: &[Hung], directions: &[f64], sizes: &[usize]) -> Drawing {
+fn plot(all: &[Hung], directions: &[f64], sizes: &[usize]) -> Charts {
     let rows = RIGIDITIES.map(|rigidity| {
         let panel = |&degrees: &f64| {
             let is_here = |h: &&Hung| (h.job.rigidity, h.job.degrees) == (rigidity, degrees);
@@ -237,8 +237,8 @@ fn plot(all: &[Hung], directions: &[f64], sizes: &[usize]) -> Drawing {
             let dots = all.iter().filter(is_here).map(dot).collect();
             Panel::of_second_order(format!("mesh turned by {degrees}°"), dots)
         };
-        let label = format!("error of the drop, ~D~ = {rigidity} N m");
-        let y = Axis::holding(&label, all.iter().filter_map(Hung::size));
+        let label = format!("error of the drop, D = {rigidity} N m");
+        let y = Axis::decades(&label, all.iter().filter_map(Hung::size));
         (y, directions.iter().map(panel).collect())
     });
     let spacings: Vec<f64> = sizes.iter().map(|&n| STRIP.width / n as f64).collect();

@@ -1,13 +1,13 @@
 //! Flat sheets that are clamped along lines of any direction.
 
+use super::dots::{Dot, Figure, Panel};
 use super::isometry::{Isometry, Material};
-use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::sample::{OfModel, Sample, requirements};
 use super::scene::Scene;
 use super::ways::{BDF2, EULER, REFUSING, Way, by_default_method, ways};
 use super::{Findings, median};
-use crate::draw::{Axis, Drawing};
+use crate::draw::{Axis, Charts};
 use crate::report::{Effort, Table};
 use crate::runs::{Course, Plan};
 use anyhow::Result;
@@ -138,7 +138,7 @@ fn kind(f: &Fallen) -> usize {
 }
 
 /// Runs the yardstick.
-pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
     let effort = records.store.effort;
     let duration = effort.quick_or(0.5, 2.0);
     let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.3, 2.0));
@@ -337,7 +337,7 @@ fn remarks(all: &[Fallen]) -> Vec<String> {
 }
 
 /// Factorisations a step of every sheet against its number of vertices, for the default method.
-fn plot(all: &[Fallen]) -> Drawing {
+fn plot(all: &[Fallen]) -> Charts {
     let panel = |k: usize| {
         let dots = all.iter().filter(|f| kind(f) == k).filter_map(|f| {
             let way = SHOWN.iter().position(|by| *by == f.job.0)?;
@@ -345,8 +345,8 @@ fn plot(all: &[Fallen]) -> Drawing {
         });
         Panel::new(KINDS[k], dots.collect())
     };
-    let x = Axis::round("vertices ~V~", [15.0, 135.0], 4);
-    let y = Axis::holding("factorisations a step", all.iter().filter_map(Fallen::cost));
+    let x = Axis::linear("vertices V", [15.0, 135.0]);
+    let y = Axis::decades("factorisations a step", all.iter().filter_map(Fallen::cost));
     let panels = (0..KINDS.len()).map(panel).collect();
     let names = SHOWN.map(|by| ways()[by].name.to_owned()).to_vec();
     Figure::of_row(x, y, panels, names, [96.0, 130.0]).draw()

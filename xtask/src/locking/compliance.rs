@@ -1,15 +1,14 @@
 //! How elastic sheets approach rigid rods, and elastic and weakly isometric ones the inextensible strip, as
 //! their membrane becomes stiffer.
 
-use super::Findings;
 use super::cantilever;
 use super::isometry::{Material, PAPER, PAPER_RIGIDITY, elastic, rods, weak};
 use super::meshes::Pattern;
-use super::plots::order;
 use super::records::Records;
 use super::scene::{End, Scene};
+use super::{Findings, order};
 use crate::draw::spatial::{norm, sub};
-use crate::draw::{Axis, Chart, Drawing, Legend, Marker, Missing, Series, column, row};
+use crate::draw::{Axis, Chart, Charts, Legend, Marker, Missing, Series};
 use crate::report::Table;
 use crate::runs::{Course, Plan};
 use anyhow::Result;
@@ -173,7 +172,7 @@ fn elastica_error(
 }
 
 /// Runs the yardstick.
-pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
     let effort = records.store.effort;
     let plan = Plan::new(cantilever::STEP, 10.0).within(effort.quick_or(0.5, 5.0));
     let plan = plan.until_rest(cantilever::REST);
@@ -245,14 +244,14 @@ fn orders(all: &[Run], problems: &[Problem]) -> Table {
 
 /// The errors against the compliance: the ladders and the elastic elastica on meshes of every size in the
 /// first row, the elastica in weak form in the second.
-fn plot(all: &[Run], sizes: &[usize]) -> Drawing {
+fn plot(all: &[Run], sizes: &[usize]) -> Charts {
     let is_ladder = |r: &&Run| matches!(r.problem, Problem::Ladder(_));
     let ladder_errors = all.iter().filter(is_ladder).filter_map(|r| r.error);
     let errors = all.iter().filter(|r| !is_ladder(r)).filter_map(|r| r.error);
-    let y = Axis::holding("relative error of the drop", errors);
+    let y = Axis::decades("relative error of the drop", errors);
     let of = LADDERS.map(|n| (Problem::Ladder(n), format!("ladder, {n} squares")));
-    let distance = Axis::holding("distance from rods, m", ladder_errors);
-    let mut elastic = vec![panel((all, &of, 0), "Ladders", distance).draw()];
+    let distance = Axis::decades("distance from rods, m", ladder_errors);
+    let mut elastic = vec![panel((all, &of, 0), "Ladders", distance)];
     let panels = |form: Form, name: &str, last: Legend| {
         let of_size = |(k, &across): (usize, &usize)| {
             let meshes = MESHES.iter().enumerate();
@@ -264,14 +263,13 @@ fn plot(all: &[Run], sizes: &[usize]) -> Drawing {
             let is_last = k + 1 == sizes.len();
             let legend = if is_last { last } else { Legend::None };
             let title = format!("{name}, {across} squares across");
-            let chart = panel((all, &of, 3), &title, y.clone());
-            chart.with_legend(legend).draw()
+            panel((all, &of, 3), &title, y.clone()).with_legend(legend)
         };
         sizes.iter().enumerate().map(of_size).collect::<Vec<_>>()
     };
     elastic.extend(panels(Form::Elastic, "Elastica, elastic", Legend::Right));
     let weak = panels(Form::Weak, "Elastica, weak", Legend::None);
-    column(&[row(&elastic, 16.0), row(&weak, 16.0)], 14.0)
+    Charts(vec![elastic, weak])
 }
 
 /// Some problems with their names, in the styles from the given number on. Guides: the first order for
@@ -300,9 +298,9 @@ fn panel(
     let missing = problems.iter().zip(&series).flat_map(not_ended).collect();
     if let (Problem::Ladder(_), [a, .., b]) = (problems[0].0, series[0].points.as_slice()) {
         let guide = vec![*a, [b[0], a[1] * b[0] / a[0]]];
-        series.push(Series::guide("1 / (~Eh~)", guide));
+        series.push(Series::guide("1 / (Eh)", guide));
     }
-    let x = Axis::holding("compliance 1 / (~Eh~), m/N", [1e-7, 1e-3]);
+    let x = Axis::decades("compliance 1 / (Eh), m/N", [1e-7, 1e-3]);
     let chart = Chart::new(x, y, [120.0, 140.0], series);
     chart.titled(title).with_missing(missing)
 }

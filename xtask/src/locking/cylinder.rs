@@ -1,14 +1,14 @@
 //! A square that clamps bend to a cylinder, with exact energy and moment.
 
-use super::Findings;
+use super::dots::{Dot, Figure, Panel};
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::{Pattern, vertices, with_line};
-use super::plots::{Dot, Figure, Panel, order};
 use super::records::Records;
 use super::sample::{OfModel, Sample, requirements};
 use super::scene::{End, Scene};
 use super::targets::{Target, at_least};
-use crate::draw::{Axis, Drawing};
+use super::{Findings, order};
+use crate::draw::{Axis, Charts};
 use crate::methods::implicit_euler;
 use crate::report::{Table, number};
 use crate::runs::{Course, Plan};
@@ -188,7 +188,7 @@ fn distance(sheet: &Sheet, x: &[f64]) -> f64 {
 }
 
 /// Runs the yardstick.
-pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
     let effort = records.store.effort;
     let plan = Plan::new(STEP, 6.0)
         .within(effort.quick_or(0.3, 8.0))
@@ -315,7 +315,7 @@ fn remark(isometry: Isometry, all: &[Bent]) -> String {
 }
 
 /// The errors of energy and moment against the spacing, a panel for every direction.
-fn plot(all: &[Bent], directions: &[f64], sizes: &[usize]) -> Drawing {
+fn plot(all: &[Bent], directions: &[f64], sizes: &[usize]) -> Charts {
     let rows = ERRORS.map(|(name, error)| {
         let panel = |&degrees: &f64| {
             let of = all.iter().filter(|b| b.job.2 == degrees);
@@ -323,7 +323,7 @@ fn plot(all: &[Bent], directions: &[f64], sizes: &[usize]) -> Drawing {
             Panel::of_second_order(format!("axis at {degrees}°"), dots.collect())
         };
         let values = all.iter().filter_map(error).filter(|e| *e > FLOOR);
-        let y = Axis::holding(&format!("error of the {name}"), values);
+        let y = Axis::decades(&format!("error of the {name}"), values);
         (y, directions.iter().map(panel).collect())
     });
     let spacings: Vec<f64> = sizes.iter().map(|&n| SIDE / n as f64).collect();

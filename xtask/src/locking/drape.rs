@@ -1,15 +1,15 @@
 //! A disk on a smaller round table, on several triangulations.
 
 use super::disk::{DISK, Mesh};
+use super::dots::{Dot, Figure, Panel};
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
-use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::rim::{Rim, analyse};
 use super::sample::{OfModel, Sample, requirements};
 use super::scene::Scene;
 use super::targets::{Target, at_least};
 use super::{Findings, median};
-use crate::draw::{Axis, Drawing};
+use crate::draw::{Axis, Charts};
 use crate::report::{Cell, Table};
 use crate::runs::{Course, Plan};
 use anyhow::Result;
@@ -159,7 +159,7 @@ fn rim(sheet: &Sheet, x: &[f64]) -> Option<Rim> {
 }
 
 /// Runs the yardstick.
-pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
     let effort = records.store.effort;
     let duration = effort.quick_or(0.3, 10.0);
     let plan = Plan::new(1.0 / 60.0, duration)
@@ -207,7 +207,7 @@ fn target(isometry: Isometry, all: &[Drape], friction: f64) -> Target {
 }
 
 /// Numbers of folds of every run, over the meshes.
-fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
+fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Charts {
     let dot = |d: &Drape| {
         let (mesh, _, seed) = d.job;
         let place = meshes.iter().position(|m| *m == mesh)? as f64;
@@ -236,8 +236,8 @@ fn plot(all: &[Drape], meshes: &[Mesh], frictions: &[f64]) -> Drawing {
         .max(6);
     let folds = (0..=most).step_by(if most > 12 { 2 } else { 1 });
     let folds = folds.map(|n| (n as f64, n.to_string())).collect();
-    let x = Axis::linear("mesh", range, ticks.collect());
-    let y = Axis::linear("folds", [0.0, most as f64 + 0.5], folds);
+    let x = Axis::named("mesh", range, ticks.collect());
+    let y = Axis::named("folds", [0.0, most as f64 + 0.5], folds);
     let names = Mesh::ALL.map(|m| m.name().to_owned()).to_vec();
     let panels = frictions.iter().map(panel).collect();
     Figure::of_row(x, y, panels, names, [200.0, 150.0]).draw()

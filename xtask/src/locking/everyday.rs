@@ -1,14 +1,14 @@
 //! Single everyday scenes with paper.
 
 use super::Findings;
+use super::dots::{Dot, Figure, Panel};
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::vertices;
-use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::sample::{Sample, requirements};
 use super::scene::Scene;
 use super::ways::{BDF2, by_default_method, ways};
-use crate::draw::{Axis, Drawing};
+use crate::draw::{Axis, Charts, superscript};
 use crate::report::{Effort, Table};
 use crate::runs::Plan;
 use anyhow::Result;
@@ -184,7 +184,7 @@ type Job = (usize, Everyday);
 type Day = Sample<Job, ([f64; 2], f64)>;
 
 /// Runs the yardstick.
-pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
     let effort = records.store.effort;
     let duration = effort.quick_or(0.5, 3.0);
     let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.3, 40.0));
@@ -254,7 +254,7 @@ fn table(all: &[Day], plan: &Plan) -> Table {
 }
 
 /// Factorisations a step of every scene, by the default method.
-fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
+fn plot(all: &[Day], scenes: &[Everyday]) -> Charts {
     let drawn = || all.iter().filter(|d| d.job.0 == BDF2);
     let dots = drawn().filter_map(|d| {
         let scene = d.job.1;
@@ -265,13 +265,13 @@ fn plot(all: &[Day], scenes: &[Everyday]) -> Drawing {
         let size = scene.size;
         let name = match scene.kind {
             Kind::Pushed | Kind::Roll => size.to_string(),
-            Kind::Banner | Kind::Corners => format!("M^{{{size}}}"),
+            Kind::Banner | Kind::Corners => format!("M{}", superscript(size)),
         };
         (k as f64, name)
     });
     let range = [-0.7, scenes.len() as f64 - 0.3];
-    let x = Axis::linear("squares across, or mesh", range, ticks.collect());
-    let y = Axis::holding("factorisations a step", drawn().filter_map(Day::cost));
+    let x = Axis::named("squares across, or mesh", range, ticks.collect());
+    let y = Axis::decades("factorisations a step", drawn().filter_map(Day::cost));
     let panel = Panel::new("Everyday scenes", dots.collect());
     let kinds = KINDS.map(str::to_owned).to_vec();
     Figure::of_row(x, y, vec![panel], kinds, [260.0, 150.0]).draw()

@@ -1,13 +1,13 @@
 //! What a step costs where the sheet has to find a pattern of folds.
 
 use super::Findings;
+use super::dots::{Dot, Figure, Joined, Panel};
 use super::isometry::{Isometry, Material, PAPER_RIGIDITY};
 use super::meshes::nearest;
-use super::plots::{Dot, Figure, Joined, Panel};
 use super::records::Records;
 use super::sample::{Sample, requirements};
 use super::scene::Scene;
-use crate::draw::{Axis, Drawing};
+use crate::draw::{Axis, Charts, superscript};
 use crate::report::Table;
 use crate::runs::Plan;
 use crate::timing::{BUMP, raised};
@@ -30,7 +30,7 @@ const RIGIDITIES: [Option<f64>; 2] = [None, Some(PAPER_RIGIDITY)];
 type Hanging = Sample<(u32, Option<f64>)>;
 
 /// Runs the yardstick.
-pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
     let effort = records.store.effort;
     let duration = effort.quick_or(0.25, 1.0);
     let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.5, 150.0));
@@ -103,16 +103,18 @@ fn bending(rigidity: Option<f64>) -> String {
 }
 
 /// Factorisations a step against the number of vertices.
-fn plot(all: &[Hanging], levels: &[u32]) -> Drawing {
+fn plot(all: &[Hanging], levels: &[u32]) -> Charts {
     let place = |level: u32| f64::from(1_u32 << (level + 1));
     let panel = |rigidity: Option<f64>| {
         let of = all.iter().filter(|h| h.job.1 == rigidity);
         let dots = of.map(|h| Dot::of(h, 0, place(h.job.0), h.cost()));
         Panel::new(bending(rigidity), dots.collect())
     };
-    let ticks = levels.iter().map(|l| (place(*l), format!("M^{{{l}}}")));
+    let ticks = levels
+        .iter()
+        .map(|l| (place(*l), format!("M{}", superscript(*l))));
     let x = Axis::at("mesh", ticks.collect());
-    let y = Axis::holding(
+    let y = Axis::decades(
         "factorisations a step",
         all.iter().filter_map(Hanging::cost),
     );

@@ -2,13 +2,13 @@
 
 use super::Findings;
 use super::bisection::{Bracket, Verdict, search};
+use super::dots::{Dot, Figure, Panel};
 use super::isometry::{Isometry, Material};
 use super::meshes::Pattern;
-use super::plots::{Dot, Figure, Panel};
 use super::records::Records;
 use super::sample::{Sample, requirements};
 use super::scene::Scene;
-use crate::draw::{Axis, Drawing};
+use crate::draw::{Axis, Charts};
 use crate::report::Table;
 use crate::runs::{Course, Plan};
 use anyhow::Result;
@@ -63,7 +63,7 @@ fn slides(
 type Slide = Sample<(Pattern, f64), Bracket>;
 
 /// Runs the yardstick.
-pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Drawing>)> {
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
     let effort = records.store.effort;
     let plan = Plan::new(1.0 / 60.0, 1.0).within(effort.quick_or(0.5, 3.0));
     let (halvings, cells) = effort.quick_or((4, 2), (9, 4));
@@ -111,7 +111,7 @@ fn table(all: &[Slide], halvings: usize) -> Table {
 }
 
 /// The critical tangent over the coefficient of friction.
-fn plot(all: &[Slide], coefficients: &[f64]) -> Drawing {
+fn plot(all: &[Slide], coefficients: &[f64]) -> Charts {
     let dots = all.iter().map(|s| {
         let (pattern, mu) = s.job;
         // Beside one another: the values differ by less than a symbol.
@@ -122,8 +122,8 @@ fn plot(all: &[Slide], coefficients: &[f64]) -> Drawing {
     let last = coefficients.len() - 1;
     let ends = [coefficients[0] / 1.4, coefficients[last] * 1.4];
     let ticks = coefficients.iter().map(|mu| (*mu, mu.to_string()));
-    let x = Axis::at("coefficient of friction ~μ~", ticks.collect());
-    let y = Axis::round("critical tangent of the tilt / ~μ~", [0.98, 1.02], 4);
+    let x = Axis::at("coefficient of friction μ", ticks.collect());
+    let y = Axis::linear("critical tangent of the tilt / μ", [0.98, 1.02]);
     let panel = Panel {
         guides: vec![ends.map(|mu| [mu, 1.0]).to_vec()],
         ..Panel::new("Beginning of sliding", dots.collect())

@@ -1,52 +1,11 @@
 //! What a model of isometry is required to reach, and what was measured.
 
 use super::isometry::Isometry;
-use crate::report::{Cell, Table, number};
+use crate::report::{Bound, Cell, Table, number};
 use crate::runs::Course;
-use serde::{Deserialize, Serialize};
 
-/// On which side of its bound a measured number has to be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum Bound {
-    AtMost,
-    AtLeast,
-    Above,
-}
-
-impl Bound {
-    /// For people.
-    fn words(self) -> &'static str {
-        match self {
-            Self::AtMost => "at most",
-            Self::AtLeast => "at least",
-            Self::Above => "above",
-        }
-    }
-}
-
-/// A requirement, and what a model reaches.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Target {
-    pub(super) model: Isometry,
-    /// What is required, in words, without the bound.
-    pub(super) quantity: String,
-    pub(super) side: Bound,
-    pub(super) bound: f64,
-    /// The worst value measured; nothing where a run that it needs did not end.
-    pub(super) measured: Option<f64>,
-}
-
-impl Target {
-    /// Whether the requirement is met; a missing value does not meet it.
-    pub(super) fn is_met(&self) -> bool {
-        self.measured.is_some_and(|value| match self.side {
-            Bound::AtMost => value <= self.bound,
-            Bound::AtLeast => value >= self.bound,
-            Bound::Above => value > self.bound,
-        })
-    }
-}
+/// A requirement on a model, and what it reaches.
+pub(super) type Target = crate::report::Requirement;
 
 /// A requirement that a value is at most `bound`, checked at the largest of all values; values of runs that
 /// did not end are missing, and no values at all are missing, too.
@@ -56,7 +15,7 @@ pub(super) fn at_most(
     bound: f64,
     values: &[Option<f64>],
 ) -> Target {
-    worst(model, quantity, (Bound::AtMost, bound), values, f64::max)
+    Target::of(model.to_string(), quantity, (Bound::AtMost, bound), values)
 }
 
 /// A requirement that a value is at least `bound`, checked at the smallest of all values.
@@ -66,25 +25,7 @@ pub(super) fn at_least(
     bound: f64,
     values: &[Option<f64>],
 ) -> Target {
-    worst(model, quantity, (Bound::AtLeast, bound), values, f64::min)
-}
-
-fn worst(
-    model: Isometry,
-    quantity: &str,
-    (side, bound): (Bound, f64),
-    values: &[Option<f64>],
-    select: fn(f64, f64) -> f64,
-) -> Target {
-    let finite = |v: &Option<f64>| v.filter(|v| v.is_finite());
-    let known: Option<Vec<f64>> = values.iter().map(finite).collect();
-    Target {
-        model,
-        quantity: quantity.to_owned(),
-        side,
-        bound,
-        measured: known.and_then(|values| values.into_iter().reduce(select)),
-    }
+    Target::of(model.to_string(), quantity, (Bound::AtLeast, bound), values)
 }
 
 /// No edge is longer or shorter by more than 1 % at any time: what the error in length of a sheet that stands
@@ -104,33 +45,10 @@ pub(super) fn kept<'a>(model: Isometry, runs: impl Iterator<Item = &'a Course>) 
         targets.push(at_most(model, quantity, 1e-12, &[Some(worst.violation)]));
     }
     if worst.gap.is_some() {
-        targets.push(Target {
-            model,
-            quantity: "smallest gap, m".into(),
-            side: Bound::Above,
-            bound: 0.0,
-            measured: worst.gap,
-        });
+        let (name, bound) = (model.to_string(), (Bound::Above, 0.0));
+        targets.push(Target::of(name, "smallest gap, m", bound, &[worst.gap]));
     }
     targets
-}
-
-/// All requirements as a table.
-pub(super) fn table(targets: &[(String, Target)]) -> Table {
-    Table::of(
-        "Measured against target. A number is the worst of all runs that the requirement names; where it is missing, one of these runs did not end",
-        targets,
-        &[
-            ("yardstick", &|(yardstick, _)| yardstick.as_str().into()),
-            ("quantity", &|(_, t)| t.quantity.as_str().into()),
-            ("model", &|(_, t)| t.model.to_string().into()),
-            ("required", &|(_, t)| t.side.words().into()),
-            ("bound", &|(_, t)| t.bound.into()),
-            ("measured", &|(_, t)| t.measured.into()),
-            ("met", &|(_, t)| if t.is_met() { "yes" } else { "no" }.into()),
-        ],
-    )
-    .named("targets")
 }
 
 /// All requirements with a column for each model; values that meet them are bold.
@@ -158,7 +76,9 @@ pub(super) fn by_model(targets: &[(String, Target)]) -> Table {
     }
     for row in keys {
         let of = |model: Isometry| {
-            let found = targets.iter().find(|t| t.1.model == model && key(t) == row);
+            let found = targets
+                .iter()
+                .find(|t| t.1.of == model.to_string() && key(t) == row);
             let value = found.and_then(|(_, t)| Some((t.measured?, t.is_met())));
             Cell::from(value.map(|(value, is_met)| match is_met {
                 true => format!("**{}**", number(value)),
@@ -181,22 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_worst_value_decides_and_a_missing_one_fails() {
-        let model = Isometry::Rods;
-        let met = |values: &[Option<f64>]| {
-            let [most, least] = [at_most, at_least].map(|f| f(model, "q", 2.0, values));
-            (most.is_met(), least.is_met())
-        };
-        assert_eq!(met(&[Some(1.0), Some(2.0)]), (true, false));
-        assert_eq!(met(&[Some(2.0), Some(3.0)]), (false, true));
-        assert_eq!(met(&[Some(2.0), None]), (false, false));
-        assert_eq!(met(&[Some(2.0), Some(f64::NAN)]), (false, false));
-        assert_eq!(met(&[]), (false, false));
-        let worst = at_most(model, "q", 2.0, &[Some(1.0), Some(5.0)]);
-        assert_eq!(worst.measured, Some(5.0));
-        let csv = table(&[("y".into(), worst)]).csv().unwrap();
-        let text = String::from_utf8(csv).unwrap();
-        assert!(text.ends_with("y,q,rods,at most,2,5,no\n"), "{text}");
+    fn models_have_columns_and_met_values_are_bold() {
         let pair = [
             ("y".into(), at_most(Isometry::Rods, "q", 2.0, &[Some(5.0)])),
             ("y".into(), at_most(Isometry::Weak, "q", 2.0, &[Some(1.0)])),

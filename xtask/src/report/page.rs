@@ -11,13 +11,13 @@ const STYLE: &str = "\
 :root{color-scheme:light}body{font:16px/1.5 Helvetica,Arial,sans-serif;color:#222;background:#fff;margin:2.5rem auto;\
 max-width:64rem;padding:0 1.5rem}h1{font-size:1.7rem;margin-bottom:.3rem}h2{font-size:1.15rem;margin:0 0 .7rem}\
 section{border-top:1px solid #ddd;padding:1.6rem 0}figure{margin:0 0 1rem}figure svg,figure img{max-width:100%;height:auto;\
-display:block;margin:auto}.texts{display:grid;grid-template-columns:1fr 1fr;gap:0 2rem}.texts p{margin:.2rem 0}\
-.texts b{display:block;font-weight:600;font-size:.85rem;color:#666}.note{background:#fdf3d8;padding:.5rem .8rem}\
-.scroll{overflow-x:auto}table{border-collapse:collapse;font-size:.88rem;margin:.8rem 0}caption{text-align:left;color:#666;\
+display:block;margin:auto}.pictures{display:flex;flex-wrap:wrap;gap:1rem;align-items:center}.pictures a>*{display:block;width:auto;height:auto;\
+max-width:min(30rem,100%);max-height:15rem}.note{background:#fdf3d8;padding:.5rem .8rem}\
+.scroll{overflow-x:auto}table{border-collapse:collapse;min-width:24rem;font-size:.88rem;margin:.8rem 0}caption{text-align:left;color:#666;\
 padding-bottom:.3rem}th,td{border-bottom:1px solid #ddd;padding:.25rem .8rem .25rem 0;text-align:left;vertical-align:top}\
-.play{display:flex;flex-wrap:wrap;gap:.6rem 1rem;margin:0 0 1rem}\
-.play a{text-align:center;color:#0b57a4;font-size:.85rem;text-decoration:none}.play a:hover{text-decoration:underline}\
-.play img{display:block;height:6rem;margin:auto}th{font-weight:600}@media(max-width:44rem){.texts{grid-template-columns:1fr}}";
+.play{display:flex;flex-wrap:wrap;gap:.6rem 1rem;margin:1rem 0;text-align:center}.play figure{margin:0;max-width:11rem}\
+.play a{color:#0b57a4;font-size:.85rem;text-decoration:none}.play a:hover{text-decoration:underline}\
+.play img{display:block;height:5rem;margin:auto}th{font-weight:600}summary{color:#0b57a4;cursor:pointer}";
 
 /// A page. Whatever is written into its body is escaped by the templates of maud.
 #[derive(Clone, Debug)]
@@ -27,6 +27,8 @@ pub(crate) struct Page {
     pub(crate) heading: &'static str,
     /// Rules of style beside those of all pages.
     pub(crate) style: &'static str,
+    /// Parts that are not on the page, as another build of the program made them.
+    pub(crate) left_out: Vec<String>,
     pub(crate) body: Markup,
 }
 
@@ -37,6 +39,7 @@ impl Page {
             title,
             heading: title,
             style: "",
+            left_out: Vec::new(),
             body,
         }
     }
@@ -65,6 +68,12 @@ impl Page {
                         p.note {
                             "Made with " code { "--quick" } ": short runs on small meshes, which show that everything "
                             "works, and no result."
+                        }
+                    }
+                    @if !self.left_out.is_empty() {
+                        p.note {
+                            "Left out, since another build of the program made them or their files are gone: "
+                            (self.left_out.join(", ")) ". The same command makes them again."
                         }
                     }
                     (self.body)
@@ -112,6 +121,12 @@ mod tests {
         }
         let is_marked = |page: String| page.contains("class=\"note\"");
         assert!(is_marked(page.to_html(Effort::Quick)) && !is_marked(full));
+        let left_out = vec!["figure 3".to_owned()];
+        let page = Page { left_out, ..page };
+        assert!(
+            page.to_html(Effort::Full)
+                .contains("or their files are gone: figure 3.")
+        );
         assert_eq!(list(&[]).into_string(), "");
     }
 }

@@ -1,14 +1,18 @@
 //! Pictures of reports: files, and what pages show of them.
 
-use crate::draw::Drawing;
+use crate::draw::Vector;
 use crate::store::Files;
 use anyhow::Result;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use isosheet_io::picture::Image;
 use maud::{Markup, html};
 
 /// Size of drawings in the page relative to their own: their text is as large as that of the page then.
 const ENLARGED: f64 = 1.3;
+
+/// Largest width of the small pictures of a page, pixels: two fit beside each other.
+const THUMBNAIL: usize = 640;
 
 /// A picture.
 #[derive(Clone, Debug)]
@@ -24,14 +28,28 @@ pub(crate) struct Picture {
 }
 
 impl Picture {
-    /// A drawing as the SVG file `figures/name.svg`.
-    pub(crate) fn svg(name: &str, drawing: &Drawing, alt: &str) -> Self {
+    /// A drawing or charts as the SVG file `figures/name.svg`.
+    pub(crate) fn svg(name: &str, drawing: &impl Vector, alt: &str) -> Self {
         Self {
             path: format!("figures/{name}.svg"),
             alt: alt.to_owned(),
             bytes: drawing.to_svg(alt).into_bytes(),
-            inside: drawing.document(alt, ENLARGED),
+            inside: html! { a href={ "figures/" (name) ".svg" } { (drawing.document(alt, ENLARGED)) } },
         }
+    }
+
+    /// A shaded picture as a PNG file, of which the page has a smaller one that opens it.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub(crate) fn shaded(file: &str, image: &Image, alt: &str) -> Result<Self> {
+        let [width, _] = image.size();
+        let small = image.reduced(width.div_ceil(THUMBNAIL).max(1));
+        let shown = Self::png(file, small.to_png()?, alt).inside;
+        Ok(Self {
+            inside: html! { a href={ "figures/" (file) } { (shown) } },
+            ..Self::png(file, image.to_png()?, alt)
+        })
     }
 
     /// A PNG file in the folder of pictures.
@@ -51,11 +69,11 @@ impl Picture {
     }
 }
 
-/// Writes a drawing as `plots/name.svg` and `plots/name.png`, and returns what the page shows.
+/// Writes charts as `plots/name.svg` and `plots/name.png`, and returns what the page shows.
 pub(crate) fn plot(
     files: &mut Files<'_>,
     name: &str,
-    drawing: &Drawing,
+    drawing: &impl Vector,
     alt: &str,
 ) -> Result<Markup> {
     let svg = drawing.to_svg(alt);

@@ -1,7 +1,7 @@
 //! The scenes of the figures: files of the folder `xtask/scenes`, which `isosheet simulate` runs too.
 
 use anyhow::{Context, Result};
-use isosheet_io::scene::{Scene, SceneFile, Setup};
+use isosheet_io::scene::{Scene, SceneFile, Setup, StartingPoint};
 use isosheet_mesh::Sheet;
 use serde::de::DeserializeOwned;
 use serde::{Serialize, Serializer};
@@ -38,6 +38,18 @@ impl FigureScene {
         Ok(Self {
             name: name.to_owned(),
             file: SceneFile::read(&path, edits)?,
+        })
+    }
+
+    /// A scene that `isosheet new` writes, with edits.
+    ///
+    /// # Errors
+    /// Edits that make no sense.
+    pub(crate) fn starting_at(start: StartingPoint, edits: &[String]) -> Result<Self> {
+        let path = Path::new(start.name()).with_extension("toml");
+        Ok(Self {
+            name: start.name().to_owned(),
+            file: SceneFile::parse(start.text().to_owned(), &path, edits)?,
         })
     }
 

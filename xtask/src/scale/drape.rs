@@ -8,6 +8,7 @@ use anyhow::Result;
 use isosheet_collide::ContactOptions;
 use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::{MassKind, VertexId};
+use serde::{Deserialize, Serialize};
 
 /// Height of the bump of the cloth, metres. Ten centimetres keep the length equations independent; of a
 /// nearly flat cloth on a table they are not, and from 16 641 vertices on the number of iterations would hide
@@ -22,7 +23,7 @@ const TABLE: [f64; 3] = [0.25, 0.25, 0.1];
 const START: f64 = 0.95;
 
 /// A few steps of the draping sheet at one mesh size.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct DrapeRow {
     pub(super) level: u32,
     pub(super) vertices: usize,

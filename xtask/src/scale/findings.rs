@@ -26,8 +26,8 @@ pub(super) fn conclusion(rows: &[Row]) -> String {
         power(Row::step),
         power(Row::factorisations),
         power(|r| r.best().numeric),
-        power(|r| r.best().fill.operations),
-        power(|r| r.best().fill.entries),
+        power(|r| r.best().operations),
+        power(|r| r.best().entries),
     );
     if let Some(last) = rows.last() {
         let [degree, dissection] = &last.orders;
@@ -35,8 +35,8 @@ pub(super) fn conclusion(rows: &[Row]) -> String {
             out,
             " At {} vertices nested dissection needs {:.2} times the operations and {:.2} times the entries of minimum degree.",
             last.vertices,
-            dissection.fill.operations / degree.fill.operations,
-            dissection.fill.entries / degree.fill.entries
+            dissection.operations / degree.operations,
+            dissection.entries / degree.entries
         );
         if let Some(peak) = last.peak {
             let _ = write!(out, " The process used at most {:.2} GB.", peak / 1e9);

@@ -1,20 +1,20 @@
 //! The page of the scaling study, and its text for a terminal.
 
+use super::charts::charts;
 use super::drape;
 use super::findings::{conclusion, draping_conclusion, threads};
-use super::plot;
 use super::steps::STEP;
 use super::tables::{draping, orders, steps};
 use super::whole::{SCENES, name};
 use super::whole_report;
 use super::{PICTURE, Results};
-use crate::report::{Page, Picture, Table, list, machine};
+use crate::report::{Page, Picture, Requirement, Table, list, machine, requirements};
 use crate::timing::{Measured, Work};
 use maud::{Markup, html};
 
 /// The page.
-pub(super) fn page(results: &Results) -> Page {
-    let figure = Picture::svg("scale", &plot::plot(results), PICTURE);
+pub(super) fn page(results: &Results, required: &[(String, Requirement)]) -> Page {
+    let figure = Picture::svg("scale", &charts(results), PICTURE);
     let body = html! {
         p {
             "A square sheet of 1 m and 0.1 kg hangs by a corner from a start that is flat but for a bump of 1 mm; steps of "
@@ -27,6 +27,7 @@ pub(super) fn page(results: &Results) -> Page {
         (steps(&results.hanging))
         p { (threads(&results.hanging)) }
         (orders(&results.hanging))
+        (requirements("What the study is required to show on any machine", required))
         h2 { "With contact" }
         p {
             "The same sheet with a bump of " (drape::BUMP) " m, all vertices free, above a square table of half its side that its "
@@ -89,6 +90,7 @@ pub(super) fn text(results: &Results) -> String {
 mod tests {
     use super::*;
     use crate::report::Effort;
+    use crate::scale::required::required;
     use crate::scale::{steps, whole};
 
     #[test]
@@ -105,7 +107,8 @@ mod tests {
                 .concat(),
             limit: 30.0,
         };
-        let page = page(&results).to_html(Effort::Full);
+        let required = required(&results);
+        let page = page(&results, &required).to_html(Effort::Full);
         for part in [
             "<svg",
             "nested_dissection",

@@ -4,15 +4,6 @@ use super::drape::DrapeRow;
 use super::steps::{Row, STEP};
 use crate::report::Table;
 use crate::timing::OrderRow;
-use isosheet_coords::linalg::Ordering;
-
-pub(super) fn name(o: &OrderRow) -> &'static str {
-    match o.ordering {
-        Ordering::MinimumDegree => "minimum_degree",
-        Ordering::NestedDissection => "nested_dissection",
-        Ordering::Best => "best",
-    }
-}
 
 pub(super) fn factor_bytes(o: &OrderRow) -> f64 {
     8.0 * o.stored as f64
@@ -45,16 +36,16 @@ pub(super) fn hanging(rows: &[Row]) -> Table {
             ("energy_error", &|(r, ..)| r.balance.into()),
             ("factor_bytes", &|(r, ..)| factor_bytes(r.best()).into()),
             ("peak_bytes", &|(r, ..)| r.peak.into()),
-            ("ordering", &|(.., o)| name(o).into()),
+            ("ordering", &|(.., o)| o.ordering.as_str().into()),
             ("order_s", &|(.., o)| o.order.into()),
             ("symbolic_s", &|(.., o)| o.symbolic.into()),
             ("numeric_s", &|(.., o)| o.numeric.into()),
             ("two_threads_s", &|(.., o)| o.two_threads.into()),
             ("same_bits", &|(.., o)| o.same_bits.to_string().into()),
             ("solve_s", &|(.., o)| o.solve.into()),
-            ("factor_entries", &|(.., o)| o.fill.entries.into()),
+            ("factor_entries", &|(.., o)| o.entries.into()),
             ("factor_stored", &|(.., o)| o.stored.into()),
-            ("factor_operations", &|(.., o)| o.fill.operations.into()),
+            ("factor_operations", &|(.., o)| o.operations.into()),
         ],
     )
 }

@@ -6,12 +6,13 @@ use isosheet_dynamics::contact::{
 };
 use isosheet_dynamics::{SheetModel, State};
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// Seconds spent in contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Spent {
     /// Looking for pairs within reach and for the safe part of motions: broad phase and continuous collision
     /// detection.

@@ -385,6 +385,7 @@ fn shortest(limit: f64, mut work: impl FnMut()) -> f64 {
 mod tests {
     use super::row::PRIMAL;
     use super::*;
+    use crate::draw::Vector;
 
     /// All solvers give the same velocities, whatever system they solve.
     #[test]

@@ -5,10 +5,10 @@ use super::measure::{Point, sweep};
 use super::problem::{CHECKPOINTS, Problem};
 use super::reference::{self, Reference};
 use super::scheme::{DEFAULT, ROBUST, Scheme, is_paper};
-use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Marker, Series, palette, row};
+use crate::draw::{Axis, Chart, Charts, Colour, Legend, Marker, Series, palette};
 use crate::progress::Progress;
 use crate::report::Effort;
-use crate::report::{Cell, Table, extremes, rounded, short};
+use crate::report::{Bound, Cell, LENGTHS, Requirement, Table, extremes, rounded, short};
 use anyhow::Result;
 use std::fmt::Write;
 
@@ -44,6 +44,19 @@ pub(crate) fn make(problem: Problem, effort: Effort) -> Result<Study> {
         points,
     })
 }
+
+/// The orders of the methods by docs/methods.md.
+const ORDERS: [(&str, f64); 6] = [
+    ("implicit Euler", 1.0),
+    (DEFAULT, 2.0),
+    ("projection", 1.0),
+    ("energy-momentum", 2.0),
+    ("RATTLE", 2.0),
+    ("RATTLE composition", 4.0),
+];
+
+/// An order that is fitted to a few runs with finite steps may be smaller by this much.
+const FIT: f64 = 0.3;
 
 /// Round-off in energies, parts of the energy scale: orders are not fitted near it.
 const ENERGY_FLOOR: f64 = 1e-13;
@@ -116,6 +129,39 @@ impl Study {
         }
         text.push('.');
         text
+    }
+
+    /// The orders and the lengths that docs/methods.md and README.md claim. An order is asked of methods with
+    /// three and more runs that are fine enough to show one, on the problems whose motions are smooth: sheets
+    /// flutter on finer scales than their steps.
+    pub(crate) fn requirements(&self) -> Vec<Requirement> {
+        let mut all = Vec::new();
+        if matches!(self.problem, Problem::Pendulum | Problem::Triangle) {
+            for (method, theory) in ORDERS {
+                let doubt = self.reference.doubt();
+                let fitted = order(&self.points, method, POSITION, doubt);
+                let bound = (Bound::AtLeast, theory - FIT);
+                let of = |order| {
+                    Requirement::of(method, "order of the position error", bound, &[Some(order)])
+                };
+                all.extend(fitted.map(of));
+            }
+        }
+        for method in [DEFAULT, "implicit Euler"] {
+            let strains = self
+                .of(method)
+                .filter_map(|p| p.errors)
+                .map(|e| Some(e.strain));
+            let strains: Vec<_> = strains.collect();
+            let quantity = "largest strain of an edge";
+            all.push(Requirement::of(
+                method,
+                quantity,
+                (Bound::AtMost, LENGTHS),
+                &strains,
+            ));
+        }
+        all
     }
 
     /// What follows for the choice of a method.
@@ -249,7 +295,7 @@ impl Study {
     }
 
     /// Three log-log panels: time against each error.
-    pub(crate) fn plot(&self) -> Drawing {
+    pub(crate) fn plot(&self) -> Charts {
         let drawn = self.drawn();
         let walls = || self.points.iter().filter_map(|p| p.errors.map(|_| p.wall));
         let error = |measure: Measure, p: &Point| Some((measure.of)(&p.errors?).max(CLIP));
@@ -266,10 +312,10 @@ impl Study {
                 points: points(&look.name),
                 ..look.clone()
             });
-            let x = Axis::holding("wall time / simulated time", walls());
-            let y = Axis::holding(label, errors);
+            let x = Axis::decades("wall time / simulated time", walls());
+            let y = Axis::decades(label, errors);
             let chart = Chart::new(x, y, [150.0, 160.0], series.collect());
-            chart.with_legend(legend).draw()
+            chart.with_legend(legend)
         };
         let panels = [
             (POSITION, "position error (m)", Legend::None),
@@ -280,7 +326,7 @@ impl Study {
             ),
             (STRAIN, "largest edge strain", Legend::Right),
         ];
-        row(&panels.map(panel), 18.0)
+        Charts::row(panels.map(panel))
     }
 
     /// How the methods are drawn that are: of those in charts, those in one chart with one solver only.
@@ -360,6 +406,7 @@ fn horizon(rate: f64, doubt: f64) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draw::Vector;
 
     #[test]
     fn a_quick_study_of_the_pendulum_holds_together() {

@@ -6,16 +6,20 @@ use anyhow::Result;
 use isosheet_coords::linalg::{Fill, Ordering, SparseLlt, elimination_order};
 use isosheet_mesh::Sheet;
 use rayon::ThreadPool;
+use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// Number of times that a duration is measured, the least of which counts.
 const REPETITIONS: usize = 5;
 
 /// One elimination order of the matrix of a step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct OrderRow {
-    pub(crate) ordering: Ordering,
-    pub(crate) fill: Fill,
+    /// Its name in tables.
+    pub(crate) ordering: String,
+    /// Entries of the factor without padding, and operations of a numeric factorisation, see [`Fill`].
+    pub(crate) entries: f64,
+    pub(crate) operations: f64,
     /// Entries of the factor as stored, with the zeros that supernodes pad in.
     pub(crate) stored: usize,
     /// Seconds to find the order, for the symbolic analysis, for a numeric factorisation and for a solve.
@@ -53,9 +57,15 @@ pub(crate) fn order(sheet: &Sheet, ordering: Ordering) -> Result<OrderRow> {
         llt.solve(&mut rhs);
         solve = solve.min(clock.elapsed().as_secs_f64());
     }
+    let name = match ordering {
+        Ordering::MinimumDegree => "minimum_degree",
+        Ordering::NestedDissection => "nested_dissection",
+        Ordering::Best => "best",
+    };
     Ok(OrderRow {
-        ordering,
-        fill,
+        ordering: name.to_owned(),
+        entries: fill.entries,
+        operations: fill.operations,
         stored: llt.factor_len(),
         order: found,
         symbolic,

@@ -8,10 +8,11 @@ use crate::report::{rounded, short};
 use crate::runs::{Course, Plan, unseen};
 use anyhow::Result;
 use isosheet_dynamics::{Simulation, StepReport};
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
 /// A mesh, and what a factorisation of its matrix takes.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Mesh {
     pub(crate) level: u32,
     pub(crate) vertices: usize,
@@ -44,7 +45,7 @@ pub(crate) struct Limits {
 }
 
 /// A run of a scene, to be compared with others.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Measured {
     pub(crate) work: Work,
     pub(crate) mesh: Mesh,

@@ -6,6 +6,7 @@ use isosheet_dynamics::{Method, SheetModel, Simulation, State};
 use isosheet_mesh::generate::isotropic_square;
 use isosheet_mesh::{MassKind, Sheet, VertexId};
 use nalgebra::Isometry3;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Height of the bump, metres: nearly flat, so that the length constraints are nearly dependent.
@@ -41,7 +42,7 @@ pub(crate) fn corner(level: u32) -> VertexId {
 }
 
 /// Which pairs repel each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Pairs {
     /// Sheet and table.
     Table,
@@ -50,7 +51,7 @@ pub(crate) enum Pairs {
 }
 
 /// A scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Work {
     /// A nearly flat sheet held at a corner, one second.
     Hanging,

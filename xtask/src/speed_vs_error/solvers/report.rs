@@ -1,7 +1,7 @@
 //! What the rows of the solver study say: tables, plot, words.
 
 use super::row::{CHOLESKY, CRAMER, LDLT, MINORS, SCHUR, SOLVERS, SPARSE_LU, SolverRow};
-use crate::draw::{Axis, Chart, Colour, Drawing, Legend, Line, Marker, Series, palette, row};
+use crate::draw::{Axis, Chart, Charts, Colour, Legend, Line, Marker, Series, palette};
 use crate::report::{Table, exponent, short};
 
 /// All rows, solver by solver.
@@ -171,7 +171,7 @@ fn worst_errors(rows: &[SolverRow]) -> Vec<String> {
 }
 
 /// Time of a step's solve and backward error against n.
-pub(crate) fn plot(rows: &[SolverRow]) -> Drawing {
+pub(crate) fn plot(rows: &[SolverRow]) -> Charts {
     let looks: [(Colour, Marker, Line); 8] = [
         (palette::BLACK, Marker::Square, Line::Dashed),
         (palette::GREY, Marker::Square, Line::Dashed),
@@ -190,13 +190,13 @@ pub(crate) fn plot(rows: &[SolverRow]) -> Drawing {
             Series { line, ..series }
         };
         let series = SOLVERS.iter().zip(looks).map(look).collect();
-        let x = Axis::holding("degrees of freedom ~n~", rows.iter().map(|r| r.n as f64));
-        let y = Axis::holding(label, good().filter_map(value));
+        let x = Axis::decades("degrees of freedom n", rows.iter().map(|r| r.n as f64));
+        let y = Axis::decades(label, good().filter_map(value));
         Chart::new(x, y, [150.0, 160.0], series)
     };
-    let time = panel("form ~C~, factorise again, solve (s)", |r| Some(r.step()));
+    let time = panel("form C, factorise again, solve (s)", |r| Some(r.step()));
     let error = panel("velocity error", |r| r.velocity.map(|v| v.max(1e-17)));
-    row(&[time.with_legend(Legend::None).draw(), error.draw()], 18.0)
+    Charts::row([time.with_legend(Legend::None), error])
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
-//! Figures of measured numbers (colour: model, symbol: mesh), and the orders fitted to them.
+//! Charts of measured numbers: the colour is the model, the symbol is the mesh.
 
 use super::isometry::Isometry;
 use super::meshes::Pattern;
 use super::sample::Sample;
-use crate::draw::{Axis, Chart, Drawing, Marker, Missing, Series, column, palette, row};
-use crate::report::{exponent, number, order_line};
+use crate::draw::{Axis, Chart, Charts, Legend, Marker, Missing, Series, palette};
+use crate::report::{number, order_line};
 
 /// Symbols of the meshes of a figure, in order.
 const MARKERS: [Marker; 4] = [
@@ -114,43 +114,44 @@ impl Figure {
     pub(super) fn of_spacings(spacings: &[f64], rows: Vec<(Axis, Vec<Panel>)>) -> Self {
         let ticks = spacings.iter().map(|h| (*h, number(1e3 * h)));
         Self {
-            x: Axis::at("~h~, mm", ticks.collect()),
+            x: Axis::at("h, mm", ticks.collect()),
             rows,
             meshes: Pattern::ALL.map(|p| p.to_string()).to_vec(),
-            guide: "~h~^{2}".into(),
+            guide: "h²".into(),
             joined: Joined::Yes,
             size: [110.0, 130.0],
         }
     }
 
-    /// The figure; the names of models, meshes and lines are to the right of the first row.
-    pub(super) fn draw(&self) -> Drawing {
+    /// The charts; the names of models, meshes and lines are to the right of the first row.
+    pub(super) fn draw(&self) -> Charts {
         let rows = self.rows.iter().enumerate().map(|(k, (y, panels))| {
             let last = panels.len().saturating_sub(1);
-            let panel = |(i, panel)| {
-                let has_legend = k == 0 && i == last;
-                let legend = has_legend.then(|| self.legend());
-                self.panel(panel, y, legend.unwrap_or_default())
+            let chart = |(i, panel)| {
+                let is_named = k == 0 && i == last;
+                let legend = if is_named {
+                    Legend::Right
+                } else {
+                    Legend::None
+                };
+                self.chart(panel, y).with_legend(legend)
             };
-            let panels = panels.iter().enumerate().map(panel);
-            row(&panels.collect::<Vec<_>>(), 12.0)
+            panels.iter().enumerate().map(chart).collect()
         });
-        let rows: Vec<Drawing> = rows.collect();
-        column(&rows, 14.0)
+        Charts(rows.collect())
     }
 
-    fn panel(&self, panel: &Panel, y: &Axis, legend: Vec<Series>) -> Drawing {
+    fn chart(&self, panel: &Panel, y: &Axis) -> Chart {
         let guide = |points: &Vec<[f64; 2]>| Series::guide("", points.clone());
         let mut series: Vec<Series> = panel.guides.iter().map(guide).collect();
         for isometry in Isometry::ALL {
-            for mesh in 0..self.meshes.len() {
-                series.push(self.series(panel, isometry, mesh));
-            }
+            let of_mesh = |mesh| self.series(panel, isometry, mesh);
+            series.extend((0..self.meshes.len()).map(of_mesh));
         }
-        series.extend(legend);
-        let chart = Chart::new(self.x.clone(), y.clone(), self.size, series);
-        let chart = chart.titled(&panel.title);
-        chart.with_missing(self.missing(panel)).draw()
+        series.extend(self.legend());
+        Chart::new(self.x.clone(), y.clone(), self.size, series)
+            .titled(&panel.title)
+            .with_missing(self.missing(panel))
     }
 
     /// The runs of a model on a mesh that ended.
@@ -207,29 +208,9 @@ fn measured(dots: &[Dot]) -> Vec<[f64; 2]> {
     dots.iter().filter_map(|d| Some([d.x, d.y?])).collect()
 }
 
-/// Fitted power of the errors above `floor`, the level of round-off and of the solver's tolerances, below
-/// which an error says nothing; nothing from fewer than two.
-pub(super) fn order(points: &[[f64; 2]], floor: f64) -> Option<f64> {
-    let is_positive = |point: &[f64; 2]| point.iter().all(|v| v.is_finite() && *v > 0.0);
-    let all = points.iter().copied();
-    let above: Vec<[f64; 2]> = all.filter(|p| is_positive(p) && p[1] > floor).collect();
-    if above.len() < 2 {
-        return None;
-    }
-    exponent(&above)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn orders_need_two_values_above_the_floor() {
-        let points = [[0.1, 0.02], [0.2, 0.08], [0.4, 0.0], [0.8, f64::NAN]];
-        assert!((order(&points, 0.0).unwrap() - 2.0).abs() < 1e-12);
-        assert_eq!(order(&points, 0.05), None);
-        assert_eq!(order(&points[1..], 0.0), None);
-    }
 
     /// Marks of runs that did not end are near their place, and those of two models or meshes apart.
     #[test]

@@ -1,0 +1,185 @@
+//! `gallery`: ten scenes that anybody can run, each as a labelled picture, and a film of one of them.
+
+use crate::draw::{Shot, Viewpoint};
+use crate::progress::Progress;
+use crate::report::Options;
+use crate::runs::{FigureScene, Run};
+use crate::store::Store;
+use anyhow::Result;
+use clap::Args;
+use isosheet_io::picture::{Labelled, Solid, animated_png, montage};
+use isosheet_io::scene::StartingPoint;
+
+/// Arguments of `gallery`.
+#[derive(Debug, Args)]
+pub(crate) struct GalleryArgs {
+    #[command(flatten)]
+    options: Options,
+}
+
+/// A scene, and how it is shown.
+struct Shown {
+    /// `--kind` of `isosheet new`, or the name of a file of `xtask/scenes`.
+    scene: &'static str,
+    /// What is written below the picture.
+    label: &'static str,
+    /// Where the viewer is, degrees.
+    seen_from: [f64; 2],
+    /// The moment that is shown, as a part of the run.
+    moment: f64,
+    /// Bodies that are drawn, by number.
+    bodies: &'static [usize],
+}
+
+impl Shown {
+    const fn new(
+        [scene, label]: [&'static str; 2],
+        seen_from: [f64; 2],
+        moment: f64,
+        bodies: &'static [usize],
+    ) -> Self {
+        Self {
+            scene,
+            label,
+            seen_from,
+            moment,
+            bodies,
+        }
+    }
+}
+
+/// The scenes in the order of the picture.
+const SCENES: [Shown; 10] = [
+    Shown::new(["hanging", "new --kind hanging"], [-62.0, 17.0], 0.5, &[]),
+    Shown::new(["drape", "new --kind drape"], [-62.0, 24.0], 1.0, &[0]),
+    Shown::new(
+        ["stamp", "new --kind stamp"],
+        [-65.0, 20.0],
+        1.0,
+        &[0, 1, 2],
+    ),
+    Shown::new(["feed", "new --kind feed"], [-70.0, 18.0], 1.0, &[1]),
+    Shown::new(["fold", "new --kind fold"], [-58.0, 38.0], 0.6, &[]),
+    Shown::new(["fig12", "fig12: crumpling"], [-62.0, 17.0], 0.125, &[]),
+    Shown::new(["fig13", "fig13: stamping"], [-58.0, 30.0], 1.0, &[0, 1]),
+    Shown::new(
+        ["fig15-rings", "fig15-rings: draping"],
+        [-62.0, 24.0],
+        1.0,
+        &[0],
+    ),
+    Shown::new(["fig16", "fig16: a paper jam"], [-72.0, 12.0], 1.0, &[0, 2]),
+    Shown::new(["fig17", "fig17: Miura's folds"], [-58.0, 38.0], 0.5, &[]),
+];
+
+/// Pictures in a row, and the size of one, pixels.
+const COLUMNS: usize = 5;
+const SIZE: [usize; 2] = [480, 400];
+
+/// The scene of the film, by its number, its part of the run, and its frames; the size and the time of one
+/// (pixels, milliseconds).
+const FILMED: usize = 7;
+const END: f64 = 0.1;
+const FRAMES: usize = 36;
+const FILM: [usize; 2] = [368, 276];
+const DELAY: u16 = 50;
+
+/// The viewer is so many times as far away as the sheet is large: little perspective.
+const DISTANCE: f64 = 6.0;
+
+/// Runs the command.
+pub(crate) fn run(args: &GalleryArgs) -> Result<()> {
+    let store = args.options.open("gallery")?;
+    let mut runs = Vec::new();
+    for shown in &SCENES {
+        runs.push(Run::of(&store, shown.scene(&store)?)?);
+    }
+    let bar = Progress::start("pictures", SCENES.len() + FRAMES);
+    let mut pictures = Vec::new();
+    for (shown, run) in SCENES.iter().zip(&runs) {
+        let last = run.trajectory.len() - 1;
+        let frame = (shown.moment * last as f64).round() as usize;
+        let shots = [shown.shot(run, frame)?];
+        let image = shown.view(run).frame(&shots, SIZE)?.remove(0);
+        let label = shown.label.to_owned();
+        pictures.push(Labelled { image, label });
+        bar.step();
+    }
+    store.write("gallery.png", &montage(&pictures, COLUMNS)?.to_png()?)?;
+    let (shown, run) = (&SCENES[FILMED], &runs[FILMED]);
+    let last = END * (run.trajectory.len() - 1) as f64;
+    let frame = |k: usize| (last * k as f64 / (FRAMES - 1) as f64).round() as usize;
+    let shots = (0..FRAMES).map(|k| shown.shot(run, frame(k)));
+    let images = shown
+        .view(run)
+        .frame(&shots.collect::<Result<Vec<_>>>()?, FILM)?;
+    let film = animated_png(FILM, DELAY, FRAMES, |k| {
+        bar.step();
+        Ok(images[k].clone())
+    })?;
+    store.write("film.png", &film)?;
+    bar.finish("drawn");
+    for file in ["gallery.png", "film.png"] {
+        println!("{}", store.path(file).display());
+    }
+    Ok(())
+}
+
+impl Shown {
+    fn scene(&self, store: &Store) -> Result<FigureScene> {
+        let quick = ["stop.time=0.1".to_owned()];
+        let edits = store.effort.quick_or(&quick[..], &[]);
+        let kind = StartingPoint::ALL.iter().find(|k| k.name() == self.scene);
+        match kind {
+            Some(kind) => FigureScene::starting_at(*kind, edits),
+            None => FigureScene::of(self.scene, self.scene, edits),
+        }
+    }
+
+    fn shot<'a>(&self, run: &'a Run, frame: usize) -> Result<Shot<'a>> {
+        let bodies = run.scene.setup()?.obstacles;
+        let t = run.trajectory.times()[frame];
+        let solids = self.bodies.iter().map(|b| Solid::of(&bodies[*b], t));
+        Ok(Shot {
+            sheet: &run.sheet,
+            x: run.trajectory.frame(frame).unwrap_or_default(),
+            pins: &[],
+            solids: solids.collect::<Result<_, _>>()?,
+            label: String::new(),
+        })
+    }
+
+    fn view(&self, run: &Run) -> Viewpoint {
+        let points = run.sheet.positions().as_chunks::<3>().0;
+        let size = (0..3).map(|k| {
+            let along = points.iter().map(|p| p[k]);
+            along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
+        });
+        let size = size.fold(0.0, f64::max);
+        Viewpoint {
+            azimuth: self.seen_from[0],
+            elevation: self.seen_from[1],
+            distance: DISTANCE * size,
+            depth: 0.5 * size,
+            height: SIZE[1],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_is_there_with_the_bodies_that_are_drawn() {
+        let folder = tempfile::tempdir().unwrap();
+        let (effort, remake) = (crate::report::Effort::Quick, crate::store::Remake::Never);
+        let store = Store::open(folder.path(), "gallery", effort, remake).unwrap();
+        for shown in &SCENES {
+            let bodies = shown.scene(&store).unwrap().setup().unwrap().obstacles;
+            for body in shown.bodies {
+                assert!(Solid::of(&bodies[*body], 0.0).is_ok(), "{}", shown.scene);
+            }
+        }
+    }
+}

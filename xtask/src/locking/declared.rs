@@ -1,0 +1,152 @@
+//! Which requirements may be missed, and why: what docs/locking.md shows as missed, and what depends on the
+//! machine.
+
+use super::targets::Target;
+use crate::report::Effort;
+
+/// Rods lock, and a yardstick shows by how much.
+const LOCKS: &str = "rods lock where a bend follows no line of the mesh";
+const COARSE: &str = "elastic paper locks on coarse meshes, less strongly than rods";
+const FOLDS: &str = "the mesh decides how many folds there are";
+const STRETCHES: &str = "soft membranes and weak isometry let single edges stretch";
+const FINE_FOLDS: &str = "without bending stiffness folds become finer with every refinement; rods and fine meshes need more iterations";
+const ROUND_OFF: &str = "the round-off of the coordinates of the finest strips allows 1.6e-12";
+const WALL: &str = "runs are stopped after a wall time, so that the number depends on the machine";
+const QUICK: &str = "the meshes and times of the quick form are too small for it";
+
+/// What is missed: yardstick, start of the quantity, models, reason.
+const OPEN: [(&str, &str, &[&str], &str); 17] = [
+    (
+        "clamped",
+        "mean factorisations a step, BDF2, refusing",
+        &["rods"],
+        LOCKS,
+    ),
+    ("clamped", "part of the sheets", &[], WALL),
+    ("everyday", "part of the scenes", &[], WALL),
+    (
+        "everyday",
+        "largest strain",
+        &["elastic (soft)", "weak"],
+        STRETCHES,
+    ),
+    ("cylinder", "", &["rods"], LOCKS),
+    ("cylinder", "order", &["elastic (paper)"], COARSE),
+    ("cylinder", "relative error", &["elastic (paper)"], COARSE),
+    ("cantilever", "relative error", &["rods"], LOCKS),
+    (
+        "iterations",
+        "factorisations a step at M^4, no",
+        &["rods", "elastic (paper)", "weak"],
+        FINE_FOLDS,
+    ),
+    (
+        "iterations",
+        "factorisations a step at M^4, D",
+        &["rods", "elastic (paper)"],
+        FINE_FOLDS,
+    ),
+    (
+        "iterations",
+        "factorisations a step at M^5, no",
+        &[],
+        FINE_FOLDS,
+    ),
+    (
+        "iterations",
+        "factorisations a step at M^5, D",
+        &["rods", "elastic (paper)"],
+        FINE_FOLDS,
+    ),
+    (
+        "iterations",
+        "largest strain",
+        &["elastic (soft)", "weak"],
+        STRETCHES,
+    ),
+    ("drape", "part of the seeds", &[], FOLDS),
+    (
+        "drape",
+        "largest strain",
+        &["elastic (soft)", "weak"],
+        STRETCHES,
+    ),
+    ("buckling", "relative error", &["rods"], LOCKS),
+    ("buckling", "largest violation", &["weak"], ROUND_OFF),
+];
+
+/// What the quick form does not show: accuracies that need finer meshes and longer runs.
+const NOT_QUICK: [(&str, &str); 6] = [
+    ("iterations", "factorisations"),
+    ("cylinder", "order"),
+    ("cylinder", "relative error"),
+    ("cantilever", "relative error"),
+    ("buckling", "relative error"),
+    ("clamped", "mean factorisations a step"),
+];
+
+/// Why a requirement of a yardstick may be missed, if it may.
+pub(super) fn declared(yardstick: &str, target: &Target, effort: Effort) -> Option<&'static str> {
+    let is_open = |(of, quantity, models, _): &&(&str, &str, &[&str], &str)| {
+        let is_of = models.is_empty() || models.contains(&target.of.as_str());
+        *of == yardstick && target.quantity.starts_with(quantity) && is_of
+    };
+    let is_not_quick =
+        |(of, quantity): &&(&str, &str)| *of == yardstick && target.quantity.starts_with(quantity);
+    let open = OPEN.iter().find(is_open).map(|open| open.3);
+    let not_quick = NOT_QUICK.iter().find(is_not_quick).map(|_| QUICK);
+    open.or_else(|| not_quick.filter(|_| effort == Effort::Quick))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Bound;
+
+    #[test]
+    fn what_the_documentation_claims_is_not_declared() {
+        let of =
+            |model: &str, quantity: &str| Target::of(model, quantity, (Bound::AtMost, 1.0), &[]);
+        let why =
+            |yardstick, model, quantity, effort| declared(yardstick, &of(model, quantity), effort);
+        let standard = Effort::Standard;
+        assert_eq!(
+            why(
+                "cylinder",
+                "weak",
+                "order of the error of the energy",
+                standard
+            ),
+            None
+        );
+        assert_eq!(
+            why(
+                "cylinder",
+                "rods",
+                "order of the error of the energy",
+                standard
+            ),
+            Some(LOCKS)
+        );
+        for effort in [Effort::Quick, standard] {
+            assert_eq!(
+                why(
+                    "sliding",
+                    "rods",
+                    "relative error of the critical tangent",
+                    effort
+                ),
+                None
+            );
+            assert_eq!(
+                why("everyday", "rods", "largest strain of an edge", effort),
+                None
+            );
+            assert_eq!(why("drape", "rods", "smallest gap, m", effort), None);
+        }
+        assert_eq!(
+            why("cylinder", "weak", "order of", Effort::Quick),
+            Some(QUICK)
+        );
+    }
+}
