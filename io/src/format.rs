@@ -15,8 +15,8 @@ pub use atomic::{FileWriter, WriteError, write_atomically};
 pub(crate) use finite::{Finding, check_finite};
 
 pub use export::{
-    ExportError, ExportMeshFormat, Exported, FieldSupport, MOST_KEY_FRAMES, Series, SeriesField,
-    SeriesFormat, SeriesOptions, write_mesh, write_series,
+    BodyPose, ExportError, ExportMeshFormat, Exported, FieldSupport, MOST_KEY_FRAMES, Series,
+    SeriesBody, SeriesField, SeriesFormat, SeriesOptions, write_frame, write_mesh, write_series,
 };
 pub use history::{HistoryError, HistoryRow, HistoryWriter, read_history};
 pub use json::{JsonError, read_json, write_json};

@@ -30,6 +30,9 @@ pub use isosheet_mesh as mesh;
 pub use isosheet_mesh::Advice;
 
 #[cfg(feature = "scene")]
+mod body_mesh;
+
+#[cfg(feature = "scene")]
 pub mod scene;
 
 #[cfg(feature = "scene")]

@@ -30,6 +30,7 @@ mod error;
 mod montage;
 mod occlusion;
 mod pieces;
+mod raster;
 mod sheet;
 mod solid;
 mod vector;

@@ -1,7 +1,9 @@
 //! Writing meshes and moving sheets for other programs.
 
+mod body;
 mod csv;
 mod error;
+mod flat;
 mod fold;
 mod gltf;
 mod obj;
@@ -15,11 +17,13 @@ mod tests;
 mod usda;
 mod vtk;
 
+pub use body::{BodyPose, SeriesBody};
 pub use error::ExportError;
 pub use gltf::MOST_KEY_FRAMES;
 pub use series::{FieldSupport, Series, SeriesField, SeriesOptions};
 
 use super::mesh_file::MeshFile;
+use series::Moving;
 use std::path::{Path, PathBuf};
 
 /// A format in which one mesh is written, as the extension of a file says.
@@ -73,19 +77,20 @@ impl ExportMeshFormat {
 #[non_exhaustive]
 pub enum SeriesFormat {
     /// One OBJ file for each frame in a folder: for `run.obj`, `run/frame_00000.obj` and so on, numbered
-    /// as in the trajectory. All digits; no times.
+    /// as in the trajectory, and bodies in `run/bodies_00000.obj`. All digits; no times.
     Obj,
     /// One FOLD 1.2 file with a frame for each frame, `.fold`: all digits, times, fold angles of all edges.
     Fold,
     /// Binary glTF 2.0, `.glb`: morph targets with an animation of their weights, 32-bit floats, y
     /// upwards; at most [`MOST_KEY_FRAMES`] frames, chosen evenly.
     Glb,
-    /// Universal Scene Description as text with time samples, `.usda`: 32-bit floats, 24 time codes a second.
+    /// Universal Scene Description as text with time samples, `.usda`: 32-bit floats, z upwards.
     Usda,
     /// A point cache with the mesh of the first frame beside it, `.pc2` and `.obj`: 32-bit floats, no times.
     Pc2,
     /// A collection of VTK files, one for each frame: for `run.pvd`, `run/frame_00000.vtp` and so on. All
-    /// digits, times, strain and fold angle of the edges and the fields of the series.
+    /// digits, times, strain and fold angle of the edges and the fields of the series. Bodies have a collection
+    /// of their own, `run-bodies.pvd`.
     Pvd,
     /// A table with a line for each vertex of each frame, `.csv`: frame, time, vertex, x, y, z and the fields
     /// of vertices, with all digits.
@@ -140,13 +145,29 @@ pub fn write_mesh(path: &Path, mesh: &MeshFile) -> Result<(), ExportError> {
     let (x, faces) = (&mesh.positions[..], &mesh.faces[..]);
     error::check_mesh(x, faces)?;
     match format {
-        ExportMeshFormat::Obj => obj::write(path, faces, x),
+        ExportMeshFormat::Obj => obj::write(path, faces, x, None),
         ExportMeshFormat::Off => off::write(path, faces, x),
         ExportMeshFormat::Stl => stl::write(path, faces, x),
         ExportMeshFormat::Ply => ply::write(path, faces, x),
         ExportMeshFormat::Fold => fold::write_mesh(path, mesh),
-        ExportMeshFormat::Glb => gltf::write(path, faces, &[(0.0, x)]),
-        ExportMeshFormat::Usda => usda::write(path, faces, &[(0.0, x)]),
+        ExportMeshFormat::Glb => gltf::write(path, &Moving::still(faces, x)),
+        ExportMeshFormat::Usda => usda::write(path, &Moving::still(faces, x)),
+    }
+}
+
+/// Writes one frame of a moving sheet, atomically, as one file of the format that the extension names
+/// ([`ExportMeshFormat`]). OBJ, glTF and USD files have texture coordinates ([`Series::uv`]), glTF and USD files the
+/// bodies too.
+///
+/// # Errors
+/// [`ExportError`]; nothing is written then.
+pub fn write_frame(path: &Path, series: &Series<'_>, frame: usize) -> Result<(), ExportError> {
+    let mesh = series.mesh(frame)?;
+    match by_extension(path, &ExportMeshFormat::ALL, ExportMeshFormat::extension)? {
+        ExportMeshFormat::Obj => obj::write(path, &mesh.faces, &mesh.positions, series.uv()),
+        ExportMeshFormat::Glb => gltf::write(path, &series.moving(&[frame])),
+        ExportMeshFormat::Usda => usda::write(path, &series.moving(&[frame])),
+        _ => write_mesh(path, &mesh),
     }
 }
 
@@ -162,13 +183,11 @@ pub fn write_series(path: &Path, series: &Series<'_>) -> Result<Exported, Export
         SeriesFormat::Fold => fold::write_series(path, series)?,
         SeriesFormat::Glb => {
             frames = gltf::key_frames(series);
-            let states: Vec<_> = frames.iter().map(|&f| series.state(f)).collect();
-            gltf::write(path, series.faces(), &states)?;
+            gltf::write(path, &series.moving(&frames))?;
             vec![path.to_owned()]
         }
         SeriesFormat::Usda => {
-            let states: Vec<_> = frames.iter().map(|&f| series.state(f)).collect();
-            usda::write(path, series.faces(), &states)?;
+            usda::write(path, &series.moving(&frames))?;
             vec![path.to_owned()]
         }
         SeriesFormat::Pc2 => pc2::write_series(path, series)?,

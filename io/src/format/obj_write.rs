@@ -60,7 +60,7 @@ impl Advice for ObjWriteError {
 pub fn write_obj(path: &Path, topology: &Topology, x: &[f64]) -> Result<(), ObjWriteError> {
     check(topology, x)?;
     Ok(write_atomically(path, |w| {
-        write_lines(w, corners(topology), x)
+        write_lines(w, corners(topology), x, None)
     })?)
 }
 
@@ -78,7 +78,7 @@ pub fn write_obj_to(
         path: PathBuf::new(),
         source,
     };
-    Ok(write_lines(w, corners(topology), x).map_err(failed)?)
+    Ok(write_lines(w, corners(topology), x, None).map_err(failed)?)
 }
 
 /// The file of frame `frame` in `folder`: `frame_00000.obj` and so on, so that names sort as frames do.
@@ -107,19 +107,27 @@ fn corners(topology: &Topology) -> impl ExactSizeIterator<Item = [u32; 3]> {
     topology.faces().iter().map(|f| f.map(|v| v.0))
 }
 
-/// The lines of a file; the positions are finite and the corners exist.
+/// The lines of a file; the positions are finite and the corners exist. `uv` are texture coordinates of vertices.
 pub(crate) fn write_lines(
     w: &mut impl Write,
     faces: impl ExactSizeIterator<Item = [u32; 3]>,
     x: &[f64],
+    uv: Option<&[[f64; 2]]>,
 ) -> io::Result<()> {
     let vertices = x.len() / 3;
     writeln!(w, "# isosheet: {vertices} vertices, {} faces", faces.len())?;
     for p in x.chunks_exact(3) {
         writeln!(w, "v {} {} {}", p[0], p[1], p[2])?;
     }
-    for [a, b, c] in faces {
-        writeln!(w, "f {} {} {}", a + 1, b + 1, c + 1)?;
+    for [u, v] in uv.into_iter().flatten() {
+        writeln!(w, "vt {u} {v}")?;
+    }
+    for corners in faces {
+        let [a, b, c] = corners.map(|v| v + 1);
+        match uv {
+            Some(_) => writeln!(w, "f {a}/{a} {b}/{b} {c}/{c}")?,
+            None => writeln!(w, "f {a} {b} {c}")?,
+        }
     }
     Ok(())
 }

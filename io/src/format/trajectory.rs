@@ -2,6 +2,7 @@
 
 mod archive;
 mod data;
+mod rate;
 
 pub use data::FrameData;
 
@@ -113,6 +114,21 @@ pub enum TrajectoryError {
         /// The time of the frame before, in seconds (minus infinity for the first).
         before: f64,
     },
+    /// There are no frames at this rate.
+    #[error(
+        "{rate} frames a second from frame {first} to frame {last}: the trajectory has {frames} frames, counted \
+         from 0"
+    )]
+    Rate {
+        /// Frames a second.
+        rate: f64,
+        /// The first frame.
+        first: usize,
+        /// The last frame.
+        last: usize,
+        /// The number of frames.
+        frames: usize,
+    },
     /// The file could not be written.
     #[error(transparent)]
     File(#[from] WriteError),
@@ -143,6 +159,10 @@ impl Advice for TrajectoryError {
                 Some("go back to the last state that was finite")
             }
             Self::Time { .. } => Some("record frames in the order of time"),
+            Self::Rate { .. } => Some(
+                "give a positive rate with at most 86 400 frames in all, and frames that exist, the first before \
+                 the last",
+            ),
             Self::File(error) => error.advice(),
             Self::Read { .. } => Some("check that it is an .npz file"),
             Self::Array { .. } => Some("give a trajectory that this program wrote"),

@@ -1,11 +1,12 @@
 //! Animated pictures.
 
-use super::canvas::{Image, srgb_bytes};
+use super::canvas::{Image, encoder, srgb_bytes};
 use super::error::PictureError;
+use rayon::prelude::*;
 
-/// An animated PNG file of `count` pictures of one size (pixels), which `picture` makes in their order. Each
-/// is shown for `delay` milliseconds, and the whole is repeated without end. Programs that know no
-/// animations show the first picture.
+/// An animated PNG file of `count` pictures of one size (pixels), which `picture` makes, several at a time on the
+/// threads that rayon has. Each is shown for `delay` milliseconds, and the whole is repeated without end.
+/// Programs that know no animations show the first picture.
 ///
 /// # Errors
 /// [`PictureError::NoFrames`] for no picture, [`PictureError::FrameSize`] for one of another size,
@@ -14,28 +15,34 @@ pub fn animated_png(
     size: [usize; 2],
     delay: u16,
     count: usize,
-    mut picture: impl FnMut(usize) -> Result<Image, PictureError>,
+    picture: impl Fn(usize) -> Result<Image, PictureError> + Sync,
 ) -> Result<Vec<u8>, PictureError> {
     let frames = u32::try_from(count).unwrap_or(u32::MAX);
     if frames == 0 {
         return Err(PictureError::NoFrames);
     }
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, size[0] as u32, size[1] as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::High);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let mut encoder = encoder(&mut bytes, size[0] as u32, size[1] as u32);
+    // Half as large again as with the best compression, in a quarter of the time.
+    encoder.set_compression(png::Compression::Balanced);
     encoder.set_animated(frames, 0)?;
     encoder.set_frame_delay(delay, 1000)?;
     let mut writer = encoder.write_header()?;
-    for frame in 0..count {
-        let image = picture(frame)?;
-        if image.size() != size {
-            let found = image.size();
-            return Err(PictureError::FrameSize { frame, found, size });
+    // So many pictures are in memory at a time.
+    let batch = 2 * rayon::current_num_threads();
+    for first in (0..count).step_by(batch) {
+        let drawn = (first..count.min(first + batch)).into_par_iter();
+        let drawn = drawn.map(|frame| {
+            let image = picture(frame)?;
+            if image.size() != size {
+                let found = image.size();
+                return Err(PictureError::FrameSize { frame, found, size });
+            }
+            Ok(srgb_bytes(&image))
+        });
+        for data in drawn.collect::<Result<Vec<_>, _>>()? {
+            writer.write_image_data(&data)?;
         }
-        writer.write_image_data(&srgb_bytes(&image))?;
     }
     writer.finish()?;
     Ok(bytes)

@@ -15,6 +15,9 @@ pub struct Camera {
     half_height: f64,
 }
 
+/// Nearest distance from the viewer at which anything is drawn, as a part of the distance of the target.
+const NEAR: f64 = 1e-3;
+
 /// A point of the picture: x and y from -1 to 1 (y upwards, x in units of half the height), and a depth that
 /// is linear in the picture, larger for what is nearer.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +97,7 @@ impl Camera {
             dot(&d, &self.up),
             dot(&d, &self.toward),
         );
-        let away = (self.distance - z).max(1e-6 * self.distance);
+        let away = (self.distance - z).max(self.nearest());
         let scale = self.distance / away;
         let s = scale / self.half_height;
         Projected {
@@ -104,10 +107,68 @@ impl Camera {
         }
     }
 
+    /// The larger side of what a picture with this width over height shows at the target, metres.
+    pub(super) fn scale(&self, aspect: f64) -> f64 {
+        2.0 * self.half_height * aspect.max(1.0)
+    }
+
+    /// The point that is looked at, metres.
+    pub(super) fn target(&self) -> [f64; 3] {
+        self.target
+    }
+
+    /// Whether a point is so near to the viewer, or behind, that it has no place in the picture.
+    pub(super) fn is_behind(&self, p: &[f64; 3]) -> bool {
+        self.away(p) < self.nearest()
+    }
+
+    /// Whether all points that are at most `margin` metres from a triangle are outside of the picture with this
+    /// width over height. The answer may be no for a triangle that passes by a corner of the picture.
+    pub(super) fn is_outside(&self, corners: &[[f64; 3]; 3], margin: f64, aspect: f64) -> bool {
+        let slope = self.half_height / self.distance;
+        let beyond = |direction: &[f64; 3], slope: f64| {
+            let limit = margin * (1.0 + slope);
+            let beyond = |p: &[f64; 3], side: f64| {
+                side * dot(&sub(p, &self.target), direction) - slope * self.away(p) > limit
+            };
+            let all = |side: f64| corners.iter().all(|p| beyond(p, side));
+            all(1.0) || all(-1.0)
+        };
+        let near = self.nearest() - margin;
+        beyond(&self.right, slope * aspect)
+            || beyond(&self.up, slope)
+            || corners.iter().all(|p| self.away(p) < near)
+    }
+
+    /// Where the viewer is, metres.
+    pub(super) fn eye(&self) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.target[k] + self.distance * self.toward[k])
+    }
+
+    /// The size of a pixel, metres, at a distance from the viewer in a picture of so many pixels of height.
+    pub(super) fn pixel(&self, away: f64, height: f64) -> f64 {
+        2.0 * self.half_height * away / (self.distance * height)
+    }
+
+    /// The part of an edge, from `a`, that ends where the picture shows its middle.
+    pub(super) fn middle(&self, a: &[f64; 3], b: &[f64; 3]) -> f64 {
+        let [p, q] = [a, b].map(|p| self.away(p).max(self.nearest()));
+        p / (p + q)
+    }
+
+    /// The nearest distance at which anything is drawn, metres.
+    pub(super) fn nearest(&self) -> f64 {
+        NEAR * self.distance
+    }
+
+    /// How far a point is from the viewer in the direction of view, metres.
+    fn away(&self, p: &[f64; 3]) -> f64 {
+        self.distance - dot(&sub(p, &self.target), &self.toward)
+    }
+
     /// The direction from a point to the viewer.
     pub(super) fn viewer(&self, p: &[f64; 3]) -> [f64; 3] {
-        let eye = [0, 1, 2].map(|k| self.target[k] + self.distance * self.toward[k]);
-        unit(&sub(&eye, p))
+        unit(&sub(&self.eye(), p))
     }
 
     /// A direction given in the picture: rightwards, upwards and towards the viewer.

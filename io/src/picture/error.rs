@@ -70,9 +70,6 @@ pub enum PictureError {
         /// Vertices of the sheet.
         vertices: usize,
     },
-    /// A body has no faces.
-    #[error("a {0} has no faces to draw")]
-    NoFaces(&'static str),
     /// A body has no geometry.
     #[error(transparent)]
     Body(#[from] ObstacleError),
@@ -95,7 +92,6 @@ impl Advice for PictureError {
             Self::Coordinates { .. } => Some("give three for each vertex"),
             Self::NotFinite { .. } => Some("draw finite positions"),
             Self::Pin { .. } => Some("name one of them"),
-            Self::NoFaces(..) => Some("leave it out or draw a triangle surface instead"),
             Self::Body(error) => error.advice(),
             Self::Svg(..) => Some("give an SVG document"),
             Self::Png(..) => None,

@@ -1,8 +1,9 @@
-//! Ambient occlusion: how much of the surroundings a point of the sheet sees.
+//! Ambient occlusion: how much of the surroundings a point sees.
 
 use super::camera::normal;
 use super::pieces::Piece;
-use super::vector::{axpy, cross, sub, unit};
+use super::solid::Triangles;
+use super::vector::{axpy, cross, dot, sub, unit};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
@@ -13,52 +14,152 @@ use rayon::prelude::*;
 /// Rays sent from every point, on a fixed spiral: pictures are the same at every run.
 const RAYS: usize = 40;
 
-/// How far in from its corner of a face a point lies, as part of the way to the centroid: a point on a crease
-/// would count the neighbouring face as touching.
+/// How far in from a crease a point lies, as part of the way to the centroid of its faces: a point on the crease
+/// would count the faces on the other side as touching.
 const INSET: f64 = 0.25;
 
-/// Openness (0 dark to 1 free) at the three corners of every piece, on its front or back side. A piece is a
-/// face or a part of one.
-///
-/// Rays are distributed by the cosine law; a face hides what is behind it out to `reach`, less and less with
-/// distance. The results do not depend on the number of threads: every ray is followed by itself, and the
-/// nearest face is the same in whatever order the faces are looked at.
-pub(super) fn openness(
-    pieces: &[Piece],
-    faces: &[[usize; 3]],
-    x: &[[f64; 3]],
+/// Faces at a vertex whose normals differ by less than this (cosine, 37 degrees) share one point: the surface is
+/// smooth there. Creases that are sharper keep the shadow on their hollow side.
+const SMOOTH: f64 = 0.8;
+
+/// A point from which rays are sent.
+struct Spot {
+    vertex: usize,
+    /// Sums over the corners of pieces here: unit normals towards the viewer, and centroids.
+    normal: [f64; 3],
+    centroid: [f64; 3],
+    corners: f64,
+    /// The faces that meet here, which do not hide what is around the point.
+    faces: Vec<usize>,
+}
+
+/// What hides the surroundings of points.
+pub(super) struct Occlusion {
+    faces: Vec<[Vector; 3]>,
+    tree: Bvh,
     reach: f64,
-) -> Vec<[f64; 3]> {
-    let faces: Vec<[Vector; 3]> = faces.iter().map(|f| f.map(|v| x[v].into())).collect();
-    let boxes: Vec<Aabb> = faces.iter().map(|f| Aabb::from_points(*f)).collect();
-    let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
-    let directions = spiral();
-    let one = |piece: &Piece| {
-        let c = piece.corners.map(|v| x[v]);
-        let side = if piece.back { -1.0 } else { 1.0 };
-        let up = normal(&c).map(|k| side * k);
-        let right = unit(&cross(&up, &sub(&c[1], &c[0])));
-        let ahead = cross(&up, &right);
-        let centroid = [0, 1, 2].map(|k| (c[0][k] + c[1][k] + c[2][k]) / 3.0);
-        c.map(|corner| {
-            let from = axpy(&corner, INSET, &sub(&centroid, &corner));
-            let seen = directions.iter().map(|d| {
-                let along = [0, 1, 2].map(|k| d[0] * right[k] + d[1] * ahead[k] + d[2] * up[k]);
-                let ray = Ray::new(from.into(), along.into());
-                let nearest = tree.cast_ray(&ray, reach, |face, _| {
-                    // A ray does not meet the face that it starts from.
-                    let [a, b, c] = faces[face as usize];
-                    let hit = (face as usize != piece.face)
-                        .then(|| local_ray_intersection_with_triangle(a, b, c, &ray));
-                    let t = hit.flatten()?.0.time_of_impact;
-                    (t > 0.0).then_some(t)
-                });
-                nearest.map_or(1.0, |(_, t)| (t.min(reach) / reach).sqrt())
+}
+
+impl Occlusion {
+    /// The faces of a scene, each of which hides what is behind it out to `reach`, less and less with distance.
+    pub(super) fn new(scene: &Triangles, reach: f64) -> Self {
+        let corner = |v: usize| scene.x[v].into();
+        let faces: Vec<[Vector; 3]> = scene.faces.iter().map(|f| f.map(corner)).collect();
+        let boxes: Vec<Aabb> = faces.iter().map(|f| Aabb::from_points(*f)).collect();
+        Self {
+            tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes),
+            faces,
+            reach,
+        }
+    }
+
+    /// Openness (0 dark to 1 free) at the three corners of every piece, on the side that is seen.
+    ///
+    /// Pieces that meet smoothly in a vertex share one value there. Rays are distributed by the cosine law. The
+    /// results do not depend on the number of threads: every ray is followed by itself, and the nearest face is
+    /// the same in whatever order the faces are looked at.
+    pub(super) fn openness(&self, pieces: &[Piece], scene: &Triangles) -> Vec<[f64; 3]> {
+        let (spots, of_corner) = spots(pieces, scene);
+        let directions = spiral();
+        let one = |(k, spot): (usize, &Spot)| {
+            let up = unit(&spot.normal);
+            let corner = scene.x[spot.vertex];
+            let is_crease = shares_vertex(&spots, k);
+            let centroid = spot.centroid.map(|c| c / spot.corners);
+            let inset = if is_crease { INSET } else { 0.0 };
+            let from = axpy(&corner, inset, &sub(&centroid, &corner));
+            self.around(&from, &up, &directions, &spot.faces)
+        };
+        let open: Vec<f64> = spots.par_iter().enumerate().map(one).collect();
+        of_corner
+            .iter()
+            .map(|spots| spots.map(|k| open[k]))
+            .collect()
+    }
+
+    /// Openness at a point with an upward direction; some faces hide nothing.
+    fn around(
+        &self,
+        from: &[f64; 3],
+        up: &[f64; 3],
+        directions: &[[f64; 3]],
+        free: &[usize],
+    ) -> f64 {
+        // Neighbouring points turn the spiral alike, so that the light does not flicker from one to the next.
+        let aside = if up[0].abs() < 0.6 {
+            [1.0, 0.0, 0.0]
+        } else {
+            [0.0, 1.0, 0.0]
+        };
+        let right = unit(&cross(&aside, up));
+        let ahead = cross(up, &right);
+        let seen = directions.iter().map(|d| {
+            let along = [0, 1, 2].map(|k| d[0] * right[k] + d[1] * ahead[k] + d[2] * up[k]);
+            let ray = Ray::new((*from).into(), along.into());
+            let nearest = self.tree.cast_ray(&ray, self.reach, |face, _| {
+                if free.contains(&(face as usize)) {
+                    return None;
+                }
+                let [a, b, c] = self.faces[face as usize];
+                let t = local_ray_intersection_with_triangle(a, b, c, &ray)?
+                    .0
+                    .time_of_impact;
+                (t > 0.0).then_some(t)
             });
-            seen.sum::<f64>() / RAYS as f64
-        })
-    };
-    pieces.par_iter().map(one).collect()
+            nearest.map_or(1.0, |(_, t)| (t.min(self.reach) / self.reach).sqrt())
+        });
+        seen.sum::<f64>() / RAYS as f64
+    }
+}
+
+/// Whether another point belongs to the same vertex: points of one vertex follow each other.
+fn shares_vertex(spots: &[Spot], k: usize) -> bool {
+    let here = |other: Option<&Spot>| other.is_some_and(|o| o.vertex == spots[k].vertex);
+    here(spots.get(k + 1)) || k > 0 && here(spots.get(k - 1))
+}
+
+/// The points of the corners of pieces, in the order of vertices, and those of each piece.
+fn spots(pieces: &[Piece], scene: &Triangles) -> (Vec<Spot>, Vec<[usize; 3]>) {
+    let mut corners_at: Vec<Vec<(usize, usize)>> = vec![Vec::new(); scene.x.len()];
+    for (number, piece) in pieces.iter().enumerate() {
+        for (k, &v) in piece.corners.iter().enumerate() {
+            corners_at[v].push((number, k));
+        }
+    }
+    let mut spots: Vec<Spot> = Vec::new();
+    let mut of_corner = vec![[0; 3]; pieces.len()];
+    for (vertex, corners) in corners_at.iter().enumerate() {
+        let first = spots.len();
+        for &(number, k) in corners {
+            let piece = &pieces[number];
+            let points = piece.corners.map(|v| scene.x[v]);
+            let side = if piece.back { -1.0 } else { 1.0 };
+            let flat = normal(&points).map(|c| side * c);
+            let skin = scene.skin(piece.face);
+            let n = skin.map_or(flat, |skin| skin.normal(&flat, &scene.x[vertex]));
+            let centroid = super::sheet::centre(&points);
+            let group = (first..spots.len()).find(|&s| dot(&unit(&spots[s].normal), &n) > SMOOTH);
+            let group = group.unwrap_or_else(|| {
+                spots.push(Spot {
+                    vertex,
+                    normal: [0.0; 3],
+                    centroid: [0.0; 3],
+                    corners: 0.0,
+                    faces: Vec::new(),
+                });
+                spots.len() - 1
+            });
+            let spot = &mut spots[group];
+            spot.normal = axpy(&spot.normal, 1.0, &n);
+            spot.centroid = axpy(&spot.centroid, 1.0, &centroid);
+            spot.corners += 1.0;
+            if !spot.faces.contains(&piece.face) {
+                spot.faces.push(piece.face);
+            }
+            of_corner[number][k] = group;
+        }
+    }
+    (spots, of_corner)
 }
 
 /// Directions of the upper half space by the cosine law.
@@ -77,18 +178,33 @@ fn spiral() -> Vec<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use isosheet_mesh::Topology;
+
+    fn openness(pieces: &[Piece], scene: &Triangles, reach: f64) -> Vec<[f64; 3]> {
+        Occlusion::new(scene, reach).openness(pieces, scene)
+    }
+
+    fn scene(faces: &[[u32; 3]], x: &[[f64; 3]]) -> Triangles {
+        let topology = Topology::from_faces(x.len(), faces).unwrap();
+        Triangles::new(&topology, x.as_flattened(), &[], &[0.0; 3], 1.0)
+    }
+
+    fn pieces(scene: &Triangles, back: impl Fn(usize) -> bool) -> Vec<Piece> {
+        let faces = scene.faces.iter().enumerate();
+        let piece = |(face, corners): (usize, &[usize; 3])| Piece {
+            corners: *corners,
+            face,
+            back: back(face),
+        };
+        faces.map(piece).collect()
+    }
 
     #[test]
     fn a_lone_face_is_open_and_a_covered_one_is_not() {
         let floor = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        let seen = |faces: &[[usize; 3]], x: &[[f64; 3]], back: bool| {
-            let piece = |(face, corners): (usize, &[usize; 3])| Piece {
-                corners: *corners,
-                face,
-                back,
-            };
-            let pieces: Vec<Piece> = faces.iter().enumerate().map(piece).collect();
-            openness(&pieces, faces, x, 1.0)
+        let seen = |faces: &[[u32; 3]], x: &[[f64; 3]], back: bool| {
+            let scene = scene(faces, x);
+            openness(&pieces(&scene, |_| back), &scene, 1.0)
         };
         let open = |o: &[f64; 3]| o.iter().all(|o| (o - 1.0).abs() < 1e-12);
         assert!(
@@ -106,6 +222,26 @@ mod tests {
         assert!(open(&seen(&both, &x, true)[0]));
     }
 
+    /// Where two faces meet at less than the angle of a crease they share one value, which the next face does
+    /// not darken; where they meet at a right angle each has its own, and the hollow side is dark.
+    #[test]
+    fn creases_are_dark_inside_and_bends_are_not() {
+        let at = |slope: f64| {
+            let x = [
+                [0.0, 0.0, 0.0],
+                [0.0, 1.0, 0.0],
+                [-1.0, 0.5, 0.0],
+                [slope.cos(), 0.5, slope.sin()],
+            ];
+            let scene = scene(&[[0, 1, 2], [1, 0, 3]], &x);
+            openness(&pieces(&scene, |_| false), &scene, 1.0)
+        };
+        let [bent, folded] = [0.3, 1.6].map(at);
+        assert_eq!([bent[0][0], bent[0][1]], [bent[1][1], bent[1][0]]);
+        assert!(bent[0].iter().all(|o| *o > 0.95), "{bent:?}");
+        assert!(folded[0][..2].iter().all(|o| *o < 0.85), "{folded:?}");
+    }
+
     /// Every ray is followed by itself, so that threads change no bit.
     #[test]
     fn threads_change_nothing() {
@@ -115,17 +251,13 @@ mod tests {
                 [(1.3 * k).sin(), (2.1 * k).cos(), (0.7 * k).sin()]
             })
             .collect();
-        let faces: Vec<[usize; 3]> = (0..100).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-        let piece = |(face, corners): (usize, &[usize; 3])| Piece {
-            corners: *corners,
-            face,
-            back: face % 2 == 0,
-        };
-        let pieces: Vec<Piece> = faces.iter().enumerate().map(piece).collect();
+        let faces: Vec<[u32; 3]> = (0..100).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let scene = scene(&faces, &x);
+        let pieces = pieces(&scene, |face| face % 2 == 0);
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             let pool = pool.build().unwrap();
-            pool.install(|| openness(&pieces, &faces, &x, 2.0))
+            pool.install(|| openness(&pieces, &scene, 2.0))
         };
         let one = on(1);
         assert!(one.iter().flatten().any(|o| *o < 0.9));

@@ -1,26 +1,36 @@
 //! A shaded picture of a sheet.
 
 use super::camera::{Camera, normal};
-use super::canvas::{Corner, Depth, Image, light};
+use super::canvas::{Image, Light, light};
 use super::error::PictureError;
-use super::occlusion::openness;
-use super::pieces::{Piece, cut};
-use super::solid::Solid;
+use super::occlusion::Occlusion;
+use super::pieces::{Cutter, Piece};
+use super::raster::{Corner, Drawing, Facet, Stroke};
+use super::solid::{Skin, Solid, Triangles};
 use super::vector::{axpy, dot};
 use isosheet_mesh::{Topology, VertexId};
-use std::collections::BTreeMap;
 
-/// Pixels rendered for each pixel of the picture, each way.
-const SUPERSAMPLING: usize = 3;
+/// How far faces darken each other, as part of what the picture shows.
+const REACH: f64 = 0.3;
 
-/// How far faces darken each other, as part of the extent of the sheet.
-const REACH: f64 = 0.35;
+/// How far half-spaces are drawn around the middle, as part of what the picture shows: they have faded out
+/// where the picture ends.
+pub(super) const GROUND: f64 = 0.8;
 
-/// Largest edge over which the shade of a body is interpolated, as part of that reach.
-const GRAIN: f64 = 0.15;
+/// Largest edge over which the light on a body is interpolated, as part of the height of the picture.
+const GRAIN: f64 = 0.035;
 
-/// How far lines are drawn in front of what they lie on, as part of the extent of the sheet.
+/// The same at the rim of a shadow, where the openness would change by more than [`CONTRAST`] within a piece.
+const FINE_GRAIN: f64 = 0.007;
+
+/// A change of the light that is seen as an edge.
+const CONTRAST: f64 = 0.12;
+
+/// How far lines are drawn in front of what they lie on, as part of what the picture shows.
 pub(super) const LIFT: f64 = 0.004;
+
+/// Wires that are closer than so many pixels are drawn lighter, so that fine meshes stay light.
+const CLOSE: f64 = 9.0;
 
 /// sRGB colours of lines, of pins and of immobile vertices.
 pub(super) const INK: [u8; 3] = [38, 42, 48];
@@ -105,7 +115,7 @@ impl Look {
     /// finite.
     pub fn validate(&self) -> Result<(), PictureError> {
         let [width, height] = self.size;
-        if width == 0 || height == 0 {
+        if width == 0 || height == 0 || width.checked_mul(height).is_none() {
             return Err(PictureError::Size { width, height });
         }
         if !(self.wire.is_finite() && self.wire >= 0.0) {
@@ -127,57 +137,25 @@ pub fn render(
 ) -> Result<Image, PictureError> {
     look.validate()?;
     picture.validate()?;
-    let [width, height] = look.size.map(|s| s * SUPERSAMPLING);
-    let mut drawing = Drawing {
-        camera,
-        look,
-        extent: extent(picture.positions.as_chunks::<3>().0),
-        depth: Depth::new(width, height),
+    let painter = Painter::new(camera, look);
+    let mut scene = painter.scene(picture);
+    let pieces = painter.cutter(GRAIN).pieces(&mut scene);
+    let facets = painter.facets(pieces, &mut scene);
+    let drawing = Drawing {
+        size: look.size,
+        facets,
+        strokes: painter.wires(picture.topology, &scene),
+        ink: light(INK),
+        dots: painter.dots(picture, &scene),
+        faces: &scene.faces,
     };
-    let mut scene = Triangles::of(picture);
-    drawing.faces(&mut scene);
-    drawing.wires(picture.topology, &scene);
-    for (v, colour) in picture.dots() {
-        drawing.dot(&scene.x[v.index()], colour);
-    }
-    Ok(drawing.depth.image.reduced(SUPERSAMPLING))
+    Ok(drawing.picture())
 }
 
-/// The triangles of the sheet and of bodies, the sheet first.
-pub(super) struct Triangles {
-    pub(super) x: Vec<[f64; 3]>,
-    pub(super) faces: Vec<[usize; 3]>,
-    /// Faces of the sheet.
-    pub(super) own: usize,
-    /// Edges of bodies.
-    pub(super) ridges: Vec<[usize; 2]>,
-}
-
-impl Triangles {
-    pub(super) fn of(picture: &SheetPicture<'_>) -> Self {
-        let own = picture.topology.faces().iter();
-        let mut scene = Self {
-            x: picture.positions.as_chunks::<3>().0.to_vec(),
-            faces: own.map(|f| f.map(VertexId::index)).collect(),
-            own: picture.topology.face_count(),
-            ridges: Vec::new(),
-        };
-        for solid in picture.solids {
-            let first = scene.x.len();
-            scene.x.extend(&solid.points);
-            let faces = solid.faces.iter();
-            scene.faces.extend(faces.map(|f| f.map(|v| v + first)));
-            let edges = solid.edges.iter();
-            scene.ridges.extend(edges.map(|e| e.map(|v| v + first)));
-        }
-        scene
-    }
-}
-
-/// The light on a face with the unit normal `n` towards the viewer: that of the surroundings, which are
+/// The light on a point with the unit normal `n` towards the viewer: that of the surroundings, which are
 /// brighter above, and that of a key light at the upper left.
-pub(super) fn light_on(camera: &Camera, n: &[f64; 3], corners: &[[f64; 3]; 3]) -> [f64; 2] {
-    let facing = dot(n, &camera.viewer(&centre(corners)));
+pub(super) fn light_on(camera: &Camera, n: &[f64; 3], p: &[f64; 3]) -> [f64; 2] {
+    let facing = dot(n, &camera.viewer(p)).max(0.0);
     let key = camera.direction([-0.55, 0.75, 0.65]);
     [
         0.56 + 0.10 * n[2] + 0.12 * facing,
@@ -185,159 +163,201 @@ pub(super) fn light_on(camera: &Camera, n: &[f64; 3], corners: &[[f64; 3]; 3]) -
     ]
 }
 
-/// A picture in the making.
-struct Drawing<'a> {
-    camera: &'a Camera,
-    look: &'a Look,
-    /// Largest side of the box around the sheet, metres.
-    extent: f64,
-    depth: Depth,
+/// A viewer, and how things look.
+pub(super) struct Painter<'a> {
+    pub(super) camera: &'a Camera,
+    pub(super) look: &'a Look,
+    /// Width and height, pixels.
+    pub(super) size: [f64; 2],
+    /// The larger side of what the picture shows, metres.
+    pub(super) scale: f64,
 }
 
-impl Drawing<'_> {
-    /// Where a point is in the picture.
-    fn place(&self, p: &[f64; 3], shade: f64) -> Corner {
-        let q = self.camera.project(p);
-        let [width, height] = self.look.size.map(|s| (s * SUPERSAMPLING) as f64);
-        Corner {
-            x: 0.5 * (width + q.x * height),
-            y: 0.5 * height * (1.0 - q.y),
-            nearness: q.nearness,
-            shade,
+impl<'a> Painter<'a> {
+    pub(super) fn new(camera: &'a Camera, look: &'a Look) -> Self {
+        let size = look.size.map(|s| s as f64);
+        let scale = camera.scale(size[0] / size[1]);
+        Self {
+            camera,
+            look,
+            size,
+            scale,
         }
     }
 
-    /// Whether some of the box around a piece is in the picture.
-    fn shows(&self, corners: &[Corner; 3]) -> bool {
-        let [width, height] = self.look.size.map(|s| (s * SUPERSAMPLING) as f64);
-        let meets = |of: fn(&Corner) -> f64, size: f64| {
-            corners.iter().any(|c| of(c) >= 0.0) && corners.iter().any(|c| of(c) <= size)
-        };
-        meets(|c| c.x, width) && meets(|c| c.y, height)
+    /// The triangles of a picture.
+    pub(super) fn scene(&self, picture: &SheetPicture<'_>) -> Triangles {
+        let (target, reach) = (self.camera.target(), GROUND * self.scale);
+        let SheetPicture {
+            topology,
+            positions,
+            solids,
+            ..
+        } = *picture;
+        Triangles::new(topology, positions, solids, &target, reach)
     }
 
-    /// The faces of the sheet as they are; those of bodies are large, and are cut as their shade changes
-    /// within.
-    fn pieces(&self, scene: &mut Triangles) -> Vec<Piece> {
-        let mut pieces: Vec<Piece> = Vec::new();
-        let mut halves = BTreeMap::new();
-        for (face, corners) in scene.faces.iter().enumerate() {
-            let points = corners.map(|v| scene.x[v]);
-            let piece = Piece {
-                corners: *corners,
-                face,
-                back: dot(&normal(&points), &self.camera.viewer(&centre(&points))) < 0.0,
-            };
-            if face < scene.own {
-                pieces.push(piece);
+    /// What cuts faces of bodies until edges are at most so long, as a part of the height of the picture.
+    pub(super) fn cutter(&self, grain: f64) -> Cutter<'a> {
+        Cutter {
+            camera: self.camera,
+            size: self.size,
+            pixels: grain * self.size[1],
+        }
+    }
+
+    /// Where a point is in the picture, pixels from the upper left corner, and its nearness.
+    pub(super) fn place(&self, p: &[f64; 3]) -> [f64; 3] {
+        let q = self.camera.project(p);
+        let [width, height] = self.size;
+        [
+            0.5 * (width + q.x * height),
+            0.5 * height * (1.0 - q.y),
+            q.nearness,
+        ]
+    }
+
+    /// The colour of a point of a body or of the sheet, under light of this strength.
+    pub(super) fn colour(
+        &self,
+        piece: &Piece,
+        skin: Option<&Skin>,
+        p: &[f64; 3],
+        shade: f64,
+    ) -> Light {
+        let Some(skin) = skin else {
+            let side = self.look.sides[usize::from(piece.back)];
+            return light(side).map(|c| c * shade as f32);
+        };
+        // What has faded out is white, as the background is.
+        let strength = skin.strength(p) as f32;
+        light(self.look.body).map(|c| 1.0 + strength * (c * shade as f32 - 1.0))
+    }
+
+    /// All pieces in their light; those of bodies at the rim of a shadow are cut once more.
+    fn facets(&self, mut pieces: Vec<Piece>, scene: &mut Triangles) -> Vec<Facet> {
+        let occlusion = Occlusion::new(scene, REACH * self.scale);
+        let mut open = occlusion.openness(&pieces, scene);
+        let is_rim = |k: usize, open: &[[f64; 3]]| {
+            let change = (0..3).map(|i| (open[k][i] - open[k][(i + 1) % 3]).abs());
+            pieces[k].face >= scene.own && change.fold(0.0, f64::max) > CONTRAST
+        };
+        let rims: Vec<bool> = (0..pieces.len()).map(|k| is_rim(k, &open)).collect();
+        let of_rim = pieces.iter().zip(&rims).filter(|(_, rim)| **rim);
+        let of_rim: Vec<Piece> = of_rim.map(|(piece, _)| *piece).collect();
+        let mut kept = rims.iter().map(|rim| !rim);
+        pieces.retain(|_| kept.next().unwrap_or(true));
+        let mut kept = rims.iter().map(|rim| !rim);
+        open.retain(|_| kept.next().unwrap_or(true));
+        let finer = self.cutter(FINE_GRAIN).finer(&of_rim, scene);
+        open.extend(occlusion.openness(&finer, scene));
+        pieces.extend(finer);
+        let facet = |(piece, open): (&Piece, &[f64; 3])| {
+            let points = piece.corners.map(|v| scene.x[v]);
+            let flat = normal(&points);
+            let flat = if piece.back { flat.map(|c| -c) } else { flat };
+            let skin = scene.skin(piece.face);
+            let centre = centre(&points);
+            let corners = [0, 1, 2].map(|k| {
+                let (o, p) = (open[k], &points[k]);
+                let [sky, sun] = match &skin {
+                    // Faces of the sheet look flat, so that they are told apart.
+                    None => light_on(self.camera, &flat, &centre),
+                    Some(skin) => light_on(self.camera, &skin.normal(&flat, p), p),
+                };
+                let shade = sky * o + sun * (0.4 + 0.6 * o);
+                self.corner(p, self.colour(piece, skin.as_ref(), p, shade))
+            });
+            Facet {
+                corners,
+                face: piece.face as u32,
+            }
+        };
+        pieces.iter().zip(&open).map(facet).collect()
+    }
+
+    fn corner(&self, p: &[f64; 3], light: Light) -> Corner {
+        let [x, y, nearness] = self.place(p);
+        Corner {
+            x,
+            y,
+            nearness,
+            light,
+        }
+    }
+
+    /// Edges of bodies and of the sheet.
+    fn wires(&self, topology: &Topology, scene: &Triangles) -> Vec<Stroke> {
+        let stroke = |ends: [[f64; 3]; 2], vertices: [usize; 2], width: f64, cover: f64| Stroke {
+            ends: ends.map(|p| self.corner(&p, light(INK))),
+            vertices,
+            width: width * self.look.wire,
+            cover: cover as f32,
+            lift: LIFT * self.scale,
+        };
+        let cutter = self.cutter(GRAIN);
+        let mut strokes = Vec::new();
+        for (vertices, skin) in &scene.ridges {
+            let parts = cutter.parts(vertices.map(|v| scene.x[v]), skin).into_iter();
+            strokes.extend(parts.map(|ends| stroke(ends, *vertices, 1.0, 0.8)));
+        }
+        let seen =
+            |vertices: &[usize; 2]| !vertices.iter().any(|v| self.camera.is_behind(&scene.x[*v]));
+        let edges = topology.edge_ids().map(|e| {
+            let ends = topology.edges()[e.index()].map(VertexId::index);
+            (ends, topology.is_boundary_edge(e))
+        });
+        let edges: Vec<([usize; 2], bool)> = edges.filter(|(ends, _)| seen(ends)).collect();
+        let length = |(ends, _): &([usize; 2], bool)| {
+            let [a, b] = ends.map(|v| self.place(&scene.x[v]));
+            (b[0] - a[0]).hypot(b[1] - a[1])
+        };
+        let mean = edges.iter().map(length).sum::<f64>() / edges.len().max(1) as f64;
+        let inner = 0.55 * (mean / CLOSE).min(1.0);
+        strokes.extend(edges.iter().map(|(vertices, is_boundary)| {
+            let ends = vertices.map(|v| scene.x[v]);
+            if *is_boundary {
+                stroke(ends, *vertices, 1.7, 0.9)
+            } else {
+                stroke(ends, *vertices, 1.0, inner)
+            }
+        }));
+        strokes
+    }
+
+    /// Dots with a rim.
+    fn dots(&self, picture: &SheetPicture<'_>, scene: &Triangles) -> Vec<Stroke> {
+        let mut strokes = Vec::new();
+        for (v, colour) in picture.dots() {
+            let vertex = v.index();
+            let p = &scene.x[vertex];
+            if self.camera.is_behind(p) {
                 continue;
             }
-            let grain = GRAIN * REACH * self.extent;
-            let mut parts = cut(piece, grain, &mut scene.x, &mut halves);
-            parts.retain(|p| self.shows(&p.corners.map(|v| self.place(&scene.x[v], 1.0))));
-            pieces.extend(parts);
+            let raised = axpy(p, 3.0 * LIFT * self.scale, &self.camera.viewer(p));
+            for (width, colour) in [(9.0, INK), (6.0, colour)] {
+                let [x, y, _] = self.place(p);
+                let end = Corner {
+                    x,
+                    y,
+                    ..self.corner(&raised, light(colour))
+                };
+                strokes.push(Stroke {
+                    ends: [end; 2],
+                    vertices: [vertex; 2],
+                    width,
+                    cover: 1.0,
+                    lift: 0.0,
+                });
+            }
         }
-        pieces
-    }
-
-    /// All faces.
-    fn faces(&mut self, scene: &mut Triangles) {
-        let pieces = self.pieces(scene);
-        let mut open = openness(&pieces, &scene.faces, &scene.x, REACH * self.extent);
-        smooth(&pieces[scene.own..], &scene.x, &mut open[scene.own..]);
-        for (piece, open) in pieces.iter().zip(&open) {
-            let corners = piece.corners.map(|v| scene.x[v]);
-            let n = normal(&corners);
-            let n = if piece.back { n.map(|c| -c) } else { n };
-            let [sky, sun] = light_on(self.camera, &n, &corners);
-            let shaded = [0, 1, 2].map(|i| {
-                let o = open[i];
-                self.place(&corners[i], sky * o + sun * (0.4 + 0.6 * o))
-            });
-            let colour = if piece.face < scene.own {
-                self.look.sides[usize::from(piece.back)]
-            } else {
-                self.look.body
-            };
-            self.depth.triangle(&shaded, light(colour));
-        }
-    }
-
-    /// Where a point is in the picture when it is lifted towards the viewer by this part of the extent.
-    fn raised(&self, p: &[f64; 3], part: f64) -> Corner {
-        self.place(&axpy(p, part * self.extent, &self.camera.viewer(p)), 1.0)
-    }
-
-    /// Edges of bodies and of the sheet, a little nearer than the faces that they bound.
-    fn wires(&mut self, topology: &Topology, scene: &Triangles) {
-        let wire = self.look.wire * SUPERSAMPLING as f64;
-        let ends = |drawing: &Self, e: [usize; 2]| e.map(|v| drawing.raised(&scene.x[v], LIFT));
-        for ridge in &scene.ridges {
-            let [a, b] = ends(self, *ridge);
-            self.depth.line(&a, &b, wire, light(INK), 0.8);
-        }
-        for e in topology.edge_ids() {
-            let edge = topology.edges()[e.index()];
-            let [a, b] = ends(self, edge.map(VertexId::index));
-            let (width, cover) = if topology.is_boundary_edge(e) {
-                (1.7 * wire, 0.9)
-            } else {
-                (wire, 0.55)
-            };
-            self.depth.line(&a, &b, width, light(INK), cover);
-        }
-    }
-
-    /// A dot with a rim.
-    fn dot(&mut self, p: &[f64; 3], colour: [u8; 3]) {
-        let c = self.raised(p, 3.0 * LIFT);
-        let nearer = Corner {
-            nearness: c.nearness + LIFT * self.extent,
-            ..c
-        };
-        for (at, width, colour) in [(c, 9.0, INK), (nearer, 6.0, colour)] {
-            let width = width * SUPERSAMPLING as f64;
-            self.depth.line(&at, &at, width, light(colour), 1.0);
-        }
-    }
-}
-
-/// Replaces the openness of the corners of coplanar pieces that meet in a point by its mean there.
-fn smooth(pieces: &[Piece], x: &[[f64; 3]], open: &mut [[f64; 3]]) {
-    let key = |piece: &Piece, corner: usize| {
-        let n = normal(&piece.corners.map(|v| x[v]));
-        let n = n.map(|c| (1e6 * c).round() as i64);
-        (piece.corners[corner], n, piece.back)
-    };
-    let mut sums: BTreeMap<_, [f64; 2]> = BTreeMap::new();
-    for (piece, open) in pieces.iter().zip(&*open) {
-        for corner in 0..3 {
-            let [sum, count] = sums.entry(key(piece, corner)).or_default();
-            *sum += open[corner];
-            *count += 1.0;
-        }
-    }
-    for (piece, open) in pieces.iter().zip(open) {
-        for corner in 0..3 {
-            let [sum, count] = sums[&key(piece, corner)];
-            open[corner] = sum / count;
-        }
+        strokes
     }
 }
 
 /// The centre of gravity of a triangle.
 pub(super) fn centre(corners: &[[f64; 3]; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0)
-}
-
-/// Largest side of the box around the points.
-pub(super) fn extent(x: &[[f64; 3]]) -> f64 {
-    (0..3)
-        .map(|k| {
-            let low = x.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
-            x.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max) - low
-        })
-        .fold(0.0, f64::max)
 }
 
 #[cfg(test)]

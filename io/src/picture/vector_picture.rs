@@ -1,17 +1,20 @@
 //! A shaded picture of a sheet as a vector drawing.
 
 use super::camera::{Camera, normal};
-use super::canvas::{light, srgb};
+use super::canvas::srgb;
 use super::error::PictureError;
-use super::pieces::{Piece, cut};
-use super::sheet::{INK, LIFT, Look, SheetPicture, Triangles, centre, extent, light_on};
-use super::vector::{axpy, dot};
-use std::collections::BTreeMap;
+use super::sheet::{INK, LIFT, Look, Painter, SheetPicture, centre, light_on};
+use super::solid::{Skin, Triangles};
+use super::vector::axpy;
 use std::fmt::Write;
 
-/// Largest edge of a piece of a body, as a part of the extent of the sheet: pieces as small as the faces of a
-/// usual sheet are in the right order before and behind these.
-const GRAIN: f64 = 0.05;
+/// Largest edge of a piece of a body, as a part of the height of the picture: pieces smaller than the faces of a usual
+/// sheet are in the right order before and behind these.
+const GRAIN: f64 = 0.025;
+
+/// How much farther away bodies count than they are, as a part of what the picture shows: most of what touches the
+/// sheet is behind it, and the faces of the sheet, whose mean depth counts, are larger than pieces of bodies.
+const BEHIND: f64 = 0.04;
 
 /// Radius of the dot of a pin, pixels.
 const DOT: f64 = 3.0;
@@ -39,17 +42,17 @@ pub fn render_svg(
 ) -> Result<String, PictureError> {
     look.validate()?;
     picture.validate()?;
-    let extent = extent(picture.positions.as_chunks::<3>().0);
-    let mut triangles = Triangles::of(picture);
-    let painter = Painter { camera, look };
-    let mut marks = painter.faces(&mut triangles, GRAIN * extent);
-    let raised = |p: &[f64; 3], part: f64| axpy(p, part * extent, &camera.viewer(p));
-    for ridge in &triangles.ridges {
-        let ends = ridge.map(|v| triangles.x[v]);
-        marks.extend(painter.ridge(&ends, GRAIN * extent, LIFT * extent));
+    let painter = Painter::new(camera, look);
+    let mut scene = painter.scene(picture);
+    let mut marks = faces(&painter, &mut scene);
+    for (ridge, skin) in &scene.ridges {
+        marks.extend(edge(&painter, ridge.map(|v| scene.x[v]), skin));
     }
     for (v, colour) in picture.dots() {
-        marks.push(painter.dot(&raised(&triangles.x[v.index()], 3.0 * LIFT), colour));
+        let p = &scene.x[v.index()];
+        if !camera.is_behind(p) {
+            marks.push(dot(&painter, p, colour));
+        }
     }
     // The sort is stable: marks of equal depth stay in the order of the sheet.
     marks.sort_by(|a, b| a.nearness.total_cmp(&b.nearness));
@@ -68,92 +71,67 @@ pub fn render_svg(
     Ok(svg)
 }
 
-struct Painter<'a> {
-    camera: &'a Camera,
-    look: &'a Look,
+/// The faces of the sheet with their edges, and those of bodies in pieces without.
+fn faces(painter: &Painter<'_>, scene: &mut Triangles) -> Vec<Mark> {
+    let cutter = painter.cutter(GRAIN);
+    let pieces = cutter.pieces(scene);
+    let mark = |piece: &super::pieces::Piece| {
+        let points = piece.corners.map(|v| scene.x[v]);
+        let skin = scene.skin(piece.face);
+        let places = points.map(|p| painter.place(&p));
+        if points.iter().any(|p| painter.camera.is_behind(p)) || !shows(painter, &places) {
+            return None;
+        }
+        let flat = normal(&points);
+        let flat = if piece.back { flat.map(|c| -c) } else { flat };
+        let centre = centre(&points);
+        let n = skin
+            .as_ref()
+            .map_or(flat, |skin| skin.normal(&flat, &centre));
+        let [sky, sun] = light_on(painter.camera, &n, &centre);
+        let colour = painter.colour(piece, skin.as_ref(), &centre, sky + sun);
+        let fill = hex(colour.map(srgb));
+        let behind = if skin.is_some() {
+            BEHIND * painter.scale
+        } else {
+            0.0
+        };
+        // Pieces of a body have an outline of their own colour, so that no gaps are seen between them.
+        let stroke = if skin.is_some() {
+            fill.clone()
+        } else {
+            hex(INK)
+        };
+        let mut element = String::from("<path d=\"M");
+        for [x, y, _] in &places {
+            // Writing to a string cannot fail.
+            let _ = write!(element, "{x:.2} {y:.2} ");
+        }
+        let _ = write!(element, "Z\" fill=\"{fill}\" stroke=\"{stroke}\"/>");
+        Some(Mark {
+            nearness: places.iter().map(|c| c[2]).sum::<f64>() / 3.0 - behind,
+            element,
+        })
+    };
+    pieces.iter().filter_map(mark).collect()
 }
 
-impl Painter<'_> {
-    /// Where a point is in the picture, pixels from the upper left corner, and its nearness.
-    fn place(&self, p: &[f64; 3]) -> [f64; 3] {
-        let q = self.camera.project(p);
-        let [width, height] = self.look.size.map(|s| s as f64);
-        [
-            0.5 * (width + q.x * height),
-            0.5 * height * (1.0 - q.y),
-            q.nearness,
-        ]
-    }
+/// Whether the box around some places meets the picture.
+fn shows(painter: &Painter<'_>, places: &[[f64; 3]]) -> bool {
+    [0, 1].into_iter().all(|k| {
+        places.iter().any(|c| c[k] >= 0.0) && places.iter().any(|c| c[k] <= painter.size[k])
+    })
+}
 
-    /// Whether the box around some points meets the picture.
-    fn shows(&self, places: &[[f64; 3]]) -> bool {
-        [0, 1].into_iter().all(|k| {
-            let size = self.look.size[k] as f64;
-            places.iter().any(|c| c[k] >= 0.0) && places.iter().any(|c| c[k] <= size)
-        })
-    }
-
-    /// The faces of the sheet with their edges, and those of bodies in pieces without.
-    fn faces(&self, triangles: &mut Triangles, grain: f64) -> Vec<Mark> {
-        let mut marks = Vec::new();
-        let mut halves = BTreeMap::new();
-        for face in 0..triangles.faces.len() {
-            let corners = triangles.faces[face];
-            let points = corners.map(|v| triangles.x[v]);
-            let n = normal(&points);
-            let back = dot(&n, &self.camera.viewer(&centre(&points))) < 0.0;
-            let is_sheet = face < triangles.own;
-            let colour = if is_sheet {
-                self.look.sides[usize::from(back)]
-            } else {
-                self.look.body
-            };
-            let fill = self.shaded(colour, &if back { n.map(|c| -c) } else { n }, &points);
-            // Pieces of a body have an outline of their own colour, so that no gaps are seen between them.
-            let stroke = if is_sheet { hex(INK) } else { fill.clone() };
-            let whole = Piece {
-                corners,
-                face,
-                back,
-            };
-            let limit = if is_sheet { f64::INFINITY } else { grain };
-            for piece in cut(whole, limit, &mut triangles.x, &mut halves) {
-                let places = piece.corners.map(|v| self.place(&triangles.x[v]));
-                if !self.shows(&places) {
-                    continue;
-                }
-                let mut element = String::from("<path d=\"M");
-                for [x, y, _] in &places {
-                    // Writing to a string cannot fail.
-                    let _ = write!(element, "{x:.2} {y:.2} ");
-                }
-                let _ = write!(element, "Z\" fill=\"{fill}\" stroke=\"{stroke}\"/>");
-                marks.push(Mark {
-                    nearness: places.iter().map(|c| c[2]).sum::<f64>() / 3.0,
-                    element,
-                });
-            }
-        }
-        marks
-    }
-
-    /// The colour of a face in its light.
-    fn shaded(&self, colour: [u8; 3], n: &[f64; 3], corners: &[[f64; 3]; 3]) -> String {
-        let [sky, sun] = light_on(self.camera, n, corners);
-        hex(light(colour).map(|c| srgb(c * (sky + sun) as f32)))
-    }
-
-    /// An edge of a body in pieces, a little nearer than the faces that it bounds.
-    fn ridge(&self, [a, b]: &[[f64; 3]; 2], grain: f64, lift: f64) -> Vec<Mark> {
-        let d = [0, 1, 2].map(|k| b[k] - a[k]);
-        let count = (dot(&d, &d).sqrt() / grain).ceil().max(1.0);
-        let at = |k: f64| {
-            let p = axpy(a, k / count, &d);
-            self.place(&axpy(&p, lift, &self.camera.viewer(&p)))
-        };
-        let pieces = (0..count as usize).map(|k| [at(k as f64), at((k + 1) as f64)]);
-        let mark = |[p, q]: [[f64; 3]; 2]| Mark {
-            nearness: 0.5 * (p[2] + q[2]),
+/// An edge of a body in pieces, a little nearer than the faces that it bounds.
+fn edge(painter: &Painter<'_>, ends: [[f64; 3]; 2], skin: &Skin) -> Vec<Mark> {
+    let cutter = painter.cutter(GRAIN);
+    let lift = LIFT * painter.scale;
+    let raised = |p: &[f64; 3]| axpy(p, lift, &painter.camera.viewer(p));
+    let mark = |ends: [[f64; 3]; 2]| {
+        let [p, q] = ends.map(|p| painter.place(&raised(&p)));
+        Mark {
+            nearness: 0.5 * (p[2] + q[2]) - BEHIND * painter.scale,
             element: format!(
                 "<path d=\"M{:.2} {:.2} {:.2} {:.2}\" stroke=\"{}\"/>",
                 p[0],
@@ -162,21 +140,22 @@ impl Painter<'_> {
                 q[1],
                 hex(INK)
             ),
-        };
-        pieces.filter(|p| self.shows(p)).map(mark).collect()
-    }
-
-    /// A dot with a rim.
-    fn dot(&self, p: &[f64; 3], colour: [u8; 3]) -> Mark {
-        let [x, y, nearness] = self.place(p);
-        Mark {
-            nearness,
-            element: format!(
-                "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{DOT}\" fill=\"{}\" stroke=\"{}\"/>",
-                hex(colour),
-                hex(INK)
-            ),
         }
+    };
+    cutter.parts(ends, skin).into_iter().map(mark).collect()
+}
+
+/// A dot with a rim.
+fn dot(painter: &Painter<'_>, p: &[f64; 3], colour: [u8; 3]) -> Mark {
+    let raised = axpy(p, 3.0 * LIFT * painter.scale, &painter.camera.viewer(p));
+    let [x, y, nearness] = painter.place(&raised);
+    Mark {
+        nearness,
+        element: format!(
+            "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{DOT}\" fill=\"{}\" stroke=\"{}\"/>",
+            hex(colour),
+            hex(INK)
+        ),
     }
 }
 

@@ -4,12 +4,15 @@ use super::Recording;
 use crate::picture::{
     Camera, Image, Look, PictureError, SheetPicture, Solid, animated_png, render, render_svg,
 };
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How a run is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmOptions {
-    /// Height of the pictures, pixels; 480 by default. The width follows from what is seen.
+    /// Height of the pictures, pixels; 480 by default.
     pub height: usize,
+    /// Width of the pictures, pixels; by default an even number that follows from what is seen.
+    pub width: Option<usize>,
     /// Where the viewer is, degrees counter-clockwise from the x axis as seen from above; -60 by default.
     pub azimuth: f64,
     /// Where the viewer is, degrees above the horizon; 25 by default.
@@ -20,23 +23,25 @@ impl Default for FilmOptions {
     fn default() -> Self {
         Self {
             height: 480,
+            width: None,
             azimuth: -60.0,
             elevation: 25.0,
         }
     }
 }
 
+/// The largest side of a picture, pixels: four times that of a screen. A picture of this size each way takes 3 GB.
+const LARGEST: usize = 16_384;
+
 impl FilmOptions {
     /// Whether the values make sense.
     ///
     /// # Errors
-    /// [`PictureError::Size`] for no pixels or more than 4096, [`PictureError::Angle`] for angles that are
-    /// not finite or an elevation beyond 90 degrees.
+    /// [`PictureError::Size`] for no pixels or more than 16 384 each way, [`PictureError::Angle`] for angles that
+    /// are not finite or an elevation beyond 90 degrees.
     pub fn validate(&self) -> Result<(), PictureError> {
-        // A picture is drawn with three times as many pixels each way, each of 20 bytes: 4096 need 3 GB, and
-        // up to three times as much where the picture is wide.
-        if !(1..=4096).contains(&self.height) {
-            let (width, height) = (self.height, self.height);
+        let (width, height) = (self.width.unwrap_or(self.height), self.height);
+        if !(1..=LARGEST).contains(&width) || !(1..=LARGEST).contains(&height) {
             return Err(PictureError::Size { width, height });
         }
         if !self.azimuth.is_finite() {
@@ -60,6 +65,7 @@ impl FilmOptions {
 pub struct Film<'a> {
     recording: &'a Recording,
     frames: Vec<usize>,
+    solids: Vec<Solid>,
     camera: Camera,
     look: Look,
 }
@@ -69,6 +75,10 @@ const DISTANCE: f64 = 6.0;
 
 /// Margin around the sheet, part of the height of the picture.
 const MARGIN: f64 = 0.06;
+
+/// Corners of bodies that are outside of the box around the sheet by no more than this part of its size are in view
+/// too: a table below a cloth, a ball that falls on it, but not the far ends of a floor.
+const BESIDE: f64 = 0.35;
 
 impl<'a> Film<'a> {
     /// The given frames of a run.
@@ -82,47 +92,67 @@ impl<'a> Film<'a> {
         options: &FilmOptions,
     ) -> Result<Self, PictureError> {
         options.validate()?;
+        let trajectory = &recording.trajectory;
         let states: Option<Vec<&[f64]>> = frames
             .iter()
-            .map(|frame| recording.trajectory.frame(*frame))
+            .map(|frame| trajectory.frame(*frame))
             .collect();
         let states = states.filter(|states| !states.is_empty());
         let states = states.ok_or(PictureError::NoFrames)?;
-        let points = states
+        let bodies = recording.obstacles.iter().map(|body| Solid::of(body, 0.0));
+        let solids: Vec<Solid> = bodies.collect::<Result<_, _>>()?;
+        let mut points: Vec<[f64; 3]> = states
             .iter()
-            .flat_map(|x| x.as_chunks::<3>().0.iter().copied());
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for p in points.clone() {
-            for k in 0..3 {
-                (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
+            .flat_map(|x| x.as_chunks::<3>().0.iter().copied())
+            .collect();
+        let (low, high) = bounds(&points);
+        let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        for frame in &frames {
+            for solid in placed(&solids, recording, trajectory.times()[*frame]) {
+                points.extend(solid.outline().filter(|p| {
+                    let room = BESIDE * size;
+                    (0..3).all(|k| p[k] >= low[k] - room && p[k] <= high[k] + room)
+                }));
             }
         }
+        let (low, high) = bounds(&points);
         let middle = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
         let FilmOptions {
             height,
+            width,
             azimuth,
             elevation,
         } = *options;
         let camera = Camera::new(middle, azimuth, elevation, size, DISTANCE * size);
-        let aspect = camera.aspect(points.clone());
-        let width = (height as f64 * aspect).round().max(1.0);
+        let seen = || points.iter().copied();
+        // Films are encoded in squares of two pixels.
+        let natural = || {
+            2 * (0.5 * height as f64 * camera.aspect(seen()))
+                .round()
+                .max(1.0) as usize
+        };
+        let width = width.unwrap_or_else(natural);
         Ok(Self {
             recording,
             frames,
-            camera: camera.framing(points, width / height as f64, MARGIN),
+            solids,
+            camera: camera.framing(seen(), width as f64 / height as f64, MARGIN),
             look: Look {
-                size: [width as usize, height],
+                size: [width, height],
                 ..Look::default()
             },
         })
     }
 
-    /// Numbers of the bodies that pictures cannot show: half-spaces, balls and capsules.
-    pub fn undrawn(&self) -> Vec<usize> {
-        let bodies = self.recording.obstacles.iter().enumerate();
-        let undrawn = bodies.filter(|(_, body)| Solid::of(body, 0.0).is_err());
-        undrawn.map(|(k, _)| k).collect()
+    /// The number of frames.
+    pub fn len(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// Whether there are no frames; a film has at least one.
+    pub fn is_empty(&self) -> bool {
+        self.frames.is_empty()
     }
 
     /// The picture of one of the frames, by its place among them.
@@ -149,24 +179,23 @@ impl<'a> Film<'a> {
         let frame = *self.frames.get(place).ok_or(PictureError::NoFrames)?;
         let trajectory = &self.recording.trajectory;
         let positions = trajectory.frame(frame).ok_or(PictureError::NoFrames)?;
-        let t = trajectory.times()[frame];
-        let bodies = self.recording.obstacles.iter();
-        let solids: Vec<Solid> = bodies.filter_map(|body| Solid::of(body, t).ok()).collect();
+        let solids = placed(&self.solids, self.recording, trajectory.times()[frame]);
         let picture = SheetPicture {
             topology: self.recording.sheet.topology(),
             positions,
             pins: &self.recording.pins,
             immobile: &self.recording.immobile,
-            solids: &solids,
+            solids: &solids.collect::<Vec<_>>(),
         };
         draw(&picture, &self.camera, &self.look)
     }
 
-    /// All pictures as an animated PNG file, in real time.
+    /// All pictures as an animated PNG file, in real time. `drawn` is told the number of pictures that are drawn,
+    /// from whatever thread.
     ///
     /// # Errors
     /// [`PictureError`] if a frame cannot be drawn.
-    pub fn animation(&self) -> Result<Vec<u8>, PictureError> {
+    pub fn animation(&self, drawn: impl Fn(usize) + Sync) -> Result<Vec<u8>, PictureError> {
         let times = self.recording.trajectory.times();
         let [first, last] =
             [self.frames.first(), self.frames.last()].map(|f| f.map_or(0.0, |f| times[*f]));
@@ -174,8 +203,30 @@ impl<'a> Film<'a> {
         let delay = 1000.0 * (last - first) / steps as f64;
         // Conversion from floats saturates: the longest time of a picture is a minute.
         let delay = delay.round().max(1.0) as u16;
+        let count = AtomicUsize::new(0);
         animated_png(self.look.size, delay, self.frames.len(), |k| {
-            self.picture(k)
+            let picture = self.picture(k);
+            drawn(count.fetch_add(1, Ordering::Relaxed) + 1);
+            picture
         })
     }
+}
+
+/// The bodies in their places at time `t`, seconds.
+fn placed<'a>(
+    solids: &'a [Solid],
+    recording: &'a Recording,
+    t: f64,
+) -> impl Iterator<Item = Solid> + 'a {
+    let bodies = solids.iter().zip(&recording.obstacles);
+    bodies.map(move |(solid, body)| solid.moved_to(body.motion().pose(t)))
+}
+
+/// The corners of the box around some points.
+fn bounds(points: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
+    let none = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    points.iter().fold(none, |(low, high), p| {
+        let pick = |a: &[f64; 3], take: fn(f64, f64) -> f64| [0, 1, 2].map(|k| take(a[k], p[k]));
+        (pick(&low, f64::min), pick(&high, f64::max))
+    })
 }

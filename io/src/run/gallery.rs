@@ -33,7 +33,8 @@ const PICTURE_HEIGHT: usize = 300;
 pub struct Gallery {
     /// The runs that are shown, in the order in which they were found.
     pub entries: Vec<GalleryEntry>,
-    /// Folders of runs that cannot be shown, with the reason: runs without a frame yet, damaged files.
+    /// Folders that cannot be shown, with the reason: runs without a frame yet, damaged files, folders that
+    /// cannot be read. The page lists them at its end.
     pub left_out: Vec<(PathBuf, String)>,
 }
 
@@ -70,9 +71,11 @@ impl Gallery {
     /// [`GalleryError::NoRuns`] if there are none, [`GalleryError::Foreign`] if `out` holds other files,
     /// [`GalleryError`] if a folder cannot be read or written.
     pub fn make(folders: &[PathBuf], out: &Path) -> Result<Self, GalleryError> {
-        let mut found = Vec::new();
+        let (mut found, mut left_out) = (Vec::new(), Vec::new());
         for root in folders {
-            find(root, &mut found)?;
+            for folder in find(root, &mut found)? {
+                search(&folder, &mut found, &mut left_out);
+            }
         }
         let mut seen = HashSet::new();
         found.retain(|folder: &PathBuf| seen.insert(folder.canonicalize().ok()));
@@ -87,7 +90,7 @@ impl Gallery {
         }
         let mut gallery = Self {
             entries: Vec::new(),
-            left_out: Vec::new(),
+            left_out,
         };
         let mut names = HashSet::new();
         for folder in found {
@@ -102,7 +105,7 @@ impl Gallery {
                 Err(reason) => gallery.left_out.push((folder, reason)),
             }
         }
-        let page = page::page(&gallery.entries);
+        let page = page::page(&gallery);
         write_atomically(&out.join(Self::INDEX), |w| w.write_all(page.as_bytes()))?;
         write_json(&out.join(Self::DATA), &gallery.entries)?;
         for old in before.iter().filter(|old| !names.contains(&old.name)) {
@@ -137,11 +140,11 @@ fn files(name: &str) -> [PathBuf; 2] {
     ["html", "png"].map(|extension| Path::new(Gallery::RUNS).join(format!("{name}.{extension}")))
 }
 
-/// Adds the folders of runs at and beneath a folder.
-fn find(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), GalleryError> {
+/// Adds a folder if it is that of a run, and returns the folders beneath it otherwise.
+fn find(folder: &Path, found: &mut Vec<PathBuf>) -> Result<Vec<PathBuf>, GalleryError> {
     if RunFolder::is_run(folder) {
         found.push(folder.to_owned());
-        return Ok(());
+        return Ok(Vec::new());
     }
     let unreadable = |source| GalleryError::Read {
         path: folder.to_owned(),
@@ -155,7 +158,17 @@ fn find(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), GalleryError> {
         }
     }
     folders.sort();
-    folders.iter().try_for_each(|folder| find(folder, found))
+    Ok(folders)
+}
+
+/// Adds the folders of runs at and beneath a folder, and those that cannot be read.
+fn search(folder: &Path, found: &mut Vec<PathBuf>, left_out: &mut Vec<(PathBuf, String)>) {
+    match find(folder, found) {
+        Ok(folders) => folders
+            .iter()
+            .for_each(|folder| search(folder, found, left_out)),
+        Err(error) => left_out.push((folder.to_owned(), error.to_string())),
+    }
 }
 
 fn entry(name: String, folder: PathBuf, recording: &Recording) -> GalleryEntry {

@@ -3,11 +3,11 @@
 use super::folder::RunFolder;
 use super::frames::{FrameShape, read_frames};
 use super::{RunError, Summary};
-use crate::format::{HistoryRow, Trajectory, read_history, read_json};
+use crate::format::{HistoryRow, SeriesBody, Trajectory, read_history, read_json};
 use crate::scene::SceneFile;
 use isosheet_collide::Obstacle;
 use isosheet_mesh::{Sheet, VertexId};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Vector3};
 use std::path::Path;
 
 /// What a run recorded: everything that a page or a film of it needs.
@@ -69,6 +69,24 @@ impl Recording {
             scene,
             summary,
         })
+    }
+
+    /// The bodies for files of other programs, `obstacle_0` and so on in the order of the scene, with their
+    /// poses in the frames of the trajectory. Of a half-space there is a square that is larger than what the
+    /// sheet passes through.
+    pub fn exported_bodies(&self) -> Vec<SeriesBody> {
+        let times = self.trajectory.times();
+        let start = times.first().copied().unwrap_or_default();
+        let body = |(k, obstacle): (usize, &Obstacle)| {
+            let origin = obstacle.motion().pose(start).translation.vector;
+            let frames = (0..times.len()).filter_map(|k| self.trajectory.frame(k));
+            let points = frames.flat_map(|x| x.as_chunks::<3>().0);
+            let far = points.map(|p| (Vector3::from(*p) - origin).norm());
+            // Half as far again as the farthest point of the sheet.
+            let half = 1.5 * far.fold(0.0, f64::max);
+            SeriesBody::of_obstacle(format!("obstacle_{k}"), obstacle, times, half)
+        };
+        self.obstacles.iter().enumerate().map(body).collect()
     }
 
     /// The pose of each body at time `t` (seconds), in the order of the scene.

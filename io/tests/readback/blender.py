@@ -12,8 +12,8 @@ def fresh():
     bpy.ops.wm.read_factory_settings(use_empty=True)
 
 
-def the_mesh():
-    (found,) = [o for o in bpy.context.scene.objects if o.type == "MESH"]
+def the_mesh(name=None):
+    (found,) = [o for o in bpy.context.scene.objects if o.type == "MESH" and name in (None, o.name)]
     return found
 
 
@@ -39,21 +39,45 @@ def check(sheet, frames, name):
         assert np.allclose(found, x, atol=2e-5 * np.abs(places).max()), (name, frame, np.abs(found - x).max())
 
 
+def check_bodies(frames, name):
+    """A tetrahedron turns and moves, another one rests."""
+    corners = np.array([[0, 0, 0], [0.3, 0, 0], [0, 0.2, 0], [0, 0, 0.1]])
+    for frame, t in zip(frames, times):
+        show(frame)
+        turn = np.array([[np.cos(t), -np.sin(t), 0], [np.sin(t), np.cos(t), 0], [0, 0, 1]])
+        for body, x in [("obstacle_0", corners @ turn.T + [t, 0.5, 1]), ("obstacle_1", corners + [0, 0, -1])]:
+            found = positions(the_mesh(body))
+            assert np.allclose(found, x, atol=2e-5), (name, body, frame, found - x)
+
+
+def check_uv(sheet, name):
+    """The strip has the size 1 x 0.4, and a printed picture keeps its shape."""
+    mesh = sheet.data
+    uv = mesh.uv_layers[0].data
+    for loop in mesh.loops:
+        assert np.allclose(uv[loop.index].uv, places[0][loop.vertex_index][:2], atol=1e-6), name
+
+
 fresh()
 bpy.ops.wm.usd_import(filepath=usd)
 scene = bpy.context.scene
 rate = scene.render.fps / scene.render.fps_base
-check(the_mesh(), times * rate, "usd")
+check(the_mesh("sheet"), times * rate, "usd")
+check_bodies(times * rate, "usd")
+check_uv(the_mesh("sheet"), "usd")
 
 fresh()
 bpy.ops.import_scene.gltf(filepath=glb)
 scene = bpy.context.scene
 rate = scene.render.fps / scene.render.fps_base
-check(the_mesh(), times * rate, "glb")
+check(the_mesh("sheet"), times * rate, "glb")
+check_bodies(times * rate, "glb")
+check_uv(the_mesh("sheet"), "glb")
 
 fresh()
 bpy.ops.wm.obj_import(filepath=obj, forward_axis="Y", up_axis="Z")
 sheet = the_mesh()
+check_uv(sheet, "obj")
 cache = sheet.modifiers.new("cache", "MESH_CACHE")
 cache.cache_format = "PC2"
 cache.filepath = pc2

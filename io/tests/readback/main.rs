@@ -10,8 +10,8 @@ mod skip;
 use isosheet_io::mesh::Sheet;
 use isosheet_io::mesh::generate::{self, Diagonals};
 use isosheet_io::{
-    FieldSupport, FrameData, MeshFile, Series, SeriesField, SeriesOptions, Trajectory, read_mesh,
-    write_mesh, write_series,
+    BodyPose, FieldSupport, FrameData, MeshFile, Series, SeriesBody, SeriesField, SeriesOptions,
+    Trajectory, read_mesh, write_mesh, write_series,
 };
 use skip::{runs, skipped};
 use std::path::Path;
@@ -66,6 +66,33 @@ fn run() -> (Sheet, Trajectory) {
     (sheet, trajectory)
 }
 
+/// A tetrahedron that turns about the z axis by one radian a second, from the place (0, 0.5, 1) along x at one metre
+/// a second, and one that rests at (0, 0, -1).
+fn bodies(trajectory: &Trajectory) -> Vec<SeriesBody> {
+    let body = |name: &str, poses: Vec<BodyPose>| SeriesBody {
+        name: name.to_owned(),
+        positions: vec![0., 0., 0., 0.3, 0., 0., 0., 0.2, 0., 0., 0., 0.1],
+        faces: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+        poses,
+    };
+    let moving = |t: &f64| BodyPose {
+        rotation: [0.0, 0.0, (0.5 * t).sin(), (0.5 * t).cos()],
+        translation: [*t, 0.5, 1.0],
+    };
+    let rest = BodyPose {
+        rotation: [0.0, 0.0, 0.0, 1.0],
+        translation: [0.0, 0.0, -1.0],
+    };
+    let moving = trajectory.times().iter().map(moving).collect();
+    vec![body("obstacle_0", moving), body("obstacle_1", vec![rest])]
+}
+
+/// The frames with the bodies.
+fn series(trajectory: &Trajectory) -> Series<'_> {
+    let series = Series::new(trajectory, &SeriesOptions::default()).expect("frames");
+    series.with_bodies(bodies(trajectory)).expect("bodies")
+}
+
 /// A mesh file in memory, by way of a file.
 fn mesh_of(sheet: &Sheet, folder: &Path) -> MeshFile {
     let path = folder.join("sheet.obj");
@@ -80,7 +107,7 @@ fn khronos_accepts_the_gltf_files() {
     }
     let folder = tempfile::tempdir().expect("a folder");
     let (sheet, trajectory) = run();
-    let series = Series::new(&trajectory, &SeriesOptions::default()).expect("frames");
+    let series = series(&trajectory);
     let [moving, still] = ["run.glb", "mesh.glb"].map(|name| folder.path().join(name));
     write_series(&moving, &series).expect("written");
     write_mesh(&still, &mesh_of(&sheet, folder.path())).expect("written");
@@ -97,7 +124,7 @@ fn khronos_accepts_the_gltf_files() {
 fn openusd_finds_the_time_samples() {
     let folder = tempfile::tempdir().expect("a folder");
     let (sheet, trajectory) = run();
-    let series = Series::new(&trajectory, &SeriesOptions::default()).expect("frames");
+    let series = series(&trajectory);
     let path = |name| folder.path().join(name);
     write_series(&path("run.usda"), &series).expect("written");
     write_mesh(&path("mesh.usda"), &mesh_of(&sheet, folder.path())).expect("written");
@@ -110,7 +137,7 @@ fn openusd_finds_the_time_samples() {
 fn blender_plays_the_animations() {
     let folder = tempfile::tempdir().expect("a folder");
     let (_, trajectory) = run();
-    let series = Series::new(&trajectory, &SeriesOptions::default()).expect("frames");
+    let series = series(&trajectory);
     let path = |name| folder.path().join(name);
     for name in ["run.usda", "run.glb", "run.pc2"] {
         write_series(&path(name), &series).expect("written");
@@ -131,7 +158,11 @@ fn vtk_finds_positions_times_strains_angles_and_fields() {
         support,
         values: (0..trajectory.len() * n).map(|k| 0.5 * k as f64).collect(),
     };
-    let series = Series::new(&trajectory, &SeriesOptions { every: 2 })
+    let every = SeriesOptions {
+        every: 2,
+        ..SeriesOptions::default()
+    };
+    let series = Series::new(&trajectory, &every)
         .and_then(|s| {
             s.with_field(field(
                 "height <m>",
@@ -141,6 +172,7 @@ fn vtk_finds_positions_times_strains_angles_and_fields() {
         })
         .and_then(|s| s.with_field(field("energy", FieldSupport::Faces, t.face_count())))
         .and_then(|s| s.with_field(field("force & load", FieldSupport::Edges, t.edge_count())))
+        .and_then(|s| s.with_bodies(bodies(&trajectory)))
         .expect("fields that fit");
     let path = |name| folder.path().join(name);
     write_series(&path("the run.pvd"), &series).expect("written");

@@ -63,3 +63,19 @@ for number, entry in enumerate(listed):
     assert (cell("energy")[edges:] == 0.5 * np.arange(n * k, n * (k + 1))).all()
     assert (cell("force & load")[:edges] == 0.5 * np.arange(edges * k, edges * (k + 1))).all()
     assert poly.GetNumberOfCells() == edges + n == len(cell("energy"))
+    assert (vtk_to_numpy(poly.GetPointData().GetTCoords())[:, 0] <= 1).all()
+
+bodies = os.path.join(os.path.dirname(collection), "the run-bodies.pvd")
+listed = tree.parse(bodies).getroot().find("Collection").findall("DataSet")
+assert [float(d.get("timestep")) for d in listed] == list(data["t"][::2])
+corners = np.array([[0, 0, 0], [0.3, 0, 0], [0, 0.2, 0], [0, 0, 0.1]])
+for entry, t in zip(listed, data["t"][::2]):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(os.path.join(os.path.dirname(bodies), entry.get("file")))
+    reader.Update()
+    assert reader.GetErrorCode() == 0
+    poly = reader.GetOutput()
+    turn = np.array([[np.cos(t), -np.sin(t), 0], [np.sin(t), np.cos(t), 0], [0, 0, 1]])
+    expected = np.vstack([corners @ turn.T + [t, 0.5, 1], corners + [0, 0, -1]])
+    assert np.allclose(vtk_to_numpy(poly.GetPoints().GetData()), expected, atol=1e-12)
+    assert vtk_to_numpy(poly.GetCellData().GetArray("body")).tolist() == [0.0] * 4 + [1.0] * 4

@@ -291,6 +291,90 @@ fn the_help_lists_all_formats() {
     );
 }
 
+/// The size of a PNG file, pixels.
+fn size(png: &[u8]) -> [u32; 2] {
+    [16, 20].map(|at| u32::from_be_bytes(png[at..at + 4].try_into().unwrap()))
+}
+
+/// Numbered pictures, all by one camera, in the size and from the side that are asked for; what to do for a film.
+#[test]
+fn films_are_numbered_pictures() {
+    let dir = crate::with_scene(StartingPoint::Drape);
+    let dir = dir.path();
+    let arguments = [
+        "simulate",
+        "scene.toml",
+        "--out",
+        "run",
+        "--set",
+        "stop.time=0.2",
+    ];
+    done(dir, &arguments);
+    let recording = Recording::read(&dir.join("run")).unwrap();
+    let times = recording.trajectory.times();
+    let folder = |name: &str| {
+        let entries = fs::read_dir(dir.join(name)).unwrap();
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().path()).collect();
+        names.sort();
+        names
+            .into_iter()
+            .map(|path| fs::read(path).unwrap())
+            .collect::<Vec<_>>()
+    };
+    let said = done(
+        dir,
+        &[
+            "convert", "run", "few.png", "--frames", "1..3", "--size", "96x64", "--view", "top",
+        ],
+    );
+    assert_eq!(
+        said,
+        "few/frame_00000.png to few/frame_00002.png: 3 frames\n"
+    );
+    let few = folder("few");
+    assert!(few.len() == 3 && few.iter().all(|png| size(png) == [96, 64]));
+    assert!(few[0] != few[1], "the cloth falls");
+    // The height alone, and another rate: the width is even, as encoders of films demand.
+    let duration = times[times.len() - 1] - times[0];
+    let count = (100.0 * duration + 1e-6).floor() as usize + 1;
+    done(
+        dir,
+        &["convert", "run", "all.png", "--fps", "100", "--size", "60"],
+    );
+    let all = folder("all");
+    assert_eq!(all.len(), count);
+    assert!(
+        all.iter()
+            .all(|png| size(png) == size(&all[0]) && size(png)[0] % 2 == 0)
+    );
+    let said = done(
+        dir,
+        &[
+            "convert", "run", "all.usda", "--fps", "100", "--frames", "1..",
+        ],
+    );
+    assert!(said.starts_with("all.usda: "), "{said}");
+    let usda = fs::read_to_string(dir.join("all.usda")).unwrap();
+    for part in [
+        "timeCodesPerSecond = 100",
+        "def Mesh \"obstacle_0\"",
+        "texCoord2f[] primvars:st",
+    ] {
+        assert!(usda.contains(part), "{part}");
+    }
+    let said = refused(dir, &["convert", "run", "film.mp4"], 6);
+    assert!(
+        said.contains("ffmpeg") && said.contains("film/frame_%05d.png"),
+        "{said}"
+    );
+    refused(dir, &["convert", "run", "x.usda", "--fps", "0"], 3);
+    refused(
+        dir,
+        &["convert", "run", "x.usda", "--fps", "10", "--every", "2"],
+        2,
+    );
+}
+
 /// The frame that is asked for, animations of all frames, and what cannot be drawn.
 #[test]
 fn frames_of_runs_become_pictures() {
@@ -342,11 +426,16 @@ fn frames_of_runs_become_pictures() {
         .topology()
         .face_count();
     assert!(first.matches("<path").count() >= faces && !first.contains("NaN"));
-    refused(dir, &["convert", "run", "x.svg", "--every", "2"], 3);
     let said = refused(dir, &["convert", "run", "x.png", "--frame", &none], 3);
     assert!(said.contains(&format!("{count} frames")), "{said}");
-    refused(dir, &["convert", "run", "x.png", "--every", "2"], 3);
     refused(dir, &["convert", "run", "x.apng", "--frame", "0"], 3);
+    let beyond = format!("1..{none}");
+    refused(dir, &["convert", "run", "x.png", "--frames", &beyond], 3);
+    refused(dir, &["convert", "run", "x.png", "--frames", "2..1"], 2);
+    refused(dir, &["convert", "run", "x.png", "--size", "0"], 3);
+    refused(dir, &["convert", "run", "x.png", "--view", "0,91"], 3);
+    refused(dir, &["convert", "run", "x.usda", "--size", "100"], 3);
+    refused(dir, &["convert", "run", "run.png", "--every", "2"], 3);
     refused(dir, &["convert", "run/trajectory.npz", "x.png"], 3);
     refused(dir, &["convert", "run", "x.png", "--weld", "0.1"], 3);
     assert!(!dir.join("x.png").exists() && !dir.join("x.apng").exists());

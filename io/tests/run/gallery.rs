@@ -79,6 +79,9 @@ fn a_gallery_shows_every_run_beneath_its_folders_and_needs_nothing_else() {
         "<dd>90</dd>",
         &format!("<dd>{:.1e}</dd>", summary.largest_strain),
         "<dd>not complete: up to ",
+        // What cannot be shown has a line of its own, and the page has all others.
+        "Not shown",
+        "<li>./d/broken: ",
     ] {
         assert!(page.contains(part), "{part}: {page}");
     }
@@ -142,6 +145,32 @@ fn a_killed_gallery_is_made_by_the_same_command() {
     fs::write(dir.join("other/.profile"), "").unwrap();
     let refused = run(dir, &["gallery", "runs", "--out", "other"]);
     assert_eq!(code(&refused), Some(4), "{}", stderr(&refused));
+}
+
+/// A floor of a hundred metres below a cloth of twenty centimetres costs no more memory than others do.
+#[test]
+fn huge_bodies_are_drawn() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = StartingPoint::Drape.text();
+    let scene = scene.replace("side = 1.0", "side = 0.2");
+    let scene = scene.replace("[-0.5, -0.5, 0.0]", "[-0.1, -0.1, 0.0]");
+    let scene = scene.replace("[0.5, 0.5, 0.3]", "[100.0, 100.0, 0.3]");
+    assert!(
+        scene.contains("100.0") && scene.contains("side = 0.2") && scene.contains("-0.1, -0.1")
+    );
+    fs::write(dir.join("scene.toml"), scene).unwrap();
+    let short = ["simulate", "scene.toml", "--set", "stop.time=0.1"];
+    let done = run(dir, &short);
+    assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    for file in ["floor.png", "floor.svg"] {
+        let done = run(dir, &["convert", "scene-run", file]);
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+    }
+    assert!(fs::metadata(dir.join("floor.svg")).unwrap().len() < 10_000_000);
+    let made = run(dir, &["gallery", "."]);
+    assert_eq!(code(&made), Some(0), "{}", stderr(&made));
+    assert!(dir.join("gallery/runs/scene.png").is_file());
 }
 
 #[test]

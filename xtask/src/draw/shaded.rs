@@ -35,7 +35,7 @@ impl Viewpoint {
     fn camera(&self, shots: &[Shot<'_>], aspect: Option<f64>) -> (Camera, f64) {
         let sheets = shots.iter().flat_map(|s| s.x.as_chunks::<3>().0);
         let bodies = shots.iter().flat_map(|s| &s.solids);
-        let bodies = bodies.flat_map(|b| b.points.iter().copied());
+        let bodies = bodies.flat_map(Solid::outline);
         let bodies = bodies.map(|[x, y, z]| [x, y, z.max(-self.depth)]);
         let points = sheets.copied().chain(bodies);
         let camera = Camera::new([0.0; 3], self.azimuth, self.elevation, 1.0, self.distance);

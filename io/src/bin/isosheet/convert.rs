@@ -2,15 +2,16 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::frames::{FrameRange, Size, View};
 use crate::info::is_scene;
 use crate::message::counted;
 use crate::pictures::{self, FrameChoice, PictureFormat};
 use crate::write::{is_same_file, to_stdout};
 use clap::Args;
-use isosheet_io::run::Recording;
+use isosheet_io::run::{FilmOptions, Recording};
 use isosheet_io::{
     Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFormat, MeshOptions,
-    Series, SeriesOptions, Trajectory, read_mesh_with, write_mesh, write_series,
+    Series, SeriesOptions, Trajectory, read_mesh_with, write_frame, write_mesh, write_series,
 };
 use std::path::{Path, PathBuf};
 
@@ -24,15 +25,17 @@ Mesh files that are written, also of one frame of a run (--frame K):
 Runs that are read: the folder of a run, or a trajectory (.npz)
 Files that are written of a run:
   .fold   one frame for each frame, with times and fold angles
-  .glb    morph targets, at most 120 frames, evenly chosen (all glTF viewers)
-  .usda   time samples (Blender: the best choice)
+  .glb    morph targets, at most 120 frames, evenly chosen, and bodies (all glTF viewers)
+  .usda   time samples, and bodies (Blender: the best choice)
   .pc2    point cache, with the mesh as .obj beside it (Blender: Mesh Cache modifier)
-  .pvd    VTK, one .vtp for each frame in a folder, with strain, fold angle, forces and gaps (ParaView)
-  .obj    one file for each frame in a folder of that name
+  .pvd    VTK, one .vtp for each frame in a folder, with strain, fold angle, forces and gaps (ParaView);
+          bodies in a .pvd of their own
+  .obj    one file for each frame in a folder of that name, and files with the bodies
   .csv    a line for each vertex of each frame, with force of contact and gap
   .npz    a numpy archive of all frames, as trajectory.npz of the run
-  .png    a shaded picture of one frame (--frame K, the last one without it)
-  .svg    the same as a vector drawing
+  .png    a shaded picture of one frame (--frame K, the last one without it); with --frames, --every or --fps
+          numbered pictures in a folder of that name
+  .svg    the same as vector drawings
   .apng   shaded pictures of all frames as an animation in real time (browsers)
 A file that exists is replaced, unless it is the one that is read. docs/formats.md says more.";
 
@@ -51,12 +54,25 @@ pub(crate) struct Convert {
     input: PathBuf,
     /// The file to write, or to replace; its extension says the format
     output: PathBuf,
-    /// Of a run, write frame K alone, as a mesh; of a FOLD file, read frame K (from 0)
-    #[arg(long, value_name = "K")]
+    /// Of a run, write frame K alone, as a mesh or a picture; of a FOLD file, read frame K (from 0)
+    #[arg(long, value_name = "K", conflicts_with_all = ["frames", "every", "fps"])]
     frame: Option<usize>,
+    /// Of a run, write the frames from A to B, both included; A.. and ..B go to an end
+    #[arg(long, value_name = "A..B")]
+    frames: Option<FrameRange>,
     /// Of a run, write every Nth frame, beginning with the first
-    #[arg(long, value_name = "N", conflicts_with = "frame", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", conflicts_with = "fps", value_parser = clap::value_parser!(u64).range(1..))]
     every: Option<u64>,
+    /// Of a run, write F frames a second: states between two frames of the run are interpolated linearly
+    #[arg(long, value_name = "F")]
+    fps: Option<f64>,
+    /// Of pictures, the size in pixels: WIDTHxHEIGHT, or the height alone for the width that fits [default: 480]
+    #[arg(long, value_name = "SIZE")]
+    size: Option<Size>,
+    /// Of pictures, where the viewer is: front, back, left, right, top, bottom, or degrees counter-clockwise from
+    /// the x axis and above the horizon [default: -60,25]
+    #[arg(long, value_name = "VIEW", allow_hyphen_values = true)]
+    view: Option<View>,
     /// Of a mesh file, make vertices one that are at most T apart, in the unit of the file [default: 0 for
     /// STL and glTF, no welding for others]
     #[arg(long, value_name = "T")]
@@ -66,20 +82,11 @@ pub(crate) struct Convert {
 impl Convert {
     pub(crate) fn run(&self) -> Done {
         self.check_output()?;
+        if pictures::is_film(&self.output) {
+            return Err(pictures::no_film(&self.input, &self.output));
+        }
         if self.input.is_dir() {
-            let recording = Recording::read(&self.input).map_err(Failure::from)?;
-            if let Some(format) = PictureFormat::of(&self.output) {
-                return self.write_pictures(&recording, format);
-            }
-            let assignments = recording.scene.fold_assignments()?;
-            let series = self.series(&recording.trajectory)?;
-            let series = match assignments {
-                Some(assignments) => series
-                    .with_assignments(assignments)
-                    .map_err(|e| input(&e))?,
-                None => series,
-            };
-            return self.write_run(&series);
+            return self.convert_run();
         }
         if self
             .input
@@ -91,13 +98,20 @@ impl Convert {
                 return Err(wrong(message, "name the folder of the run"));
             }
             let trajectory = Trajectory::read(&self.input).map_err(|e| input(&e))?;
+            let trajectory = self.at_rate(trajectory)?;
             return self.write_run(&self.series(&trajectory)?);
         }
         self.check_input()?;
-        if self.every.is_some() {
-            let message = "--every chooses frames of a run, and a mesh file has none";
-            return Err(wrong(message, "leave it out"));
+        let of_runs = [
+            ("--frames", self.frames.is_some()),
+            ("--every", self.every.is_some()),
+            ("--fps", self.fps.is_some()),
+        ];
+        if let Some((option, _)) = of_runs.iter().find(|(_, given)| *given) {
+            let message = format!("{option} chooses frames of a run, and a mesh file has none");
+            return Err(wrong(&message, "leave it out"));
         }
+        self.check_look()?;
         let options = MeshOptions {
             weld: self.weld,
             frame: self.frame.map(FoldFrame::Number),
@@ -105,6 +119,62 @@ impl Convert {
         };
         let mesh = read_mesh_with(&self.input, &options).map_err(|e| input(&e))?;
         self.write_mesh(&mesh)
+    }
+
+    /// Converts the folder of a run.
+    fn convert_run(&self) -> Done {
+        let mut recording = Recording::read(&self.input).map_err(Failure::from)?;
+        recording.trajectory = self.at_rate(recording.trajectory)?;
+        if let Some(format) = PictureFormat::of(&self.output) {
+            return self.write_pictures(&recording, format);
+        }
+        let mut series = self.series(&recording.trajectory)?;
+        if let Some(assignments) = recording.scene.fold_assignments()? {
+            series = series
+                .with_assignments(assignments)
+                .map_err(|e| input(&e))?;
+        }
+        let bodies = recording.exported_bodies();
+        self.write_run(&series.with_bodies(bodies).map_err(|e| input(&e))?)
+    }
+
+    /// The chosen part of a motion at the rate that was asked for.
+    fn at_rate(&self, trajectory: Trajectory) -> Result<Trajectory, Failure> {
+        match self.fps {
+            Some(rate) if !trajectory.is_empty() => {
+                let range = self.frames.unwrap_or_default().of(trajectory.len());
+                trajectory.at_rate(rate, range).map_err(|e| input(&e))
+            }
+            _ => Ok(trajectory),
+        }
+    }
+
+    /// The frames that are chosen of a motion; all of one whose rate was changed.
+    fn range(&self) -> FrameRange {
+        match self.fps {
+            Some(_) => FrameRange::default(),
+            None => self.frames.unwrap_or_default(),
+        }
+    }
+
+    fn every(&self) -> usize {
+        let every = self.every.map(|n| usize::try_from(n).unwrap_or(usize::MAX));
+        every.unwrap_or(1)
+    }
+
+    /// Refuses options of pictures for other files.
+    fn check_look(&self) -> Result<(), Failure> {
+        let options = [
+            ("--size", self.size.is_some()),
+            ("--view", self.view.is_some()),
+        ];
+        match options.iter().find(|(_, given)| *given) {
+            Some((option, _)) => Err(wrong(
+                &format!("{option} is for pictures of runs: .png, .svg and .apng"),
+                "leave it out",
+            )),
+            None => Ok(()),
+        }
     }
 
     /// Refuses an output that would replace what is read: the file itself, or a file of the run. Other files
@@ -137,7 +207,11 @@ impl Convert {
         let has_folder = ["obj", "pvd"]
             .iter()
             .any(|e| extension.eq_ignore_ascii_case(e));
-        has_folder && self.frame.is_none()
+        let is_many = self.frames.is_some() || self.every.is_some() || self.fps.is_some();
+        let is_picture = ["png", "svg"]
+            .iter()
+            .any(|e| extension.eq_ignore_ascii_case(e));
+        has_folder && self.frame.is_none() || is_picture && is_many
     }
 
     /// Refuses files of a run and scenes, of which a user means the run.
@@ -163,26 +237,50 @@ impl Convert {
         if self.weld.is_some() {
             return Err(weld_of_run());
         }
-        let every = self
-            .every
-            .map_or(1, |n| usize::try_from(n).unwrap_or(usize::MAX));
-        Series::new(trajectory, &SeriesOptions { every }).map_err(|e| input(&e))
+        self.check_look()?;
+        let range = self.range();
+        let options = SeriesOptions {
+            first: range.first.unwrap_or(0),
+            last: range.last,
+            every: self.every(),
+            rate: self.fps.unwrap_or(SeriesOptions::default().rate),
+        };
+        Series::new(trajectory, &options).map_err(|e| input(&e))
     }
 
     fn write_pictures(&self, recording: &Recording, format: PictureFormat) -> Done {
         if self.weld.is_some() {
             return Err(weld_of_run());
         }
-        let choice = FrameChoice {
-            frame: self.frame,
-            every: self.every.map(|n| usize::try_from(n).unwrap_or(usize::MAX)),
+        let is_many = self.frames.is_some() || self.every.is_some() || self.fps.is_some();
+        let count = recording.trajectory.len();
+        let choice = match self.frame {
+            Some(frame) => FrameChoice::One(frame),
+            None if is_many || format == PictureFormat::AnimatedPng => {
+                let [first, last] = self.range().of(count);
+                FrameChoice::Many {
+                    first,
+                    last,
+                    every: self.every(),
+                }
+            }
+            None => FrameChoice::One(count.saturating_sub(1)),
         };
-        pictures::write(recording, choice, format, &self.output)
+        let mut options = FilmOptions::default();
+        if let Some(size) = self.size {
+            (options.width, options.height) = (size.width, size.height);
+        }
+        if let Some(view) = self.view {
+            (options.azimuth, options.elevation) = (view.azimuth, view.elevation);
+        }
+        pictures::write(recording, choice, format, &options, &self.output)
     }
 
     fn write_run(&self, series: &Series<'_>) -> Done {
         if let Some(frame) = self.frame {
-            return self.write_mesh(&series.mesh(frame).map_err(|e| input(&e))?);
+            let mesh = series.mesh(frame).map_err(|e| input(&e))?;
+            write_frame(&self.output, series, frame).map_err(|e| no_mesh(&e))?;
+            return self.say_mesh(&mesh);
         }
         let Exported { files, frames } = write_series(&self.output, series).map_err(|error| {
             let failure = output(&error);
@@ -210,15 +308,11 @@ impl Convert {
     }
 
     fn write_mesh(&self, mesh: &MeshFile) -> Done {
-        write_mesh(&self.output, mesh).map_err(|error| {
-            let failure = output(&error);
-            match error {
-                ExportError::Extension { .. } => failure.remedy(
-                    "choose a known format; pictures and the formats of moving sheets are made of the folder of a run",
-                ),
-                _ => failure,
-            }
-        })?;
+        write_mesh(&self.output, mesh).map_err(|e| no_mesh(&e))?;
+        self.say_mesh(mesh)
+    }
+
+    fn say_mesh(&self, mesh: &MeshFile) -> Done {
         let changes = mesh.changes;
         let notes = [
             (mesh.polygons, ["polygon", "polygons"], "cut into triangles"),
@@ -255,6 +349,17 @@ fn last(files: &[PathBuf]) -> &Path {
 fn weld_of_run() -> Failure {
     let message = "--weld is for mesh files, and the vertices of a run are shared already";
     wrong(message, "leave it out")
+}
+
+/// Why a mesh is not written.
+fn no_mesh(error: &ExportError) -> Failure {
+    let failure = output(error);
+    match error {
+        ExportError::Extension { .. } => failure.remedy(
+            "choose a known format; pictures and the formats of moving sheets are made of the folder of a run",
+        ),
+        _ => failure,
+    }
 }
 
 fn wrong(message: &str, remedy: &str) -> Failure {

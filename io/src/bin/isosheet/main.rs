@@ -7,6 +7,7 @@ mod collect;
 mod commit;
 mod convert;
 mod exit;
+mod frames;
 mod gallery;
 mod hints;
 mod info;

@@ -2,13 +2,17 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use crate::message::{counted, print_message};
+use crate::message::counted;
+use crate::progress::DrawingProgress;
 use crate::write::to_stdout;
 use isosheet_io::Advice;
+use isosheet_io::picture::PictureError;
 use isosheet_io::run::{Film, FilmOptions, Recording};
 use isosheet_io::write_atomically;
+use rayon::prelude::*;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Files of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,11 +40,40 @@ impl PictureFormat {
 
 /// Which frames are drawn.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FrameChoice {
-    /// One frame; the last one if there is no choice.
-    pub(crate) frame: Option<usize>,
-    /// Every so many frames one.
-    pub(crate) every: Option<usize>,
+pub(crate) enum FrameChoice {
+    /// One.
+    One(usize),
+    /// Every so many frames one, from the first to the last.
+    Many {
+        first: usize,
+        last: usize,
+        every: usize,
+    },
+}
+
+/// Whether a file is a film, which this program does not encode.
+pub(crate) fn is_film(path: &Path) -> bool {
+    let films = ["mp4", "m4v", "mov", "webm", "mkv", "avi", "gif"];
+    let extension = path.extension().unwrap_or_default();
+    films
+        .iter()
+        .any(|film| extension.eq_ignore_ascii_case(film))
+}
+
+/// How a film is made with another program.
+pub(crate) fn no_film(input: &Path, output: &Path) -> Failure {
+    let pictures = output.with_extension("png");
+    let folder = output.with_extension("");
+    let message = format!("isosheet has no encoder for {}", output.display());
+    let remedy = format!(
+        "write numbered pictures, `isosheet convert {} {} --fps 30`, and join them, `ffmpeg -framerate 30 -i \
+         {}/frame_%05d.png -pix_fmt yuv420p {}`; or write an animation for browsers, .apng",
+        input.display(),
+        pictures.display(),
+        folder.display(),
+        output.display()
+    );
+    Failure::new(Code::Output, message).remedy(remedy)
 }
 
 /// Draws frames of a run.
@@ -48,47 +81,74 @@ pub(crate) fn write(
     recording: &Recording,
     choice: FrameChoice,
     format: PictureFormat,
+    options: &FilmOptions,
     path: &Path,
 ) -> Done {
     let count = recording.trajectory.len();
     let frames: Vec<usize> = match (format, choice) {
-        (PictureFormat::Png | PictureFormat::Svg, FrameChoice { every: Some(_), .. }) => {
-            let message = "--every is for .apng: a .png or .svg file has one frame";
-            return Err(wrong(message, "choose the frame with --frame K"));
-        }
-        (PictureFormat::AnimatedPng, FrameChoice { frame: Some(_), .. }) => {
+        (PictureFormat::AnimatedPng, FrameChoice::One(_)) => {
             let message = "--frame is for .png and .svg: an .apng file has many frames";
-            return Err(wrong(message, "choose frames with --every N"));
+            return Err(wrong(
+                message,
+                "choose frames with --frames A..B or --every N",
+            ));
         }
-        (PictureFormat::Png | PictureFormat::Svg, FrameChoice { frame, .. }) => {
-            vec![frame.unwrap_or(count.saturating_sub(1))]
-        }
-        (PictureFormat::AnimatedPng, FrameChoice { every, .. }) => {
-            (0..count).step_by(every.unwrap_or(1).max(1)).collect()
-        }
+        (_, FrameChoice::One(frame)) => vec![frame],
+        (_, FrameChoice::Many { first, last, every }) => [first, last]
+            .into_iter()
+            .filter(|f| *f >= count)
+            .chain((first..=last).step_by(every))
+            .collect(),
     };
     if let Some(frame) = frames.iter().find(|frame| **frame >= count) {
         let count = counted(count, "frame", "frames");
         let message = format!("the run has {count}, counted from 0, and no frame {frame}");
         return Err(wrong(&message, "choose one of them"));
     }
-    let film =
-        Film::new(recording, frames.clone(), &FilmOptions::default()).map_err(|e| input(&e))?;
-    for body in film.undrawn() {
-        print_message(format_args!(
-            "not drawn: obstacle[{body}], since pictures have no half-spaces, balls and capsules"
-        ));
-    }
-    let bytes = match format {
-        PictureFormat::Png => film.picture(0).and_then(|image| image.to_png()),
-        PictureFormat::Svg => film.svg(0).map(String::into_bytes),
-        PictureFormat::AnimatedPng => film.animation(),
+    let film = Film::new(recording, frames, options).map_err(|e| input(&e))?;
+    let progress = DrawingProgress::new(film.len());
+    let picture = |place: usize| match format {
+        PictureFormat::Svg => film.svg(place).map(String::into_bytes),
+        _ => film.picture(place).and_then(|image| image.to_png()),
     };
-    let bytes = bytes.map_err(|e| input(&e))?;
-    let written = write_atomically(path, |w| w.write_all(&bytes));
-    written.map_err(|e| Failure::of(Code::Output, &e))?;
-    let count = counted(frames.len(), "frame", "frames");
-    to_stdout(&format!("{}: {count}\n", path.display()))
+    let save = |path: &Path, bytes: Result<Vec<u8>, PictureError>| {
+        let bytes = bytes.map_err(|e| input(&e))?;
+        let written = write_atomically(path, |w| w.write_all(&bytes));
+        written.map_err(|e| Failure::of(Code::Output, &e))
+    };
+    let saved = match (format, choice) {
+        (PictureFormat::AnimatedPng, _) => save(path, film.animation(|k| progress.drawn(k))),
+        (_, FrameChoice::One(_)) => save(path, picture(0)),
+        (_, FrameChoice::Many { .. }) => {
+            let drawn = AtomicUsize::new(0);
+            let one = |place: usize| {
+                let saved = save(&numbered(path, place), picture(place));
+                progress.drawn(drawn.fetch_add(1, Ordering::Relaxed) + 1);
+                saved
+            };
+            (0..film.len()).into_par_iter().try_for_each(one)
+        }
+    };
+    progress.end();
+    saved?;
+    let name = match (format, choice) {
+        (PictureFormat::Png | PictureFormat::Svg, FrameChoice::Many { .. }) => {
+            let last = numbered(path, film.len() - 1);
+            format!("{} to {}", numbered(path, 0).display(), last.display())
+        }
+        _ => path.display().to_string(),
+    };
+    to_stdout(&format!(
+        "{name}: {}\n",
+        counted(film.len(), "frame", "frames")
+    ))
+}
+
+/// The file of one of many pictures, counted from 0 without gaps, as programs for films expect.
+fn numbered(path: &Path, place: usize) -> PathBuf {
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    path.with_extension("")
+        .join(format!("frame_{place:05}.{extension}"))
 }
 
 fn wrong(message: &str, remedy: &str) -> Failure {

@@ -1,4 +1,4 @@
-//! Progress of a run: a bar on a terminal, plain lines elsewhere, JSON lines for programs.
+//! Progress of runs and of drawings: a bar on a terminal, plain lines elsewhere, JSON lines for programs.
 
 use crate::exit::Format;
 use crate::interrupt;
@@ -8,6 +8,7 @@ use isosheet_io::run::{Beginning, StepPart, Tick, Watch};
 use serde_json::{Value, json};
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Time between two lines where there is no terminal: a log of a long run stays readable.
@@ -173,5 +174,53 @@ fn go_on() -> ControlFlow<()> {
     match interrupt::requested() {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
+    }
+}
+
+/// Progress of the pictures of a film.
+pub(crate) struct DrawingProgress {
+    count: usize,
+    bar: Option<ProgressBar>,
+    last: Mutex<Instant>,
+}
+
+impl DrawingProgress {
+    /// For so many pictures; a single one has no progress.
+    pub(crate) fn new(count: usize) -> Self {
+        let is_shown = count > 1 && std::io::stderr().is_terminal();
+        let bar = is_shown.then(|| {
+            let target = ProgressDrawTarget::stderr();
+            let bar = ProgressBar::with_draw_target(Some(count as u64), target);
+            let template = "{wide_bar} {pos}/{len} pictures, {eta} left";
+            match ProgressStyle::with_template(template) {
+                Ok(style) => bar.with_style(style),
+                Err(_) => bar,
+            }
+        });
+        Self {
+            count,
+            bar,
+            last: Mutex::new(Instant::now()),
+        }
+    }
+
+    /// Tells that so many pictures are drawn.
+    pub(crate) fn drawn(&self, count: usize) {
+        if let Some(bar) = &self.bar {
+            bar.set_position(count as u64);
+            return;
+        }
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if last.elapsed() >= LINES {
+            *last = Instant::now();
+            print_message(format_args!("picture {count} of {}", self.count));
+        }
+    }
+
+    /// Takes the bar away.
+    pub(crate) fn end(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
     }
 }

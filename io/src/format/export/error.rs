@@ -35,6 +35,36 @@ pub enum ExportError {
         /// The number of frames.
         count: usize,
     },
+    /// The rate of frames is not positive.
+    #[error("{rate} frames a second were asked for")]
+    Rate {
+        /// Frames a second.
+        rate: f64,
+    },
+    /// The last frame comes before the first one.
+    #[error("frames from {first} to {last} were asked for")]
+    Range {
+        /// The first frame.
+        first: usize,
+        /// The last frame.
+        last: usize,
+    },
+    /// A body has no pose, or another number of them than there are frames.
+    #[error("{body} has {got} poses, and the trajectory {frames} frames")]
+    Poses {
+        /// The body.
+        body: String,
+        /// The number of its poses.
+        got: usize,
+        /// The number of frames.
+        frames: usize,
+    },
+    /// The name of a body is none in all formats.
+    #[error("{name:?} is no name of a body")]
+    BodyName {
+        /// The name.
+        name: String,
+    },
     /// The option `every` is 0.
     #[error("every 0th frame was asked for")]
     Every,
@@ -148,12 +178,20 @@ impl Advice for ExportError {
             Self::Extension { .. } => Some("choose a known format"),
             Self::NoFrames => Some("let the run take a step, or record a state"),
             Self::NoFrame { .. } => Some("name one of these"),
+            Self::Rate { .. } => Some("give a positive number"),
+            Self::Range { .. } => Some("name the first one first"),
+            Self::Poses { .. } => {
+                Some("give a pose for each frame, or a single one for a body at rest")
+            }
+            Self::BodyName { .. } => {
+                Some("use ASCII letters, digits and _, and no digit at the beginning")
+            }
             Self::Every => Some("give 1 for all frames, 2 for every second one"),
             Self::Topology(error) => error.advice(),
             Self::RestLength { .. } => Some("give a positive length"),
             Self::FieldNotFinite { .. } => Some("give finite values"),
             Self::FieldName { .. } => Some(
-                "rename one (strain, fold_angle, rod_force, contact_force, gap and TimeValue are taken)",
+                "rename one (strain, fold_angle, rod_force, contact_force, gap, uv and TimeValue are taken)",
             ),
             Self::NotFinite { .. } => Some("go back to the last state that was finite"),
             Self::SinglePrecision { .. } => Some("scale the mesh, or use a format with 64 bits"),

@@ -1,7 +1,8 @@
 //! Binary glTF 2.0, with morph targets for motions.
 
 use super::error::{fits, single};
-use super::{ExportError, Series};
+use super::series::Moving;
+use super::{BodyPose, ExportError, Series, SeriesBody};
 use crate::format::atomic::write_atomically;
 use serde_json::{Value, json};
 use std::io::Write;
@@ -35,89 +36,163 @@ pub(super) fn key_frames(series: &Series<'_>) -> Vec<usize> {
     frames
 }
 
-/// Writes a mesh that may move: times in seconds, counted from the first one in the file, positions in
-/// metres. The format has y upwards: `(x, y, z)` becomes `(x, z, -y)`.
-pub(super) fn write(
-    path: &Path,
-    faces: &[[u32; 3]],
-    states: &[(f64, &[f64])],
-) -> Result<(), ExportError> {
-    let mut buffer = Buffer::default();
-    let indices = faces
-        .iter()
-        .flatten()
-        .flat_map(|v| v.to_le_bytes())
-        .collect();
-    let indices = buffer.push(
-        indices,
-        ELEMENT_ARRAY_BUFFER,
-        UNSIGNED_INT,
-        "SCALAR",
-        3 * faces.len(),
-    );
-    let mut points = Vec::with_capacity(states.len());
-    for (_, x) in states {
-        points.push(
-            single(x)?
-                .iter()
-                .map(|&[x, y, z]| [x, z, -y])
-                .collect::<Vec<_>>(),
-        );
+/// A vector in the axes of the format, which has y upwards.
+fn upright([x, y, z]: [f32; 3]) -> [f32; 3] {
+    [x, z, -y]
+}
+
+/// Writes a mesh that may move, and bodies that may: times in seconds, counted from the first one in the file,
+/// positions in metres. The format has y upwards: `(x, y, z)` becomes `(x, z, -y)`.
+pub(super) fn write(path: &Path, moving: &Moving<'_>) -> Result<(), ExportError> {
+    let mut file = File::default();
+    let node = file.sheet(moving)?;
+    let mut nodes = vec![node];
+    for (body, poses) in &moving.bodies {
+        nodes.push(file.body(body, poses)?);
     }
-    let base = buffer.push_vectors(&points[0]);
-    let displacement = |p: &Vec<[f32; 3]>| -> Vec<[f32; 3]> {
-        let pairs = p.iter().zip(&points[0]);
-        pairs
-            .map(|(p, q)| std::array::from_fn(|k| p[k] - q[k]))
-            .collect()
-    };
-    let targets: Vec<Value> = points[1..]
-        .iter()
-        .map(|p| json!({ "POSITION": buffer.push_vectors(&displacement(p)) }))
-        .collect();
-    let mut primitive = json!({
-        "attributes": { "POSITION": base }, "indices": indices, "material": 0
-    });
-    let mut mesh = json!({ "name": "sheet" });
+    if moving.states.len() > 1 {
+        file.animate(moving)?;
+    }
     let mut document = json!({
         "asset": { "version": "2.0", "generator": "isosheet" },
         "scene": 0,
-        "scenes": [{ "nodes": [0] }],
-        "nodes": [{ "name": "sheet", "mesh": 0 }],
-        "materials": [{
-            "name": "paper",
-            "doubleSided": true,
-            "pbrMetallicRoughness": { "baseColorFactor": [0.86, 0.78, 0.62, 1.0], "metallicFactor": 0.0 }
-        }],
+        "scenes": [{ "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
+        "nodes": nodes,
+        "meshes": file.meshes,
+        "materials": [
+            material("paper", [0.86, 0.78, 0.62, 1.0]),
+            material("body", [0.49, 0.49, 0.47, 1.0]),
+        ],
     });
-    if !targets.is_empty() {
-        mesh["weights"] = json!(vec![0.0; targets.len()]);
-        document["animations"] = json!([animation(&mut buffer, states, targets.len())]);
-        primitive["targets"] = json!(targets);
+    if moving.bodies.is_empty() {
+        document["materials"].as_array_mut().map(Vec::pop);
     }
-    mesh["primitives"] = json!([primitive]);
-    document["meshes"] = json!([mesh]);
-    let bytes = buffer.into_file(document)?;
+    if let Some(animation) = file.animation {
+        document["animations"] = json!([animation]);
+    }
+    let bytes = file.buffer.into_file(document)?;
     Ok(write_atomically(path, |w| w.write_all(&bytes))?)
 }
 
-/// The animation of the weights: at frame k the k-th target counts and no other.
-fn animation(buffer: &mut Buffer, states: &[(f64, &[f64])], targets: usize) -> Value {
-    let frames = states.len();
-    let times: Vec<f32> = states
-        .iter()
-        .map(|(t, _)| (t - states[0].0) as f32)
-        .collect();
-    let input = buffer.push(floats(&times), 0, FLOAT, "SCALAR", frames);
-    buffer.accessors[input]["min"] = json!([times[0]]);
-    buffer.accessors[input]["max"] = json!([times[frames - 1]]);
-    let weight = |k: usize| f32::from(u8::from(k % targets + 1 == k / targets));
-    let weights: Vec<f32> = (0..frames * targets).map(weight).collect();
-    let output = buffer.push(floats(&weights), 0, FLOAT, "SCALAR", frames * targets);
+/// The parts of a file in the making.
+#[derive(Default)]
+struct File {
+    buffer: Buffer,
+    meshes: Vec<Value>,
+    animation: Option<Value>,
+}
+
+impl File {
+    /// Adds the sheet, with a morph target for each state but the first, and returns its node.
+    fn sheet(&mut self, moving: &Moving<'_>) -> Result<Value, ExportError> {
+        let indices = self.buffer.push_faces(moving.faces);
+        let mut points = Vec::with_capacity(moving.states.len());
+        for (_, x) in &moving.states {
+            points.push(single(x)?.into_iter().map(upright).collect::<Vec<_>>());
+        }
+        let base = self.buffer.push_vectors(&points[0]);
+        let mut attributes = json!({ "POSITION": base });
+        if let Some(uv) = moving.uv {
+            // Pictures begin at their upper left corner in this format.
+            let flipped = uv.iter().flat_map(|[u, v]| [*u as f32, (1.0 - v) as f32]);
+            let data = floats(&flipped.collect::<Vec<_>>());
+            attributes["TEXCOORD_0"] =
+                json!(
+                    self.buffer
+                        .push(data, ARRAY_BUFFER, FLOAT, "VEC2", uv.len())
+                );
+        }
+        let displacement = |p: &Vec<[f32; 3]>| -> Vec<[f32; 3]> {
+            let pairs = p.iter().zip(&points[0]);
+            pairs
+                .map(|(p, q)| std::array::from_fn(|k| p[k] - q[k]))
+                .collect()
+        };
+        let targets: Vec<Value> = points[1..]
+            .iter()
+            .map(|p| json!({ "POSITION": self.buffer.push_vectors(&displacement(p)) }))
+            .collect();
+        let mut primitive = json!({ "attributes": attributes, "indices": indices, "material": 0 });
+        let mut mesh = json!({ "name": "sheet" });
+        if !targets.is_empty() {
+            mesh["weights"] = json!(vec![0.0; targets.len()]);
+            primitive["targets"] = json!(targets);
+        }
+        mesh["primitives"] = json!([primitive]);
+        self.meshes.push(mesh);
+        Ok(json!({ "name": "sheet", "mesh": 0 }))
+    }
+
+    /// Adds a body and returns its node, in the pose of the first state.
+    fn body(&mut self, body: &SeriesBody, poses: &[BodyPose]) -> Result<Value, ExportError> {
+        let indices = self.buffer.push_faces(&body.faces);
+        let points: Vec<[f32; 3]> = single(&body.positions)?.into_iter().map(upright).collect();
+        let base = self.buffer.push_vectors(&points);
+        self.meshes.push(json!({
+            "name": body.name,
+            "primitives": [{ "attributes": { "POSITION": base }, "indices": indices, "material": 1 }]
+        }));
+        let [translations, rotations] = placements(poses)?;
+        Ok(json!({
+            "name": body.name, "mesh": self.meshes.len() - 1,
+            "translation": translations[..3], "rotation": rotations[..4]
+        }))
+    }
+
+    /// Adds the motion: at state k the k-th target of the sheet counts and no other, and bodies are in their
+    /// poses.
+    fn animate(&mut self, moving: &Moving<'_>) -> Result<(), ExportError> {
+        let (states, targets) = (moving.states.len(), moving.states.len() - 1);
+        let start = moving.states[0].0;
+        let times: Vec<f32> = moving
+            .states
+            .iter()
+            .map(|(t, _)| (t - start) as f32)
+            .collect();
+        let input = self.buffer.push(floats(&times), 0, FLOAT, "SCALAR", states);
+        self.buffer.accessors[input]["min"] = json!([times[0]]);
+        self.buffer.accessors[input]["max"] = json!([times[states - 1]]);
+        let weight = |k: usize| f32::from(u8::from(k % targets + 1 == k / targets));
+        let weights: Vec<f32> = (0..states * targets).map(weight).collect();
+        let mut outputs = vec![(0, "weights", weights, "SCALAR", states * targets)];
+        for (k, (_, poses)) in moving.bodies.iter().enumerate() {
+            if poses.len() > 1 {
+                let [translations, rotations] = placements(poses)?;
+                outputs.push((k + 1, "translation", translations, "VEC3", states));
+                outputs.push((k + 1, "rotation", rotations, "VEC4", states));
+            }
+        }
+        let (mut samplers, mut channels) = (Vec::new(), Vec::new());
+        for (node, path, values, kind, count) in outputs {
+            let output = self.buffer.push(floats(&values), 0, FLOAT, kind, count);
+            channels.push(
+                json!({ "sampler": samplers.len(), "target": { "node": node, "path": path } }),
+            );
+            samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
+        }
+        self.animation =
+            Some(json!({ "name": "motion", "samplers": samplers, "channels": channels }));
+        Ok(())
+    }
+}
+
+/// Translations and rotations in the axes of the format.
+fn placements(poses: &[BodyPose]) -> Result<[Vec<f32>; 2], ExportError> {
+    let (mut translations, mut rotations) = (Vec::new(), Vec::new());
+    for pose in poses {
+        translations.extend(single(&pose.translation)?.into_iter().flat_map(upright));
+        let [x, y, z, w] = pose.rotation.map(|c| c as f32);
+        let [x, y, z] = upright([x, y, z]);
+        rotations.extend([x, y, z, w]);
+    }
+    Ok([translations, rotations])
+}
+
+fn material(name: &str, colour: [f64; 4]) -> Value {
     json!({
-        "name": "motion",
-        "samplers": [{ "input": input, "output": output, "interpolation": "LINEAR" }],
-        "channels": [{ "sampler": 0, "target": { "node": 0, "path": "weights" } }]
+        "name": name,
+        "doubleSided": true,
+        "pbrMetallicRoughness": { "baseColorFactor": colour, "metallicFactor": 0.0 }
     })
 }
 
@@ -156,6 +231,19 @@ impl Buffer {
             "bufferView": self.views.len() - 1, "componentType": component, "count": count, "type": kind
         }));
         self.accessors.len() - 1
+    }
+
+    /// Adds the corners of faces.
+    fn push_faces(&mut self, faces: &[[u32; 3]]) -> usize {
+        let corners = faces.as_flattened();
+        let data = corners.iter().flat_map(|v| v.to_le_bytes()).collect();
+        self.push(
+            data,
+            ELEMENT_ARRAY_BUFFER,
+            UNSIGNED_INT,
+            "SCALAR",
+            corners.len(),
+        )
     }
 
     /// Adds vectors with their bounds.

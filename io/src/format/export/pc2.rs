@@ -19,7 +19,12 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
         single(series.state(frame).1)?;
     }
     let mesh = path.with_extension("obj");
-    obj::write(&mesh, series.faces(), series.state(series.frames()[0]).1)?;
+    obj::write(
+        &mesh,
+        series.faces(),
+        series.state(series.frames()[0]).1,
+        series.uv(),
+    )?;
     write_atomically(path, |w| {
         w.write_all(b"POINTCACHE2\0")?;
         w.write_all(&1_i32.to_le_bytes())?;

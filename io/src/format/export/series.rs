@@ -1,21 +1,34 @@
 //! Frames of a moving sheet that are to be written.
 
-use super::ExportError;
+use super::flat::flat_coordinates;
+use super::{BodyPose, ExportError, SeriesBody};
 use crate::format::mesh_file::{EdgeAssignment, FileCrease, MeshFile};
 use crate::format::{Trajectory, TrajectoryError};
 use isosheet_mesh::generate::FoldAssignment;
 use isosheet_mesh::{EdgeId, Topology, VertexId, fold_angle};
 
 /// Which frames of a trajectory are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeriesOptions {
+    /// The first frame; 0 by default.
+    pub first: usize,
+    /// The last frame; that of the trajectory by default.
+    pub last: Option<usize>,
     /// Every so many frames one is taken, beginning with the first: 1 (the default) for all.
     pub every: usize,
+    /// Frames a second at which programs for animations show the motion, so that it has its own speed; 24 (the
+    /// default) is that of films. It changes no frame: [`Trajectory::at_rate`] does.
+    pub rate: f64,
 }
 
 impl Default for SeriesOptions {
     fn default() -> Self {
-        Self { every: 1 }
+        Self {
+            first: 0,
+            last: None,
+            every: 1,
+            rate: 24.0,
+        }
     }
 }
 
@@ -23,12 +36,19 @@ impl SeriesOptions {
     /// Checks the values.
     ///
     /// # Errors
-    /// [`ExportError::Every`] for 0.
+    /// [`ExportError::Every`] for 0, [`ExportError::Rate`] for a rate that is not positive,
+    /// [`ExportError::Range`] for a last frame before the first one.
     pub fn validate(&self) -> Result<(), ExportError> {
         if self.every == 0 {
             return Err(ExportError::Every);
         }
-        Ok(())
+        if !(self.rate > 0.0 && self.rate.is_finite()) {
+            return Err(ExportError::Rate { rate: self.rate });
+        }
+        match (self.first, self.last) {
+            (first, Some(last)) if last < first => Err(ExportError::Range { first, last }),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -73,6 +93,36 @@ pub struct Series<'a> {
     frames: Vec<usize>,
     assignments: Option<Vec<Option<FoldAssignment>>>,
     fields: Vec<SeriesField>,
+    rate: f64,
+    /// Places of the vertices in a picture printed on the flat sheet, if it can be flat.
+    uv: Option<Vec<[f64; 2]>>,
+    bodies: Vec<SeriesBody>,
+}
+
+/// What is written of a mesh that may move, and of bodies beside it.
+pub(super) struct Moving<'a> {
+    pub(super) faces: &'a [[u32; 3]],
+    /// Times (seconds) and positions (metres).
+    pub(super) states: Vec<(f64, &'a [f64])>,
+    /// Places of the vertices in a picture, from 0 to 1 rightwards and upwards.
+    pub(super) uv: Option<&'a [[f64; 2]]>,
+    /// Bodies, each with a pose for each state, or a single one if it rests.
+    pub(super) bodies: Vec<(&'a SeriesBody, Vec<BodyPose>)>,
+    /// Frames a second.
+    pub(super) rate: f64,
+}
+
+impl<'a> Moving<'a> {
+    /// A mesh alone.
+    pub(super) fn still(faces: &'a [[u32; 3]], x: &'a [f64]) -> Self {
+        Self {
+            faces,
+            states: vec![(0.0, x)],
+            uv: None,
+            bodies: Vec::new(),
+            rate: SeriesOptions::default().rate,
+        }
+    }
 }
 
 impl<'a> Series<'a> {
@@ -101,18 +151,67 @@ impl<'a> Series<'a> {
             }
         }
         let times = trajectory.times();
-        let mut frames: Vec<usize> = (0..times.len()).step_by(options.every).collect();
+        let last = options.last.unwrap_or(times.len() - 1);
+        if let Some(&frame) = [options.first, last].iter().find(|f| **f >= times.len()) {
+            let count = times.len();
+            return Err(ExportError::NoFrame { frame, count });
+        }
+        let mut frames: Vec<usize> = (options.first..=last).step_by(options.every).collect();
         frames.dedup_by(|later, first| times[*later] == times[*first]);
         let rod_forces = rod_forces(trajectory, &topology).into_iter();
         let fields = rod_forces.chain(contact_fields(trajectory)).collect();
+        let start = trajectory.frame(0).unwrap_or_default();
         Ok(Self {
+            uv: flat_coordinates(&topology, &rest_lengths, start),
             trajectory,
             topology,
             rest_lengths,
             frames,
             assignments: None,
             fields,
+            rate: options.rate,
+            bodies: Vec::new(),
         })
+    }
+
+    /// With the bodies that the sheet meets, for formats that have several meshes.
+    ///
+    /// # Errors
+    /// [`ExportError::Poses`] for a number of poses that is neither 1 nor that of the frames of the trajectory,
+    /// [`ExportError`] for a mesh that is none.
+    pub fn with_bodies(self, bodies: Vec<SeriesBody>) -> Result<Self, ExportError> {
+        for body in &bodies {
+            body.validate(self.trajectory.len())?;
+        }
+        Ok(Self { bodies, ..self })
+    }
+
+    /// The bodies.
+    pub fn bodies(&self) -> &[SeriesBody] {
+        &self.bodies
+    }
+
+    /// Places of the vertices in a picture that is printed on the sheet, from 0 to 1 rightwards and upwards: the
+    /// flat rest shape, scaled alike in both directions so that its larger side is 1, and turned as the sheet
+    /// lies in the first frame of the trajectory. `None` if the rest lengths are not those of a flat sheet, as on
+    /// closed cylinders.
+    pub fn uv(&self) -> Option<&[[f64; 2]]> {
+        self.uv.as_deref()
+    }
+
+    /// Some frames of the trajectory for formats with several meshes.
+    pub(super) fn moving(&self, frames: &[usize]) -> Moving<'_> {
+        let poses = |body: &SeriesBody| match body.poses[..] {
+            [pose] => vec![pose],
+            _ => frames.iter().map(|&f| body.poses[f]).collect(),
+        };
+        Moving {
+            faces: self.faces(),
+            states: frames.iter().map(|&f| self.state(f)).collect(),
+            uv: self.uv(),
+            bodies: self.bodies.iter().map(|b| (b, poses(b))).collect(),
+            rate: self.rate,
+        }
     }
 
     /// With what the edges are meant to do, for FOLD files: one entry for each edge of the topology.
@@ -162,7 +261,7 @@ impl<'a> Series<'a> {
                 value: values[index],
             });
         }
-        let reserved = ["strain", "fold_angle", "TimeValue"].contains(&&name[..]);
+        let reserved = ["strain", "fold_angle", "TimeValue", "uv"].contains(&&name[..]);
         if reserved || self.fields.iter().any(|f| f.name == *name) {
             return Err(ExportError::FieldName { name: name.clone() });
         }

@@ -258,7 +258,10 @@ fn gltf_takes_key_frames_evenly() {
 fn tables_caches_and_single_files_have_the_positions() {
     let (sheet, trajectory) = rolled(7);
     let folder = tempfile::tempdir().unwrap();
-    let every = SeriesOptions { every: 3 };
+    let every = SeriesOptions {
+        every: 3,
+        ..SeriesOptions::default()
+    };
     let series = Series::new(&trajectory, &every).unwrap();
     let csv_path = folder.path().join("run.csv");
     assert_eq!(write_series(&csv_path, &series).unwrap().frames, [0, 3, 6]);
@@ -308,6 +311,138 @@ fn tables_caches_and_single_files_have_the_positions() {
     assert_eq!(mesh.faces, sheet.face_indices());
 }
 
+/// A triangle that turns by a quarter about z and moves along x, and one that rests.
+fn bodies(frames: usize) -> Vec<SeriesBody> {
+    let body = |name: &str, poses: Vec<BodyPose>| SeriesBody {
+        name: name.to_owned(),
+        positions: vec![1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0],
+        faces: vec![[0, 1, 2]],
+        poses,
+    };
+    let pose = |x: f64, turn: f64| BodyPose {
+        rotation: [0.0, 0.0, (0.5 * turn).sin(), (0.5 * turn).cos()],
+        translation: [x, 0.0, 0.0],
+    };
+    let last = (frames - 1) as f64;
+    let moving = (0..frames).map(|k| pose(k as f64, 0.5 * std::f64::consts::PI * k as f64 / last));
+    vec![
+        body("obstacle_0", moving.collect()),
+        body("obstacle_1", vec![pose(5.0, 0.0)]),
+    ]
+}
+
+#[test]
+fn bodies_are_beside_the_sheet() {
+    let (sheet, trajectory) = rolled(3);
+    let folder = tempfile::tempdir().unwrap();
+    let series = series(&trajectory).with_bodies(bodies(3)).unwrap();
+    let path = folder.path().join("run.obj");
+    let files = write_series(&path, &series).unwrap().files;
+    assert_eq!(files.len(), 6);
+    let mesh = read_mesh(&folder.path().join("run/bodies_00002.obj")).unwrap();
+    assert_eq!(mesh.faces, [[0, 1, 2], [3, 4, 5]]);
+    let expected = [
+        2., 1., 0., 0., 0., 0., 2., 0., 3., 6., 0., 0., 5., 2., 0., 5., 0., 3.,
+    ];
+    for (found, expected) in mesh.positions.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-15, "{:?}", mesh.positions);
+    }
+    // The sheet is alone in its file, with the place of each vertex in a picture.
+    let mesh = read_mesh(&folder.path().join("run/frame_00002.obj")).unwrap();
+    assert_eq!(mesh.positions, trajectory.frame(2).unwrap());
+    let text = fs::read_to_string(folder.path().join("run/frame_00002.obj")).unwrap();
+    let uv = text.lines().filter_map(|line| line.strip_prefix("vt "));
+    let uv: Vec<f64> = uv
+        .flat_map(str::split_whitespace)
+        .map(|c| c.parse().unwrap())
+        .collect();
+    for (uv, p) in uv
+        .as_chunks::<2>()
+        .0
+        .iter()
+        .zip(sheet.positions().as_chunks::<3>().0)
+    {
+        assert!((uv[0] - p[0]).abs() < 1e-12 && (uv[1] - p[1]).abs() < 1e-12);
+    }
+    assert_eq!(uv.len(), 2 * sheet.topology().vertex_count());
+
+    let path = folder.path().join("run.glb");
+    write_series(&path, &series).unwrap();
+    let ::gltf::Gltf { document, .. } = ::gltf::Gltf::open(&path).unwrap();
+    let names: Vec<_> = document
+        .nodes()
+        .map(|n| n.name().unwrap().to_owned())
+        .collect();
+    assert_eq!(names, ["sheet", "obstacle_0", "obstacle_1"]);
+    let paths: Vec<_> = document
+        .animations()
+        .next()
+        .unwrap()
+        .channels()
+        .map(|c| (c.target().node().index(), c.target().property()))
+        .collect();
+    use ::gltf::animation::Property::{MorphTargetWeights, Rotation, Translation};
+    assert_eq!(
+        paths,
+        [(0, MorphTargetWeights), (1, Translation), (1, Rotation)]
+    );
+    // The first mesh is the sheet, as readers of one mesh expect.
+    assert_eq!(read_mesh(&path).unwrap().faces, trajectory.faces());
+
+    let wrong = |change: fn(&mut SeriesBody)| {
+        let mut bodies = bodies(3);
+        change(&mut bodies[0]);
+        series.clone().with_bodies(bodies).unwrap_err()
+    };
+    let poses = wrong(|body| body.poses.truncate(2));
+    assert!(
+        matches!(
+            poses,
+            ExportError::Poses {
+                got: 2,
+                frames: 3,
+                ..
+            }
+        ),
+        "{poses}"
+    );
+    let name = wrong(|body| body.name = "a body".to_owned());
+    assert!(matches!(name, ExportError::BodyName { .. }), "{name}");
+    let face = wrong(|body| body.faces[0][1] = 3);
+    assert!(
+        matches!(face, ExportError::IndexOutOfRange { .. }),
+        "{face}"
+    );
+}
+
+#[test]
+fn a_part_of_the_frames_is_written() {
+    let (_, trajectory) = rolled(7);
+    let part = |first, last, every| {
+        let options = SeriesOptions {
+            first,
+            last,
+            every,
+            ..SeriesOptions::default()
+        };
+        Series::new(&trajectory, &options).map(|series| series.frames().to_vec())
+    };
+    assert_eq!(part(2, Some(5), 2).unwrap(), [2, 4]);
+    assert_eq!(part(5, None, 1).unwrap(), [5, 6]);
+    assert!(matches!(
+        part(2, Some(7), 1),
+        Err(ExportError::NoFrame { frame: 7, count: 7 })
+    ));
+    assert!(matches!(
+        part(9, None, 1),
+        Err(ExportError::NoFrame { frame: 9, .. })
+    ));
+    assert!(matches!(
+        part(3, Some(2), 1),
+        Err(ExportError::Range { .. })
+    ));
+}
+
 #[test]
 fn strains_are_relative_elongations() {
     let sheet = generate::grid(1, 1, 1.0, 1.0, Diagonals::Rising).unwrap();
@@ -332,7 +467,13 @@ fn strains_are_relative_elongations() {
 fn what_cannot_be_written_is_refused_by_name() {
     let (sheet, trajectory) = rolled(3);
     let empty = Trajectory::new(&sheet);
-    let refused = |t: &Trajectory, every| Series::new(t, &SeriesOptions { every }).unwrap_err();
+    let refused = |t: &Trajectory, every| {
+        let options = SeriesOptions {
+            every,
+            ..SeriesOptions::default()
+        };
+        Series::new(t, &options).unwrap_err()
+    };
     assert!(matches!(refused(&empty, 1), ExportError::NoFrames));
     assert!(matches!(refused(&trajectory, 0), ExportError::Every));
     let ok = || series(&trajectory);

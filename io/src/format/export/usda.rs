@@ -1,90 +1,191 @@
 //! Universal Scene Description as text.
 
-use super::ExportError;
 use super::error::single;
+use super::series::Moving;
+use super::{BodyPose, ExportError, SeriesBody};
 use crate::format::atomic::{FileWriter, write_atomically};
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Time codes a second: the frames a second that a film has, so that animation programs show the motion at
-/// its own speed.
-const TIME_CODES: f64 = 24.0;
+/// Linear colours of the sheet and of bodies, for programs that show meshes without a material.
+const COLOURS: [[f32; 3]; 2] = [[0.86, 0.78, 0.62], [0.49, 0.49, 0.47]];
 
-/// Writes a mesh that may move: times in seconds and positions in metres, z upwards. The time codes are
-/// `24 t`, and programs interpolate linearly between them.
-pub(super) fn write(
-    path: &Path,
-    faces: &[[u32; 3]],
-    states: &[(f64, &[f64])],
-) -> Result<(), ExportError> {
-    let mut samples = Vec::with_capacity(states.len());
-    for (t, x) in states {
-        samples.push((TIME_CODES * t, single(x)?));
+/// A body with its points as 32-bit floats.
+type Body<'a> = (&'a SeriesBody, Vec<[f32; 3]>, &'a [BodyPose]);
+
+/// Writes a mesh that may move, and bodies that may, below one root: times in seconds and positions in metres, z
+/// upwards. There are as many time codes a second as frames, and programs interpolate between them, places
+/// linearly and rotations along the great circle.
+pub(super) fn write(path: &Path, moving: &Moving<'_>) -> Result<(), ExportError> {
+    let rate = moving.rate;
+    let mut samples = Vec::with_capacity(moving.states.len());
+    for (t, x) in &moving.states {
+        samples.push((rate * t, single(x)?));
     }
+    let mut bodies: Vec<Body<'_>> = Vec::new();
+    for (body, poses) in &moving.bodies {
+        for pose in poses {
+            single(&pose.translation)?;
+        }
+        bodies.push((body, single(&body.positions)?, poses));
+    }
+    let codes: Vec<f64> = samples.iter().map(|(code, _)| *code).collect();
     Ok(write_atomically(path, |w| {
-        head(w, &samples)?;
-        let counts = faces.iter().map(|_| 3);
-        list(w, "    int[] faceVertexCounts = ", counts)?;
-        list(w, "    int[] faceVertexIndices = ", faces.iter().flatten())?;
-        if let [(_, points)] = &samples[..] {
-            list(w, "    float3[] extent = ", extent(points).map(tuple))?;
+        head(w, &codes, rate)?;
+        begin_mesh(w, "sheet", moving.faces, COLOURS[0])?;
+        if let Some(uv) = moving.uv {
+            let tuples = uv
+                .iter()
+                .map(|[u, v]| format!("({}, {})", *u as f32, *v as f32));
             list(
                 w,
-                "    point3f[] points = ",
-                points.iter().map(|p| tuple(*p)),
+                "        texCoord2f[] primvars:st = ",
+                tuples,
+                " (\n            interpolation = \"vertex\"\n        )",
             )?;
-        } else {
-            writeln!(w, "    float3[] extent.timeSamples = {{")?;
-            for (time, points) in &samples {
-                list(w, &format!("        {time}: "), extent(points).map(tuple))?;
-            }
-            writeln!(w, "    }}\n    point3f[] points.timeSamples = {{")?;
-            for (time, points) in &samples {
-                list(
-                    w,
-                    &format!("        {time}: "),
-                    points.iter().map(|p| tuple(*p)),
-                )?;
-            }
+        }
+        let points = samples.iter().map(|(_, points)| points);
+        sampled(
+            w,
+            "float3[] extent",
+            &codes,
+            points.clone().map(|p| extent(p).to_vec()),
+        )?;
+        sampled(w, "point3f[] points", &codes, points.cloned())?;
+        writeln!(w, "    }}")?;
+        for (body, points, poses) in &bodies {
+            begin_mesh(w, &body.name, &body.faces, COLOURS[1])?;
+            list(
+                w,
+                "        float3[] extent = ",
+                extent(points).map(tuple),
+                "",
+            )?;
+            list(
+                w,
+                "        point3f[] points = ",
+                points.iter().map(|p| tuple(*p)),
+                "",
+            )?;
+            placed(w, &codes, poses)?;
             writeln!(w, "    }}")?;
         }
         writeln!(w, "}}")
     })?)
 }
 
-fn head(w: &mut FileWriter<'_>, samples: &[(f64, Vec<[f32; 3]>)]) -> io::Result<()> {
+fn head(w: &mut FileWriter<'_>, codes: &[f64], rate: f64) -> io::Result<()> {
     writeln!(
         w,
-        "#usda 1.0\n(\n    defaultPrim = \"sheet\"\n    doc = \"isosheet\""
+        "#usda 1.0\n(\n    defaultPrim = \"scene\"\n    doc = \"isosheet\""
     )?;
     writeln!(w, "    upAxis = \"Z\"\n    metersPerUnit = 1")?;
-    if let [(first, _), .., (last, _)] = samples {
+    if let [first, .., last] = codes {
         writeln!(w, "    startTimeCode = {first}\n    endTimeCode = {last}")?;
         writeln!(
             w,
-            "    timeCodesPerSecond = {TIME_CODES}\n    framesPerSecond = {TIME_CODES}"
+            "    timeCodesPerSecond = {rate}\n    framesPerSecond = {rate}"
         )?;
     }
-    writeln!(
-        w,
-        ")\n\ndef Mesh \"sheet\"\n{{\n    uniform bool doubleSided = 1"
-    )?;
-    writeln!(w, "    uniform token subdivisionScheme = \"none\"")
+    writeln!(w, ")\n\ndef Xform \"scene\"\n{{")
 }
 
-/// A list, which ends its line; the entries of the dictionaries of samples end with a comma.
+fn begin_mesh(
+    w: &mut FileWriter<'_>,
+    name: &str,
+    faces: &[[u32; 3]],
+    colour: [f32; 3],
+) -> io::Result<()> {
+    writeln!(
+        w,
+        "    def Mesh \"{name}\"\n    {{\n        uniform bool doubleSided = 1"
+    )?;
+    writeln!(w, "        uniform token subdivisionScheme = \"none\"")?;
+    list(
+        w,
+        "        int[] faceVertexCounts = ",
+        faces.iter().map(|_| 3),
+        "",
+    )?;
+    list(
+        w,
+        "        int[] faceVertexIndices = ",
+        faces.iter().flatten(),
+        "",
+    )?;
+    let colour = [tuple(colour)];
+    list(w, "        color3f[] primvars:displayColor = ", colour, "")
+}
+
+/// An attribute with a list of vectors for each time code.
+fn sampled(
+    w: &mut FileWriter<'_>,
+    attribute: &str,
+    codes: &[f64],
+    values: impl Iterator<Item = Vec<[f32; 3]>>,
+) -> io::Result<()> {
+    let is_still = codes.len() == 1;
+    if !is_still {
+        writeln!(w, "        {attribute}.timeSamples = {{")?;
+    }
+    for (code, value) in codes.iter().zip(values) {
+        let tuples = value.into_iter().map(tuple);
+        if is_still {
+            list(w, &format!("        {attribute} = "), tuples, "")?;
+        } else {
+            list(w, &format!("            {code}: "), tuples, ",")?;
+        }
+    }
+    if is_still {
+        Ok(())
+    } else {
+        writeln!(w, "        }}")
+    }
+}
+
+/// Where a body is at each time code.
+fn placed(w: &mut FileWriter<'_>, codes: &[f64], poses: &[BodyPose]) -> io::Result<()> {
+    let quaternion = |p: &BodyPose| {
+        let [x, y, z, w] = p.rotation.map(|c| c as f32);
+        format!("({w}, {x}, {y}, {z})")
+    };
+    let translation = |p: &BodyPose| {
+        let [x, y, z] = p.translation;
+        format!("({x}, {y}, {z})")
+    };
+    let attributes: [(&str, &dyn Fn(&BodyPose) -> String); 2] = [
+        ("double3 xformOp:translate", &translation),
+        ("quatf xformOp:orient", &quaternion),
+    ];
+    for (attribute, text) in attributes {
+        if let [pose] = poses {
+            writeln!(w, "        {attribute} = {}", text(pose))?;
+            continue;
+        }
+        writeln!(w, "        {attribute}.timeSamples = {{")?;
+        for (code, pose) in codes.iter().zip(poses) {
+            writeln!(w, "            {code}: {},", text(pose))?;
+        }
+        writeln!(w, "        }}")?;
+    }
+    let order = ["\"xformOp:translate\"", "\"xformOp:orient\""];
+    list(w, "        uniform token[] xformOpOrder = ", order, "")
+}
+
+/// A list between what comes before it and what comes after it in its line.
 fn list<T: Display>(
     w: &mut FileWriter<'_>,
     before: &str,
     entries: impl IntoIterator<Item = T>,
+    after: &str,
 ) -> io::Result<()> {
     write!(w, "{before}[")?;
     for (k, entry) in entries.into_iter().enumerate() {
         let separator = if k == 0 { "" } else { ", " };
         write!(w, "{separator}{entry}")?;
     }
-    writeln!(w, "]{}", if before.ends_with(": ") { "," } else { "" })
+    writeln!(w, "]{after}")
 }
 
 fn tuple([x, y, z]: [f32; 3]) -> String {

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Writes the frames and, last, the list.
+/// Writes the bodies and the list of their files, if there are any, then the frames and, last, their list.
 pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathBuf>, ExportError> {
     let folder = folder_of(path);
     let folder_name = folder
@@ -15,23 +15,72 @@ pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathB
         .unwrap_or_default()
         .to_string_lossy()
         .into_owned();
-    let mut list = String::from(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n",
-    );
     let mut files = Vec::new();
+    let mut listed = Vec::new();
+    if !series.bodies().is_empty() {
+        let rest = series.bodies().iter().all(|body| body.rests());
+        for (k, &frame) in series.frames().iter().enumerate() {
+            if k == 0 || !rest {
+                let name = format!("bodies_{frame:05}.vtp");
+                let bytes = bodies_file(series, frame);
+                write_atomically(&folder.join(&name), |w| w.write_all(&bytes))?;
+                files.push(folder.join(&name));
+                listed.push((series.state(frame).0, name));
+            }
+        }
+        let list = folder.with_file_name(format!("{folder_name}-bodies.pvd"));
+        write_list(&list, &folder_name, &listed)?;
+        files.push(list);
+        listed.clear();
+    }
     for &frame in series.frames() {
         let name = format!("frame_{frame:05}.vtp");
-        let file = folder.join(&name);
         let bytes = frame_file(series, frame);
-        write_atomically(&file, |w| w.write_all(&bytes))?;
-        files.push(file);
-        let (t, folder) = (series.state(frame).0, escaped(&folder_name));
-        list += &format!("<DataSet timestep=\"{t}\" part=\"0\" file=\"{folder}/{name}\"/>\n");
+        write_atomically(&folder.join(&name), |w| w.write_all(&bytes))?;
+        files.push(folder.join(&name));
+        listed.push((series.state(frame).0, name));
     }
-    list += "</Collection>\n</VTKFile>\n";
-    write_atomically(path, |w| w.write_all(list.as_bytes()))?;
+    write_list(path, &folder_name, &listed)?;
     files.push(path.to_owned());
     Ok(files)
+}
+
+/// Writes the list of the files in a folder, each with its time.
+fn write_list(path: &Path, folder: &str, files: &[(f64, String)]) -> Result<(), ExportError> {
+    let folder = escaped(folder);
+    let entry = |(t, name): &(f64, String)| {
+        format!("<DataSet timestep=\"{t}\" part=\"0\" file=\"{folder}/{name}\"/>\n")
+    };
+    let entries: String = files.iter().map(entry).collect();
+    let list = format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n\
+         {entries}</Collection>\n</VTKFile>\n"
+    );
+    Ok(write_atomically(path, |w| w.write_all(list.as_bytes()))?)
+}
+
+/// All bodies in their places in a frame, as one mesh whose faces know the number of their body.
+fn bodies_file(series: &Series<'_>, frame: usize) -> Vec<u8> {
+    let (mut points, mut faces, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, body) in series.bodies().iter().enumerate() {
+        let first = (points.len() / 3) as u32;
+        points.extend(body.placed(frame));
+        faces.extend(body.faces.iter().flatten().map(|v| v + first));
+        numbers.extend(body.faces.iter().map(|_| number as f64));
+    }
+    let mut file = Appended::new();
+    file.begin(
+        series.state(frame).0,
+        [points.len() / 3, 0, faces.len() / 3],
+    );
+    file.line("<CellData>");
+    file.floats("body", "", &numbers);
+    file.line("</CellData>\n<Points>");
+    file.floats("Points", VECTORS, &points);
+    file.line("</Points>\n<Polys>");
+    file.cells(&faces, 3);
+    file.line("</Polys>\n</Piece>\n</PolyData>");
+    file.finish()
 }
 
 /// The attribute of arrays of vectors.
@@ -45,14 +94,14 @@ fn frame_file(series: &Series<'_>, frame: usize) -> Vec<u8> {
     let (time, x) = series.state(frame);
     let mut file = Appended::new();
     let (points, lines, faces) = (t.vertex_count(), t.edge_count(), t.face_count());
-    file.xml += "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" \
-        byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n";
-    file.floats("TimeValue", "NumberOfTuples=\"1\"", &[time]);
-    file.xml += "</FieldData>\n";
-    file.line(&format!(
-        "<Piece NumberOfPoints=\"{points}\" NumberOfVerts=\"0\" NumberOfLines=\"{lines}\" \
-         NumberOfStrips=\"0\" NumberOfPolys=\"{faces}\">\n<PointData>"
-    ));
+    file.begin(time, [points, lines, faces]);
+    match series.uv() {
+        Some(uv) => {
+            file.line("<PointData TCoords=\"uv\">");
+            file.floats("uv", "NumberOfComponents=\"2\"", uv.as_flattened());
+        }
+        None => file.line("<PointData>"),
+    }
     for (field, values) in series.fields(frame) {
         match field.support {
             FieldSupport::Vertices => file.floats(&field.name, "", values),
@@ -127,6 +176,17 @@ impl Appended {
             xml: String::new(),
             data: Vec::new(),
         }
+    }
+
+    /// The head of a file with so many points, lines and polygons.
+    fn begin(&mut self, time: f64, [points, lines, faces]: [usize; 3]) {
+        self.xml += "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" \
+            byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n";
+        self.floats("TimeValue", "NumberOfTuples=\"1\"", &[time]);
+        self.line(&format!(
+            "</FieldData>\n<Piece NumberOfPoints=\"{points}\" NumberOfVerts=\"0\" NumberOfLines=\"{lines}\" \
+             NumberOfStrips=\"0\" NumberOfPolys=\"{faces}\">"
+        ));
     }
 
     fn line(&mut self, text: &str) {

@@ -15,10 +15,11 @@ article>a{display:block;background:#fff;height:13rem}article img{width:100%;heig
 div{padding:.7rem .9rem .9rem}h2{font-size:1.05rem;margin:0;overflow-wrap:anywhere}h2 a{color:var(--link)}
 p{margin:.3rem 0 .6rem}dl{display:grid;grid-template-columns:auto 1fr;gap:.05rem .8rem;margin:0;font-size:.88rem}
 dt{color:var(--muted)}dd{margin:0;font-variant-numeric:tabular-nums}.folder{color:var(--muted);font-size:.8rem;
-overflow-wrap:anywhere;margin:.6rem 0 0}";
+overflow-wrap:anywhere;margin:.6rem 0 0}footer{margin:2rem 0;color:var(--muted);overflow-wrap:anywhere}";
 
 /// The page.
-pub(super) fn page(entries: &[GalleryEntry]) -> String {
+pub(super) fn page(gallery: &Gallery) -> String {
+    let entries = &gallery.entries;
     let count = match entries.len() {
         1 => "1 run".to_owned(),
         n => format!("{n} runs"),
@@ -38,6 +39,16 @@ pub(super) fn page(entries: &[GalleryEntry]) -> String {
                     p { (count) ". A picture shows the end of its run and leads to the page that plays it." }
                 }
                 main { @for entry in entries { (card(entry)) } }
+                @if !gallery.left_out.is_empty() {
+                    footer {
+                        h2 { "Not shown" }
+                        ul {
+                            @for (folder, reason) in &gallery.left_out {
+                                li { (folder.display()) ": " (reason) }
+                            }
+                        }
+                    }
+                }
             }
         }
     };

@@ -1,0 +1,125 @@
+//! Bodies beside a moving sheet.
+
+use super::ExportError;
+use super::error::check_mesh;
+
+/// A rigid body: a mesh in its own frame, and where that is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeriesBody {
+    /// The name: ASCII letters, digits and `_`, not beginning with a digit, as some formats demand.
+    pub name: String,
+    /// Positions of its vertices in its own frame (3V, metres).
+    pub positions: Vec<f64>,
+    /// Its faces, counter-clockwise as seen from outside.
+    pub faces: Vec<[u32; 3]>,
+    /// Its pose in each frame of the trajectory, or a single one if it rests.
+    pub poses: Vec<BodyPose>,
+}
+
+/// Where a body is: its points are first turned and then moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyPose {
+    /// A unit quaternion, with the real part last.
+    pub rotation: [f64; 4],
+    /// Where the origin of the body is, metres.
+    pub translation: [f64; 3],
+}
+
+impl SeriesBody {
+    /// Whether the body is the same in all frames.
+    pub fn rests(&self) -> bool {
+        self.poses.len() == 1
+    }
+
+    /// Its positions in a frame of the trajectory (3V, metres).
+    pub(super) fn placed(&self, frame: usize) -> Vec<f64> {
+        let pose = match self.poses[..] {
+            [pose] => pose,
+            _ => self.poses[frame],
+        };
+        let points = self.positions.as_chunks::<3>().0.iter();
+        points.flat_map(|p| pose.apply(p)).collect()
+    }
+
+    /// Whether it is a mesh with poses for so many frames.
+    pub(super) fn validate(&self, frames: usize) -> Result<(), ExportError> {
+        let count = self.poses.len();
+        if count != 1 && count != frames {
+            return Err(ExportError::Poses {
+                body: self.name.clone(),
+                got: count,
+                frames,
+            });
+        }
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let starts = |c: char| is_plain(c) && !c.is_ascii_digit();
+        if !(self.name.starts_with(starts) && self.name.chars().all(is_plain)) {
+            return Err(ExportError::BodyName {
+                name: self.name.clone(),
+            });
+        }
+        check_mesh(&self.positions, &self.faces)
+    }
+}
+
+impl BodyPose {
+    /// The place of a point of the body.
+    fn apply(&self, p: &[f64; 3]) -> [f64; 3] {
+        let [x, y, z, w] = self.rotation;
+        let q = [x, y, z];
+        let cross = |a: &[f64; 3], b: &[f64; 3]| {
+            [
+                a[1] * b[2] - a[2] * b[1],
+                a[2] * b[0] - a[0] * b[2],
+                a[0] * b[1] - a[1] * b[0],
+            ]
+        };
+        let turn = cross(&q, p);
+        let twice = cross(&q, &turn);
+        [0, 1, 2].map(|k| p[k] + 2.0 * (w * turn[k] + twice[k]) + self.translation[k])
+    }
+}
+
+#[cfg(feature = "scene")]
+mod of_obstacle {
+    use super::{BodyPose, SeriesBody};
+    use crate::body_mesh::BodyMesh;
+    use isosheet_collide::Obstacle;
+
+    /// Sides of the circles of round bodies: their surface is at most 0.1 % of the radius off.
+    const SIDES: usize = 64;
+
+    impl SeriesBody {
+        /// An obstacle of a scene at the times (seconds) of the frames of a trajectory. Of a half-space there is
+        /// a square in its plane, about the origin of its frame and with this half side (metres).
+        pub fn of_obstacle(name: String, obstacle: &Obstacle, times: &[f64], half: f64) -> Self {
+            // The sides are enough for any shape.
+            let mesh = BodyMesh::of(obstacle.shape(), SIDES).ok().flatten();
+            let mesh = mesh.unwrap_or_else(|| BodyMesh::square(half));
+            let mut poses: Vec<BodyPose> = Vec::with_capacity(times.len());
+            for t in times {
+                let pose = obstacle.motion().pose(*t);
+                let q = pose.rotation.quaternion();
+                let mut rotation = [q.i, q.j, q.k, q.w];
+                // A quaternion and its negative are one rotation, and programs interpolate between neighbours.
+                let dot = |p: &BodyPose| (0..4).map(|k| p.rotation[k] * rotation[k]).sum::<f64>();
+                if poses.last().is_some_and(|p| dot(p) < 0.0) {
+                    rotation = rotation.map(|c| -c);
+                }
+                poses.push(BodyPose {
+                    rotation,
+                    translation: pose.translation.vector.into(),
+                });
+            }
+            if poses.windows(2).all(|pair| pair[0] == pair[1]) {
+                poses.truncate(1);
+            }
+            Self {
+                name,
+                positions: mesh.points.concat(),
+                faces: mesh.faces,
+                poses,
+            }
+        }
+    }
+}
