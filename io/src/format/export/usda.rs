@@ -147,7 +147,7 @@ fn sampled(
 /// Where a body is at each time code.
 fn placed(w: &mut FileWriter<'_>, codes: &[f64], poses: &[BodyPose]) -> io::Result<()> {
     let quaternion = |p: &BodyPose| {
-        let [x, y, z, w] = p.rotation.map(|c| c as f32);
+        let [x, y, z, w] = p.rotation;
         format!("({w}, {x}, {y}, {z})")
     };
     let translation = |p: &BodyPose| {
@@ -156,7 +156,7 @@ fn placed(w: &mut FileWriter<'_>, codes: &[f64], poses: &[BodyPose]) -> io::Resu
     };
     let attributes: [(&str, &dyn Fn(&BodyPose) -> String); 2] = [
         ("double3 xformOp:translate", &translation),
-        ("quatf xformOp:orient", &quaternion),
+        ("quatd xformOp:orient", &quaternion),
     ];
     for (attribute, text) in attributes {
         if let [pose] = poses {
