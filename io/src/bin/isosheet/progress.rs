@@ -187,7 +187,7 @@ pub(crate) struct DrawingProgress {
 impl DrawingProgress {
     /// For so many pictures; a single one has no progress.
     pub(crate) fn new(count: usize) -> Self {
-        let is_shown = count > 1 && std::io::stderr().is_terminal();
+        let is_shown = count > 1 && !is_quiet() && std::io::stderr().is_terminal();
         let bar = is_shown.then(|| {
             let target = ProgressDrawTarget::stderr();
             let bar = ProgressBar::with_draw_target(Some(count as u64), target);
@@ -213,7 +213,7 @@ impl DrawingProgress {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         if last.elapsed() >= LINES {
             *last = Instant::now();
-            print_message(format_args!("picture {count} of {}", self.count));
+            print_progress(format_args!("picture {count} of {}", self.count));
         }
     }
 
