@@ -10,8 +10,9 @@ use crate::write::{is_same_file, to_stdout};
 use clap::Args;
 use isosheet_io::run::{FilmOptions, Recording};
 use isosheet_io::{
-    Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFormat, MeshOptions,
-    Series, SeriesOptions, Trajectory, read_mesh_with, write_frame, write_mesh, write_series,
+    Advice, ExportError, Exported, FoldFrame, MOST_KEY_FRAMES, MeshFile, MeshFileProblem,
+    MeshFormat, MeshOptions, Series, SeriesOptions, Trajectory, TrajectoryError, read_mesh_with,
+    write_frame, write_mesh, write_series,
 };
 use std::path::{Path, PathBuf};
 
@@ -53,7 +54,11 @@ pub(crate) struct Convert {
     /// A mesh file, the folder of a run, or a trajectory (.npz)
     input: PathBuf,
     /// The file to write, or to replace; its extension says the format
-    output: PathBuf,
+    #[arg(required_unless_present = "out", conflicts_with = "out")]
+    output: Option<PathBuf>,
+    /// The same, as the other commands have it
+    #[arg(short, long, value_name = "OUTPUT")]
+    out: Option<PathBuf>,
     /// Of a run, write frame K alone, as a mesh or a picture; of a FOLD file, read frame K (from 0)
     #[arg(long, value_name = "K", conflicts_with_all = ["frames", "every", "fps"])]
     frame: Option<usize>,
@@ -80,10 +85,16 @@ pub(crate) struct Convert {
 }
 
 impl Convert {
+    /// The file to write, which the parser has made sure of.
+    fn output(&self) -> &Path {
+        let output = self.output.as_deref().or(self.out.as_deref());
+        output.unwrap_or(Path::new(""))
+    }
+
     pub(crate) fn run(&self) -> Done {
         self.check_output()?;
-        if pictures::is_film(&self.output) {
-            return Err(pictures::no_film(&self.input, &self.output));
+        if pictures::is_film(self.output()) {
+            return Err(pictures::no_film(&self.input, self.output()));
         }
         if self.input.is_dir() {
             return self.convert_run();
@@ -93,7 +104,7 @@ impl Convert {
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("npz"))
         {
-            if PictureFormat::of(&self.output).is_some() {
+            if PictureFormat::of(self.output()).is_some() {
                 let message = "pictures need the bodies and supports of the run";
                 return Err(wrong(message, "name the folder of the run"));
             }
@@ -117,7 +128,10 @@ impl Convert {
             frame: self.frame.map(FoldFrame::Number),
             ..MeshOptions::default()
         };
-        let mesh = read_mesh_with(&self.input, &options).map_err(|e| input(&e))?;
+        let mesh = read_mesh_with(&self.input, &options).map_err(|e| match e.problem {
+            MeshFileProblem::WeldTolerance { .. } => Failure::of(Code::CommandLine, &e),
+            _ => input(&e),
+        })?;
         self.write_mesh(&mesh)
     }
 
@@ -125,7 +139,7 @@ impl Convert {
     fn convert_run(&self) -> Done {
         let mut recording = Recording::read(&self.input).map_err(Failure::from)?;
         recording.trajectory = self.at_rate(recording.trajectory)?;
-        if let Some(format) = PictureFormat::of(&self.output) {
+        if let Some(format) = PictureFormat::of(self.output()) {
             return self.write_pictures(&recording, format);
         }
         let mut series = self.series(&recording.trajectory)?;
@@ -143,7 +157,10 @@ impl Convert {
         match self.fps {
             Some(rate) if !trajectory.is_empty() => {
                 let range = self.frames.unwrap_or_default().of(trajectory.len());
-                trajectory.at_rate(rate, range).map_err(|e| input(&e))
+                trajectory.at_rate(rate, range).map_err(|e| match e {
+                    TrajectoryError::Rate { .. } => Failure::of(Code::CommandLine, &e),
+                    _ => input(&e),
+                })
             }
             _ => Ok(trajectory),
         }
@@ -180,7 +197,7 @@ impl Convert {
     /// Refuses an output that would replace what is read: the file itself, or a file of the run. Other files
     /// are replaced.
     fn check_output(&self) -> Result<(), Failure> {
-        let (input, output) = (&self.input, &self.output);
+        let (input, output) = (&self.input, self.output());
         let is_run = input.is_dir();
         let message = if is_same_file(input, output) {
             let what = if is_run { "folder" } else { "file" };
@@ -203,7 +220,7 @@ impl Convert {
 
     /// Whether the files of single frames go to a folder with the name of the output.
     fn is_folder_written(&self) -> bool {
-        let extension = self.output.extension().unwrap_or_default();
+        let extension = self.output().extension().unwrap_or_default();
         let has_folder = ["obj", "pvd"]
             .iter()
             .any(|e| extension.eq_ignore_ascii_case(e));
@@ -245,7 +262,7 @@ impl Convert {
             every: self.every(),
             rate: self.fps.unwrap_or(SeriesOptions::default().rate),
         };
-        Series::new(trajectory, &options).map_err(|e| input(&e))
+        Series::new(trajectory, &options).map_err(|e| failed(&e, Code::Input))
     }
 
     fn write_pictures(&self, recording: &Recording, format: PictureFormat) -> Done {
@@ -273,17 +290,17 @@ impl Convert {
         if let Some(view) = self.view {
             (options.azimuth, options.elevation) = (view.azimuth, view.elevation);
         }
-        pictures::write(recording, choice, format, &options, &self.output)
+        pictures::write(recording, choice, format, &options, self.output())
     }
 
     fn write_run(&self, series: &Series<'_>) -> Done {
         if let Some(frame) = self.frame {
-            let mesh = series.mesh(frame).map_err(|e| input(&e))?;
-            write_frame(&self.output, series, frame).map_err(|e| no_mesh(&e))?;
+            let mesh = series.mesh(frame).map_err(|e| failed(&e, Code::Input))?;
+            write_frame(self.output(), series, frame).map_err(|e| no_mesh(&e))?;
             return self.say_mesh(&mesh);
         }
-        let Exported { files, frames } = write_series(&self.output, series).map_err(|error| {
-            let failure = output(&error);
+        let Exported { files, frames } = write_series(self.output(), series).map_err(|error| {
+            let failure = failed(&error, Code::Output);
             match error {
                 ExportError::Extension { .. } => failure.remedy(
                     "choose a known format, or .png, .svg or .apng for pictures of the folder of a run; formats \
@@ -308,7 +325,7 @@ impl Convert {
     }
 
     fn write_mesh(&self, mesh: &MeshFile) -> Done {
-        write_mesh(&self.output, mesh).map_err(|e| no_mesh(&e))?;
+        write_mesh(self.output(), mesh).map_err(|e| no_mesh(&e))?;
         self.say_mesh(mesh)
     }
 
@@ -331,7 +348,7 @@ impl Convert {
             .collect();
         to_stdout(&format!(
             "{}: {} and {}{notes}\n",
-            self.output.display(),
+            self.output().display(),
             counted(mesh.vertex_count(), VERTICES[0], VERTICES[1]),
             counted(mesh.faces.len(), FACES[0], FACES[1])
         ))
@@ -353,7 +370,7 @@ fn weld_of_run() -> Failure {
 
 /// Why a mesh is not written.
 fn no_mesh(error: &ExportError) -> Failure {
-    let failure = output(error);
+    let failure = failed(error, Code::Output);
     match error {
         ExportError::Extension { .. } => failure.remedy(
             "choose a known format; pictures and the formats of moving sheets are made of the folder of a run",
@@ -363,13 +380,21 @@ fn no_mesh(error: &ExportError) -> Failure {
 }
 
 fn wrong(message: &str, remedy: &str) -> Failure {
-    Failure::new(Code::Input, message).remedy(remedy)
+    Failure::misuse(message).remedy(remedy)
 }
 
 fn input(error: &impl Advice) -> Failure {
     Failure::of(Code::Input, error)
 }
 
-fn output(error: &impl Advice) -> Failure {
-    Failure::of(Code::Output, error)
+/// The failure of an export: of what the command line asks for, or else with the given code.
+fn failed(error: &ExportError, otherwise: Code) -> Failure {
+    let code = match error {
+        ExportError::Extension { .. }
+        | ExportError::NoFrame { .. }
+        | ExportError::Range { .. }
+        | ExportError::Rate { .. } => Code::CommandLine,
+        _ => otherwise,
+    };
+    Failure::of(code, error)
 }

@@ -73,7 +73,7 @@ pub(crate) fn no_film(input: &Path, output: &Path) -> Failure {
         folder.display(),
         output.display()
     );
-    Failure::new(Code::Output, message).remedy(remedy)
+    Failure::misuse(message).remedy(remedy)
 }
 
 /// Draws frames of a run.
@@ -105,7 +105,12 @@ pub(crate) fn write(
         let message = format!("the run has {count}, counted from 0, and no frame {frame}");
         return Err(wrong(&message, "choose one of them"));
     }
-    let film = Film::new(recording, frames, options).map_err(|e| input(&e))?;
+    let film = Film::new(recording, frames, options).map_err(|e| match e {
+        PictureError::Size { .. } | PictureError::Angle { .. } => {
+            Failure::of(Code::CommandLine, &e)
+        }
+        _ => input(&e),
+    })?;
     let progress = DrawingProgress::new(film.len());
     let picture = |place: usize| match format {
         PictureFormat::Svg => film.svg(place).map(String::into_bytes),
@@ -152,7 +157,7 @@ fn numbered(path: &Path, place: usize) -> PathBuf {
 }
 
 fn wrong(message: &str, remedy: &str) -> Failure {
-    Failure::new(Code::Input, message).remedy(remedy)
+    Failure::misuse(message).remedy(remedy)
 }
 
 fn input(error: &impl Advice) -> Failure {
