@@ -146,26 +146,27 @@ fn sampled(
 
 /// Where a body is at each time code.
 fn placed(w: &mut FileWriter<'_>, codes: &[f64], poses: &[BodyPose]) -> io::Result<()> {
-    let quaternion = |p: &BodyPose| {
-        let [x, y, z, w] = p.rotation;
-        format!("({w}, {x}, {y}, {z})")
-    };
     let translation = |p: &BodyPose| {
         let [x, y, z] = p.translation;
         format!("({x}, {y}, {z})")
     };
-    let attributes: [(&str, &dyn Fn(&BodyPose) -> String); 2] = [
-        ("double3 xformOp:translate", &translation),
-        ("quatd xformOp:orient", &quaternion),
+    let quaternion = |p: &BodyPose| {
+        let [x, y, z, w] = p.rotation;
+        format!("({w}, {x}, {y}, {z})")
+    };
+    let values = |of: &dyn Fn(&BodyPose) -> String| poses.iter().map(of).collect::<Vec<_>>();
+    let attributes = [
+        ("double3 xformOp:translate", values(&translation)),
+        ("quatd xformOp:orient", values(&quaternion)),
     ];
-    for (attribute, text) in attributes {
-        if let [pose] = poses {
-            writeln!(w, "        {attribute} = {}", text(pose))?;
+    for (attribute, values) in attributes {
+        if let [value] = &values[..] {
+            writeln!(w, "        {attribute} = {value}")?;
             continue;
         }
         writeln!(w, "        {attribute}.timeSamples = {{")?;
-        for (code, pose) in codes.iter().zip(poses) {
-            writeln!(w, "            {code}: {},", text(pose))?;
+        for (code, value) in codes.iter().zip(values) {
+            writeln!(w, "            {code}: {value},")?;
         }
         writeln!(w, "        }}")?;
     }
