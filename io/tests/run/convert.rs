@@ -348,7 +348,7 @@ fn films_are_numbered_pictures() {
     assert_eq!(all.len(), count);
     assert!(
         all.iter()
-            .all(|png| size(png) == size(&all[0]) && size(png)[0] % 2 == 0)
+            .all(|png| size(png) == size(&all[0]) && size(png)[0].is_multiple_of(2))
     );
     let said = done(
         dir,

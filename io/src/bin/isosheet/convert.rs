@@ -71,7 +71,8 @@ pub(crate) struct Convert {
     /// Of a run, write F frames a second: states between two frames of the run are interpolated linearly
     #[arg(long, value_name = "F")]
     fps: Option<f64>,
-    /// Of pictures, the size in pixels: WIDTHxHEIGHT, or the height alone for the width that fits [default: 480]
+    /// Of pictures, the size in pixels: width and height such as 1280x720, or the height alone for the width that
+    /// fits [default: 480]
     #[arg(long, value_name = "SIZE")]
     size: Option<Size>,
     /// Of pictures, where the viewer is: front, back, left, right, top, bottom, or degrees counter-clockwise from
