@@ -58,7 +58,7 @@ fn a_lost_trajectory_comes_back_from_the_frames() {
         dir,
         &["convert", "run", "run/trajectory.npz", "--every", "2"],
     );
-    assert_eq!(code(&replaced), Some(3), "{}", stderr(&replaced));
+    assert_eq!(code(&replaced), Some(2), "{}", stderr(&replaced));
     let commands: [&[&str]; 3] = [
         &simulate,
         &["resume", "run"],
