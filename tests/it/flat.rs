@@ -176,7 +176,7 @@ fn bad_states_are_refused() {
     let error = Simulation::new(pinned(1, 0.05), State::at_rest(x), Method::default());
     let message = error.err().expect("refused").to_string();
     assert!(
-        message.contains("edge") && message.contains("rest length"),
+        message.contains("edge") && message.contains("too short"),
         "{message}"
     );
 
