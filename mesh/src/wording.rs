@@ -5,11 +5,9 @@ use std::fmt;
 /// Shows a number with three significant digits, and with an exponent where it would be long without one:
 /// `0.0167`, `1.02e-6`, `-12300`. For values that were computed, whose further digits say nothing.
 pub fn brief(value: f64) -> impl fmt::Display {
-    let rounded = match value.is_finite() {
-        true => format!("{value:.2e}").parse().unwrap_or(value),
-        false => value,
-    };
-    given(rounded)
+    let rounded = format!("{value:.2e}").parse().ok();
+    // The largest numbers would be rounded beyond the range of f64.
+    given(rounded.filter(|r: &f64| r.is_finite()).unwrap_or(value))
 }
 
 /// Shows a number with all its digits, and with an exponent where it would be long without one: `0.25`,
@@ -54,7 +52,8 @@ mod tests {
             (0.000_001_017_252_604_166_7, "1.02e-6"),
             (4.94e-310, "4.94e-310"),
             (1e300, "1e300"),
-            (f64::MAX, "1.8e308"),
+            (f64::MAX, "1.7976931348623157e308"),
+            (1.7949e308, "1.79e308"),
             (f64::INFINITY, "inf"),
             (f64::NAN, "NaN"),
         ] {

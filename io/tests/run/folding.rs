@@ -29,7 +29,7 @@ fn a_sheet_of_others_is_folded_by_one_command() {
     fs::write(dir.join("scene.toml"), scene_of_the_book()).unwrap();
     let output = run(dir, &["simulate", "scene.toml"]);
     assert_eq!(code(&output), Some(0), "{}", stderr(&output));
-    let said = stderr(&output);
+    let said = String::from_utf8_lossy(&output.stdout);
     assert!(
         said.contains("fold angles differ from their targets by 8.15 degrees"),
         "{said}"
