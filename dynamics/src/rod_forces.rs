@@ -28,14 +28,15 @@ impl Method {
 
 /// Singular value of the rigidity matrix of unit rods, about the angle of a fold in radians, below which forces
 /// are left out of the balance that the least forces keep. Lengths that are exact to 1e-12 determine fold angles
-/// to 1e-6, and what a flatter fold carries is noise times the inverse of its angle: in a tablecloth that weighs
-/// 2 N, 2e4 N. With values from 1e-3 to 1e-1 the largest force there is the same, some 2 N; with 1e-4 it is 80 N.
-const FLATTEST_FOLD: f64 = 1e-3;
+/// to 1e-6, and what a flatter fold carries is noise times the inverse of its angle. The largest force in a
+/// tablecloth of 2 N that rests on a box is 300 N, and while it falls 2e4 N; with 1e-3, 5e-3 and 1e-2 here it is
+/// 13, 1.7 and 1.5 N.
+const FLATTEST_FOLD: f64 = 5e-3;
 
 /// Passes of iterated regularisation. Of the force of a singular value `s` the part
 /// `(s0^2 / (s^2 + s0^2))^passes` is missing, with `s0` the [`FLATTEST_FOLD`]: in folds of ten times that angle
-/// 1e-6.
-const PASSES: usize = 3;
+/// 1e-8.
+const PASSES: usize = 4;
 
 /// The forces of the rods of which these are the multipliers at positions `x`, newtons, see
 /// [`Simulation::rod_forces`](crate::Simulation::rod_forces).

@@ -334,13 +334,13 @@ impl Simulation {
     ///
     /// All forces are zero before the first step, after a sub-step of the [`Fallback`](crate::Fallback) or
     /// without a minimum ([`StepOutcome::Descended`](crate::StepOutcome::Descended)), and in free fall under
-    /// the energy-momentum method. The force of a rod between two vertices that cannot
-    /// move is zero, since nothing determines it. Where rods depend on each other, as in a flat sheet, their
-    /// forces are not unique. BDF2 and implicit Euler, which take such states, give the least forces (in the
-    /// sum of their squares) that load the free vertices as the multipliers of the step do; loads across folds
-    /// flatter than a milliradian, which rods could only carry with a thousand times their size, are left out.
-    /// This call then factorises a matrix of the size of a step's. Without the share of the projection that ends a damped step, which is of the size of the
-    /// tolerances.
+    /// the energy-momentum method. The force of a rod between two vertices that cannot move is zero, since
+    /// nothing determines it. Where rods depend on each other, as in a flat sheet, their forces are not
+    /// unique. BDF2 and implicit Euler, which take such states, give the least forces (in the sum of their
+    /// squares) that load the free vertices as the multipliers of the step do; loads across folds flatter
+    /// than some 0.3 degrees, which rods could only carry with 200 times their size, are left out. This call
+    /// then factorises a matrix of the size of a step's. Without the share of the projection that ends a
+    /// damped step, which is of the size of the tolerances.
     pub fn rod_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Engine::Free(engine) => engine.rod_forces(),
