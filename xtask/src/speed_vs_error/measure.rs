@@ -64,13 +64,15 @@ struct Pass {
 /// Most repetitions of short runs.
 const REPETITIONS: usize = 5;
 
-/// Measures a method at a fineness. Runs that take longer than `patience` seconds are given up.
+/// Measures a method at a fineness. Runs that take longer than `patience` seconds are given up; those that took
+/// less than `again` seconds together are repeated.
 pub(crate) fn point(
     problem: Problem,
     scheme: &Scheme,
     reference: &Reference,
     asked: Asked,
     patience: f64,
+    again: f64,
 ) -> Result<Point> {
     let mut best: Option<Pass> = None;
     let mut repetitions = 0;
@@ -96,7 +98,7 @@ pub(crate) fn point(
         {
             best = Some(pass);
         }
-        if stop || clock.elapsed().as_secs_f64() > 0.1 * patience {
+        if stop || clock.elapsed().as_secs_f64() > again {
             break;
         }
     }
@@ -236,6 +238,11 @@ const BLOWN_UP: f64 = 100.0;
 /// Most halvings of the step.
 const HALVINGS: u32 = 14;
 
+/// Runs that are made on the smooth problems however long they take, each with half the step of the one before:
+/// the orders that are required of the methods are fitted to the finest of them, and must not depend on how
+/// fast the machine is.
+const RUNS_FOR_ORDERS: u32 = 10;
+
 /// All runs of a method together may take so many times the longest.
 const MOST: f64 = 5.0;
 
@@ -243,7 +250,8 @@ const MOST: f64 = 5.0;
 const FAILURES: usize = 5;
 
 /// Measures a method over its steps or tolerances, coarse to fine, until a run takes longer than `limit`
-/// seconds or refining makes no difference.
+/// seconds or refining makes no difference. On the smooth problems the first [`RUNS_FOR_ORDERS`] are
+/// made whatever they take.
 pub(crate) fn sweep(
     problem: Problem,
     scheme: &Scheme,
@@ -260,8 +268,10 @@ pub(crate) fn sweep(
             Asked::Steps(1 << k)
         };
         let clock = Instant::now();
+        let needed = problem.is_smooth() && !scheme.is_adaptive() && k < RUNS_FOR_ORDERS;
         // A run costs about twice the one before.
-        let point = point(problem, scheme, reference, asked, 2.0 * limit)?;
+        let patience = if needed { f64::INFINITY } else { 2.0 * limit };
+        let point = point(problem, scheme, reference, asked, patience, 0.2 * limit)?;
         let spent = clock.elapsed().as_secs_f64() / point.repetitions.max(1) as f64;
         failures = if point.errors.or(point.partial).is_some() {
             0
@@ -274,8 +284,9 @@ pub(crate) fn sweep(
             .errors
             .is_some_and(|e| e.position <= reference.doubt());
         // A run that fails early says nothing about how long a finer one takes.
-        let slow =
-            point.errors.is_some() && spent > limit || total.elapsed().as_secs_f64() > MOST * limit;
+        let slow = !needed
+            && (point.errors.is_some() && spent > limit
+                || total.elapsed().as_secs_f64() > MOST * limit);
         points.push(point);
         if refused || settled || failures == FAILURES || slow {
             break;

@@ -43,6 +43,12 @@ impl Problem {
         (Self::Cloth(2), "cloth-2"),
     ];
 
+    /// Whether the motion is so smooth that the orders of the methods show: sheets flutter on finer scales than
+    /// their steps.
+    pub(crate) fn is_smooth(self) -> bool {
+        matches!(self, Self::Pendulum | Self::Triangle)
+    }
+
     /// Title for people, with the mark-up of drawings.
     pub(crate) fn title(self) -> String {
         match self {

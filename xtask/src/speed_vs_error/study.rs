@@ -136,7 +136,7 @@ impl Study {
     /// flutter on finer scales than their steps.
     pub(crate) fn requirements(&self) -> Vec<Requirement> {
         let mut all = Vec::new();
-        if matches!(self.problem, Problem::Pendulum | Problem::Triangle) {
+        if self.problem.is_smooth() {
             for (method, theory) in ORDERS {
                 let doubt = self.reference.doubt();
                 let fitted = order(&self.points, method, POSITION, doubt);
