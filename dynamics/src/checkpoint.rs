@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the format. It grows with every change of the fields, because the binary format does not name
 /// them.
-const VERSION: u32 = 7;
+const VERSION: u32 = 8;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";
@@ -94,6 +94,8 @@ pub(crate) struct FreeMotion {
     pub(crate) fixed: Vec<u32>,
     /// The barrier of contact, in scenes that have any.
     pub(crate) barrier: Option<BarrierPotential>,
+    /// The stiffness of the barrier at the limit of the strain, joules per square metre, of elastic sheets.
+    pub(crate) strain_barrier: Option<f64>,
 }
 
 impl FreeMotion {
@@ -108,7 +110,11 @@ impl FreeMotion {
         check_finite("positions of the step before", &previous.x)?;
         check_finite("velocities of the step before", &previous.v)?;
         check_finite("multipliers of the isometry", &multipliers.rods)?;
-        check_finite("stiffnesses of the rods", &[history.rod_stiffness])
+        check_finite("stiffnesses of the rods", &[history.rod_stiffness])?;
+        check_finite(
+            "stiffnesses of the strain barrier",
+            self.strain_barrier.as_slice(),
+        )
     }
 }
 

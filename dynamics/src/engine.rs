@@ -3,6 +3,7 @@
 use crate::checkpoint::{CheckpointError, FreeMotion, check_length};
 use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
 use crate::control::{Decision, Stepping, take_substep};
+use crate::elastic_sheet::{ElasticSheet, strain_barrier_at_start};
 use crate::energy_account::{EnergyAccount, Exchange};
 use crate::feasibility::{Excess, excess};
 use crate::history::History;
@@ -56,6 +57,7 @@ impl Engine {
         let fixed = immobile_vertices(&model, &state.x);
         model.fix(&fixed);
         model.clear_velocities(&fixed, &mut state.v);
+        model.set_strain_barrier(strain_barrier_at_start(&model, &state));
         Self::with_fixed(model, method, state, fixed)
     }
 
@@ -101,6 +103,7 @@ impl Engine {
             has_moved: self.has_moved,
             fixed: self.fixed.iter().map(|v| v.0).collect(),
             barrier: self.contact.as_ref().map(RunContact::barrier),
+            strain_barrier: self.model.elastic_sheet().map(ElasticSheet::barrier),
         }
     }
 
@@ -114,6 +117,7 @@ impl Engine {
         motion.check_numbers()?;
         let fixed: Vec<VertexId> = motion.fixed.iter().copied().map(VertexId).collect();
         model.fix(&fixed);
+        model.set_strain_barrier(motion.strain_barrier.unwrap_or(0.0));
         motion.moment.balance.check(&model)?;
         check_energy(&model, &motion.moment.state)?;
         let state = motion.moment.state.clone();

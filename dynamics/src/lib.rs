@@ -80,6 +80,7 @@ mod crease;
 #[cfg(test)]
 mod derivative_tests;
 mod effort;
+mod elastic_sheet;
 mod energy_account;
 mod energy_momentum;
 mod engine;
@@ -127,6 +128,7 @@ pub use checkpoint::{Checkpoint, CheckpointError};
 pub use constraint::VertexConstraint;
 pub use crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
 pub use effort::StepProgress;
+pub use elastic_sheet::{ElasticSheet, ElasticSheetError};
 pub use energy_momentum::EnergyMomentumOptions;
 pub use feasibility::Excess;
 pub use implicit::ImplicitOptions;

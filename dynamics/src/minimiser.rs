@@ -335,7 +335,7 @@ impl Minimiser {
             }
             Strategy::FromStart => {
                 self.lagrangian.clear_multipliers();
-                if !problem.has_contact() {
+                if !problem.is_bounded() {
                     self.lagrangian.place_pins(problem);
                 }
                 let minimum =

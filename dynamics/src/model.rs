@@ -3,6 +3,7 @@
 mod supports;
 
 use crate::constraint::VertexConstraint;
+use crate::elastic_sheet::ElasticSheet;
 use crate::isometry_rows::IsometryRows;
 use crate::membrane::Membrane;
 use crate::motion::MotionError;
@@ -60,6 +61,14 @@ pub enum ModelError {
         /// Vertices of the sheet.
         vertex_count: usize,
     },
+    /// The elastic sheet belongs to another sheet.
+    #[error("the elastic sheet is made for {found} faces, the sheet has {face_count}")]
+    ElasticSheet {
+        /// Faces that it was built for.
+        found: usize,
+        /// Faces of the sheet.
+        face_count: usize,
+    },
     /// The damping rate is negative or not finite.
     #[error("damping rate is {rate}", rate = given(*rate))]
     Damping {
@@ -72,7 +81,9 @@ impl Advice for ModelError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::Mesh(error) => error.advice(),
-            Self::MassLength { .. } | Self::WeakIsometry { .. } => Some("build it for this sheet"),
+            Self::MassLength { .. } | Self::WeakIsometry { .. } | Self::ElasticSheet { .. } => {
+                Some("build it for this sheet")
+            }
             Self::Mass { .. } => Some("give every vertex that is not pinned a positive mass"),
             Self::Motion { source, .. } => source.advice(),
             Self::Damping { .. } => Some("give a finite rate of at least 0 per second"),
@@ -87,7 +98,7 @@ pub enum Isometry {
     /// Rigid rods along all edges: lengths are exact, and the sheet folds along the lines of its mesh alone.
     #[default]
     Rods,
-    /// The elasticity of the material, a [`Membrane`](crate::Membrane): edges stretch.
+    /// The elasticity of the material, an [`ElasticSheet`]: edges stretch up to a limit.
     Elastic,
     /// Two equations for each vertex and a soft membrane, a [`WeakIsometry`](crate::WeakIsometry): the
     /// strains around each vertex vanish in the mean, and edges stretch a little.
@@ -107,6 +118,8 @@ pub struct SheetModel {
     isometry: Isometry,
     /// The equations in weak form, where [`SheetModel::isometry`] is that.
     weak: Option<WeakRows>,
+    /// The elasticity in the plane, where [`SheetModel::isometry`] is that.
+    elastic: Option<ElasticSheet>,
     rods: LengthConstraints,
     mass: MassMatrix,
     potentials: Vec<Box<dyn Potential>>,
@@ -165,6 +178,7 @@ impl SheetModel {
         Ok(Self {
             isometry: Isometry::Rods,
             weak: None,
+            elastic: None,
             rods,
             shortest_rods,
             mean_length: sheet.mean_length(),
@@ -211,7 +225,46 @@ impl SheetModel {
     pub fn with_membrane(mut self, membrane: Membrane) -> Self {
         self.isometry = Isometry::Elastic;
         self.weak = None;
+        self.elastic = None;
         self.with_potential(membrane)
+    }
+
+    /// Replaces the rigid rods by the elasticity of the material with a limit of its strain, see [`ElasticSheet`].
+    ///
+    /// For BDF2 and implicit Euler; other methods and charts are refused.
+    ///
+    /// ```
+    /// use isosheet_dynamics::{ElasticSheet, Method, PlateBending, SheetModel, Simulation, State};
+    /// use isosheet_mesh::{MassKind, VertexId, generate};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let sheet = generate::isotropic_square(2, 0.2)?;
+    /// let clamp: Vec<VertexId> = (0..18).map(VertexId).collect(); // two rows of vertices
+    /// let (stiffness, poisson, rigidity) = (3e5, 0.3, 5e-4); // office paper
+    /// let model = SheetModel::new(&sheet, 3.2e-3, MassKind::Lumped)?
+    ///     .with_gravity()
+    ///     .with_pins(&clamp)?
+    ///     .with_potential(PlateBending::clamped(&sheet, rigidity, &clamp)?)
+    ///     .with_elastic_sheet(ElasticSheet::new(&sheet, stiffness, poisson)?.softened(rigidity)?)?;
+    /// let start = State::at_rest(sheet.positions().to_vec());
+    /// let mut simulation = Simulation::new(model, start, Method::default())?;
+    /// let report = simulation.step(1.0 / 60.0)?;
+    /// assert!(report.strain < ElasticSheet::LIMIT);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// [`ModelError::ElasticSheet`] if it was built for another sheet.
+    pub fn with_elastic_sheet(mut self, elastic: ElasticSheet) -> Result<Self, ModelError> {
+        let (found, face_count) = (elastic.face_count(), self.topology.face_count());
+        if found != face_count {
+            return Err(ModelError::ElasticSheet { found, face_count });
+        }
+        self.isometry = Isometry::Elastic;
+        self.weak = None;
+        self.elastic = Some(elastic);
+        Ok(self)
     }
 
     /// Replaces the rigid rods by an isometry in weak form: two equations for each vertex that is not pinned,
@@ -332,9 +385,35 @@ impl SheetModel {
         &self.mass
     }
 
-    /// The potentials in the order in which they were added, for an energy balance of each of them.
-    pub fn potentials(&self) -> &[Box<dyn Potential>] {
-        &self.potentials
+    /// The elasticity in the plane, of sheets that have it.
+    pub fn elastic_sheet(&self) -> Option<&ElasticSheet> {
+        self.elastic.as_ref()
+    }
+
+    /// The potentials in the order in which they were added, and after them that of an elastic sheet, for an energy
+    /// balance of each of them.
+    pub fn potentials(&self) -> impl Iterator<Item = &dyn Potential> {
+        let elastic = self.elastic.iter().map(|e| e as &dyn Potential);
+        self.potentials.iter().map(Box::as_ref).chain(elastic)
+    }
+
+    /// Sets the stiffness of the barrier of an elastic sheet, joules per square metre.
+    pub(crate) fn set_strain_barrier(&mut self, stiffness: f64) {
+        if let Some(elastic) = &mut self.elastic {
+            elastic.set_barrier(stiffness);
+        }
+    }
+
+    /// Whether the sheet has a limit of its strain.
+    pub(crate) fn has_strain_limit(&self) -> bool {
+        self.elastic.is_some()
+    }
+
+    /// Largest part of the displacement `dx`, at most one, that is proven to stay within the limit of the strain.
+    pub(crate) fn fraction_within_limit(&self, x: &[f64], dx: &[f64]) -> f64 {
+        self.elastic
+            .as_ref()
+            .map_or(1.0, |elastic| elastic.safe_fraction(x, dx))
     }
 
     /// The non-conservative forces in the order in which they were added.
@@ -380,22 +459,20 @@ impl SheetModel {
 
     /// Total potential energy, joules.
     pub fn potential_energy(&self, t: f64, x: &[f64]) -> f64 {
-        self.potentials.iter().map(|p| p.energy(t, x)).sum()
+        self.potentials().map(|p| p.energy(t, x)).sum()
     }
 
     /// Whether a potential depends on time.
     pub(crate) fn has_driven_potentials(&self) -> bool {
-        self.potentials.iter().any(|p| p.is_driven())
+        self.potentials().any(|p| p.is_driven())
     }
 
     /// Work of changing the driven potentials while the sheet moves from `x0` at `t0` to `x1` at `t1`,
     /// joules: the integral of dV/dt at fixed positions, by the mean of the changes at both.
     pub(crate) fn potential_work(&self, (t0, x0): (f64, &[f64]), (t1, x1): (f64, &[f64])) -> f64 {
-        let driven = self.potentials.iter().filter(|p| p.is_driven());
+        let driven = self.potentials().filter(|p| p.is_driven());
         let change = |p: &dyn Potential, x: &[f64]| p.energy(t1, x) - p.energy(t0, x);
-        driven
-            .map(|p| 0.5 * (change(p.as_ref(), x0) + change(p.as_ref(), x1)))
-            .sum()
+        driven.map(|p| 0.5 * (change(p, x0) + change(p, x1))).sum()
     }
 
     /// Kinetic energy `v^T M v / 2` (Eq. 2), joules.
@@ -412,7 +489,7 @@ impl SheetModel {
     /// As [`SheetModel::potential_force`], at pinned vertices too.
     pub(crate) fn whole_potential_force(&self, t: f64, x: &[f64], f: &mut [f64]) {
         f.fill(0.0);
-        for p in &self.potentials {
+        for p in self.potentials() {
             p.add_gradient(t, x, f);
         }
         f.iter_mut().for_each(|v| *v = -*v);
@@ -439,8 +516,7 @@ impl SheetModel {
 
     /// Whether every potential is linear, so that its force is constant.
     pub(crate) fn has_constant_forces(&self) -> bool {
-        self.potentials
-            .iter()
+        self.potentials()
             .all(|p| p.shape() == PotentialShape::Linear)
     }
 

@@ -360,7 +360,7 @@ impl HessianSink for Sink<'_> {
 /// couple beyond the mesh's edges.
 fn wide_pairs(model: &SheetModel) -> Vec<[u32; 2]> {
     let free = model.free_index();
-    let pairs = model.potentials().iter().flat_map(|p| p.couplings());
+    let pairs = model.potentials().flat_map(|p| p.couplings());
     let rings = model.weak_rows().into_iter().flat_map(WeakRows::couplings);
     pairs
         .chain(rings)

@@ -7,7 +7,7 @@ use crate::feasibility::Excess;
 use crate::support::Support;
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::wording::{brief, counted, given};
-use isosheet_mesh::{Advice, EdgeId, VertexId};
+use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
 
 /// How a step was obtained.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -231,6 +231,21 @@ pub enum StepError {
         /// Time, seconds.
         t: f64,
     },
+    /// An elastic sheet is stretched or compressed beyond its limit at the start.
+    #[error(
+        "{face} has the strain {strain} at t = {t} s, and the limit of the elastic sheet is {limit}",
+        strain = brief(*strain), limit = given(*limit), t = brief(*t)
+    )]
+    BeyondStrainLimit {
+        /// The face with the largest strain.
+        face: FaceId,
+        /// The norm of its strain ([`ElasticSheet`](crate::ElasticSheet)).
+        strain: f64,
+        /// The limit.
+        limit: f64,
+        /// Time, seconds.
+        t: f64,
+    },
     /// Newton's method did not converge.
     #[error(
         "Newton's method stopped at residual {residual}, edge strain {strain} after {iterations} \
@@ -363,6 +378,9 @@ impl Advice for StepError {
             Self::NonFiniteForce { .. } => Some("check the user-supplied functions"),
             Self::OffConstraints { .. } => {
                 Some("start from a state on the constraints (see `project_positions`)")
+            }
+            Self::BeyondStrainLimit { .. } => {
+                Some("start from a shape that is stretched less, or raise the limit of the strain")
             }
             Self::OffWeakIsometry { .. } => {
                 Some("start from a state that satisfies it (see `project_positions`)")

@@ -173,7 +173,6 @@ impl SaddleMatrix {
             .collect();
         let mut pair_slots: BTreeMap<_, _> = model
             .potentials()
-            .iter()
             .flat_map(|p| p.couplings())
             .filter(|pair| !pair.iter().any(|v| model.is_pinned(*v)))
             .map(|pair| {

@@ -156,6 +156,16 @@ pub(crate) fn check_motions(model: &SheetModel, state: &State) -> Result<(), Ste
 /// Refuses states that are not finite or not on the rest lengths.
 pub(crate) fn check_state(model: &SheetModel, state: &State) -> Result<(), StepError> {
     check_finite(state)?;
+    if let Some(elastic) = model.elastic_sheet()
+        && let Some((face, strain)) = elastic.beyond_limit(&state.x)
+    {
+        return Err(StepError::BeyondStrainLimit {
+            face,
+            strain,
+            limit: elastic.limit(),
+            t: state.t,
+        });
+    }
     let rods = model.rods();
     if model.constrained_strain(&state.x) <= START_STRAIN {
         return Ok(());

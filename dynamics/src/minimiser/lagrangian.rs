@@ -10,9 +10,10 @@ use crate::model::PINNED;
 use crate::multipliers::{LinearisedRows, MultiplierGoal, MultiplierSolver};
 use crate::primal::{PrimalMatrix, dot, penalties};
 use crate::report::StepError;
-use crate::{Isometry, SheetModel};
+use crate::{HessianSink, Isometry, SheetModel};
 use isosheet_coords::linalg::LinalgError;
-use nalgebra::Vector3;
+use isosheet_mesh::{EdgeId, VertexId};
+use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -77,6 +78,51 @@ pub(crate) struct Lagrangian {
     pub(super) weighted: Vec<f64>,
     /// Changes of length errors, for linearised constraints.
     pub(super) change: Vec<f64>,
+}
+
+/// Adds the product of a Hessian and a vector to another vector.
+struct HessianProduct<'a> {
+    edges: &'a [[usize; 2]],
+    scale: f64,
+    vector: &'a [f64],
+    product: &'a mut [f64],
+}
+
+impl HessianProduct<'_> {
+    fn add(&mut self, row: usize, column: usize, block: &Matrix3<f64>) {
+        let v = Vector3::from_column_slice(&self.vector[3 * column..3 * column + 3]);
+        if v == Vector3::zeros() {
+            return;
+        }
+        let product = self.scale * block * v;
+        for k in 0..3 {
+            self.product[3 * row + k] += product[k];
+        }
+    }
+}
+
+impl HessianSink for HessianProduct<'_> {
+    fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>) {
+        self.add(v.index(), v.index(), block);
+    }
+
+    fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>) {
+        let [a, b] = self.edges[e.index()];
+        self.add(a, b, block);
+        self.add(b, a, &block.transpose());
+    }
+
+    fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
+        self.add(a.index(), b.index(), block);
+        self.add(b.index(), a.index(), &block.transpose());
+    }
+}
+
+/// Largest part of a displacement of the iterate, at most one, that is proven to bring nothing into contact and to
+/// stay within the limit of the strain, see [`Iterate::safe_fraction`].
+fn safe_fraction(iterate: &mut Iterate, problem: &mut StepProblem<'_>, dx: &[f64]) -> f64 {
+    let within_limit = problem.model.fraction_within_limit(iterate.x(), dx);
+    within_limit.min(iterate.safe_fraction(problem.contact_mut(), dx))
 }
 
 /// The augmented Lagrangian at an iterate, and what its parts say about round-off.
@@ -202,6 +248,9 @@ impl Lagrangian {
         let (vertex_scale, vertex_squares) = self.vertex_rows.scales(size);
         rod_scale += vertex_scale;
         squares += vertex_squares;
+        if let Some(elastic) = model.elastic_sheet() {
+            squares += h * h * elastic.round_off(size);
+        }
         let mut energy = model.potential_energy(t, x);
         if let Some(terms) = self.iterate.terms(problem.contact()) {
             energy += terms.energy();
@@ -300,6 +349,27 @@ impl Lagrangian {
             for k in 0..3 {
                 self.gradient[3 * end + k] -= change[k];
             }
+        }
+        self.add_potential_drive(problem);
+    }
+
+    /// Adds what the potentials change the gradient by along the motions to come of pins, to first order.
+    fn add_potential_drive(&mut self, problem: &StepProblem<'_>) {
+        let model = problem.model;
+        self.weighted.fill(0.0);
+        for v in model.moving_pins() {
+            for i in 3 * v..3 * v + 3 {
+                self.weighted[i] = self.end[i] - self.iterate.x()[i];
+            }
+        }
+        let mut product = HessianProduct {
+            edges: model.rods().edges(),
+            scale: problem.h * problem.h,
+            vector: &self.weighted,
+            product: &mut self.gradient,
+        };
+        for potential in model.potentials() {
+            potential.add_hessian(problem.t(), self.iterate.x(), &mut product);
         }
     }
 
@@ -456,14 +526,13 @@ impl Lagrangian {
                 self.dx[i] = x[i] - self.end[i];
             }
         }
-        if !problem.has_contact() {
+        if !problem.is_bounded() {
             return 1.0;
         }
         for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
             *w = -d;
         }
-        self.iterate
-            .safe_fraction(problem.contact_mut(), &self.weighted)
+        safe_fraction(&mut self.iterate, problem, &self.weighted)
     }
 
     /// Puts the iterate at the part `length` of the step `-dx` from the start of the line search.
@@ -486,16 +555,16 @@ impl Lagrangian {
         self.iterate.advance_bodies(part);
     }
 
-    /// Puts the iterate where inertia alone would take the sheet, unless contact is in the way, and pins and
+    /// Puts the iterate where inertia alone would take the sheet, unless contact or the limit of the strain is in the way, and pins and
     /// bodies to the ends of their motions.
     pub(super) fn predict(&mut self, problem: &mut StepProblem<'_>) {
         self.start.copy_from_slice(problem.prediction);
         problem.model.place_pins(problem.t(), &mut self.start);
-        if problem.has_contact() {
+        if problem.is_bounded() {
             for ((d, x), x0) in self.dx.iter_mut().zip(&self.start).zip(self.iterate.x()) {
                 *d = x - x0;
             }
-            if self.iterate.safe_fraction(problem.contact_mut(), &self.dx) < 1.0 {
+            if safe_fraction(&mut self.iterate, problem, &self.dx) < 1.0 {
                 return;
             }
             self.iterate.advance_bodies(1.0);
@@ -525,7 +594,7 @@ impl Lagrangian {
             *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
-        let part = self.iterate.safe_fraction(problem.contact_mut(), &self.dx);
+        let part = safe_fraction(&mut self.iterate, problem, &self.dx);
         for (x, d) in self.iterate.x_mut().iter_mut().zip(&self.dx) {
             *x += part * d;
         }

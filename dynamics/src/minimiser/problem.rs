@@ -56,6 +56,12 @@ impl<'a> StepProblem<'a> {
         self.contact.is_some()
     }
 
+    /// Whether displacements are bounded: by contact or by a limit of the strain. Then pins in motion start where
+    /// they were, and advance with the iterates.
+    pub(crate) fn is_bounded(&self) -> bool {
+        self.has_contact() || self.model.has_strain_limit()
+    }
+
     pub(crate) fn contact(&self) -> Option<&StepContact<'a>> {
         self.contact.as_ref()
     }

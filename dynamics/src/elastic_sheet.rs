@@ -1,0 +1,275 @@
+//! A sheet that stretches as its material does, up to a limit.
+
+mod face;
+mod limit;
+mod load;
+#[cfg(test)]
+mod tests;
+
+use crate::{HessianSink, Potential};
+use face::Face;
+use isosheet_mesh::wording::given;
+use isosheet_mesh::{Advice, FaceId, Sheet};
+use limit::StrainLimit;
+pub(crate) use load::strain_barrier_at_start;
+
+/// Why an elastic sheet cannot be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ElasticSheetError {
+    /// The stiffness is not positive or not finite.
+    #[error("the membrane stiffness is {stiffness} N/m", stiffness = given(*stiffness))]
+    Stiffness {
+        /// The stiffness given, N/m.
+        stiffness: f64,
+    },
+    /// Poisson's ratio is out of range.
+    #[error("Poisson's ratio is {ratio}", ratio = given(*ratio))]
+    Poisson {
+        /// The ratio given.
+        ratio: f64,
+    },
+    /// The flexural rigidity is negative or not finite.
+    #[error("the flexural rigidity is {rigidity} N m", rigidity = given(*rigidity))]
+    Rigidity {
+        /// The rigidity given, N m.
+        rigidity: f64,
+    },
+    /// The limit of the strain is not a positive number below one half.
+    #[error("the limit of the strain is {limit}", limit = given(*limit))]
+    Limit {
+        /// The limit given.
+        limit: f64,
+    },
+    /// A face has no area at rest, so that it has no strain.
+    #[error("{face} has the area {area} m2 at rest", area = given(*area))]
+    Face {
+        /// The face.
+        face: FaceId,
+        /// Its area at rest, m2.
+        area: f64,
+    },
+}
+
+impl Advice for ElasticSheetError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Stiffness { .. } => Some("give a finite one above 0"),
+            Self::Poisson { .. } => Some("give a value from 0 to 0.5"),
+            Self::Rigidity { .. } => Some("give a finite one of at least 0"),
+            Self::Limit { .. } => Some("give a value above 0 and below 0.5, for instance 0.01"),
+            Self::Face { .. } => Some("remove the face, or mend the mesh"),
+        }
+    }
+}
+
+/// How many times the flexural rigidity over the square of the edge lengths the stiffness of a face may be: `C`
+/// in [`ElasticSheet::softened`].
+const SOFTENING: f64 = 2000.0;
+
+/// The elasticity of a sheet in its plane, with a limit of the strain. In place of rigid rods
+/// ([`SheetModel::with_elastic_sheet`](crate::SheetModel::with_elastic_sheet)) it makes an everyday sheet of
+/// paper, metal, film or cloth: one that bends in every direction on any mesh, and never stretches beyond the
+/// limit.
+///
+/// The energy is that of St. Venant and Kirchhoff in plane stress, one constant strain for each face, and a
+/// barrier at the limit,
+///
+/// ```text
+/// V(x) = sum_T A_T { K_T/2 [ (1 - nu) |E_T|^2 + nu (tr E_T)^2 ] + kappa b(|E_T| / m) },
+/// K_T = k_T / (1 - nu^2),
+/// ```
+///
+/// with the rest areas `A_T`, Green's strain `E_T` of the face and its Frobenius norm `|E_T|`, the membrane
+/// stiffness `k_T` (newtons per metre), Poisson's ratio `nu` and the limit `m`. Green's strain is linear in the
+/// length errors of the three edges `c_e = (|x_a - x_b|^2 - l_e^2) / 2`: for the vector `e` of an edge at rest,
+/// `e^T E_T e = c_e`.
+///
+/// *Limit.* With `p = (4 |E|^2 / m^2 - 1) / 3` the barrier is `b = -p^2 ln(1 - p)` for `0 < p < 1`: zero up to
+/// half the limit, twice continuously differentiable, convex in the strain and infinite at the limit. The norm
+/// bounds both principal strains and the strain of every edge, `|c_e| <= m l_e^2`. As with contact, each
+/// displacement is cut to a part that is proven to stay within the limit, so that no accepted step is beyond it. The
+/// stiffness `kappa` of the barrier (joules per square metre) is set where a simulation starts, from the weight
+/// and the kinetic energy of the sheet.
+///
+/// *Stiffness.* A stiff membrane locks on coarse meshes: bends that the mesh cannot follow by folding stretch
+/// the sheet. With the flexural rigidity `D` of the sheet, [`ElasticSheet::softened`] lowers the stiffness of
+/// each face to what its size can bear.
+///
+/// A strain limit by barrier: M. Li, D. M. Kaufman and C. Jiang, "Codimensional incremental potential contact",
+/// ACM Trans. Graph. 40(4), 2021, Sec. 5.
+#[derive(Debug, Clone)]
+pub struct ElasticSheet {
+    faces: Vec<Face>,
+    poisson: f64,
+    /// Young's modulus times thickness of the material, N/m.
+    stiffness: f64,
+    limit: StrainLimit,
+}
+
+impl ElasticSheet {
+    /// The limit of the strain unless another is asked for.
+    pub const LIMIT: f64 = 0.01;
+
+    /// A sheet that is at rest in the shape of `sheet`, with the `stiffness` `E h` (Young's modulus times
+    /// thickness, newtons per metre; office paper 3e5), Poisson's ratio and the limit [`ElasticSheet::LIMIT`].
+    ///
+    /// # Errors
+    /// [`ElasticSheetError`].
+    pub fn new(sheet: &Sheet, stiffness: f64, poisson: f64) -> Result<Self, ElasticSheetError> {
+        if !(stiffness.is_finite() && stiffness > 0.0) {
+            return Err(ElasticSheetError::Stiffness { stiffness });
+        }
+        if !(0.0..=0.5).contains(&poisson) {
+            return Err(ElasticSheetError::Poisson { ratio: poisson });
+        }
+        let face = |face: FaceId| {
+            let area = sheet.face_areas()[face.index()];
+            Face::new(sheet, face).ok_or(ElasticSheetError::Face { face, area })
+        };
+        let faces = sheet.topology().face_ids().map(face);
+        let mut new = Self {
+            faces: faces.collect::<Result<_, _>>()?,
+            poisson,
+            stiffness,
+            limit: StrainLimit::new(Self::LIMIT),
+        };
+        for face in &mut new.faces {
+            face.set_stiffness(stiffness, poisson);
+        }
+        Ok(new)
+    }
+
+    /// With faces as stiff as they can be without locking: `k_T = min(E h, C D / h_T^2)`, with the flexural
+    /// rigidity `rigidity` of the sheet `D` (newton metres), the mean square `h_T^2` of the edge lengths of the
+    /// face, and `C` = 2000. Fine meshes have the stiffness of the material; on coarse ones the sheet is softer
+    /// up to half the limit of its strain. A sheet without bending stiffness is not softened.
+    ///
+    /// # Errors
+    /// [`ElasticSheetError::Rigidity`].
+    pub fn softened(mut self, rigidity: f64) -> Result<Self, ElasticSheetError> {
+        if !(rigidity.is_finite() && rigidity >= 0.0) {
+            return Err(ElasticSheetError::Rigidity { rigidity });
+        }
+        if rigidity > 0.0 {
+            for face in &mut self.faces {
+                let bearable = SOFTENING * rigidity / face.mean_squared_length();
+                face.set_stiffness(self.stiffness.min(bearable), self.poisson);
+            }
+        }
+        Ok(self)
+    }
+
+    /// With another limit of the strain, a number above 0 and below 0.5.
+    ///
+    /// # Errors
+    /// [`ElasticSheetError::Limit`].
+    pub fn with_limit(mut self, limit: f64) -> Result<Self, ElasticSheetError> {
+        if !(limit > 0.0 && limit < 0.5) {
+            return Err(ElasticSheetError::Limit { limit });
+        }
+        self.limit = StrainLimit::new(limit);
+        Ok(self)
+    }
+
+    /// The limit of the strain.
+    pub fn limit(&self) -> f64 {
+        self.limit.limit()
+    }
+
+    /// The stiffness of the material, `E h`, newtons per metre.
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    /// The stiffness `k_T` of each face, newtons per metre: that of the material, or less
+    /// ([`ElasticSheet::softened`]).
+    pub fn face_stiffnesses(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
+        self.faces.iter().map(Face::stiffness)
+    }
+
+    /// The norm `|E_T|` of the strain of each face at positions `x` (`3V`, metres).
+    pub fn strains<'a>(&'a self, x: &'a [f64]) -> impl ExactSizeIterator<Item = f64> + 'a {
+        self.faces.iter().map(|face| face.at(x).norm())
+    }
+
+    /// The elastic energy of each face at positions `x` (`3V`, metres), joules, with that of the barrier; infinite
+    /// beyond the limit.
+    pub fn face_energies<'a>(&'a self, x: &'a [f64]) -> impl ExactSizeIterator<Item = f64> + 'a {
+        self.faces
+            .iter()
+            .map(|face| face.energy(&face.at(x), &self.limit))
+    }
+
+    /// The face with the largest strain, and that strain, where it is not below the limit.
+    pub fn beyond_limit(&self, x: &[f64]) -> Option<(FaceId, f64)> {
+        let strains = self.strains(x).enumerate();
+        // (Strains that are not numbers are beyond it, too.)
+        let worst = strains.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let is_within = worst.1 < self.limit();
+        (!is_within).then_some((FaceId(worst.0 as u32), worst.1))
+    }
+
+    /// Sets the stiffness `kappa` of the barrier, joules per square metre.
+    pub(crate) fn set_barrier(&mut self, kappa: f64) {
+        self.limit.set_stiffness(kappa);
+    }
+
+    /// The stiffness `kappa` of the barrier, joules per square metre; zero before a simulation has started.
+    pub fn barrier(&self) -> f64 {
+        self.limit.stiffness()
+    }
+
+    /// Size of the round-off in the energy where the coordinates are of the given size (metres), joules: what the
+    /// round-off of positions makes of a sheet without strains.
+    pub(crate) fn round_off(&self, size: f64) -> f64 {
+        self.faces.iter().map(|face| face.round_off(size)).sum()
+    }
+
+    /// Area at rest, square metres.
+    pub(crate) fn area(&self) -> f64 {
+        self.faces.iter().map(Face::area).sum()
+    }
+
+    /// Number of faces that the sheet was built for.
+    pub(crate) fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Largest part of the displacement `dx` (`3V`, metres), at most one, along which every face keeps a part of
+    /// its distance from the limit.
+    pub(crate) fn safe_fraction(&self, x: &[f64], dx: &[f64]) -> f64 {
+        let limit = self.limit();
+        let cut = |part: f64, face: &Face| face.safe_part(x, dx, limit, part);
+        self.faces.iter().fold(1.0, cut)
+    }
+}
+
+impl Potential for ElasticSheet {
+    fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+        self.face_energies(x).sum()
+    }
+
+    fn add_gradient(&self, _t: f64, x: &[f64], gradient: &mut [f64]) {
+        for face in &self.faces {
+            face.add_gradient(&face.at(x), &self.limit, gradient);
+        }
+    }
+
+    fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+        for face in &self.faces {
+            face.add_hessian(&face.at(x), &self.limit, |density| density, hessian);
+        }
+    }
+
+    /// With the curvature of edges under tension alone.
+    fn add_semidefinite_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
+        for face in &self.faces {
+            face.add_hessian(
+                &face.at(x),
+                &self.limit,
+                |density| density.max(0.0),
+                hessian,
+            );
+        }
+    }
+}

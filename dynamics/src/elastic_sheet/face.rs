@@ -1,0 +1,260 @@
+//! One face of an elastic sheet.
+
+use super::limit::StrainLimit;
+use crate::HessianSink;
+use crate::constraint::rows::point;
+use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
+use nalgebra::{Matrix3, Vector2, Vector3};
+
+/// A face with one constant strain.
+#[derive(Debug, Clone)]
+pub(super) struct Face {
+    edges: [EdgeId; 3],
+    /// First and second end of each edge.
+    ends: [[VertexId; 2]; 3],
+    squared_lengths: [f64; 3],
+    /// Rest area, m2.
+    area: f64,
+    /// The components `(E_11, sqrt(2) E_12, E_22)` of Green's strain, whose Euclidean norm is that of the strain,
+    /// by the length errors of the edges; per square metre.
+    strains: Matrix3<f64>,
+    /// `k_T`, N/m.
+    stiffness: f64,
+    /// `V_T = c^T law c / 2` without the barrier, newtons per cubic metre.
+    law: Matrix3<f64>,
+}
+
+/// The state of a face.
+pub(super) struct Strained {
+    /// Edge vectors, from the second to the first end.
+    vectors: [Vector3<f64>; 3],
+    /// Length errors `c`, m2.
+    errors: Vector3<f64>,
+    /// The strain by the components of [`Face::strains`].
+    strain: Vector3<f64>,
+}
+
+impl Strained {
+    /// The Frobenius norm of the strain.
+    pub(super) fn norm(&self) -> f64 {
+        self.strain.norm()
+    }
+}
+
+/// Part of its distance from the limit that a face keeps in one displacement, at least.
+const KEPT: f64 = 0.1;
+
+/// The part of a displacement that is safe is found up to this part of itself.
+const BISECTION: f64 = 0.02;
+
+/// Parts of a displacement below this count as zero.
+const SMALLEST_PART: f64 = 1e-12;
+
+impl Face {
+    /// Without stiffness; nothing if the face has no area.
+    pub(super) fn new(sheet: &Sheet, face: FaceId) -> Option<Self> {
+        let topology = sheet.topology();
+        let edges = topology.face_edges(face);
+        let lengths = edges.map(|e| sheet.lengths()[e.index()]);
+        let area = sheet.face_areas()[face.index()];
+        let [a, b, c] = lengths;
+        // The edges as vectors that close.
+        let along = (a * a + b * b - c * c) / (2.0 * a);
+        let first = Vector2::new(a, 0.0);
+        let second = Vector2::new(-along, 2.0 * area / a);
+        let third = -(first + second);
+        // Rows: `e^T E e` by the components of the strain.
+        let row = |e: Vector2<f64>| {
+            Vector3::new(e.x * e.x, std::f64::consts::SQRT_2 * e.x * e.y, e.y * e.y).transpose()
+        };
+        let errors = Matrix3::from_rows(&[row(first), row(second), row(third)]);
+        let strains = errors.try_inverse()?;
+        strains.iter().all(|s| s.is_finite()).then(|| Self {
+            edges,
+            ends: edges.map(|e| topology.edges()[e.index()]),
+            squared_lengths: lengths.map(|l| l * l),
+            area,
+            strains,
+            stiffness: 0.0,
+            law: Matrix3::zeros(),
+        })
+    }
+
+    pub(super) fn set_stiffness(&mut self, stiffness: f64, nu: f64) {
+        self.stiffness = stiffness;
+        let k = self.area * stiffness / (1.0 - nu * nu);
+        let law = k * Matrix3::new(1.0, 0.0, nu, 0.0, 1.0 - nu, 0.0, nu, 0.0, 1.0);
+        self.law = self.strains.transpose() * law * self.strains;
+    }
+
+    pub(super) fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        self.area
+    }
+
+    pub(super) fn mean_squared_length(&self) -> f64 {
+        self.squared_lengths.iter().sum::<f64>() / 3.0
+    }
+
+    pub(super) fn at(&self, x: &[f64]) -> Strained {
+        let vectors = self.ends.map(|[a, b]| point(x, a) - point(x, b));
+        let error = |k: usize| 0.5 * (vectors[k].norm_squared() - self.squared_lengths[k]);
+        let errors = Vector3::new(error(0), error(1), error(2));
+        Strained {
+            strain: self.strains * errors,
+            vectors,
+            errors,
+        }
+    }
+
+    /// Joules; infinite at the limit and beyond.
+    pub(super) fn energy(&self, at: &Strained, limit: &StrainLimit) -> f64 {
+        let elastic = 0.5 * at.errors.dot(&(self.law * at.errors));
+        elastic + self.area * limit.value(at.strain.norm_squared())
+    }
+
+    /// Size of the round-off in the energy of a sheet at rest whose coordinates are of the given size, metres.
+    pub(super) fn round_off(&self, size: f64) -> f64 {
+        let squared = self.mean_squared_length();
+        let error = f64::EPSILON * (squared.sqrt() * size + squared);
+        self.law.trace() * error * error
+    }
+
+    /// The derivatives of the energy by the length errors, newtons per metre.
+    fn densities(&self, at: &Strained, limit: &StrainLimit) -> Vector3<f64> {
+        let [slope, _] = limit.derivatives(at.strain.norm_squared());
+        let barrier = 2.0 * self.area * slope * (self.strains.transpose() * at.strain);
+        self.law * at.errors + barrier
+    }
+
+    pub(super) fn add_gradient(&self, at: &Strained, limit: &StrainLimit, gradient: &mut [f64]) {
+        let densities = self.densities(at, limit);
+        for (k, [a, b]) in self.ends.into_iter().enumerate() {
+            let force = densities[k] * at.vectors[k];
+            for c in 0..3 {
+                gradient[3 * a.index() + c] += force[c];
+                gradient[3 * b.index() + c] -= force[c];
+            }
+        }
+    }
+
+    /// Adds the Hessian; `part` says which part of the force density of an edge counts for its curvature.
+    pub(super) fn add_hessian(
+        &self,
+        at: &Strained,
+        limit: &StrainLimit,
+        part: impl Fn(f64) -> f64,
+        hessian: &mut dyn HessianSink,
+    ) {
+        let [slope, curvature] = limit.derivatives(at.strain.norm_squared());
+        let mut law = self.law;
+        if slope != 0.0 {
+            let along = self.strains.transpose() * at.strain;
+            law += 2.0 * self.area * slope * self.strains.transpose() * self.strains
+                + 4.0 * self.area * curvature * along * along.transpose();
+        }
+        let densities = self.densities(at, limit).map(part);
+        for i in 0..3 {
+            let [a, b] = self.ends[i];
+            let own = densities[i] * Matrix3::identity();
+            for v in [a, b] {
+                hessian.add_vertex(v, &own);
+            }
+            hessian.add_edge(self.edges[i], &-own);
+            for j in 0..3 {
+                let block = law[(i, j)] * at.vectors[i] * at.vectors[j].transpose();
+                self.add_product([i, j], &block, hessian);
+            }
+        }
+    }
+
+    /// Adds the block of the product of the gradients of the length errors of edges `i` and `j`.
+    fn add_product(&self, [i, j]: [usize; 2], block: &Matrix3<f64>, hessian: &mut dyn HessianSink) {
+        for (p, sp) in self.ends[i].into_iter().zip([1.0, -1.0]) {
+            for (q, sq) in self.ends[j].into_iter().zip([1.0, -1.0]) {
+                let signed = sp * sq * block;
+                if p == q {
+                    hessian.add_vertex(p, &signed);
+                    continue;
+                }
+                // Each pair comes twice, once in each order: the one from the first to the second end counts.
+                let edge = (0..3).find(|&k| self.ends[k] == [p, q]);
+                if let Some(k) = edge {
+                    hessian.add_edge(self.edges[k], &signed);
+                }
+            }
+        }
+    }
+
+    /// Largest part of the displacement `dx`, at most `most`, along which the strain keeps its distance from the
+    /// limit but for [`KEPT`] of it.
+    ///
+    /// Along the displacement the square of the norm is a polynomial of degree four. Where its coefficients in
+    /// Bernstein's basis on an interval are below a bound, it is below the bound; otherwise the interval is
+    /// halved.
+    pub(super) fn safe_part(&self, x: &[f64], dx: &[f64], limit: f64, most: f64) -> f64 {
+        let at = self.at(x);
+        let changes = self.ends.map(|[a, b]| point(dx, a) - point(dx, b));
+        let first = Vector3::from_fn(|k, _| at.vectors[k].dot(&changes[k]));
+        let second = Vector3::from_fn(|k, _| 0.5 * changes[k].norm_squared());
+        let (e0, e1, e2) = (at.strain, self.strains * first, self.strains * second);
+        let bound = limit - KEPT * (limit - e0.norm());
+        if e0.norm() + most * (e1.norm() + most * e2.norm()) <= bound {
+            return most;
+        }
+        let powers = [
+            e0.norm_squared() - bound * bound,
+            2.0 * e0.dot(&e1),
+            e1.norm_squared() + 2.0 * e0.dot(&e2),
+            2.0 * e1.dot(&e2),
+            e2.norm_squared(),
+        ];
+        let (mut from, mut to) = (0.0, most);
+        while from < most {
+            if is_negative(&powers, from, to) {
+                from = to;
+                to = most;
+            } else {
+                to = 0.5 * (from + to);
+                if to - from <= BISECTION * from {
+                    break;
+                }
+                if to < SMALLEST_PART {
+                    return 0.0;
+                }
+            }
+        }
+        from
+    }
+}
+
+/// Whether the polynomial with the coefficients `powers` is proven to be negative on the interval.
+fn is_negative(powers: &[f64; 5], from: f64, to: f64) -> bool {
+    /// Binomial coefficients `4 over k`.
+    const OVER: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
+    // Taylor's coefficients at the start of the interval, by repeated synthetic division, in units of its length.
+    let mut taylor = *powers;
+    for k in 0..5 {
+        for i in (k..4).rev() {
+            taylor[i] += from * taylor[i + 1];
+        }
+    }
+    let length = to - from;
+    let mut scale = 1.0;
+    for t in &mut taylor {
+        *t *= scale;
+        scale *= length;
+    }
+    // Bernstein's coefficients: `b_i = sum_j (i over j) / (4 over j) t_j`.
+    (0..5).all(|i| {
+        let (mut over, mut sum) = (1.0, 0.0);
+        for j in 0..=i {
+            sum += over / OVER[j] * taylor[j];
+            over *= (i - j) as f64 / (j + 1) as f64;
+        }
+        sum < 0.0
+    })
+}
