@@ -1,6 +1,7 @@
 //! Torsion springs at the edges: creases that are folded by driven rest angles, and the bending stiffness of
 //! the material.
 
+use crate::constraint::rows::point;
 use crate::profile::{Profile, ProfileError};
 use crate::{HessianSink, Potential};
 use isosheet_mesh::wording::given;
@@ -289,7 +290,7 @@ impl CreaseSprings {
     /// Moments `k (rest - theta)` of the springs at time `t` and positions `x`, newton metres, in the order
     /// given: positive where a spring folds towards a valley.
     pub fn moments(&self, t: f64, x: &[f64]) -> Vec<f64> {
-        let moment = |h: &Hinge| -h.stiffness * h.excess(t, Angle::at(x, &h.vertices).value);
+        let moment = |h: &Hinge| -h.stiffness * h.excess(t, Fold::at(x, &h.vertices).angle());
         self.hinges.iter().map(moment).collect()
     }
 }
@@ -333,46 +334,68 @@ impl Hinge {
     /// `theta - rest`, the short way round.
     fn excess(&self, t: f64, theta: f64) -> f64 {
         let d = theta - self.rest.at(t);
+        if d.abs() <= PI {
+            return d;
+        }
         d - TAU * (d / TAU).round()
     }
 }
 
-/// A fold angle and its derivatives by the two ends and the two opposite vertices.
-struct Angle {
-    value: f64,
-    gradient: [Vector3<f64>; 4],
+/// The two faces at an edge.
+struct Fold {
+    along: Vector3<f64>,
+    to_left: Vector3<f64>,
+    to_right: Vector3<f64>,
+    /// Normals of the left and of the right face, twice their areas long.
+    left: Vector3<f64>,
+    right: Vector3<f64>,
 }
 
-impl Angle {
+impl Fold {
     fn at(x: &[f64], vertices: &[VertexId; 4]) -> Self {
-        let [a, b, l, r] = vertices.map(|v| Vector3::from_column_slice(&x[3 * v.index()..][..3]));
-        let (along, to_l, to_r) = (b - a, l - a, r - a);
-        let (n_l, n_r) = (along.cross(&to_l), to_r.cross(&along));
-        let squared = along.norm_squared();
+        let [a, b, l, r] = vertices;
+        let [a, b, l, r] = [point(x, *a), point(x, *b), point(x, *l), point(x, *r)];
+        let (along, to_left, to_right) = (b - a, l - a, r - a);
+        Self {
+            left: along.cross(&to_left),
+            right: to_right.cross(&along),
+            along,
+            to_left,
+            to_right,
+        }
+    }
+
+    /// The fold angle.
+    fn angle(&self) -> f64 {
+        let sine = self.right.cross(&self.left).dot(&self.along) / self.along.norm();
+        sine.atan2(self.left.dot(&self.right))
+    }
+
+    /// The derivatives of the fold angle by the two ends and the two opposite vertices.
+    fn gradient(&self) -> [Vector3<f64>; 4] {
+        let squared = self.along.norm_squared();
         let length = squared.sqrt();
         // Per unit of height of an opposite vertex the angle grows by the inverse of its distance from the
         // edge.
         let (g_l, g_r) = (
-            n_l * (length / n_l.norm_squared()),
-            n_r * (length / n_r.norm_squared()),
+            self.left * (length / self.left.norm_squared()),
+            self.right * (length / self.right.norm_squared()),
         );
-        let (s_l, s_r) = (to_l.dot(&along) / squared, to_r.dot(&along) / squared);
-        Self {
-            value: (n_r.cross(&n_l).dot(&along) / length).atan2(n_l.dot(&n_r)),
-            gradient: [
-                (s_l - 1.0) * g_l + (s_r - 1.0) * g_r,
-                -s_l * g_l - s_r * g_r,
-                g_l,
-                g_r,
-            ],
-        }
+        let s_l = self.to_left.dot(&self.along) / squared;
+        let s_r = self.to_right.dot(&self.along) / squared;
+        [
+            (s_l - 1.0) * g_l + (s_r - 1.0) * g_r,
+            -s_l * g_l - s_r * g_r,
+            g_l,
+            g_r,
+        ]
     }
 }
 
 impl Potential for CreaseSprings {
     fn energy(&self, t: f64, x: &[f64]) -> f64 {
         let energy = |h: &Hinge| {
-            let excess = h.excess(t, Angle::at(x, &h.vertices).value);
+            let excess = h.excess(t, Fold::at(x, &h.vertices).angle());
             0.5 * h.stiffness * excess * excess
         };
         self.hinges.iter().map(energy).sum()
@@ -380,9 +403,9 @@ impl Potential for CreaseSprings {
 
     fn add_gradient(&self, t: f64, x: &[f64], gradient: &mut [f64]) {
         for h in &self.hinges {
-            let angle = Angle::at(x, &h.vertices);
-            let moment = h.stiffness * h.excess(t, angle.value);
-            for (v, g) in h.vertices.iter().zip(&angle.gradient) {
+            let fold = Fold::at(x, &h.vertices);
+            let moment = h.stiffness * h.excess(t, fold.angle());
+            for (v, g) in h.vertices.iter().zip(&fold.gradient()) {
                 for k in 0..3 {
                     gradient[3 * v.index() + k] += moment * g[k];
                 }
@@ -392,7 +415,7 @@ impl Potential for CreaseSprings {
 
     fn add_hessian(&self, _t: f64, x: &[f64], hessian: &mut dyn HessianSink) {
         for h in &self.hinges {
-            let g = Angle::at(x, &h.vertices).gradient;
+            let g = Fold::at(x, &h.vertices).gradient();
             let block = |i: usize, j: usize| h.stiffness * g[i] * g[j].transpose();
             for (i, &v) in h.vertices.iter().enumerate() {
                 hessian.add_vertex(v, &block(i, i));

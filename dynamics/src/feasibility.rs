@@ -90,7 +90,7 @@ impl<'a> Fit<'a> {
         let m = model.rods().len();
         let mut fit = Self {
             model,
-            matrix: PrimalMatrix::new(model).ok()?,
+            matrix: PrimalMatrix::of_rods(model).ok()?,
             rows: VertexRows::new(model.constraints(), model.constrained_vertices(), STIFFNESS),
             penalty: penalties(model),
             c: vec![0.0; m],

@@ -220,6 +220,7 @@ impl Minimiser {
             }
         }
         self.rod_stiffness = attempt.rod_stiffness();
+        self.lagrangian.matrix.begin();
         self.lagrangian.matrix.reserve(model, attempt.couplings())
     }
 

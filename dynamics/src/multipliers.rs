@@ -17,7 +17,8 @@ use crate::primal::{PrimalMatrix, dot};
 /// The eigenvalues of `R S` lie between 0 and 1, nearly all of them close to 1: the method of multipliers,
 /// `dL = R (c - G dx)`, is one Richardson iteration. Conjugate gradients preconditioned by `R` need about one
 /// iteration, which is one solve with the factorisation at hand, for each eigenvalue that is not close to 1.
-/// These belong to nearly dependent equations. (M. Fortin and R. Glowinski, "Augmented Lagrangian Methods",
+/// These belong to nearly dependent equations. Where `K` is factorised without its far couplings, the corrections
+/// are those of that matrix, which differs from `K` across the rods alone. (M. Fortin and R. Glowinski, "Augmented Lagrangian Methods",
 /// 1983, chapter 2.)
 #[derive(Debug)]
 pub(crate) struct MultiplierSolver {

@@ -73,7 +73,7 @@ impl ProjectionStep {
         let n = model.coordinate_count();
         Ok(Self {
             options,
-            matrix: PrimalMatrix::new(model)?,
+            matrix: PrimalMatrix::of_rods(model)?,
             restoration: Restoration::new(model),
             force: vec![0.0; n],
             applied: vec![0.0; n],

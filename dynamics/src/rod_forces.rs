@@ -79,7 +79,7 @@ pub(crate) fn rod_forces(
 /// Inverse Problems", 1996, Sec. 5.1). Nothing if the memory for the matrix runs out.
 fn least_forces(model: &SheetModel, x: &[f64], given: &[f64]) -> Option<Vec<f64>> {
     let rods = model.rods();
-    let mut matrix = PrimalMatrix::new(model).ok()?;
+    let mut matrix = PrimalMatrix::of_rods(model).ok()?;
     let unit = model.mean_mass() / (FLATTEST_FOLD * FLATTEST_FOLD);
     let axial: Vec<f64> = rods.lengths().iter().map(|l| unit / (l * l)).collect();
     matrix.assemble(model, x, &axial, &vec![0.0; rods.len()]);

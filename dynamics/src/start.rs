@@ -34,7 +34,7 @@ pub fn project_positions(
 ) -> Result<f64, SimulationError> {
     OptionsError::check_range("tolerance", tolerance, 1e-15, 1.0)?;
     check_count(model, x)?;
-    let mut matrix = PrimalMatrix::new(model)?;
+    let mut matrix = PrimalMatrix::of_rods(model)?;
     let mut effort = SolverEffort::default();
     let mut moved = Iterate::without_contact(x.to_vec());
     let strain = Restoration::new(model).positions(

@@ -149,7 +149,7 @@ impl UnassignedMomentum {
         if self.len == 0 {
             return shares;
         }
-        let Ok(mut matrix) = PrimalMatrix::new(model) else {
+        let Ok(mut matrix) = PrimalMatrix::of_rods(model) else {
             return shares;
         };
         let mut rows = VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0);

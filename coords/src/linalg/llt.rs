@@ -117,6 +117,15 @@ impl SparseLlt {
         &mut self.values
     }
 
+    /// Multiplications of a factorisation.
+    pub fn operations(&self) -> f64 {
+        match &self.fronts {
+            Some(fronts) => fronts.operations(),
+            // Without a plan the matrix has hardly any couplings.
+            None => self.factor.len() as f64,
+        }
+    }
+
     /// Number of stored entries of the factor, including the zeros that supernodes pad in.
     pub fn factor_len(&self) -> usize {
         self.factor.len()

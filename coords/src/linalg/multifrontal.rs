@@ -41,6 +41,11 @@ impl Multifrontal {
         })
     }
 
+    /// Multiplications of a factorisation, those of square roots and divisions left out.
+    pub(super) fn operations(&self) -> f64 {
+        self.plan.operations
+    }
+
     /// Sets `factor` to the Cholesky factor of the matrix with the given values. The result does not depend
     /// on the number of threads. (A thread that waits for another one may take up other work of the pool.)
     ///

@@ -209,12 +209,22 @@ impl<'a, 'b, 'w> AugmentedLagrangian<'a, 'b, 'w> {
         let lagrangian = &mut self.minimiser.lagrangian;
         lagrangian.set_gradient(self.problem);
         self.effort.iterations += 1;
-        let (load, part) = (RodLoad::Estimates, HessianPart::Full);
-        let hessian = lagrangian.factorize(self.problem, load, part, self.effort)?;
+        let (load, model) = (RodLoad::Estimates, self.problem.model);
+        let mut part = HessianPart::Full;
+        let (hessian, slope) = loop {
+            let hessian = lagrangian.factorize(self.problem, load, part, self.effort)?;
+            match lagrangian.solve(model, self.effort) {
+                Ok(slope) => break (hessian, slope),
+                Err(_) if part == HessianPart::Full => part = HessianPart::PositiveSemidefinite,
+                Err(source) => {
+                    let t = self.problem.state.t;
+                    return Err(StepError::Linalg { t, source });
+                }
+            }
+        };
         if hessian == Definiteness::Modified {
             self.outcome = self.outcome.max(StepOutcome::Globalised);
         }
-        let slope = lagrangian.solve(self.problem.model);
         if slope.is_finite() {
             Ok((slope, hessian))
         } else {

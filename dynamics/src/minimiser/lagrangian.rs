@@ -64,6 +64,11 @@ pub(crate) struct Lagrangian {
     pub(super) gradient: Vec<f64>,
     /// Conservative forces without contact at the last gradient, newtons.
     pub(super) force: Vec<f64>,
+    /// Where these were evaluated.
+    force_at: Evaluated,
+    /// Energy of the potentials at the last evaluation, joules.
+    energy: f64,
+    energy_at: Evaluated,
     /// Solution of the last linear system: minus the search direction.
     pub(super) dx: Vec<f64>,
     /// Where the line search starts.
@@ -125,6 +130,34 @@ fn safe_fraction(iterate: &mut Iterate, problem: &mut StepProblem<'_>, dx: &[f64
     within_limit.min(iterate.safe_fraction(problem.contact_mut(), dx))
 }
 
+/// Time and positions at which potentials were evaluated. Multipliers change more often than positions.
+struct Evaluated {
+    t: f64,
+    x: Vec<f64>,
+}
+
+impl Evaluated {
+    /// Nowhere.
+    fn new(n: usize) -> Self {
+        let (t, x) = (f64::NAN, vec![0.0; n]);
+        Self { t, x }
+    }
+
+    /// Whether that was somewhere else; from now on it is here.
+    fn moves_to(&mut self, t: f64, x: &[f64]) -> bool {
+        if self.t == t && self.x == x {
+            return false;
+        }
+        self.t = t;
+        self.x.copy_from_slice(x);
+        true
+    }
+
+    fn forget(&mut self) {
+        self.t = f64::NAN;
+    }
+}
+
 /// The augmented Lagrangian at an iterate, and what its parts say about round-off.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Merit {
@@ -178,6 +211,9 @@ impl Lagrangian {
             density: vec![0.0; edges],
             gradient: vec![0.0; n],
             force: vec![0.0; n],
+            force_at: Evaluated::new(n),
+            energy: 0.0,
+            energy_at: Evaluated::new(n),
             dx: vec![0.0; n],
             start: vec![0.0; n],
             end: vec![0.0; n],
@@ -193,6 +229,8 @@ impl Lagrangian {
     /// Puts the iterate, the ends of prescribed motions and the bodies where a step starts.
     pub(super) fn begin(&mut self, problem: &mut StepProblem<'_>) {
         let (state, h) = (problem.state, problem.span);
+        self.force_at.forget();
+        self.energy_at.forget();
         self.end.copy_from_slice(&state.x);
         problem.model.place_pins(problem.t(), &mut self.end);
         let span = StepSpan { t0: state.t, h };
@@ -251,7 +289,10 @@ impl Lagrangian {
         if let Some(elastic) = model.elastic_sheet() {
             squares += h * h * elastic.round_off(size);
         }
-        let mut energy = model.potential_energy(t, x);
+        if self.energy_at.moves_to(t, x) {
+            self.energy = model.potential_energy(t, x);
+        }
+        let mut energy = self.energy;
         if let Some(terms) = self.iterate.terms(problem.contact()) {
             energy += terms.energy();
         }
@@ -286,7 +327,9 @@ impl Lagrangian {
             self.difference[i] = x[i] - problem.prediction[i];
         }
         model.apply_mass(&self.difference, &mut self.weighted);
-        model.potential_force(t, x, &mut self.force);
+        if self.force_at.moves_to(t, x) {
+            model.potential_force(t, x, &mut self.force);
+        }
         for i in 0..x.len() {
             self.gradient[i] = self.weighted[i] - h * h * (self.force[i] + problem.applied[i]);
         }
@@ -469,9 +512,17 @@ impl Lagrangian {
     }
 
     /// Solves for minus the search direction; the slope of the value along the search direction.
-    pub(super) fn solve(&mut self, model: &SheetModel) -> f64 {
-        self.matrix.solve(model, &self.gradient, &mut self.dx);
-        self.slope()
+    ///
+    /// # Errors
+    /// [`LinalgError::NotPositiveDefinite`] if the Hessian turns out not to be positive definite.
+    pub(super) fn solve(
+        &mut self,
+        model: &SheetModel,
+        effort: &mut SolverEffort<'_>,
+    ) -> Result<f64, LinalgError> {
+        self.matrix
+            .solve_whole(model, &self.gradient, &mut self.dx, effort)?;
+        Ok(self.slope())
     }
 
     /// Keeps the multipliers of the isometry, for [`Lagrangian::restore_multipliers`].
@@ -613,9 +664,10 @@ impl Lagrangian {
         problem: &mut StepProblem<'_>,
         seed: u64,
         least: f64,
+        effort: &mut SolverEffort<'_>,
     ) -> bool {
         let model = problem.model;
-        if !self.find_negative_curvature(model, seed) {
+        if !self.find_negative_curvature(model, seed, effort) {
             return false;
         }
         let before = self.merit(problem);
@@ -641,7 +693,12 @@ impl Lagrangian {
     }
 
     /// Sets `dx`, of largest component one, to a direction of negative curvature; whether there is one.
-    fn find_negative_curvature(&mut self, model: &SheetModel, seed: u64) -> bool {
+    fn find_negative_curvature(
+        &mut self,
+        model: &SheetModel,
+        seed: u64,
+        effort: &mut SolverEffort<'_>,
+    ) -> bool {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         for d in &mut self.dx {
             *d = rng.random_range(-1.0..=1.0);
@@ -651,7 +708,10 @@ impl Lagrangian {
         for _ in 0..CURVATURE_ITERATIONS {
             self.apply_pressure(model);
             self.difference.copy_from_slice(&self.weighted);
-            self.matrix.solve(model, &self.difference, &mut self.dx);
+            let (b, dx) = (&self.difference, &mut self.dx);
+            if self.matrix.solve_whole(model, b, dx, effort).is_err() {
+                return false;
+            }
             let curvature = dot(&self.dx, &self.difference);
             // Where no rod is under pressure there is no direction.
             if !(curvature.is_finite() && curvature > 0.0) {

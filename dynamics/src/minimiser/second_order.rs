@@ -2,6 +2,7 @@
 
 use super::lagrangian::Lagrangian;
 use super::problem::StepProblem;
+use crate::effort::SolverEffort;
 
 /// Part of the slope that a corrected step has to keep, so that it still descends.
 const KEPT_SLOPE: f64 = 0.1;
@@ -25,7 +26,12 @@ impl Lagrangian {
     /// which takes a solve but no factorisation. (Nocedal and Wright, "Numerical Optimization", 2006, Sec.
     /// 15.6. A disk of 688 vertices on a ball needs 12.2 factorisations a step with the correction and 16.0
     /// without; a second pass changes nothing.)
-    pub(super) fn correct_gaps(&mut self, problem: &mut StepProblem<'_>, limit: f64) -> f64 {
+    pub(super) fn correct_gaps(
+        &mut self,
+        problem: &mut StepProblem<'_>,
+        limit: f64,
+        effort: &mut SolverEffort<'_>,
+    ) -> f64 {
         let slope = self.slope();
         self.uncorrected.copy_from_slice(&self.dx);
         for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
@@ -40,8 +46,10 @@ impl Lagrangian {
         }
         let model = problem.model;
         model.clear_pinned(&mut self.difference);
-        self.matrix
-            .solve(model, &self.difference, &mut self.weighted);
+        let (b, change) = (&self.difference, &mut self.weighted);
+        if self.matrix.solve_whole(model, b, change, effort).is_err() {
+            return limit;
+        }
         for (d, change) in self.dx.iter_mut().zip(&self.weighted) {
             *d -= change;
         }

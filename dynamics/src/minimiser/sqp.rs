@@ -301,16 +301,28 @@ impl<'a, 'b, 'w> Sqp<'a, 'b, 'w> {
                 self.hessian = HessianPart::PositiveSemidefinite;
             }
             lagrangian.keep_multipliers();
-            let mut violation = 0.0;
+            let mut violation = None;
             for _ in 0..CONSTRAINT_PASSES {
                 lagrangian.set_gradient(self.problem);
-                lagrangian.solve(model);
-                violation = lagrangian.improve_multipliers(model, goal);
+                if lagrangian.solve(model, self.effort).is_err() {
+                    violation = None;
+                    break;
+                }
+                violation = Some(lagrangian.improve_multipliers(model, goal));
                 let [change, largest] = lagrangian.vertex_rows.update_after(&lagrangian.dx);
                 if change <= MULTIPLIERS_SETTLED * largest {
                     break;
                 }
             }
+            let Some(violation) = violation else {
+                // The Hessian turned out not to be positive definite.
+                if self.hessian == HessianPart::PositiveSemidefinite {
+                    return None;
+                }
+                self.hessian = HessianPart::PositiveSemidefinite;
+                lagrangian.restore_multipliers();
+                continue;
+            };
             if violation <= goal.violation || *rod_stiffness == STIFFNESS[1] {
                 return Some(hessian);
             }
@@ -345,7 +357,7 @@ impl<'a, 'b, 'w> Sqp<'a, 'b, 'w> {
             return limit;
         }
         let lagrangian = &mut self.minimiser.lagrangian;
-        let limit = lagrangian.correct_gaps(self.problem, limit);
+        let limit = lagrangian.correct_gaps(self.problem, limit, self.effort);
         direction.slope = lagrangian.slope();
         limit
     }
@@ -428,7 +440,8 @@ impl<'a, 'b, 'w> Sqp<'a, 'b, 'w> {
             ..
         } = &mut *self.minimiser;
         let least = options.tolerance * direction.before.inertia;
-        if may_be_saddle && lagrangian.leave_saddle(self.problem, options.seed, least) {
+        if may_be_saddle && lagrangian.leave_saddle(self.problem, options.seed, least, self.effort)
+        {
             self.is_perturbed = true;
         } else if is_renewed {
             self.friction_updates += 1;

@@ -1,5 +1,6 @@
 //! The pieces of the minimiser, each against something independent of it.
 
+use super::Minimiser;
 use super::lagrangian::{Definiteness, Lagrangian, RodLoad};
 use super::problem::{StepEnd, StepProblem};
 use crate::constraint::rows::HessianPart;
@@ -7,7 +8,7 @@ use crate::effort::SolverEffort;
 use crate::iterate::Iterate;
 use crate::primal::PrimalMatrix;
 use crate::restoration::{FirstMatrix, Restoration, RestorationGoal};
-use crate::{CreaseSprings, SheetModel, State};
+use crate::{CreaseSprings, ImplicitOptions, Membrane, PlateBending, SheetModel, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 
 const H: f64 = 0.01;
@@ -179,7 +180,10 @@ fn a_saddle_is_left_downwards_and_a_minimum_is_not() {
             "pressure {pressure}"
         );
         let start = lagrangian.iterate.x().to_vec();
-        assert_eq!(lagrangian.leave_saddle(&mut problem, 0, 0.0), leaves);
+        assert_eq!(
+            lagrangian.leave_saddle(&mut problem, 0, 0.0, &mut effort),
+            leaves
+        );
         let after = lagrangian.merit(&problem).value;
         assert_eq!(after < before, leaves, "{before} {after}");
         assert_eq!(lagrangian.iterate.x() != start, leaves);
@@ -241,4 +245,65 @@ fn a_restoration_is_a_projection_to_first_order() {
         left.push(crate::primal::dot(&momentum, &tangent).abs());
     }
     assert!(left[1] < 0.3 * left[0], "{left:?}");
+}
+
+/// A step of a hanging sheet with bending stiffness ends at the same minimum whether the whole matrix is factorised or
+/// far couplings are left to conjugate gradients.
+#[test]
+fn the_minimum_does_not_depend_on_what_is_factorised() {
+    let sheet = generate::isotropic_square(3, 1.0).unwrap();
+    let sheet = sheet
+        .map_positions(|[x, y, _]| [x, y, 0.05 * (3.0 * x).sin() * (2.0 * y).cos()])
+        .unwrap();
+    let base = || {
+        SheetModel::new(&sheet, 0.1, MassKind::Lumped)
+            .unwrap()
+            .with_gravity()
+            .with_pins(&[VertexId(0), VertexId(1)])
+            .unwrap()
+    };
+    let plate = || PlateBending::new(&sheet, 5e-4).unwrap();
+    let models = [
+        base().with_potential(plate()),
+        base().with_potential(CreaseSprings::bending(&sheet, 5e-4).unwrap()),
+        base()
+            .with_membrane(Membrane::new(&sheet, 3e3, 0.3).unwrap())
+            .with_potential(plate()),
+    ];
+    for model in &models {
+        let state = State::at_rest(sheet.positions().to_vec());
+        let options = ImplicitOptions {
+            tolerance: 1e-12,
+            ..ImplicitOptions::default()
+        };
+        let minimise = |is_iterative: bool| {
+            let mut minimiser = Minimiser::new(model, options.clone()).unwrap();
+            if !is_iterative {
+                minimiser.lagrangian.matrix.leave_iteration();
+            }
+            let problem = StepProblem {
+                model,
+                contact: None,
+                state: &state,
+                span: H,
+                h: H,
+                prediction: &state.x,
+                applied: &vec![0.0; state.x.len()],
+                end: StepEnd::Minimum,
+            };
+            let mut effort = SolverEffort::default();
+            minimiser.minimise(problem, &mut effort).unwrap();
+            assert_eq!(minimiser.lagrangian.matrix.is_iterative(), is_iterative);
+            (minimiser.x().to_vec(), effort.factorisations)
+        };
+        let (iterative, count) = minimise(true);
+        let (direct, whole_count) = minimise(false);
+        assert!(count <= 2 * whole_count + 2, "{count} and {whole_count}");
+        let distance = |a: &[f64], b: &[f64]| {
+            let d: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+            model.kinetic_energy(&d).sqrt()
+        };
+        let (apart, moved) = (distance(&iterative, &direct), distance(&direct, &state.x));
+        assert!(apart < 1e-5 * moved, "{apart} of {moved}");
+    }
 }

@@ -37,9 +37,11 @@ impl Stencil<'_> {
             return Matrix3::zeros();
         };
         let origin = point(x, VertexId(first));
-        self.clone()
-            .map(|(v, w)| (point(x, VertexId(v as u32)) - origin) * w.transpose())
-            .sum()
+        let mut sum = Matrix3::zeros();
+        for (v, w) in self.vertices.iter().zip(self.weights) {
+            sum.ger(1.0, &(point(x, VertexId(*v)) - origin), w, 1.0);
+        }
+        sum
     }
 }
 
