@@ -94,6 +94,7 @@ mod isometry_rows;
 mod iterate;
 mod layout;
 mod load;
+mod load_scale;
 mod membrane;
 mod method;
 mod minimiser;

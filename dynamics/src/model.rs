@@ -397,6 +397,11 @@ impl SheetModel {
         self.potentials.iter().map(Box::as_ref).chain(elastic)
     }
 
+    /// The potentials without that of an elastic sheet.
+    pub(crate) fn outer_potentials(&self) -> impl Iterator<Item = &dyn Potential> {
+        self.potentials.iter().map(Box::as_ref)
+    }
+
     /// Sets the stiffness of the barrier of an elastic sheet, joules per square metre.
     pub(crate) fn set_strain_barrier(&mut self, stiffness: f64) {
         if let Some(elastic) = &mut self.elastic {

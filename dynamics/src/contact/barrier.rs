@@ -1,7 +1,8 @@
 //! The barrier as a function of the gap.
 
 use super::ContactLaws;
-use crate::{PAPER_GRAVITY, SheetModel, State};
+use crate::load_scale::{LoadScale, constant_acceleration, diameter};
+use crate::{SheetModel, State};
 use isosheet_mesh::Advice;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -21,8 +22,9 @@ pub enum Stiffness {
     /// |b'(1/2)|`, the slope taken by the gap over `d_hat`; one that carries its own vertex only keeps
     /// 95 %. A draped sheet hangs on a few contacts. Ten times less and they close to where the
     /// barrier is steep, ten times more and light contacts become hard: on draped
-    /// sheets of 81 and 289 vertices either costs up to five times the Newton iterations. The acceleration is
-    /// that of gravity, 9.8 m/s2, if there are no potentials.
+    /// sheets of 81 and 289 vertices either costs up to five times the Newton iterations. Without a constant force
+    /// such as weight the acceleration is at least that of the paper's gravity, 9.8 m/s2, and at least the one that
+    /// stops the sheet from its largest speed within its own size.
     Automatic,
     /// A given value, joules.
     Joules(f64),
@@ -105,12 +107,7 @@ impl BarrierPotential {
         match laws.stiffness {
             Stiffness::Joules(kappa) => Self::new(laws.activation, kappa),
             Stiffness::Automatic => {
-                let own = largest_acceleration(model, state);
-                let acceleration = if own > 0.0 && own.is_finite() {
-                    own
-                } else {
-                    Vector3::from(PAPER_GRAVITY).norm()
-                };
+                let acceleration = load(model, state);
                 let unit = Self::new(laws.activation, 1.0)?;
                 let force = unit.force(REST * laws.activation);
                 Self::new(
@@ -176,11 +173,30 @@ impl BarrierPotential {
     }
 }
 
-/// Largest acceleration of a vertex by the potentials alone, metres per second squared.
+/// The acceleration that contact has to withstand, metres per second squared, see [`Stiffness::Automatic`].
+fn load(model: &SheetModel, state: &State) -> f64 {
+    let forces = largest_acceleration(model, state);
+    if constant_acceleration(model, state).is_some() && forces.is_finite() {
+        return forces;
+    }
+    let LoadScale {
+        acceleration,
+        speed,
+    } = LoadScale::at(model, state);
+    let stopping = speed * speed / diameter(&state.x);
+    let others = [forces, stopping].into_iter().filter(|a| a.is_finite());
+    others.fold(acceleration, f64::max)
+}
+
+/// Largest acceleration of a vertex by the potentials but for the elasticity in the plane of the sheet, whose forces
+/// on a start that is strained by round-off say nothing about loads; metres per second squared.
 fn largest_acceleration(model: &SheetModel, state: &State) -> f64 {
-    let mut force = vec![0.0; state.x.len()];
-    model.potential_force(state.t, &state.x, &mut force);
-    let per_mass = force.as_chunks::<3>().0.iter().zip(&model.mass().vertex);
+    let mut gradient = vec![0.0; state.x.len()];
+    for p in model.outer_potentials() {
+        p.add_gradient(state.t, &state.x, &mut gradient);
+    }
+    model.clear_pinned(&mut gradient);
+    let per_mass = gradient.as_chunks::<3>().0.iter().zip(&model.mass().vertex);
     per_mass
         .map(|(f, m)| Vector3::from(*f).norm() / m)
         .fold(0.0, f64::max)
@@ -291,5 +307,23 @@ mod tests {
         let ratio = at(plain().with_acceleration([0.0, 3.0, -4.0])).stiffness()
             / at(plain().with_gravity()).stiffness();
         assert!((ratio - 5.0 / 9.8).abs() < 1e-12);
+    }
+    /// Without weight, forces of stiff potentials that are round-off are no load.
+    #[test]
+    fn a_load_without_weight_is_that_of_inertia() {
+        let sheet = generate::isotropic_square(1, 1.0).unwrap();
+        let plate = crate::PlateBending::new(&sheet, 1.0).unwrap();
+        let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
+            .unwrap()
+            .with_potential(plate)
+            .with_elastic_sheet(crate::ElasticSheet::new(&sheet, 3e5, 0.3).unwrap())
+            .unwrap();
+        let mut state = State::at_rest(sheet.positions().iter().map(|x| x + 0.1).collect());
+        let round_off = largest_acceleration(&model, &state);
+        assert!(round_off > 0.0 && round_off < 1e-6, "{round_off}");
+        assert!((load(&model, &state) - 9.8).abs() < 1e-12);
+        state.v.fill(10.0);
+        let stopping = 300.0 / 2.0_f64.sqrt();
+        assert!((load(&model, &state) - stopping).abs() < 1e-9 * stopping);
     }
 }

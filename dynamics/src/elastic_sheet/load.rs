@@ -1,7 +1,7 @@
 //! How stiff the barrier at the limit of the strain has to be.
 
-use crate::{PAPER_GRAVITY, PotentialShape, SheetModel, State};
-use nalgebra::Vector3;
+use crate::load_scale::{LoadScale, diameter};
+use crate::{SheetModel, State};
 
 /// Stiffness of the barrier in parts of the energy of the motion to come, see [`strain_barrier_at_start`]. From 0.01 to
 /// 3 all runs end; factorisations a step with 0.003, 0.01, 0.03, 0.1, 0.3, 1 and 3: 40 clamped sheets 5.6, 4.7, 4.8,
@@ -18,48 +18,9 @@ pub(crate) fn strain_barrier_at_start(model: &SheetModel, state: &State) -> f64 
         return 0.0;
     };
     let density = model.mass().total() / elastic.area();
-    let own = constant_acceleration(model, state);
-    let acceleration = if own > 0.0 && own.is_finite() {
-        own
-    } else {
-        Vector3::from(PAPER_GRAVITY).norm()
-    };
-    let speed = largest_norm(&state.v);
+    let LoadScale {
+        acceleration,
+        speed,
+    } = LoadScale::at(model, state);
     BARRIER * density * (acceleration * diameter(&state.x) + speed * speed)
-}
-
-/// Largest acceleration of a vertex by potentials that are linear, metres per second squared.
-fn constant_acceleration(model: &SheetModel, state: &State) -> f64 {
-    let mut gradient = vec![0.0; state.x.len()];
-    for p in model.potentials() {
-        if p.shape() == PotentialShape::Linear {
-            p.add_gradient(state.t, &state.x, &mut gradient);
-        }
-    }
-    for (g, m) in gradient
-        .as_chunks_mut::<3>()
-        .0
-        .iter_mut()
-        .zip(&model.mass().vertex)
-    {
-        g.iter_mut().for_each(|g| *g /= m);
-    }
-    largest_norm(&gradient)
-}
-
-/// Largest norm of the vectors of the vertices.
-fn largest_norm(values: &[f64]) -> f64 {
-    let vectors = values.as_chunks::<3>().0.iter();
-    vectors
-        .map(|v| Vector3::from(*v).norm())
-        .fold(0.0, f64::max)
-}
-
-/// Diagonal of the box around the vertices, metres.
-fn diameter(x: &[f64]) -> f64 {
-    let extent = |k: usize| {
-        let values = || x.as_chunks::<3>().0.iter().map(move |p| p[k]);
-        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
-    };
-    Vector3::new(extent(0), extent(1), extent(2)).norm()
 }

@@ -1,0 +1,62 @@
+//! The sizes of accelerations and speeds that barriers have to withstand.
+
+use crate::{PAPER_GRAVITY, PotentialShape, SheetModel, State};
+use nalgebra::Vector3;
+
+/// What a barrier has to withstand, estimated where a simulation starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LoadScale {
+    /// Largest acceleration of a vertex by constant forces, metres per second squared; 9.8 if there are none.
+    pub(crate) acceleration: f64,
+    /// Largest speed of a vertex, metres per second.
+    pub(crate) speed: f64,
+}
+
+impl LoadScale {
+    /// Of a sheet that starts at a state.
+    pub(crate) fn at(model: &SheetModel, state: &State) -> Self {
+        Self {
+            acceleration: constant_acceleration(model, state)
+                .unwrap_or_else(|| Vector3::from(PAPER_GRAVITY).norm()),
+            speed: largest_norm(&state.v),
+        }
+    }
+}
+
+/// Largest acceleration of a vertex by potentials that are linear, metres per second squared; nothing if they
+/// accelerate none.
+pub(crate) fn constant_acceleration(model: &SheetModel, state: &State) -> Option<f64> {
+    let mut gradient = vec![0.0; state.x.len()];
+    for p in model.potentials() {
+        if p.shape() == PotentialShape::Linear {
+            p.add_gradient(state.t, &state.x, &mut gradient);
+        }
+    }
+    for (g, m) in gradient
+        .as_chunks_mut::<3>()
+        .0
+        .iter_mut()
+        .zip(&model.mass().vertex)
+    {
+        g.iter_mut().for_each(|g| *g /= m);
+    }
+    let largest = largest_norm(&gradient);
+    (largest > 0.0 && largest.is_finite()).then_some(largest)
+}
+
+/// Largest norm of the vectors of the vertices.
+fn largest_norm(values: &[f64]) -> f64 {
+    let vectors = values.as_chunks::<3>().0.iter();
+    vectors
+        .map(|v| Vector3::from(*v).norm())
+        .fold(0.0, f64::max)
+}
+
+/// Diagonal of the box around the vertices, metres.
+pub(crate) fn diameter(x: &[f64]) -> f64 {
+    let extent = |k: usize| {
+        let values = || x.as_chunks::<3>().0.iter().map(move |p| p[k]);
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    };
+    Vector3::new(extent(0), extent(1), extent(2)).norm()
+}
