@@ -1,5 +1,6 @@
 //! A sheet that stretches as its material does, up to a limit.
 
+mod deformation;
 mod face;
 mod limit;
 mod load;
@@ -7,6 +8,7 @@ mod load;
 mod tests;
 
 use crate::{HessianSink, Potential};
+pub use deformation::ElasticDeformation;
 use face::Face;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, FaceId, Sheet};
@@ -103,6 +105,8 @@ pub struct ElasticSheet {
     poisson: f64,
     /// Young's modulus times thickness of the material, N/m.
     stiffness: f64,
+    /// Flexural rigidity by which faces were softened, N m; zero if they were not.
+    rigidity: f64,
     limit: StrainLimit,
 }
 
@@ -131,6 +135,7 @@ impl ElasticSheet {
             faces: faces.collect::<Result<_, _>>()?,
             poisson,
             stiffness,
+            rigidity: 0.0,
             limit: StrainLimit::new(Self::LIMIT),
         };
         for face in &mut new.faces {
@@ -150,6 +155,7 @@ impl ElasticSheet {
         if !(rigidity.is_finite() && rigidity >= 0.0) {
             return Err(ElasticSheetError::Rigidity { rigidity });
         }
+        self.rigidity = rigidity;
         if rigidity > 0.0 {
             for face in &mut self.faces {
                 let bearable = SOFTENING * rigidity / face.mean_squared_length();
@@ -198,6 +204,29 @@ impl ElasticSheet {
         self.faces
             .iter()
             .map(|face| face.energy(&face.at(x), &self.limit))
+    }
+
+    /// The angles by which the faces bend that have the given energies of bending (joules), radians.
+    fn bend_angles(&self, bending: &[f64]) -> Vec<f64> {
+        let angle = |(face, energy): (&Face, &f64)| {
+            let curvature = (2.0 * energy / (self.rigidity * face.area())).sqrt();
+            curvature * face.mean_squared_length().sqrt()
+        };
+        if self.rigidity > 0.0 {
+            self.faces.iter().zip(bending).map(angle).collect()
+        } else {
+            vec![0.0; self.faces.len()]
+        }
+    }
+
+    /// Edge length (root mean square of a face, metres) up to which faces of a sheet with this rigidity have the
+    /// stiffness of the material; infinite if faces were not softened.
+    pub fn unsoftened_size(&self) -> f64 {
+        if self.rigidity > 0.0 {
+            (SOFTENING * self.rigidity / self.stiffness).sqrt()
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// The face with the largest strain, and that strain, where it is not below the limit.

@@ -129,7 +129,7 @@ pub use checkpoint::{Checkpoint, CheckpointError};
 pub use constraint::VertexConstraint;
 pub use crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
 pub use effort::StepProgress;
-pub use elastic_sheet::{ElasticSheet, ElasticSheetError};
+pub use elastic_sheet::{ElasticDeformation, ElasticSheet, ElasticSheetError};
 pub use energy_momentum::EnergyMomentumOptions;
 pub use feasibility::Excess;
 pub use implicit::ImplicitOptions;

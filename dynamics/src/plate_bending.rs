@@ -172,6 +172,12 @@ impl Potential for PlateBending {
         self.stencils.iter().map(|s| energy(s.apply(x))).sum()
     }
 
+    fn add_bending_energies(&self, x: &[f64], faces: &mut [f64]) {
+        for (face, stencil) in faces.iter_mut().zip(self.stencils.iter()) {
+            *face += 0.5 * stencil.apply(x).norm_squared();
+        }
+    }
+
     fn add_gradient(&self, _t: f64, x: &[f64], gradient: &mut [f64]) {
         for stencil in self.stencils.iter() {
             let h = stencil.apply(x);

@@ -41,6 +41,10 @@ pub trait Potential: Debug + Send + Sync {
         false
     }
 
+    /// Adds the energy of bending of each face (joules) at positions `x` to `faces`, for reports that compare it with
+    /// that of stretching ([`ElasticDeformation`](crate::ElasticDeformation)). The default adds none.
+    fn add_bending_energies(&self, _x: &[f64], _faces: &mut [f64]) {}
+
     /// How the energy depends on the positions.
     fn shape(&self) -> PotentialShape {
         PotentialShape::General

@@ -204,6 +204,51 @@ fn coarse_faces_are_softened_and_fine_ones_are_not() {
     assert!(bare.face_stiffnesses().all(|k| k == stiffness));
 }
 
+/// A sheet rolled onto a cylinder: each face bends by its size over the radius, up to the faces at the free edges.
+#[test]
+fn faces_bend_by_their_size_over_the_radius() {
+    let (rigidity, radius) = (0.3, 2.0);
+    let sheet = generate::isotropic_square(3, 1.0).unwrap();
+    let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
+        .unwrap()
+        .with_potential(PlateBending::new(&sheet, rigidity).unwrap())
+        .with_elastic_sheet(
+            ElasticSheet::new(&sheet, 1e3, 0.3)
+                .unwrap()
+                .softened(rigidity)
+                .unwrap(),
+        )
+        .unwrap();
+    let rolled = |p: &[f64; 3]| {
+        let angle = p[0] / radius;
+        [radius * angle.sin(), p[1], radius * angle.cos()]
+    };
+    let x: Vec<f64> = sheet
+        .positions()
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .flat_map(rolled)
+        .collect();
+    let deformation = model.elastic_deformation(&x).unwrap();
+    let squared = (1.0_f64 / 16.0).powi(2) * 4.0 / 3.0;
+    let (_, sharpest) = deformation.sharpest().unwrap();
+    assert!(
+        (sharpest / (squared.sqrt() / radius) - 1.0).abs() < 0.02,
+        "{sharpest}"
+    );
+    let total: f64 = deformation.bending.iter().sum();
+    let plate = model.potentials().next().unwrap().energy(0.0, &x);
+    assert!((total / plate - 1.0).abs() < 1e-12);
+    assert!(
+        deformation.total_share() < 0.05,
+        "{}",
+        deformation.total_share()
+    );
+    let flat = model.elastic_deformation(sheet.positions()).unwrap();
+    assert!(flat.angle.iter().all(|a| *a < 1e-6) && flat.strain.iter().all(|s| *s < 1e-12));
+}
+
 /// A sheet that hangs by one end: its weight stretches it by `rho g L / (2 E h)` to first order, an eighth of the
 /// stretch at an eighth of the compliance.
 #[test]

@@ -1,0 +1,64 @@
+//! How an elastic sheet is deformed, face by face.
+
+use crate::SheetModel;
+
+/// How an elastic sheet is deformed, one value for each face: what a report needs to say whether the mesh is fine
+/// enough ([`SheetModel::elastic_deformation`]).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ElasticDeformation {
+    /// The Frobenius norm of Green's strain, see [`ElasticSheet`](crate::ElasticSheet).
+    pub strain: Vec<f64>,
+    /// Energy of stretching, with that of the barrier at the limit, joules.
+    pub stretching: Vec<f64>,
+    /// Energy of bending, joules.
+    pub bending: Vec<f64>,
+    /// The angle by which the sheet bends over the size of the face, radians: `sqrt(2 V / (D A)) h`, with the bending
+    /// energy `V`, the flexural rigidity `D`, the area `A` and the root mean square `h` of the edge lengths. A chord is
+    /// shorter than its arc by a part of `angle^2 / 24`. Zero without bending stiffness.
+    pub angle: Vec<f64>,
+}
+
+impl ElasticDeformation {
+    /// The part of the stretching in the elastic energy of a face, from 0 to 1; 0 where there is no energy.
+    pub fn share(&self, face: usize) -> f64 {
+        share(self.stretching[face], self.bending[face])
+    }
+
+    /// The part of the stretching in the elastic energy of the whole sheet, from 0 to 1; 0 where there is no energy.
+    pub fn total_share(&self) -> f64 {
+        share(self.stretching.iter().sum(), self.bending.iter().sum())
+    }
+
+    /// The face that bends by the largest angle, and that angle.
+    pub fn sharpest(&self) -> Option<(usize, f64)> {
+        let angles = self.angle.iter().copied().enumerate();
+        angles.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+fn share(stretching: f64, bending: f64) -> f64 {
+    let sum = stretching + bending;
+    if sum > 0.0 { stretching / sum } else { 0.0 }
+}
+
+impl SheetModel {
+    /// How an elastic sheet is deformed at positions `x` (`3V`, metres); nothing for a sheet of rods. Bending is that
+    /// of the potentials that know it by face ([`Potential::add_bending_energies`](crate::Potential)), and has an angle
+    /// if the sheet was told its rigidity ([`ElasticSheet::softened`](crate::ElasticSheet::softened)).
+    ///
+    /// # Panics
+    /// If `x` is not of length `3V`.
+    pub fn elastic_deformation(&self, x: &[f64]) -> Option<ElasticDeformation> {
+        let elastic = self.elastic_sheet()?;
+        let mut bending = vec![0.0; elastic.face_count()];
+        for potential in self.outer_potentials() {
+            potential.add_bending_energies(x, &mut bending);
+        }
+        Some(ElasticDeformation {
+            strain: elastic.strains(x).collect(),
+            stretching: elastic.face_energies(x).collect(),
+            angle: elastic.bend_angles(&bending),
+            bending,
+        })
+    }
+}
