@@ -157,36 +157,40 @@ impl Face {
                 + 4.0 * self.area * curvature * along * along.transpose();
         }
         let densities = self.densities(at, limit).map(part);
-        for i in 0..3 {
-            let [a, b] = self.ends[i];
-            let own = densities[i] * Matrix3::identity();
-            for v in [a, b] {
-                hessian.add_vertex(v, &own);
-            }
-            hessian.add_edge(self.edges[i], &-own);
-            for j in 0..3 {
-                let block = law[(i, j)] * at.vectors[i] * at.vectors[j].transpose();
-                self.add_product([i, j], &block, hessian);
-            }
+        for (i, [a, b]) in self.ends.into_iter().enumerate() {
+            // The corner across from the edge.
+            let [c, d] = self.ends[(i + 1) % 3];
+            let corner = if c == a || c == b { d } else { c };
+            let images = self.images(at, &law, corner);
+            let across = self.signs(corner);
+            let own = densities[(i + 1) % 3] + densities[(i + 2) % 3];
+            let block = product(&images, across, at) + Matrix3::from_diagonal_element(own);
+            hessian.add_vertex(corner, &block);
+            let images = self.images(at, &law, a);
+            let block = product(&images, self.signs(b), at);
+            let block = block - Matrix3::from_diagonal_element(densities[i]);
+            hessian.add_edge(self.edges[i], &block);
         }
     }
 
-    /// Adds the block of the product of the gradients of the length errors of edges `i` and `j`.
-    fn add_product(&self, [i, j]: [usize; 2], block: &Matrix3<f64>, hessian: &mut dyn HessianSink) {
-        for (p, sp) in self.ends[i].into_iter().zip([1.0, -1.0]) {
-            for (q, sq) in self.ends[j].into_iter().zip([1.0, -1.0]) {
-                let signed = sp * sq * block;
-                if p == q {
-                    hessian.add_vertex(p, &signed);
-                    continue;
-                }
-                // Each pair comes twice, once in each order: the one from the first to the second end counts.
-                let edge = (0..3).find(|&k| self.ends[k] == [p, q]);
-                if let Some(k) = edge {
-                    hessian.add_edge(self.edges[k], &signed);
-                }
-            }
-        }
+    /// For each edge 1 where the vertex is its first end, -1 where it is the second one, otherwise 0: the length
+    /// error of the edge has this times its vector as derivative by the vertex.
+    fn signs(&self, v: VertexId) -> [f64; 3] {
+        self.ends.map(|[a, b]| match v {
+            _ if v == a => 1.0,
+            _ if v == b => -1.0,
+            _ => 0.0,
+        })
+    }
+
+    /// For each edge the derivative by a vertex of the derivative of the energy by the length error.
+    fn images(&self, at: &Strained, law: &Matrix3<f64>, v: VertexId) -> [Vector3<f64>; 3] {
+        let signs = self.signs(v);
+        let terms = |l: usize| {
+            let term = |k: usize| signs[k] * law[(k, l)] * at.vectors[k];
+            term(0) + term(1) + term(2)
+        };
+        [terms(0), terms(1), terms(2)]
     }
 
     /// Largest part of the displacement `dx`, at most `most`, along which the strain keeps its distance from the
@@ -229,6 +233,17 @@ impl Face {
         }
         from
     }
+}
+
+/// The sum of the products of images and the derivatives of the length errors.
+fn product(images: &[Vector3<f64>; 3], signs: [f64; 3], at: &Strained) -> Matrix3<f64> {
+    let mut sum = Matrix3::zeros();
+    for l in 0..3 {
+        if signs[l] != 0.0 {
+            sum.ger(signs[l], &images[l], &at.vectors[l], 1.0);
+        }
+    }
+    sum
 }
 
 /// Whether the polynomial with the coefficients `powers` is proven to be negative on the interval.
