@@ -1,0 +1,181 @@
+//! Materials with names, and where their numbers are from.
+//!
+//! Metals and films are isotropic plates: their numbers follow from Young's modulus, thickness and density, for
+//! which handbooks and data sheets agree to a few per cent. Paper, cloth and leather differ from sort to sort by
+//! a factor of two, and from direction to direction as well: the numbers are typical ones.
+
+use super::{Isotropic, Material, NamedMaterial};
+
+/// Makes the constructors of materials, and [`ALL`] of the same text.
+macro_rules! catalogue {
+    ($($constructor:ident: $name:literal, $form:literal, $material:expr, $source:literal;)+) => {
+        impl Material {
+            $(
+                #[doc = concat!("`", $name, "`: ", $form, ".")]
+                #[doc = ""]
+                #[doc = $source]
+                pub const fn $constructor() -> Self {
+                    $material
+                }
+            )+
+        }
+
+        /// All of them, in groups.
+        pub(super) const ALL: &[NamedMaterial] = &[
+            $(NamedMaterial {
+                name: $name,
+                form: $form,
+                source: $source,
+                material: Material::$constructor(),
+            },)+
+        ];
+    };
+}
+
+/// Fibrous materials: density (kg/m2), membrane stiffness (N/m) and rigidity (N m) were measured each by itself.
+const fn fibrous(density: f64, stiffness: f64, rigidity: f64, poisson: f64) -> Material {
+    Material {
+        density,
+        stiffness,
+        rigidity,
+        poisson,
+        strain_limit: Material::STRAIN_LIMIT,
+    }
+}
+
+/// A plate: Young's modulus (Pa), thickness (m), density (kg/m3), Poisson's ratio.
+const fn plate(youngs: f64, thickness: f64, density: f64, poisson: f64) -> Material {
+    let material = Isotropic {
+        youngs,
+        thickness,
+        density,
+        poisson,
+    };
+    material.sheet()
+}
+
+const fn stretching(material: Material, strain_limit: f64) -> Material {
+    Material {
+        strain_limit,
+        ..material
+    }
+}
+
+catalogue! {
+    office_paper: "office paper", "uncoated copy paper, 80 g/m2, 0.1 mm",
+        fibrous(0.08, 3e5, 5e-4, 0.3),
+        "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness (ISO 1924-3), between about \
+         5e5 N/m in the machine direction and 2e5 N/m across. Rigidity: typical bending stiffness (ISO 5628) in the \
+         machine direction, along which A4 sheets are long; across it is about 2e-4 N m. K. Niskanen (ed.), \
+         Mechanics of Paper Products, De Gruyter 2012. Poisson's ratio: 0.29 as the geometric mean of both \
+         directions, G. A. Baum, D. C. Brennan and C. C. Habeger, Tappi 64(8), 97-101, 1981.";
+    card: "card", "solid bleached board, 250 g/m2, 0.3 mm",
+        fibrous(0.25, 1.1e6, 1e-2, 0.3),
+        "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 4.5 kN m/g (ISO \
+         1924-3) times the grammage. Rigidity: typical bending stiffness (ISO 5628), between about 1.5e-2 N m in the \
+         machine direction and 7e-3 N m across. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; \
+         Poisson's ratio as for office paper.";
+    newsprint: "newsprint", "newspaper, 45 g/m2, 0.07 mm",
+        fibrous(0.045, 1.6e5, 6e-5, 0.3),
+        "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 3.5 kN m/g (ISO \
+         1924-3) times the grammage. Rigidity: typical, eight tenths of that of a plate of this stiffness and \
+         thickness. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; Poisson's ratio as for office \
+         paper.";
+    kraft_paper: "kraft paper", "wrapping paper, 80 g/m2, 0.11 mm",
+        fibrous(0.08, 4e5, 4e-4, 0.3),
+        "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 5 kN m/g (ISO \
+         1924-3), long fibres, times the grammage. Rigidity: typical, nine tenths of that of a plate of this \
+         stiffness and thickness. K. Niskanen (ed.), Mechanics of Paper Products, De Gruyter 2012; Poisson's ratio as \
+         for office paper.";
+    tissue_paper: "tissue paper", "smooth wrapping tissue, 18 g/m2, 0.03 mm",
+        fibrous(0.018, 6e4, 4e-6, 0.3),
+        "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 3.5 kN m/g (ISO \
+         1924-3) times the grammage. Rigidity: eight tenths of that of a plate of this stiffness and thickness, as it \
+         is below what ISO 5628 measures. Creped tissue (handkerchiefs) is many times softer. Poisson's ratio as for \
+         office paper.";
+    tracing_paper: "tracing paper", "natural tracing paper, 90 g/m2, 0.075 mm",
+        fibrous(0.09, 5e5, 2.3e-4, 0.3),
+        "Mass: grammage as sold (ISO 536). Membrane stiffness: typical tensile stiffness index of 5.5 kN m/g (ISO \
+         1924-3) of highly beaten pulp, times the grammage. Rigidity: nine tenths of that of a plate of this \
+         stiffness and thickness, which is nearly free of pores. Poisson's ratio as for office paper.";
+    pet_film: "PET film", "biaxially oriented polyester, 0.1 mm",
+        plate(4.9e9, 1e-4, 1390.0, 0.38),
+        "Young's modulus (4.8 GPa along, 5.0 GPa across), density and Poisson's ratio below yield: DuPont Teijin \
+         Films, Mylar polyester film, Product Information H-37232-3, Physical-Thermal Properties.";
+    polyimide_film: "polyimide film", "0.05 mm",
+        plate(2.5e9, 5e-5, 1420.0, 0.34),
+        "Young's modulus, density and Poisson's ratio: DuPont, Kapton HN polyimide film, Technical Data Sheet.";
+    polycarbonate_film: "polycarbonate film", "0.25 mm",
+        plate(2.2e9, 2.5e-4, 1200.0, 0.37),
+        "Young's modulus (ISO 527) and density: Covestro, Makrofol DE, Product Datasheet 2013. Poisson's ratio: \
+         typical, J. A. Brydson, Plastics Materials, 7th ed., Butterworth-Heinemann 1999.";
+    acetate_film: "acetate film", "cellulose acetate, 0.1 mm",
+        plate(2.0e9, 1e-4, 1300.0, 0.4),
+        "Typical values of plasticised cellulose diacetate: J. A. Brydson, Plastics Materials, 7th ed., \
+         Butterworth-Heinemann 1999.";
+    polyethylene_film: "polyethylene film", "low density (bags), 0.05 mm",
+        stretching(plate(2.5e8, 5e-5, 920.0, 0.45), 0.03),
+        "Young's modulus: the middle of 0.2 to 0.3 GPa, and density of low-density polyethylene: J. A. Brydson, \
+         Plastics Materials, 7th ed., Butterworth-Heinemann 1999. Poisson's ratio: typical. Strain limit: half of the \
+         strain at yield, 5 to 8 %.";
+    aluminium_foil: "aluminium foil", "household foil, alloy 8011, 0.016 mm",
+        plate(6.9e10, 1.6e-5, 2700.0, 0.33),
+        "Young's modulus, density and Poisson's ratio: ASM Handbook Vol. 2, Properties and Selection: Nonferrous \
+         Alloys, ASM International 1990. Thickness: as sold.";
+    aluminium_sheet: "aluminium sheet", "0.5 mm",
+        plate(6.9e10, 5e-4, 2700.0, 0.33),
+        "Young's modulus, density and Poisson's ratio: ASM Handbook Vol. 2, Properties and Selection: Nonferrous \
+         Alloys, ASM International 1990.";
+    steel_sheet: "steel sheet", "0.5 mm",
+        plate(2.1e11, 5e-4, 7850.0, 0.3),
+        "Young's modulus and Poisson's ratio: EN 1993-1-1 (Eurocode 3), 3.2.6. Density: EN 1991-1-1, Table A.4.";
+    copper_foil: "copper foil", "of circuit boards, 0.035 mm",
+        plate(1.17e11, 3.5e-5, 8930.0, 0.34),
+        "Young's modulus, density and Poisson's ratio of copper C11000: ASM Handbook Vol. 2, Properties and \
+         Selection: Nonferrous Alloys, ASM International 1990. Thickness: 1 ounce on a square foot. Electrodeposited \
+         foils are softer by up to a third.";
+    copper_sheet: "copper sheet", "0.5 mm",
+        plate(1.17e11, 5e-4, 8930.0, 0.34),
+        "Young's modulus, density and Poisson's ratio of copper C11000: ASM Handbook Vol. 2, Properties and \
+         Selection: Nonferrous Alloys, ASM International 1990.";
+    brass_shim: "brass shim", "cartridge brass C26000, 0.1 mm",
+        plate(1.12e11, 1e-4, 8530.0, 0.34),
+        "Young's modulus and density: Olin Brass, C26000 Cartridge Brass, Alloy Data. Poisson's ratio: ASM Handbook \
+         Vol. 2, Properties and Selection: Nonferrous Alloys, ASM International 1990.";
+    cotton: "cotton", "shirting, plain weave, 120 g/m2",
+        fibrous(0.12, 1.5e4, 7e-6, 0.2),
+        "Typical of cotton shirtings on the instruments of Kawabata (KES-F): a bending rigidity of 0.07 gf cm2/cm, \
+         and an extension of 3 % by 500 gf/cm. S. Kawabata, The Standardization and Analysis of Hand Evaluation, 2nd \
+         ed., Textile Machinery Society of Japan, Osaka 1980; B. P. Saville, Physical Testing of Textiles, Woodhead \
+         1999. Poisson's ratio: assumed.";
+    silk: "silk", "habotai, plain weave, 8 momme (35 g/m2)",
+        fibrous(0.035, 2e4, 2e-6, 0.2),
+        "Typical of light silks on the instruments of Kawabata (KES-F): a bending rigidity of 0.02 gf cm2/cm, and an \
+         extension of 2.5 % by 500 gf/cm. S. Kawabata, The Standardization and Analysis of Hand Evaluation, 2nd ed., \
+         Textile Machinery Society of Japan, Osaka 1980. Poisson's ratio: assumed.";
+    wool: "wool", "worsted suiting, 200 g/m2",
+        fibrous(0.2, 1e4, 1e-5, 0.2),
+        "Typical of suitings: a bending rigidity of 1e-5 N m, and an extension of 5 % by 500 gf/cm. S. Kawabata, The \
+         Standardization and Analysis of Hand Evaluation, 2nd ed., Textile Machinery Society of Japan, Osaka 1980; A. \
+         De Boos and D. Tester, SiroFAST: Fabric Assurance by Simple Testing, CSIRO Report WT92.02, 1994. Poisson's \
+         ratio: assumed.";
+    denim: "denim", "washed, twill, 12 oz (400 g/m2)",
+        fibrous(0.4, 1.2e4, 5e-5, 0.2),
+        "Typical of washed denim: a bending rigidity of 0.5 gf cm2/cm, and an extension of 4 % by 500 gf/cm; light \
+         denim has 0.14 to 0.23 gf cm2/cm and 5 % (Journal of Textiles 2016, 4614168, Table 5), unwashed denim more \
+         than 1 gf cm2/cm. B. P. Saville, Physical Testing of Textiles, Woodhead 1999. Poisson's ratio: assumed.";
+    nylon_ripstop: "nylon ripstop", "parachute cloth, 37 g/m2, 0.08 mm",
+        fibrous(0.037, 2.5e4, 3e-6, 0.2),
+        "Mass and thickness: specification MIL-C-7020, type I. Membrane stiffness: its strength of 42 lbf/in at an \
+         elongation of about 30 %. Rigidity: typical of light woven nylon, 0.03 gf cm2/cm. Poisson's ratio: assumed.";
+    leather: "leather", "soft upholstery leather, 1.2 mm",
+        stretching(fibrous(1.0, 3e4, 1e-3, 0.4), 0.05),
+        "Typical values, Young's modulus being 25 MPa at small strains and the rigidity that of bending with the \
+         grain outside, a quarter of that of a plate; leathers differ by a factor of three. A. Mihai, A. Seul, A. \
+         Curteza and M. Costea, Materials 15, 5107, 2022. Strain limit: stretch in use.";
+    rubber_sheet: "rubber sheet", "natural rubber, 45 Shore A, 1 mm",
+        stretching(plate(1.8e6, 1e-3, 950.0, 0.5), 0.2),
+        "Young's modulus by hardness: A. N. Gent (ed.), Engineering with Rubber, 3rd ed., Hanser 2012. Density of \
+         the unfilled compound: MatWeb, Natural Rubber, Vulcanized. Poisson's ratio: incompressible. Strain limit: \
+         the range in which rubber is nearly linear.";
+}
