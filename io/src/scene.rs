@@ -12,7 +12,7 @@
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let mut cloth = Sheet::new(Mesh::Square { side: 1.0, level: 2 });
-//! cloth.density = 0.2;
+//! cloth.material = Some(Material::named("cotton"));
 //! cloth.damping = 2.0;
 //! cloth.placement = Pose::at([-0.5, -0.5, 0.0]);
 //! let table = Obstacle::new(Shape::Box { size: [0.5, 0.5, 0.3] });
@@ -38,6 +38,8 @@ mod folding;
 mod forces;
 mod form;
 mod key;
+mod material;
+mod materials_page;
 mod mesh;
 mod method;
 mod obstacles;
@@ -48,6 +50,7 @@ mod pose;
 mod problem;
 mod profile;
 mod reference;
+mod replaced;
 mod selection;
 mod setup;
 mod sheet;
@@ -71,6 +74,8 @@ pub use error::{Colours, PlacedProblem, SceneError, SceneText};
 pub use folding::{FoldResidual, FoldTargets, Folding};
 pub use forces::{Acceleration, Forces, Load};
 pub use key::{Key, KeyError, KeyPart};
+pub use material::{Material, Plate};
+pub use materials_page::materials_page;
 pub use mesh::{Diagonals, Mesh, MeshFile, PolygonFaces, UpAxis};
 pub use method::{Fallback, Integrator, Method, Taut};
 pub use obstacles::{Obstacle, Shape, Wall};
@@ -85,7 +90,7 @@ pub use profile::{Change, Course, Interpolation, Profile};
 pub use reference::{reference_page, schema};
 pub use selection::Selection;
 pub use setup::{Integration, Setup};
-pub use sheet::{Bending, Isometry, Sheet, Start};
+pub use sheet::{Bending, Elasticity, Isometry, Sheet, Start};
 pub use source::{SceneFile, SceneFileError};
 pub use starting_point::StartingPoint;
 pub use stop::{Rest, Stop};
@@ -229,11 +234,16 @@ impl Scene {
                 remedy,
             );
         }
-        if self.sheet.isometry != Isometry::Rods {
+        if self.sheet.isometry() != Isometry::Rods {
             checks.report(
                 key,
                 "this integrator needs rigid rods, and the sheet has none",
-                remedy,
+                match (&self.sheet.isometry, &self.sheet.material) {
+                    (None, Some(_)) => {
+                        "choose `bdf2` or `implicit_euler`, or write `isometry = \"rods\"` beside `sheet.material`"
+                    }
+                    _ => remedy,
+                },
             );
         }
     }

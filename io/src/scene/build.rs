@@ -4,6 +4,7 @@ use super::creases::{EdgeFolds, FoldSprings};
 use super::error::SceneError;
 use super::folding::FoldTargets;
 use super::key::Key;
+use super::material::Material;
 use super::mesh::{Mesh, RestMesh};
 use super::pose::{Motion, Pose};
 use super::problem::Problem;
@@ -95,7 +96,7 @@ impl<'a> Builder<'a> {
                 points.flat_map(|&p| place(pose, p)).collect()
             }
         };
-        let by_area = scene.sheet.density * placed.area();
+        let by_area = scene.sheet.areal_density() * placed.area();
         let mass = scene.sheet.mass.unwrap_or(by_area);
         let model = SheetModel::new(&placed, mass, MassKind::Lumped)
             .and_then(|m| m.with_damping(scene.sheet.damping))
@@ -268,7 +269,7 @@ impl<'a> Builder<'a> {
 
     fn add_bending(&mut self, creases: &[EdgeId]) -> Result<(), SceneError> {
         let key = Key::root().name("sheet.bending");
-        match self.scene.sheet.bending {
+        match self.scene.sheet.bending() {
             Bending::None => Ok(()),
             Bending::Plate { rigidity } => {
                 let clamped = self.model().pins();
@@ -306,7 +307,7 @@ impl<'a> Builder<'a> {
             springs.add(key, EdgeFolds::No, flat);
             self.folding = Some(targets);
         }
-        let rigidity = self.scene.sheet.bending.rigidity();
+        let rigidity = self.scene.sheet.bending().rigidity();
         springs.put_in_sheet(&self.rest.sheet, rigidity);
         Ok(springs)
     }
@@ -330,8 +331,16 @@ impl<'a> Builder<'a> {
     fn add_isometry(&mut self) -> Result<(), SceneError> {
         let key = Key::root().name("sheet.isometry");
         let sheet = &self.rest.sheet;
-        match self.scene.sheet.isometry {
+        match self.scene.sheet.isometry() {
             Isometry::Rods => self.modelled.push("rigid rods".into()),
+            Isometry::Elastic { .. } => {
+                return Err(Problem::new(
+                    key,
+                    "the engine of this version has no elastic sheet",
+                    "write `isometry = { membrane = { stiffness = ... } }` beside the material, or `\"rods\"`",
+                )
+                .into());
+            }
             Isometry::Membrane { stiffness, poisson } => {
                 let membrane = Membrane::new(sheet, stiffness, poisson).map_err(at(&key))?;
                 self.modelled.push("elastic membrane".into());
@@ -343,7 +352,7 @@ impl<'a> Builder<'a> {
             Isometry::Weak { stiffness } => {
                 let weak = match stiffness {
                     Some(stiffness) => WeakIsometry::new(sheet, stiffness),
-                    None => WeakIsometry::of_plate(sheet, self.scene.sheet.bending.rigidity()),
+                    None => WeakIsometry::of_plate(sheet, self.scene.sheet.bending().rigidity()),
                 };
                 let weak = weak.map_err(at(&key))?;
                 self.modelled.push("isometry in weak form".into());
@@ -357,7 +366,7 @@ impl<'a> Builder<'a> {
     /// What is further off, or has no such positions nearby, stays as it is, and the engine says what is
     /// wrong with it.
     fn mend_lengths(&mut self) {
-        let is_rigid = self.scene.sheet.isometry == Isometry::Rods;
+        let is_rigid = self.scene.sheet.isometry() == Isometry::Rods;
         if !is_rigid || self.scene.sheet.start.file.is_none() {
             return;
         }
@@ -393,6 +402,12 @@ impl<'a> Builder<'a> {
             obstacles,
             integration: self.scene.method.build(),
             modelled: self.modelled,
+            material: self
+                .scene
+                .sheet
+                .material
+                .as_ref()
+                .and_then(Material::in_words),
             folding: self.folding,
             origins: self.origins,
             text: None,

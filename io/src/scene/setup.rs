@@ -45,6 +45,8 @@ pub struct Setup {
     pub integration: Integration,
     /// What is modelled, in words.
     pub modelled: Vec<String>,
+    /// What the sheet is made of, in words, if the scene names it.
+    pub material: Option<String>,
     /// Where the creases are driven, if the scene folds to the angles of a FOLD file.
     pub folding: Option<FoldTargets>,
     /// Which entry of the scene made what.

@@ -1,10 +1,12 @@
 //! The sheet: mesh, material, placement and start.
 
 use super::key::Key;
+use super::material::{Material, typical_poisson};
 use super::mesh::{Mesh, MeshFile};
 use super::pose::Pose;
 use super::problem::Checks;
 use super::unit::Unit;
+use isosheet_dynamics as engine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,9 +15,8 @@ use serde::{Deserialize, Serialize};
 /// ```toml
 /// [sheet]
 /// mesh = { square = { side = 0.21, level = 2 } }
-/// density = 0.08
+/// material = "office paper"
 /// thickness = 0.0001
-/// bending = { plate = { rigidity = 5e-4 } }
 /// damping = 2
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -23,9 +24,13 @@ use serde::{Deserialize, Serialize};
 pub struct Sheet {
     /// Where the mesh comes from. Its shape is the rest shape: the one with the rest lengths.
     pub mesh: Mesh,
-    /// Mass of a square metre, kg/m2: office paper has 0.08, steel of 1 mm 7.8. Not used if `mass` is given.
-    #[serde(default = "paper_density")]
-    pub density: f64,
+    /// What the sheet is made of. Without it, the sheet is one of rigid rods, as in the paper.
+    #[serde(default)]
+    pub material: Option<Material>,
+    /// Mass of a square metre, kg/m2: steel of 1 mm has 7.8. If left out, that of the material; without one 0.08,
+    /// as office paper has. Not used if `mass` is given.
+    #[serde(default)]
+    pub density: Option<f64>,
     /// Mass of the whole sheet, kilograms; if left out, `density` times its area.
     #[serde(default)]
     pub mass: Option<f64>,
@@ -33,12 +38,12 @@ pub struct Sheet {
     /// change mass or stiffness.
     #[serde(default)]
     pub thickness: f64,
-    /// What keeps the lengths.
+    /// What keeps the lengths. If left out, the elasticity of the material; without one rigid rods.
     #[serde(default)]
-    pub isometry: Isometry,
-    /// What resists bending.
+    pub isometry: Option<Isometry>,
+    /// What resists bending. If left out, a plate of the rigidity of the material; without one nothing.
     #[serde(default)]
-    pub bending: Bending,
+    pub bending: Option<Bending>,
     /// Rate of the velocity damping `v <- v exp(-damping h)` after each step of `h` seconds, 1/s.
     #[serde(default)]
     pub damping: f64,
@@ -50,16 +55,26 @@ pub struct Sheet {
     pub start: Start,
 }
 
-/// Mass of a square metre of office paper, kg/m2.
-fn paper_density() -> f64 {
-    0.08
+/// Mass of a square metre of office paper, kg/m2: that of sheets of which nothing is said.
+const PAPER_DENSITY: f64 = 0.08;
+
+/// Numbers of an elastic sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elasticity {
+    /// Young's modulus times thickness, N/m.
+    pub stiffness: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// The limit of the strain.
+    pub limit: f64,
 }
 
 /// What keeps the lengths.
 ///
 /// ```toml
 /// [sheet]
-/// isometry = { membrane = { stiffness = 3e5, poisson = 0.3 } }
+/// isometry = { elastic = { stiffness = 3e5, limit = 0.01 } }
+/// bending = { plate = { rigidity = 5e-4 } }
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -67,6 +82,20 @@ pub enum Isometry {
     /// Rigid rods along all edges: exact lengths, folds along the lines of the mesh alone.
     #[default]
     Rods,
+    /// The elasticity of the material, softened where the mesh is too coarse for its bends, and a limit of strain
+    /// that nothing exceeds. For `bdf2` and `implicit_euler`.
+    Elastic {
+        /// Young's modulus times thickness, N/m: office paper has 3e5. If left out, that of the material.
+        #[serde(default)]
+        stiffness: Option<f64>,
+        /// Poisson's ratio, from 0 to 0.5. If left out, that of the material; without one 0.3.
+        #[serde(default)]
+        poisson: Option<f64>,
+        /// The limit of the strain of a face, which nothing exceeds: above 0, below 0.5. If left out, that of the
+        /// material; without one 0.01.
+        #[serde(default)]
+        limit: Option<f64>,
+    },
     /// The elasticity of the material: edges stretch. For `bdf2` and `implicit_euler`.
     Membrane {
         /// Young's modulus times thickness, N/m: office paper has 3e5.
@@ -136,33 +165,101 @@ impl Sheet {
     pub fn new(mesh: Mesh) -> Self {
         Self {
             mesh,
-            density: paper_density(),
+            material: None,
+            density: None,
             mass: None,
             thickness: 0.0,
-            isometry: Isometry::default(),
-            bending: Bending::default(),
+            isometry: None,
+            bending: None,
             damping: 0.0,
             placement: Pose::default(),
             start: Start::default(),
         }
     }
 
+    /// The numbers of the material, if the sheet has one that is known.
+    fn made_of(&self) -> Option<engine::Material> {
+        self.material.as_ref().and_then(Material::numbers)
+    }
+
+    /// Mass of a square metre, kg/m2, unless `mass` is given: as written, of the material, or of office paper.
+    pub fn areal_density(&self) -> f64 {
+        let density = self.density.or(self.made_of().map(|m| m.density));
+        density.unwrap_or(PAPER_DENSITY)
+    }
+
+    /// What keeps the lengths: as written, or what follows from the material.
+    pub fn isometry(&self) -> Isometry {
+        match (&self.isometry, &self.material) {
+            (Some(isometry), _) => isometry.clone(),
+            (None, Some(_)) => Isometry::ELASTIC,
+            (None, None) => Isometry::Rods,
+        }
+    }
+
+    /// What resists bending: as written, or what follows from the material.
+    pub fn bending(&self) -> Bending {
+        match (&self.bending, self.made_of()) {
+            (Some(bending), _) => bending.clone(),
+            (None, Some(m)) if m.rigidity > 0.0 => Bending::Plate {
+                rigidity: m.rigidity,
+            },
+            (None, _) => Bending::None,
+        }
+    }
+
+    /// The numbers of an elastic sheet: as written, of the material, or defaults. `None` of other sheets, and
+    /// without a stiffness.
+    pub fn elasticity(&self) -> Option<Elasticity> {
+        let Isometry::Elastic {
+            stiffness,
+            poisson,
+            limit,
+        } = self.isometry()
+        else {
+            return None;
+        };
+        let material = self.made_of();
+        Some(Elasticity {
+            stiffness: stiffness.or(material.map(|m| m.stiffness))?,
+            poisson: poisson
+                .or(material.map(|m| m.poisson))
+                .unwrap_or_else(typical_poisson),
+            limit: limit
+                .or(material.map(|m| m.strain_limit))
+                .unwrap_or(engine::Material::STRAIN_LIMIT),
+        })
+    }
+
     pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
         self.mesh.check(&key.name("mesh"), checks);
-        checks.positive(
-            key.name("density"),
-            self.density,
-            Unit::KilogramPerSquareMetre,
-        );
+        if let Some(material) = &self.material {
+            material.check(&key.name("material"), checks);
+        }
+        if let Some(density) = self.density {
+            let unit = Unit::KilogramPerSquareMetre;
+            checks.positive(key.name("density"), density, unit);
+        }
         if let Some(mass) = self.mass {
             checks.positive(key.name("mass"), mass, Unit::Kilogram);
         }
         checks.not_negative(key.name("thickness"), self.thickness, Unit::Metre);
         checks.not_negative(key.name("damping"), self.damping, Unit::PerSecond);
-        self.isometry.check(&key.name("isometry"), checks);
-        self.bending.check(&key.name("bending"), checks);
-        if matches!(self.isometry, Isometry::Weak { stiffness: None })
-            && self.bending.rigidity() == 0.0
+        let isometry = self.isometry();
+        isometry.check(&key.name("isometry"), checks);
+        if let Some(bending) = &self.bending {
+            bending.check(&key.name("bending"), checks);
+        }
+        let is_elastic = matches!(isometry, Isometry::Elastic { .. });
+        if is_elastic && self.material.is_none() && self.elasticity().is_none() {
+            checks.report(
+                key.name("isometry.elastic"),
+                "the elastic sheet has neither a stiffness nor a material that gives one",
+                "give `stiffness` in N/m, Young's modulus times thickness, or `sheet.material`",
+            );
+        }
+        if matches!(isometry, Isometry::Weak { stiffness: None })
+            && self.bending().rigidity() == 0.0
         {
             checks.report(
                 key.name("isometry.weak"),
@@ -183,9 +280,36 @@ impl Sheet {
     }
 }
 
+/// Limits of strain. Smaller ones than a millionth come near the rounding of positions; at a strain of -0.5 an edge
+/// has no length.
+const LIMITS: [f64; 2] = [1e-6, 0.49];
+
 impl Isometry {
+    /// Elastic, with the numbers of the material.
+    pub const ELASTIC: Self = Self::Elastic {
+        stiffness: None,
+        poisson: None,
+        limit: None,
+    };
+
     fn check(&self, key: &Key, checks: &mut Checks) {
         match self {
+            Self::Elastic {
+                stiffness,
+                poisson,
+                limit,
+            } => {
+                let key = key.name("elastic");
+                if let Some(stiffness) = stiffness {
+                    checks.positive(key.name("stiffness"), *stiffness, Unit::NewtonPerMetre);
+                }
+                if let Some(poisson) = poisson {
+                    checks.within(key.name("poisson"), *poisson, [0.0, 0.5]);
+                }
+                if let Some(limit) = limit {
+                    checks.within(key.name("limit"), *limit, LIMITS);
+                }
+            }
             Self::Rods | Self::Weak { stiffness: None } => {}
             Self::Membrane { stiffness, poisson } => {
                 checks.positive(

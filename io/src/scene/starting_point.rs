@@ -5,6 +5,8 @@
 pub enum StartingPoint {
     /// A sheet of paper that hangs by one corner.
     Hanging,
+    /// A strip of paper that is clamped at one end.
+    Clamp,
     /// A cloth that drapes over a box.
     Drape,
     /// A sheet that a die presses through an opening.
@@ -17,8 +19,9 @@ pub enum StartingPoint {
 
 impl StartingPoint {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Hanging,
+        Self::Clamp,
         Self::Drape,
         Self::Stamp,
         Self::Feed,
@@ -29,6 +32,7 @@ impl StartingPoint {
     pub fn name(self) -> &'static str {
         match self {
             Self::Hanging => "hanging",
+            Self::Clamp => "clamp",
             Self::Drape => "drape",
             Self::Stamp => "stamp",
             Self::Feed => "feed",
@@ -40,6 +44,7 @@ impl StartingPoint {
     pub fn text(self) -> &'static str {
         match self {
             Self::Hanging => include_str!("starting_point/hanging.toml"),
+            Self::Clamp => include_str!("starting_point/clamp.toml"),
             Self::Drape => include_str!("starting_point/drape.toml"),
             Self::Stamp => include_str!("starting_point/stamp.toml"),
             Self::Feed => include_str!("starting_point/feed.toml"),

@@ -7,9 +7,11 @@ pub(crate) enum Unit {
     Second,
     Kilogram,
     KilogramPerSquareMetre,
+    KilogramPerCubicMetre,
     Newton,
     NewtonPerMetre,
     NewtonMetre,
+    Pascal,
     Joule,
     MetrePerSecond,
     MetrePerSquareSecond,
@@ -32,14 +34,16 @@ pub(crate) struct Range {
 }
 
 impl Unit {
-    pub(crate) const ALL: [Self; 13] = [
+    pub(crate) const ALL: [Self; 15] = [
         Self::Metre,
         Self::Second,
         Self::Kilogram,
         Self::KilogramPerSquareMetre,
+        Self::KilogramPerCubicMetre,
         Self::Newton,
         Self::NewtonPerMetre,
         Self::NewtonMetre,
+        Self::Pascal,
         Self::Joule,
         Self::MetrePerSecond,
         Self::MetrePerSquareSecond,
@@ -55,9 +59,11 @@ impl Unit {
             Self::Second => "s",
             Self::Kilogram => "kg",
             Self::KilogramPerSquareMetre => "kg/m2",
+            Self::KilogramPerCubicMetre => "kg/m3",
             Self::Newton => "N",
             Self::NewtonPerMetre => "N/m",
             Self::NewtonMetre => "N m",
+            Self::Pascal => "Pa",
             Self::Joule => "J",
             Self::MetrePerSecond => "m/s",
             Self::MetrePerSquareSecond => "m/s2",
@@ -89,6 +95,9 @@ impl Unit {
                 1e9,
                 "graphene, the lightest sheet, has 8e-7 kg/m2, a metre of steel has 8e3 kg/m2",
             ),
+            Self::KilogramPerCubicMetre => {
+                (1e-3, 1e6, "an aerogel has 1 kg/m3, osmium has 2e4 kg/m3")
+            }
             Self::Newton => (
                 1e-24,
                 1e18,
@@ -103,6 +112,11 @@ impl Unit {
                 1e-24,
                 1e18,
                 "graphene has a rigidity of 2e-19 N m, a metre of steel 2e10 N m",
+            ),
+            Self::Pascal => (
+                1.0,
+                1e15,
+                "a soft gel has a Young's modulus of 1e2 Pa, diamond of 1e12 Pa",
             ),
             Self::Joule => (
                 1e-30,

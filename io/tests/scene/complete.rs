@@ -142,6 +142,7 @@ const ALL_KEYS: [&str; 5] = [
     r#"version = 1
     [sheet]
     mesh = { file = { path = "a.obj", up = "z", polygons = "triangulate" } }
+    material = { youngs = 7e10, thickness = 1e-4, density = 2700, poisson = 0.3 }
     isometry = "rods"
     bending = "none"
     [method]
@@ -163,6 +164,8 @@ const ALL_KEYS: [&str; 5] = [
     r#"version = 1
     [sheet]
     mesh = { file = { path = "a.fold" } }
+    material = "card"
+    isometry = { elastic = { stiffness = 1e6, poisson = 0.3, limit = 0.02 } }
     [folding]
     time = 1
     stiffness = 0.01

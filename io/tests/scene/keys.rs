@@ -1,7 +1,7 @@
 //! Every key of the reference is accepted, and the reference in the repository is current.
 
 use crate::complete::{places, scenes};
-use isosheet_io::scene::{reference_page, schema};
+use isosheet_io::scene::{materials_page, reference_page, schema};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -38,11 +38,13 @@ fn every_key_of_the_reference_is_accepted() {
 #[test]
 fn the_reference_in_the_repository_is_current() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
-    let page = std::fs::read_to_string(docs.join("scene.md")).unwrap();
-    assert!(
-        page == reference_page(),
-        "call `cargo isosheet reference docs`"
-    );
+    for (name, page) in [
+        ("scene.md", reference_page()),
+        ("materials.md", materials_page()),
+    ] {
+        let committed = std::fs::read_to_string(docs.join(name)).unwrap();
+        assert!(committed == page, "call `cargo isosheet reference docs`");
+    }
     let text = std::fs::read_to_string(docs.join("scene.schema.json")).unwrap();
     let committed: Value = serde_json::from_str(&text).unwrap();
     assert!(

@@ -7,6 +7,7 @@ mod files;
 mod folding;
 mod formulas;
 mod keys;
+mod materials;
 mod meaning;
 mod messages;
 #[path = "../shared/skip.rs"]

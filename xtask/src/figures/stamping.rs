@@ -46,7 +46,7 @@ pub(super) fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
 pub(super) fn make(store: &Store) -> Result<Made> {
     let whole = Run::of(store, scene(store.effort)?)?;
     let (scene, run) = (whole.scene.scene(), &whole.summary);
-    let (density, blank, forces) = (scene.sheet.density, &whole.sheet, whole.forces(DIE));
+    let (density, blank, forces) = (scene.sheet.areal_density(), &whole.sheet, whole.forces(DIE));
     let value = |key: &str| whole.scene.value::<f64>(key);
     let rise = |key: &str| value(&format!("/obstacle/0/motion/z/ramp/{key}"));
     let stroke = rise("to")? - rise("from")?;

@@ -52,9 +52,9 @@ impl Check {
         let setup = scene.build()?;
         let text = describe_scene(&setup);
         let sheet = &scene.scene().sheet;
-        let closed = match sheet.isometry {
+        let closed = match sheet.isometry() {
             Isometry::Rods => hints::closed(&setup.sheet),
-            Isometry::Membrane { .. } | Isometry::Weak { .. } => String::new(),
+            _ => String::new(),
         };
         let wide = match &sheet.mesh {
             Mesh::File(file) if file.scale == 1.0 => hints::wide(&setup.sheet),

@@ -109,8 +109,10 @@ pub(crate) fn describe_scene(setup: &Setup) -> String {
     let pins = setup.model.pins().len();
     let mass = setup.model.mass().total();
     let modelled = setup.modelled.join(", ");
+    let material = setup.material.as_ref();
+    let material = material.map_or(String::new(), |m| format!("material         {m}\n"));
     format!(
-        "{sheet}mass             {} kg\npinned vertices  {pins}\nmodelled         {modelled}\n",
+        "{sheet}{material}mass             {} kg\npinned vertices  {pins}\nmodelled         {modelled}\n",
         number(mass)
     )
 }

@@ -76,7 +76,7 @@ enum Command {
         /// The shell
         shell: clap_complete::Shell,
     },
-    /// Write the reference of scene files: scene.md and the JSON schema scene.schema.json
+    /// Write the reference of scene files: scene.md, materials.md and the JSON schema scene.schema.json
     #[command(hide = true)]
     Reference {
         /// The folder

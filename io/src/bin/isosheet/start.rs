@@ -37,9 +37,11 @@ pub(crate) struct New {
 enum Kind {
     /// A sheet of paper that hangs by one corner
     Hanging,
+    /// A strip of paper that is clamped at one end and bends under its weight
+    Clamp,
     /// A cloth that drapes over a box
     Drape,
-    /// A sheet of metal that a punch presses between two bars
+    /// A sheet of aluminium that a punch presses between two bars
     Stamp,
     /// A strip of paper that is pushed up a ramp
     Feed,
@@ -69,6 +71,7 @@ impl New {
         }
         let text = match self.kind {
             Kind::Hanging => StartingPoint::Hanging,
+            Kind::Clamp => StartingPoint::Clamp,
             Kind::Drape => StartingPoint::Drape,
             Kind::Stamp => StartingPoint::Stamp,
             Kind::Feed => StartingPoint::Feed,

@@ -2,7 +2,7 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use isosheet_io::scene::{reference_page, schema};
+use isosheet_io::scene::{materials_page, reference_page, schema};
 use isosheet_io::{write_atomically, write_json};
 use std::io::Write;
 use std::path::Path;
@@ -24,9 +24,13 @@ pub(crate) fn bytes_to_stdout(bytes: &[u8]) -> Done {
 
 /// Writes the reference of scene files.
 pub(crate) fn reference(dir: &Path) -> Done {
-    let page = dir.join("scene.md");
-    write_atomically(&page, |w| w.write_all(reference_page().as_bytes()))
-        .map_err(|e| Failure::of(Code::Output, &e))?;
+    for (name, page) in [
+        ("scene.md", reference_page()),
+        ("materials.md", materials_page()),
+    ] {
+        write_atomically(&dir.join(name), |w| w.write_all(page.as_bytes()))
+            .map_err(|e| Failure::of(Code::Output, &e))?;
+    }
     write_json(&dir.join("scene.schema.json"), &schema()).map_err(|e| Failure::of(Code::Output, &e))
 }
 

@@ -1,0 +1,186 @@
+//! The material of the sheet.
+
+use super::key::Key;
+use super::problem::Checks;
+use super::toml_problem::suggestion;
+use super::unit::Unit;
+use isosheet_dynamics as engine;
+use isosheet_dynamics::OptionsError;
+use isosheet_mesh::wording::{brief, given};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
+use std::fmt;
+
+/// What the sheet is made of: the name of a material, or a [`Plate`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Material {
+    /// One of the materials that have a name ([`isosheet_dynamics::Material::names`]).
+    Named(String),
+    /// A plate of one isotropic material.
+    Plate(Plate),
+}
+
+/// A plate of one isotropic material: its mass is `density thickness`, its membrane stiffness `youngs thickness`
+/// and its flexural rigidity `youngs thickness^3 / (12 (1 - poisson^2))`.
+///
+/// ```toml
+/// [sheet]
+/// material = { youngs = 2.1e11, thickness = 5e-4, density = 7850, poisson = 0.3 }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Plate {
+    /// Young's modulus, Pa: steel has 2.1e11.
+    pub youngs: f64,
+    /// Thickness of the material, metres. Contact keeps the distance `sheet.thickness`, not this one.
+    pub thickness: f64,
+    /// Mass of a cubic metre, kg/m3: steel has 7850.
+    pub density: f64,
+    /// Poisson's ratio, from 0 to 0.5.
+    #[serde(default = "typical_poisson")]
+    pub poisson: f64,
+}
+
+/// Poisson's ratio of most solids, between 0.25 and 0.4: metals, paper, films.
+pub(crate) fn typical_poisson() -> f64 {
+    0.3
+}
+
+impl Plate {
+    fn numbers(&self) -> Result<engine::Material, OptionsError> {
+        engine::Material::isotropic(engine::Isotropic {
+            youngs: self.youngs,
+            thickness: self.thickness,
+            density: self.density,
+            poisson: self.poisson,
+        })
+    }
+
+    fn check(&self, key: &Key, checks: &mut Checks) {
+        let before = checks.problems.len();
+        checks.positive(key.name("youngs"), self.youngs, Unit::Pascal);
+        checks.positive(key.name("thickness"), self.thickness, Unit::Metre);
+        let unit = Unit::KilogramPerCubicMetre;
+        checks.positive(key.name("density"), self.density, unit);
+        checks.within(key.name("poisson"), self.poisson, [0.0, 0.5]);
+        if checks.problems.len() > before {
+            return;
+        }
+        if let Err(error) = self.numbers() {
+            let message = format!("these numbers give no sheet: {error}");
+            checks.report(
+                key.clone(),
+                message,
+                "check `thickness`, which is in metres",
+            );
+        }
+    }
+}
+
+impl Material {
+    /// The material of a name.
+    pub fn named(name: impl Into<String>) -> Self {
+        Self::Named(name.into())
+    }
+
+    /// Its numbers; `None` if it has a name that is not known, or numbers that make no sense.
+    pub fn numbers(&self) -> Option<engine::Material> {
+        match self {
+            Self::Named(name) => engine::Material::named(name).ok(),
+            Self::Plate(plate) => plate.numbers().ok(),
+        }
+    }
+
+    /// Its numbers in a line, for those who read what a scene is.
+    pub(crate) fn in_words(&self) -> Option<String> {
+        let numbers = self.numbers()?;
+        let what = match self {
+            Self::Named(name) => {
+                let mut all = engine::Material::catalogue().iter();
+                let named = all.find(|m| m.material == numbers);
+                named.map_or(name.clone(), |m| format!("{}, {}", m.name, m.form))
+            }
+            Self::Plate(plate) => format!("a plate of {} m", given(plate.thickness)),
+        };
+        Some(format!(
+            "{what}: {} kg/m2, E h {} N/m, D {} N m, Poisson's ratio {}, strain at most {} %",
+            brief(numbers.density),
+            brief(numbers.stiffness),
+            brief(numbers.rigidity),
+            brief(numbers.poisson),
+            brief(100.0 * numbers.strain_limit)
+        ))
+    }
+
+    pub(crate) fn check(&self, key: &Key, checks: &mut Checks) {
+        match self {
+            Self::Named(name) => {
+                if let Err(unknown) = engine::Material::named(name) {
+                    let message = format!("`{name}` is no material that is known");
+                    let remedy = format!(
+                        "{}; or give its numbers, `{{ youngs = ..., thickness = ..., density = ... }}`",
+                        suggestion(name, &unknown.names)
+                    );
+                    checks.report(key.clone(), message, remedy);
+                }
+            }
+            Self::Plate(plate) => plate.check(key, checks),
+        }
+    }
+}
+
+impl Serialize for Material {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Named(name) => serializer.serialize_str(name),
+            Self::Plate(plate) => plate.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Material {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(MaterialVisitor)
+    }
+}
+
+struct MaterialVisitor;
+
+impl<'de> Visitor<'de> for MaterialVisitor {
+    type Value = Material;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(
+            "the name of a material in quotes, or a table with `youngs`, `thickness` and `density`",
+        )
+    }
+
+    fn visit_str<E>(self, name: &str) -> Result<Material, E> {
+        Ok(Material::named(name))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Material, A::Error> {
+        Plate::deserialize(MapAccessDeserializer::new(map)).map(Material::Plate)
+    }
+}
+
+impl JsonSchema for Material {
+    fn schema_name() -> Cow<'static, str> {
+        "Material".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let plate = generator.subschema_for::<Plate>();
+        let names: Vec<&str> = engine::Material::names().collect();
+        json_schema!({
+            "description": "What the sheet is made of: the name of a material (materials.md lists all of them, with \
+                numbers and sources), or a `Plate`. A material gives the sheet its mass and bending stiffness, and \
+                makes it elastic; `density`, `mass`, `bending` and `isometry` beside it replace what it gives.\n\n\
+                ```toml\n[sheet]\nmaterial = \"office paper\"\n```",
+            "anyOf": [{ "type": "string", "examples": names }, plate],
+        })
+    }
+}

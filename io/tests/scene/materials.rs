@@ -1,0 +1,186 @@
+//! Materials by name and by their numbers, and what is written beside them.
+
+use crate::parse;
+use isosheet_io::dynamics;
+use isosheet_io::scene::{Bending, Elasticity, Isometry, Material, Plate, Scene, SceneFile};
+use std::path::Path;
+
+/// A sheet of 0.02 m2 with some lines.
+fn sheet(lines: &str) -> Scene {
+    parse(&with(lines)).unwrap().scene().clone()
+}
+
+fn with(lines: &str) -> String {
+    format!(
+        "version = 1\n[sheet]\nmesh = {{ rectangle = {{ width = 0.2, height = 0.1, columns = 2, rows = 1 }} }}\n{lines}\n"
+    )
+}
+
+fn refused(text: &str) -> String {
+    match parse(text) {
+        Err(error) => error.to_string(),
+        Ok(_) => panic!("accepted:\n{text}"),
+    }
+}
+
+#[test]
+fn a_material_gives_mass_stiffness_and_an_elastic_sheet() {
+    let paper = dynamics::Material::office_paper();
+    let scene = sheet("material = \"office paper\"").sheet;
+    assert_eq!(scene.areal_density(), paper.density);
+    assert_eq!(
+        scene.bending(),
+        Bending::Plate {
+            rigidity: paper.rigidity
+        }
+    );
+    assert_eq!(scene.isometry(), Isometry::ELASTIC);
+    let numbers = Elasticity {
+        stiffness: paper.stiffness,
+        poisson: paper.poisson,
+        limit: paper.strain_limit,
+    };
+    assert_eq!(scene.elasticity(), Some(numbers));
+    // Steel of half a millimetre, by its numbers.
+    let steel = "material = { youngs = 2.1e11, thickness = 5e-4, density = 7850, poisson = 0.3 }";
+    let steel = sheet(steel).sheet;
+    let named = sheet("material = \"Steel-Sheet\"").sheet;
+    assert_eq!(steel.areal_density(), named.areal_density());
+    assert_eq!(steel.bending(), named.bending());
+    assert_eq!(steel.elasticity(), named.elasticity());
+}
+
+#[test]
+fn without_a_material_a_sheet_is_one_of_rods() {
+    let scene = sheet("").sheet;
+    assert_eq!(scene.isometry(), Isometry::Rods);
+    assert_eq!(scene.bending(), Bending::None);
+    assert_eq!(scene.areal_density(), 0.08);
+    assert_eq!(scene.elasticity(), None);
+}
+
+#[test]
+fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
+    let scene = sheet("material = \"denim\"\ndensity = 0.3\nbending = \"none\"").sheet;
+    assert_eq!(scene.areal_density(), 0.3);
+    assert_eq!(scene.bending(), Bending::None);
+    let denim = dynamics::Material::denim();
+    let elastic = sheet("material = \"denim\"\nisometry = { elastic = { limit = 0.03 } }").sheet;
+    let numbers = Elasticity {
+        stiffness: denim.stiffness,
+        poisson: denim.poisson,
+        limit: 0.03,
+    };
+    assert_eq!(elastic.elasticity(), Some(numbers));
+    let rods = sheet("material = \"denim\"\nisometry = \"rods\"");
+    assert_eq!(rods.sheet.elasticity(), None);
+    let setup = rods.build(Path::new("")).unwrap();
+    assert!((setup.model.mass().total() - 0.02 * denim.density).abs() < 1e-15);
+    assert_eq!(setup.model.isometry(), dynamics::Isometry::Rods);
+    // A plate of the rigidity of denim, which is bent about the middle line.
+    let mut x = setup.start.x.clone();
+    x[2] = 0.01;
+    let bent = setup.model.potential_energy(0.0, &x);
+    let stiff = sheet("isometry = \"rods\"\nbending = { plate = { rigidity = 1e-4 } }");
+    let stiff = stiff.build(Path::new("")).unwrap();
+    let ratio = bent / stiff.model.potential_energy(0.0, &x);
+    assert!((ratio - denim.rigidity / 1e-4).abs() < 1e-9, "{ratio}");
+    assert!(setup.material.unwrap().starts_with("denim, washed"));
+}
+
+#[test]
+fn an_elastic_sheet_needs_no_material() {
+    let scene = sheet("isometry = { elastic = { stiffness = 1e4 } }").sheet;
+    let numbers = Elasticity {
+        stiffness: 1e4,
+        poisson: 0.3,
+        limit: 0.01,
+    };
+    assert_eq!(scene.elasticity(), Some(numbers));
+    let text = refused(&with("isometry = { elastic = {} }"));
+    assert!(
+        text.contains("neither a stiffness nor a material") && text.contains("N/m"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_scene_with_a_material_is_written_as_it_is_read() {
+    let plate = Plate {
+        youngs: 3e9,
+        thickness: 2e-4,
+        density: 900.0,
+        poisson: 0.35,
+    };
+    for material in [Material::named("card"), Material::Plate(plate)] {
+        for isometry in [None, Some(Isometry::ELASTIC), Some(Isometry::Rods)] {
+            let mut scene = sheet("");
+            scene.sheet.material = Some(material.clone());
+            scene.sheet.isometry = isometry;
+            let written = SceneFile::of(scene.clone(), Path::new("")).unwrap();
+            assert_eq!(parse(&written.text().text).unwrap().scene(), &scene);
+        }
+    }
+}
+
+#[test]
+fn wrong_materials_are_told_with_what_to_write() {
+    let wrong = [
+        (
+            "material = \"ofice paper\"",
+            ["`ofice paper` is no material", "did you mean `office paper`?"],
+        ),
+        (
+            "material = \"adamantium\"",
+            ["no material that is known", "known here: "],
+        ),
+        ("material = 3", ["the name of a material in quotes", "^"]),
+        (
+            "material = { youngs = 1e9, thicknes = 1e-4, density = 1000 }",
+            ["unknown key `thicknes`", "did you mean `thickness`?"],
+        ),
+        (
+            "material = { youngs = 1e9, density = 1000 }",
+            ["the key `thickness` is missing", "add it"],
+        ),
+        (
+            "material = { youngs = 0, thickness = 1e-4, density = 1000 }",
+            ["`sheet.material.youngs` is 0 Pa", "above 0"],
+        ),
+        (
+            "material = { youngs = 1e9, thickness = 1e-4, density = -1 }",
+            ["-1 kg/m3", "above 0"],
+        ),
+        (
+            "material = { youngs = 1e9, thickness = 1e-4, density = 1000, poisson = 0.7 }",
+            ["poisson` is 0.7", "from 0 to 0.5"],
+        ),
+        (
+            "material = { youngs = 1.0, thickness = 1e-12, density = 1000 }",
+            ["give no sheet", "in metres"],
+        ),
+        (
+            "material = \"card\"\nisometry = { elastic = { limit = 0.5 } }",
+            ["limit` is 0.5", "from 1e-6 to 0.49"],
+        ),
+        (
+            "material = \"card\"\nisometry = { elastic = { stiffness = nan } }",
+            ["NaN N/m", "above 0"],
+        ),
+        (
+            "material = \"card\"\n[method]\nintegrator = \"rattle\"",
+            ["needs rigid rods", "`isometry = \"rods\"` beside `sheet.material`"],
+        ),
+    ];
+    for (lines, parts) in wrong {
+        let text = refused(&with(lines));
+        for part in parts {
+            assert!(text.contains(part), "{lines}: {text}");
+        }
+    }
+    // All names are listed, so that one can be chosen.
+    let text = refused(&with("material = \"adamantium\""));
+    for name in dynamics::Material::names() {
+        assert!(text.contains(name), "{name}: {text}");
+    }
+}
