@@ -17,6 +17,7 @@ mod hold;
 mod impacts;
 mod invariance;
 mod locking;
+mod materials;
 mod orders;
 mod origami;
 mod robust;

@@ -8,16 +8,16 @@ use super::material::Material;
 use super::mesh::{Mesh, RestMesh};
 use super::pose::{Motion, Pose};
 use super::problem::Problem;
-use super::sheet::{Bending, Isometry};
+use super::sheet::{Bending, Elasticity, Isometry};
 use super::supports::{Hold, frame_motion};
 use super::{Origins, Scene, Setup};
 use isosheet_collide::{Coefficients, Contacts, ContactsError, Obstacle};
 use isosheet_dynamics::{
-    AccelerationField, CreaseSprings, Membrane, PlateBending, PointMotion, PointProfile,
-    RigidProfile, SheetModel, SimulationError, State, VertexConstraint, VertexLoad, WeakIsometry,
-    leave_flat, project_positions,
+    AccelerationField, CreaseSprings, ElasticSheet, PlateBending, PointMotion, PointProfile,
+    RigidProfile, SheetModel, SimulationError, State, VertexConstraint, VertexLoad, leave_flat,
+    project_positions,
 };
-use isosheet_mesh::wording::counted;
+use isosheet_mesh::wording::{brief, counted};
 use isosheet_mesh::{Advice, EdgeId, MassKind, Sheet, VertexId};
 use nalgebra::{Isometry3, Point3};
 use std::path::Path;
@@ -329,37 +329,28 @@ impl<'a> Builder<'a> {
     }
 
     fn add_isometry(&mut self) -> Result<(), SceneError> {
-        let key = Key::root().name("sheet.isometry");
-        let sheet = &self.rest.sheet;
-        match self.scene.sheet.isometry() {
-            Isometry::Rods => self.modelled.push("rigid rods".into()),
-            Isometry::Elastic { .. } => {
-                return Err(Problem::new(
-                    key,
-                    "the engine of this version has no elastic sheet",
-                    "write `isometry = { membrane = { stiffness = ... } }` beside the material, or `\"rods\"`",
-                )
-                .into());
-            }
-            Isometry::Membrane { stiffness, poisson } => {
-                let membrane = Membrane::new(sheet, stiffness, poisson).map_err(at(&key))?;
-                self.modelled.push("elastic membrane".into());
-                self.change(
-                    |m| Ok(m.with_membrane(membrane)),
-                    at::<SimulationError>(&key),
-                )?;
-            }
-            Isometry::Weak { stiffness } => {
-                let weak = match stiffness {
-                    Some(stiffness) => WeakIsometry::new(sheet, stiffness),
-                    None => WeakIsometry::of_plate(sheet, self.scene.sheet.bending().rigidity()),
-                };
-                let weak = weak.map_err(at(&key))?;
-                self.modelled.push("isometry in weak form".into());
-                self.change(|m| m.with_weak_isometry(weak), at(&key))?;
-            }
-        }
-        Ok(())
+        let of_sheet = &self.scene.sheet;
+        let Some(elasticity) = of_sheet.elasticity() else {
+            self.modelled.push("rigid rods".into());
+            return Ok(());
+        };
+        let name = match of_sheet.isometry {
+            Some(_) => "sheet.isometry",
+            None => "sheet.material",
+        };
+        let key = Key::root().name(name);
+        let Elasticity {
+            stiffness,
+            poisson,
+            limit,
+        } = elasticity;
+        let rigidity = of_sheet.bending().rigidity();
+        let elastic = ElasticSheet::new(&self.rest.sheet, stiffness, poisson)
+            .and_then(|e| e.softened(rigidity))
+            .and_then(|e| e.with_limit(limit))
+            .map_err(at(&key))?;
+        self.modelled.push(elastic_in_words(&elastic));
+        self.change(|m| m.with_elastic_sheet(elastic), at(&key))
     }
 
     /// Gives the positions of a start file the rest lengths that the few digits of the file have rounded.
@@ -440,6 +431,27 @@ impl<'a> Builder<'a> {
         }
         Ok((Some(contacts), obstacles))
     }
+}
+
+/// What an elastic sheet is on its mesh.
+fn elastic_in_words(elastic: &ElasticSheet) -> String {
+    let used = elastic.face_stiffnesses();
+    let [least, most] = used.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], k| {
+        [least.min(k), most.max(k)]
+    });
+    let softened = if least == elastic.stiffness() {
+        String::new()
+    } else if brief(least).to_string() == brief(most).to_string() {
+        format!(", softened on this mesh to {} N/m", brief(least))
+    } else {
+        let [least, most] = [brief(least), brief(most)];
+        format!(", softened on this mesh to between {least} and {most} N/m")
+    };
+    format!(
+        "elasticity in the plane ({} N/m{softened}; strain below {} %)",
+        brief(elastic.stiffness()),
+        brief(100.0 * elastic.limit())
+    )
 }
 
 fn self_contact_problem(error: &ContactsError) -> Problem {

@@ -128,7 +128,7 @@ impl Origins {
                 let remedy = match dependent_rods {
                     0 => "take a smaller `method.step`, more damping, or another `sheet.isometry`",
                     _ => {
-                        "choose `sheet.isometry` weak or membrane, more damping, or another `method.step`; \
+                        "name what the sheet is made of, `sheet.material`, more damping, or another `method.step`; \
                          with `bdf2` and `implicit_euler` leave `method.fallback` at hold"
                     }
                 };
@@ -153,6 +153,11 @@ impl Origins {
             StepError::OffConstraints { .. } | StepError::OffWeakIsometry { .. } => (
                 root.name("sheet.start"),
                 "the positions at the start need the rest lengths of `sheet.mesh`",
+            ),
+            StepError::BeyondStrainLimit { .. } => (
+                root.name("sheet.start"),
+                "start from a shape whose lengths are nearer to those of `sheet.mesh`, choose a smaller \
+                 `sheet.start.perturbation`, or raise the limit, `isometry = { elastic = { limit = ... } }`",
             ),
             StepError::RankDeficient { .. } => (
                 root.name("method.integrator"),

@@ -96,22 +96,6 @@ pub enum Isometry {
         #[serde(default)]
         limit: Option<f64>,
     },
-    /// The elasticity of the material: edges stretch. For `bdf2` and `implicit_euler`.
-    Membrane {
-        /// Young's modulus times thickness, N/m: office paper has 3e5.
-        stiffness: f64,
-        /// Poisson's ratio, from 0 to 0.5.
-        #[serde(default)]
-        poisson: f64,
-    },
-    /// Lengths in the mean around each vertex, and a soft membrane: smooth bends in every direction. The rest
-    /// shape has to be flat. For `bdf2` and `implicit_euler`.
-    Weak {
-        /// Stiffness of the membrane, N/m; if left out, 100 times the flexural rigidity over the squared size
-        /// of the mesh.
-        #[serde(default)]
-        stiffness: Option<f64>,
-    },
 }
 
 /// What resists bending.
@@ -258,15 +242,6 @@ impl Sheet {
                 "give `stiffness` in N/m, Young's modulus times thickness, or `sheet.material`",
             );
         }
-        if matches!(isometry, Isometry::Weak { stiffness: None })
-            && self.bending().rigidity() == 0.0
-        {
-            checks.report(
-                key.name("isometry.weak"),
-                "the stiffness of the membrane follows from a flexural rigidity, and the sheet has none",
-                "give `stiffness` in N/m, or `bending = { plate = { rigidity = ... } }`",
-            );
-        }
         self.placement.check(&key.name("placement"), checks);
         let start = key.name("start");
         checks.within(
@@ -310,18 +285,7 @@ impl Isometry {
                     checks.within(key.name("limit"), *limit, LIMITS);
                 }
             }
-            Self::Rods | Self::Weak { stiffness: None } => {}
-            Self::Membrane { stiffness, poisson } => {
-                checks.positive(
-                    key.name("membrane.stiffness"),
-                    *stiffness,
-                    Unit::NewtonPerMetre,
-                );
-                checks.within(key.name("membrane.poisson"), *poisson, [0.0, 0.5]);
-            }
-            Self::Weak {
-                stiffness: Some(stiffness),
-            } => checks.positive(key.name("weak.stiffness"), *stiffness, Unit::NewtonPerMetre),
+            Self::Rods => {}
         }
     }
 }

@@ -130,12 +130,19 @@ impl<F: FnMut(&StepPart) -> bool> Watch for GiveUp<F> {
     }
 }
 
-/// Steps of 0.3 s are divided into sub-steps; the run is given up before, between and after them.
+/// Steps of 0.3 s of a strip of rods are divided into sub-steps; the run is given up before, between and after them.
 #[test]
 fn a_run_that_is_stopped_within_steps_continues_to_the_same_bits() {
     let dir = with_scene(StartingPoint::Feed);
     let dir = dir.path();
-    let edits = ["stop.time=0.6", "method.step=0.3"].map(String::from);
+    let edits = [
+        "stop.time=0.6",
+        "method.step=0.3",
+        "sheet.isometry=\"rods\"",
+        "sheet.bending={ hinges = { rigidity = 5e-4 } }",
+        "method.rod_stiffness=1e5",
+    ];
+    let edits = edits.map(String::from);
     let scene = SceneFile::read(&dir.join("scene.toml"), &edits).unwrap();
     let go_on = |_: &Tick| ControlFlow::Continue(());
     let whole = simulate(&scene, &dir.join("whole"), &mut { go_on }).unwrap();

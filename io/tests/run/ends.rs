@@ -18,14 +18,14 @@ fn conditions_to_stop_end_a_run() {
         "--out",
         "slip",
         "--set",
-        "stop.support_force=0.003",
+        "stop.support_force=0.0015",
     ];
     let done = run(dir, &limit);
     assert_eq!(code(&done), Some(0), "{}", stderr(&done));
     let slip = summary(&dir.join("slip")).ending;
     assert_eq!(slip.reason, EndReason::SupportForce);
     let size = slip.supports[0].iter().map(|f| f * f).sum::<f64>().sqrt();
-    assert!(slip.t < 0.9 && size > 0.003, "{slip:?}");
+    assert!(slip.t < 0.9 && size > 0.0015, "{slip:?}");
     let scene = "version = 1
         [sheet]
         mesh = { rectangle = { width = 0.1, height = 0.1, columns = 1, rows = 1 } }

@@ -160,7 +160,7 @@ fn sheets_that_cannot_do_what_was_meant_are_told() {
     )
     .unwrap();
     fs::write(dir.join("solid.toml"), scene("solid.obj", "")).unwrap();
-    let elastic = "isometry = { membrane = { stiffness = 1e5 } }\n";
+    let elastic = "isometry = { elastic = { stiffness = 1e5 } }\n";
     fs::write(dir.join("elastic.toml"), scene("solid.obj", "") + elastic).unwrap();
     let closed = ["surface is closed", "cannot bend"];
     let wide = ["800 m wide", "scale = 0.001"];

@@ -112,7 +112,7 @@ fn what_a_chart_cannot_do_is_refused_at_its_key() {
         ),
         ("method.integrator=bdf2", "no chart"),
         (
-            "sheet.isometry={membrane={stiffness=1000}}",
+            "sheet.isometry={elastic={stiffness=1000}}",
             "needs rigid rods",
         ),
     ];

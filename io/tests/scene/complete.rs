@@ -14,7 +14,7 @@ const ALL_KEYS: [&str; 5] = [
     density = 0.1
     mass = 0.01
     thickness = 1e-4
-    isometry = { weak = { stiffness = 100.0 } }
+    isometry = { elastic = { stiffness = 1e6, poisson = 0.3, limit = 0.02 } }
     bending = { plate = { rigidity = 1e-3 } }
     damping = 1.0
     placement = { position = [0, 0, 1], turn = { axis = [0, 0, 1], angle = 45 } }
@@ -105,7 +105,7 @@ const ALL_KEYS: [&str; 5] = [
     r#"version = 1
     [sheet]
     mesh = { rectangle = { width = 1, height = 1, columns = 2, rows = 2, diagonals = "union_jack" } }
-    isometry = { membrane = { stiffness = 1e5, poisson = 0.3 } }
+    isometry = { elastic = { stiffness = 1e5 } }
     bending = { hinges = { rigidity = 1e-3 } }
     [[crease]]
     at = { pattern = "assigned" }
@@ -165,7 +165,6 @@ const ALL_KEYS: [&str; 5] = [
     [sheet]
     mesh = { file = { path = "a.fold" } }
     material = "card"
-    isometry = { elastic = { stiffness = 1e6, poisson = 0.3, limit = 0.02 } }
     [folding]
     time = 1
     stiffness = 0.01

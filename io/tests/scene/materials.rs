@@ -89,6 +89,45 @@ fn what_is_written_beside_a_material_takes_the_place_of_what_it_gives() {
 }
 
 #[test]
+fn a_scene_says_what_the_material_gives_and_what_the_mesh_can_bear() {
+    let setup = |lines: &str| sheet(lines).build(Path::new("")).unwrap();
+    let paper = setup("material = \"office paper\"");
+    let said = paper.material.unwrap();
+    for part in [
+        "office paper, uncoated",
+        "0.08 kg/m2",
+        "3e5 N/m",
+        "strain at most 1 %",
+    ] {
+        assert!(said.contains(part), "{said}");
+    }
+    // Cells of 0.1 m with diagonals: the edges of each face have a mean square of (0.1^2 + 0.1^2 + 0.02) / 3 m2.
+    let used: Vec<f64> = paper
+        .model
+        .elastic_sheet()
+        .unwrap()
+        .face_stiffnesses()
+        .collect();
+    assert!(
+        used.iter()
+            .all(|k| (k / used[0] - 1.0).abs() < 1e-12 && *k < 3e5),
+        "{used:?}"
+    );
+    let modelled = paper.modelled.join(", ");
+    assert!(
+        modelled.contains("elasticity in the plane (3e5 N/m, softened on this mesh to "),
+        "{modelled}"
+    );
+    let limp = setup("material = \"office paper\"\nbending = \"none\"");
+    let modelled = limp.modelled.join(", ");
+    assert!(
+        modelled.contains("elasticity in the plane (3e5 N/m; strain below 1 %)"),
+        "{modelled}"
+    );
+    assert!(!modelled.contains("bending"), "{modelled}");
+}
+
+#[test]
 fn an_elastic_sheet_needs_no_material() {
     let scene = sheet("isometry = { elastic = { stiffness = 1e4 } }").sheet;
     let numbers = Elasticity {
@@ -128,7 +167,10 @@ fn wrong_materials_are_told_with_what_to_write() {
     let wrong = [
         (
             "material = \"ofice paper\"",
-            ["`ofice paper` is no material", "did you mean `office paper`?"],
+            [
+                "`ofice paper` is no material",
+                "did you mean `office paper`?",
+            ],
         ),
         (
             "material = \"adamantium\"",
@@ -169,7 +211,10 @@ fn wrong_materials_are_told_with_what_to_write() {
         ),
         (
             "material = \"card\"\n[method]\nintegrator = \"rattle\"",
-            ["needs rigid rods", "`isometry = \"rods\"` beside `sheet.material`"],
+            [
+                "needs rigid rods",
+                "`isometry = \"rods\"` beside `sheet.material`",
+            ],
         ),
     ];
     for (lines, parts) in wrong {
@@ -177,6 +222,39 @@ fn wrong_materials_are_told_with_what_to_write() {
         for part in parts {
             assert!(text.contains(part), "{lines}: {text}");
         }
+    }
+    // A start beyond the limit is told at the start.
+    let text = with("material = \"card\"\nstart = { perturbation = 0.05 }");
+    let started = parse(&text).unwrap().build().unwrap().start();
+    let text = started.expect_err("refused").to_string();
+    assert!(
+        text.contains("the limit of the elastic sheet is 0.01")
+            && text.contains("smaller `sheet.start.perturbation`"),
+        "{text}"
+    );
+    // Keys of earlier versions.
+    for (lines, remedy) in [
+        (
+            "isometry = { weak = {} }",
+            "an elastic sheet bends in every direction",
+        ),
+        (
+            "isometry = \"weak\"",
+            "an elastic sheet bends in every direction",
+        ),
+        (
+            "isometry = { membrane = { stiffness = 3e5 } }",
+            "`isometry = { elastic = { stiffness = ..., poisson = ..., limit = 0.01 } }`",
+        ),
+    ] {
+        let text = refused(&with(lines))
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ");
+        assert!(
+            text.contains("any more") && text.contains(remedy),
+            "{lines}: {text}"
+        );
     }
     // All names are listed, so that one can be chosen.
     let text = refused(&with("material = \"adamantium\""));

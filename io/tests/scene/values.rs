@@ -8,7 +8,7 @@ const VARIED: &str = "version = 1
 [sheet]
 mesh = { annulus = { inner = 0.1, outer = 0.2, segments = 8, rings = 2 } }
 thickness = 1e-4
-isometry = { membrane = { stiffness = 1000.0, poisson = 0.3 } }
+isometry = { elastic = { stiffness = 1000.0, poisson = 0.3, limit = 0.2 } }
 bending = { plate = { rigidity = 1e-3 } }
 damping = 1.0
 placement = { position = [0, 0, 1], turn = { axis = [0, 0, 1], angle = 45 } }

@@ -54,7 +54,7 @@ impl Check {
         let sheet = &scene.scene().sheet;
         let closed = match sheet.isometry() {
             Isometry::Rods => hints::closed(&setup.sheet),
-            _ => String::new(),
+            Isometry::Elastic { .. } => String::new(),
         };
         let wide = match &sheet.mesh {
             Mesh::File(file) if file.scale == 1.0 => hints::wide(&setup.sheet),
