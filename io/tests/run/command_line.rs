@@ -3,7 +3,6 @@
 use crate::{code, isosheet, run, stderr, stdout, with_scene};
 use isosheet_io::scene::StartingPoint;
 use std::fs;
-use std::path::Path;
 
 /// A folder with a scene, its run of 0.1 s, and a mesh.
 fn with_run() -> tempfile::TempDir {

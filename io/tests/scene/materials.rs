@@ -226,7 +226,7 @@ fn wrong_materials_are_told_with_what_to_write() {
     // A start beyond the limit is told at the start.
     let text = with("material = \"card\"\nstart = { perturbation = 0.05 }");
     let started = parse(&text).unwrap().build().unwrap().start();
-    let text = started.expect_err("refused").to_string();
+    let text = started.err().expect("refused").to_string();
     assert!(
         text.contains("the limit of the elastic sheet is 0.01")
             && text.contains("smaller `sheet.start.perturbation`"),
