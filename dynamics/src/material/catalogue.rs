@@ -14,6 +14,7 @@ macro_rules! catalogue {
                 #[doc = concat!("`", $name, "`: ", $form, ".")]
                 #[doc = ""]
                 #[doc = $source]
+                #[allow(clippy::doc_markdown, reason = "names of firms")]
                 pub const fn $constructor() -> Self {
                     $material
                 }
