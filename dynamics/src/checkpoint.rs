@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the format. It grows with every change of the fields, because the binary format does not name
 /// them.
-const VERSION: u32 = 8;
+const VERSION: u32 = 9;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";

@@ -8,7 +8,7 @@
 //! | refused: would create energy, has a history | restart as a one-step method | |
 //! | refused: the chart is singular there | | restart from a new reference state |
 //! | refused, the step may be shortened | halve | shorten by that bound, by contact to its safe part |
-//! | refused, a fallback is allowed | fall back: implicit Euler, or hold the sheet | |
+//! | refused, a fallback is allowed | fall back: implicit Euler | |
 //! | refused otherwise | stop | stop |
 //!
 //! [`Subdivision`]: crate::subdivision::Subdivision

@@ -29,6 +29,11 @@ pub(crate) struct SolverEffort<'w> {
     pub(crate) t: f64,
     watch: Option<Watch<'w>>,
     is_interrupted: bool,
+    /// Matrix factorisations until the last accepted state.
+    begun: usize,
+    /// Largest number of factorisations from there on, if there is one.
+    limit: Option<usize>,
+    is_spent: bool,
 }
 
 impl<'w> SolverEffort<'w> {
@@ -43,6 +48,30 @@ impl<'w> SolverEffort<'w> {
     /// Whether the watch has ended the step. What an integrator proposes after that has no meaning.
     pub(crate) fn is_interrupted(&self) -> bool {
         self.is_interrupted
+    }
+
+    /// Begins at an accepted state, from which the attempts until the next one may take a number of
+    /// factorisations, or as many as they need.
+    pub(crate) fn begin(&mut self, limit: Option<usize>) {
+        self.begun = self.factorisations;
+        self.limit = limit;
+        self.is_spent = false;
+    }
+
+    /// Allows as many factorisations as are needed until the next accepted state.
+    pub(crate) fn lift_limit(&mut self) {
+        self.limit = None;
+        self.is_spent = false;
+    }
+
+    /// Factorisations since the last accepted state.
+    pub(crate) fn spent(&self) -> usize {
+        self.factorisations - self.begun
+    }
+
+    /// Whether the limit has ended an attempt. What an integrator proposes after that has no meaning.
+    pub(crate) fn is_spent(&self) -> bool {
+        self.is_spent
     }
 
     /// Asks the watch whether the step goes on. Once it has said no, the answer stays no.
@@ -60,10 +89,11 @@ impl<'w> SolverEffort<'w> {
         !self.is_interrupted
     }
 
-    /// Counts a factorisation that is about to be made; false if the step has been interrupted, and nothing
-    /// is to be factorised.
+    /// Counts a factorisation that is about to be made; false if the step has been interrupted or the limit is
+    /// reached, and nothing is to be factorised.
     pub(crate) fn count_factorisation(&mut self) -> bool {
-        let goes_on = self.goes_on();
+        self.is_spent |= self.limit.is_some_and(|limit| self.spent() >= limit);
+        let goes_on = !self.is_spent && self.goes_on();
         self.factorisations += usize::from(goes_on);
         goes_on
     }

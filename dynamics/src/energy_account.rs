@@ -52,11 +52,6 @@ pub(crate) struct Exchange {
 }
 
 impl EnergyAccount {
-    /// What was lost since an earlier account, joules; zero if energy was gained.
-    pub(crate) fn loss_since(&self, earlier: &Self) -> f64 {
-        (earlier.net - self.net).max(0.0)
-    }
-
     /// The account after a step.
     ///
     /// # Errors

@@ -1,19 +1,17 @@
 //! The chart-free engine: proposals of an integrator, judged and committed.
 
+use crate::blocked::{blocked_vertices, dependent_vertices};
 use crate::checkpoint::{CheckpointError, FreeMotion, check_length};
 use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
 use crate::control::{Decision, Stepping, take_substep};
 use crate::elastic_sheet::{ElasticSheet, strain_barrier_at_start};
 use crate::energy_account::{EnergyAccount, Exchange};
 use crate::feasibility::{Excess, excess};
-use crate::history::History;
-use crate::hold::Hold;
 use crate::immobile::immobile_vertices;
 use crate::implicit::ImplicitEuler;
 use crate::integrator::{
     Attempt, ContactSupport, Integrator, Memory, Moment, Proposal, RodDemand, Scene,
 };
-use crate::minimiser::problem::StepEnd;
 use crate::rank::rod_rank;
 use crate::reaction::Balance;
 use crate::report::{StepError, StepOutcome, StepTotals};
@@ -23,11 +21,6 @@ use crate::{
     Fallback, Isometry, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
 };
 use isosheet_mesh::VertexId;
-
-/// How many times [`StepControl::hold_after`] a step takes where supports move, before the sheet is held that
-/// was not so before. A strip of paper that jams in a guide and buckles needs 700 factorisations in one step
-/// with the default of 200, and is not to be held there.
-const DRIVEN: usize = 5;
 
 /// A sheet that a chart-free method moves.
 pub(crate) struct Engine {
@@ -81,7 +74,7 @@ impl Engine {
         Ok(Self {
             moment: Moment::at(state, &model, traits),
             proposal: Proposal::new(&model, traits),
-            fallback: fallback(&model, &method, &control)?,
+            fallback: fallback(&model, &control)?,
             integrator,
             control,
             contact: None,
@@ -173,38 +166,29 @@ impl Engine {
         let (contact, contacts) = RunContact::new(contact, &self.model, &self.moment.state)?;
         self.contact = Some(contact);
         self.moment.contacts = Some(contacts);
-        self.moment.history.returning_step = 0.0;
         Ok(())
     }
 
     pub(crate) fn set_control(&mut self, control: StepControl) -> Result<(), SimulationError> {
         control.validate()?;
-        self.fallback = fallback(&self.model, &self.method, &control)?;
+        self.fallback = fallback(&self.model, &control)?;
         self.control = control;
-        self.moment.history.returning_step = 0.0;
         Ok(())
     }
 
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals<'_>) -> Result<(), StepError> {
         let lengths = Subdivision::new(self.state().t, h);
-        // Only steps in which a sheet is held are known to return.
-        let is_autonomous = self.may_hold() && self.is_autonomous(h);
-        let proposer = if is_autonomous && self.moment.history.returning_step == h {
-            Proposer::Fallback
-        } else {
-            Proposer::Method
-        };
         let mut run = Substeps {
+            limit: self.work_limit(),
             engine: self,
             lengths,
-            is_autonomous,
             memory: Memory::All,
-            proposer,
-            refused: None,
+            proposer: Proposer::Method,
             pending: Pending::default(),
             totals,
         };
+        run.totals.effort.begin(run.limit);
         while !run.lengths.is_finished() {
             let h = run.lengths.length();
             match take_substep(&mut run, h) {
@@ -219,75 +203,40 @@ impl Engine {
         Ok(())
     }
 
-    /// Whether the last sub-step, whose start is the moment of the last proposal, ended where it started with
-    /// the same history, so that the same sub-step would do so for ever.
-    fn has_returned(&self) -> bool {
-        let (start, end) = (&self.proposal.moment, &self.moment);
-        let is_same_state = (&start.state.x, &start.state.v) == (&end.state.x, &end.state.v);
-        let before = History {
-            returning_step: end.history.returning_step,
-            is_held: end.history.is_held,
-            ..start.history.clone()
-        };
-        is_same_state && before == end.history
+    /// Largest number of factorisations from an accepted state to the next, for sheets that may lock: those of
+    /// rods with supports at two vertices or more, by methods that take dependent rods.
+    fn work_limit(&self) -> Option<usize> {
+        let may_lock = self.model.isometry() == Isometry::Rods
+            && self.integrator.traits().demand == RodDemand::Nothing
+            && self.model.supported_vertex_count() > 1;
+        may_lock.then_some(self.control.max_factorisations)
     }
 
-    /// Whether the sheet is expected to lock where a sub-step of `h` seconds fails: where supports rest, or
-    /// the sheet was held just before. Where supports move, the sheet has to follow, and most steps that
-    /// fail need to be divided.
-    fn may_lock(&self, h: f64) -> bool {
-        let rests = || self.model.supports_rest(self.state(), self.state().t + h);
-        self.may_hold() && (self.moment.history.is_held || rests())
+    /// By how much moving supports ask for more than the rods allow until time `t`, if they do.
+    fn excess(&self, t: f64) -> Option<Excess> {
+        let is_driven = self.model.has_drives() && self.model.isometry() == Isometry::Rods;
+        is_driven.then(|| excess(&self.model, self.state(), t))?
     }
 
-    /// Whether the fallback holds the sheet.
-    fn may_hold(&self) -> bool {
-        self.control.fallback == Fallback::Hold && self.fallback.is_some()
+    /// Whether supports and bodies rest until time `end`, seconds.
+    fn surroundings_rest(&mut self, end: f64) -> bool {
+        let t0 = self.state().t;
+        let span = StepSpan { t0, h: end - t0 };
+        let contact = self.contact.as_mut();
+        !self.model.has_drives() && contact.is_none_or(|contact| contact.bodies_rest(span))
     }
 
-    /// Whether a step of `h` seconds from here would be the same at another time.
-    fn is_autonomous(&mut self, h: f64) -> bool {
-        let t = self.state().t;
-        let bodies_rest = |contact: &mut RunContact| contact.bodies_rest(StepSpan { t0: t, h });
-        !self.model.has_forces()
-            && !self.model.has_driven_potentials()
-            && self.model.supports_rest(self.state(), t + h)
-            && self.contact.as_mut().is_none_or(bodies_rest)
-    }
-
-    /// Why there is no sub-step: supports that ask for too much, dependent rods, or as the integrator said.
-    fn stop(&self, lengths: &Subdivision, cause: StepError) -> Stop {
-        let state = self.state();
-        if self.model.has_drives()
-            && self.model.isometry() == Isometry::Rods
-            && let Some(excess) = excess(&self.model, state, lengths.end())
-        {
-            return match self.control.unsatisfiable {
-                Unsatisfiable::StopTaut => Stop::Taut(excess),
-                Unsatisfiable::Refuse => {
-                    Stop::Error(StepError::Unsatisfiable { t: state.t, excess })
-                }
-            };
+    /// The error of dependent rods, if there are any and the method needs independent ones.
+    fn rank_deficient(&self) -> Option<StepError> {
+        if self.integrator.traits().demand != RodDemand::Independent {
+            return None;
         }
-        let rank = match self.model.isometry() {
-            Isometry::Rods => rod_rank(&self.model, &state.x),
-            Isometry::Elastic | Isometry::Weak => None,
-        };
-        let dependent = rank.filter(|rank| rank.nearly_dependent > 0);
-        if self.integrator.traits().demand == RodDemand::Independent
-            && let Some(rank) = &dependent
-        {
-            return Stop::Error(StepError::RankDeficient {
-                t: state.t,
-                rank_deficiency: rank.deficiency,
-                smallest_singular_value: rank.smallest,
-            });
-        }
-        Stop::Error(StepError::StepTooSmall {
-            t: state.t,
-            min_step: lengths.part(self.control.min_fraction),
-            dependent_rods: dependent.map_or(0, |rank| rank.nearly_dependent),
-            cause: Box::new(cause),
+        let State { t, x, .. } = self.state();
+        let rank = rod_rank(&self.model, x).filter(|rank| rank.nearly_dependent > 0)?;
+        Some(StepError::RankDeficient {
+            t: *t,
+            rank_deficiency: rank.deficiency,
+            smallest_singular_value: rank.smallest,
         })
     }
 }
@@ -296,13 +245,11 @@ impl Engine {
 struct Substeps<'a, 'w> {
     engine: &'a mut Engine,
     lengths: Subdivision,
-    /// Whether the sheet may be held and the step would be the same at another time.
-    is_autonomous: bool,
+    /// Largest number of factorisations from an accepted state to the next, if there is one.
+    limit: Option<usize>,
     /// What of the history the next proposal begins with.
     memory: Memory,
     proposer: Proposer,
-    /// The sub-step that the method refused before the fallback was asked, and why.
-    refused: Option<(Subdivision, StepError)>,
     pending: Pending,
     totals: &'a mut StepTotals<'w>,
 }
@@ -331,48 +278,44 @@ enum Stop {
 }
 
 impl Substeps<'_, '_> {
-    /// Where a sub-step of `h` seconds may end.
-    fn step_end(&self, h: f64) -> StepEnd {
-        if self.engine.may_lock(h) {
-            let after = self.engine.control.hold_after;
-            StepEnd::Descent { after }
-        } else {
-            StepEnd::Minimum
+    /// Why no sub-step was found: supports that ask for too much, rods that lock or depend on each other, or
+    /// as the integrator said.
+    fn stop(&mut self, cause: StepError) -> Stop {
+        let t = self.engine.state().t;
+        if let Some(excess) = self.engine.excess(self.lengths.end()) {
+            return match self.engine.control.unsatisfiable {
+                Unsatisfiable::StopTaut => Stop::Taut(excess),
+                Unsatisfiable::Refuse => Stop::Error(StepError::Unsatisfiable { t, excess }),
+            };
         }
+        let known = self.locked().or_else(|| self.engine.rank_deficient());
+        Stop::Error(known.unwrap_or_else(|| StepError::StepTooSmall {
+            t,
+            min_step: self.lengths.part(self.engine.control.min_fraction),
+            cause: Box::new(cause),
+        }))
     }
 
-    /// Number of factorisations in the step from which the sheet is held if a sub-step of `h` seconds is
-    /// refused.
-    fn holds_from(&self, h: f64) -> usize {
-        let after = self.engine.control.hold_after;
-        if self.engine.may_lock(h) {
-            after
-        } else {
-            after.saturating_mul(DRIVEN)
+    /// The error of a sheet that may lock, if rods block its motion, or depend on each other while supports and
+    /// bodies rest. (A sheet has to follow what moves: many steps are divided before it buckles.)
+    fn locked(&mut self) -> Option<StepError> {
+        self.limit?;
+        let rests = self.engine.surroundings_rest(self.lengths.end());
+        let Engine { model, moment, .. } = &*self.engine;
+        let state = &moment.state;
+        let mut vertices = blocked_vertices(model, state, self.lengths.length());
+        if vertices.is_empty() && rests {
+            vertices = dependent_vertices(model, &state.x);
         }
+        (!vertices.is_empty()).then(|| StepError::Locked {
+            t: state.t,
+            factorisations: self.totals.effort.spent(),
+            vertices,
+        })
     }
 
-    /// Goes on with the method and a shorter sub-step where the fallback has none.
-    fn resume_method(&mut self) -> Decision<Stop> {
-        self.proposer = Proposer::Method;
-        let Some((lengths, refusal)) = self.refused.take() else {
-            return Decision::Shorten(self.lengths.length());
-        };
-        self.lengths = lengths;
-        match self.lengths.halve(self.engine.control.min_fraction) {
-            Some(shorter) => Decision::Shorten(shorter),
-            None => Decision::Stop(self.engine.stop(&self.lengths, refusal)),
-        }
-    }
-}
-
-impl Stepping for Substeps<'_, '_> {
-    type Refusal = StepError;
-    type Error = Stop;
-    type Report = ();
-
-    fn propose(&mut self, h: f64) -> Result<(), StepError> {
-        let end = self.step_end(h);
+    /// Proposes a sub-step of `h` seconds within the limit of the effort.
+    fn attempt(&mut self, h: f64) -> Result<(), StepError> {
         let Engine {
             model,
             contact,
@@ -398,7 +341,7 @@ impl Stepping for Substeps<'_, '_> {
             model,
             contact: contact.as_mut().map(RunContact::step),
         };
-        let attempt = Attempt::new(moment, h, self.memory).ending_at(end);
+        let attempt = Attempt::new(moment, h, self.memory);
         let effort = &mut self.totals.effort;
         let is_fallback = self.proposer == Proposer::Fallback;
         effort.t = moment.state.t;
@@ -420,9 +363,7 @@ impl Stepping for Substeps<'_, '_> {
             ..Exchange::default()
         };
         if model.has_drives() {
-            // The forces of a held step are those of an impact, and their work is known with them alone.
-            let is_held = step.outcome == StepOutcome::Held;
-            let kept = (*has_moved && !is_held).then_some(&moment.balance);
+            let kept = has_moved.then_some(&moment.balance);
             let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
             let balance = &proposal.moment.balance;
             exchange.supports = balance.drive_work(model, kept, ends.0, ends.1);
@@ -438,35 +379,54 @@ impl Stepping for Substeps<'_, '_> {
         }
         check_energy(model, after)
     }
+}
 
-    fn decide(&mut self, refusal: StepError, h: f64) -> Decision<Stop> {
+impl Stepping for Substeps<'_, '_> {
+    type Refusal = StepError;
+    type Error = Stop;
+    type Report = ();
+
+    /// An attempt that the limit ends is made again without a limit, unless the sheet locks: what is accepted
+    /// does not depend on the effort.
+    fn propose(&mut self, h: f64) -> Result<(), StepError> {
+        let proposed = self.attempt(h);
+        if !self.totals.effort.is_spent() {
+            return proposed;
+        }
+        if self.engine.excess(self.lengths.end()).is_none()
+            && let Some(error) = self.locked()
+        {
+            return Err(error);
+        }
+        self.totals.effort.lift_limit();
+        self.attempt(h)
+    }
+
+    fn decide(&mut self, refusal: StepError, _h: f64) -> Decision<Stop> {
         if matches!(
             refusal,
-            StepError::NonFiniteMotion { .. } | StepError::Body(_) | StepError::Interrupted { .. }
+            StepError::NonFiniteMotion { .. }
+                | StepError::Body(_)
+                | StepError::Interrupted { .. }
+                | StepError::Locked { .. }
         ) {
             return Decision::Stop(Stop::Error(refusal));
         }
         self.totals.rejected += 1;
         let looks_back = self.memory > Memory::Restart && self.engine.moment.history.looks_back();
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
-        // What a locked sheet lacks is a motion, and not a shorter step.
-        let lacks_motion = gains_energy || matches!(refusal, StepError::NotConverged { .. });
-        let is_spent = self.totals.effort.factorisations >= self.holds_from(h);
-        let is_locked = lacks_motion && is_spent && self.engine.may_hold();
-        let smallest = self.engine.control.min_fraction;
         if self.proposer == Proposer::Fallback {
-            self.resume_method()
+            Decision::Stop(self.stop(refusal))
         } else if gains_energy && looks_back {
             // Contact came or went, or rods snapped through: the history of the motion does not continue.
             Decision::Restart
-        } else if !is_locked && let Some(shorter) = self.lengths.halve(smallest) {
+        } else if let Some(shorter) = self.lengths.halve(self.engine.control.min_fraction) {
             self.memory = self.memory.min(Memory::State);
             Decision::Shorten(shorter)
         } else if self.engine.fallback.is_some() {
-            self.refused = Some((self.lengths.clone(), refusal));
             Decision::FallBack(self.lengths.lengthen())
         } else {
-            Decision::Stop(self.engine.stop(&self.lengths, refusal))
+            Decision::Stop(self.stop(refusal))
         }
     }
 
@@ -483,19 +443,11 @@ impl Stepping for Substeps<'_, '_> {
     fn commit(&mut self, h: f64) -> Result<(), Stop> {
         let engine = &mut *self.engine;
         let (step, exchange) = (engine.proposal.account, self.pending.exchange);
-        let is_whole = self.lengths.is_whole();
-        if step.outcome == StepOutcome::Descended {
-            self.totals.dissipated += self.pending.account.loss_since(&engine.account);
-        }
         std::mem::swap(&mut engine.moment, &mut engine.proposal.moment);
         engine.account = self.pending.account;
         engine.has_moved = true;
         // The end of the step is set by the caller, free of accumulated round-off.
         engine.moment.state.t = self.lengths.advance();
-        if step.outcome == StepOutcome::Descended {
-            // The sheet starts anew from there: refusals before say nothing of the rest of the step.
-            self.lengths.lengthen();
-        }
         let totals = &mut *self.totals;
         if engine.model.has_driven_potentials() {
             let (before, after) = (&engine.proposal.moment.state, &engine.moment.state);
@@ -516,36 +468,20 @@ impl Stepping for Substeps<'_, '_> {
             engine.moment.history.multipliers.clear();
             totals.outcome = totals.outcome.max(StepOutcome::Fallback);
         }
-        totals.dissipated += step.impact;
-        engine.account.spend(step.impact);
-        let is_held = step.outcome == StepOutcome::Held;
-        let returns = is_held && is_whole && self.is_autonomous && engine.has_returned();
-        engine.moment.history.is_held = is_held;
-        engine.moment.history.returning_step = if returns { h } else { 0.0 };
+        totals.effort.begin(self.limit);
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
-        self.refused = None;
         Ok(())
     }
 }
 
-/// The fallback of a step control, for a sheet that a method moves.
-///
-/// Only methods that minimise hold sheets: the conservative ones would lose the energy that they are there to
-/// keep, and the projection step divides steps of sheets that do not lock, too. Only rods lock, and only at
-/// clamps and at taut lines between supports, which take supports at two vertices.
+/// The fallback of a step control.
 fn fallback(
     model: &SheetModel,
-    method: &Method,
     control: &StepControl,
 ) -> Result<Option<Box<dyn Integrator>>, SimulationError> {
-    Ok(match (&control.fallback, method) {
-        (Fallback::ImplicitEuler(o), _) => Some(Box::new(ImplicitEuler::new(model, o.clone())?)),
-        (Fallback::Hold, Method::Bdf2(o) | Method::ImplicitEuler(o))
-            if model.isometry() == Isometry::Rods && model.supported_vertex_count() > 1 =>
-        {
-            Some(Box::new(Hold::new(model, o.strain_tolerance)))
-        }
-        (Fallback::Hold | Fallback::Refuse, _) => None,
+    Ok(match &control.fallback {
+        Fallback::ImplicitEuler(o) => Some(Box::new(ImplicitEuler::new(model, o.clone())?)),
+        Fallback::Refuse => None,
     })
 }
 

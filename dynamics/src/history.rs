@@ -20,10 +20,6 @@ pub(crate) struct History {
     /// Stiffness of the rods in the linear systems at the end of the last step, in units of that of the
     /// masses; zero for methods without such systems and before the first step.
     pub(crate) rod_stiffness: f64,
-    /// Length of a step from here that ends here, with the same history, seconds; zero if none is known.
-    pub(crate) returning_step: f64,
-    /// Whether the sheet was held in the last sub-step, see [`Fallback::Hold`](crate::Fallback::Hold).
-    pub(crate) is_held: bool,
 }
 
 impl History {
@@ -38,8 +34,6 @@ impl History {
         self.multipliers.copy_from(&other.multipliers);
         self.couplings.clone_from(&other.couplings);
         self.rod_stiffness = other.rod_stiffness;
-        self.returning_step = other.returning_step;
-        self.is_held = other.is_held;
     }
 
     /// Sets the state before the present one, in place.

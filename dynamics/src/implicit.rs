@@ -5,7 +5,7 @@ use crate::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, Step
 use crate::minimiser::Minimiser;
 use crate::minimiser::problem::StepProblem;
 use crate::options::OptionsError;
-use crate::report::{StepError, StepOutcome};
+use crate::report::StepError;
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use serde::{Deserialize, Serialize};
@@ -28,13 +28,11 @@ pub struct ImplicitOptions {
     /// few units in the last place of the coordinates.
     pub strain_tolerance: f64,
     /// Largest number of Newton iterations of one minimisation: of sequential quadratic programming (a
-    /// quarter of this number in contact, and where [`Fallback::Hold`](crate::Fallback::Hold) lets a step end
-    /// without a minimum; the count begins anew after a renewal of friction or a perturbation of a saddle), or
-    /// of one round of the augmented Lagrangian. Default 80.
+    /// quarter of this number in contact; the count begins anew after a renewal of friction or a perturbation
+    /// of a saddle), or of one round of the augmented Lagrangian. Default 80.
     pub max_iterations: usize,
     /// Largest number of iterations of one restoration of the lengths. Default 400; sequential quadratic
-    /// programming gives up after at most 40 of these, the augmented Lagrangian after half of them where a step
-    /// may end without a minimum.
+    /// programming gives up after at most 20 of these.
     pub max_projections: usize,
     /// Largest change of a normal force of friction, relative to the largest normal force, between its last
     /// two evaluations in a step. Default 1e-3. With 1e-5 sheets that drape need a fifth more factorisations;
@@ -158,8 +156,7 @@ impl Integrator for Bdf2 {
             effort,
         )?;
         let history = &mut proposal.moment.history;
-        let has_stopped_short = proposal.account.outcome == StepOutcome::Descended;
-        history.set_previous((!has_stopped_short).then_some(state));
+        history.set_previous(Some(state));
         // The damping that follows the step acts on the whole history, or a rate `gamma` would act as
         // `3/2 gamma`: `v1 = 4/3 v0 - 1/3 v_` amplifies what is taken from `v0` alone.
         if let Some(before) = &mut history.previous {
@@ -205,17 +202,10 @@ fn two_step(
         h: k * h,
         prediction: &prediction,
         applied: &applied,
-        end: attempt.end,
     };
     let outcome = minimiser.minimise(problem, effort);
     (minimiser.applied, minimiser.prediction) = (applied, prediction);
     let (minimum, contact) = outcome?;
-    let (b, k) = match minimum.outcome {
-        // A step that stops short does so as by an impact. With the formula the sheet would go back from
-        // there: at a quarter of a uniform motion `v1` is negative.
-        StepOutcome::Descended => (0.0, 1.0),
-        _ => (b, k),
-    };
     let moment = &mut proposal.moment;
     let mut work = 0.0;
     for i in 0..state.x.len() {
@@ -231,7 +221,6 @@ fn two_step(
     proposal.account = StepAccount {
         residual: minimum.residual,
         work,
-        impact: 0.0,
         outcome: minimum.outcome,
         contact,
     };

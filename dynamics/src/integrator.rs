@@ -3,7 +3,6 @@
 use crate::contact::{ContactState, ContactWork, StepContact};
 use crate::effort::SolverEffort;
 use crate::history::{History, Multipliers};
-use crate::minimiser::problem::StepEnd;
 use crate::reaction::{Balance, ForceTime};
 use crate::report::{StepError, StepOutcome};
 use crate::{SheetModel, State};
@@ -46,8 +45,6 @@ pub(crate) struct StepAccount {
     pub(crate) residual: f64,
     /// Work of the non-conservative forces, joules.
     pub(crate) work: f64,
-    /// Kinetic energy lost in an impact, joules: zero but where a sheet is held.
-    pub(crate) impact: f64,
     /// How the sub-step was obtained.
     pub(crate) outcome: StepOutcome,
     /// What contact did; zero without contact.
@@ -116,7 +113,6 @@ impl StepAccount {
         Self {
             residual,
             work,
-            impact: 0.0,
             outcome,
             contact: ContactWork::default(),
         }
@@ -130,8 +126,6 @@ pub(crate) struct Attempt<'a> {
     pub(crate) state: &'a State,
     /// Its length, seconds. (Negative ones occur inside compositions.)
     pub(crate) h: f64,
-    /// Where it may end.
-    pub(crate) end: StepEnd,
     history: &'a History,
     memory: Memory,
 }
@@ -160,15 +154,9 @@ impl<'a> Attempt<'a> {
         Self {
             state: &start.state,
             h,
-            end: StepEnd::Minimum,
             history: &start.history,
             memory,
         }
-    }
-
-    /// The same sub-step, which may end there.
-    pub(crate) fn ending_at(self, end: StepEnd) -> Self {
-        Self { end, ..self }
     }
 
     /// The state before the present one, for methods that look back.
@@ -243,8 +231,7 @@ pub(crate) struct MethodTraits {
 }
 
 impl MethodTraits {
-    /// BDF2, implicit Euler and steps that hold the sheet: minimisations, at any rank of the rods, with
-    /// contact as a barrier.
+    /// BDF2 and implicit Euler: minimisations, at any rank of the rods, with contact as a barrier.
     pub(crate) fn minimising() -> Self {
         Self {
             demand: RodDemand::Nothing,

@@ -44,11 +44,10 @@
 //!
 //! Constraints that leave a vertex no room at all, such as two pins that stretch a straight line of rods
 //! taut, are approached only as far as the square root of round-off allows. With pins at rest such vertices
-//! become pins, and cost nothing, as far as they are found ([`Simulation::immobile_vertices`]). Elsewhere a
-//! damped step may find no motion: then the sheet is held for this step, or stops short, and
-//! [`StepOutcome::is_solved`] is false ([`Fallback::Hold`]; where supports move against each other the step
-//! is refused, [`StepError::StepTooSmall`]). Sheets of rods that are clamped flat along anything but a line
-//! of the mesh lock as a whole: model them as elastic or in weak form. Conservative runs on fine, nearly flat
+//! become pins, and cost nothing, as far as they are found ([`Simulation::immobile_vertices`]). Sheets of rods
+//! that are clamped flat along anything but a line of the mesh lock as a whole, and their steps are refused
+//! after a bounded effort ([`StepError::Locked`]): model them as elastic.
+//! [`SheetModel::clamps_across_the_mesh`] finds such clamps beforehand. Conservative runs on fine, nearly flat
 //! sheets are slow: the exact motion flutters on ever smaller scales there.
 //!
 //! # Conventions
@@ -69,8 +68,10 @@
 //! [`Simulation::rod_forces`] the tensions of the rods.
 #![doc = include_str!("paper.md")]
 
+mod blocked;
 pub mod chart;
 mod checkpoint;
+mod clamps;
 pub mod constraint;
 pub mod contact;
 #[cfg(test)]
@@ -86,7 +87,6 @@ mod energy_momentum;
 mod engine;
 mod feasibility;
 mod history;
-mod hold;
 mod immobile;
 mod implicit;
 mod integrator;
@@ -114,7 +114,6 @@ mod rattle;
 mod reaction;
 mod report;
 mod restoration;
-mod rigid_fit;
 mod rod_forces;
 mod saddle;
 mod simulation;
@@ -127,6 +126,7 @@ mod unassigned;
 mod weak_isometry;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
+pub use clamps::ClampAcrossMesh;
 pub use constraint::VertexConstraint;
 pub use crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
 pub use effort::StepProgress;

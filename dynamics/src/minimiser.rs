@@ -1,7 +1,6 @@
 //! Minimisation of an implicit step's incremental potential under the length constraints.
 
 mod augmented_lagrangian;
-mod descent;
 mod lagrangian;
 pub(crate) mod problem;
 mod second_order;
@@ -45,8 +44,7 @@ const COMPARISON_SLACK: f64 = 10.0;
 /// | [`AugmentedLagrangian`] | the prediction, without multipliers | second | second |
 /// | [`AugmentedLagrangian`], exact rounds | the start, without multipliers | last, but not at rest | last |
 ///
-/// At rest and without contact the last two strategies are the same. Where none ends at a minimum and the step
-/// may end without one ([`StepEnd::Descent`]), it ends at a part of the displacement by [`Sqp`].
+/// At rest and without contact the last two strategies are the same.
 ///
 /// Elastic sheets have no rods that programming would solve for, and are minimised by the last two
 /// strategies. For sheets that are isometric in weak form programming starts at the prediction where there
@@ -70,10 +68,6 @@ pub(crate) struct Minimiser {
     /// Stiffness of the rods in the linear systems, in units of that of the masses: that of the step before,
     /// and after a minimisation that of this one. Zero where there was none.
     rod_stiffness: f64,
-    /// Displacement to the iterate at which sequential quadratic programming ended without a minimum.
-    displacement: Vec<f64>,
-    /// A part of it.
-    part: Vec<f64>,
     /// Where inertia alone would take the sheet.
     pub(crate) prediction: Vec<f64>,
     /// Non-conservative forces, constant over the step.
@@ -119,14 +113,6 @@ pub(crate) struct Minimum {
     pub(crate) residual: f64,
     /// What it took.
     pub(crate) outcome: StepOutcome,
-}
-
-impl Minimum {
-    /// None, but a descent: the balance of momentum is not solved, and all of it may be left over.
-    const DESCENT: Self = Self {
-        residual: 1.0,
-        outcome: StepOutcome::Descended,
-    };
 }
 
 /// What a restoration of the lengths is to reach.
@@ -176,8 +162,6 @@ impl Minimiser {
             balance: Balance::with_unassigned(model, ForceTime::End),
             remembered: vec![0.0; model.isometry_rows().len()],
             rod_stiffness: 0.0,
-            displacement: vec![0.0; n],
-            part: vec![0.0; n],
             prediction: vec![0.0; n],
             applied: vec![0.0; n],
             options,
@@ -266,20 +250,11 @@ impl Minimiser {
             if is_minimum {
                 break;
             }
-            if *strategy == Strategy::Sqp {
-                self.keep_displacement(problem);
-            }
             if let Some(Ok(minimum)) = outcome {
                 let strain = problem.model.constrained_strain(self.x());
                 let residual = minimum.residual;
                 outcome = Some(Err(not_converged(problem, effort, residual, strain)));
             }
-        }
-        if let (Some(Err(_)), Some(bound)) = (&outcome, &bound)
-            && problem.end.may_end_after(effort.factorisations)
-            && self.find_descent(problem, bound, effort)
-        {
-            outcome = Some(Ok(Minimum::DESCENT));
         }
         let minimum = outcome.expect("there is always a strategy")?;
         let mut work = self.lagrangian.iterate.contact_work(problem.contact());

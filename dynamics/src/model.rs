@@ -500,11 +500,6 @@ impl SheetModel {
         f.iter_mut().for_each(|v| *v = -*v);
     }
 
-    /// Whether there are non-conservative forces.
-    pub(crate) fn has_forces(&self) -> bool {
-        !self.forces.is_empty()
-    }
-
     /// Sum of the non-conservative forces, overwriting `f`; zero at pinned vertices.
     pub(crate) fn applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.whole_applied_force(t, x, v, f);

@@ -35,8 +35,7 @@ pub trait Potential: Debug + Send + Sync {
     }
 
     /// Whether the energy depends on time at fixed positions. If it says so, the work of changing it enters
-    /// the energy balance, and a step in which a sheet was held ([`Fallback::Hold`](crate::Fallback::Hold)) is
-    /// tried again later; the default says no.
+    /// the energy balance; the default says no.
     fn is_driven(&self) -> bool {
         false
     }

@@ -22,25 +22,10 @@ pub enum StepOutcome {
     BranchSeeded,
     /// The integrator asked for rejected every sub-step, and implicit Euler took one instead.
     Fallback,
-    /// No minimum was found, and the step ended at positions with the rest lengths where the incremental
-    /// potential is lower than at its start, see [`Fallback::Hold`](crate::Fallback::Hold). The residual is
-    /// 1: the momentum balance was not solved.
-    Descended,
-    /// Every sub-step was rejected, and the sheet was left where it was, see
-    /// [`Fallback::Hold`](crate::Fallback::Hold). The residual is 1: the momentum balance was not solved.
-    Held,
     /// Explicitly, in a chart.
     Chart,
     /// As `Chart`, and the chart was rebased on the way.
     Rebased,
-}
-
-impl StepOutcome {
-    /// Whether the balance of momentum was solved in every sub-step: the step neither ended short of a minimum
-    /// nor left the sheet where it was.
-    pub fn is_solved(self) -> bool {
-        !matches!(self, Self::Descended | Self::Held)
-    }
 }
 
 /// What one call of [`Simulation::step`](crate::Simulation::step) did.
@@ -73,8 +58,7 @@ pub struct StepReport {
     /// constraints, and by changing driven potentials
     /// ([`Potential::is_driven`](crate::Potential::is_driven)), joules.
     pub work: f64,
-    /// Energy taken out since the start by velocity damping, and by steps that ended without a minimum
-    /// ([`StepOutcome::Descended`], [`StepOutcome::Held`]), joules.
+    /// Energy taken out since the start by velocity damping, joules.
     pub dissipated: f64,
     /// Energy lost to friction since the start, in charts to impacts, joules.
     pub friction: f64,
@@ -323,8 +307,7 @@ pub enum StepError {
     },
     /// Even the smallest step allowed was rejected.
     #[error(
-        "no step of at least {min_step} s was accepted at t = {t} s{}; last reason: {cause}",
-        locking(*.dependent_rods),
+        "no step of at least {min_step} s was accepted at t = {t} s; last reason: {cause}",
         min_step = brief(*min_step), t = brief(*t)
     )]
     StepTooSmall {
@@ -332,11 +315,25 @@ pub enum StepError {
         t: f64,
         /// Smallest step allowed, seconds.
         min_step: f64,
-        /// Number of length equations that depend on others at this state. Where it is not zero the sheet
-        /// lies flat in parts, and next to fixed vertices such parts may lock.
-        dependent_rods: usize,
         /// Why the last step was rejected.
         cause: Box<StepError>,
+    },
+    /// A sheet of rods locks: no motion was found, and rods block the one that inertia and loads ask for, or
+    /// depend on each other while supports and bodies rest.
+    #[error(
+        "the sheet locks at t = {t} s: no motion was found with {}, and the rods at {} depend on each other (a \
+         sheet of rods folds along lines of edges only)",
+        counted(*.factorisations, "factorisation", "factorisations"), listed(.vertices),
+        t = brief(*t)
+    )]
+    Locked {
+        /// Time of the last accepted sub-step, seconds.
+        t: f64,
+        /// Factorisations since then ([`StepControl::max_factorisations`](crate::StepControl::max_factorisations)
+        /// bounds them).
+        factorisations: usize,
+        /// The free vertices that could not move, at rods that depend on each other.
+        vertices: Vec<VertexId>,
     },
     /// The watch of [`Simulation::step_watched`](crate::Simulation::step_watched) ended the step.
     #[error("the step was interrupted after t = {t} s", t = brief(*t))]
@@ -395,15 +392,10 @@ impl Advice for StepError {
             Self::Unsatisfiable { .. } => {
                 Some("stop the motion before that, or allow `Unsatisfiable::StopTaut`")
             }
-            Self::StepTooSmall {
-                dependent_rods: 0,
-                cause,
-                ..
-            } => cause.advice(),
-            Self::StepTooSmall { .. } => Some(
-                "model the sheet as elastic (`SheetModel::with_membrane`) or as isometric in weak form \
-                 (`SheetModel::with_weak_isometry`); BDF2 and implicit Euler hold locked sheets with \
-                 `Fallback::Hold`",
+            Self::StepTooSmall { cause, .. } => cause.advice(),
+            Self::Locked { .. } => Some(
+                "give the sheet the stiffness of its material (`SheetModel::with_membrane`), make a mesh with a line \
+                 of edges along each clamp, or allow more `StepControl::max_factorisations`",
             ),
             Self::Interrupted { .. } => {
                 Some("the state is that of the last accepted sub-step: step on from there")
@@ -467,11 +459,17 @@ fn off_by(by: f64) -> String {
     format!("{} m too {side}", brief(by.abs()))
 }
 
-/// How many rods depend on others, where some do.
-fn locking(dependent_rods: usize) -> String {
-    if dependent_rods == 0 {
-        return String::new();
+/// The first of some vertices by name, and the number of the others.
+fn listed(vertices: &[VertexId]) -> String {
+    /// As many as a line of text takes.
+    const NAMED: usize = 5;
+    let named: Vec<String> = vertices.iter().take(NAMED).map(|v| v.to_string()).collect();
+    match vertices.len().saturating_sub(NAMED) {
+        0 => named.join(", "),
+        more => format!(
+            "{} and {}",
+            named.join(", "),
+            counted(more, "other", "others")
+        ),
     }
-    let rods = counted(dependent_rods, "rod depends", "rods depend");
-    format!(", where {rods} on others and may lock")
 }

@@ -244,8 +244,8 @@ impl Simulation {
     /// An edge or a face that touches shares its force out to its corners by the weights of the closest
     /// point. The forces of a contact of the sheet with itself add up to zero; over all vertices the sum is
     /// minus that of the forces on the bodies ([`Simulation::body_loads`]), and enters the balance of
-    /// momentum that [`Simulation::reactions`] states. Before the first step, and after a step that held the
-    /// sheet, there is no friction, and in a chart there is no force before the first step. The friction of a
+    /// momentum that [`Simulation::reactions`] states. Before the first step
+    /// there is no friction, and in a chart there is no force. The friction of a
     /// step acts with the normal forces for which the step was solved: a contact that has just opened may
     /// have friction without a normal force. With rigid rods the projection that ends a step changes the
     /// forces once more, to second order: those of a flat sheet at rest balance its weight to a percent.
@@ -300,9 +300,6 @@ impl Simulation {
     /// `b = w^2 / (1 + 2w)` and `k = (1 + w) / (1 + 2w)`. The difference quotient `(p1 - p0) / h` of a BDF2
     /// step is another number, and differs from the sum of the forces by as much as they change in the step.
     ///
-    /// After a step that held the sheet ([`Fallback::Hold`](crate::Fallback::Hold)) the forces are as of implicit
-    /// Euler, and those that act on the sheet as on a rigid body; rods do not enter.
-    ///
     /// The conservative methods keep this balance to round-off. The damped methods leave two things over:
     /// what Newton's method leaves at free vertices, which shrinks with its tolerance, and, where there is
     /// contact, the change of the contact forces by the projection that ends a step, beyond first order.
@@ -332,9 +329,8 @@ impl Simulation {
     /// | energy-momentum | over the sub-step, in the mean |
     /// | RATTLE | at the start of the sub-step, in compositions of the last of its parts |
     ///
-    /// All forces are zero before the first step, after a sub-step of the [`Fallback`](crate::Fallback) or
-    /// without a minimum ([`StepOutcome::Descended`](crate::StepOutcome::Descended)), and in free fall under
-    /// the energy-momentum method. The force of a rod between two vertices that cannot move is zero, since
+    /// All forces are zero before the first step, after a sub-step of the [`Fallback`](crate::Fallback),
+    /// and in free fall under the energy-momentum method. The force of a rod between two vertices that cannot move is zero, since
     /// nothing determines it. Where rods depend on each other, as in a flat sheet, their forces are not
     /// unique. BDF2 and implicit Euler, which take such states, give the least forces (in the sum of their
     /// squares) that load the free vertices as the multipliers of the step do; loads across folds flatter

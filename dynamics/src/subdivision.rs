@@ -47,11 +47,6 @@ impl Subdivision {
         self.start + self.h
     }
 
-    /// Whether the next sub-step is the whole step.
-    pub(crate) fn is_whole(&self) -> bool {
-        self.fraction == 1.0
-    }
-
     /// Halves the next sub-step and returns its length; nothing if it would be shorter than the fraction
     /// `smallest` of the step.
     pub(crate) fn halve(&mut self, smallest: f64) -> Option<f64> {

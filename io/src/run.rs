@@ -39,7 +39,6 @@ mod replay;
 mod stepping;
 mod summary;
 mod sweep;
-mod warning;
 
 pub use collect::Collection;
 pub use commit::note_commit;
@@ -53,10 +52,9 @@ pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation, VariationError};
-pub use warning::RunWarning;
 
 use crate::format::{HistoryWriter, frame_path, read_json, write_json, write_obj};
-use crate::scene::{SceneFile, Setup, SupportForces};
+use crate::scene::{SceneFile, SceneWarning, Setup, SupportForces};
 use crate::view::PageOptions;
 use checkpoint::Progress;
 use folder::{Contents, Existing, Material, RunFolder};
@@ -91,6 +89,8 @@ pub struct Beginning {
     pub modelled: Vec<String>,
     /// Number of vertices.
     pub vertices: usize,
+    /// What to know before the run.
+    pub warnings: Vec<SceneWarning>,
 }
 
 /// What has been reached after a step.
@@ -199,7 +199,7 @@ fn simulate_in(
         return already_complete(folder, material.hash);
     }
     let setup = file.build()?;
-    let modelled = setup.modelled.clone();
+    let (modelled, warnings) = (setup.modelled.clone(), setup.warnings());
     let (open, saved) = match RunFolder::open(folder, &material, existing)? {
         Contents::Complete(open) => {
             let lost = !open.path(RunFolder::TRAJECTORY).is_file();
@@ -232,6 +232,7 @@ fn simulate_in(
         of: step_count(file.scene()),
         modelled: facts.modelled.clone(),
         vertices: facts.sheet.topology().vertex_count(),
+        warnings,
     });
     let advanced = advance(&mut stepping, watch);
     if file.scene().output.trajectory {
@@ -411,7 +412,6 @@ fn finish(
         iterations: progress.iterations,
         factorisations: progress.factorisations,
         rejected: progress.rejected,
-        held: progress.held,
         ending,
     };
     if output.page {

@@ -61,6 +61,7 @@ mod support_forces;
 mod supports;
 mod toml_problem;
 mod unit;
+mod warning;
 
 pub use chart::{
     Chart, ChartEquations, ChartPositions, ChartScheme, ChartSolver, Coordinates, NearSingularity,
@@ -96,6 +97,7 @@ pub use starting_point::StartingPoint;
 pub use stop::{Rest, Stop};
 pub use support_forces::SupportForces;
 pub use supports::{Curve, Hold, Support, Surface, SurfaceSide};
+pub use warning::SceneWarning;
 
 #[cfg(feature = "run")]
 pub(crate) use supports::frame_motion;

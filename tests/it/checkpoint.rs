@@ -263,8 +263,8 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 6,
-            supported: 7
+            found: 8,
+            supported: 9
         }
     ));
     // Every other byte is under the checksum, the checksum included.
@@ -283,7 +283,7 @@ fn other_sheets_versions_and_damage_are_refused() {
         Checkpoint::from_json(&other),
         Err(CheckpointError::Version {
             found: 8,
-            supported: 7
+            supported: 9
         })
     );
     assert!(matches!(

@@ -13,7 +13,6 @@ mod contact_forces;
 mod elastic;
 mod flat;
 mod forces;
-mod hold;
 mod impacts;
 mod invariance;
 mod locking;

@@ -2,7 +2,7 @@
 //! that ends them.
 
 use super::lagrangian::{Definiteness, Merit, RodLoad};
-use super::problem::{StepEnd, StepProblem};
+use super::problem::StepProblem;
 use super::{LengthGoal, Minimiser, Minimum, not_converged};
 use crate::constraint::rows::HessianPart;
 use crate::effort::SolverEffort;
@@ -108,21 +108,14 @@ impl<'a, 'b, 'w> AugmentedLagrangian<'a, 'b, 'w> {
             if !converged {
                 break;
             }
-            let spent = self.effort.factorisations;
-            let is_last = round + 1 == rounds || self.problem.end.may_end_after(spent);
+            let is_last = round + 1 == rounds;
             if !is_last && strain > restores_from {
                 self.stiffness *= GROWTH;
                 continue;
             }
-            // Where rods lock, most restorations use all their iterations in vain. With half as many, clamped
-            // sheets whose steps may end without a minimum need a third fewer factorisations, and hang as deep.
-            let most = self.minimiser.options.max_projections;
             let to = LengthGoal {
                 strain: tolerance,
-                max_iterations: match self.problem.end {
-                    StepEnd::Minimum => most,
-                    StepEnd::Descent { .. } => most.div_ceil(2),
-                },
+                max_iterations: self.minimiser.options.max_projections,
                 matrix: FirstMatrix::Assembled,
             };
             strain = self.minimiser.restore(self.problem, to, self.effort);

@@ -24,26 +24,6 @@ pub(crate) struct StepProblem<'a> {
     pub(crate) prediction: &'a [f64],
     /// Non-conservative forces `f`, `3V`, newtons.
     pub(crate) applied: &'a [f64],
-    /// Where the step may end.
-    pub(crate) end: StepEnd,
-}
-
-/// Where a step may end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum StepEnd {
-    /// At a minimum of the incremental potential.
-    Minimum,
-    /// Where no strategy finds a minimum and the step has taken this number of factorisations, at positions with
-    /// the rest lengths that are lower than the start. For sheets of rods, which may lock: no
-    /// strategy uses all the iterations that it has otherwise.
-    Descent { after: usize },
-}
-
-impl StepEnd {
-    /// Whether a step that has taken so many factorisations may end without a minimum.
-    pub(crate) fn may_end_after(self, factorisations: usize) -> bool {
-        matches!(self, Self::Descent { after } if factorisations >= after)
-    }
 }
 
 impl<'a> StepProblem<'a> {

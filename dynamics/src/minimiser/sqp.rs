@@ -1,7 +1,7 @@
 //! Stabilised sequential quadratic programming from the positions at the start of a step.
 
 use super::lagrangian::{Definiteness, Merit, RodLoad};
-use super::problem::{StepEnd, StepProblem};
+use super::problem::StepProblem;
 use super::{LengthGoal, Minimiser, Strategy};
 use crate::Isometry;
 use crate::constraint::rows::HessianPart;
@@ -37,11 +37,9 @@ const WEAK_MULTIPLIERS_SETTLED: f64 = 1e-8;
 /// Passes in which the multipliers of vertex constraints follow those of the isometry.
 const CONSTRAINT_PASSES: usize = 4;
 /// Part of [`ImplicitOptions::max_iterations`](crate::ImplicitOptions::max_iterations) that is the largest
-/// number of steps in contact and where the step need not end at a minimum, 20 by default: a draping sheet
-/// needs three to six steps, a sheet at rest two to six, an impact more where contact cuts them. (Otherwise
-/// all iterations may be used: a hanging sheet of 2000 triangles needs up to 50 at 60 steps a second. Forty
-/// clamped sheets whose steps may end without a minimum need 19 factorisations a step with 20, 25 with 40 and
-/// 39 with 80.)
+/// number of steps in contact, 20 by default: a draping sheet needs three to six steps, a sheet at rest two to
+/// six, an impact more where contact cuts them. (Otherwise all iterations may be used: a hanging sheet of 2000
+/// triangles needs up to 50 at 60 steps a second.)
 const FEW: usize = 4;
 /// Edge strain that iterates may have. Hanging sheets of 289 vertices need 9.2, 9.3, 10.0 and 9.7
 /// factorisations a step (means of 24 starts) with 0.01, 0.03, 0.1 and 0.3; of sheets of 2048 and 8192
@@ -143,16 +141,10 @@ impl<'a, 'b, 'w> Sqp<'a, 'b, 'w> {
             _ if problem.has_contact() => ITERATE_STRAIN_IN_CONTACT,
             Isometry::Rods | Isometry::Elastic => ITERATE_STRAIN,
         };
-        let may_use_all = !problem.has_contact() && problem.end == StepEnd::Minimum;
-        let steps = if may_use_all {
-            steps
-        } else {
-            steps.div_ceil(FEW)
-        };
         let limits = if problem.has_contact() {
             Limits {
                 iterate_strain,
-                steps,
+                steps: steps.div_ceil(FEW),
                 halvings: MAX_HALVINGS_IN_CONTACT,
                 merit_stiffness: 0.0,
             }

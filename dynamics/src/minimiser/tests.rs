@@ -2,7 +2,7 @@
 
 use super::Minimiser;
 use super::lagrangian::{Definiteness, Lagrangian, RodLoad};
-use super::problem::{StepEnd, StepProblem};
+use super::problem::StepProblem;
 use crate::constraint::rows::HessianPart;
 use crate::effort::SolverEffort;
 use crate::iterate::Iterate;
@@ -58,7 +58,6 @@ impl Scene {
             h: H,
             prediction: &self.prediction,
             applied: &self.applied,
-            end: StepEnd::Minimum,
         }
     }
 
@@ -289,7 +288,6 @@ fn the_minimum_does_not_depend_on_what_is_factorised() {
                 h: H,
                 prediction: &state.x,
                 applied: &vec![0.0; state.x.len()],
-                end: StepEnd::Minimum,
             };
             let mut effort = SolverEffort::default();
             minimiser.minimise(problem, &mut effort).unwrap();

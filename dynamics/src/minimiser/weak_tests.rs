@@ -1,7 +1,7 @@
 //! The augmented Lagrangian of a sheet that is isometric in weak form, against finite differences.
 
 use super::lagrangian::{Lagrangian, RodLoad};
-use super::problem::{StepEnd, StepProblem};
+use super::problem::StepProblem;
 use crate::constraint::rows::HessianPart;
 use crate::effort::SolverEffort;
 use crate::{PlateBending, SheetModel, State, WeakIsometry};
@@ -61,7 +61,6 @@ impl Scene {
             h: H,
             prediction: &self.prediction,
             applied: &self.state.v,
-            end: StepEnd::Minimum,
         }
     }
 

@@ -1,7 +1,6 @@
 //! Pins and vertex constraints of a model, and their motions.
 
 use super::{ModelError, PINNED, SheetModel};
-use crate::State;
 use crate::constraint::rows::point;
 use crate::constraint::{ConstrainedVertex, VertexConstraint};
 use crate::immobile::immobile_vertices;
@@ -10,10 +9,6 @@ use crate::support::Support;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 use std::collections::HashSet;
-
-/// Violation of the constraints of vertices in mean rod lengths, below which it is as good as none: the default
-/// tolerance of the steps.
-const VIOLATION: f64 = 1e-12;
 
 /// A pinned vertex in prescribed motion.
 #[derive(Debug)]
@@ -176,24 +171,6 @@ impl SheetModel {
     /// Whether pins or vertex constraints move.
     pub(crate) fn has_drives(&self) -> bool {
         !self.moving_pins.is_empty() || self.constraints.iter().any(VertexConstraint::moves)
-    }
-
-    /// Whether the supports allow the sheet to stay as it is in `state` until time `t`, seconds.
-    pub(crate) fn supports_rest(&self, state: &State, t: f64) -> bool {
-        let at_place =
-            |pin: &MovingPin| pin.motion.position(t)[..] == state.x[3 * pin.vertex..][..3];
-        if !self.moving_pins.iter().all(at_place) {
-            return false;
-        }
-        self.keeps_constraints(state, t, &state.x)
-    }
-
-    /// Whether positions `x` (`3V`, metres) at time `t` (seconds) satisfy the constraints of vertices as well as
-    /// `state` does.
-    pub(crate) fn keeps_constraints(&self, state: &State, t: f64, x: &[f64]) -> bool {
-        let before = self.largest_violation(state.t, &state.x).unwrap_or(0.0);
-        let after = self.largest_violation(t, x).unwrap_or(0.0);
-        after <= before.max(VIOLATION * self.mean_length())
     }
 
     /// Whether anything holds the sheet.

@@ -38,9 +38,6 @@ pub(crate) struct Progress {
     pub(crate) factorisations: u64,
     /// Rejected sub-steps so far.
     pub(crate) rejected: u64,
-    /// Steps so far that ended without a minimum.
-    #[serde(default)]
-    pub(crate) held: u64,
     /// How it ended, if it did.
     pub(crate) ending: Option<Ending>,
 }

@@ -140,7 +140,6 @@ fn add_summary(row: &mut Row, summary: &Summary) {
         iterations,
         factorisations,
         rejected,
-        held,
         ending,
     } = summary;
     let mut cell = |name: &str, value: String| row.push((name.to_owned(), value));
@@ -159,7 +158,6 @@ fn add_summary(row: &mut Row, summary: &Summary) {
     cell("iterations", iterations.to_string());
     cell("factorisations", factorisations.to_string());
     cell("rejected", rejected.to_string());
-    cell("held", held.to_string());
     add_ending(row, ending);
 }
 

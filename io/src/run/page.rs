@@ -92,12 +92,6 @@ impl Rows {
             "steps",
             format!("{}, {} rejected", summary.steps, summary.rejected),
         );
-        if summary.held > 0 {
-            self.add(
-                "steps in which the sheet was held or stopped short",
-                summary.held.to_string(),
-            );
-        }
         let solves = (summary.iterations, summary.factorisations);
         self.add(
             "solver",

@@ -141,7 +141,6 @@ impl Stepping<'_> {
         progress.iterations += report.iterations as u64;
         progress.factorisations += report.factorisations as u64;
         progress.rejected += report.rejected as u64;
-        progress.held += u64::from(!report.outcome.is_solved());
         // An infinite gap means that nothing is within reach.
         if let Some(gap) = report.gap.filter(|gap| gap.is_finite()) {
             progress.gap = Some(progress.gap.map_or(gap, |least| least.min(gap)));
@@ -175,8 +174,7 @@ impl Stepping<'_> {
             return Some(EndReason::SupportForce);
         }
         if let Some(rest) = &scene.stop.rest {
-            // A sheet that is held has no balance of forces to rest in.
-            if self.largest_speed() > rest.speed || !report.outcome.is_solved() {
+            if self.largest_speed() > rest.speed {
                 self.progress.slow_since = None;
             } else {
                 let since = *self.progress.slow_since.get_or_insert(report.t);

@@ -36,10 +36,6 @@ pub struct Summary {
     pub factorisations: u64,
     /// Sub-steps that were tried and rejected.
     pub rejected: u64,
-    /// Steps that ended without a minimum: in which the sheet was held where it was, or stopped short, see
-    /// [`Fallback::Hold`](crate::scene::Fallback::Hold).
-    #[serde(default)]
-    pub held: u64,
     /// The state at the end.
     pub ending: Ending,
 }

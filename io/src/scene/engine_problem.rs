@@ -119,21 +119,17 @@ impl Origins {
     pub fn of_step(&self, error: &StepError) -> Problem {
         let root = Key::root();
         let (key, remedy) = match error {
-            StepError::StepTooSmall {
-                cause,
-                dependent_rods,
-                ..
-            } => {
+            StepError::StepTooSmall { cause, .. } => {
                 let inner = self.of_step(cause);
-                let remedy = match dependent_rods {
-                    0 => "take a smaller `method.step`, more damping, or another `sheet.isometry`",
-                    _ => {
-                        "name what the sheet is made of, `sheet.material`, more damping, or another `method.step`; \
-                         with `bdf2` and `implicit_euler` leave `method.fallback` at hold"
-                    }
-                };
+                let remedy =
+                    "take a smaller `method.step`, more damping, or another `sheet.isometry`";
                 return Problem::new(inner.key, error.to_string(), remedy);
             }
+            StepError::Locked { .. } => (
+                root.name("sheet.isometry"),
+                "name what the sheet is made of, `sheet.material`, which makes it elastic; or make a mesh with a line of \
+                 edges along each clamp, or allow more `method.max_factorisations`",
+            ),
             StepError::OffSupport { support, .. } => (
                 self.support_key(*support).name("hold"),
                 "a motion has to be zero at the start, and a curve or surface has to go through the vertex",

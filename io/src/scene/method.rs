@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 /// [method]
 /// integrator = "implicit_euler"
 /// step = 0.005
-/// fallback = "refuse"
+/// fallback = "implicit_euler"
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -37,10 +37,10 @@ pub struct Method {
     pub rod_stiffness: Option<f64>,
     /// Smallest part of a step that is tried where whole steps are rejected, from 1e-12 to 1.
     pub min_fraction: f64,
-    /// Number of factorisations in a step from which a clamped sheet of rods is held where a part of the step
-    /// is rejected (`fallback = "hold"`), instead of being divided down to `min_fraction`; five times as many where
-    /// supports move. More find motions for some sheets.
-    pub hold_after: usize,
+    /// Most factorisations from one accepted part of a step to the next for sheets of rods with supports at two
+    /// vertices or more: then a sheet whose rods block its motion is refused, as it locks. No other result
+    /// depends on it.
+    pub max_factorisations: usize,
     /// What to do when even that is rejected.
     pub fallback: Fallback,
     /// What to do when moving supports ask for more than the lengths allow.
@@ -77,15 +77,10 @@ pub enum Integrator {
 #[serde(rename_all = "snake_case")]
 pub enum Fallback {
     /// End the run with an error.
+    #[default]
     Refuse,
     /// Take the step with implicit Euler, and carry on.
     ImplicitEuler,
-    /// End the step without a balance of forces, and carry on: for sheets whose rods lock at clamps. The sheet
-    /// stops short of where it would fall, or keeps its shape: at rest, or going with a clamp that moves as a
-    /// rigid body. `summary.json` counts these steps as `held`. For rods with supports at two vertices or more, with `bdf2` and `implicit_euler`; otherwise
-    /// as `refuse`.
-    #[default]
-    Hold,
 }
 
 /// What to do when moving supports ask for more than the lengths allow.
@@ -111,7 +106,7 @@ impl Default for Method {
             max_iterations: None,
             rod_stiffness: None,
             min_fraction: engine::StepControl::default().min_fraction,
-            hold_after: engine::StepControl::default().hold_after,
+            max_factorisations: engine::StepControl::default().max_factorisations,
             fallback: Fallback::default(),
             taut: Taut::default(),
             chart: None,
@@ -134,6 +129,7 @@ impl Method {
         if let Some(tolerance) = self.strain_tolerance {
             checks.within(key.name("strain_tolerance"), tolerance, [1e-15, 1e-2]);
         }
+        checks.count(key.name("max_factorisations"), self.max_factorisations, 1);
         if let Some(iterations) = self.max_iterations {
             checks.count(key.name("max_iterations"), iterations, 1);
         }
@@ -168,7 +164,10 @@ impl Method {
             ("strain_tolerance", self.strain_tolerance.is_some()),
             ("max_iterations", self.max_iterations.is_some()),
             ("min_fraction", self.min_fraction != usual.min_fraction),
-            ("hold_after", self.hold_after != usual.hold_after),
+            (
+                "max_factorisations",
+                self.max_factorisations != usual.max_factorisations,
+            ),
             ("fallback", self.fallback != usual.fallback),
             ("taut", self.taut != usual.taut),
         ];
@@ -233,10 +232,9 @@ impl Method {
     fn control(&self) -> engine::StepControl {
         engine::StepControl {
             min_fraction: self.min_fraction,
-            hold_after: self.hold_after,
+            max_factorisations: self.max_factorisations,
             fallback: match self.fallback {
                 Fallback::Refuse => engine::Fallback::Refuse,
-                Fallback::Hold => engine::Fallback::Hold,
                 Fallback::ImplicitEuler => {
                     engine::Fallback::ImplicitEuler(ImplicitOptions::default())
                 }

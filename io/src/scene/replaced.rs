@@ -16,6 +16,15 @@ pub(crate) fn replaced(name: &str) -> Option<[&'static str; 2]> {
             "write `isometry = { elastic = { stiffness = ..., poisson = ..., limit = 0.01 } }`, or name what the sheet is \
              made of, `material = \"office paper\"`",
         ],
+        "method.fallback.hold" => [
+            "a sheet that locks is not held any more, it is refused",
+            "leave the key out; name what the sheet is made of, `material = \"office paper\"`, which makes it elastic, or \
+             make a mesh with a line of edges along each clamp",
+        ],
+        "method.hold_after" => [
+            "a sheet that locks is not held any more, it is refused",
+            "leave the key out; `max_factorisations` bounds what the refusal takes",
+        ],
         _ => return None,
     };
     Some(words)

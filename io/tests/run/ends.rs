@@ -146,34 +146,76 @@ step = 0.005
     }
 }
 
-/// From flat at two opposite corners the halves of a sheet fall shut and hang taut, where its rods lock.
+/// A sheet of rods that is clamped across its mesh: `check` and `simulate` say so before the run, which is
+/// refused with the remedy, after a bounded effort.
 #[test]
-fn a_sheet_that_locks_is_held_unless_the_scene_refuses() {
+fn a_sheet_that_locks_is_foretold_and_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = |support: &str| {
+        format!(
+            "version = 1
+[sheet]
+mesh = {{ square = {{ side = 1.0, level = 2 }} }}
+mass = 0.1
+bending = {{ hinges = {{ rigidity = 1e-2 }} }}
+[[support]]
+at = {{ half_space = {{ {support} }} }}
+[forces]
+gravity = [0.0, 0.0, -9.8]
+[stop]
+time = 0.1
+"
+        )
+    };
+    fs::write(
+        dir.join("across.toml"),
+        scene("point = [0.3, 0, 0], normal = [-1, -0.3, 0]"),
+    )
+    .unwrap();
+    fs::write(
+        dir.join("along.toml"),
+        scene("point = [0.3, 0, 0], normal = [-1, 0, 0]"),
+    )
+    .unwrap();
+    let told = "no line of edges of the mesh runs along the clamp by `support[0]`";
+    for (name, locks) in [("across.toml", true), ("along.toml", false)] {
+        let checked = run(dir, &["check", name]);
+        assert_eq!(code(&checked), Some(0), "{}", stderr(&checked));
+        assert_eq!(
+            stderr(&checked).contains(told),
+            locks,
+            "{}",
+            stderr(&checked)
+        );
+        let ended = run(dir, &["simulate", name]);
+        let said = stderr(&ended);
+        assert_eq!(code(&ended), Some(i32::from(locks)), "{said}");
+        assert_eq!(said.contains(told), locks, "{said}");
+        assert_eq!(said.contains("the sheet locks at t = "), locks, "{said}");
+        assert_eq!(said.contains("which makes it elastic"), locks, "{said}");
+    }
+}
+
+/// Choices and keys of earlier versions are refused with what replaces them.
+#[test]
+fn former_keys_name_what_replaces_them() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let scene = "version = 1
 [sheet]
 mesh = { square = { side = 1.0, level = 1 } }
-mass = 0.1
-[[support]]
-at = { vertices = [0, 24] }
-[forces]
-gravity = [0.0, 0.0, -9.8]
-[stop]
-time = 1.0
 ";
-    fs::write(dir.join("locks.toml"), scene).unwrap();
-    let refuse = ["simulate", "locks.toml", "--set", "method.fallback=refuse"];
-    let refused = run(dir, &refuse);
-    assert_eq!(code(&refused), Some(1), "{}", stderr(&refused));
-    assert!(stderr(&refused).contains("leave `method.fallback` at hold"));
-    let ended = run(dir, &["simulate", "locks.toml", "--out", "held"]);
-    assert_eq!(code(&ended), Some(0), "{}", stderr(&ended));
-    assert!(stderr(&ended).contains("ended without a balance of forces"));
-    let summary = summary(&dir.join("held"));
-    assert_eq!(summary.ending.reason, EndReason::Time);
-    assert!(summary.held > 0 && summary.held < summary.steps);
-    assert!(summary.largest_strain < 1e-12);
+    fs::write(dir.join("old.toml"), scene).unwrap();
+    for (edit, replacement) in [
+        ("method.fallback=hold", "which makes it elastic"),
+        ("method.hold_after=300", "`max_factorisations` bounds"),
+    ] {
+        let refused = run(dir, &["check", "old.toml", "--set", edit]);
+        assert_ne!(code(&refused), Some(0), "{edit}");
+        let said = stderr(&refused);
+        assert!(said.contains(replacement), "{edit}: {said}");
+    }
 }
 
 /// The straight edge of a banner that hangs by two corners cannot move: the engine holds its vertices, and

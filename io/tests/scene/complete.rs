@@ -89,7 +89,7 @@ const ALL_KEYS: [&str; 5] = [
     max_iterations = 50
     rod_stiffness = 1e5
     min_fraction = 0.1
-    hold_after = 500
+    max_factorisations = 600
     fallback = "implicit_euler"
     taut = "stop"
     [stop]
@@ -137,7 +137,6 @@ const ALL_KEYS: [&str; 5] = [
     hold = { curve = { shape = { closed_spline = { points = [[0, 0, 0], [1, 0, 0], [1, 1, 0]] } } } }
     [method]
     integrator = "bdf2"
-    fallback = "hold"
     taut = "refuse""#,
     r#"version = 1
     [sheet]

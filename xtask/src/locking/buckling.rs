@@ -8,7 +8,6 @@ use super::meshes::{Pattern, Strip};
 use super::records::Records;
 use super::sample::{Sample, requirements};
 use super::scene::Scene;
-use super::ways::refusing;
 use crate::draw::{Axis, Charts};
 use crate::methods::implicit_euler;
 use crate::report::{Effort, Table};
@@ -90,11 +89,7 @@ fn verdict(isometry: Isometry, flat: &Sheet, load: f64, plan: &Plan) -> Result<(
         .with_acceleration([0.0, -GRAVITY, -IMPERFECTION * GRAVITY])
         .with_damping(DAMPING)?
         .with_pins(&clamp)?;
-    // A strip that is held where its rods lock is no strip that stays upright.
-    let scene = Scene {
-        control: refusing(),
-        ..Scene::flat(model, flat).by(implicit_euler())
-    };
+    let scene = Scene::flat(model, flat).by(implicit_euler());
     let (course, end) = scene.run(plan)?;
     let aside = end.mean(&STRIP.tip(flat), 2, f64::abs);
     let verdict = if aside > BUCKLED * STRIP.free {

@@ -5,14 +5,15 @@ use super::isometry::{Isometry, Material};
 use super::records::Records;
 use super::sample::{OfModel, Sample, requirements};
 use super::scene::Scene;
-use super::ways::{BDF2, EULER, REFUSING, Way, by_default_method, ways};
+use super::ways::{BDF2, EULER, ways};
 use super::{Findings, median};
 use crate::draw::{Axis, Charts};
 use crate::report::{Effort, Table};
 use crate::runs::{Course, Plan};
 use anyhow::Result;
+use isosheet_dynamics::{Method, SheetModel};
 use isosheet_mesh::generate::{self, Diagonals};
-use isosheet_mesh::{Sheet, VertexId};
+use isosheet_mesh::{MassKind, Sheet, VertexId};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
@@ -22,7 +23,7 @@ pub(super) const ABOUT: &str = "Flat sheets of 25 to 127 vertices and about 1 m 
     sheet that lies furthest along a random direction is pinned; the rest falls (0.1 kg, 9.8 m/s², damping 2/s, flexural rigidity 10^U(−4, 0) N m with U uniform). \
     A smooth sheet bends along the straight edge of the clamp. A sheet of rods bends along mesh lines only, and the edge of the clamp \
     is one only by chance. The drop is that of the lowest vertex at the end. \
-    Where no step of rods is found it ends without a minimum; with the method called refusing it is divided, and the run ends if no part of it is found either.";
+    A sheet of rods that locks is refused after a bounded number of factorisations.";
 
 /// Kinds of sheets, one after another in the family.
 const KINDS: [&str; 5] = ["union jack", "one-way", "Delaunay", "disk", "rectangle"];
@@ -73,7 +74,7 @@ impl Clamped {
         })
     }
 
-    fn scene(&self, isometry: Isometry, way: Way) -> Result<Scene> {
+    fn scene(&self, isometry: Isometry, method: Method) -> Result<Scene> {
         let material = Material {
             mass: MASS,
             rigidity: Some(self.rigidity),
@@ -85,7 +86,7 @@ impl Clamped {
             .with_damping(DAMPING)?
             .with_pins(&self.pins)?;
         let scene = Scene::flat(model, &self.sheet);
-        Ok(scene.by_way(way))
+        Ok(scene.by(method))
     }
 }
 
@@ -109,16 +110,11 @@ fn random_sheet(kind: &str, rng: &mut ChaCha8Rng) -> Result<Sheet> {
 /// The number of a way among [`ways`], and the number of a sheet in the family.
 type Job = (usize, usize);
 
-/// The ways that the plot shows.
-const SHOWN: [usize; 2] = [BDF2, REFUSING];
-
 /// The number of sheets that a model is tried on by a method.
 fn sheets(isometry: Isometry, by: usize, effort: Effort) -> usize {
     match by {
         BDF2 => effort.quick_or(10, 200),
         EULER => effort.quick_or(0, 25),
-        REFUSING if by_default_method(isometry).contains(&by) => effort.quick_or(10, 200),
-        REFUSING => 0,
         // The projection step is one onto the lengths of rods.
         _ if isometry == Isometry::Rods => effort.quick_or(0, 25),
         _ => 0,
@@ -148,29 +144,22 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
     };
     let all = records.of_models(jobs, |isometry, &(by, number)| {
         let clamped = Clamped::new(number)?;
-        let way = ways().swap_remove(by);
-        let (course, end) = clamped.scene(isometry, way)?.run(&plan)?;
+        let method = ways().swap_remove(by).method;
+        let (course, end) = clamped.scene(isometry, method)?.run(&plan)?;
         let vertices = clamped.sheet.topology().vertex_count();
         let drop = 0.0 - end.heights()[0];
         Ok((vertices, course, (clamped.rigidity, drop)))
     })?;
     let targets = requirements(&all, |of| {
-        let required = |by: usize| {
-            let name = ways()[by].name;
-            let of = of.with(|job| job.0 == by);
-            let (ended, cost) = (of.share_that_ends(), factorisations(&of.all));
-            let reached = format!("part of the sheets that reach the end, {name}");
-            let spent = format!("mean factorisations a step, {name}");
-            [
-                of.at_least(&reached, 1.0, Some(ended)),
-                super::targets::at_most(of.isometry, &spent, 20.0, &[cost]),
-            ]
-        };
-        let ways = by_default_method(of.isometry).iter();
-        ways.copied().flat_map(required).collect()
+        let of = of.with(|job| job.0 == BDF2);
+        let (ended, cost) = (of.share_that_ends(), factorisations(&of.all));
+        vec![
+            of.at_least("part of the sheets that reach the end", 1.0, Some(ended)),
+            super::targets::at_most(of.isometry, "mean factorisations a step", 20.0, &[cost]),
+        ]
     });
     let findings = Findings {
-        tables: vec![totals(&all), summary(&all)],
+        tables: vec![totals(&all), summary(&all), foretold(&all)?],
         files: vec![runs(&all, &plan)],
         remarks: remarks(&all),
         targets,
@@ -198,7 +187,9 @@ fn runs(all: &[Fallen], plan: &Plan) -> Table {
                 f.course.cost.factorisations_per_step().into()
             }),
             ("most in a step", &|f| f.course.worst.into()),
-            ("steps without a minimum", &|f| f.course.unsolved.into()),
+            ("factorisations before the refusal", &|f| {
+                f.course.in_vain.into()
+            }),
             ("drop, m", &|f| f.measured.1.into()),
             ("wall time, s", &|f| f.course.cost.wall.into()),
             ("message", &|f| f.course.ending.message().into()),
@@ -245,7 +236,7 @@ fn summary(all: &[Fallen]) -> Table {
             ("median t at the end of the others, s", &|(.., bad)| time(bad).into()),
             ("factorisations per step", &|(g, ..)| factorisations(g).into()),
             ("most in a step", &|(g, ..)| most(g).into()),
-            ("share of steps without a minimum", &|(g, ..)| unsolved(g).into()),
+            ("most factorisations before a refusal", &|(g, ..)| in_vain(g).into()),
             ("mean drop, m", &|(_, good, _)| drop(good).into()),
         ],
     )
@@ -287,7 +278,7 @@ fn totals(all: &[Fallen]) -> Table {
             ("hang as paper", &|(g, ..)| count(g, |s| s >= AS_DEEP).into()),
             ("hardly move", &|(g, ..)| count(g, |s| s < HARDLY).into()),
             ("factorisations per step", &|(g, ..)| factorisations(g).into()),
-            ("steps without a minimum", &|(g, ..)| unsolved(g).into()),
+            ("refused as locked", &|(.., bad)| locked(bad).into()),
         ],
     )
     .named("clamped-totals")
@@ -304,9 +295,50 @@ fn factorisations(fallen: &[&Fallen]) -> Option<f64> {
     per_step(fallen, |course| course.cost.factorisations)
 }
 
-/// The share of the completed steps that ended without a minimum.
-fn unsolved(fallen: &[&Fallen]) -> Option<f64> {
-    per_step(fallen, |course| course.unsolved)
+/// The most factorisations before a sheet was refused because it locks.
+fn in_vain(fallen: &[&Fallen]) -> Option<usize> {
+    fallen.iter().filter_map(|f| f.course.in_vain).max()
+}
+
+/// The number of sheets that were refused because they lock.
+fn locked(fallen: &[&Fallen]) -> usize {
+    fallen.iter().filter(|f| f.course.in_vain.is_some()).count()
+}
+
+/// How often [`SheetModel::clamps_across_the_mesh`] is right about the sheets of rods.
+fn foretold(all: &[Fallen]) -> Result<Table> {
+    let rods = all
+        .iter()
+        .filter(|f| f.isometry == Isometry::Rods && f.job.0 == BDF2);
+    let mut counts = [[0_usize; 3]; 2];
+    for f in rods {
+        let clamped = Clamped::new(f.job.1)?;
+        let model = SheetModel::new(&clamped.sheet, MASS, MassKind::Lumped)?;
+        let model = model.with_pins(&clamped.pins)?;
+        let found = model.clamps_across_the_mesh(clamped.sheet.positions());
+        let end = match (f.course.in_vain, f.course.is_good()) {
+            (Some(_), _) => 0,
+            (None, true) => 1,
+            (None, false) => 2,
+        };
+        counts[usize::from(found.is_empty())][end] += 1;
+    }
+    let rows = [
+        "no line of edges runs along the clamp",
+        "a line of edges runs along it",
+    ];
+    Ok(Table::of(
+        "Sheets of rods: what the geometry of the clamp foretells, and what becomes of them with BDF2",
+        rows.into_iter().zip(counts),
+        &[
+            ("clamp", &|(name, _)| (*name).into()),
+            ("sheets", &|(_, counts)| counts.iter().sum::<usize>().into()),
+            ("refused as locked", &|(_, counts)| counts[0].into()),
+            ("reach the end", &|(_, counts)| counts[1].into()),
+            ("other endings", &|(_, counts)| counts[2].into()),
+        ],
+    )
+    .named("clamped-foretold"))
 }
 
 /// The kinds of errors with their numbers.
@@ -322,7 +354,7 @@ fn errors(bad: &[&Fallen]) -> String {
 fn remarks(all: &[Fallen]) -> Vec<String> {
     let mut remarks = Vec::new();
     for isometry in Isometry::ALL {
-        for (by, Way { name, .. }) in ways().into_iter().enumerate() {
+        for (by, name) in ways().into_iter().map(|way| way.name).enumerate() {
             let of = OfModel::of(isometry, all).with(|job| job.0 == by).all;
             let ended = of.iter().filter(|f| f.course.is_good()).count();
             if !of.is_empty() {
@@ -339,16 +371,14 @@ fn remarks(all: &[Fallen]) -> Vec<String> {
 /// Factorisations a step of every sheet against its number of vertices, for the default method.
 fn plot(all: &[Fallen]) -> Charts {
     let panel = |k: usize| {
-        let dots = all.iter().filter(|f| kind(f) == k).filter_map(|f| {
-            let way = SHOWN.iter().position(|by| *by == f.job.0)?;
-            Some(Dot::of(f, way, f.vertices as f64, f.cost()))
-        });
+        let shown = all.iter().filter(|f| kind(f) == k && f.job.0 == BDF2);
+        let dots = shown.map(|f| Dot::of(f, 0, f.vertices as f64, f.cost()));
         Panel::new(KINDS[k], dots.collect())
     };
     let x = Axis::linear("vertices V", [15.0, 135.0]);
     let y = Axis::decades("factorisations a step", all.iter().filter_map(Fallen::cost));
     let panels = (0..KINDS.len()).map(panel).collect();
-    let names = SHOWN.map(|by| ways()[by].name.to_owned()).to_vec();
+    let names = vec![ways()[BDF2].name.to_owned()];
     Figure::of_row(x, y, panels, names, [96.0, 130.0]).draw()
 }
 

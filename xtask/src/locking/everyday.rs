@@ -7,7 +7,6 @@ use super::meshes::vertices;
 use super::records::Records;
 use super::sample::{Sample, requirements};
 use super::scene::Scene;
-use super::ways::{BDF2, by_default_method, ways};
 use crate::draw::{Axis, Charts, superscript};
 use crate::report::{Effort, Table};
 use crate::runs::Plan;
@@ -21,9 +20,7 @@ use std::fmt;
 pub(super) const ABOUT: &str = "Paper of 80 g/m² with a flexural rigidity of 5e-4 N m, damping 2/s, in steps of 1/60 s by the default method. \
     Pushed together: a flat strip of 0.30 m x 0.10 m, the first and the last row of squares clamped, one of them moved by 10 % of the free length within 1 s; it has to buckle. \
     Roll: a sheet of 0.30 m x 0.20 m that starts as a roll of radius 0.05 m about mesh lines, one edge clamped, is let go. Banner: a square of 1 m, flat and \
-    horizontal, is held at the two corners of one side and swings down. Opposite corners: the same square is held at two opposite corners at their distance in the flat state. \
-    Where no step of rods is found it ends without a minimum, unless supports move; with the method called refusing it is divided, and the run ends if no part of it \
-    is found either.";
+    horizontal, is held at the two corners of one side and swings down. Opposite corners: the same square is held at two opposite corners at their distance in the flat state.";
 
 /// Mass per area of office paper, kg/m2.
 const DENSITY: f64 = 0.08;
@@ -177,11 +174,8 @@ fn rolled(sheet: &Sheet) -> Vec<f64> {
         .collect()
 }
 
-/// The number of a way among [`ways`], and a scene.
-type Job = (usize, Everyday);
-
 /// Heights of the lowest and the highest vertex (metres), and energy of bending (joules) at the end.
-type Day = Sample<Job, ([f64; 2], f64)>;
+type Day = Sample<Everyday, ([f64; 2], f64)>;
 
 /// Runs the yardstick.
 pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
@@ -190,16 +184,12 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
     let plan = Plan::new(1.0 / 60.0, duration).within(effort.quick_or(0.3, 40.0));
     let scenes = Everyday::all(effort);
     let all = records.of_models(
-        |isometry| {
-            let by = |&by: &usize| scenes.iter().map(move |&scene| (by, scene));
-            by_default_method(isometry).iter().flat_map(by).collect()
-        },
-        |isometry, &(by, scene)| {
+        |_| scenes.clone(),
+        |isometry, &scene| {
             let sheet = scene.sheet()?;
             let model = scene.model(isometry, &sheet)?;
             let start = scene.start(&sheet);
-            let flat = Scene::flat(model, &sheet).by_way(ways().swap_remove(by));
-            let (course, end) = flat.from(start).run(&plan)?;
+            let (course, end) = Scene::flat(model, &sheet).from(start).run(&plan)?;
             let bending = (PAPER_RIGIDITY, &*scene.clamp(&sheet));
             let bending = isometry.bending_energy(&sheet, bending, &end.x)?;
             let measured = (end.heights(), bending);
@@ -207,14 +197,9 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
         },
     )?;
     let targets = requirements(&all, |of| {
-        let ended = |by: usize| {
-            let of = of.with(|job| job.0 == by);
-            let name = ways()[by].name;
-            let quantity = format!("part of the scenes that run to their end, {name}");
-            of.at_least(&quantity, 1.0, Some(of.share_that_ends()))
-        };
-        let ways = by_default_method(of.isometry).iter().copied();
-        ways.map(ended).chain([of.strain()]).collect()
+        let ended = Some(of.share_that_ends());
+        let ended = of.at_least("part of the scenes that run to their end", 1.0, ended);
+        vec![ended, of.strain()]
     });
     let findings = Findings {
         tables: vec![table(&all, &plan)],
@@ -233,15 +218,13 @@ fn table(all: &[Day], plan: &Plan) -> Table {
         ),
         all,
         &[
-            ("scene", &|d| d.job.1.to_string().into()),
+            ("scene", &|d| d.job.to_string().into()),
             ("V", &|d| d.vertices.into()),
             ("model", &|d| d.isometry.to_string().into()),
-            ("method", &|d| ways()[d.job.0].name.into()),
             ("ending", &|d| d.course.ending.name().into()),
             ("t at the end, s", &|d| d.course.time.into()),
             ("factorisations per step", &|d| d.course.cost.factorisations_per_step().into()),
             ("most in a step", &|d| d.course.worst.into()),
-            ("steps without a minimum", &|d| d.course.unsolved.into()),
             ("lowest vertex, m", &|d| d.measured.0[0].into()),
             ("highest vertex, m", &|d| d.measured.0[1].into()),
             ("energy of bending, J", &|d| d.measured.1.into()),
@@ -255,9 +238,8 @@ fn table(all: &[Day], plan: &Plan) -> Table {
 
 /// Factorisations a step of every scene, by the default method.
 fn plot(all: &[Day], scenes: &[Everyday]) -> Charts {
-    let drawn = || all.iter().filter(|d| d.job.0 == BDF2);
-    let dots = drawn().filter_map(|d| {
-        let scene = d.job.1;
+    let dots = all.iter().filter_map(|d| {
+        let scene = d.job;
         let place = scenes.iter().position(|s| *s == scene)?;
         Some(Dot::of(d, scene.kind as usize, place as f64, d.cost()))
     });
@@ -271,7 +253,7 @@ fn plot(all: &[Day], scenes: &[Everyday]) -> Charts {
     });
     let range = [-0.7, scenes.len() as f64 - 0.3];
     let x = Axis::named("squares across, or mesh", range, ticks.collect());
-    let y = Axis::decades("factorisations a step", drawn().filter_map(Day::cost));
+    let y = Axis::decades("factorisations a step", all.iter().filter_map(Day::cost));
     let panel = Panel::new("Everyday scenes", dots.collect());
     let kinds = KINDS.map(str::to_owned).to_vec();
     Figure::of_row(x, y, vec![panel], kinds, [260.0, 150.0]).draw()

@@ -1,15 +1,12 @@
 //! Scenes with a limit of wall time that holds within a step as well.
 
 use super::limit::{GivenUp, Guard, unless_given_up};
-use super::ways::Way;
 use crate::interrupt::Interrupted;
 use crate::report::extremes;
 use crate::runs::{Course, Ending, Plan, unseen};
 use anyhow::Result;
 use isosheet_collide::Contacts;
-use isosheet_dynamics::{
-    Method, Reaction, SheetModel, Simulation, SimulationError, State, StepControl,
-};
+use isosheet_dynamics::{Method, Reaction, SheetModel, Simulation, SimulationError, State};
 use isosheet_mesh::{Sheet, VertexId};
 use std::time::{Duration, Instant};
 
@@ -44,7 +41,6 @@ pub(super) struct Scene {
     pub(super) start: Vec<f64>,
     pub(super) method: Method,
     pub(super) contacts: Option<Contacts>,
-    pub(super) control: StepControl,
 }
 
 impl Scene {
@@ -55,25 +51,12 @@ impl Scene {
             start: sheet.positions().to_vec(),
             method: Method::default(),
             contacts: None,
-            control: StepControl::default(),
         }
     }
 
     /// The same by another method.
     pub(super) fn by(self, method: Method) -> Self {
         Self { method, ..self }
-    }
-
-    /// The same by another method, with what it does where it finds no step.
-    pub(super) fn by_way(self, way: Way) -> Self {
-        let Way {
-            method, control, ..
-        } = way;
-        Self {
-            method,
-            control,
-            ..self
-        }
     }
 
     /// The same from other positions.
@@ -89,8 +72,7 @@ impl Scene {
 
     fn simulation(self) -> Result<Simulation, SimulationError> {
         let start = State::at_rest(self.start);
-        let simulation =
-            Simulation::new(self.model, start, self.method)?.with_control(self.control)?;
+        let simulation = Simulation::new(self.model, start, self.method)?;
         match self.contacts {
             None => Ok(simulation),
             Some(contacts) => simulation.with_contact(contacts),

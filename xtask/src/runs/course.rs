@@ -83,8 +83,9 @@ pub(crate) struct Course {
     pub(crate) cost: Cost,
     /// Most factorisations in one step.
     pub(crate) worst: usize,
-    /// Steps that ended without a minimum, see [`Fallback::Hold`](isosheet_dynamics::Fallback::Hold).
-    pub(crate) unsolved: usize,
+    /// Factorisations in vain before a sheet was refused because it locks ([`StepError::Locked`]), the most of
+    /// all runs.
+    pub(crate) in_vain: Option<usize>,
     /// Largest relative error of an edge length.
     pub(crate) strain: f64,
     /// Largest violation of the equations of isometry (see [`StepReport::constrained_strain`]).
@@ -107,7 +108,6 @@ impl Course {
         self.cost.add(report);
         self.time = report.t;
         self.worst = self.worst.max(report.factorisations);
-        self.unsolved += usize::from(!report.outcome.is_solved());
         self.strain = self.strain.max(report.strain);
         self.violation = self.violation.max(report.constrained_strain);
         // An infinite gap means that nothing is within reach.
@@ -123,7 +123,7 @@ impl Course {
     pub(crate) fn add_run(&mut self, other: Self) {
         self.cost.add_run(&other.cost);
         self.worst = self.worst.max(other.worst);
-        self.unsolved += other.unsolved;
+        self.in_vain = self.in_vain.max(other.in_vain);
         self.strain = self.strain.max(other.strain);
         self.violation = self.violation.max(other.violation);
         self.gap = [self.gap, other.gap].into_iter().flatten().reduce(f64::min);
@@ -249,9 +249,7 @@ impl Plan {
             course.add(report);
             let enough = look(simulation, report);
             course.speed = largest_speed(simulation);
-            // A sheet that is held has no balance of forces to rest in.
-            let is_slow = report.outcome.is_solved()
-                && self.rest_speed.is_some_and(|bound| course.speed < bound);
+            let is_slow = self.rest_speed.is_some_and(|bound| course.speed < bound);
             quiet = if is_slow { quiet + 1 } else { 0 };
             looking += begun.elapsed();
             let wall = (clock.elapsed() - looking).as_secs_f64();
@@ -280,6 +278,9 @@ impl Plan {
             Ok(RunEnd::Stopped) => stopped,
             Err(error) => {
                 let ending = Ending::of_step(&error);
+                if let StepError::Locked { factorisations, .. } = error {
+                    course.in_vain = Some(factorisations);
+                }
                 course.error = Some(error);
                 ending
             }

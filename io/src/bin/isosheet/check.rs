@@ -4,7 +4,7 @@ use crate::Done;
 use crate::exit::{Code, Failure};
 use crate::hints;
 use crate::info::{describe_scene, is_scene, refuse_edits, refuse_folder};
-use crate::message::counted;
+use crate::message::{counted, print_warnings};
 use crate::write::{is_same_file, to_stdout};
 use clap::Args;
 use isosheet_io::mesh::Sheet;
@@ -60,11 +60,14 @@ impl Check {
             Mesh::File(file) if file.scale == 1.0 => hints::wide(&setup.sheet),
             _ => String::new(),
         };
+        let warnings = setup.warnings();
         setup.start()?;
         to_stdout(&format!(
             "{}: a scene that can start\n{text}{closed}{wide}",
             self.file.display()
-        ))
+        ))?;
+        print_warnings(&warnings);
+        Ok(())
     }
 
     fn check_mesh(&self) -> Done {

@@ -2,7 +2,6 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
-use crate::simulate::print_warnings;
 use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::dynamics::{SheetModel, rod_rank};
@@ -96,11 +95,7 @@ fn describe_run(folder: &Path) -> Done {
         folder.display(),
         lines.collect::<String>(),
         describe_scene(&setup)
-    ))?;
-    if let Some(summary) = &recording.summary {
-        print_warnings(summary);
-    }
-    Ok(())
+    ))
 }
 
 /// A scene in a few lines.

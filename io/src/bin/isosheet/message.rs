@@ -3,6 +3,7 @@
 use crate::Done;
 use crate::write::to_stdout;
 use clap::Args;
+use isosheet_io::Advice;
 pub(crate) use isosheet_io::mesh::wording::counted;
 use std::fmt::Arguments;
 use std::io::Write;
@@ -42,6 +43,21 @@ pub(crate) fn is_verbose() -> bool {
 /// as behind `2>&1 | head`: the work goes on.
 pub(crate) fn print_message(text: Arguments<'_>) {
     let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Writes warnings with what to do about them.
+pub(crate) fn print_warnings(warnings: &[impl Advice]) {
+    for warning in warnings {
+        print_message(format_args!("warning: {warning}"));
+        if let Some(advice) = warning.advice() {
+            print_message(format_args!("  = help: {advice}"));
+        }
+    }
+}
+
+/// Warnings as texts, with what to do about them.
+pub(crate) fn with_advice(warnings: &[impl Advice]) -> Vec<String> {
+    warnings.iter().map(Advice::with_advice).collect()
 }
 
 /// Writes a line of progress to standard error, unless the command is to be quiet.

@@ -2,7 +2,7 @@
 
 use crate::exit::Format;
 use crate::interrupt;
-use crate::message::{counted, is_quiet, is_verbose, print_progress};
+use crate::message::{counted, is_quiet, is_verbose, print_progress, print_warnings, with_advice};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use isosheet_io::run::{Beginning, StepPart, Tick, Watch};
 use serde_json::{Value, json};
@@ -77,6 +77,7 @@ impl Watch for Progress {
             event(&json!({
                 "event": "begin", "steps": steps, "of": of, "vertices": vertices,
                 "modelled": beginning.modelled,
+                "warnings": with_advice(&beginning.warnings),
             }));
             return;
         }
@@ -89,6 +90,7 @@ impl Watch for Progress {
             counted(*vertices, "vertex", "vertices"),
             counted(*of as usize, "step", "steps")
         ));
+        print_warnings(&beginning.warnings);
         if std::io::stderr().is_terminal() && !is_quiet() && !is_verbose() {
             let bar = ProgressBar::with_draw_target(Some(*of), ProgressDrawTarget::stderr());
             let template = "{wide_bar} {pos}/{len} steps, {per_sec}, {eta} left {msg}";

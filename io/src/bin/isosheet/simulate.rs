@@ -7,7 +7,6 @@ use crate::message::{counted, print_message, print_result};
 use crate::open::open_page;
 use crate::progress::{Progress, event};
 use clap::Args;
-use isosheet_io::Advice;
 use isosheet_io::run::{Outcome, RunError, Summary, resume_folder, simulate, simulate_anew};
 use isosheet_io::scene::SceneFile;
 use serde_json::json;
@@ -112,14 +111,11 @@ impl How {
         };
         let page = page(folder);
         if self.json {
-            let warnings: Vec<String> =
-                summary.warnings().iter().map(Advice::with_advice).collect();
             event(&json!({
-                "event": event_name, "folder": folder, "page": page, "summary": summary, "warnings": warnings,
+                "event": event_name, "folder": folder, "page": page, "summary": summary,
             }));
         } else {
             print_result(format_args!("{}", sentence(event_name, folder, &summary)))?;
-            print_warnings(&summary);
             if let Some(page) = &page {
                 print_result(format_args!("page: {}", page.display()))?;
             }
@@ -139,16 +135,6 @@ impl How {
 fn page(folder: &Path) -> Option<PathBuf> {
     let page = folder.join("index.html");
     page.is_file().then_some(page)
-}
-
-/// Says what to know before the results of a run are used.
-pub(crate) fn print_warnings(summary: &Summary) {
-    for warning in summary.warnings() {
-        print_message(format_args!("warning: {warning}"));
-        if let Some(advice) = warning.advice() {
-            print_message(format_args!("  = help: {advice}"));
-        }
-    }
 }
 
 fn sentence(what: &str, folder: &Path, summary: &Summary) -> String {
