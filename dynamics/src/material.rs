@@ -5,7 +5,8 @@ mod catalogue;
 mod tests;
 
 use crate::options::OptionsError;
-use isosheet_mesh::Advice;
+use crate::{ElasticSheet, ElasticSheetError};
+use isosheet_mesh::{Advice, Sheet};
 use serde::{Deserialize, Serialize};
 
 /// A material in the form of a sheet.
@@ -113,7 +114,7 @@ impl Material {
     /// The strain limit of materials that do not stretch visibly: 1 %. This is no yield point. Metals yield,
     /// and paper tears, at 0.1 to 3 %; a sheet that is bent without folds has strains far below that, and one
     /// whose mesh is too coarse for its bends has larger ones, which the limit keeps invisible.
-    pub const STRAIN_LIMIT: f64 = 0.01;
+    pub const STRAIN_LIMIT: f64 = ElasticSheet::LIMIT;
 
     /// The sheet of an isotropic material of constant thickness: metals, films, rubber.
     ///
@@ -141,6 +142,18 @@ impl Material {
         OptionsError::check_range("rigidity", self.rigidity, 0.0, 1e18)?;
         OptionsError::check_range("poisson", self.poisson, 0.0, 0.5)?;
         OptionsError::check_range("strain_limit", self.strain_limit, 1e-6, 0.49)
+    }
+
+    /// The elasticity in the plane of a sheet of this material: softened as far as the mesh needs
+    /// ([`ElasticSheet::softened`]), with the limit of the strain. The flexural rigidity is not part of it: add a
+    /// [`PlateBending`](crate::PlateBending).
+    ///
+    /// # Errors
+    /// [`ElasticSheetError`].
+    pub fn elastic_sheet(&self, sheet: &Sheet) -> Result<ElasticSheet, ElasticSheetError> {
+        ElasticSheet::new(sheet, self.stiffness, self.poisson)?
+            .softened(self.rigidity)?
+            .with_limit(self.strain_limit)
     }
 
     /// The material of a name of the catalogue, such as `office paper`. Capital letters, and `-` or `_` for a

@@ -58,11 +58,6 @@ fn a_clamped_strip_of_paper_on_an_irregular_mesh_is_the_elastica() {
             .collect();
         let drop = ends.iter().sum::<f64>() / ends.len() as f64;
         let error = drop / elastica.drop() - 1.0;
-        println!(
-            "seed {seed}: {drop} m, elastica {} m of {} m, error {error}",
-            elastica.drop(),
-            elastica.length
-        );
         assert!(
             error.abs() < 0.02,
             "seed {seed}: {drop} m, elastica {} m",

@@ -16,23 +16,25 @@ mesh = { rectangle = { width = 0.21, height = 0.03, columns = 28, rows = 4 } }
 material = \"office paper\"
 ```
 
-The name gives mass, membrane stiffness, flexural rigidity, Poisson's ratio and the largest strain, and makes the
-sheet elastic; keys beside it, such as `density` or `bending`, replace what it gives. `isometry = \"rods\"` beside it
-makes the sheet one of rigid rods with mass and bending stiffness of the material. `isosheet check` prints the
-numbers. For a metal or film that is not in the table, `material = { youngs = 2.1e11, thickness = 5e-4, density = 7850,
-poisson = 0.3 }` computes them: mass `density thickness`, membrane stiffness `E h = youngs thickness` and rigidity
-`D = youngs thickness^3 / (12 (1 - poisson^2))`.
+The name gives mass, membrane stiffness, flexural rigidity, Poisson's ratio and the largest strain, and
+makes the sheet elastic; keys beside it, such as `density` or `bending`, replace what it gives. `isometry =
+\"rods\"` beside it makes the sheet one of rigid rods with mass and bending stiffness of the material.
+`isosheet check` prints the numbers. For a metal or film that is not in the table, `material = { youngs =
+2.1e11, thickness = 5e-4, density = 7850, poisson = 0.3 }` computes them: mass `density thickness`, membrane
+stiffness `E h = youngs thickness` and rigidity `D = youngs thickness^3 / (12 (1 - poisson^2))`.
 
 In Rust, `Material::named(\"office paper\")` and `Material::office_paper()` are the same numbers, and
 `Material::isotropic` computes those of a plate.
 
-**Know before use.** The numbers of metals and films are good to a few per cent for the thickness given, which is a
-common one. Those of paper, cloth and leather are typical: sorts differ by a factor of two, paper is about twice as stiff
-along the direction in which it was made as across, and its stiffness falls with moisture. All materials are modelled as
-isotropic; woven cloth, which is many times softer in shear than along its yarns, wraps round bodies more easily than its
-model. The rigidity of paper and cloth is a measured one and no function of thickness: their fibres move against one another.
-The strain limit is not where a material yields or tears. It is a bound that keeps strain invisible where a mesh is too coarse
-for its bends.
+**Know before use.** The numbers of metals and films are good to a few per cent for the thickness given,
+which is a common one. Those of paper, cloth and leather are typical: sorts differ by a factor of two, paper
+is about twice as stiff along the direction in which it was made as across, and its stiffness falls with
+moisture. All materials are modelled as isotropic; woven cloth, which is many times softer in shear than
+along its yarns, wraps round bodies more easily than its model. The rigidity of office paper, card, cloth
+and leather is that of bending tests and no function of thickness, as their fibres move against one another;
+that of the other papers is eight to nine tenths of a plate's. The sources say what is typical or assumed.
+The strain limit is not where a material yields or tears. It is a bound that keeps strain invisible where a
+mesh is too coarse for its bends.
 
 ";
 
