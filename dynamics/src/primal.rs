@@ -48,8 +48,8 @@ pub(crate) struct PrimalMatrix {
     near: SparseLlt,
     far: FarCouplings,
     whole: Option<WholeMatrix>,
-    /// What factorising the whole matrix costs, without contact.
-    whole_cost: Option<Direct>,
+    /// What the matrix without far couplings and the whole one cost, both without contact.
+    costs: Option<[Direct; 2]>,
     /// Norm of the masses of the free vertices, kilograms.
     masses: f64,
     /// Whether conjugate gradients have been too slow since [`PrimalMatrix::begin`].
@@ -101,7 +101,7 @@ impl PrimalMatrix {
         let mut matrix = Self::with_couplings(model, far, Vec::new())?;
         if !matrix.far.pairs().is_empty() {
             let whole = WholeMatrix::new(matrix.near.pattern(), matrix.far.pairs())?;
-            matrix.whole_cost = Some(whole.cost());
+            matrix.costs = Some([Direct::of(&matrix.near), whole.cost()]);
             matrix.whole = Some(whole);
         }
         Ok(matrix)
@@ -155,7 +155,7 @@ impl PrimalMatrix {
             near: SparseLlt::with_blocks(pattern, 3)?,
             far,
             whole: None,
-            whole_cost: None,
+            costs: None,
             masses: (0..model.free_index().len())
                 .filter(|&v| free[v] != PINNED)
                 .map(|v| model.mass().vertex[v])
@@ -176,12 +176,11 @@ impl PrimalMatrix {
 
     /// Changes the pairs that contact couples.
     fn set_extra(&mut self, model: &SheetModel, extra: Vec<[u32; 2]>) -> Result<(), LinalgError> {
-        let far = std::mem::replace(&mut self.far, FarCouplings::none(model));
-        *self = Self {
-            whole_cost: self.whole_cost,
-            is_slow: self.is_slow,
-            ..Self::with_couplings(model, far, extra)?
-        };
+        let mut changed = Self::with_couplings(model, FarCouplings::none(model), extra)?;
+        std::mem::swap(&mut changed.far, &mut self.far);
+        changed.costs = self.costs;
+        changed.is_slow = self.is_slow;
+        *self = changed;
         Ok(())
     }
 
@@ -380,9 +379,12 @@ impl PrimalMatrix {
 
     /// The number of iterations from which a factorisation of the whole matrix is cheaper.
     fn iterations_worth(&self) -> usize {
-        let near = Direct::of(&self.near);
-        let worth = |whole| near.iterations_worth(self.far.operations(), whole);
-        self.whole_cost.map_or(0, worth)
+        let worth = |[near, whole]: [Direct; 2]| {
+            let now = Direct::of(&self.near);
+            // Contact makes both dearer, by about as much.
+            now.iterations_worth(self.far.operations(), whole + (now - near))
+        };
+        self.costs.map_or(0, worth)
     }
 
     /// Whether conjugate gradients are expected to be cheaper than a factorisation of the whole matrix.

@@ -1,6 +1,7 @@
 //! What the ways of solving with the whole matrix cost, in multiplications of a factorisation.
 
 use isosheet_coords::linalg::SparseLlt;
+use std::ops::{Add, Sub};
 
 /// A multiplication of a solve takes as long as so many of a factorisation, whose dense kernels use each number that
 /// they read several times: 4 to 5 for sheets of 289 and 1089 vertices, with and without the couplings of a plate.
@@ -27,6 +28,28 @@ impl Direct {
     pub(super) fn iterations_worth(self, product: f64, whole: Self) -> usize {
         let saved = whole.factorisation + whole.solve - self.factorisation - self.solve;
         (saved / (self.solve + SOLVE_WEIGHT * product)).max(0.0) as usize
+    }
+}
+
+impl Add for Direct {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            factorisation: self.factorisation + other.factorisation,
+            solve: self.solve + other.solve,
+        }
+    }
+}
+
+impl Sub for Direct {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self {
+            factorisation: self.factorisation - other.factorisation,
+            solve: self.solve - other.solve,
+        }
     }
 }
 
