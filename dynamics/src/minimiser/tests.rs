@@ -8,7 +8,7 @@ use crate::effort::SolverEffort;
 use crate::iterate::Iterate;
 use crate::primal::PrimalMatrix;
 use crate::restoration::{FirstMatrix, Restoration, RestorationGoal};
-use crate::{CreaseSprings, ImplicitOptions, Membrane, PlateBending, SheetModel, State};
+use crate::{CreaseSprings, ElasticSheet, ImplicitOptions, PlateBending, SheetModel, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 
 const H: f64 = 0.01;
@@ -266,7 +266,8 @@ fn the_minimum_does_not_depend_on_what_is_factorised() {
         base().with_potential(plate()),
         base().with_potential(CreaseSprings::bending(&sheet, 5e-4).unwrap()),
         base()
-            .with_membrane(Membrane::new(&sheet, 3e3, 0.3).unwrap())
+            .with_elastic_sheet(ElasticSheet::new(&sheet, 3e3, 0.3).unwrap())
+            .unwrap()
             .with_potential(plate()),
     ];
     for model in &models {

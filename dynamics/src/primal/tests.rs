@@ -1,5 +1,5 @@
 use super::*;
-use crate::{CreaseSprings, Membrane, PlateBending};
+use crate::{CreaseSprings, ElasticSheet, PlateBending};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -34,7 +34,9 @@ fn hinges(sheet: &Sheet, model: SheetModel) -> SheetModel {
 }
 
 fn membrane_and_all(sheet: &Sheet, model: SheetModel) -> SheetModel {
-    let model = model.with_membrane(Membrane::new(sheet, 3e5, 0.3).unwrap());
+    let model = model
+        .with_elastic_sheet(ElasticSheet::new(sheet, 3e5, 0.3).unwrap())
+        .unwrap();
     hinges(sheet, plate(5e-4)(sheet, model))
 }
 
