@@ -143,6 +143,7 @@ fn rows(run: &RunSummary) -> Vec<(String, String)> {
             ),
         ),
         ("wall time", format!("{:.1} s", cost.wall)),
+        ("CPU time", format!("{:.1} s", cost.cpu)),
         ("largest strain", format!("{:.1e}", course.strain)),
         ("smallest gap", super::gap(course.gap)),
         ("potential energy released", joules(e.released)),

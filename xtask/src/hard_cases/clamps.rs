@@ -162,6 +162,11 @@ fn table_of(all: &[Runs]) -> Table {
             ("factorisations a step", &|runs| {
                 format!("{:.1}", of(runs)).into()
             }),
+            ("CPU s per simulated s", &|runs| {
+                runs.course
+                    .cpu_rate()
+                    .map_or("–".into(), |cpu| number(cpu).into())
+            }),
             ("most in a step", &|runs| {
                 runs.course.worst.to_string().into()
             }),

@@ -177,6 +177,7 @@ fn table(all: &[Hung], plan: &Plan) -> Table {
             ("ending", &|h| h.course.ending.name().into()),
             ("t at the end, s", &|h| h.course.time.into()),
             ("factorisations", &|h| h.course.cost.factorisations.into()),
+            ("CPU s per simulated s", &|h| h.course.cpu_rate().into()),
             ("speed left, m/s", &|h| h.course.speed.into()),
             ("drop, m", &|h| h.measured[0].into()),
             ("exact, m", &|h| h.measured[1].into()),

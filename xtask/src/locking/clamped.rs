@@ -186,6 +186,7 @@ fn runs(all: &[Fallen], plan: &Plan) -> Table {
             ("factorisations per step", &|f| {
                 f.course.cost.factorisations_per_step().into()
             }),
+            ("CPU s per simulated s", &|f| f.course.cpu_rate().into()),
             ("most in a step", &|f| f.course.worst.into()),
             ("factorisations before the refusal", &|f| {
                 f.course.in_vain.into()
@@ -235,6 +236,7 @@ fn summary(all: &[Fallen]) -> Table {
             ("kinds of errors", &|(.., bad)| errors(bad).into()),
             ("median t at the end of the others, s", &|(.., bad)| time(bad).into()),
             ("factorisations per step", &|(g, ..)| factorisations(g).into()),
+            ("CPU s per simulated s", &|(g, ..)| cpu_rate(g).into()),
             ("most in a step", &|(g, ..)| most(g).into()),
             ("most factorisations before a refusal", &|(g, ..)| in_vain(g).into()),
             ("mean drop, m", &|(_, good, _)| drop(good).into()),
@@ -278,6 +280,7 @@ fn totals(all: &[Fallen]) -> Table {
             ("hang as paper", &|(g, ..)| count(g, |s| s >= AS_DEEP).into()),
             ("hardly move", &|(g, ..)| count(g, |s| s < HARDLY).into()),
             ("factorisations per step", &|(g, ..)| factorisations(g).into()),
+            ("CPU s per simulated s", &|(g, ..)| cpu_rate(g).into()),
             ("refused as locked", &|(.., bad)| locked(bad).into()),
         ],
     )
@@ -289,6 +292,13 @@ fn per_step(fallen: &[&Fallen], count: impl Fn(&Course) -> usize) -> Option<f64>
     let steps: usize = fallen.iter().map(|f| f.course.cost.steps).sum();
     let counted: usize = fallen.iter().map(|f| count(&f.course)).sum();
     (steps > 0).then(|| counted as f64 / steps as f64)
+}
+
+/// Seconds of the processor for a simulated second of all runs together.
+fn cpu_rate(fallen: &[&Fallen]) -> Option<f64> {
+    let time: f64 = fallen.iter().map(|f| f.course.time).sum();
+    let spent: f64 = fallen.iter().map(|f| f.course.cost.cpu).sum();
+    (time > 0.0).then(|| spent / time)
 }
 
 fn factorisations(fallen: &[&Fallen]) -> Option<f64> {

@@ -217,6 +217,7 @@ fn table(all: &[Run]) -> Table {
             ("factorisations per step", &|r| {
                 r.course.cost.factorisations_per_step().into()
             }),
+            ("CPU s per simulated s", &|r| r.course.cpu_rate().into()),
             ("error", &|r| r.error.into()),
             ("message", &|r| r.course.ending.message().into()),
         ],

@@ -230,6 +230,7 @@ fn table(all: &[Bent], plan: &Plan) -> Table {
             ("ending", &|b| b.course.ending.name().into()),
             ("t at the end, s", &|b| b.course.time.into()),
             ("factorisations per step", &|b| b.course.cost.factorisations_per_step().into()),
+            ("CPU s per simulated s", &|b| b.course.cpu_rate().into()),
             ("energy", &|b| b.measured.energy.into()),
             ("bending energy", &|b| b.measured.bending.into()),
             ("moment", &|b| b.measured.moment.into()),

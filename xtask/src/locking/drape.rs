@@ -259,6 +259,7 @@ fn runs(all: &[Drape]) -> Table {
             ("factorisations per step", &|d| {
                 d.course.cost.factorisations_per_step().into()
             }),
+            ("CPU s per simulated s", &|d| d.course.cpu_rate().into()),
             ("folds", &|d| rim(d, |r| r.folds as f64)),
             ("largest wave", &|d| rim(d, |r| r.wave as f64)),
             ("its share", &|d| rim(d, |r| r.share)),

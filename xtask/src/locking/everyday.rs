@@ -224,6 +224,7 @@ fn table(all: &[Day], plan: &Plan) -> Table {
             ("ending", &|d| d.course.ending.name().into()),
             ("t at the end, s", &|d| d.course.time.into()),
             ("factorisations per step", &|d| d.course.cost.factorisations_per_step().into()),
+            ("CPU s per simulated s", &|d| d.course.cpu_rate().into()),
             ("most in a step", &|d| d.course.worst.into()),
             ("lowest vertex, m", &|d| d.measured.0[0].into()),
             ("highest vertex, m", &|d| d.measured.0[1].into()),

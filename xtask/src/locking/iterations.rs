@@ -86,6 +86,7 @@ fn table(all: &[Hanging], plan: &Plan) -> Table {
             ("steps", &|h| h.course.cost.steps.into()),
             ("iterations per step", &|h| h.course.cost.iterations_per_step().into()),
             ("factorisations per step", &|h| h.course.cost.factorisations_per_step().into()),
+            ("CPU s per simulated s", &|h| h.course.cpu_rate().into()),
             ("most in a step", &|h| h.course.worst.into()),
             ("wall time per step, s", &|h| h.course.cost.wall_per_step().into()),
             ("strain", &|h| h.course.strain.into()),

@@ -16,10 +16,12 @@ pub(crate) struct Cost {
     pub(crate) factorisations: usize,
     /// Wall time, seconds.
     pub(crate) wall: f64,
+    /// Time of the processor, seconds: that of the thread that took the steps.
+    pub(crate) cpu: f64,
 }
 
 impl Cost {
-    /// Counts a step; its wall time is known to the caller alone.
+    /// Counts a step; its times are known to the caller alone.
     pub(crate) fn add(&mut self, report: &StepReport) {
         self.steps += 1;
         self.substeps += report.substeps;
@@ -36,6 +38,7 @@ impl Cost {
         self.iterations += other.iterations;
         self.factorisations += other.factorisations;
         self.wall += other.wall;
+        self.cpu += other.cpu;
     }
 
     /// A number as a mean over the steps; nothing where no step was completed.
@@ -56,6 +59,11 @@ impl Cost {
     /// Wall seconds for a step in the mean.
     pub(crate) fn wall_per_step(&self) -> Option<f64> {
         self.per_step(self.wall)
+    }
+
+    /// Seconds of the processor for a step in the mean.
+    pub(crate) fn cpu_per_step(&self) -> Option<f64> {
+        self.per_step(self.cpu)
     }
 
     /// Wall seconds for a factorisation and all that belongs to it.

@@ -2,6 +2,7 @@
 
 use crate::interrupt::{self, Interrupted};
 use crate::report::Cost;
+use cpu_time::ThreadTime;
 use isosheet_dynamics::{RunEnd, Simulation, StepError, StepReport};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -103,7 +104,7 @@ pub(crate) struct Course {
 }
 
 impl Course {
-    /// Takes a step into account; its wall time is known to the caller alone.
+    /// Takes a step into account; its times are known to the caller alone.
     pub(crate) fn add(&mut self, report: &StepReport) {
         self.cost.add(report);
         self.time = report.t;
@@ -159,6 +160,51 @@ impl Course {
     /// Wall seconds for a simulated second; nothing if not a single step was completed.
     pub(crate) fn rate(&self) -> Option<f64> {
         (self.time > 0.0).then(|| self.cost.wall / self.time)
+    }
+
+    /// Seconds of the processor for a simulated second; nothing if not a single step was completed.
+    pub(crate) fn cpu_rate(&self) -> Option<f64> {
+        (self.time > 0.0).then(|| self.cost.cpu / self.time)
+    }
+}
+
+/// Clocks of the wall and of the thread.
+#[derive(Debug)]
+struct Clocks {
+    wall: Instant,
+    cpu: ThreadTime,
+}
+
+/// What clocks show.
+#[derive(Debug, Default)]
+struct Spent {
+    wall: Duration,
+    cpu: Duration,
+}
+
+impl Clocks {
+    fn start() -> Self {
+        Self {
+            wall: Instant::now(),
+            cpu: ThreadTime::now(),
+        }
+    }
+
+    fn spent(&self) -> Spent {
+        Spent {
+            wall: self.wall.elapsed(),
+            cpu: self.cpu.elapsed(),
+        }
+    }
+
+    /// Sets the times of a run that had taken `before` seconds when the clocks started, without the time that
+    /// looking at it has taken. Returns the seconds of wall time since then.
+    fn cost(&self, looking: &Spent, before: (f64, f64), cost: &mut Cost) -> f64 {
+        let spent = self.spent();
+        let wall = spent.wall.saturating_sub(looking.wall).as_secs_f64();
+        cost.wall = before.0 + wall;
+        cost.cpu = before.1 + spent.cpu.saturating_sub(looking.cpu).as_secs_f64();
+        wall
     }
 }
 
@@ -242,18 +288,20 @@ impl Plan {
         look: &mut dyn FnMut(&Simulation, &StepReport) -> ControlFlow<()>,
     ) -> Result<(), Interrupted> {
         let end = simulation.state().t + self.duration - 0.5 * self.step;
-        let (before, clock) = (course.cost.wall, Instant::now());
-        let (mut looking, mut quiet, mut stopped) = (Duration::ZERO, 0, Ending::Stopped);
+        let before = (course.cost.wall, course.cost.cpu);
+        let clocks = Clocks::start();
+        let (mut looking, mut quiet, mut stopped) = (Spent::default(), 0, Ending::Stopped);
         let mut watch = |simulation: &Simulation, report: &StepReport| {
-            let begun = Instant::now();
+            let begun = Clocks::start();
             course.add(report);
             let enough = look(simulation, report);
             course.speed = largest_speed(simulation);
             let is_slow = self.rest_speed.is_some_and(|bound| course.speed < bound);
             quiet = if is_slow { quiet + 1 } else { 0 };
-            looking += begun.elapsed();
-            let wall = (clock.elapsed() - looking).as_secs_f64();
-            course.cost.wall = before + wall;
+            let seen = begun.spent();
+            looking.wall += seen.wall;
+            looking.cpu += seen.cpu;
+            let wall = clocks.cost(&looking, before, &mut course.cost);
             if enough.is_continue() {
                 if quiet >= QUIET {
                     stopped = Ending::Rest;
@@ -271,7 +319,7 @@ impl Plan {
             &mut [&mut watch, &mut interrupt::observe],
         );
         interrupt::check()?;
-        course.cost.wall = before + (clock.elapsed() - looking).as_secs_f64();
+        clocks.cost(&looking, before, &mut course.cost);
         course.time = simulation.state().t;
         course.ending = match end {
             Ok(RunEnd::Complete | RunEnd::Taut) => Ending::Complete,
@@ -302,6 +350,29 @@ mod tests {
         Simulation::new(model.with_gravity(), start, Method::default()).unwrap()
     }
 
+    /// Time of the processor is that of the steps alone: neither that of waiting nor that of looking.
+    #[test]
+    fn processor_time_is_that_of_the_steps() {
+        let plan = Plan::new(0.01, 0.1);
+        let mut wait = |_: &Simulation, _: &StepReport| {
+            std::thread::sleep(Duration::from_millis(5));
+            let begun = ThreadTime::now();
+            while begun.elapsed() < Duration::from_millis(5) {}
+            ControlFlow::Continue(())
+        };
+        let begun = ThreadTime::now();
+        let seen = plan.run(&mut falling(), &mut wait).unwrap();
+        let all = begun.elapsed().as_secs_f64();
+        assert!(all >= 0.05 && seen.cost.cpu > 0.0);
+        assert!(seen.cost.cpu < all - 0.045, "{} of {all}", seen.cost.cpu);
+        let twice = {
+            let mut twice = seen.clone();
+            twice.add_run(seen.clone());
+            twice
+        };
+        assert_eq!(twice.cost.cpu, 2.0 * seen.cost.cpu);
+    }
+
     #[test]
     fn runs_end_complete_at_rest_out_of_time_stopped_or_with_an_error() {
         let plan = Plan::new(0.01, 0.1);
@@ -314,6 +385,7 @@ mod tests {
         let late = run(plan.within(0.0));
         assert_eq!((&late.ending, late.cost.steps), (&Ending::WallTime(0.0), 1));
         assert_eq!(late.rate(), Some(late.cost.wall / 0.01));
+        assert_eq!(late.cpu_rate(), Some(late.cost.cpu / 0.01));
         let mut stop = |_: &Simulation, _: &StepReport| ControlFlow::Break(());
         let stopped = plan.run(&mut falling(), &mut stop).unwrap();
         assert_eq!(stopped.ending, Ending::Stopped);

@@ -50,7 +50,7 @@ pub(super) fn page(results: &Results, required: &[(String, Requirement)]) -> Pag
 /// What is shown of the whole runs of a scene.
 fn table(scene: Work, runs: &[&Measured]) -> Table {
     let names = "mesh vertices method start wall_s_per_simulated_s iterations_per_step factorisations_per_step \
-                 wall_s_per_factorisation times_fastest_exact times_one_factorisation_a_step rejected strain \
+                 cpu_s_per_simulated_s wall_s_per_factorisation times_fastest_exact times_one_factorisation_a_step rejected strain \
                  smallest_gap_m reached_s failure";
     let all = whole_report::table(runs);
     all.select(format!("{} Here: the {}.", all.caption, name(scene)), names)

@@ -32,6 +32,7 @@ pub(super) fn hanging(rows: &[Row]) -> Table {
                 c.cost.iterations_per_step().into()
             }),
             ("factorisations", &|(r, ..)| r.factorisations().into()),
+            ("cpu_s", &|(_, c, _)| c.cost.cpu_per_step().into()),
             ("strain", &|(_, c, _)| c.strain.into()),
             ("energy_error", &|(r, ..)| r.balance.into()),
             ("factor_bytes", &|(r, ..)| factor_bytes(r.best()).into()),
@@ -52,7 +53,7 @@ pub(super) fn hanging(rows: &[Row]) -> Table {
 
 /// The steps of [`hanging`].
 pub(super) fn steps(rows: &[Row]) -> Table {
-    let names = "level vertices faces setup_s step_s iterations factorisations factorising_s solving_s rest_s strain \
+    let names = "level vertices faces setup_s step_s iterations factorisations cpu_s factorising_s solving_s rest_s strain \
                  energy_error factor_bytes peak_bytes";
     hanging(rows).select(
         "Per step of the hanging sheet. Factorisations, solves: their numbers times what one takes alone, parts of the step; the rest is \
@@ -87,6 +88,7 @@ pub(super) fn draping(rows: &[DrapeRow]) -> Table {
                 r.course.cost.iterations_per_step().into()
             }),
             ("factorisations", &|r| r.factorisations().into()),
+            ("cpu_s", &|r| r.course.cost.cpu_per_step().into()),
             ("rejected", &|r| r.course.cost.rejected.into()),
             ("contacts", &|r| r.contacts.into()),
             ("couplings", &|r| r.couplings.into()),

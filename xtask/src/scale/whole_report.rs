@@ -163,6 +163,7 @@ mod tests {
             iterations: 240,
             factorisations: (1e6 * cost * v.sqrt()) as usize,
             wall: cost * v * v,
+            cpu: cost * v * v,
         };
         Measured {
             work: Work::Hanging,

@@ -80,6 +80,7 @@ impl Study {
                 ("steps", &|p| p.cost.substeps.into()),
                 ("rejected", &|p| p.cost.rejected.into()),
                 ("factorisations", &|p| p.cost.factorisations.into()),
+                ("cpu_s", &|p| p.cost.cpu.into()),
                 ("repetitions", &|p| p.repetitions.into()),
                 ("failure", &|p| p.failure.clone().into()),
             ],

@@ -19,7 +19,7 @@ impl Work {
 /// The columns of [`table`] that a page shows.
 pub(crate) const SHOWN: &str = "mesh contact method step_s wall_s_per_simulated_s times_fastest_exact \
     times_one_factorisation_a_step strain energy_balance largest_energy_change smallest_gap_m iterations factorisations \
-    steps rejected failure";
+    cpu_s_per_simulated_s steps rejected failure";
 
 /// Runs; `all` gives the entries that a run is compared with, its own among them.
 pub(crate) fn table(
@@ -56,6 +56,7 @@ pub(crate) fn table(
             ("smallest_gap_m", &|(_, c, _)| c.gap.into()),
             ("iterations", &|(_, c, _)| c.cost.iterations.into()),
             ("factorisations", &|(_, c, _)| c.cost.factorisations.into()),
+            ("cpu_s_per_simulated_s", &|(_, c, _)| c.cpu_rate().into()),
             ("steps", &|(_, c, _)| c.cost.substeps.into()),
             ("rejected", &|(_, c, _)| c.cost.rejected.into()),
             ("iterations_per_step", &|(_, c, _)| {
