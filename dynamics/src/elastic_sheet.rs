@@ -13,7 +13,7 @@ use face::Face;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, FaceId, Sheet};
 use limit::StrainLimit;
-pub(crate) use load::strain_barrier_at_start;
+pub(crate) use load::strain_barrier;
 
 /// Why an elastic sheet cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -91,7 +91,7 @@ const SOFTENING: f64 = 2000.0;
 /// bounds both principal strains and the strain of every edge, `|c_e| <= m l_e^2`. As with contact, each
 /// displacement is cut to a part that is proven to stay within the limit, so that no accepted step is beyond it. The
 /// stiffness `kappa` of the barrier (joules per square metre) is set where a simulation starts, from the weight
-/// and the kinetic energy of the sheet.
+/// and the kinetic energy of the sheet, and raised after steps in which it moves faster.
 ///
 /// *Stiffness.* A stiff membrane locks on coarse meshes: bends that the mesh cannot follow by folding stretch
 /// the sheet. With the flexural rigidity `D` of the sheet, [`ElasticSheet::softened`] lowers the stiffness of

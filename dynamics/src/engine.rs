@@ -4,7 +4,7 @@ use crate::blocked::{blocked_vertices, dependent_vertices};
 use crate::checkpoint::{CheckpointError, FreeMotion, check_length};
 use crate::contact::{Contact, ContactError, ContactState, RunContact, StepSpan};
 use crate::control::{Decision, Stepping, take_substep};
-use crate::elastic_sheet::{ElasticSheet, strain_barrier_at_start};
+use crate::elastic_sheet::ElasticSheet;
 use crate::energy_account::{EnergyAccount, Exchange};
 use crate::feasibility::{Excess, excess};
 use crate::immobile::immobile_vertices;
@@ -50,7 +50,7 @@ impl Engine {
         let fixed = immobile_vertices(&model, &state.x);
         model.fix(&fixed);
         model.clear_velocities(&fixed, &mut state.v);
-        model.set_strain_barrier(strain_barrier_at_start(&model, &state));
+        model.raise_strain_barrier(&state);
         Self::with_fixed(model, method, state, fixed)
     }
 
@@ -462,6 +462,7 @@ impl Stepping for Substeps<'_, '_> {
         let dissipated = damp(&engine.model, &mut engine.moment.state, h);
         totals.dissipated += dissipated;
         engine.account.spend(dissipated);
+        totals.work += engine.model.raise_strain_barrier(&engine.moment.state);
         if self.proposer == Proposer::Fallback {
             // What the fallback remembers means nothing to the method that was asked for.
             engine.moment.history.previous = None;

@@ -3,7 +3,7 @@
 use crate::{PAPER_GRAVITY, PotentialShape, SheetModel, State};
 use nalgebra::Vector3;
 
-/// What a barrier has to withstand, estimated where a simulation starts.
+/// What a barrier has to withstand, estimated at a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LoadScale {
     /// Largest acceleration of a vertex by constant forces, metres per second squared; 9.8 if there are none.
@@ -13,7 +13,7 @@ pub(crate) struct LoadScale {
 }
 
 impl LoadScale {
-    /// Of a sheet that starts at a state.
+    /// Of a sheet at a state.
     pub(crate) fn at(model: &SheetModel, state: &State) -> Self {
         Self {
             acceleration: constant_acceleration(model, state)

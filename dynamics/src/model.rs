@@ -2,8 +2,9 @@
 
 mod supports;
 
+use crate::State;
 use crate::constraint::VertexConstraint;
-use crate::elastic_sheet::ElasticSheet;
+use crate::elastic_sheet::{ElasticSheet, strain_barrier};
 use crate::isometry_rows::IsometryRows;
 use crate::membrane::Membrane;
 use crate::motion::MotionError;
@@ -407,6 +408,18 @@ impl SheetModel {
         if let Some(elastic) = &mut self.elastic {
             elastic.set_barrier(stiffness);
         }
+    }
+
+    /// Raises the stiffness of the barrier of an elastic sheet to what a state asks for; the energy that this adds to
+    /// the sheet, joules.
+    pub(crate) fn raise_strain_barrier(&mut self, state: &State) -> f64 {
+        let needed = strain_barrier(self, state);
+        let Some(elastic) = self.elastic.as_mut().filter(|e| needed > e.barrier()) else {
+            return 0.0;
+        };
+        let before = elastic.energy(state.t, &state.x);
+        elastic.set_barrier(needed);
+        elastic.energy(state.t, &state.x) - before
     }
 
     /// Whether the sheet has a limit of its strain.

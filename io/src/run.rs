@@ -26,6 +26,7 @@ mod checkpoint;
 mod collect;
 mod commit;
 mod constraints;
+mod elastic;
 mod error;
 #[cfg(feature = "picture")]
 mod film;
@@ -39,9 +40,11 @@ mod replay;
 mod stepping;
 mod summary;
 mod sweep;
+mod warning;
 
 pub use collect::Collection;
 pub use commit::note_commit;
+pub use elastic::{Bend, ElasticSummary};
 pub use error::RunError;
 #[cfg(feature = "picture")]
 pub use film::{Film, FilmOptions};
@@ -52,6 +55,7 @@ pub use page::write_page;
 pub use recording::Recording;
 pub use summary::{EndReason, Ending, Summary};
 pub use sweep::{Engine, RefusedRuns, Sweep, SweepError, SweepRun, Variation, VariationError};
+pub use warning::RunWarning;
 
 use crate::format::{HistoryWriter, frame_path, read_json, write_json, write_obj};
 use crate::scene::{SceneFile, SceneWarning, Setup, SupportForces};
@@ -412,6 +416,7 @@ fn finish(
         iterations: progress.iterations,
         factorisations: progress.factorisations,
         rejected: progress.rejected,
+        elastic: progress.elastic,
         ending,
     };
     if output.page {

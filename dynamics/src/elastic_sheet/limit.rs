@@ -54,7 +54,7 @@ impl StrainLimit {
         if p <= 0.0 {
             return [0.0; 2];
         }
-        if !(p < 1.0) {
+        if p >= 1.0 || p.is_nan() {
             return [f64::NAN; 2];
         }
         let (ln, q) = ((-p).ln_1p(), 1.0 - p);

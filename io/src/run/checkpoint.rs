@@ -1,6 +1,7 @@
 //! The checkpoint of a run: how far it has come, with the checkpoint of its simulation.
 
 use super::RunError;
+use super::elastic::ElasticSummary;
 use super::summary::Ending;
 use crate::format::write_atomically;
 use crc::{CRC_64_XZ, Crc};
@@ -38,6 +39,9 @@ pub(crate) struct Progress {
     pub(crate) factorisations: u64,
     /// Rejected sub-steps so far.
     pub(crate) rejected: u64,
+    /// What an elastic sheet did so far.
+    #[serde(default)]
+    pub(crate) elastic: Option<ElasticSummary>,
     /// How it ended, if it did.
     pub(crate) ending: Option<Ending>,
 }

@@ -140,6 +140,7 @@ fn add_summary(row: &mut Row, summary: &Summary) {
         iterations,
         factorisations,
         rejected,
+        elastic,
         ending,
     } = summary;
     let mut cell = |name: &str, value: String| row.push((name.to_owned(), value));
@@ -154,6 +155,15 @@ fn add_summary(row: &mut Row, summary: &Summary) {
     cell("steps", steps.to_string());
     cell("frames", frames.to_string());
     cell("largest_strain", number(*largest_strain));
+    if let Some(elastic) = elastic {
+        cell("softest_face", number(elastic.used[0]));
+        cell("largest_face_strain", number(elastic.strain));
+        cell("stretching_share", number(elastic.share));
+        cell(
+            "sharpest_bend",
+            number(elastic.sharpest.map_or(0.0, |b| b.angle)),
+        );
+    }
     cell("smallest_gap", smallest_gap.map(number).unwrap_or_default());
     cell("iterations", iterations.to_string());
     cell("factorisations", factorisations.to_string());

@@ -1,9 +1,10 @@
 //! The page of a run.
 
+use super::elastic::ElasticSummary;
 use super::recording::Recording;
 use super::{EndReason, RunError, Summary, constraints};
 use crate::format::write_atomically;
-use crate::view::{PageOptions, Replay, ViewError};
+use crate::view::{Field, PageOptions, Replay, ViewError};
 use std::io::Write;
 use std::path::Path;
 
@@ -22,6 +23,9 @@ impl Recording {
         )?;
         let held = constraints::bodies(self.scene.scene(), &self.trajectory);
         replay.bodies.extend(held);
+        replay
+            .fields
+            .extend(Field::elastic(&self.model, &replay.positions));
         Ok(Replay {
             title: self.name.clone(),
             pins: self.pins.iter().map(|v| v.0).collect(),
@@ -79,6 +83,21 @@ impl Rows {
         self.0.push((name.into(), value));
     }
 
+    fn of_elastic(&mut self, elastic: &ElasticSummary) {
+        self.add("stiffness of the sheet", elastic.stiffness_in_words());
+        self.add(
+            "largest strain of a face",
+            format!("{:.1e}, limit {}", elastic.strain, elastic.limit),
+        );
+        self.add(
+            "stretching in the elastic energy at the end",
+            format!("{:.0} %", 100.0 * elastic.share),
+        );
+        if let Some(bend) = elastic.sharpest {
+            self.add("sharpest bend over a face", bend.to_string());
+        }
+    }
+
     fn of_summary(&mut self, summary: &Summary) {
         let ending = &summary.ending;
         let reason = match ending.reason {
@@ -99,6 +118,9 @@ impl Rows {
         );
         self.add("wall time", format!("{:.2} s", summary.wall_time));
         self.add("largest strain", format!("{:.1e}", summary.largest_strain));
+        if let Some(elastic) = &summary.elastic {
+            self.of_elastic(elastic);
+        }
         if let Some(gap) = summary.smallest_gap {
             self.add("smallest gap", format!("{gap:.2e} m"));
         }

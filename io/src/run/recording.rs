@@ -6,6 +6,7 @@ use super::{RunError, Summary};
 use crate::format::{HistoryRow, SeriesBody, Trajectory, read_history, read_json};
 use crate::scene::SceneFile;
 use isosheet_collide::Obstacle;
+use isosheet_dynamics::SheetModel;
 use isosheet_mesh::{Sheet, VertexId};
 use nalgebra::{Isometry3, Vector3};
 use std::path::Path;
@@ -25,6 +26,8 @@ pub struct Recording {
     pub pins: Vec<VertexId>,
     /// Vertices that rods to pins keep in place ([`SheetModel::immobile_vertices`](isosheet_dynamics::SheetModel::immobile_vertices)).
     pub immobile: Vec<VertexId>,
+    /// The model at its start.
+    pub(crate) model: SheetModel,
     /// The bodies, in the order of the scene.
     pub obstacles: Vec<Obstacle>,
     /// The frames with the mesh.
@@ -61,6 +64,7 @@ impl Recording {
             name: name_of(folder),
             immobile: setup.model.immobile_vertices(&setup.start.x),
             pins: setup.model.pins(),
+            model: setup.model,
             modelled: setup.modelled,
             sheet: setup.sheet,
             obstacles: setup.obstacles,

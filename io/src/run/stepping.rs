@@ -1,6 +1,7 @@
 //! The steps of a run and what is recorded of them.
 
 use super::checkpoint::{self, Progress};
+use super::elastic::ElasticSummary;
 use super::folder::RunFolder;
 use super::frames::FrameFile;
 use super::summary::{EndReason, Ending};
@@ -49,6 +50,8 @@ fn step_length(scene: &Scene, number: u64) -> f64 {
 impl Stepping<'_> {
     /// Records the state at the start.
     pub(crate) fn record_start(&mut self) -> Result<(), RunError> {
+        self.progress.elastic = ElasticSummary::of(self.simulation.model());
+        self.observe_elastic();
         let state = self.simulation.state();
         let kinetic = self.simulation.model().kinetic_energy(&state.v);
         let total = self.simulation.energy();
@@ -117,6 +120,7 @@ impl Stepping<'_> {
         };
         self.progress.steps = number;
         self.count(&report);
+        self.observe_elastic();
         self.history.append(&self.row(&report))?;
         let reason = self.end_reason(&report);
         let frame = scene.output.steps_per_frame(scene.method.step);
@@ -144,6 +148,13 @@ impl Stepping<'_> {
         // An infinite gap means that nothing is within reach.
         if let Some(gap) = report.gap.filter(|gap| gap.is_finite()) {
             progress.gap = Some(progress.gap.map_or(gap, |least| least.min(gap)));
+        }
+    }
+
+    fn observe_elastic(&mut self) {
+        if let Some(elastic) = &mut self.progress.elastic {
+            let state = self.simulation.state();
+            elastic.observe(self.simulation.model(), state.t, &state.x);
         }
     }
 

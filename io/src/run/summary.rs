@@ -1,5 +1,6 @@
 //! What a complete run says of itself.
 
+use super::elastic::ElasticSummary;
 use crate::scene::FoldResidual;
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +37,9 @@ pub struct Summary {
     pub factorisations: u64,
     /// Sub-steps that were tried and rejected.
     pub rejected: u64,
+    /// How the sheet was softened, stretched and bent, if it is elastic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elastic: Option<ElasticSummary>,
     /// The state at the end.
     pub ending: Ending,
 }

@@ -278,3 +278,45 @@ fn a_run_goes_on_when_nobody_reads_its_messages() {
     assert_eq!(child.wait().unwrap().code(), Some(0));
     assert!(dir.path().join("run/summary.json").exists());
 }
+
+/// A strip of paper on a mesh far too coarse for its bends, and on one that is fine enough: what was softened is said,
+/// and the first run warns of its bends.
+#[test]
+fn a_mesh_too_coarse_for_the_bends_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let scene = "version = 1
+        [sheet]
+        mesh = { rectangle = { width = 0.3, height = 0.06, columns = 5, rows = 1 } }
+        material = \"office paper\"
+        damping = 5
+        [[support]]
+        at = { box = { min = [-1, -1, -1], max = [0.061, 1, 1] } }
+        [forces]
+        gravity = [0, 0, -9.81]
+        [stop]
+        time = 1";
+    fs::write(dir.join("strip.toml"), scene).unwrap();
+    let coarse = run(dir, &["simulate", "strip.toml", "--out", "coarse"]);
+    assert_eq!(code(&coarse), Some(0), "{}", stderr(&coarse));
+    let text = stderr(&coarse);
+    assert!(text.contains("too coarse for the bends"), "{text}");
+    assert!(text.contains("half the edge length"), "{text}");
+    let elastic = summary(&dir.join("coarse")).elastic.unwrap();
+    assert!(elastic.used[0] < elastic.stiffness && elastic.strain < elastic.limit);
+    let bend = elastic.sharpest.unwrap();
+    assert!(bend.angle > 0.49 && bend.at[0] > 0.06, "{bend:?}");
+    let page = fs::read_to_string(dir.join("coarse/index.html")).unwrap();
+    assert!(page.contains("share of stretching") && page.contains("in place of"));
+    let fine = [
+        "simulate",
+        "strip.toml",
+        "--out",
+        "fine",
+        "--set",
+        "sheet.mesh={rectangle={width=0.3,height=0.06,columns=30,rows=6}}",
+    ];
+    let fine = run(dir, &fine);
+    assert_eq!(code(&fine), Some(0), "{}", stderr(&fine));
+    assert!(!stderr(&fine).contains("warning"), "{}", stderr(&fine));
+}

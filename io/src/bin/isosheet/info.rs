@@ -2,6 +2,7 @@
 
 use crate::Done;
 use crate::exit::{Code, Failure};
+use crate::message::print_warnings;
 use crate::write::to_stdout;
 use clap::Args;
 use isosheet_io::dynamics::{SheetModel, rod_rank};
@@ -95,7 +96,11 @@ fn describe_run(folder: &Path) -> Done {
         folder.display(),
         lines.collect::<String>(),
         describe_scene(&setup)
-    ))
+    ))?;
+    if let Some(summary) = &recording.summary {
+        print_warnings(&summary.warnings());
+    }
+    Ok(())
 }
 
 /// A scene in a few lines.

@@ -3,7 +3,7 @@
 use crate::Done;
 use crate::exit::{Code, Failure, Format};
 use crate::interrupt;
-use crate::message::{counted, print_message, print_result};
+use crate::message::{counted, print_message, print_result, print_warnings, with_advice};
 use crate::open::open_page;
 use crate::progress::{Progress, event};
 use clap::Args;
@@ -110,12 +110,15 @@ impl How {
             }
         };
         let page = page(folder);
+        let warnings = summary.warnings();
         if self.json {
             event(&json!({
                 "event": event_name, "folder": folder, "page": page, "summary": summary,
+                "warnings": with_advice(&warnings),
             }));
         } else {
             print_result(format_args!("{}", sentence(event_name, folder, &summary)))?;
+            print_warnings(&warnings);
             if let Some(page) = &page {
                 print_result(format_args!("page: {}", page.display()))?;
             }

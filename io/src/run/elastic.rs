@@ -1,0 +1,152 @@
+//! What a run says of an elastic sheet.
+
+use crate::view::{Field, Place, Scale};
+use isosheet_dynamics::{ElasticDeformation, ElasticSheet, SheetModel};
+use isosheet_mesh::wording::brief;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// How an elastic sheet was modelled and how it was deformed, in `summary.json`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ElasticSummary {
+    /// Stiffness of the material, Young's modulus times thickness, N/m.
+    pub stiffness: f64,
+    /// Smallest and largest stiffness of a face, N/m: less than that of the material where the mesh is so coarse that
+    /// it would lock ([`ElasticSheet::softened`]).
+    pub used: [f64; 2],
+    /// Edge length up to which faces have the stiffness of the material, metres; none if no face is softened however
+    /// large.
+    pub unsoftened_size: Option<f64>,
+    /// Limit of the strain.
+    pub limit: f64,
+    /// Largest strain of a face in any step, the norm of Green's strain.
+    pub strain: f64,
+    /// Part of the stretching in the elastic energy at the end, from 0 to 1.
+    pub share: f64,
+    /// Where the sheet bent most over the size of a face, if it bends.
+    pub sharpest: Option<Bend>,
+}
+
+/// A bend of a face.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bend {
+    /// The angle over the size of the face, radians.
+    pub angle: f64,
+    /// Time, seconds.
+    pub t: f64,
+    /// The middle of the face at that time, metres.
+    pub at: [f64; 3],
+}
+
+impl fmt::Display for Bend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.at.map(brief);
+        write!(
+            f,
+            "{} rad near ({x}, {y}, {z}) m at {} s",
+            brief(self.angle),
+            brief(self.t)
+        )
+    }
+}
+
+impl Bend {
+    /// Part by which chords of this angle are shorter than their arcs: the error of the shape that comes of the mesh.
+    pub fn shortening(&self) -> f64 {
+        self.angle * self.angle / 24.0
+    }
+}
+
+impl ElasticSummary {
+    /// Of a model at the start of a run; none for a sheet of rods.
+    pub(crate) fn of(model: &SheetModel) -> Option<Self> {
+        let elastic = model.elastic_sheet()?;
+        let size = elastic.unsoftened_size();
+        Some(Self {
+            stiffness: elastic.stiffness(),
+            used: used(elastic),
+            unsoftened_size: size.is_finite().then_some(size),
+            limit: elastic.limit(),
+            strain: 0.0,
+            share: 0.0,
+            sharpest: None,
+        })
+    }
+
+    /// Takes in the positions `x` (`3V`, metres) at a time (seconds).
+    pub(crate) fn observe(&mut self, model: &SheetModel, t: f64, x: &[f64]) {
+        let Some(deformation) = model.elastic_deformation(x) else {
+            return;
+        };
+        self.strain = deformation
+            .strain
+            .iter()
+            .copied()
+            .fold(self.strain, f64::max);
+        self.share = deformation.total_share();
+        let before = self.sharpest.map_or(0.0, |bend| bend.angle);
+        if let Some((face, angle)) = deformation.sharpest()
+            && angle > before
+        {
+            let corners = model.topology().faces()[face];
+            let mean = |k: usize| corners.iter().map(|v| x[3 * v.index() + k]).sum::<f64>() / 3.0;
+            let at = [mean(0), mean(1), mean(2)];
+            self.sharpest = Some(Bend { angle, t, at });
+        }
+    }
+
+    /// What was softened, in words.
+    pub(crate) fn stiffness_in_words(&self) -> String {
+        let [least, most] = self.used.map(brief);
+        let material = brief(self.stiffness);
+        match self.unsoftened_size {
+            Some(size) if self.used[0] < self.stiffness => format!(
+                "{least} to {most} N/m on this mesh in place of {material} N/m, which faces of up to {} m would have",
+                brief(size)
+            ),
+            _ => format!("{material} N/m, that of the material"),
+        }
+    }
+}
+
+fn used(elastic: &ElasticSheet) -> [f64; 2] {
+    let stiffnesses = elastic.face_stiffnesses();
+    stiffnesses.fold([f64::INFINITY, 0.0], |[least, most], k| {
+        [least.min(k), most.max(k)]
+    })
+}
+
+impl Field {
+    /// The strain of each face of an elastic sheet, and the part of stretching in its elastic energy, in each frame; none
+    /// for sheets of rods. `positions` has a list of length 3V for each frame.
+    pub(crate) fn elastic(model: &SheetModel, positions: &[Vec<f64>]) -> Vec<Self> {
+        let frames = positions.iter().map(|x| model.elastic_deformation(x));
+        let Some(frames) = frames.collect::<Option<Vec<ElasticDeformation>>>() else {
+            return Vec::new();
+        };
+        let share = |d: &ElasticDeformation| (0..d.strain.len()).map(|f| d.share(f)).collect();
+        let field = |name: &str, scale, note: &str, values| Self {
+            name: name.into(),
+            unit: String::new(),
+            place: Place::Face,
+            scale,
+            note: note.into(),
+            values,
+        };
+        vec![
+            field(
+                "strain of faces",
+                Scale::Logarithmic,
+                "The norm of Green's strain of each face, which the limit of the sheet bounds.",
+                frames.iter().map(|d| d.strain.clone()).collect(),
+            ),
+            field(
+                "share of stretching",
+                Scale::Linear,
+                "The part of stretching in the elastic energy of each face; the rest is bending. Where a mesh is fine \
+                 enough, a sheet that carries no load in its plane has little of it.",
+                frames.iter().map(share).collect(),
+            ),
+        ]
+    }
+}

@@ -1,0 +1,43 @@
+//! What to know of a run before its results are used.
+
+use super::{Bend, Summary};
+use isosheet_mesh::Advice;
+use isosheet_mesh::wording::brief;
+use thiserror::Error;
+
+/// A reason why the results of a complete run may not be those of a real sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum RunWarning {
+    /// An elastic sheet bent more sharply than its mesh can follow, see [`Summary::CHORD_ERROR`].
+    #[error(
+        "the mesh is too coarse for the bends: the sheet bends over a single face by {_0}, whose chord is {} % shorter \
+         than its arc",
+        brief(100.0 * _0.shortening())
+    )]
+    Coarse(Bend),
+}
+
+impl Advice for RunWarning {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Coarse(_) => Some(
+                "refine the mesh there: with half the edge length the error is a quarter; the page colours faces by \
+                 their strain and by the share of stretching in their energy",
+            ),
+        }
+    }
+}
+
+impl Summary {
+    /// Part by which the chord of the sharpest bend of an elastic sheet may be shorter than its arc before the mesh
+    /// counts as too coarse: one percent, 0.49 radians over a face.
+    pub const CHORD_ERROR: f64 = 0.01;
+
+    /// What to know before the results are used.
+    pub fn warnings(&self) -> Vec<RunWarning> {
+        let sharpest = self.elastic.and_then(|elastic| elastic.sharpest);
+        let coarse = sharpest.filter(|bend| bend.shortening() > Self::CHORD_ERROR);
+        coarse.map(RunWarning::Coarse).into_iter().collect()
+    }
+}
