@@ -12,8 +12,20 @@ pub struct Elastica {
     pub weight: f64,
 }
 
-/// Slope (radians, downwards), curvature (1/m), horizontal and downward place (metres) at an arc length.
-type Point = [f64; 4];
+/// Slope (radians, downwards), curvature (1/m), horizontal and downward place (metres) at an arc length, and the
+/// integrals of half the square of the curvature (1/m) and of the downward place (m2) up to there.
+type Point = [f64; 6];
+
+/// The strip at rest, for each metre of its width.
+#[derive(Clone, Copy, Debug)]
+pub struct Hanging {
+    /// Horizontal distance of the free end from the clamp, and how far it is below the clamp, metres.
+    pub tip: [f64; 2],
+    /// Energy of bending, joules per metre.
+    pub bending: f64,
+    /// The same plus the potential energy of the weight (zero at the height of the clamp), joules per metre.
+    pub energy: f64,
+}
 
 impl Elastica {
     /// How far the free end hangs below the clamp, metres.
@@ -31,6 +43,11 @@ impl Elastica {
     /// with it, and the moment at the clamp is at most `q L^2 / 2`. The equations are integrated by the
     /// classical Runge-Kutta method with step control by doubling.
     pub fn drop(&self) -> f64 {
+        self.at_rest().tip[1]
+    }
+
+    /// Where the free end is and what energy the strip has; see [`Elastica::drop`].
+    pub fn at_rest(&self) -> Hanging {
         let (mut low, mut high) = (
             0.0,
             0.5 * self.weight * self.length * self.length / self.rigidity,
@@ -43,12 +60,18 @@ impl Elastica {
                 low = middle;
             }
         }
-        self.integrate(0.5 * (low + high))[3]
+        let [.., x, drop, curvature, place] = self.integrate(0.5 * (low + high));
+        let bending = self.rigidity * curvature;
+        Hanging {
+            tip: [x, drop],
+            bending,
+            energy: bending - self.weight * place,
+        }
     }
 
     /// The end of the strip with the given curvature at the clamp.
     fn integrate(&self, curvature: f64) -> Point {
-        let mut point = [0.0, curvature, 0.0, 0.0];
+        let mut point = [0.0, curvature, 0.0, 0.0, 0.0, 0.0];
         let (mut s, mut h) = (0.0, self.length / 16.0);
         while s < self.length {
             h = h.min(self.length - s);
@@ -85,7 +108,8 @@ impl Elastica {
     fn rate(&self, s: f64, p: &Point) -> Point {
         let (sin, cos) = p[0].sin_cos();
         let moment = self.weight * (self.length - s) * cos;
-        [p[1], -moment / self.rigidity, cos, sin]
+        let half_square = 0.5 * p[1] * p[1];
+        [p[1], -moment / self.rigidity, cos, sin, half_square, p[3]]
     }
 }
 
@@ -108,6 +132,36 @@ mod tests {
             length: 0.3,
             rigidity,
             weight: 0.08 * 9.8,
+        }
+    }
+
+    /// Published and recomputed values: Bartels, Numer. Math. 124, 2013, ex. 6.1 (a strip of 4 with the weight
+    /// 0.025 and unit rigidity), and the tip and the energy of bending for `q L^3 / D` = 1, 10, 100.
+    #[test]
+    fn known_strips_are_met() {
+        let of = |length, weight| {
+            let elastica = Elastica {
+                length,
+                rigidity: 1.0,
+                weight,
+            };
+            elastica.at_rest()
+        };
+        let hanging = of(4.0, 0.025);
+        assert!((hanging.energy + 1.5775e-2).abs() < 1e-6, "{hanging:?}");
+        assert!((hanging.tip[0] - 3.9130).abs() < 1e-4 && (hanging.tip[1] - 0.7758).abs() < 1e-4);
+        for (gamma, x, drop, bending) in [
+            (1.0, 0.99125, 0.12347, 0.02458),
+            (10.0, 0.65635, 0.70020, 1.1126),
+            (100.0, 0.15922, 0.93752, 5.5),
+        ] {
+            let hanging = of(1.0, gamma);
+            assert!((hanging.tip[0] - x).abs() < 1e-5, "{hanging:?}");
+            assert!((hanging.tip[1] - drop).abs() < 1e-5, "{hanging:?}");
+            assert!(
+                (hanging.bending / bending - 1.0).abs() < 3e-4,
+                "{hanging:?}"
+            );
         }
     }
 

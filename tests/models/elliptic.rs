@@ -14,6 +14,18 @@ pub fn complete_k(m: f64) -> f64 {
     std::f64::consts::FRAC_PI_2 / agm(1.0, (1.0 - m).sqrt())
 }
 
+/// Complete elliptic integral of the second kind E(m), parameter `0 <= m = k^2 < 1`.
+pub(crate) fn complete_e(m: f64) -> f64 {
+    let (mut a, mut b, mut c) = (1.0, (1.0 - m).sqrt(), m.sqrt());
+    let (mut sum, mut power) = (0.5 * m, 0.5);
+    while c > 1e-16 {
+        (a, b, c) = (0.5 * (a + b), (a * b).sqrt(), 0.5 * (a - b));
+        power *= 2.0;
+        sum += power * c * c;
+    }
+    complete_k(m) * (1.0 - sum)
+}
+
 /// Jacobi functions `(sn, cn, dn)` of argument `u` and parameter `m = k^2`, `0 <= m < 1`.
 pub fn jacobi(u: f64, m: f64) -> (f64, f64, f64) {
     let (mut a, mut b, mut c) = (vec![1.0], (1.0 - m).sqrt(), vec![m.sqrt()]);
@@ -40,6 +52,7 @@ mod tests {
     fn values() {
         // Abramowitz and Stegun, table 17.1, m = 0.5.
         assert!((complete_k(0.5) - 1.854_074_677_301_372).abs() < 1e-14);
+        assert!((complete_e(0.5) - 1.350_643_881_047_675).abs() < 1e-14);
         let quarter = complete_k(0.5);
         let (sn, cn, dn) = jacobi(quarter, 0.5);
         assert!((sn - 1.0).abs() < 1e-14 && cn.abs() < 1e-14);

@@ -1,7 +1,9 @@
 //! Mechanical problems, shared by the tests that span several crates and by reports. Each model gives a
 //! sheet, a start state and the exact motion, but for [`tumbling`], which gives a start alone, for
-//! [`RigidBody`], which gives the motion of any sheet that cannot bend, and for [`Elastica`], a strip at rest.
+//! [`RigidBody`], which gives the motion of any sheet that cannot bend, for [`Elastica`], a strip at rest, and for
+//! [`buckled`] strips.
 
+mod buckled;
 mod catenary;
 mod elastica;
 mod elliptic;
@@ -13,8 +15,9 @@ mod strip;
 mod triangle;
 mod tumbling;
 
+pub use buckled::buckled;
 pub use catenary::Catenary;
-pub use elastica::Elastica;
+pub use elastica::{Elastica, Hanging};
 pub use elliptic::{agm, complete_k, jacobi};
 pub use flap::Flap;
 pub use linkage::Linkage;
