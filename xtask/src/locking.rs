@@ -9,21 +9,31 @@ mod buckling;
 mod cantilever;
 pub(crate) mod clamped;
 mod compliance;
+mod cone;
 mod cylinder;
 mod declared;
 mod disk;
 mod dots;
 mod drape;
 mod everyday;
+mod fear;
+mod folded;
+mod grids;
 mod isometry;
 mod iterations;
+mod lasting;
 mod limit;
 pub(crate) mod meshes;
+mod model;
+mod nudge;
+mod panels;
 mod records;
 mod rim;
 mod sample;
 mod scene;
 mod sliding;
+mod softening;
+mod strips;
 mod targets;
 mod ways;
 
@@ -129,7 +139,7 @@ impl Yardstick {
 }
 
 /// All of them, in the order of the page.
-static YARDSTICKS: [Yardstick; 9] = [
+static YARDSTICKS: [Yardstick; 15] = [
     Yardstick::new(["clamped", "Clamped sheets", clamped::ABOUT], clamped::make),
     Yardstick::new(
         ["everyday", "Everyday scenes", everyday::ABOUT],
@@ -143,6 +153,27 @@ static YARDSTICKS: [Yardstick; 9] = [
         ["cantilever", "The heavy elastica", cantilever::ABOUT],
         cantilever::make,
     ),
+    Yardstick::new(
+        ["strips", "Strips with known answers", strips::ABOUT],
+        strips::make,
+    ),
+    Yardstick::new(
+        ["d-cone", "A disk pushed into a ring", cone::ABOUT],
+        cone::make,
+    ),
+    Yardstick::new(
+        ["softening", "The bound of the stiffness", softening::ABOUT],
+        softening::make,
+    ),
+    Yardstick::new(
+        ["creases", "Creases with known answers", folded::ABOUT],
+        folded::make,
+    ),
+    Yardstick::new(
+        ["lasting", "Ten seconds after rest", lasting::ABOUT],
+        lasting::make,
+    ),
+    Yardstick::new(["fear", "Falls and banners", fear::ABOUT], fear::make),
     Yardstick::new(
         ["compliance", "Error against compliance", compliance::ABOUT],
         compliance::make,

@@ -14,6 +14,8 @@ pub(crate) enum Marker {
     Square,
     Triangle,
     Diamond,
+    /// A triangle with its tip down.
+    Down,
 }
 
 impl Marker {
@@ -27,6 +29,7 @@ impl Marker {
             }
             Self::Square => &[[-0.88, -0.88], [0.88, -0.88], [0.88, 0.88], [-0.88, 0.88]],
             Self::Triangle => &[[-1.12, -0.76], [1.12, -0.76], [0.0, 1.24]],
+            Self::Down => &[[-1.12, 0.76], [0.0, -1.24], [1.12, 0.76]],
             Self::Diamond => &[[0.0, -1.25], [1.25, 0.0], [0.0, 1.25], [-1.25, 0.0]],
         };
         corners.iter().map(|c| c.map(|c| radius * c)).collect()

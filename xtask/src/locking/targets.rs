@@ -53,7 +53,12 @@ pub(super) fn kept<'a>(model: Isometry, runs: impl Iterator<Item = &'a Course>) 
 
 /// All requirements with a column for each model; values that meet them are bold.
 pub(super) fn by_model(targets: &[(String, Target)]) -> Table {
-    let models = Isometry::ALL.map(|model| model.to_string());
+    let mut models = Isometry::ALL.map(|model| model.to_string()).to_vec();
+    for (_, target) in targets {
+        if !models.contains(&target.of) {
+            models.push(target.of.clone());
+        }
+    }
     let head = ["yardstick", "quantity", "required"];
     let head: Vec<&str> = head
         .into_iter()
@@ -75,17 +80,15 @@ pub(super) fn by_model(targets: &[(String, Target)]) -> Table {
         }
     }
     for row in keys {
-        let of = |model: Isometry| {
-            let found = targets
-                .iter()
-                .find(|t| t.1.of == model.to_string() && key(t) == row);
+        let of = |model: &String| {
+            let found = targets.iter().find(|t| t.1.of == *model && key(t) == row);
             let value = found.and_then(|(_, t)| Some((t.measured?, t.is_met())));
             Cell::from(value.map(|(value, is_met)| match is_met {
                 true => format!("**{}**", number(value)),
                 false => number(value),
             }))
         };
-        let values = Isometry::ALL.map(of);
+        let values = models.iter().map(of);
         table.push(
             row.iter()
                 .map(|name| Cell::from(name.as_str()))

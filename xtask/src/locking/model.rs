@@ -1,0 +1,136 @@
+//! The models of a sheet with bending stiffness that yardsticks with answers in closed form compare.
+
+use super::isometry::PAPER;
+use crate::draw::{Colour, palette};
+use crate::report::{Bound, Requirement};
+use crate::runs::Course;
+use anyhow::Result;
+use isosheet_dynamics::{CreaseSprings, ElasticSheet, PlateBending, Potential, SheetModel};
+use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// How a sheet is kept from stretching.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Model {
+    /// The elastic sheet with faces as stiff as the mesh can bear, see [`ElasticSheet::softened`]; a plate.
+    Elastic,
+    /// The same with another bound `C` of the stiffness.
+    Bound(f64),
+    /// The elastic sheet with the stiffness of the material on every face, and a plate.
+    Material,
+    /// Every edge is a rigid rod; springs at the edges, see [`CreaseSprings::bending`].
+    Rods,
+}
+
+/// What a sheet is made of, which vertices clamps fix, and where creases are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plate<'a> {
+    /// Mass per area, kg/m2.
+    pub(super) density: f64,
+    /// Flexural rigidity, N m.
+    pub(super) rigidity: f64,
+    pub(super) clamped: &'a [VertexId],
+    /// Edges where springs replace the stiffness of the sheet.
+    pub(super) creases: &'a [EdgeId],
+}
+
+impl Model {
+    /// The models that the tables have rows for.
+    pub(super) const ALL: [Self; 3] = [Self::Elastic, Self::Material, Self::Rods];
+
+    /// A sheet without weight and supports.
+    pub(super) fn sheet(self, sheet: &Sheet, plate: Plate<'_>) -> Result<SheetModel> {
+        let Plate {
+            density, rigidity, ..
+        } = plate;
+        let model = SheetModel::new(sheet, density * sheet.area(), MassKind::Lumped)?;
+        let real = || ElasticSheet::new(sheet, PAPER.0, PAPER.1);
+        let elastic = match self {
+            Self::Rods => {
+                let springs = CreaseSprings::bending_beside(sheet, rigidity, plate.creases)?;
+                return Ok(model.with_potential(springs));
+            }
+            Self::Elastic => real()?.softened(rigidity)?,
+            Self::Bound(c) => real()?.softened(rigidity * c / ElasticSheet::SOFTENING)?,
+            Self::Material => real()?,
+        };
+        let bending = plate.bending(sheet)?;
+        Ok(model.with_potential(bending).with_elastic_sheet(elastic)?)
+    }
+
+    /// The energy of bending of positions `x` (3V, metres), without that of creases, joules.
+    pub(super) fn bending_energy(self, sheet: &Sheet, plate: Plate<'_>, x: &[f64]) -> Result<f64> {
+        Ok(match self {
+            Self::Rods => {
+                CreaseSprings::bending_beside(sheet, plate.rigidity, plate.creases)?.energy(0.0, x)
+            }
+            _ => plate.bending(sheet)?.energy(0.0, x),
+        })
+    }
+
+    /// The elastic energy in the plane and of bending, without that of creases, joules.
+    pub(super) fn energy(self, sheet: &Sheet, plate: Plate<'_>, x: &[f64]) -> Result<f64> {
+        Ok(self.sheet(sheet, plate)?.potential_energy(0.0, x))
+    }
+
+    /// The colour in figures.
+    pub(super) fn colour(self) -> Colour {
+        match self {
+            Self::Elastic | Self::Bound(_) => palette::GREEN,
+            Self::Material => palette::BLUE,
+            Self::Rods => palette::VERMILION,
+        }
+    }
+}
+
+impl Plate<'_> {
+    fn bending(&self, sheet: &Sheet) -> Result<PlateBending> {
+        Ok(PlateBending::creased(
+            sheet,
+            self.rigidity,
+            self.clamped,
+            self.creases,
+        )?)
+    }
+}
+
+impl fmt::Display for Model {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Elastic => f.write_str("elastic"),
+            Self::Bound(c) => write!(f, "elastic, C = {c}"),
+            Self::Material => f.write_str("real stiffness"),
+            Self::Rods => f.write_str("rods"),
+        }
+    }
+}
+
+/// A run with one model, and what was measured of it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Tried<J, M> {
+    pub(super) model: Model,
+    pub(super) job: J,
+    /// Number of vertices of the mesh.
+    pub(super) vertices: usize,
+    pub(super) course: Course,
+    pub(super) measured: M,
+}
+
+impl<J, M> Tried<J, M> {
+    /// A value of a run that reached its end.
+    pub(super) fn if_good(&self, value: impl Fn(&M) -> f64) -> Option<f64> {
+        self.course.is_good().then(|| value(&self.measured))
+    }
+}
+
+/// A requirement on the largest of some values of a model.
+pub(super) fn at_most(
+    model: Model,
+    quantity: &str,
+    bound: f64,
+    values: &[Option<f64>],
+) -> Requirement {
+    let side = (Bound::AtMost, bound);
+    Requirement::of(model.to_string(), quantity, side, values)
+}

@@ -1,0 +1,515 @@
+//! Strips whose shape and energy are known in closed form: loaded, hanging, pushed together.
+
+use super::grids::Grid;
+use super::meshes::{vertices, with_line};
+use super::model::{Model, Plate, Tried, at_most};
+use super::nudge::Nudge;
+use super::panels::{Panel, charts};
+use super::records::Records;
+use super::scene::{End, Scene};
+use super::{Findings, order};
+use crate::draw::{Axis, Charts};
+use crate::methods::implicit_euler;
+use crate::report::{Cell, Cost, Table, extremes, number};
+use crate::runs::Plan;
+use anyhow::Result;
+use isosheet_dynamics::{PointProfile, Profile, SheetModel};
+use isosheet_mesh::{Sheet, VertexId};
+use isosheet_tests::{Elastica, buckled};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+pub(super) const ABOUT: &str = "Strips of paper with a free part of 4 a x a (a = 0.1 m, 5e-4 N m), clamped over 0.5 a. Loaded: one end is clamped, a load of 0.025 D / a³ \
+    per area acts upwards and keeps its direction (Bartels, Numer. Math. 124, 2013, ex. 6.1). Heavy: the same with a weight q downwards, Γ = q L³ / D = 1, 10, 100 with L = 4 a. \
+    Pushed together: both ends are clamped, and their lines move within 4 s to a distance of 1.2 a (ex. 6.3); an upward force, which is gone after 2 s, chooses the side. The answers are those of the elastica. \
+    Measured at rest: the elastic energy minus the work of the load (of the strip that is pushed: the elastic energy), and the mean place of the tip (of the middle), both relative to the exact ones. \
+    Every mesh has edges along the lines of the clamps and along the middle of the strip that is pushed.";
+
+/// Unit of length, metres: the width. Length of the free part, and of each clamp.
+const WIDTH: f64 = 0.1;
+const LENGTH: f64 = 4.0 * WIDTH;
+const CLAMP: f64 = 0.5 * WIDTH;
+
+/// Distance of the clamps of the strip that is pushed together.
+const PUSHED: f64 = 1.2 * WIDTH;
+
+/// Mass per area (kg/m2), flexural rigidity (N m), rate of damping (1/s).
+const DENSITY: f64 = 0.08;
+const RIGIDITY: f64 = super::isometry::PAPER_RIGIDITY;
+const DAMPING: f64 = 4.0;
+
+/// Steps of implicit Euler, seconds; how long the clamps move, and until when a force chooses the side.
+const STEP: f64 = 0.05;
+const MOVING: f64 = 4.0;
+const NUDGED: f64 = 2.0;
+
+/// The force that chooses the side, over `D / a`: it lifts the middle of the flat strip by about a tenth of
+/// its width.
+const NUDGE: f64 = 0.5;
+
+/// The sheet is at rest when no vertex is faster, metres per second.
+const REST: f64 = 1e-5;
+
+/// Relative errors below this are those of a sheet that has come to rest to within [`REST`], and of answers
+/// with four digits.
+const FLOOR: f64 = 1e-4;
+
+/// Squares across at which the error is limited.
+const JUDGED: usize = 8;
+
+/// What is done to a strip.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Case {
+    /// A load upwards, 1.6 in units of `D / L^3`: the one of Bartels.
+    Loaded,
+    /// A weight in units of `D / L^3`.
+    Heavy(f64),
+    Pushed,
+}
+
+impl Case {
+    const ALL: [Self; 5] = [
+        Self::Loaded,
+        Self::Heavy(1.0),
+        Self::Heavy(10.0),
+        Self::Heavy(100.0),
+        Self::Pushed,
+    ];
+
+    /// Load per area, newtons per square metre, and its sign along z.
+    fn load(self) -> Option<(f64, f64)> {
+        let unit = RIGIDITY / LENGTH.powi(3);
+        match self {
+            Self::Loaded => Some((0.025 * RIGIDITY / WIDTH.powi(3), 1.0)),
+            Self::Heavy(gamma) => Some((gamma * unit, -1.0)),
+            Self::Pushed => None,
+        }
+    }
+
+    /// Energy in joules and the place of the tip or of the middle, metres (along x and z).
+    fn exact(self) -> Exact {
+        let Some((weight, sign)) = self.load() else {
+            let [energy, height] = buckled(PUSHED / LENGTH);
+            return Exact {
+                energy: energy * RIGIDITY * WIDTH / LENGTH,
+                place: [0.5 * PUSHED, height * LENGTH],
+            };
+        };
+        let elastica = Elastica {
+            length: LENGTH,
+            rigidity: RIGIDITY,
+            weight,
+        };
+        let hanging = elastica.at_rest();
+        Exact {
+            energy: hanging.energy * WIDTH,
+            place: [hanging.tip[0], sign * hanging.tip[1]],
+        }
+    }
+
+    fn sheet(self, grid: Grid, across: usize) -> Result<Sheet> {
+        let cell = WIDTH / across as f64;
+        let beyond = match self {
+            Self::Pushed => CLAMP,
+            _ => 0.0,
+        };
+        let sheet = grid.rectangle([-CLAMP, 0.0], [LENGTH + beyond, WIDTH], cell)?;
+        let sheet = with_line(&sheet, 0.0, cell)?;
+        match self {
+            Self::Pushed => with_line(&with_line(&sheet, 0.5 * LENGTH, cell)?, LENGTH, cell),
+            _ => Ok(sheet),
+        }
+    }
+
+    fn clamp(self, sheet: &Sheet) -> Vec<VertexId> {
+        let beyond = match self {
+            Self::Pushed => LENGTH - 1e-9,
+            _ => f64::INFINITY,
+        };
+        vertices(sheet, |[x, ..]| x < 1e-9 || x > beyond)
+    }
+
+    fn model(self, model: Model, sheet: &Sheet) -> Result<SheetModel> {
+        let clamp = self.clamp(sheet);
+        let moved = model.sheet(sheet, plate(&clamp))?.with_damping(DAMPING)?;
+        if let Some((load, sign)) = self.load() {
+            let moved = moved.with_acceleration([0.0, 0.0, sign * load / DENSITY]);
+            return Ok(moved.with_pins(&clamp)?);
+        }
+        let middle = middle(sheet);
+        let force = NUDGE * RIGIDITY / WIDTH / middle.len().max(1) as f64;
+        let mut moved = moved.with_potential(Nudge {
+            forces: middle.into_iter().map(|v| (v, force)).collect(),
+            end: NUDGED,
+        });
+        for v in clamp {
+            let push = Profile::SmoothStep {
+                from: 0.0,
+                to: PUSHED - LENGTH,
+                begin: 0.0,
+                end: MOVING,
+            };
+            let offset = sheet.position(v);
+            moved = if offset[0] < 1e-9 {
+                moved.with_pins(&[v])?
+            } else {
+                let motion = PointProfile {
+                    offset,
+                    x: push,
+                    ..PointProfile::default()
+                };
+                moved.with_moving_pin(v, motion)?
+            };
+        }
+        Ok(moved)
+    }
+}
+
+impl fmt::Display for Case {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Loaded => f.write_str("loaded"),
+            Self::Heavy(gamma) => write!(f, "heavy, Γ = {gamma}"),
+            Self::Pushed => f.write_str("pushed together"),
+        }
+    }
+}
+
+/// The answer of the elastica.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Exact {
+    /// Joules.
+    energy: f64,
+    /// Metres along x and z.
+    place: [f64; 2],
+}
+
+fn plate(clamped: &[VertexId]) -> Plate<'_> {
+    Plate {
+        density: DENSITY,
+        rigidity: RIGIDITY,
+        clamped,
+        creases: &[],
+    }
+}
+
+/// The vertices on the middle line of a strip that is pushed together.
+fn middle(sheet: &Sheet) -> Vec<VertexId> {
+    vertices(sheet, |[x, ..]| (x - 0.5 * LENGTH).abs() < 1e-9)
+}
+
+/// A strip of a case on a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Job {
+    case: Case,
+    grid: Grid,
+    across: usize,
+}
+
+/// What is measured of a strip at rest.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Rested {
+    /// Energy, and the part of it in the plane of the sheet, joules.
+    energy: f64,
+    membrane: f64,
+    /// The tip or the middle, metres along x and z.
+    place: [f64; 2],
+    exact: Exact,
+}
+
+type Strip = Tried<Job, Rested>;
+
+impl Strip {
+    fn spacing(&self) -> f64 {
+        WIDTH / self.job.across as f64
+    }
+
+    fn energy_error(&self) -> Option<f64> {
+        self.if_good(|m| (m.energy / m.exact.energy - 1.0).abs())
+    }
+
+    /// Distance of the tip from its exact place, over how far that place is from the flat strip.
+    fn place_error(&self) -> Option<f64> {
+        let [x, z] = self.measured.exact.place;
+        self.if_good(|m| (m.place[0] - x).hypot(m.place[1] - z) / z.abs())
+    }
+}
+
+/// An error of a strip that came to rest.
+type Measure = fn(&Strip) -> Option<f64>;
+
+const ERRORS: [(&str, Measure); 2] = [
+    ("energy", Strip::energy_error),
+    ("place", Strip::place_error),
+];
+
+fn measure(model: Model, job: Job, plan: &Plan) -> Result<Strip> {
+    let Job { case, grid, across } = job;
+    let sheet = case.sheet(grid, across)?;
+    let clamp = case.clamp(&sheet);
+    let scene = Scene::flat(case.model(model, &sheet)?, &sheet).by(implicit_euler());
+    let (course, end) = scene.run(plan)?;
+    let elastic = model.energy(&sheet, plate(&clamp), &end.x)?;
+    let bending = model.bending_energy(&sheet, plate(&clamp), &end.x)?;
+    Ok(Tried {
+        model,
+        job,
+        vertices: sheet.topology().vertex_count(),
+        course,
+        measured: Rested {
+            energy: elastic - work(case, model, &sheet, &end)?,
+            membrane: elastic - bending,
+            place: place(case, &sheet, &end),
+            exact: case.exact(),
+        },
+    })
+}
+
+/// The work of the load, joules.
+fn work(case: Case, model: Model, sheet: &Sheet, end: &End) -> Result<f64> {
+    let Some((load, sign)) = case.load() else {
+        return Ok(0.0);
+    };
+    let weightless = model.sheet(sheet, plate(&[]))?;
+    let loaded =
+        model
+            .sheet(sheet, plate(&[]))?
+            .with_acceleration([0.0, 0.0, sign * load / DENSITY]);
+    let energies = [loaded, weightless].map(|m| m.potential_energy(0.0, &end.x));
+    Ok(energies[1] - energies[0])
+}
+
+fn place(case: Case, sheet: &Sheet, end: &End) -> [f64; 2] {
+    let at = match case {
+        Case::Pushed => middle(sheet),
+        _ => vertices(sheet, |[x, ..]| x > LENGTH - 1e-9),
+    };
+    [0, 2].map(|k| end.mean(&at, k, |value| value))
+}
+
+fn plan(patience: f64) -> Plan {
+    Plan::new(STEP, 30.0).within(patience).until_rest(REST)
+}
+
+/// Runs the yardstick.
+pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> {
+    let effort = records.store.effort;
+    let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
+    let grids: &[Grid] = effort.quick_or(&[Grid::Aligned, Grid::Delaunay(1)], &Grid::ALL);
+    let limits = plan(effort.quick_or(0.5, 60.0));
+    let mut jobs = Vec::new();
+    for case in Case::ALL {
+        for &grid in grids {
+            jobs.extend(sizes.iter().map(|&across| Job { case, grid, across }));
+        }
+    }
+    let mut all: Vec<Strip> = Vec::new();
+    for model in Model::ALL {
+        let run = |job: &Job| measure(model, *job, &limits);
+        all.extend(records.runs(&model.to_string(), &jobs, run)?);
+    }
+    let mut targets = Vec::new();
+    for model in Model::ALL {
+        for (name, error) in ERRORS {
+            let judged = all
+                .iter()
+                .filter(|s| s.model == model && s.job.across == JUDGED);
+            let quantity =
+                format!("relative error of the {name}, 8 squares across, every strip and mesh");
+            let values: Vec<Option<f64>> = judged.map(error).collect();
+            targets.push(at_most(model, &quantity, 0.02, &values));
+        }
+    }
+    let findings = Findings {
+        tables: vec![
+            summary(&all, sizes),
+            orders(&all, grids, ERRORS[0]),
+            orders(&all, grids, ERRORS[1]),
+        ],
+        files: vec![table(&all)],
+        remarks: Model::ALL.map(|m| remark(m, &all)).to_vec(),
+        targets,
+    };
+    Ok((findings, Some(plot(&all, grids, sizes))))
+}
+
+fn summary(all: &[Strip], sizes: &[usize]) -> Table {
+    let mut rows = Vec::new();
+    for case in Case::ALL {
+        for &across in sizes {
+            rows.extend(Model::ALL.map(|model| (case, across, model)));
+        }
+    }
+    let of = |&(case, across, model): &(Case, usize, Model)| {
+        let is_of = move |s: &&Strip| (s.job.case, s.job.across, s.model) == (case, across, model);
+        all.iter().filter(is_of).collect::<Vec<_>>()
+    };
+    let largest = |strips: &[&Strip], error: Measure| {
+        let values = strips.iter().filter_map(|s| error(s));
+        values.reduce(f64::max)
+    };
+    Table::of(
+        "Strips with known answers: how many of the meshes come to rest, and the largest errors of those that do",
+        rows,
+        &[
+            ("strip", &|r| r.0.to_string().into()),
+            ("squares across", &|r| r.1.into()),
+            ("model", &|r| r.2.to_string().into()),
+            ("at rest", &|r| of(r).iter().filter(|s| s.course.is_good()).count().into()),
+            ("error of the energy", &|r| largest(&of(r), Strip::energy_error).into()),
+            ("error of the place", &|r| largest(&of(r), Strip::place_error).into()),
+            ("factorisations per step", &|r| {
+                let mut cost = Cost::default();
+                of(r).iter().for_each(|s| cost.add_run(&s.course.cost));
+                cost.factorisations_per_step().into()
+            }),
+            ("CPU seconds of a run", &|r| {
+                let of = of(r);
+                (of.iter().map(|s| s.course.cost.cpu).sum::<f64>() / of.len() as f64).into()
+            }),
+        ],
+    )
+    .named("strips")
+}
+
+fn table(all: &[Strip]) -> Table {
+    Table::of(
+        format!("Every strip: implicit Euler, steps of {STEP} s, until no vertex is faster than {REST} m/s. Energies are over D, places over the width"),
+        all,
+        &[
+            ("strip", &|s| s.job.case.to_string().into()),
+            ("mesh", &|s| s.job.grid.to_string().into()),
+            ("squares across", &|s| s.job.across.into()),
+            ("V", &|s| s.vertices.into()),
+            ("model", &|s| s.model.to_string().into()),
+            ("ending", &|s| s.course.ending.name().into()),
+            ("factorisations", &|s| s.course.cost.factorisations.into()),
+            ("CPU seconds", &|s| s.course.cost.cpu.into()),
+            ("energy", &|s| (s.measured.energy / RIGIDITY).into()),
+            ("exact energy", &|s| (s.measured.exact.energy / RIGIDITY).into()),
+            ("in the plane", &|s| (s.measured.membrane / RIGIDITY).into()),
+            ("x", &|s| (s.measured.place[0] / WIDTH).into()),
+            ("z", &|s| (s.measured.place[1] / WIDTH).into()),
+            ("exact x", &|s| (s.measured.exact.place[0] / WIDTH).into()),
+            ("exact z", &|s| (s.measured.exact.place[1] / WIDTH).into()),
+            ("error of the energy", &|s| s.energy_error().into()),
+            ("error of the place", &|s| s.place_error().into()),
+            ("largest strain of an edge", &|s| s.course.strain.into()),
+            ("message", &|s| s.course.ending.message().into()),
+        ],
+    )
+    .named("strips-all")
+}
+
+/// The fitted orders of an error: a row for each strip and model, a column for each mesh.
+fn orders(all: &[Strip], grids: &[Grid], (name, error): (&str, Measure)) -> Table {
+    let models = |case: Case| Model::ALL.map(|model| (case, model));
+    let rows: Vec<(Case, Model)> = Case::ALL.into_iter().flat_map(models).collect();
+    let fitted = |&(case, model): &(Case, Model), grid: Grid| {
+        let key = (case, grid, model);
+        let of = all
+            .iter()
+            .filter(|s| (s.job.case, s.job.grid, s.model) == key);
+        let points: Option<Vec<_>> = of.map(|s| Some([s.spacing(), error(s)?])).collect();
+        order(&points?, FLOOR)
+    };
+    let caption = format!(
+        "Fitted powers of h of the error of the {name} where all three strips come to rest; errors below 1e-4 are left out"
+    );
+    let mut table = Table::of(
+        caption,
+        &rows,
+        &[
+            ("strip", &|r| r.0.to_string().into()),
+            ("model", &|r| r.1.to_string().into()),
+        ],
+    );
+    for &grid in grids {
+        let cells: Vec<Cell> = rows.iter().map(|row| fitted(row, grid).into()).collect();
+        table = table.with_column(&grid.to_string(), cells.into_iter());
+    }
+    table.named(&format!("strips-orders-{name}"))
+}
+
+fn remark(model: Model, all: &[Strip]) -> String {
+    let of: Vec<&Strip> = all.iter().filter(|s| s.model == model).collect();
+    let judged = of.iter().filter(|s| s.job.across == JUDGED);
+    let [energy, place] = ERRORS.map(|(_, error)| {
+        let worst = extremes(judged.clone().filter_map(|s| error(s))).map(|[_, high]| high);
+        worst.map_or("–".into(), |w| number(100.0 * w))
+    });
+    let ended = of.iter().filter(|s| s.course.is_good()).count();
+    format!(
+        "{model}: {ended} of {} strips come to rest. With 8 squares across the largest error is {energy} % in the energy and {place} % in the place.",
+        of.len()
+    )
+}
+
+/// The errors against the spacing: a row for each error, a panel for each strip.
+fn plot(all: &[Strip], grids: &[Grid], sizes: &[usize]) -> Charts {
+    let ticks = sizes.iter().map(|&n| {
+        let h = WIDTH / n as f64;
+        (h, number(1e3 * h))
+    });
+    let x = Axis::at("h, mm", ticks.collect());
+    let ends = [sizes.first(), sizes.last()].into_iter().flatten();
+    let ends: Vec<f64> = ends.map(|&n| WIDTH / n as f64).collect();
+    let rows = ERRORS.map(|(name, error)| {
+        let y = Axis::decades(
+            &format!("error of the {name}"),
+            all.iter().filter_map(error),
+        );
+        let panel = |case: Case| {
+            let of = all
+                .iter()
+                .filter(|s| s.job.case == case && grids.contains(&s.job.grid));
+            let point = |s: &Strip| Some((s.model, s.job.grid.number(), [s.spacing(), error(s)?]));
+            let two = ends.iter().map(|h| [*h, 0.02]).collect();
+            Panel {
+                title: case.to_string(),
+                axes: [x.clone(), y.clone()],
+                points: of.filter_map(point).collect(),
+                guides: vec![two],
+            }
+        };
+        Case::ALL.map(panel).to_vec()
+    });
+    charts(rows.to_vec(), &Model::ALL, &Grid::KINDS, "2 %")
+}
+
+/// Strips that bend much on meshes without lines across the bend, with another bound of the stiffness: the
+/// largest errors of energy and place; nothing where one of the strips does not come to rest.
+pub(super) fn with_bound(bound: Model, across: usize, patience: f64) -> Result<[Option<f64>; 2]> {
+    let mut worst = [Some(0.0_f64); 2];
+    for case in [Case::Heavy(100.0), Case::Pushed] {
+        let seeds = [1, 2, 3].map(Grid::Delaunay);
+        for grid in [Grid::UnionJack, Grid::OneWay].into_iter().chain(seeds) {
+            let job = Job { case, grid, across };
+            let strip = measure(bound, job, &plan(patience))?;
+            for (worst, (_, error)) in worst.iter_mut().zip(ERRORS) {
+                *worst = worst.zip(error(&strip)).map(|(a, b)| a.max(b));
+            }
+        }
+    }
+    Ok(worst)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_strip_has_its_clamps_and_its_middle() {
+        for case in Case::ALL {
+            for grid in Grid::ALL {
+                for across in [2, 4] {
+                    let sheet = case.sheet(grid, across).unwrap();
+                    let on = |x: f64| vertices(&sheet, |p| (p[0] - x).abs() < 1e-9).len();
+                    assert!(on(0.0) > across && on(LENGTH) > across, "{case} {grid}");
+                    assert!(case.clamp(&sheet).len() > on(0.0));
+                    assert!(case != Case::Pushed || middle(&sheet).len() > across);
+                }
+            }
+        }
+    }
+}
