@@ -201,7 +201,6 @@ impl SheetFingerprint {
         let isometry = match model.isometry() {
             Isometry::Rods => None,
             Isometry::Elastic => Some(u64::MAX),
-            Isometry::Weak => Some(u64::MAX - 1),
         };
         Self {
             vertices: model.topology().vertex_count(),

@@ -503,7 +503,7 @@ fn check_energy(model: &SheetModel, state: &State) -> Result<(), StepError> {
 fn check_lengths(model: &SheetModel, motion: &FreeMotion) -> Result<(), CheckpointError> {
     let (n, m, k) = (
         model.coordinate_count(),
-        model.isometry_rows().len(),
+        model.rods().len(),
         model.constraints().len(),
     );
     let Moment { state, history, .. } = &motion.moment;

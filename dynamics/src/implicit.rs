@@ -23,8 +23,7 @@ pub struct ImplicitOptions {
     /// inertia term of the incremental potential. Default 1e-4, far below the error of the
     /// method itself; the lengths do not depend on it.
     pub tolerance: f64,
-    /// Largest relative edge length error of an accepted step; of an isometry in weak form the largest strain
-    /// that it constrains ([`WeakIsometry`](crate::WeakIsometry)). Default 1e-12. Round-off sets a floor of a
+    /// Largest relative edge length error of an accepted step. Default 1e-12. Round-off sets a floor of a
     /// few units in the last place of the coordinates.
     pub strain_tolerance: f64,
     /// Largest number of Newton iterations of one minimisation: of sequential quadratic programming (a

@@ -34,10 +34,9 @@
 //! # Isometry
 //!
 //! What keeps the lengths is chosen with the model ([`Isometry`]). The default are rigid rods along all
-//! edges. An elastic membrane ([`SheetModel::with_membrane`]) stretches as the material does. An isometry in
-//! weak form ([`SheetModel::with_weak_isometry`]) keeps lengths in the mean over the faces around each
-//! vertex: smooth bends in any direction, clamps along any line, single edges that stretch a little. The last
-//! two are for BDF2 and implicit Euler. [`StepReport::strain`] is the strain of edges whatever keeps them;
+//! edges. An elastic sheet ([`SheetModel::with_elastic_sheet`]) stretches as the material does, up to a limit: it
+//! bends smoothly in every direction and along clamps of any line. It is for BDF2 and implicit Euler.
+//! [`StepReport::strain`] is the strain of edges whatever keeps them;
 //! [`StepReport::constrained_strain`] is what an accepted step holds below its tolerance.
 //!
 //! # Limits
@@ -90,7 +89,6 @@ mod history;
 mod immobile;
 mod implicit;
 mod integrator;
-mod isometry_rows;
 mod iterate;
 mod layout;
 mod load;
@@ -123,7 +121,6 @@ mod state;
 mod subdivision;
 mod support;
 mod unassigned;
-mod weak_isometry;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use clamps::ClampAcrossMesh;
@@ -158,7 +155,6 @@ pub use simulation_error::SimulationError;
 pub use start::{leave_flat, project_positions};
 pub use state::State;
 pub use support::Support;
-pub use weak_isometry::{WeakIsometry, WeakIsometryError};
 
 pub use nalgebra;
 

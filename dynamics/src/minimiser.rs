@@ -7,8 +7,6 @@ mod second_order;
 mod sqp;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod weak_tests;
 
 use crate::ImplicitOptions;
 use crate::contact::{ContactState, ContactWork};
@@ -47,9 +45,7 @@ const COMPARISON_SLACK: f64 = 10.0;
 /// At rest and without contact the last two strategies are the same.
 ///
 /// Elastic sheets have no rods that programming would solve for, and are minimised by the last two
-/// strategies. For sheets that are isometric in weak form programming starts at the prediction where there
-/// is no contact. (Hanging sheets of 128 to 2048 faces need three to nine times as many factorisations with
-/// the augmented Lagrangian alone.)
+/// strategies.
 ///
 /// Sheets with slivers, without contact, begin with the augmented Lagrangian from the prediction and its own
 /// multipliers; programming comes after that.
@@ -160,7 +156,7 @@ impl Minimiser {
             restoration: Restoration::new(model),
             faces: Faces::of(model),
             balance: Balance::with_unassigned(model, ForceTime::End),
-            remembered: vec![0.0; model.isometry_rows().len()],
+            remembered: vec![0.0; model.rods().len()],
             rod_stiffness: 0.0,
             prediction: vec![0.0; n],
             applied: vec![0.0; n],
@@ -384,10 +380,9 @@ impl Minimiser {
         if let Some(terms) = lagrangian.iterate.terms(problem.contact()) {
             self.balance.add_contact(&terms);
         }
-        let (rows, x) = (model.isometry_rows(), lagrangian.iterate.x());
-        rows.densities_into(&lagrangian.multipliers, &mut lagrangian.transverse);
-        self.balance.add_rods(model, x, &lagrangian.transverse, per);
-        let rows = &lagrangian.vertex_rows;
+        let (rows, x) = (&lagrangian.vertex_rows, lagrangian.iterate.x());
+        self.balance
+            .add_rods(model, x, &lagrangian.multipliers, per);
         self.balance.add_constraints(rows, &rows.multipliers, per);
         self.balance.leave(model, x, &rows.active);
     }
@@ -417,20 +412,14 @@ impl Minimiser {
     /// Energy that the tolerance of the lengths leaves open, joules.
     ///
     /// In contact, at rest: a flat sheet folds by the root of a length error; its weight is lifted by a part
-    /// of that. In weak form, whose equations determine their multipliers: the work of these over what the
-    /// step changes the equations by. (A strip on edge under its weight creeps at 1e-5 m/s with a kinetic
-    /// energy of 1e-12 J, beside which this work, of the same size, shows.)
-    fn length_slack(&mut self, problem: &StepProblem<'_>) -> f64 {
-        let mut slack = 0.0;
-        if problem.has_contact() {
-            let fold = self.options.strain_tolerance.sqrt() * problem.model.mean_length();
-            let force = &self.lagrangian.force;
-            slack += FOLD_PART * fold * force.iter().map(|f| f.abs()).sum::<f64>();
+    /// of that.
+    fn length_slack(&self, problem: &StepProblem<'_>) -> f64 {
+        if !problem.has_contact() {
+            return 0.0;
         }
-        if problem.model.isometry() == Isometry::Weak {
-            slack += self.lagrangian.multiplier_work(problem).abs() / (problem.h * problem.h);
-        }
-        slack
+        let fold = self.options.strain_tolerance.sqrt() * problem.model.mean_length();
+        let force = &self.lagrangian.force;
+        FOLD_PART * fold * force.iter().map(|f| f.abs()).sum::<f64>()
     }
 }
 

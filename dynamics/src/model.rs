@@ -5,11 +5,9 @@ mod supports;
 use crate::State;
 use crate::constraint::VertexConstraint;
 use crate::elastic_sheet::{ElasticSheet, strain_barrier};
-use crate::isometry_rows::IsometryRows;
 use crate::membrane::Membrane;
 use crate::motion::MotionError;
 use crate::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
-use crate::weak_isometry::{WeakIsometry, WeakRows};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{
     Advice, LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
@@ -54,14 +52,6 @@ pub enum ModelError {
         /// What is wrong with its motion.
         source: MotionError,
     },
-    /// The isometry in weak form belongs to another sheet.
-    #[error("the isometry in weak form is for {found} vertices, the sheet has {vertex_count}")]
-    WeakIsometry {
-        /// Vertices that it was built for.
-        found: usize,
-        /// Vertices of the sheet.
-        vertex_count: usize,
-    },
     /// The elastic sheet belongs to another sheet.
     #[error("the elastic sheet is made for {found} faces, the sheet has {face_count}")]
     ElasticSheet {
@@ -82,9 +72,7 @@ impl Advice for ModelError {
     fn advice(&self) -> Option<&'static str> {
         match self {
             Self::Mesh(error) => error.advice(),
-            Self::MassLength { .. } | Self::WeakIsometry { .. } | Self::ElasticSheet { .. } => {
-                Some("build it for this sheet")
-            }
+            Self::MassLength { .. } | Self::ElasticSheet { .. } => Some("build it for this sheet"),
             Self::Mass { .. } => Some("give every vertex that is not pinned a positive mass"),
             Self::Motion { source, .. } => source.advice(),
             Self::Damping { .. } => Some("give a finite rate of at least 0 per second"),
@@ -101,9 +89,6 @@ pub enum Isometry {
     Rods,
     /// The elasticity of the material, an [`ElasticSheet`]: edges stretch up to a limit.
     Elastic,
-    /// Two equations for each vertex and a soft membrane, a [`WeakIsometry`](crate::WeakIsometry): the
-    /// strains around each vertex vanish in the mean, and edges stretch a little.
-    Weak,
 }
 
 /// Marks a vertex without unknowns in [`SheetModel::free_index`].
@@ -117,8 +102,6 @@ pub(crate) const PINNED: u32 = u32::MAX;
 pub struct SheetModel {
     topology: Topology,
     isometry: Isometry,
-    /// The equations in weak form, where [`SheetModel::isometry`] is that.
-    weak: Option<WeakRows>,
     /// The elasticity in the plane, where [`SheetModel::isometry`] is that.
     elastic: Option<ElasticSheet>,
     rods: LengthConstraints,
@@ -178,7 +161,6 @@ impl SheetModel {
         }
         Ok(Self {
             isometry: Isometry::Rods,
-            weak: None,
             elastic: None,
             rods,
             shortest_rods,
@@ -225,7 +207,6 @@ impl SheetModel {
     #[must_use]
     pub fn with_membrane(mut self, membrane: Membrane) -> Self {
         self.isometry = Isometry::Elastic;
-        self.weak = None;
         self.elastic = None;
         self.with_potential(membrane)
     }
@@ -263,53 +244,8 @@ impl SheetModel {
             return Err(ModelError::ElasticSheet { found, face_count });
         }
         self.isometry = Isometry::Elastic;
-        self.weak = None;
         self.elastic = Some(elastic);
         Ok(self)
-    }
-
-    /// Replaces the rigid rods by an isometry in weak form: two equations for each vertex that is not pinned,
-    /// kept to the tolerance of a step, and a soft membrane. Sheets that rods would lock move, and stretch
-    /// less than with the membrane alone; single edges keep their lengths approximately (see
-    /// [`WeakIsometry`]).
-    ///
-    /// For BDF2 and implicit Euler; other methods and charts are refused. The sheet has to be flat at rest.
-    ///
-    /// ```
-    /// use isosheet_dynamics::{Method, PlateBending, SheetModel, Simulation, State, WeakIsometry};
-    /// use isosheet_mesh::{MassKind, VertexId, generate};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let sheet = generate::isotropic_square(2, 0.2)?;
-    /// let clamp: Vec<VertexId> = (0..18).map(VertexId).collect(); // two rows of vertices
-    /// let rigidity = 5e-4;
-    /// let model = SheetModel::new(&sheet, 3.2e-3, MassKind::Lumped)?
-    ///     .with_gravity()
-    ///     .with_pins(&clamp)?
-    ///     .with_potential(PlateBending::clamped(&sheet, rigidity, &clamp)?)
-    ///     .with_weak_isometry(WeakIsometry::of_plate(&sheet, rigidity)?)?;
-    /// let start = State::at_rest(sheet.positions().to_vec());
-    /// let mut simulation = Simulation::new(model, start, Method::default())?;
-    /// let report = simulation.step(1.0 / 60.0)?;
-    /// assert!(simulation.model().constrained_strain(&simulation.state().x) <= 1e-12);
-    /// assert!(report.strain < 1e-3); // of single edges
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Errors
-    /// [`ModelError::WeakIsometry`] if it was built for another sheet.
-    pub fn with_weak_isometry(mut self, isometry: WeakIsometry) -> Result<Self, ModelError> {
-        let (rows, membrane) = isometry.into_parts();
-        if !rows.fits(&self.rods) {
-            return Err(ModelError::WeakIsometry {
-                found: rows.len() / 2,
-                vertex_count: self.free_index.len(),
-            });
-        }
-        self.isometry = Isometry::Weak;
-        self.weak = Some(rows);
-        Ok(self.with_potential(membrane))
     }
 
     /// Adds a non-conservative force.
@@ -342,43 +278,22 @@ impl SheetModel {
         self.isometry
     }
 
-    /// The rods; where the sheet is elastic or isometric in weak form, its edges, which keep no lengths.
+    /// The rods; where the sheet is elastic, its edges, which keep no lengths.
     pub fn rods(&self) -> &LengthConstraints {
         &self.rods
     }
 
     /// Largest violation of the equations of isometry at positions `x` (`3V`, metres), which an accepted step
-    /// keeps below its tolerance: of rods the largest edge strain, in weak form the largest `|C_i|` of a
-    /// vertex that is not pinned ([`WeakIsometry`], a strain), zero for elastic sheets. Not a number if a
+    /// keeps below its tolerance: of rods the largest edge strain, zero for elastic sheets. Not a number if a
     /// position is not.
     ///
     /// # Panics
     /// If `x` is not of length `3V`.
     pub fn constrained_strain(&self, x: &[f64]) -> f64 {
-        match (self.isometry, &self.weak) {
-            (Isometry::Rods, _) => self.rods.max_strain(x),
-            (_, Some(weak)) => weak.largest_violation(x, |v| self.free_index[v] != PINNED),
-            (_, None) => 0.0,
+        match self.isometry {
+            Isometry::Rods => self.rods.max_strain(x),
+            Isometry::Elastic => 0.0,
         }
-    }
-
-    /// In weak form the vertex whose equations are violated most at positions `x`.
-    pub(crate) fn worst_constrained_vertex(&self, x: &[f64]) -> Option<VertexId> {
-        let weak = self.weak.as_ref()?;
-        Some(weak.worst_vertex(x, |v| self.free_index[v] != PINNED))
-    }
-
-    /// The equations that keep the lengths.
-    pub(crate) fn isometry_rows(&self) -> IsometryRows<'_> {
-        match &self.weak {
-            None => IsometryRows::Rods(&self.rods),
-            Some(weak) => IsometryRows::Weak(&self.rods, weak),
-        }
-    }
-
-    /// The equations in weak form, of a sheet that has them.
-    pub(crate) fn weak_rows(&self) -> Option<&WeakRows> {
-        self.weak.as_ref()
     }
 
     /// The mass matrix.

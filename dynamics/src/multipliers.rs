@@ -1,7 +1,6 @@
 //! Multipliers of linearised equations of isometry, by conjugate gradients.
 
 use crate::SheetModel;
-use crate::isometry_rows::RowScale;
 use crate::primal::{PrimalMatrix, dot};
 
 /// Improves the multipliers of a linearised step.
@@ -27,8 +26,6 @@ pub(crate) struct MultiplierSolver {
     direction: Vec<f64>,
     /// `S` times the direction.
     image: Vec<f64>,
-    /// Force densities of the edges by the direction.
-    density: Vec<f64>,
     /// `G^T` times the direction (`3V`).
     force: Vec<f64>,
     /// `K^-1` times that (`3V`).
@@ -44,7 +41,6 @@ pub(crate) struct LinearisedRows<'a> {
     pub(crate) x: &'a [f64],
     /// Their values there, which the step is to take to zero.
     pub(crate) values: &'a [f64],
-    pub(crate) scales: &'a [RowScale],
     /// The penalties `R`: this factor times the penalties of equations that are as stiff as the masses.
     pub(crate) stiffness: f64,
     pub(crate) unit_penalty: &'a [f64],
@@ -65,12 +61,11 @@ pub(crate) struct MultiplierGoal {
 
 impl MultiplierSolver {
     pub(crate) fn new(model: &SheetModel) -> Self {
-        let (n, m) = (model.coordinate_count(), model.isometry_rows().len());
+        let (n, m) = (model.coordinate_count(), model.rods().len());
         Self {
             residual: vec![0.0; m],
             direction: vec![0.0; m],
             image: vec![0.0; m],
-            density: vec![0.0; model.rods().len()],
             force: vec![0.0; n],
             step: vec![0.0; n],
         }
@@ -85,8 +80,8 @@ impl MultiplierSolver {
         dx: &mut [f64],
         goal: MultiplierGoal,
     ) -> f64 {
-        let rows = system.model.isometry_rows();
-        rows.apply(system.x, dx, &mut self.residual);
+        let rods = system.model.rods();
+        rods.apply(system.x, dx, &mut self.residual);
         for (r, c) in self.residual.iter_mut().zip(system.values) {
             *r = c - *r;
         }
@@ -131,19 +126,19 @@ impl MultiplierSolver {
     /// Sets `image = S direction` and `step = K^-1 G^T direction`; the product of direction and image.
     fn apply(&mut self, system: &mut LinearisedRows<'_>) -> f64 {
         let (model, x) = (system.model, system.x);
-        let rows = model.isometry_rows();
+        let rods = model.rods();
         self.force.fill(0.0);
-        rows.apply_transpose_add(x, &self.direction, &mut self.density, &mut self.force);
+        rods.apply_transpose_add(x, &self.direction, &mut self.force);
         model.clear_pinned(&mut self.force);
         system.matrix.solve(model, &self.force, &mut self.step);
-        rows.apply(x, &self.step, &mut self.image);
+        rods.apply(x, &self.step, &mut self.image);
         dot(&self.direction, &self.image)
     }
 
     /// Largest violation that the step leaves, as a strain.
     fn violation(&self, system: &LinearisedRows<'_>) -> f64 {
-        let strains = self.residual.iter().zip(system.scales);
-        strains.fold(0.0, |m: f64, (r, scale)| m.max(r.abs() / scale.unit))
+        let strains = self.residual.iter().zip(system.model.rods().lengths());
+        strains.fold(0.0, |m: f64, (r, l)| m.max(r.abs() / (l * l)))
     }
 }
 

@@ -9,7 +9,6 @@ use crate::contact::{ContactTerms, CouplingSink};
 use crate::effort::SolverEffort;
 use crate::layout::{FULL, LOWER, Layout};
 use crate::model::PINNED;
-use crate::weak_isometry::{Block, BlockRows, RingBlocks, WeakRows};
 use crate::{HessianSink, Isometry, SheetModel, State};
 use cost::{Direct, expected_iterations};
 use far::FarCouplings;
@@ -61,8 +60,6 @@ pub(crate) struct PrimalMatrix {
     free_slots: Vec<[u32; 6]>,
     /// Slots of each edge block and whether its rows belong to end `b` (else to `a`).
     edge_slots: Vec<Option<([u32; 9], bool)>>,
-    /// Blocks of the equations of isometry in weak form, of models that have them.
-    rings: Option<RingBlocks>,
     rhs: Vec<f64>,
     /// Pairs of free vertices (in free numbers, larger first) that contact couples beyond the mesh's edges,
     /// sorted.
@@ -134,7 +131,7 @@ impl PrimalMatrix {
                 both_free.then(|| (layout.block([i.max(j), i.min(j)], FULL), j > i))
             })
             .collect();
-        for &pair in weak_pairs(model).iter().chain(&extra) {
+        for &pair in &extra {
             layout.block(pair, FULL);
         }
         let n = 3 * model.free_count();
@@ -147,11 +144,7 @@ impl PrimalMatrix {
             .iter_mut()
             .flatten()
             .for_each(|(b, _)| slots.resolve(b));
-        let rings = model
-            .weak_rows()
-            .map(|rows| ring_blocks(model, rows, &vertex_slots, &pattern));
         Ok(Self {
-            rings,
             near: SparseLlt::with_blocks(pattern, 3)?,
             far,
             whole: None,
@@ -169,7 +162,7 @@ impl PrimalMatrix {
             extra,
             couplings: Vec::new(),
             x: vec![0.0; model.coordinate_count()],
-            axial: vec![0.0; model.isometry_rows().len()],
+            axial: vec![0.0; model.rods().len()],
             factorised: Factorised::Nothing,
         })
     }
@@ -250,8 +243,7 @@ impl PrimalMatrix {
         });
     }
 
-    /// Sets the values: `axial[e] = r_e`, `transverse[e] = p_e`. In weak form `axial` are the penalties of
-    /// the equations, whose `J^T r J` takes the place of the rods' `G^T r G`.
+    /// Sets the values: `axial[e] = r_e`, `transverse[e] = p_e`.
     pub(crate) fn assemble(
         &mut self,
         model: &SheetModel,
@@ -276,8 +268,7 @@ impl PrimalMatrix {
         for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
             let (ia, ib) = (3 * a, 3 * b);
             let d = [x[ia] - x[ib], x[ia + 1] - x[ib + 1], x[ia + 2] - x[ib + 2]];
-            let r = if self.rings.is_some() { 0.0 } else { axial[e] };
-            let p = transverse[e];
+            let (r, p) = (axial[e], transverse[e]);
             let block = [
                 r * d[0] * d[0] + p,
                 r * d[1] * d[0],
@@ -305,9 +296,6 @@ impl PrimalMatrix {
                     }
                 }
             }
-        }
-        if let Some((rings, rows)) = self.rings.as_mut().zip(model.weak_rows()) {
-            rings.add(rows, x, axial, values);
         }
     }
 
@@ -554,43 +542,6 @@ impl HessianSink for Sink<'_> {
     }
 }
 
-/// Pairs of free vertices (in free numbers, larger first) that the equations of isometry in weak form couple.
-fn weak_pairs(model: &SheetModel) -> Vec<[u32; 2]> {
-    let free = model.free_index();
-    let rings = model.weak_rows().into_iter().flat_map(WeakRows::couplings);
-    rings
-        .map(|[a, b]| [free[a.index()], free[b.index()]])
-        .filter(|[i, j]| *i != PINNED && *j != PINNED && i != j)
-        .map(|[i, j]| [i.max(j), i.min(j)])
-        .collect()
-}
-
-/// Where the blocks of the equations in weak form are.
-fn ring_blocks(
-    model: &SheetModel,
-    rows: &WeakRows,
-    vertex_slots: &[Option<[u32; 6]>],
-    pattern: &Pattern,
-) -> RingBlocks {
-    let free = model.free_index();
-    RingBlocks::new(rows, |a, b| {
-        let (i, j) = (free[a.index()], free[b.index()]);
-        if i == PINNED || j == PINNED {
-            return None;
-        }
-        if i == j {
-            return vertex_slots[a.index()].map(Block::Diagonal);
-        }
-        let start = block_start(pattern, i.max(j), i.min(j))?;
-        let rows = if i > j {
-            BlockRows::First
-        } else {
-            BlockRows::Second
-        };
-        Some(Block::Pair(start.map(|s| s as u32), rows))
-    })
-}
-
 impl CouplingSink for Sink<'_> {
     fn add(&mut self, a: u32, b: u32, block: &Matrix3<f64>) {
         if a == b {
@@ -651,9 +602,9 @@ pub(crate) fn scatter(model: &SheetModel, packed: &[f64], full: &mut [f64]) {
     }
 }
 
-/// Penalty of each equation of isometry, `kappa` times the inverse of `J M^-1 J^T` at rest: scale free, so
-/// that slivers and heavy vertices are treated alike. For a rod `kappa m_e / l_e^2` with `m_e` the reduced
-/// mass of its free ends, kilograms per square metre; in weak form kilogram square metres.
+/// Penalty of each rod, `kappa` times the inverse of `G M^-1 G^T` at rest: `kappa m_e / l_e^2` with `m_e` the
+/// reduced mass of its free ends, kilograms per square metre. It is scale free, so that slivers and heavy
+/// vertices are treated alike.
 pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
     let rods = model.rods();
     let inverse = |v: usize| {
@@ -663,10 +614,6 @@ pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
             1.0 / model.mass().vertex[v]
         }
     };
-    if let Some(weak) = model.weak_rows() {
-        let unit = weak.unit_penalties(|v| inverse(v.index()));
-        return unit.into_iter().map(|p| kappa * p).collect();
-    }
     if model.isometry() == Isometry::Elastic {
         return vec![0.0; rods.len()];
     }
@@ -684,13 +631,9 @@ pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Smallest edge strain, or strain of the isometry in weak form, that round-off in the coordinates allows to
-/// ask for.
+/// Smallest edge strain that round-off in the coordinates allows to ask for.
 pub(crate) fn strain_floor(model: &SheetModel, state: &State) -> f64 {
     let size = norm_inf(&state.x);
-    if let Some(weak) = model.weak_rows() {
-        return 4.0 * f64::EPSILON * weak.round_off(size);
-    }
     let shortest = model
         .rods()
         .lengths()

@@ -201,20 +201,6 @@ pub enum StepError {
         /// Time, seconds.
         t: f64,
     },
-    /// The start state of a sheet that is isometric in weak form does not satisfy its equations.
-    #[error(
-        "the strain around {vertex} is {strain} in the mean at t = {t} s, which the isometry in \
-         weak form does not allow",
-        strain = brief(*strain), t = brief(*t)
-    )]
-    OffWeakIsometry {
-        /// The worst vertex.
-        vertex: VertexId,
-        /// Its violation `|C_i|`.
-        strain: f64,
-        /// Time, seconds.
-        t: f64,
-    },
     /// An elastic sheet is stretched or compressed beyond its limit at the start.
     #[error(
         "{face} has the strain {strain} at t = {t} s, and the limit of the elastic sheet is {limit}",
@@ -378,9 +364,6 @@ impl Advice for StepError {
             }
             Self::BeyondStrainLimit { .. } => {
                 Some("start from a shape that is stretched less, or raise the limit of the strain")
-            }
-            Self::OffWeakIsometry { .. } => {
-                Some("start from a state that satisfies it (see `project_positions`)")
             }
             Self::NotConverged { .. } | Self::EnergyGain { .. } | Self::Contact { .. } => {
                 Some("take a smaller step")

@@ -7,7 +7,6 @@ use crate::constraint::rows::VertexRows;
 use crate::contact::StepContact;
 use crate::effort::SolverEffort;
 use crate::iterate::Iterate;
-use crate::model::PINNED;
 use crate::primal::{PrimalMatrix, penalties};
 use crate::unassigned::UnassignedMomentum;
 use nalgebra::Vector3;
@@ -69,8 +68,6 @@ pub(crate) struct Restoration {
     unit: Vec<f64>,
     c: Vec<f64>,
     w: Vec<f64>,
-    /// Force densities of the edges by `w`.
-    density: Vec<f64>,
     rhs: Vec<f64>,
     dx: Vec<f64>,
     start: Vec<f64>,
@@ -125,15 +122,13 @@ enum Solved {
 
 impl Restoration {
     pub(crate) fn new(model: &SheetModel) -> Self {
-        let (n, edges) = (model.coordinate_count(), model.rods().len());
-        let m = model.isometry_rows().len();
+        let (n, m) = (model.coordinate_count(), model.rods().len());
         Self {
             axial: vec![0.0; m],
-            transverse: vec![0.0; edges],
+            transverse: vec![0.0; m],
             unit: penalties(model, 1.0),
             c: vec![0.0; m],
             w: vec![0.0; m],
-            density: vec![0.0; edges],
             rhs: vec![0.0; n],
             dx: vec![0.0; n],
             start: vec![0.0; n],
@@ -244,7 +239,7 @@ impl Restoration {
 
     /// Evaluates the constraints.
     fn evaluate(&mut self, model: &SheetModel, t: f64, x: &[f64]) {
-        model.isometry_rows().residual_into(x, &mut self.c);
+        model.rods().residual_into(x, &mut self.c);
         self.vertex_rows.evaluate(model.constraints(), t, x);
     }
 
@@ -257,7 +252,7 @@ impl Restoration {
         iterate: &mut Iterate,
         penalty: f64,
     ) -> Solved {
-        let rows = model.isometry_rows();
+        let rods = model.rods();
         for e in 0..self.c.len() {
             self.axial[e] = penalty * self.unit[e];
             self.w[e] = -self.axial[e] * self.c[e];
@@ -282,7 +277,7 @@ impl Restoration {
         if matrix.factorize().is_err() {
             return Solved::PenaltyTooLarge;
         }
-        rows.apply_transpose_add(iterate.x(), &self.w, &mut self.density, &mut self.rhs);
+        rods.apply_transpose_add(iterate.x(), &self.w, &mut self.rhs);
         matrix.solve(model, &self.rhs, &mut self.dx);
         Solved::Yes
     }
@@ -314,10 +309,7 @@ impl Restoration {
 
     /// Largest strain or relative violation of a vertex constraint, those being evaluated.
     fn worst(&self, model: &SheetModel, x: &[f64]) -> f64 {
-        let strain = match model.weak_rows() {
-            Some(weak) => weak.largest_of(&self.c, |v| model.free_index()[v] != PINNED),
-            None => model.constrained_strain(x),
-        };
+        let strain = model.constrained_strain(x);
         if model.constraints().is_empty() {
             return strain;
         }
@@ -463,7 +455,7 @@ impl Restoration {
 
     /// What the linearised lengths leave of the error after the whole step.
     fn linearised_error(&mut self, model: &SheetModel, x: &[f64]) -> f64 {
-        model.isometry_rows().apply(x, &self.dx, &mut self.w);
+        model.rods().apply(x, &self.dx, &mut self.w);
         let errors = self.c.iter().zip(&self.w).zip(&self.unit);
         errors
             .map(|((c, w), u)| u * (c + w).powi(2))

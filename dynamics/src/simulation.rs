@@ -63,7 +63,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`SimulationError`] if the options or the state make no sense, or the state does not
-    /// have the rest lengths (in weak form: the strains zero that it constrains) to 1e-8 (see
+    /// have the rest lengths to 1e-8 (see
     /// [`project_positions`](crate::project_positions)).
     pub fn new(
         model: SheetModel,
@@ -319,8 +319,8 @@ impl Simulation {
     /// Force of each rod in the last accepted sub-step, newtons, tension positive, in the order of the edges:
     /// the multiplier of its length equation times its length.
     ///
-    /// `None` where the method does not solve for these forces: in charts, for sheets without rigid rods
-    /// (elastic ones, and those that are isometric in weak form) and in projection
+    /// `None` where the method does not solve for these forces: in charts, for elastic
+    /// sheets and in projection
     /// ([`Method::solves_for_rod_forces`]).
     ///
     /// | method | the forces are those |

@@ -48,11 +48,8 @@ pub enum SimulationError {
         /// Place in the order in which the constraints were added.
         index: usize,
     },
-    /// An elastic sheet, or one that is isometric in weak form, is in a scene of a method that needs rods.
-    #[error(
-        "the sheet has no rigid rods (it is elastic, or isometric in weak form), and the method \
-         needs them"
-    )]
+    /// An elastic sheet is in a scene of a method that needs rods.
+    #[error("the sheet has no rigid rods (it is elastic), and the method needs them")]
     Elastic,
     /// The checkpoint does not belong to the model or cannot be resumed this way.
     #[error(transparent)]

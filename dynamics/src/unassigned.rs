@@ -141,7 +141,7 @@ impl UnassignedMomentum {
     /// A factorisation for each entry. Where the linear algebra fails the entry is left out.
     pub(crate) fn shares(&self, model: &SheetModel, t: f64) -> Shares {
         let (n, edges) = (model.coordinate_count(), model.rods().len());
-        let (isometry, m) = (model.isometry_rows(), model.isometry_rows().len());
+        let rods = model.rods();
         let mut shares = Shares {
             pins: vec![0.0; n],
             loads: vec![(Vector3::zeros(), Vector3::zeros()); model.constraints().len()],
@@ -155,8 +155,7 @@ impl UnassignedMomentum {
         let mut rows = VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0);
         let (along, transverse) = (penalties(model, PENALTY), vec![0.0; edges]);
         let (mut left, mut answer) = (vec![0.0; n], vec![0.0; n]);
-        let (mut tension, mut change) = (vec![0.0; m], vec![0.0; m]);
-        let mut density = vec![0.0; edges];
+        let (mut tension, mut change) = (vec![0.0; edges], vec![0.0; edges]);
         for Entry {
             x,
             active,
@@ -175,7 +174,7 @@ impl UnassignedMomentum {
             let mut goal = None;
             for _ in 0..=MAX_PASSES {
                 left.copy_from_slice(momentum);
-                isometry.apply_transpose_add(x, &tension, &mut density, &mut left);
+                rods.apply_transpose_add(x, &tension, &mut left);
                 rows.apply_transpose_add(&rows.multipliers, &mut left);
                 let mut free = left.clone();
                 model.clear_pinned(&mut free);
@@ -184,7 +183,7 @@ impl UnassignedMomentum {
                     break;
                 }
                 matrix.solve(model, &free, &mut answer);
-                isometry.apply(x, &answer, &mut change);
+                rods.apply(x, &answer, &mut change);
                 for ((w, c), p) in tension.iter_mut().zip(&change).zip(&along) {
                     *w -= p * c;
                 }

@@ -24,4 +24,3 @@ mod scenes;
 mod statics;
 mod stress;
 mod watch;
-mod weak;

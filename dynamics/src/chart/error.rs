@@ -86,10 +86,8 @@ pub enum ChartDynamicsError {
         /// The vertex.
         vertex: VertexId,
     },
-    /// The sheet is elastic, or isometric in weak form.
-    #[error(
-        "the sheet has no rigid rods (it is elastic, or isometric in weak form), and charts need them"
-    )]
+    /// The sheet is elastic.
+    #[error("the sheet has no rigid rods (it is elastic), and charts need them")]
     Elastic,
     /// A one-sided constraint makes no closure equation.
     #[error("vertex constraint {index} is one-sided, and a chart takes two-sided constraints only")]

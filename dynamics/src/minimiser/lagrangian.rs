@@ -4,13 +4,12 @@ use super::problem::StepProblem;
 use crate::constraint::rows::{HessianPart, VertexRows};
 use crate::contact::StepSpan;
 use crate::effort::SolverEffort;
-use crate::isometry_rows::RowScale;
 use crate::iterate::Iterate;
 use crate::model::PINNED;
 use crate::multipliers::{LinearisedRows, MultiplierGoal, MultiplierSolver};
 use crate::primal::{PrimalMatrix, dot, penalties};
 use crate::report::StepError;
-use crate::{HessianSink, Isometry, SheetModel};
+use crate::{HessianSink, SheetModel};
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector3};
@@ -39,8 +38,7 @@ const POSITION_OPERATIONS: f64 = 64.0;
 /// ```
 ///
 /// with the multipliers `L_e` of the rods (`h^2` times force densities, tension positive) and penalties
-/// `r_e`. In weak form the equations of [`IsometryRows`](crate::isometry_rows::IsometryRows) take the place
-/// of those of the rods.
+/// `r_e`.
 pub(crate) struct Lagrangian {
     pub(super) iterate: Iterate,
     pub(super) matrix: PrimalMatrix,
@@ -51,16 +49,12 @@ pub(crate) struct Lagrangian {
     pub(super) vertex_rows: VertexRows,
     /// Penalties `r_e` of equations as stiff as the masses.
     unit_penalty: Vec<f64>,
-    /// Sizes of the equations.
-    pub(super) scales: Vec<RowScale>,
     /// How many times as stiff as the masses rods are in the value.
     stiffness: f64,
     /// Length errors `c_e` at the last evaluation, square metres.
     pub(super) c: Vec<f64>,
     /// `L_e + r_e c_e` at the last gradient.
     estimates: Vec<f64>,
-    /// Force densities of the edges by these.
-    pub(super) density: Vec<f64>,
     pub(super) gradient: Vec<f64>,
     /// Conservative forces without contact at the last gradient, newtons.
     pub(super) force: Vec<f64>,
@@ -81,8 +75,6 @@ pub(crate) struct Lagrangian {
     /// The step before its second-order correction.
     pub(super) uncorrected: Vec<f64>,
     pub(super) weighted: Vec<f64>,
-    /// Changes of length errors, for linearised constraints.
-    pub(super) change: Vec<f64>,
 }
 
 /// Adds the product of a Hessian and a vector to another vector.
@@ -193,8 +185,7 @@ pub(super) enum RodLoad {
 
 impl Lagrangian {
     pub(super) fn new(model: &SheetModel) -> Result<Self, LinalgError> {
-        let (n, edges) = (model.coordinate_count(), model.rods().len());
-        let m = model.isometry_rows().len();
+        let (n, m) = (model.coordinate_count(), model.rods().len());
         let vertices = model.constrained_vertices();
         Ok(Self {
             iterate: Iterate::new(n),
@@ -204,11 +195,9 @@ impl Lagrangian {
             solver: MultiplierSolver::new(model),
             vertex_rows: VertexRows::new(model.constraints(), vertices, 1.0),
             unit_penalty: penalties(model, 1.0),
-            scales: model.isometry_rows().scales(),
             stiffness: 1.0,
             c: vec![0.0; m],
             estimates: vec![0.0; m],
-            density: vec![0.0; edges],
             gradient: vec![0.0; n],
             force: vec![0.0; n],
             force_at: Evaluated::new(n),
@@ -218,11 +207,10 @@ impl Lagrangian {
             start: vec![0.0; n],
             end: vec![0.0; n],
             axial: vec![0.0; m],
-            transverse: vec![0.0; edges],
+            transverse: vec![0.0; m],
             difference: vec![0.0; n],
             uncorrected: vec![0.0; n],
             weighted: vec![0.0; n],
-            change: vec![0.0; m],
         })
     }
 
@@ -270,17 +258,17 @@ impl Lagrangian {
         }
         let inertia = model.kinetic_energy(&self.difference);
         let work = dot(problem.applied, &self.difference);
-        model.isometry_rows().residual_into(x, &mut self.c);
+        model.rods().residual_into(x, &mut self.c);
         self.vertex_rows.evaluate(model.constraints(), t, x);
         let size = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         // Round-off of c is that of the squared lengths; and where inertia alone has the right lengths
         // already, nothing but the round-off of the positions is left to minimise.
         let (mut rods, mut rod_scale, mut squares) = (0.0, 0.0, 0.0);
-        for (e, scale) in self.scales.iter().enumerate() {
+        for (e, l) in model.rods().lengths().iter().enumerate() {
             let (m, p, c) = (self.multipliers[e], self.penalty(e), self.c[e]);
             rods += (m + 0.5 * p * c) * c;
-            rod_scale += m.abs() * scale.size;
-            squares += p * (f64::EPSILON * (scale.slope * size + scale.size)).powi(2);
+            rod_scale += m.abs() * (l * l);
+            squares += p * (f64::EPSILON * (l * size + l * l)).powi(2);
         }
         rods += self.vertex_rows.value();
         let (vertex_scale, vertex_squares) = self.vertex_rows.scales(size);
@@ -307,17 +295,6 @@ impl Lagrangian {
         }
     }
 
-    /// `L . (c - c_0)` with the equations `c_0` at the start of the step and `c` at the iterate: by how much
-    /// their errors alone change the incremental potential, to first order.
-    pub(super) fn multiplier_work(&mut self, problem: &StepProblem<'_>) -> f64 {
-        let rows = problem.model.isometry_rows();
-        rows.residual_into(&problem.state.x, &mut self.change);
-        rows.residual_into(self.iterate.x(), &mut self.c);
-        let errors = self.c.iter().zip(&self.change);
-        let terms = self.multipliers.iter().zip(errors);
-        terms.map(|(m, (c, c_0))| m * (c - c_0)).sum()
-    }
-
     /// Sets the gradient at the iterate, whose constraints have to be current. While bodies or pins move,
     /// with what the rest of their motions will change the gradient by, to first order.
     pub(super) fn set_gradient(&mut self, problem: &StepProblem<'_>) {
@@ -336,8 +313,8 @@ impl Lagrangian {
         for e in 0..self.c.len() {
             self.estimates[e] = self.multipliers[e] + self.penalty(e) * self.c[e];
         }
-        let rows = model.isometry_rows();
-        rows.apply_transpose_add(x, &self.estimates, &mut self.density, &mut self.gradient);
+        let rods = model.rods();
+        rods.apply_transpose_add(x, &self.estimates, &mut self.gradient);
         self.vertex_rows.add_gradient(&mut self.gradient);
         if let Some(terms) = self.iterate.terms(problem.contact()) {
             terms.add_gradient(h * h, &mut self.gradient);
@@ -348,31 +325,11 @@ impl Lagrangian {
         model.clear_pinned(&mut self.gradient);
     }
 
-    /// Adds what the penalties of the equations in weak form change the gradient by along the motions to come
-    /// of pins, to first order.
-    fn add_weak_drive(&mut self, model: &SheetModel) {
-        let (rows, x) = (model.isometry_rows(), self.iterate.x());
-        self.weighted.fill(0.0);
-        for v in model.moving_pins() {
-            for i in 3 * v..3 * v + 3 {
-                self.weighted[i] = self.end[i] - x[i];
-            }
-        }
-        rows.apply(x, &self.weighted, &mut self.change);
-        for (e, change) in self.change.iter_mut().enumerate() {
-            *change *= self.stiffness * self.unit_penalty[e];
-        }
-        rows.apply_transpose_add(x, &self.change, &mut self.transverse, &mut self.gradient);
-    }
-
     /// Adds the change of the gradient by the motions to come of bodies and pins, to first order.
     fn add_drive(&mut self, problem: &StepProblem<'_>) {
         let model = problem.model;
         if let Some(terms) = self.iterate.terms(problem.contact()) {
             terms.add_drive(problem.h * problem.h, &mut self.gradient);
-        }
-        if model.weak_rows().is_some() {
-            self.add_weak_drive(model);
         }
         let x = self.iterate.x();
         let free = model.free_index();
@@ -384,11 +341,8 @@ impl Lagrangian {
             };
             let at = |x: &[f64], v: usize| Vector3::new(x[3 * v], x[3 * v + 1], x[3 * v + 2]);
             let (d, u) = (at(x, end) - at(x, pin), at(&self.end, pin) - at(x, pin));
-            let stretch = match model.isometry() {
-                Isometry::Weak => 0.0,
-                Isometry::Rods | Isometry::Elastic => self.penalty(e) * d.dot(&u),
-            };
-            let change = self.density[e] * u + stretch * d;
+            let stretch = self.penalty(e) * d.dot(&u);
+            let change = self.estimates[e] * u + stretch * d;
             for k in 0..3 {
                 self.gradient[3 * end + k] -= change[k];
             }
@@ -446,11 +400,8 @@ impl Lagrangian {
             self.axial[e] = self.penalty(e);
         }
         match load {
-            RodLoad::Multipliers => {
-                let rows = problem.model.isometry_rows();
-                rows.densities_into(&self.multipliers, &mut self.transverse);
-            }
-            RodLoad::Estimates => self.transverse.copy_from_slice(&self.density),
+            RodLoad::Multipliers => self.transverse.copy_from_slice(&self.multipliers),
+            RodLoad::Estimates => self.transverse.copy_from_slice(&self.estimates),
         }
         if part == HessianPart::Full {
             count()?;
@@ -477,9 +428,9 @@ impl Lagrangian {
 
     /// Replaces each rod's own Hessian, with eigenvalues `p` across and `p + r |d|^2` along the rod, by its
     /// positive semidefinite part. (With multipliers far from the estimates the part along the rod stays as
-    /// it is, and so it does in weak form.)
+    /// it is.)
     fn project_rods(&mut self, model: &SheetModel, load: RodLoad) {
-        let along = load == RodLoad::Estimates && model.weak_rows().is_none();
+        let along = load == RodLoad::Estimates;
         for e in 0..self.transverse.len() {
             if self.transverse[e] < 0.0 {
                 if along {
@@ -543,7 +494,6 @@ impl Lagrangian {
             matrix: &mut self.matrix,
             x: self.iterate.x(),
             values: &self.c,
-            scales: &self.scales,
             stiffness: self.stiffness,
             unit_penalty: &self.unit_penalty,
         };
@@ -656,7 +606,7 @@ impl Lagrangian {
     /// modified one.
     ///
     /// Factorising the Hessian `H` took out `N`, the pressure of the rods: `d^T N d` is the sum of
-    /// `max(-density, 0) |d_a - d_b|^2` over the rods. The curvature `d^T H d` is negative where the Rayleigh
+    /// `max(-(L + r c), 0) |d_a - d_b|^2` over the rods. The curvature `d^T H d` is negative where the Rayleigh
     /// quotient of `N` and `H + N` exceeds one. Power iterations that start from the direction that belongs
     /// to `seed` find the largest quotient.
     pub(super) fn leave_saddle(
@@ -729,7 +679,7 @@ impl Lagrangian {
     fn apply_pressure(&mut self, model: &SheetModel) {
         self.weighted.fill(0.0);
         for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
-            let pressure = (-self.density[e]).max(0.0);
+            let pressure = (-self.estimates[e]).max(0.0);
             for k in 0..3 {
                 let w = pressure * (self.dx[3 * a + k] - self.dx[3 * b + k]);
                 self.weighted[3 * a + k] += w;

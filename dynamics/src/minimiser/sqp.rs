@@ -3,7 +3,6 @@
 use super::lagrangian::{Definiteness, Merit, RodLoad};
 use super::problem::StepProblem;
 use super::{LengthGoal, Minimiser, Strategy};
-use crate::Isometry;
 use crate::constraint::rows::HessianPart;
 use crate::effort::SolverEffort;
 use crate::multipliers::MultiplierGoal;
@@ -25,15 +24,9 @@ const LONGEST_ITERATION: f64 = 3.0;
 /// lies flat, have a few eigenvalues each of which takes an iteration. With none, clamped strips of nearly
 /// dependent rods need three to ten times the factorisations; 6 and 16 differ by less than a tenth.
 const MULTIPLIER_ITERATIONS: usize = 8;
-/// The same for isometry in weak form. Its equations are independent, but condition numbers are those of an
-/// elastic plate in its plane: a strip of 4 x 64 squares needs 2 to 10 factorisations a step, and with 8
-/// iterations up to 50.
-const WEAK_MULTIPLIER_ITERATIONS: usize = 30;
 /// Change of the multipliers, relative to the largest, from which an iteration is not worth its solve. With
 /// 1e-3 a sheet at rest on a table needs three times as many steps.
 const MULTIPLIERS_SETTLED: f64 = 1e-4;
-/// The same for isometry in weak form.
-const WEAK_MULTIPLIERS_SETTLED: f64 = 1e-8;
 /// Passes in which the multipliers of vertex constraints follow those of the isometry.
 const CONSTRAINT_PASSES: usize = 4;
 /// Part of [`ImplicitOptions::max_iterations`](crate::ImplicitOptions::max_iterations) that is the largest
@@ -48,10 +41,6 @@ const ITERATE_STRAIN: f64 = 1e-2;
 /// The same in contact, which cuts the long first iterations that would go far: a disk of 688 vertices on a
 /// ball needs 18.3 factorisations a step, 19.5 with 0.03 and 21.4 with 0.01.
 const ITERATE_STRAIN_IN_CONTACT: f64 = 1e-1;
-/// The same for sheets that are isometric in weak form, whose equations stay independent as far from their
-/// solutions: a hanging sheet of 2000 triangles needs 5.9 factorisations for each step of 1/60 s, and with
-/// 1e-2 6.6.
-const WEAK_ITERATE_STRAIN: f64 = 1e-1;
 /// Number of iterations after which decreases of the size of length errors are noise. Where there are finite
 /// multipliers, Newton's method has converged by then, and small motions of taut sheets are below that size.
 /// Where there are none, the last decreases only fall as the inverse of the number of iterations.
@@ -136,29 +125,23 @@ impl<'a, 'b, 'w> Sqp<'a, 'b, 'w> {
         // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that
         // mends lengths against the barrier.
         let steps = minimiser.options.max_iterations;
-        let iterate_strain = match problem.model.isometry() {
-            Isometry::Weak => WEAK_ITERATE_STRAIN,
-            _ if problem.has_contact() => ITERATE_STRAIN_IN_CONTACT,
-            Isometry::Rods | Isometry::Elastic => ITERATE_STRAIN,
-        };
         let limits = if problem.has_contact() {
             Limits {
-                iterate_strain,
+                iterate_strain: ITERATE_STRAIN_IN_CONTACT,
                 steps: steps.div_ceil(FEW),
                 halvings: MAX_HALVINGS_IN_CONTACT,
                 merit_stiffness: 0.0,
             }
         } else {
             Limits {
-                iterate_strain,
+                iterate_strain: ITERATE_STRAIN,
                 steps,
                 halvings: MAX_HALVINGS,
                 merit_stiffness: minimiser.options.stiffness,
             }
         };
-        // Contact is not kept to round-off, and the equations of the weak form have large condition numbers.
-        let has_soft_start = problem.model.isometry() == Isometry::Rods && !problem.has_contact();
-        let first = STIFFNESS[usize::from(!has_soft_start)];
+        // Contact is not kept to round-off.
+        let first = STIFFNESS[usize::from(problem.has_contact())];
         minimiser.rod_stiffness = minimiser.rod_stiffness.max(first);
         Self {
             minimiser,
@@ -228,16 +211,12 @@ impl<'a, 'b, 'w> Sqp<'a, 'b, 'w> {
     }
 
     /// Starts at the positions at the start of the step or, where supports have moved on without contact, at
-    /// the prediction if its merit is lower. Without contact an isometry in weak form starts at the
-    /// prediction: its equations are independent there, too, and hanging sheets need two thirds of the
-    /// factorisations.
+    /// the prediction if its merit is lower.
     fn choose_start(&mut self) {
         let stiffness = self.minimiser.options.stiffness;
         let lagrangian = &mut self.minimiser.lagrangian;
         if self.problem.has_contact() {
             // The prediction may be beyond an obstacle.
-        } else if self.problem.model.isometry() == Isometry::Weak {
-            lagrangian.predict(self.problem);
         } else if self.problem.model.has_drives() {
             lagrangian.set_stiffness(stiffness, stiffness);
             lagrangian.place_pins(self.problem);
@@ -326,19 +305,11 @@ impl<'a, 'b, 'w> Sqp<'a, 'b, 'w> {
     /// When the multipliers of a step are good enough: once the linearised lengths are within the tolerance.
     fn multiplier_goal(&self) -> MultiplierGoal {
         let violation = self.minimiser.strain_tolerance(self.problem);
-        match self.problem.model.isometry() {
-            Isometry::Weak => MultiplierGoal {
-                max_iterations: WEAK_MULTIPLIER_ITERATIONS,
-                violation,
-                change: WEAK_MULTIPLIERS_SETTLED,
-                longest: f64::INFINITY,
-            },
-            Isometry::Rods | Isometry::Elastic => MultiplierGoal {
-                max_iterations: MULTIPLIER_ITERATIONS,
-                violation,
-                change: MULTIPLIERS_SETTLED,
-                longest: LONGEST_ITERATION,
-            },
+        MultiplierGoal {
+            max_iterations: MULTIPLIER_ITERATIONS,
+            violation,
+            change: MULTIPLIERS_SETTLED,
+            longest: LONGEST_ITERATION,
         }
     }
 

@@ -236,7 +236,7 @@ impl SheetModel {
     /// Free vertices that rods to pins at rest hold in place at positions `x` (`3V`, metres): those with three
     /// fixed neighbours that are not on a line, those on straight lines of rods between fixed vertices, and
     /// those at the end of such a line which could only turn about other fixed ones. Not all are found; flat
-    /// patches may be immobile as a whole. Empty for elastic sheets and in weak form.
+    /// patches may be immobile as a whole. Empty for elastic sheets.
     ///
     /// # Panics
     /// If the length of `x` is not three times the number of vertices.

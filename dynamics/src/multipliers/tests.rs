@@ -39,20 +39,19 @@ fn solve(
     let mut matrix = PrimalMatrix::new(model).unwrap();
     matrix.assemble(model, x, &axial, &vec![0.0; edges]);
     matrix.factorize().unwrap();
-    let rows = model.isometry_rows();
+    let rods = model.rods();
     let weighted: Vec<f64> = axial.iter().zip(values).map(|(r, c)| r * c).collect();
     let mut right = force.to_vec();
-    rows.apply_transpose_add(x, &weighted, &mut vec![0.0; edges], &mut right);
+    rods.apply_transpose_add(x, &weighted, &mut right);
     model.clear_pinned(&mut right);
     let mut dx = vec![0.0; x.len()];
     matrix.solve(model, &right, &mut dx);
-    let mut multipliers = vec![0.0; rows.len()];
+    let mut multipliers = vec![0.0; rods.len()];
     let mut system = LinearisedRows {
         model,
         matrix: &mut matrix,
         x,
         values,
-        scales: &rows.scales(),
         stiffness,
         unit_penalty: &unit_penalty,
     };
@@ -79,15 +78,14 @@ fn residuals(
     (force, values): (&[f64], &[f64]),
     outcome: &Outcome,
 ) -> [f64; 2] {
-    let rows = model.isometry_rows();
+    let rods = model.rods();
     let mut balance = vec![0.0; x.len()];
     model.apply_mass(&outcome.dx, &mut balance);
     let down: Vec<f64> = outcome.multipliers.iter().map(|l| -l).collect();
-    let mut density = vec![0.0; model.rods().len()];
-    rows.apply_transpose_add(x, &down, &mut density, &mut balance);
+    rods.apply_transpose_add(x, &down, &mut balance);
     model.clear_pinned(&mut balance);
-    let mut change = vec![0.0; rows.len()];
-    rows.apply(x, &outcome.dx, &mut change);
+    let mut change = vec![0.0; rods.len()];
+    rods.apply(x, &outcome.dx, &mut change);
     [apart(&balance, force), apart(&change, values)]
 }
 
@@ -98,9 +96,9 @@ fn load(model: &SheetModel, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let (mut force, mut displacement): (Vec<f64>, Vec<f64>) = (wave(2.3), wave(0.7));
     model.clear_pinned(&mut force);
     model.clear_pinned(&mut displacement);
-    let rows = model.isometry_rows();
-    let mut values = vec![0.0; rows.len()];
-    rows.apply(x, &displacement, &mut values);
+    let rods = model.rods();
+    let mut values = vec![0.0; rods.len()];
+    rods.apply(x, &displacement, &mut values);
     (force, values)
 }
 

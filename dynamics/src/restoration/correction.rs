@@ -34,7 +34,7 @@ impl Restoration {
         iterate: &mut Iterate,
         target: f64,
     ) {
-        let rows = model.isometry_rows();
+        let rods = model.rods();
         let mut strain = self.worst(model, iterate.x());
         for _ in 0..MAX_CORRECTIONS {
             if strain <= target || strain.is_nan() {
@@ -51,7 +51,7 @@ impl Restoration {
                 *w = -r * c;
             }
             self.rhs.fill(0.0);
-            rows.apply_transpose_add(linearisation.x, &self.w, &mut self.density, &mut self.rhs);
+            rods.apply_transpose_add(linearisation.x, &self.w, &mut self.rhs);
             matrix.solve(model, &self.rhs, &mut self.dx);
             self.start.copy_from_slice(iterate.x());
             self.keep_contact_forces(contact.as_deref(), iterate);

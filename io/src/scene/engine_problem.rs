@@ -146,7 +146,7 @@ impl Origins {
                 "shorten the motion, or end there with `method.taut = \"stop\"`",
             ),
             StepError::Body(error) => return of_body_motion(error),
-            StepError::OffConstraints { .. } | StepError::OffWeakIsometry { .. } => (
+            StepError::OffConstraints { .. } => (
                 root.name("sheet.start"),
                 "the positions at the start need the rest lengths of `sheet.mesh`",
             ),

@@ -115,8 +115,7 @@ impl Default for Method {
 }
 
 impl Integrator {
-    /// Whether steps are minima of an incremental potential: then contact and elastic sheets have a
-    /// place.
+    /// Whether steps are minima of an incremental potential: then contact and elastic sheets have a place.
     pub(crate) fn is_minimising(self) -> bool {
         matches!(self, Self::Bdf2 | Self::ImplicitEuler)
     }

@@ -183,8 +183,8 @@ fn table(all: &[Buckled], plan: &Plan, halvings: usize) -> Table {
 }
 
 /// How far the critical load is from the reference, relative: of rods the nearest load between both
-/// bounds, of the others the load of the plate, see [`ABOUT`]. (Membranes and equations in weak form do
-/// not resist the first small twist: strains are quadratic in it.)
+/// bounds, of the others the load of the plate, see [`ABOUT`]. (Membranes do not resist the first
+/// small twist: strains are quadratic in it.)
 fn error(b: &Buckled) -> Option<f64> {
     let ([low, high], load) = (bounds(), b.measured.middle()?);
     let reference = match b.isometry {

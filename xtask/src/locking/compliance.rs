@@ -1,8 +1,7 @@
-//! How elastic sheets approach rigid rods, and elastic and weakly isometric ones the inextensible strip, as
-//! their membrane becomes stiffer.
+//! How elastic sheets approach rigid rods and the inextensible strip, as their membrane becomes stiffer.
 
 use super::cantilever;
-use super::isometry::{Material, PAPER, PAPER_RIGIDITY, elastic, rods, weak};
+use super::isometry::{Material, PAPER, PAPER_RIGIDITY, elastic, rods};
 use super::meshes::Pattern;
 use super::records::Records;
 use super::scene::{End, Scene};
@@ -20,8 +19,7 @@ pub(super) const ABOUT: &str = "Elastic sheets with the membrane stiffness E h f
     swings in gravity for 0.2 s from a tilted position; rods can move here, and are the limit: the error is the largest distance of a vertex from the \
     same run with rods. Heavy elastica: the strip of that yardstick with D = 5e-4 N m, on meshes without rods that run; the error is the relative one of the \
     drop of the tip against the exact inextensible strip. It is the sum of the mesh's own error, of the stretch, which is proportional to the compliance 1 / (E h), and of \
-    locking, which grows with the stiffness. The elastica is measured with isometry in weak form, too, with its equations beside a membrane \
-    of the same stiffness (on ladders, which have no interior vertices, these equations are the lengths of rods).";
+    locking, which grows with the stiffness.";
 
 /// Membrane stiffnesses, newtons per metre.
 const STIFFNESSES: [f64; 9] = [1e3, 3e3, 1e4, 3e4, 1e5, 3e5, 1e6, 3e6, 1e7];
@@ -48,38 +46,22 @@ const TOLERANCE: f64 = 1e-12;
 /// Distances below this are those of the tolerance, metres.
 const FLOOR: f64 = 1e-9;
 
-/// What a membrane is the stiffness of.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-enum Form {
-    Elastic,
-    /// The sheet is isometric in weak form, and the membrane has Poisson's ratio zero.
-    Weak,
-}
-
 /// What moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Problem {
     /// A ladder of so many squares.
     Ladder(usize),
     /// The heavy elastica on the mesh of this number, with so many squares across.
-    Elastica {
-        form: Form,
-        mesh: usize,
-        across: usize,
-    },
+    Elastica { mesh: usize, across: usize },
 }
 
 impl Problem {
     fn name(self) -> String {
         match self {
             Self::Ladder(squares) => format!("ladder of {squares} squares"),
-            Self::Elastica { form, mesh, across } => {
+            Self::Elastica { mesh, across } => {
                 let (pattern, degrees) = MESHES[mesh];
-                let form = match form {
-                    Form::Elastic => "elastic",
-                    Form::Weak => "weak",
-                };
-                format!("elastica, {form}, {pattern} {degrees}°, {across} squares across")
+                format!("elastica, {pattern} {degrees}°, {across} squares across")
             }
         }
     }
@@ -88,9 +70,7 @@ impl Problem {
     fn measure(self, stiffness: f64, plan: &Plan) -> Result<Run> {
         let (course, error) = match self {
             Self::Ladder(squares) => ladder_error(squares, stiffness, plan)?,
-            Self::Elastica { form, mesh, across } => {
-                elastica_error(form, (mesh, across), stiffness, plan)?
-            }
+            Self::Elastica { mesh, across } => elastica_error((mesh, across), stiffness, plan)?,
         };
         Ok(Run {
             problem: self,
@@ -152,7 +132,6 @@ fn ladder_error(squares: usize, stiffness: f64, plan: &Plan) -> Result<(Course, 
 }
 
 fn elastica_error(
-    form: Form,
     (mesh, across): (usize, usize),
     stiffness: f64,
     plan: &Plan,
@@ -161,10 +140,7 @@ fn elastica_error(
     let sheet = cantilever::STRIP.mesh(pattern, across, degrees)?;
     let clamp = cantilever::STRIP.clamp(&sheet);
     let material = Material::plate(&sheet, cantilever::DENSITY, PAPER_RIGIDITY, &clamp);
-    let model = match form {
-        Form::Elastic => elastic(&sheet, material, (stiffness, PAPER.1))?,
-        Form::Weak => weak(&sheet, material, stiffness)?,
-    };
+    let model = elastic(&sheet, material, (stiffness, PAPER.1))?;
     let (course, end) = cantilever::scene(&sheet, model)?.run(plan)?;
     let exact = cantilever::exact_drop(PAPER_RIGIDITY);
     let error = (cantilever::drop(&sheet, &end) / exact - 1.0).abs();
@@ -179,11 +155,9 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
     let stiffnesses: &[f64] = effort.quick_or(&[1e4, 1e6], &STIFFNESSES);
     let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
     let mut problems: Vec<Problem> = LADDERS.map(Problem::Ladder).to_vec();
-    for form in [Form::Elastic, Form::Weak] {
-        for &across in sizes {
-            let elastica = |mesh| Problem::Elastica { form, mesh, across };
-            problems.extend((0..MESHES.len()).map(elastica));
-        }
+    for &across in sizes {
+        let elastica = |mesh| Problem::Elastica { mesh, across };
+        problems.extend((0..MESHES.len()).map(elastica));
     }
     let jobs: Vec<(Problem, f64)> = problems
         .iter()
@@ -243,8 +217,7 @@ fn orders(all: &[Run], problems: &[Problem]) -> Table {
     .named("compliance")
 }
 
-/// The errors against the compliance: the ladders and the elastic elastica on meshes of every size in the
-/// first row, the elastica in weak form in the second.
+/// The errors against the compliance: the ladders and the elastica on meshes of every size.
 fn plot(all: &[Run], sizes: &[usize]) -> Charts {
     let is_ladder = |r: &&Run| matches!(r.problem, Problem::Ladder(_));
     let ladder_errors = all.iter().filter(is_ladder).filter_map(|r| r.error);
@@ -252,25 +225,24 @@ fn plot(all: &[Run], sizes: &[usize]) -> Charts {
     let y = Axis::decades("relative error of the drop", errors);
     let of = LADDERS.map(|n| (Problem::Ladder(n), format!("ladder, {n} squares")));
     let distance = Axis::decades("distance from rods, m", ladder_errors);
-    let mut elastic = vec![panel((all, &of, 0), "Ladders", distance)];
-    let panels = |form: Form, name: &str, last: Legend| {
-        let of_size = |(k, &across): (usize, &usize)| {
-            let meshes = MESHES.iter().enumerate();
-            let named = |(mesh, (p, d)): (usize, &(Pattern, f64))| {
-                let problem = Problem::Elastica { form, mesh, across };
-                (problem, format!("{p}, {d}°"))
-            };
-            let of: Vec<(Problem, String)> = meshes.map(named).collect();
-            let is_last = k + 1 == sizes.len();
-            let legend = if is_last { last } else { Legend::None };
-            let title = format!("{name}, {across} squares across");
-            panel((all, &of, 3), &title, y.clone()).with_legend(legend)
+    let mut row = vec![panel((all, &of, 0), "Ladders", distance)];
+    let of_size = |(k, &across): (usize, &usize)| {
+        let meshes = MESHES.iter().enumerate();
+        let named = |(mesh, (p, d)): (usize, &(Pattern, f64))| {
+            let problem = Problem::Elastica { mesh, across };
+            (problem, format!("{p}, {d}°"))
         };
-        sizes.iter().enumerate().map(of_size).collect::<Vec<_>>()
+        let of: Vec<(Problem, String)> = meshes.map(named).collect();
+        let legend = if k + 1 == sizes.len() {
+            Legend::Right
+        } else {
+            Legend::None
+        };
+        let title = format!("Elastica, {across} squares across");
+        panel((all, &of, 3), &title, y.clone()).with_legend(legend)
     };
-    elastic.extend(panels(Form::Elastic, "Elastica, elastic", Legend::Right));
-    let weak = panels(Form::Weak, "Elastica, weak", Legend::None);
-    Charts(vec![elastic, weak])
+    row.extend(sizes.iter().enumerate().map(of_size));
+    Charts(vec![row])
 }
 
 /// Some problems with their names, in the styles from the given number on. Guides: the first order for
@@ -318,24 +290,5 @@ mod tests {
         let all = [1e4, 1e5, 1e6].map(run);
         let power = order(&points(&all, Problem::Ladder(3)), FLOOR).unwrap();
         assert!((power - 1.0).abs() < 0.05, "{power}");
-    }
-
-    /// The faces of a ladder form a strip without interior vertices: as many independent equations in weak
-    /// form as rods, all of which are met by the lengths of the rods alone.
-    #[test]
-    fn weak_equations_of_a_ladder_hold_its_lengths() {
-        let sheet = generate::ladder(5, 0.1, 0.1).unwrap();
-        let material = Material::limp(MASS);
-        let model = weak(&sheet, material, 1.0)
-            .unwrap()
-            .with_acceleration([0.0, -9.8, 0.0])
-            .with_pins(&[VertexId(0), VertexId(1)])
-            .unwrap();
-        let plan = Plan::new(STEP, DURATION).within(60.0);
-        let method = Method::ImplicitEuler(ImplicitOptions::default());
-        let scene = Scene::flat(model, &sheet).from(tilted(&sheet)).by(method);
-        let (course, _) = scene.run(&plan).unwrap();
-        assert!(course.is_good() && course.violation <= 1e-12);
-        assert!(course.strain < 1e-10, "{}", course.strain);
     }
 }

@@ -3,7 +3,7 @@
 use crate::draw::{Colour, palette};
 use anyhow::Result;
 use isosheet_dynamics::{
-    CreaseSprings, Membrane, PlateBending, Potential, SheetModel, WeakIsometry,
+    CreaseSprings, ElasticSheet, Membrane, PlateBending, Potential, SheetModel,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId};
 use serde::{Deserialize, Serialize};
@@ -23,12 +23,12 @@ pub(super) enum Isometry {
     /// The membrane of office paper, see [`Membrane`]; the bending stiffness of a plate, see
     /// [`PlateBending`].
     Paper,
-    /// A membrane of the stiffness [`WeakIsometry::stiffness_for`], which leaves bends free; the bending
-    /// stiffness of a plate.
+    /// A membrane of the stiffness `100 D / h^2` (`D`: flexural rigidity, `h^2`: twice the mean area of the
+    /// faces), which leaves bends free; the bending stiffness of a plate.
     Soft,
-    /// Two equations for each vertex and a membrane of that stiffness, see [`WeakIsometry`]; the bending
-    /// stiffness of a plate.
-    Weak,
+    /// Office paper that is softened as far as the mesh needs, with a limit of the strain, see
+    /// [`ElasticSheet`]; the bending stiffness of a plate.
+    Elastic,
 }
 
 /// Mass and bending stiffness of a sheet, and which vertices clamps fix.
@@ -68,18 +68,21 @@ impl<'a> Material<'a> {
 
 impl Isometry {
     /// The models that every table has rows for.
-    pub(super) const ALL: [Self; 4] = [Self::Rods, Self::Paper, Self::Soft, Self::Weak];
+    pub(super) const ALL: [Self; 4] = [Self::Rods, Self::Paper, Self::Soft, Self::Elastic];
 
     /// A sheet of a material, without weight and support. The membranes whose stiffness follows from the
     /// flexural rigidity have that of [`PAPER_RIGIDITY`] where there is none.
     pub(super) fn model(self, sheet: &Sheet, material: Material<'_>) -> Result<SheetModel> {
         let rigidity = material.rigidity.unwrap_or(PAPER_RIGIDITY);
-        let soft = WeakIsometry::stiffness_for(sheet, rigidity);
         match self {
             Self::Rods => rods(sheet, material),
             Self::Paper => elastic(sheet, material, PAPER),
-            Self::Soft => elastic(sheet, material, (soft, PAPER.1)),
-            Self::Weak => weak(sheet, material, soft),
+            Self::Soft => elastic(sheet, material, (soft(sheet, rigidity), PAPER.1)),
+            Self::Elastic => {
+                let elastic = ElasticSheet::new(sheet, PAPER.0, PAPER.1)?.softened(rigidity)?;
+                let model = SheetModel::new(sheet, material.mass, MassKind::Lumped)?;
+                with_plate(model.with_elastic_sheet(elastic)?, sheet, material)
+            }
         }
     }
 
@@ -103,7 +106,7 @@ impl Isometry {
             Self::Rods => palette::VERMILION,
             Self::Paper => palette::BLUE,
             Self::Soft => palette::GREEN,
-            Self::Weak => palette::PURPLE,
+            Self::Elastic => palette::PURPLE,
         }
     }
 
@@ -114,7 +117,7 @@ impl Isometry {
 
     /// Whether a step keeps equations of isometry to a tolerance.
     pub(super) fn has_equations(self) -> bool {
-        matches!(self, Self::Rods | Self::Weak)
+        self == Self::Rods
     }
 }
 
@@ -124,7 +127,7 @@ impl fmt::Display for Isometry {
             Self::Rods => "rods",
             Self::Paper => "elastic (paper)",
             Self::Soft => "elastic (soft)",
-            Self::Weak => "weak",
+            Self::Elastic => "elastic sheet",
         })
     }
 }
@@ -149,11 +152,10 @@ pub(super) fn elastic(
     with_plate(model, sheet, material)
 }
 
-/// A sheet that is isometric in weak form, with a membrane of the given stiffness, newtons per metre.
-pub(super) fn weak(sheet: &Sheet, material: Material<'_>, stiffness: f64) -> Result<SheetModel> {
-    let model = SheetModel::new(sheet, material.mass, MassKind::Lumped)?
-        .with_weak_isometry(WeakIsometry::new(sheet, stiffness)?)?;
-    with_plate(model, sheet, material)
+/// The stiffness of a soft membrane, see [`Isometry::Soft`].
+fn soft(sheet: &Sheet, rigidity: f64) -> f64 {
+    let squared = 2.0 * sheet.area() / sheet.topology().face_count() as f64;
+    100.0 * rigidity / squared
 }
 
 /// Adds the bending stiffness of a plate.
@@ -187,11 +189,9 @@ mod tests {
         let material = Material::plate(&sheet, 0.1, PAPER_RIGIDITY, &[]);
         let strain = 0.5 * (1.01 * 1.01 - 1.0);
         let soft = 100.0 * PAPER_RIGIDITY * 16.0;
-        for (isometry, stiffness, poisson) in [
-            (Isometry::Paper, 3e5, 0.3),
-            (Isometry::Soft, soft, 0.3),
-            (Isometry::Weak, soft, 0.0),
-        ] {
+        for (isometry, stiffness, poisson) in
+            [(Isometry::Paper, 3e5, 0.3), (Isometry::Soft, soft, 0.3)]
+        {
             let model = isometry.model(&sheet, material).unwrap();
             let known = 0.5 * stiffness / (1.0 - poisson * poisson) * strain * strain;
             let energy = model.potential_energy(0.0, &x);

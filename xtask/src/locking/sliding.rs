@@ -147,7 +147,7 @@ mod tests {
         let sheet = Pattern::UnionJack
             .rectangle([0.0; 2], [SIDE; 2], 0.5 * SIDE, 0.0)
             .unwrap();
-        for isometry in [Isometry::Rods, Isometry::Weak] {
+        for isometry in [Isometry::Rods, Isometry::Elastic] {
             let at = |tangent: f64| slides(isometry, &sheet, 0.3, tangent, &plan).unwrap();
             let (below, course) = at(0.25);
             assert!(matches!(below, Verdict::Below) && course.gap.is_some_and(|gap| gap > 0.0));

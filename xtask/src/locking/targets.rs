@@ -107,7 +107,10 @@ mod tests {
     fn models_have_columns_and_met_values_are_bold() {
         let pair = [
             ("y".into(), at_most(Isometry::Rods, "q", 2.0, &[Some(5.0)])),
-            ("y".into(), at_most(Isometry::Weak, "q", 2.0, &[Some(1.0)])),
+            (
+                "y".into(),
+                at_most(Isometry::Elastic, "q", 2.0, &[Some(1.0)]),
+            ),
         ];
         let text = by_model(&pair).text();
         let row: Vec<&str> = text.lines().last().unwrap().split_whitespace().collect();
@@ -127,8 +130,8 @@ mod tests {
         };
         let [good, loose] = [1e-13, 1e-11].map(|violation| run(violation, None));
         let (good, loose) = (&good, &loose);
-        assert_eq!(met(Isometry::Weak, &[good, good]), [true]);
-        assert_eq!(met(Isometry::Weak, &[good, loose, good]), [false]);
+        assert_eq!(met(Isometry::Rods, &[good, good]), [true]);
+        assert_eq!(met(Isometry::Rods, &[good, loose, good]), [false]);
         let [near, touching] = [1e-6, 0.0].map(|gap| run(1e-13, Some(gap)));
         let (near, touching) = (&near, &touching);
         assert_eq!(met(Isometry::Rods, &[near, good]), [true, true]);
