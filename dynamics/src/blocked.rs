@@ -244,8 +244,8 @@ mod tests {
         assert_eq!(blocked(&sheet, |_| 1.0).1, []);
         let (model, found) = blocked(&sheet, |p| p[0] + 0.4 * p[1] - 0.4);
         assert!(!found.is_empty());
-        let membrane = crate::Membrane::new(&sheet, 1e3, 0.3).unwrap();
-        let model = model.with_membrane(membrane);
+        let elasticity = crate::ElasticSheet::new(&sheet, 1e3, 0.3).unwrap();
+        let model = model.with_elastic_sheet(elasticity).unwrap();
         let state = State::at_rest(sheet.positions().to_vec());
         assert_eq!(blocked_vertices(&model, &state, STEP), []);
     }

@@ -163,8 +163,8 @@ mod tests {
             .collect();
         assert_eq!(model.clamps_across_the_mesh(&turned), found);
         // Elastic sheets bend along any line.
-        let membrane = crate::Membrane::new(&sheet, 1e3, 0.3).unwrap();
-        let elastic = model.with_membrane(membrane);
+        let elasticity = crate::ElasticSheet::new(&sheet, 1e3, 0.3).unwrap();
+        let elastic = model.with_elastic_sheet(elasticity).unwrap();
         assert_eq!(elastic.clamps_across_the_mesh(sheet.positions()), []);
     }
 }

@@ -94,7 +94,6 @@ mod layout;
 mod load;
 mod load_scale;
 mod material;
-mod membrane;
 mod method;
 mod minimiser;
 mod model;
@@ -133,7 +132,6 @@ pub use feasibility::Excess;
 pub use implicit::ImplicitOptions;
 pub use load::{AccelerationField, LoadError, VertexLoad};
 pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
-pub use membrane::{Membrane, MembraneError};
 pub use method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use model::{Isometry, ModelError, SheetModel};
 pub use motion::{

@@ -5,7 +5,6 @@ mod supports;
 use crate::State;
 use crate::constraint::VertexConstraint;
 use crate::elastic_sheet::{ElasticSheet, strain_barrier};
-use crate::membrane::Membrane;
 use crate::motion::MotionError;
 use crate::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
 use isosheet_mesh::wording::given;
@@ -196,19 +195,6 @@ impl SheetModel {
     pub fn with_potential(mut self, potential: impl Potential + 'static) -> Self {
         self.potentials.push(Box::new(potential));
         self
-    }
-
-    /// Replaces the rigid rods by an elastic membrane. Edges stretch as the material does; the reports tell
-    /// by how much. Sheets that rods would lock move, for the price of membrane locking on coarse meshes:
-    /// bends in a direction in which the mesh cannot fold stretch the sheet, which a stiff membrane resists
-    /// (see [`Membrane`]).
-    ///
-    /// For BDF2 and implicit Euler; other methods and charts are refused.
-    #[must_use]
-    pub fn with_membrane(mut self, membrane: Membrane) -> Self {
-        self.isometry = Isometry::Elastic;
-        self.elastic = None;
-        self.with_potential(membrane)
     }
 
     /// Replaces the rigid rods by the elasticity of the material with a limit of its strain, see [`ElasticSheet`].

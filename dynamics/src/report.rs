@@ -377,7 +377,7 @@ impl Advice for StepError {
             }
             Self::StepTooSmall { cause, .. } => cause.advice(),
             Self::Locked { .. } => Some(
-                "give the sheet the stiffness of its material (`SheetModel::with_membrane`), make a mesh with a line \
+                "give the sheet the stiffness of its material (`SheetModel::with_elastic_sheet`), make a mesh with a line \
                  of edges along each clamp, or allow more `StepControl::max_factorisations`",
             ),
             Self::Interrupted { .. } => {

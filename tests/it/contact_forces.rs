@@ -5,7 +5,7 @@ use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_coords::{CartesianChart, Choice, RodSystem};
 use isosheet_dynamics::chart::{ChartMethod, ChartOptions, ChartStepControl};
 use isosheet_dynamics::{
-    Checkpoint, ImplicitOptions, Membrane, Method, SheetModel, Simulation, State,
+    Checkpoint, ElasticSheet, ImplicitOptions, Method, SheetModel, Simulation, State,
 };
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
@@ -115,7 +115,8 @@ fn falling(is_elastic: bool, friction: f64, method: Method) -> Simulation {
     let model = SheetModel::new(&flat, MASS, MassKind::Lumped).expect("valid");
     let mut model = model.with_gravity();
     if is_elastic {
-        model = model.with_membrane(Membrane::new(&flat, 200.0, 0.3).expect("valid"));
+        let elasticity = ElasticSheet::new(&flat, 200.0, 0.3).expect("valid");
+        model = model.with_elastic_sheet(elasticity).expect("its own sheet");
     }
     let floor = Obstacle::fixed(Shape::HalfSpace, Isometry3::identity()).expect("valid");
     let ball = Shape::Sphere { radius: 0.05 };

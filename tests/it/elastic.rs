@@ -3,7 +3,7 @@
 use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_dynamics::constraint::{Plane, Side};
 use isosheet_dynamics::{
-    Checkpoint, CheckpointError, ImplicitOptions, Membrane, Method, PlateBending, SheetModel,
+    Checkpoint, CheckpointError, ElasticSheet, ImplicitOptions, Method, PlateBending, SheetModel,
     Simulation, SimulationError, State, VertexConstraint,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
@@ -26,7 +26,8 @@ fn paper(sheet: &Sheet, pins: &[VertexId]) -> SheetModel {
         .with_pins(pins)
         .expect("vertices of the sheet")
         .with_potential(PlateBending::clamped(sheet, 5e-3, pins).expect("rigidity"))
-        .with_membrane(Membrane::new(sheet, 3e5, 0.3).expect("stiffness"))
+        .with_elastic_sheet(ElasticSheet::new(sheet, 3e5, 0.3).expect("stiffness"))
+        .expect("its own sheet")
 }
 
 fn bits(x: &[f64]) -> Vec<u64> {
@@ -52,7 +53,8 @@ fn rigid_rods_are_the_limit_to_first_order_in_the_compliance() {
             .with_pins(&[VertexId(0), VertexId(1)])
             .expect("vertices");
         if let Some(k) = stiffness {
-            model = model.with_membrane(Membrane::new(&ladder, k, 0.0).expect("stiffness"));
+            let elasticity = ElasticSheet::new(&ladder, k, 0.0).expect("stiffness");
+            model = model.with_elastic_sheet(elasticity).expect("its own sheet");
         }
         let options = ImplicitOptions {
             tolerance: 1e-12,

@@ -99,7 +99,7 @@ fn sheets_that_lock_are_refused_with_a_remedy() {
     assert!(!vertices.is_empty());
     assert!(vertices.iter().all(|v| !run.model().is_pinned(*v)));
     let advice = error.advice().expect("there are other models");
-    assert!(advice.contains("with_membrane"), "{advice}");
+    assert!(advice.contains("with_elastic_sheet"), "{advice}");
 }
 
 /// So are sheets in a clamp that moves, and sheets above a floor; and a sheet that hangs taut by two opposite

@@ -1,6 +1,6 @@
 use crate::{
-    EnergyMomentumOptions, ImplicitOptions, Membrane, Method, ProjectionStepOptions, RattleOptions,
-    SheetModel, Simulation, State,
+    ElasticSheet, EnergyMomentumOptions, ImplicitOptions, Method, ProjectionStepOptions,
+    RattleOptions, SheetModel, Simulation, State,
 };
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 use nalgebra::Vector3;
@@ -186,8 +186,8 @@ fn there_are_no_forces_without_rods_or_multipliers() {
     let mut run = Simulation::new(model(&sheet, &pins), start(), projected).unwrap();
     run.step(1e-2).unwrap();
     assert_eq!(run.rod_forces(), None);
-    let membrane = Membrane::new(&sheet, 1e3, 0.3).unwrap();
-    let elastic = model(&sheet, &pins).with_membrane(membrane);
+    let elasticity = ElasticSheet::new(&sheet, 1e3, 0.3).unwrap();
+    let elastic = model(&sheet, &pins).with_elastic_sheet(elasticity).unwrap();
     let mut run = Simulation::new(elastic, start(), Method::default()).unwrap();
     run.step(1e-2).unwrap();
     assert_eq!(run.rod_forces(), None);

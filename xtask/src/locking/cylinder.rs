@@ -385,8 +385,8 @@ mod tests {
     fn an_aligned_sheet_has_energy_and_moment_of_the_cylinder() {
         let plan = Plan::new(STEP, 4.0).within(60.0).until_rest(REST);
         let job = (Pattern::UnionJack, 8, 0.0);
-        let (vertices, course, measured) = measure(Isometry::Soft, job, &plan).unwrap();
-        let isometry = Isometry::Soft;
+        let (vertices, course, measured) = measure(Isometry::Elastic, job, &plan).unwrap();
+        let isometry = Isometry::Elastic;
         let bent = Bent {
             isometry,
             job,

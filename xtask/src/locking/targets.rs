@@ -138,6 +138,6 @@ mod tests {
         assert_eq!(met(Isometry::Rods, &[near, touching]), [true, false]);
         // Elastic sheets have no equations.
         assert_eq!(met(Isometry::Paper, &[loose, near]), [true]);
-        assert!(met(Isometry::Soft, &[loose]).is_empty());
+        assert!(met(Isometry::Elastic, &[loose]).is_empty());
     }
 }
