@@ -8,7 +8,6 @@ use crate::motion::PointMotion;
 use crate::support::Support;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
-use std::collections::HashSet;
 
 /// A pinned vertex in prescribed motion.
 #[derive(Debug)]
@@ -228,9 +227,11 @@ impl SheetModel {
 
     /// Number of vertices that are pinned or have a constraint.
     pub(crate) fn supported_vertex_count(&self) -> usize {
-        let constrained = self.constraints.iter().map(VertexConstraint::vertex);
-        let vertices: HashSet<VertexId> = self.pins().into_iter().chain(constrained).collect();
-        vertices.len()
+        let constrained = |k: usize| self.constraints[k].vertex();
+        let is_first = |k: &usize| (0..*k).all(|earlier| constrained(earlier) != constrained(*k));
+        let others = (0..self.constraints.len()).filter(is_first);
+        let others = others.filter(|k| !self.is_pinned(constrained(*k)));
+        self.free_index.len() - self.free_count + others.count()
     }
 
     /// Free vertices that rods to pins at rest hold in place at positions `x` (`3V`, metres): those with three
