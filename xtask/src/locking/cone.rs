@@ -237,7 +237,7 @@ fn arcs(lifts: &[[f64; 2]], bound: f64) -> impl Iterator<Item = Arc> {
                 open = Some(Arc {
                     angle: width * (1.0 - part),
                     lift: high,
-                })
+                });
             }
             (true, _) => {
                 let arc = open.get_or_insert(Arc {
