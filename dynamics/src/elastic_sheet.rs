@@ -103,6 +103,8 @@ pub struct ElasticSheet {
     stiffness: f64,
     /// Flexural rigidity by which faces were softened, N m; zero if they were not.
     rigidity: f64,
+    /// Largest acceleration by constant forces, m/s2; zero before a simulation has started.
+    acceleration: f64,
     limit: StrainLimit,
 }
 
@@ -153,6 +155,7 @@ impl ElasticSheet {
             poisson,
             stiffness,
             rigidity: 0.0,
+            acceleration: 0.0,
             limit: StrainLimit::new(Self::LIMIT),
         };
         for face in &mut new.faces {
@@ -253,6 +256,11 @@ impl ElasticSheet {
         let worst = strains.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let is_within = worst.1 < self.limit();
         (!is_within).then_some((FaceId(worst.0 as u32), worst.1))
+    }
+
+    /// Sets the largest acceleration by constant forces, m/s2, which the barrier follows.
+    pub(crate) fn set_acceleration(&mut self, acceleration: f64) {
+        self.acceleration = acceleration;
     }
 
     /// Sets the stiffness `kappa` of the barrier, joules per square metre.

@@ -50,7 +50,7 @@ impl Engine {
         let fixed = immobile_vertices(&model, &state.x);
         model.fix(&fixed);
         model.clear_velocities(&fixed, &mut state.v);
-        model.raise_strain_barrier(&state);
+        model.set_strain_barrier(&state, None);
         Self::with_fixed(model, method, state, fixed)
     }
 
@@ -110,7 +110,7 @@ impl Engine {
         motion.check_numbers()?;
         let fixed: Vec<VertexId> = motion.fixed.iter().copied().map(VertexId).collect();
         model.fix(&fixed);
-        model.set_strain_barrier(motion.strain_barrier.unwrap_or(0.0));
+        model.set_strain_barrier(&motion.moment.state, motion.strain_barrier);
         motion.moment.balance.check(&model)?;
         check_energy(&model, &motion.moment.state)?;
         let state = motion.moment.state.clone();

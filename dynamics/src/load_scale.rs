@@ -45,7 +45,7 @@ pub(crate) fn constant_acceleration(model: &SheetModel, state: &State) -> Option
 }
 
 /// Largest norm of the vectors of the vertices.
-fn largest_norm(values: &[f64]) -> f64 {
+pub(crate) fn largest_norm(values: &[f64]) -> f64 {
     let vectors = values.as_chunks::<3>().0.iter();
     vectors
         .map(|v| Vector3::from(*v).norm())

@@ -5,6 +5,7 @@ mod supports;
 use crate::State;
 use crate::constraint::VertexConstraint;
 use crate::elastic_sheet::{ElasticSheet, strain_barrier};
+use crate::load_scale::LoadScale;
 use crate::motion::MotionError;
 use crate::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
 use isosheet_mesh::wording::given;
@@ -304,17 +305,26 @@ impl SheetModel {
         self.potentials.iter().map(Box::as_ref)
     }
 
-    /// Sets the stiffness of the barrier of an elastic sheet, joules per square metre.
-    pub(crate) fn set_strain_barrier(&mut self, stiffness: f64) {
+    /// Sets the stiffness of the barrier of an elastic sheet for a simulation that goes on at a state: to a known one
+    /// (joules per square metre), or to what the state asks for.
+    pub(crate) fn set_strain_barrier(&mut self, state: &State, known: Option<f64>) {
+        let acceleration = LoadScale::at(self, state).acceleration;
         if let Some(elastic) = &mut self.elastic {
-            elastic.set_barrier(stiffness);
+            elastic.set_acceleration(acceleration);
+            elastic.set_barrier(known.unwrap_or(0.0));
+        }
+        if known.is_none() {
+            self.raise_strain_barrier(state);
         }
     }
 
     /// Raises the stiffness of the barrier of an elastic sheet to what a state asks for; the energy that this adds to
     /// the sheet, joules.
     pub(crate) fn raise_strain_barrier(&mut self, state: &State) -> f64 {
-        let needed = strain_barrier(self, state);
+        let Some(elastic) = &self.elastic else {
+            return 0.0;
+        };
+        let needed = strain_barrier(self, elastic, state);
         let Some(elastic) = self.elastic.as_mut().filter(|e| needed > e.barrier()) else {
             return 0.0;
         };

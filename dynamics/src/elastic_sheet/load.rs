@@ -1,6 +1,7 @@
 //! How stiff the barrier at the limit of the strain has to be.
 
-use crate::load_scale::{LoadScale, diameter};
+use super::ElasticSheet;
+use crate::load_scale::{diameter, largest_norm};
 use crate::{SheetModel, State};
 
 /// Stiffness of the barrier in parts of the energy of the motion to come, see [`strain_barrier`]. From 0.01 to
@@ -13,14 +14,8 @@ const BARRIER: f64 = 0.03;
 /// `rho (a L + v^2)`, with the mass per area `rho`, the largest acceleration `a` by constant forces (9.8 m/s2 if
 /// there are none), the diameter `L` of the sheet and its largest speed `v`. What is in parentheses is about the
 /// square of the speed with which the sheet meets an obstacle.
-pub(crate) fn strain_barrier(model: &SheetModel, state: &State) -> f64 {
-    let Some(elastic) = model.elastic_sheet() else {
-        return 0.0;
-    };
+pub(crate) fn strain_barrier(model: &SheetModel, elastic: &ElasticSheet, state: &State) -> f64 {
     let density = model.mass().total() / elastic.area();
-    let LoadScale {
-        acceleration,
-        speed,
-    } = LoadScale::at(model, state);
-    BARRIER * density * (acceleration * diameter(&state.x) + speed * speed)
+    let speed = largest_norm(&state.v);
+    BARRIER * density * (elastic.acceleration * diameter(&state.x) + speed * speed)
 }

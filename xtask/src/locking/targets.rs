@@ -114,7 +114,7 @@ mod tests {
         ];
         let text = by_model(&pair).text();
         let row: Vec<&str> = text.lines().last().unwrap().split_whitespace().collect();
-        assert_eq!(row, ["y", "q", "at", "most", "2", "5", "–", "–", "**1**"]);
+        assert_eq!(row, ["y", "q", "at", "most", "2", "5", "–", "**1**"]);
     }
 
     #[test]
