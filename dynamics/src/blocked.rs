@@ -1,7 +1,7 @@
 //! Rods that depend on each other and block a motion.
 
 use crate::constraint::rows::point;
-use crate::primal::PrimalMatrix;
+use crate::rod_least_squares::RodLeastSquares;
 use crate::{Isometry, SheetModel, State};
 use isosheet_coords::linalg::norm_inf;
 use isosheet_mesh::VertexId;
@@ -11,13 +11,12 @@ use rand_chacha::ChaCha8Rng;
 /// Singular value of the rigidity matrix of unit rods below which rods count as dependent: the bound of
 /// [`rod_rank`](crate::rod_rank).
 const DEPENDENT: f64 = 1e-5;
-/// Passes of iterated regularisation. Of a singular value `s` the part
-/// `(s0^2 / (s^2 + s0^2))^passes` is left over, with `s0` the bound [`DEPENDENT`]: of ten times that bound
-/// 1e-8.
+/// Passes of the regularisation, see [`RodLeastSquares::reduce`]: of ten times the bound [`DEPENDENT`] 1e-8 is left
+/// over.
 const PASSES: usize = 4;
 /// Part of the second-order elongations, or of random forces, that other displacements have to leave over for a
-/// motion to count as blocked, or rods as dependent. The part is 1e-5 or less where a sheet may fold along a line of the mesh, and a tenth or more where
-/// it may not.
+/// motion to count as blocked, or rods as dependent. The part is 1e-5 or less where a sheet may fold along a line
+/// of the mesh, and a tenth or more where it may not.
 const BLOCKED: f64 = 1e-2;
 /// Part of the largest value from which the displacement of a vertex, and what is left over of the elongation
 /// of a rod, count.
@@ -34,7 +33,9 @@ const CONSIDERABLE: f64 = 0.1;
 /// Discrete Math. 9, 1996).
 pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec<VertexId> {
     let x = &state.x;
-    let Some(mut solver) = rods_of(model).and_then(|model| LeastSquares::new(model, x)) else {
+    let Some(mut solver) =
+        rods_of(model).and_then(|model| RodLeastSquares::new(model, x, DEPENDENT))
+    else {
         return Vec::new();
     };
     let rods = model.rods();
@@ -45,7 +46,7 @@ pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec
     for (r, l) in rates.iter_mut().zip(lengths) {
         *r /= l;
     }
-    solver.reduce(model, x, &mut rates, &mut d);
+    solver.reduce(model, x, PASSES, &mut rates, &mut d);
     let largest = norm_inf(&d);
     if largest == 0.0 {
         return Vec::new();
@@ -60,7 +61,7 @@ pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec
     if asked * model.mean_length() <= f64::EPSILON {
         return Vec::new();
     }
-    solver.reduce(model, x, &mut left, &mut vec![0.0; x.len()]);
+    solver.reduce(model, x, PASSES, &mut left, &mut vec![0.0; x.len()]);
     let most = norm_inf(&left);
     if most <= BLOCKED * asked {
         return Vec::new();
@@ -74,7 +75,9 @@ pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec
 ///
 /// The rods are those in which the self-stresses act that a random vector of forces has a part of.
 pub(crate) fn dependent_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
-    let Some(mut solver) = rods_of(model).and_then(|model| LeastSquares::new(model, x)) else {
+    let Some(mut solver) =
+        rods_of(model).and_then(|model| RodLeastSquares::new(model, x, DEPENDENT))
+    else {
         return Vec::new();
     };
     let mut rng = ChaCha8Rng::seed_from_u64(0);
@@ -85,7 +88,7 @@ pub(crate) fn dependent_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId>
             *left = 0.0;
         }
     }
-    solver.reduce(model, x, &mut left, &mut vec![0.0; x.len()]);
+    solver.reduce(model, x, PASSES, &mut left, &mut vec![0.0; x.len()]);
     match norm_inf(&left) {
         most if most > BLOCKED => free_ends(model, &left, most),
         _ => Vec::new(),
@@ -125,58 +128,6 @@ fn free_displacement(model: &SheetModel, state: &State, h: f64) -> Vec<f64> {
         *d += end - x;
     }
     d
-}
-
-/// Least-squares solutions of `A y = r` by iterated Tikhonov regularisation,
-/// `(s0^2 M / m + A^T A) y = A^T r` with the mean mass `m` (Engl, Hanke and Neubauer, "Regularization of
-/// Inverse Problems", 1996, Sec. 5.1).
-struct LeastSquares {
-    matrix: PrimalMatrix,
-    /// `m / s0^2`.
-    unit: f64,
-    w: Vec<f64>,
-    load: Vec<f64>,
-    y: Vec<f64>,
-}
-
-impl LeastSquares {
-    fn new(model: &SheetModel, x: &[f64]) -> Option<Self> {
-        let rods = model.rods();
-        let unit = model.mean_mass() / (DEPENDENT * DEPENDENT);
-        let mut matrix = PrimalMatrix::new(model).ok()?;
-        let axial: Vec<f64> = rods.lengths().iter().map(|l| unit / (l * l)).collect();
-        matrix.assemble(model, x, &axial, &vec![0.0; rods.len()]);
-        matrix.factorize().ok()?;
-        Some(Self {
-            matrix,
-            unit,
-            w: vec![0.0; rods.len()],
-            load: vec![0.0; x.len()],
-            y: vec![0.0; x.len()],
-        })
-    }
-
-    /// Subtracts the solution `y` of `A y = r` from `d`, and `A y` from `r`, which keeps the part that no `y`
-    /// reaches.
-    fn reduce(&mut self, model: &SheetModel, x: &[f64], r: &mut [f64], d: &mut [f64]) {
-        let rods = model.rods();
-        for _ in 0..PASSES {
-            for (w, (r, l)) in self.w.iter_mut().zip(r.iter().zip(rods.lengths())) {
-                *w = self.unit * r / l;
-            }
-            self.load.fill(0.0);
-            rods.apply_transpose_add(x, &self.w, &mut self.load);
-            model.clear_pinned(&mut self.load);
-            self.matrix.solve(model, &self.load, &mut self.y);
-            rods.apply(x, &self.y, &mut self.w);
-            for (r, (w, l)) in r.iter_mut().zip(self.w.iter().zip(rods.lengths())) {
-                *r -= w / l;
-            }
-            for (d, y) in d.iter_mut().zip(&self.y) {
-                *d -= y;
-            }
-        }
-    }
 }
 
 #[cfg(test)]

@@ -26,7 +26,8 @@ impl SheetModel {
     /// vertices that have free neighbours are on one line. Elsewhere the sheet next to the clamp cannot move,
     /// and most such sheets lock ([`StepError::Locked`](crate::StepError::Locked)). The check is geometric and
     /// takes a time proportional to the size of the mesh. It errs on both sides: a sheet may fold along a line
-    /// of edges further away, and rods may lock elsewhere. `docs/troubleshooting.md` of the repository says how often.
+    /// of edges further away, and rods may lock elsewhere. `docs/troubleshooting.md` of the repository says how
+    /// often.
     ///
     /// None for elastic sheets.
     ///

@@ -112,6 +112,7 @@ mod reaction;
 mod report;
 mod restoration;
 mod rod_forces;
+mod rod_least_squares;
 mod saddle;
 mod simulation;
 mod simulation_error;

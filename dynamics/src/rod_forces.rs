@@ -1,7 +1,7 @@
 //! Forces of the rods.
 
 use crate::history::Multipliers;
-use crate::primal::PrimalMatrix;
+use crate::rod_least_squares::RodLeastSquares;
 use crate::{Isometry, Method, SheetModel};
 
 impl Method {
@@ -73,34 +73,19 @@ pub(crate) fn rod_forces(
 /// The least forces, in the sum of their squares, that load the free vertices as the given ones do, but for
 /// directions in which rods depend on each other nearly ([`FLATTEST_FOLD`]).
 ///
-/// With the rows `a_e = (x_a - x_b) / l_e` of the rigidity matrix `A` of unit rods these are
-/// `F = A (A^T A)^+ A^T F0`, by iterated Tikhonov regularisation: `F += A y` with `y` of
-/// `(s0^2 M / m + A^T A) y = A^T (F0 - F)`, `m` the mean mass (Engl, Hanke and Neubauer, "Regularization of
-/// Inverse Problems", 1996, Sec. 5.1). Nothing if the memory for the matrix runs out.
+/// With the rigidity matrix `A` of unit rods these are `F = A (A^T A)^+ A^T F0`, see [`RodLeastSquares`]. Nothing if
+/// the memory for the matrix runs out.
 fn least_forces(model: &SheetModel, x: &[f64], given: &[f64]) -> Option<Vec<f64>> {
-    let rods = model.rods();
-    let mut matrix = PrimalMatrix::of_rods(model).ok()?;
-    let unit = model.mean_mass() / (FLATTEST_FOLD * FLATTEST_FOLD);
-    let axial: Vec<f64> = rods.lengths().iter().map(|l| unit / (l * l)).collect();
-    matrix.assemble(model, x, &axial, &vec![0.0; rods.len()]);
-    matrix.factorize().ok()?;
-    let mut forces = vec![0.0; rods.len()];
-    let mut w = vec![0.0; rods.len()];
-    let (mut load, mut y) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    for _ in 0..PASSES {
-        for (e, l) in rods.lengths().iter().enumerate() {
-            w[e] = unit * (given[e] - forces[e]) / l;
-        }
-        load.fill(0.0);
-        rods.apply_transpose_add(x, &w, &mut load);
-        model.clear_pinned(&mut load);
-        matrix.solve(model, &load, &mut y);
-        rods.apply(x, &y, &mut w);
-        for (e, l) in rods.lengths().iter().enumerate() {
-            forces[e] += w[e] / l;
-        }
-    }
-    Some(forces)
+    let mut solver = RodLeastSquares::new(model, x, FLATTEST_FOLD)?;
+    let mut left = given.to_vec();
+    solver.reduce(model, x, PASSES, &mut left, &mut vec![0.0; x.len()]);
+    Some(
+        given
+            .iter()
+            .zip(left)
+            .map(|(given, left)| given - left)
+            .collect(),
+    )
 }
 
 #[cfg(test)]
