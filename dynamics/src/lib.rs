@@ -67,94 +67,53 @@
 //! [`Simulation::rod_forces`] the tensions of the rods.
 #![doc = include_str!("paper.md")]
 
-mod blocked;
 pub mod chart;
-mod checkpoint;
-mod clamps;
+mod conservative;
 pub mod constraint;
 pub mod contact;
-#[cfg(test)]
-mod contact_tests;
-mod control;
-mod crease;
-#[cfg(test)]
-mod derivative_tests;
-mod effort;
-mod elastic_sheet;
-mod energy_account;
-mod energy_momentum;
-mod engine;
-mod feasibility;
-mod history;
-mod immobile;
-mod implicit;
-mod integrator;
-mod iterate;
-mod layout;
-mod load;
-mod load_scale;
+mod damped;
+mod linear;
 mod material;
-mod method;
-mod minimiser;
 mod model;
 mod motion;
-mod multipliers;
-mod observe;
 mod options;
-mod plate_bending;
-pub mod potential;
-mod primal;
-mod profile;
-mod projection_step;
-mod rank;
-mod rattle;
-mod reaction;
-mod report;
-mod restoration;
-mod rod_forces;
-mod rod_least_squares;
-mod saddle;
-mod simulation;
-mod simulation_error;
-mod start;
-mod state;
-mod subdivision;
-mod support;
-mod unassigned;
+mod run;
+mod step;
 
-pub use checkpoint::{Checkpoint, CheckpointError};
-pub use clamps::ClampAcrossMesh;
+pub use conservative::energy_momentum::EnergyMomentumOptions;
+pub use conservative::rattle::RattleOptions;
 pub use constraint::VertexConstraint;
-pub use crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
-pub use effort::StepProgress;
-pub use elastic_sheet::{ElasticDeformation, ElasticSheet, ElasticSheetError};
-pub use energy_momentum::EnergyMomentumOptions;
-pub use feasibility::Excess;
-pub use implicit::ImplicitOptions;
-pub use load::{AccelerationField, LoadError, VertexLoad};
+pub use damped::implicit::ImplicitOptions;
+pub use damped::projection_step::ProjectionStepOptions;
+pub use damped::start::{leave_flat, project_positions};
+pub use linear::rank::{RodRank, rod_rank};
+pub use material::crease::{CreaseError, CreaseSpring, CreaseSprings, RestAngle};
+pub use material::elastic_sheet::{ElasticDeformation, ElasticSheet, ElasticSheetError};
+pub use material::plate_bending::{PlateBending, PlateBendingError};
 pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
-pub use method::{Fallback, Method, StepControl, Unsatisfiable};
+pub use model::clamps::ClampAcrossMesh;
+pub use model::load::{AccelerationField, LoadError, VertexLoad};
+pub use model::potential::{Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape};
+pub use model::state::State;
+pub use model::support::Support;
 pub use model::{Isometry, ModelError, SheetModel};
+pub use motion::profile::{Interpolation, Profile, ProfileError};
 pub use motion::{
     AxisRotation, Keyframe, Kinematics, MotionError, PointMotion, PointProfile, RigidDisplacement,
     RigidMotion, RigidProfile,
 };
-pub use observe::{Frames, History, Observer, RunEnd};
 pub use options::OptionsError;
-pub use plate_bending::{PlateBending, PlateBendingError};
-pub use potential::{Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape};
-pub use profile::{Interpolation, Profile, ProfileError};
-pub use projection_step::ProjectionStepOptions;
-pub use rank::{RodRank, rod_rank};
-pub use rattle::RattleOptions;
-pub use reaction::Reaction;
-pub use report::{StepError, StepOutcome, StepReport};
-pub use simulation::Simulation;
-pub use simulation_error::SimulationError;
-pub use start::{leave_flat, project_positions};
-pub use state::State;
-pub use support::Support;
+pub use run::checkpoint::{Checkpoint, CheckpointError};
+pub use run::observe::{Frames, History, Observer, RunEnd};
+pub use run::simulation::Simulation;
+pub use run::simulation_error::SimulationError;
+pub use step::effort::StepProgress;
+pub use step::feasibility::Excess;
+pub use step::method::{Fallback, Method, StepControl, Unsatisfiable};
+pub use step::reaction::Reaction;
+pub use step::report::{StepError, StepOutcome, StepReport};
 
+pub use model::potential;
 pub use nalgebra;
 
 /// The code of the README is compiled and run as a test.

@@ -1,11 +1,11 @@
 //! A simulation in a chart as an engine of [`Simulation`](crate::Simulation).
 
 use super::{ChartDynamicsError, ChartSimulation};
-use crate::checkpoint::{CheckpointError, InChart, check_finite, check_length};
 use crate::contact::Contact;
-use crate::reaction::{Reaction, supports};
-use crate::report::{StepError, StepOutcome, StepTotals};
-use crate::simulation_error::SimulationError;
+use crate::run::checkpoint::{CheckpointError, InChart, check_finite, check_length};
+use crate::run::simulation_error::SimulationError;
+use crate::step::reaction::{Reaction, supports};
+use crate::step::report::{StepError, StepOutcome, StepTotals};
 use crate::{SheetModel, State};
 use isosheet_coords::Chart;
 

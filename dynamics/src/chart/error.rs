@@ -1,7 +1,7 @@
 //! Why mechanics in a chart fails.
 
 use crate::contact::BodyMotionError;
-use crate::support::Support;
+use crate::model::support::Support;
 use isosheet_coords::ChartError;
 use isosheet_mesh::wording::{brief, given};
 use isosheet_mesh::{Advice, VertexId};

@@ -30,8 +30,8 @@ mod projection;
 
 use super::{ChartDynamicsError, ChartMechanics};
 use crate::constraint::rows::point;
-use crate::reaction::Balance;
-use crate::support::Support;
+use crate::model::support::Support;
+use crate::step::reaction::Balance;
 use isosheet_coords::SaddlePoint;
 use isosheet_mesh::VertexId;
 use nalgebra::{DMatrix, DVector, Matrix2x3, SymmetricEigen, Vector2, Vector3};

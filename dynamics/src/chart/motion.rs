@@ -2,8 +2,8 @@
 
 use super::ContactImpulse;
 use super::stepping::PhaseState;
-use crate::checkpoint::{CheckpointError, check_finite};
-use crate::reaction::Balance;
+use crate::run::checkpoint::{CheckpointError, check_finite};
+use crate::step::reaction::Balance;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

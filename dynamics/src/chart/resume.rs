@@ -5,7 +5,7 @@ use super::simulation::ChartSimulation;
 use super::stepping::Stepper;
 use super::{ChartDynamicsError, ChartMechanics, ChartOptions};
 use crate::SheetModel;
-use crate::reaction::{Balance, ForceTime};
+use crate::step::reaction::{Balance, ForceTime};
 use isosheet_coords::Chart;
 
 impl ChartSimulation {

@@ -8,7 +8,7 @@ use super::{
     ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, ContactImpulse, Rebase,
 };
 use crate::contact::{ActiveContacts, Contact, ContactError, StepSpan};
-use crate::reaction::{Balance, ForceTime, Reaction};
+use crate::step::reaction::{Balance, ForceTime, Reaction};
 use crate::{Isometry, SheetModel, State};
 use isosheet_coords::{Chart, ChartError, mass_condition_estimate};
 

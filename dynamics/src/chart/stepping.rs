@@ -5,7 +5,7 @@ use super::mobility::Mobility;
 use super::{ChartDynamicsError, ChartMechanics, Equations};
 use super::{ChartMethod, ChartOptions, PositionUpdate};
 use crate::contact::ContactPoint;
-use crate::reaction::Balance;
+use crate::step::reaction::Balance;
 use serde::{Deserialize, Serialize};
 
 /// Relative change of the momenta at which the implicit part of symplectic Euler has converged.

@@ -6,7 +6,7 @@ use super::simulation::ChartSimulation;
 use super::stepping::PhaseState;
 use super::{ChartDynamicsError, ChartStepControl, ChartStepReport, Rebase};
 use crate::contact::{ActiveContacts, StepSpan};
-use crate::control::{Decision, Stepping, take_substep};
+use crate::step::control::{Decision, Stepping, take_substep};
 
 /// Part of the planned step below which contact does not shorten a step: beyond, positions drown in
 /// round-off.

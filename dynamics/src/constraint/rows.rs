@@ -1,7 +1,7 @@
 //! The equations of all vertex constraints of a model, beside those of the rods.
 
 use super::{ConstrainedVertex, LocalEquations, VertexConstraint};
-use crate::potential::HessianSink;
+use crate::model::potential::HessianSink;
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 

@@ -1,7 +1,7 @@
 //! The barrier as a function of the gap.
 
 use super::ContactLaws;
-use crate::load_scale::{LoadScale, constant_acceleration, diameter};
+use crate::model::load_scale::{LoadScale, constant_acceleration, diameter};
 use crate::{SheetModel, State};
 use isosheet_mesh::Advice;
 use nalgebra::Vector3;

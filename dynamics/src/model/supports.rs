@@ -3,9 +3,9 @@
 use super::{ModelError, PINNED, SheetModel};
 use crate::constraint::rows::point;
 use crate::constraint::{ConstrainedVertex, VertexConstraint};
-use crate::immobile::immobile_vertices;
+use crate::model::immobile::immobile_vertices;
+use crate::model::support::Support;
 use crate::motion::PointMotion;
-use crate::support::Support;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
 

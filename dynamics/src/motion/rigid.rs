@@ -4,7 +4,7 @@ use super::{
     MotionError, check_finite, check_profile, check_profiles, first_difference, second_difference,
     vector_derivatives,
 };
-use crate::profile::Profile;
+use crate::motion::profile::Profile;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use std::f64::consts::PI;

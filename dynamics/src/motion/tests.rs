@@ -1,7 +1,7 @@
 //! Kinematics against differences, motions by profiles against the same motions by functions, and refusals.
 
 use super::*;
-use crate::profile::tests::profiles;
+use crate::motion::profile::tests::profiles;
 use crate::{Method, ModelError, SheetModel, Simulation, State, leave_flat};
 use isosheet_mesh::{MassKind, VertexId, generate};
 use nalgebra::{Isometry3, Point3, UnitQuaternion};

@@ -1,0 +1,4 @@
+//! The methods that keep the energy: they solve for the impulses of the rods.
+
+pub(crate) mod energy_momentum;
+pub(crate) mod rattle;

@@ -1,0 +1,478 @@
+//! RATTLE and its fourth-order composition.
+
+use crate::conservative::energy_momentum::mean_pin_velocities;
+use crate::constraint::conservative::ConservativeRows;
+use crate::linear::primal::{dot, strain_floor, velocity_round_off};
+use crate::linear::saddle::{SaddleMatrix, System};
+use crate::options::OptionsError;
+use crate::step::effort::SolverEffort;
+use crate::step::history::Multipliers;
+use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
+use crate::step::reaction::{Balance, ForceTime};
+use crate::step::report::{StepError, StepOutcome, not_converged};
+use crate::{SheetModel, State};
+use isosheet_coords::linalg::{LinalgError, norm_inf};
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+
+/// Options of [`Method::Rattle`](crate::Method::Rattle) and
+/// [`Method::RattleComposition`](crate::Method::RattleComposition).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RattleOptions {
+    /// Largest relative edge length error of an accepted step. Default 2e-13.
+    pub strain_tolerance: f64,
+    /// Most Newton iterations for the positions. Default 15: a step that needs more is better
+    /// halved.
+    pub max_iterations: usize,
+}
+
+impl Default for RattleOptions {
+    fn default() -> Self {
+        Self {
+            strain_tolerance: 2e-13,
+            max_iterations: 15,
+        }
+    }
+}
+
+impl RattleOptions {
+    /// # Errors
+    /// [`OptionsError`] naming the option that makes no sense.
+    pub fn validate(&self) -> Result<(), OptionsError> {
+        OptionsError::check_range("strain_tolerance", self.strain_tolerance, 1e-15, 1e-2)?;
+        OptionsError::check_count("max_iterations", self.max_iterations)
+    }
+}
+
+/// RATTLE, see [`Method::Rattle`](crate::Method::Rattle).
+pub(crate) struct Rattle {
+    options: RattleOptions,
+    matrix: SaddleMatrix,
+    impulse: Vec<f64>,
+    rates: Vec<f64>,
+    none: Vec<f64>,
+    u: Vec<f64>,
+    x1: Vec<f64>,
+    force: Vec<f64>,
+    applied: Vec<f64>,
+    momentum: Vec<f64>,
+    kick: Vec<f64>,
+    difference: Vec<f64>,
+    change: Vec<f64>,
+    rods: Vec<f64>,
+    constraints: ConservativeRows,
+    /// Impulses of the vertex constraints on the velocity.
+    pushes: Vec<Vector2<f64>>,
+    balance: Balance,
+}
+
+impl Rattle {
+    /// Analyses the model.
+    ///
+    /// # Errors
+    /// [`LinalgError::Symbolic`] if memory runs out.
+    pub(crate) fn new(model: &SheetModel, options: RattleOptions) -> Result<Self, LinalgError> {
+        let (n, m) = (model.coordinate_count(), model.rods().len());
+        Ok(Self {
+            options,
+            matrix: SaddleMatrix::new(model)?,
+            impulse: vec![0.0; m],
+            rates: vec![0.0; m],
+            none: vec![0.0; m],
+            u: vec![0.0; n],
+            x1: vec![0.0; n],
+            force: vec![0.0; n],
+            applied: vec![0.0; n],
+            momentum: vec![0.0; n],
+            kick: vec![0.0; n],
+            difference: vec![0.0; n],
+            change: vec![0.0; n],
+            rods: vec![0.0; m],
+            constraints: ConservativeRows::new(model.constrained_vertices()),
+            pushes: Vec::new(),
+            balance: Balance::new(model, ForceTime::Mean),
+        })
+    }
+
+    /// Sets `momentum` and `rods` to the negative residuals at the iterate; returns the
+    /// relative momentum residual and the strain.
+    fn residuals(&mut self, model: &SheetModel, state: &State, h: f64) -> (f64, f64) {
+        for i in 0..self.u.len() {
+            self.x1[i] = state.x[i] + h * self.u[i];
+            self.difference[i] = self.u[i] - state.v[i];
+        }
+        model.place_pins(state.t + h, &mut self.x1);
+        model.apply_mass(&self.difference, &mut self.momentum);
+        let mass = &model.mass().vertex;
+        // The speed sets the scale, not the impulses: those of nearly dependent rods can be as
+        // large as they are wrong.
+        let mut scale = 0.0_f64;
+        for i in 0..self.u.len() {
+            let change = self.momentum[i].abs() / mass[i / 3];
+            scale = scale.max(
+                state.v[i].abs() + self.kick[i].abs() / mass[i / 3] + IMPULSE_ROUND_OFF * change,
+            );
+            self.momentum[i] = self.kick[i] - self.momentum[i];
+        }
+        model
+            .rods()
+            .apply_transpose_add(&state.x, &self.impulse, &mut self.momentum);
+        self.constraints
+            .add_impulses(&self.constraints.impulses, &mut self.momentum);
+        self.constraints
+            .linearise(model.constraints(), state.t + h, &self.x1, 1.0 / h);
+        model.clear_pinned(&mut self.momentum);
+        let worst = model.largest_acceleration(&self.momentum);
+        model.rods().residual_into(&self.x1, &mut self.rods);
+        self.rods.iter_mut().for_each(|c| *c = -*c / h);
+        let relative = if worst > velocity_round_off(state, h) {
+            worst / scale.max(f64::MIN_POSITIVE)
+        } else {
+            0.0
+        };
+        let strain = model.rods().max_strain(&self.x1);
+        (relative, self.constraints.worst(strain))
+    }
+
+    /// Finds `u`, `L` and `x1`.
+    fn solve_positions(
+        &mut self,
+        model: &SheetModel,
+        state: &State,
+        multipliers: &mut Multipliers,
+        h: f64,
+        effort: &mut SolverEffort<'_>,
+    ) -> Result<(f64, StepOutcome), StepError> {
+        let tolerance = self
+            .options
+            .strain_tolerance
+            .max(strain_floor(model, state));
+        // The impulse grows with h while motion is smooth; h < 0 occurs inside compositions.
+        let ratio = if multipliers.step == 0.0 {
+            0.0
+        } else {
+            h / multipliers.step
+        };
+        for (e, l) in self.impulse.iter_mut().enumerate() {
+            *l = multipliers.rods.get(e).map_or(0.0, |i| ratio * i);
+        }
+        self.constraints.begin(
+            model.constraints(),
+            state.t,
+            &state.x,
+            ratio,
+            &multipliers.constraints,
+        );
+        self.constraints
+            .push_at(model.constraints(), state.t, &state.x);
+        self.u.copy_from_slice(&state.v);
+        mean_pin_velocities(model, state, h, &mut self.x1, &mut self.u);
+        let (mut residual, mut strain) = self.residuals(model, state, h);
+        let mut outcome = StepOutcome::Newton;
+        let mut iterations = 0;
+        // At least one iteration, unless there is nothing but round-off to correct.
+        let floor = strain_floor(model, state);
+        while residual > MOMENTUM_TOLERANCE
+            || strain > tolerance
+            || (iterations == 0 && strain > floor)
+        {
+            if iterations == self.options.max_iterations
+                || !effort.goes_on()
+                || !(residual.is_finite() && strain < 1.0)
+            {
+                return Err(not_converged(state.t, h, effort, residual, strain));
+            }
+            iterations += 1;
+            effort.iterations += 1;
+            let system = System {
+                mass: 1.0,
+                density: &self.none,
+                left: &state.x,
+                right: &self.x1,
+                potentials: None,
+                constraints: &self.constraints.blocks,
+            };
+            let used = self
+                .matrix
+                .solve(
+                    model,
+                    &system,
+                    &mut self.momentum,
+                    &mut self.rods,
+                    &mut self.constraints.rhs,
+                    effort,
+                )
+                .map_err(|source| StepError::Linalg { t: state.t, source })?;
+            outcome = outcome.max(used);
+            for (u, d) in self.u.iter_mut().zip(&self.momentum) {
+                *u += d;
+            }
+            for (l, d) in self.impulse.iter_mut().zip(&self.rods) {
+                *l += d;
+            }
+            self.constraints.correct();
+            (residual, strain) = self.residuals(model, state, h);
+        }
+        let constraints = self.constraints.full_impulses();
+        multipliers.set(h, &self.impulse, constraints);
+        Ok((residual, outcome))
+    }
+
+    /// How far the velocity in `momentum`, with the impulses in `rods`, is from solving its two
+    /// equations: the largest rate of a rod and the largest velocity not accounted for, both
+    /// relative to the speed before and after.
+    fn velocity_errors(&mut self, model: &SheetModel, state: &State, h: f64) -> (f64, f64) {
+        for i in 0..self.u.len() {
+            self.kick[i] = 0.5 * h * (self.force[i] + self.applied[i]);
+        }
+        let speed = norm_inf(&self.u)
+            + norm_inf(&self.momentum)
+            + model.largest_acceleration(&self.kick)
+            + velocity_round_off(state, h) / VELOCITY_TOLERANCE;
+        let rods = model.rods();
+        rods.apply(&self.x1, &self.momentum, &mut self.rates);
+        let rate = self
+            .rates
+            .iter()
+            .zip(rods.lengths())
+            .fold(0.0_f64, |m, (r, l)| m.max(r.abs() / l))
+            .max(self.constraint_rate(model, state.t + h, h));
+        for i in 0..self.u.len() {
+            self.difference[i] = self.momentum[i] - self.u[i];
+        }
+        self.kick.iter_mut().for_each(|k| *k = -*k);
+        model.apply_mass(&self.difference, &mut self.change);
+        for (k, c) in self.kick.iter_mut().zip(&self.change) {
+            *k += c;
+        }
+        self.rates
+            .iter_mut()
+            .zip(&self.rods)
+            .for_each(|(t, r)| *t = -r);
+        rods.apply_transpose_add(&self.x1, &self.rates, &mut self.kick);
+        self.pushes.iter_mut().for_each(|p| *p = -*p);
+        self.constraints.add_impulses(&self.pushes, &mut self.kick);
+        self.pushes.iter_mut().for_each(|p| *p = -*p);
+        model.clear_pinned(&mut self.kick);
+        (rate / speed, model.largest_acceleration(&self.kick) / speed)
+    }
+
+    /// Largest rate of a vertex constraint with the velocity in `momentum`.
+    fn constraint_rate(&mut self, model: &SheetModel, t: f64, h: f64) -> f64 {
+        if model.constraints().is_empty() {
+            return 0.0;
+        }
+        let rates = model.constraint_rates(t, h, &self.x1);
+        self.constraints.set_rates(&self.momentum, &rates);
+        self.constraints.largest_rate()
+    }
+
+    /// Right-hand sides of the rods' rates, the velocities of moving pins at the end being given.
+    fn ask_rod_rates(&mut self, model: &SheetModel, t: f64, h: f64) {
+        if model.moving_pins().next().is_some() {
+            self.difference.fill(0.0);
+            model.set_pin_velocities(t, h, &mut self.difference);
+            for i in model.moving_pins().flat_map(|v| 3 * v..3 * v + 3) {
+                self.difference[i] -= self.u[i];
+            }
+            model.apply_mass(&self.difference, &mut self.change);
+            for (m, c) in self.momentum.iter_mut().zip(&self.change) {
+                *m -= c;
+            }
+        }
+        self.difference.copy_from_slice(&self.u);
+        model.set_pin_velocities(t, h, &mut self.difference);
+        model
+            .rods()
+            .apply(&self.x1, &self.difference, &mut self.rods);
+    }
+
+    /// Mean forces of the supports over the step, up to the velocity `u`.
+    fn begin_balance(&mut self, model: &SheetModel, state: &State, h: f64) {
+        let (u, v) = (&self.u, &state.v);
+        if !self.balance.begin(model, |i| (u[i] - v[i]) / h) {
+            return;
+        }
+        let (t, end) = (state.t, state.t + h);
+        let balance = &mut self.balance;
+        balance.add_potentials(model, t, &state.x, 0.5);
+        balance.add_potentials(model, end, &self.x1, 0.5);
+        balance.add_applied(model, t, &state.x, &state.v, 0.5);
+        balance.add_applied(model, end, &self.x1, &self.u, 0.5);
+        balance.add_rods(model, &state.x, &self.impulse, -1.0 / h);
+        balance.add_loads(self.constraints.loads(&self.constraints.impulses, 1.0 / h));
+    }
+
+    /// The rest of them, up to the velocity in `momentum`.
+    fn finish_balance(&mut self, model: &SheetModel, h: f64) {
+        let (u, v) = (&self.u, &self.momentum);
+        let balance = &mut self.balance;
+        balance.add_inertia(model, |i| (v[i] - u[i]) / h);
+        if !model.has_supports() {
+            return;
+        }
+        balance.add_rods(model, &self.x1, &self.rods, -1.0 / h);
+        balance.add_loads(self.constraints.loads(&self.pushes, 1.0 / h));
+        balance.finish(model);
+    }
+
+    /// One step of any sign, of a state and the multipliers that belong to it. The forces of the supports
+    /// over the step are in `self.balance` afterwards.
+    fn advance(
+        &mut self,
+        model: &SheetModel,
+        state: &mut State,
+        multipliers: &mut Multipliers,
+        h: f64,
+        effort: &mut SolverEffort<'_>,
+    ) -> Result<StepAccount, StepError> {
+        model.potential_force(state.t, &state.x, &mut self.force);
+        model.applied_force(state.t, &state.x, &state.v, &mut self.applied);
+        for i in 0..self.u.len() {
+            self.kick[i] = 0.5 * h * (self.force[i] + self.applied[i]);
+        }
+        let mut work: f64 = 0.5 * h * dot(&self.applied, &state.v);
+        let (residual, outcome) = self.solve_positions(model, state, multipliers, h, effort)?;
+        // Velocity: the momentum after the second half kick, projected onto G(x1) v = 0.
+        model.potential_force(state.t + h, &self.x1, &mut self.force);
+        model.applied_force(state.t + h, &self.x1, &self.u, &mut self.applied);
+        // Solved for the change of velocity, so that round-off is relative to it.
+        for i in 0..self.u.len() {
+            self.momentum[i] = 0.5 * h * (self.force[i] + self.applied[i]);
+        }
+        self.begin_balance(model, state, h);
+        self.ask_rod_rates(model, state.t + h, h);
+        let rates = model.constraint_rates(state.t + h, h, &self.x1);
+        self.constraints
+            .push_at(model.constraints(), state.t + h, &self.x1);
+        self.constraints.set_rates(&self.u, &rates);
+        self.rods.iter_mut().for_each(|r| *r = -*r);
+        let system = System {
+            mass: 1.0,
+            density: &self.none,
+            left: &self.x1,
+            right: &self.x1,
+            potentials: None,
+            constraints: &self.constraints.blocks,
+        };
+        let projected = self
+            .matrix
+            .solve(
+                model,
+                &system,
+                &mut self.momentum,
+                &mut self.rods,
+                &mut self.constraints.rhs,
+                effort,
+            )
+            .map_err(|source| StepError::Linalg { t: state.t, source })?;
+        for (m, u) in self.momentum.iter_mut().zip(&self.u) {
+            *m += u;
+        }
+        model.set_pin_velocities(state.t + h, h, &mut self.momentum);
+        self.pushes.clone_from(&self.constraints.rhs);
+        let (rate, balance) = self.velocity_errors(model, state, h);
+        if rate > VELOCITY_TOLERANCE || balance > VELOCITY_TOLERANCE || rate.is_nan() {
+            let strain = model.rods().max_strain(&self.x1);
+            return Err(not_converged(state.t, h, effort, rate.max(balance), strain));
+        }
+        work += 0.5 * h * dot(&self.applied, &self.momentum);
+        self.finish_balance(model, h);
+        state.x.copy_from_slice(&self.x1);
+        state.v.copy_from_slice(&self.momentum);
+        state.t += h;
+        Ok(StepAccount::without_contact(
+            residual,
+            work,
+            outcome.max(projected),
+        ))
+    }
+}
+
+/// Largest relative residual of the momentum balance. The balance is linear in the unknowns,
+/// so what is left after a Newton step is round-off of the solve.
+const MOMENTUM_TOLERANCE: f64 = 1e-10;
+
+/// Share of the impulses' own size that counts as round-off beside the speed, in units of
+/// [`MOMENTUM_TOLERANCE`]: together 1e-13, what a refined solve leaves.
+const IMPULSE_ROUND_OFF: f64 = 1e-3;
+
+/// Largest relative error of the velocity at the end of a step. A regular solve leaves round-off; one
+/// with loaded dependent rods leaves the part of the velocity that they cannot take.
+const VELOCITY_TOLERANCE: f64 = 1e-8;
+
+impl Integrator for Rattle {
+    fn traits(&self) -> MethodTraits {
+        MethodTraits::conservative()
+    }
+
+    fn propose(
+        &mut self,
+        scene: Scene<'_>,
+        attempt: Attempt<'_>,
+        proposal: &mut Proposal,
+        effort: &mut SolverEffort<'_>,
+    ) -> Result<(), StepError> {
+        let moment = &mut proposal.moment;
+        moment.state.copy_from(attempt.state);
+        let multipliers = &mut moment.history.multipliers;
+        multipliers.copy_from(attempt.multipliers());
+        let state = &mut moment.state;
+        proposal.account = self.advance(scene.model, state, multipliers, attempt.h, effort)?;
+        moment.balance.copy_from(&self.balance);
+        Ok(())
+    }
+}
+
+/// Suzuki's composition of RATTLE steps, see [`Method::RattleComposition`](crate::Method::RattleComposition).
+pub(crate) struct RattleComposition {
+    rattle: Rattle,
+}
+
+impl RattleComposition {
+    /// Analyses the model.
+    ///
+    /// # Errors
+    /// [`LinalgError::Symbolic`] if memory runs out.
+    pub(crate) fn new(model: &SheetModel, options: RattleOptions) -> Result<Self, LinalgError> {
+        let rattle = Rattle::new(model, options)?;
+        Ok(Self { rattle })
+    }
+}
+
+impl Integrator for RattleComposition {
+    fn traits(&self) -> MethodTraits {
+        MethodTraits::conservative()
+    }
+
+    fn propose(
+        &mut self,
+        scene: Scene<'_>,
+        attempt: Attempt<'_>,
+        proposal: &mut Proposal,
+        effort: &mut SolverEffort<'_>,
+    ) -> Result<(), StepError> {
+        let (model, h) = (scene.model, attempt.h);
+        let a = 1.0 / (4.0 - 4.0_f64.cbrt());
+        let moment = &mut proposal.moment;
+        moment.state.copy_from(attempt.state);
+        let multipliers = &mut moment.history.multipliers;
+        multipliers.copy_from(attempt.multipliers());
+        moment.balance.clear();
+        let mut total = StepAccount::without_contact(0.0, 0.0, StepOutcome::Newton);
+        for part in [a, a, 1.0 - 4.0 * a, a, a] {
+            let state = &mut moment.state;
+            let done = self
+                .rattle
+                .advance(model, state, multipliers, part * h, effort)?;
+            total.residual = total.residual.max(done.residual);
+            total.work += done.work;
+            total.outcome = total.outcome.max(done.outcome);
+            moment.balance.add_share(&self.rattle.balance, part);
+        }
+        moment.state.t = attempt.state.t + h;
+        proposal.account = total;
+        Ok(())
+    }
+}

@@ -1,0 +1,149 @@
+//! Contact of a sheet with bodies and with itself.
+//!
+//! Contact is a barrier potential `B(x, s)` of the positions and of the places of the bodies, infinite where
+//! anything touches, and a friction potential `D(x - x0)` with normals and normal forces kept constant
+//! ("lagged"; Li et al. 2020, Incremental potential contact). Bodies move by prescribed motions; within a
+//! step their progress `s` runs from 0 (the start) to 1 (the end), and neither they nor the sheet move
+//! without a check that nothing is passed through on the way.
+//!
+//! An implementation of [`Contact`] knows the geometry and nothing else. All that happens with it is a chain
+//! of values, each of which can only be made from the one before:
+//!
+//! | value | made from | what it says |
+//! |---|---|---|
+//! | [`BodyMotions`] | a span of time | how the bodies move over a step |
+//! | [`ContactSet`] | a motion of sheet and bodies | the pairs within reach on it, the part that is safe |
+//! | [`ActiveContacts`] | a set and a place on its motion | distances, normals and weights there |
+//! | [`BarrierPotential`] | the laws, the model and the state at the start | the barrier and its stiffness |
+//! | [`LaggedFriction`] | the active contacts at which friction is lagged | normals and normal forces |
+//! | [`ContactTerms`] | active contacts, barrier and friction | energy, gradient, Hessian, loads of `B + D` |
+//! | [`ContactPoint`]s | active contacts | contacts for methods that use impulses instead of the barrier |
+//!
+//! Positions `x` and displacements are `3V` coordinates in metres, pinned vertices included.
+
+mod active;
+mod barrier;
+mod body;
+#[cfg(test)]
+pub(crate) mod contact_tests;
+mod error;
+mod friction;
+mod impulse;
+mod lagged;
+mod laws;
+mod parallel;
+mod run;
+mod set;
+mod terms;
+mod vertex_data;
+
+pub use active::{ActiveContact, ActiveContacts, Rolling};
+pub use barrier::{BarrierError, BarrierPotential, Stiffness};
+pub(crate) use body::advanced;
+pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
+pub use error::{BodyMotionError, ContactError, ContactPair};
+pub use friction::{Coefficients, Friction, FrictionError};
+pub use impulse::ContactPoint;
+pub use lagged::{FrictionContact, LaggedFriction};
+pub use laws::ContactLaws;
+pub use parallel::ParallelEdges;
+pub(crate) use run::{RunContact, StepContact, check_start};
+
+pub use set::{ContactKey, ContactKind, ContactSet, JointMotion};
+pub use terms::{BodyLoad, ContactState, ContactTerms, ContactWork};
+
+use crate::{SheetModel, State};
+use nalgebra::{Matrix3, Vector3};
+
+/// The geometry of contact of a sheet with bodies and with itself.
+///
+/// Everything that is returned depends on the arguments alone, not on earlier calls: what an implementation
+/// keeps between calls, such as a tree of boxes, saves time and nothing else. [`ContactSet`] and
+/// [`ActiveContacts`] call these functions.
+pub trait Contact: Send + Sync {
+    /// Activation distance of the barrier, stiffness, friction.
+    fn laws(&self) -> &ContactLaws;
+
+    /// Appends the motions of the bodies over a span of time, in the order of the bodies.
+    fn body_motions(&self, span: StepSpan, out: &mut Vec<BodyMotion>);
+
+    /// Velocity (metres per second) of the material of a body that is at `place` (metres, in space) at time
+    /// `t`.
+    fn body_velocity(&self, body: u32, t: f64, place: &Vector3<f64>) -> Vector3<f64>;
+
+    /// Returns the largest fraction `a <= 1` of a motion that is proven to bring nothing into contact, and
+    /// appends all pairs whose gap is below the activation distance at any time of that part of the motion,
+    /// in any order and each once. Pairs that stay out of reach may be among them.
+    fn query(&mut self, motion: JointMotion<'_>, pairs: &mut Vec<ContactKey>) -> f64;
+
+    /// Appends the contacts of those pairs whose gap is below the activation distance (or not a number) at
+    /// positions `x` with the bodies in their places, in the order of the pairs.
+    fn evaluate(
+        &self,
+        pairs: &[ContactKey],
+        x: &[f64],
+        bodies: &[BodyPlace],
+        out: &mut Vec<ActiveContact>,
+    );
+
+    /// Checks that a simulation can start at a state.
+    ///
+    /// # Errors
+    /// [`ContactError`] if something touches or passes through at the start, or the implementation was made
+    /// for another sheet.
+    fn check_start(&mut self, model: &SheetModel, state: &State) -> Result<(), ContactError>;
+}
+
+/// Receives 3x3 blocks of a symmetric Hessian.
+pub trait CouplingSink {
+    /// Adds `block` to `d2/dx_a dx_b`, rows at `a`; for `a != b` its transpose belongs to `ba` and is not
+    /// given again. For `a = b` the block is symmetric.
+    fn add(&mut self, a: u32, b: u32, block: &Matrix3<f64>);
+}
+
+/// Adds `w_i w_j block` for all pairs of a stencil; the block is symmetric.
+fn add_weighted(
+    vertices: &[u32; 4],
+    weights: &[f64; 4],
+    block: &Matrix3<f64>,
+    sink: &mut dyn CouplingSink,
+) {
+    for i in 0..4 {
+        for j in i..4 {
+            let w = weights[i] * weights[j];
+            if w != 0.0 {
+                add_block(vertices[i], vertices[j], w * block, sink);
+            }
+        }
+    }
+}
+
+/// Lower vertex first.
+fn add_block(a: u32, b: u32, block: Matrix3<f64>, sink: &mut dyn CouplingSink) {
+    if a <= b {
+        sink.add(a, b, &block);
+    } else {
+        sink.add(b, a, &block.transpose());
+    }
+}
+
+/// Appends the pairs of vertices, lower number first, that a contact of the sheet with itself couples.
+fn couple(key: ContactKey, vertices: &[u32; 4], out: &mut Vec<[u32; 2]>) {
+    if key.body.is_some() {
+        return;
+    }
+    for i in 0..4 {
+        for j in i + 1..4 {
+            let (a, b) = (vertices[i], vertices[j]);
+            out.push([a.min(b), a.max(b)]);
+        }
+    }
+}
+
+/// Adds to the entries of a vertex.
+fn add_at(out: &mut [f64], v: u32, g: Vector3<f64>) {
+    let i = 3 * v as usize;
+    for k in 0..3 {
+        out[i + k] += g[k];
+    }
+}

@@ -1,0 +1,691 @@
+//! The augmented Lagrangian of a step at an iterate: value, gradient and Hessian.
+
+use super::problem::StepProblem;
+use crate::constraint::rows::{HessianPart, VertexRows};
+use crate::contact::StepSpan;
+use crate::damped::iterate::Iterate;
+use crate::linear::multipliers::{LinearisedRows, MultiplierGoal, MultiplierSolver};
+use crate::linear::primal::{PrimalMatrix, dot, penalties};
+use crate::model::PINNED;
+use crate::step::effort::SolverEffort;
+use crate::step::report::StepError;
+use crate::{HessianSink, SheetModel};
+use isosheet_coords::linalg::LinalgError;
+use isosheet_mesh::{EdgeId, VertexId};
+use nalgebra::{Matrix3, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Displacements along a direction of negative curvature, largest component in mean rod lengths, in the order
+/// in which they are tried. Strains grow with the square of a displacement, and an iterate that has been
+/// displaced too far returns slowly: with 1e-2 a sheet of 8192 triangles takes three times as many
+/// factorisations in steps of 0.25 ms, and with 1e-3 twice as many as with 1e-4; for sheets of up to 512
+/// triangles there is no difference.
+const PERTURBATIONS: [f64; 2] = [1e-4, 1e-5];
+/// Power iterations for a direction of negative curvature. Each takes one solve with the factorisation at
+/// hand.
+const CURVATURE_ITERATIONS: usize = 6;
+
+/// Bound on the number of operations that a term of the value goes through, for its round-off.
+const ROUND_OFF_OPERATIONS: f64 = 8.0;
+/// The same for the squares of length errors that are themselves round-off of the positions.
+const POSITION_OPERATIONS: f64 = 64.0;
+
+/// The augmented Lagrangian at an iterate,
+///
+/// ```text
+/// L(x) = Phi(x) + sum_e (L_e + r_e c_e(x) / 2) c_e(x) + (terms of the vertex constraints, see VertexRows),
+/// ```
+///
+/// with the multipliers `L_e` of the rods (`h^2` times force densities, tension positive) and penalties
+/// `r_e`.
+pub(crate) struct Lagrangian {
+    pub(super) iterate: Iterate,
+    pub(super) matrix: PrimalMatrix,
+    pub(super) multipliers: Vec<f64>,
+    /// Multipliers before a linear system was solved.
+    kept: Vec<f64>,
+    solver: MultiplierSolver,
+    pub(super) vertex_rows: VertexRows,
+    /// Penalties `r_e` of equations as stiff as the masses.
+    unit_penalty: Vec<f64>,
+    /// How many times as stiff as the masses rods are in the value.
+    stiffness: f64,
+    /// Length errors `c_e` at the last evaluation, square metres.
+    pub(super) c: Vec<f64>,
+    /// `L_e + r_e c_e` at the last gradient.
+    estimates: Vec<f64>,
+    pub(super) gradient: Vec<f64>,
+    /// Conservative forces without contact at the last gradient, newtons.
+    pub(super) force: Vec<f64>,
+    /// Where these were evaluated.
+    force_at: Evaluated,
+    /// Energy of the potentials at the last evaluation, joules.
+    energy: f64,
+    energy_at: Evaluated,
+    /// Solution of the last linear system: minus the search direction.
+    pub(super) dx: Vec<f64>,
+    /// Where the line search starts.
+    pub(super) start: Vec<f64>,
+    /// Where prescribed motions end, at the pinned vertices.
+    end: Vec<f64>,
+    axial: Vec<f64>,
+    pub(super) transverse: Vec<f64>,
+    pub(super) difference: Vec<f64>,
+    /// The step before its second-order correction.
+    pub(super) uncorrected: Vec<f64>,
+    pub(super) weighted: Vec<f64>,
+}
+
+/// Adds the product of a Hessian and a vector to another vector.
+struct HessianProduct<'a> {
+    edges: &'a [[usize; 2]],
+    scale: f64,
+    vector: &'a [f64],
+    product: &'a mut [f64],
+}
+
+impl HessianProduct<'_> {
+    fn add(&mut self, row: usize, column: usize, block: &Matrix3<f64>) {
+        let v = Vector3::from_column_slice(&self.vector[3 * column..3 * column + 3]);
+        if v == Vector3::zeros() {
+            return;
+        }
+        let product = self.scale * block * v;
+        for k in 0..3 {
+            self.product[3 * row + k] += product[k];
+        }
+    }
+}
+
+impl HessianSink for HessianProduct<'_> {
+    fn add_vertex(&mut self, v: VertexId, block: &Matrix3<f64>) {
+        self.add(v.index(), v.index(), block);
+    }
+
+    fn add_edge(&mut self, e: EdgeId, block: &Matrix3<f64>) {
+        let [a, b] = self.edges[e.index()];
+        self.add(a, b, block);
+        self.add(b, a, &block.transpose());
+    }
+
+    fn add_pair(&mut self, a: VertexId, b: VertexId, block: &Matrix3<f64>) {
+        self.add(a.index(), b.index(), block);
+        self.add(b.index(), a.index(), &block.transpose());
+    }
+}
+
+/// Largest part of a displacement of the iterate, at most one, that is proven to bring nothing into contact and to
+/// stay within the limit of the strain, see [`Iterate::safe_fraction`].
+fn safe_fraction(iterate: &mut Iterate, problem: &mut StepProblem<'_>, dx: &[f64]) -> f64 {
+    let within_limit = problem.model.fraction_within_limit(iterate.x(), dx);
+    within_limit.min(iterate.safe_fraction(problem.contact_mut(), dx))
+}
+
+/// Time and positions at which potentials were evaluated. Multipliers change more often than positions.
+struct Evaluated {
+    t: f64,
+    x: Vec<f64>,
+}
+
+impl Evaluated {
+    /// Nowhere.
+    fn new(n: usize) -> Self {
+        let (t, x) = (f64::NAN, vec![0.0; n]);
+        Self { t, x }
+    }
+
+    /// Whether that was somewhere else; from now on it is here.
+    fn moves_to(&mut self, t: f64, x: &[f64]) -> bool {
+        if self.t == t && self.x == x {
+            return false;
+        }
+        self.t = t;
+        self.x.copy_from_slice(x);
+        true
+    }
+
+    fn forget(&mut self) {
+        self.t = f64::NAN;
+    }
+}
+
+/// The augmented Lagrangian at an iterate, and what its parts say about round-off.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Merit {
+    /// Its inertia term.
+    pub(super) inertia: f64,
+    /// The incremental potential `Phi`.
+    pub(super) potential: f64,
+    /// Size of the multipliers' terms, `sum |L| l^2`.
+    pub(super) rod_scale: f64,
+    /// Its value.
+    pub(super) value: f64,
+    /// Round-off in the value.
+    pub(super) round_off: f64,
+}
+
+/// Whether the Hessian was positive definite as it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Definiteness {
+    /// It was.
+    Definite,
+    /// It was not, and a positive definite part of it was factorised.
+    Modified,
+}
+
+/// Which curvature of the rods under load enters a Hessian.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum RodLoad {
+    /// That of the multipliers: for steps of sequential quadratic programming.
+    Multipliers,
+    /// That of the multiplier estimates `L + r c`: for Newton's method on the augmented Lagrangian.
+    Estimates,
+}
+
+impl Lagrangian {
+    pub(super) fn new(model: &SheetModel) -> Result<Self, LinalgError> {
+        let (n, m) = (model.coordinate_count(), model.rods().len());
+        let vertices = model.constrained_vertices();
+        Ok(Self {
+            iterate: Iterate::new(n),
+            matrix: PrimalMatrix::new(model)?,
+            multipliers: vec![0.0; m],
+            kept: vec![0.0; m],
+            solver: MultiplierSolver::new(model),
+            vertex_rows: VertexRows::new(model.constraints(), vertices, 1.0),
+            unit_penalty: penalties(model, 1.0),
+            stiffness: 1.0,
+            c: vec![0.0; m],
+            estimates: vec![0.0; m],
+            gradient: vec![0.0; n],
+            force: vec![0.0; n],
+            force_at: Evaluated::new(n),
+            energy: 0.0,
+            energy_at: Evaluated::new(n),
+            dx: vec![0.0; n],
+            start: vec![0.0; n],
+            end: vec![0.0; n],
+            axial: vec![0.0; m],
+            transverse: vec![0.0; m],
+            difference: vec![0.0; n],
+            uncorrected: vec![0.0; n],
+            weighted: vec![0.0; n],
+        })
+    }
+
+    /// Puts the iterate, the ends of prescribed motions and the bodies where a step starts.
+    pub(super) fn begin(&mut self, problem: &mut StepProblem<'_>) {
+        let (state, h) = (problem.state, problem.span);
+        self.force_at.forget();
+        self.energy_at.forget();
+        self.end.copy_from_slice(&state.x);
+        problem.model.place_pins(problem.t(), &mut self.end);
+        let span = StepSpan { t0: state.t, h };
+        self.iterate.begin(problem.contact_mut(), span, &state.x);
+    }
+
+    /// Sets the penalties of rods and of vertex constraints: so many times as stiff as the masses.
+    pub(super) fn set_stiffness(&mut self, rods: f64, constraints: f64) {
+        self.vertex_rows.set_stiffness(constraints);
+        self.stiffness = rods;
+    }
+
+    /// Penalty of a rod, kilograms per square metre.
+    pub(super) fn penalty(&self, e: usize) -> f64 {
+        self.stiffness * self.unit_penalty[e]
+    }
+
+    /// Drops the multipliers.
+    pub(super) fn clear_multipliers(&mut self) {
+        self.multipliers.fill(0.0);
+        self.vertex_rows.clear();
+    }
+
+    /// Whether bodies or pins have not arrived yet.
+    pub(super) fn is_driven(&self, problem: &StepProblem<'_>) -> bool {
+        let x = self.iterate.x();
+        let has_arrived = |v: usize| x[3 * v..3 * v + 3] == self.end[3 * v..3 * v + 3];
+        self.iterate.progress() < 1.0 || !problem.model.moving_pins().all(has_arrived)
+    }
+
+    /// Evaluates value and constraints at the iterate.
+    pub(super) fn merit(&mut self, problem: &StepProblem<'_>) -> Merit {
+        let (model, t, h) = (problem.model, problem.t(), problem.h);
+        let x = self.iterate.x();
+        for i in 0..x.len() {
+            self.difference[i] = x[i] - problem.prediction[i];
+        }
+        let inertia = model.kinetic_energy(&self.difference);
+        let work = dot(problem.applied, &self.difference);
+        model.rods().residual_into(x, &mut self.c);
+        self.vertex_rows.evaluate(model.constraints(), t, x);
+        let size = x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        // Round-off of c is that of the squared lengths; and where inertia alone has the right lengths
+        // already, nothing but the round-off of the positions is left to minimise.
+        let (mut rods, mut rod_scale, mut squares) = (0.0, 0.0, 0.0);
+        for (e, l) in model.rods().lengths().iter().enumerate() {
+            let (m, p, c) = (self.multipliers[e], self.penalty(e), self.c[e]);
+            rods += (m + 0.5 * p * c) * c;
+            rod_scale += m.abs() * (l * l);
+            squares += p * (f64::EPSILON * (l * size + l * l)).powi(2);
+        }
+        rods += self.vertex_rows.value();
+        let (vertex_scale, vertex_squares) = self.vertex_rows.scales(size);
+        rod_scale += vertex_scale;
+        squares += vertex_squares;
+        if let Some(elastic) = model.elastic_sheet() {
+            squares += h * h * elastic.round_off(size);
+        }
+        if self.energy_at.moves_to(t, x) {
+            self.energy = model.potential_energy(t, x);
+        }
+        let mut energy = self.energy;
+        if let Some(terms) = self.iterate.terms(problem.contact()) {
+            energy += terms.energy();
+        }
+        let potential = inertia + h * h * (energy - work);
+        let sizes = inertia + h * h * (energy.abs() + work.abs()) + rods.abs() + rod_scale;
+        Merit {
+            inertia,
+            value: potential + rods,
+            potential,
+            rod_scale,
+            round_off: ROUND_OFF_OPERATIONS * f64::EPSILON * sizes + POSITION_OPERATIONS * squares,
+        }
+    }
+
+    /// Sets the gradient at the iterate, whose constraints have to be current. While bodies or pins move,
+    /// with what the rest of their motions will change the gradient by, to first order.
+    pub(super) fn set_gradient(&mut self, problem: &StepProblem<'_>) {
+        let (model, t, h) = (problem.model, problem.t(), problem.h);
+        let x = self.iterate.x();
+        for i in 0..x.len() {
+            self.difference[i] = x[i] - problem.prediction[i];
+        }
+        model.apply_mass(&self.difference, &mut self.weighted);
+        if self.force_at.moves_to(t, x) {
+            model.potential_force(t, x, &mut self.force);
+        }
+        for i in 0..x.len() {
+            self.gradient[i] = self.weighted[i] - h * h * (self.force[i] + problem.applied[i]);
+        }
+        for e in 0..self.c.len() {
+            self.estimates[e] = self.multipliers[e] + self.penalty(e) * self.c[e];
+        }
+        let rods = model.rods();
+        rods.apply_transpose_add(x, &self.estimates, &mut self.gradient);
+        self.vertex_rows.add_gradient(&mut self.gradient);
+        if let Some(terms) = self.iterate.terms(problem.contact()) {
+            terms.add_gradient(h * h, &mut self.gradient);
+        }
+        if self.is_driven(problem) {
+            self.add_drive(problem);
+        }
+        model.clear_pinned(&mut self.gradient);
+    }
+
+    /// Adds the change of the gradient by the motions to come of bodies and pins, to first order.
+    fn add_drive(&mut self, problem: &StepProblem<'_>) {
+        let model = problem.model;
+        if let Some(terms) = self.iterate.terms(problem.contact()) {
+            terms.add_drive(problem.h * problem.h, &mut self.gradient);
+        }
+        let x = self.iterate.x();
+        let free = model.free_index();
+        for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
+            let (pin, end) = match (free[a] == PINNED, free[b] == PINNED) {
+                (true, false) => (a, b),
+                (false, true) => (b, a),
+                _ => continue,
+            };
+            let at = |x: &[f64], v: usize| Vector3::new(x[3 * v], x[3 * v + 1], x[3 * v + 2]);
+            let (d, u) = (at(x, end) - at(x, pin), at(&self.end, pin) - at(x, pin));
+            let stretch = self.penalty(e) * d.dot(&u);
+            let change = self.estimates[e] * u + stretch * d;
+            for k in 0..3 {
+                self.gradient[3 * end + k] -= change[k];
+            }
+        }
+        self.add_potential_drive(problem);
+    }
+
+    /// Adds what the potentials change the gradient by along the motions to come of pins, to first order.
+    fn add_potential_drive(&mut self, problem: &StepProblem<'_>) {
+        let model = problem.model;
+        self.weighted.fill(0.0);
+        for v in model.moving_pins() {
+            for i in 3 * v..3 * v + 3 {
+                self.weighted[i] = self.end[i] - self.iterate.x()[i];
+            }
+        }
+        let mut product = HessianProduct {
+            edges: model.rods().edges(),
+            scale: problem.h * problem.h,
+            vector: &self.weighted,
+            product: &mut self.gradient,
+        };
+        for potential in model.potentials() {
+            potential.add_hessian(problem.t(), self.iterate.x(), &mut product);
+        }
+    }
+
+    /// Factorises the Hessian at the iterate; where it is indefinite, or `part` asks for no more, a
+    /// positive definite part: the rods' geometric stiffness and the curvature of vertex constraints
+    /// projected onto the semidefinite matrices, and if that does not help, without the curvature of the
+    /// potentials.
+    ///
+    /// # Errors
+    /// [`StepError::Linalg`] if even that cannot be factorised, which takes a coefficient that is not a number;
+    /// [`StepError::Interrupted`].
+    pub(super) fn factorize(
+        &mut self,
+        problem: &StepProblem<'_>,
+        load: RodLoad,
+        part: HessianPart,
+        effort: &mut SolverEffort<'_>,
+    ) -> Result<Definiteness, StepError> {
+        let t0 = problem.state.t;
+        let failed = |source| StepError::Linalg { t: t0, source };
+        let mut count = || match effort.count_factorisation() {
+            true => Ok(()),
+            false => Err(StepError::Interrupted { t: t0 }),
+        };
+        if let Some(terms) = self.iterate.terms(problem.contact()) {
+            self.matrix
+                .make_room(problem.model, &terms)
+                .map_err(failed)?;
+        }
+        for e in 0..self.c.len() {
+            self.axial[e] = self.penalty(e);
+        }
+        match load {
+            RodLoad::Multipliers => self.transverse.copy_from_slice(&self.multipliers),
+            RodLoad::Estimates => self.transverse.copy_from_slice(&self.estimates),
+        }
+        if part == HessianPart::Full {
+            count()?;
+            self.assemble(problem, HessianPart::Full);
+            self.add_potentials(problem);
+            if self.matrix.factorize().is_ok() {
+                return Ok(Definiteness::Definite);
+            }
+        }
+        self.project_rods(problem.model, load);
+        count()?;
+        self.assemble(problem, HessianPart::PositiveSemidefinite);
+        let (t, x) = (problem.t(), self.iterate.x());
+        let scale = problem.h * problem.h;
+        self.matrix
+            .add_semidefinite_potentials(problem.model, t, x, scale);
+        if self.matrix.factorize().is_err() {
+            count()?;
+            self.assemble(problem, HessianPart::PositiveSemidefinite);
+            self.matrix.factorize().map_err(failed)?;
+        }
+        Ok(Definiteness::Modified)
+    }
+
+    /// Replaces each rod's own Hessian, with eigenvalues `p` across and `p + r |d|^2` along the rod, by its
+    /// positive semidefinite part. (With multipliers far from the estimates the part along the rod stays as
+    /// it is.)
+    fn project_rods(&mut self, model: &SheetModel, load: RodLoad) {
+        let along = load == RodLoad::Estimates;
+        for e in 0..self.transverse.len() {
+            if self.transverse[e] < 0.0 {
+                if along {
+                    let l = model.rods().lengths()[e];
+                    let squared = (l * l + 2.0 * self.c[e]).max(f64::MIN_POSITIVE);
+                    self.axial[e] = (self.axial[e] + self.transverse[e] / squared).max(0.0);
+                }
+                self.transverse[e] = 0.0;
+            }
+        }
+    }
+
+    /// Sets the matrix: masses, rods, vertex constraints and contact.
+    fn assemble(&mut self, problem: &StepProblem<'_>, part: HessianPart) {
+        let model = problem.model;
+        self.matrix
+            .assemble(model, self.iterate.x(), &self.axial, &self.transverse);
+        self.vertex_rows
+            .add_hessian(part, &mut self.matrix.sink(model));
+        if let Some(terms) = self.iterate.terms(problem.contact()) {
+            self.matrix
+                .add_contact(model, &terms, problem.h * problem.h);
+        }
+    }
+
+    fn add_potentials(&mut self, problem: &StepProblem<'_>) {
+        let (t, x) = (problem.t(), self.iterate.x());
+        let scale = problem.h * problem.h;
+        self.matrix.add_potentials(problem.model, t, x, scale);
+    }
+
+    /// Solves for minus the search direction; the slope of the value along the search direction.
+    ///
+    /// # Errors
+    /// [`LinalgError::NotPositiveDefinite`] if the Hessian turns out not to be positive definite.
+    pub(super) fn solve(
+        &mut self,
+        model: &SheetModel,
+        effort: &mut SolverEffort<'_>,
+    ) -> Result<f64, LinalgError> {
+        self.matrix
+            .solve_whole(model, &self.gradient, &mut self.dx, effort)?;
+        Ok(self.slope())
+    }
+
+    /// Keeps the multipliers of the isometry, for [`Lagrangian::restore_multipliers`].
+    pub(super) fn keep_multipliers(&mut self) {
+        self.kept.copy_from_slice(&self.multipliers);
+    }
+
+    /// Takes back what has changed the multipliers of the isometry since they were kept.
+    pub(super) fn restore_multipliers(&mut self) {
+        self.multipliers.copy_from_slice(&self.kept);
+    }
+
+    /// Improves the multipliers of the isometry and the step `-dx` that was solved for with them; the
+    /// violation of the linearised equations that is left, as a strain.
+    pub(super) fn improve_multipliers(&mut self, model: &SheetModel, goal: MultiplierGoal) -> f64 {
+        let mut system = LinearisedRows {
+            model,
+            matrix: &mut self.matrix,
+            x: self.iterate.x(),
+            values: &self.c,
+            stiffness: self.stiffness,
+            unit_penalty: &self.unit_penalty,
+        };
+        let (multipliers, dx) = (&mut self.multipliers, &mut self.dx);
+        self.solver.improve(&mut system, multipliers, dx, goal)
+    }
+
+    /// Slope of the value along `-dx`, the gradient being current.
+    pub(super) fn slope(&self) -> f64 {
+        -dot(&self.dx, &self.gradient)
+    }
+
+    /// Begins a line search at the iterate: the largest part of the step `-dx` that is safe, pinned vertices
+    /// going to their ends.
+    pub(super) fn begin_line_search(&mut self, problem: &mut StepProblem<'_>) -> f64 {
+        self.start.copy_from_slice(self.iterate.x());
+        self.safe_part(problem)
+    }
+
+    /// Brings the iterate back to the start of the line search, where contact knows the motion that the next
+    /// trial is part of.
+    pub(super) fn return_to_start(&mut self, problem: &mut StepProblem<'_>) {
+        self.iterate.x_mut().copy_from_slice(&self.start);
+        self.safe_part(problem);
+    }
+
+    pub(super) fn safe_part(&mut self, problem: &mut StepProblem<'_>) -> f64 {
+        let x = self.iterate.x();
+        for v in problem.model.moving_pins() {
+            for i in 3 * v..3 * v + 3 {
+                self.dx[i] = x[i] - self.end[i];
+            }
+        }
+        if !problem.is_bounded() {
+            return 1.0;
+        }
+        for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
+            *w = -d;
+        }
+        safe_fraction(&mut self.iterate, problem, &self.weighted)
+    }
+
+    /// Puts the iterate at the part `length` of the step `-dx` from the start of the line search.
+    pub(super) fn move_along(&mut self, length: f64) {
+        let displaced = self.start.iter().zip(&self.dx);
+        for (x, (start, dx)) in self.iterate.x_mut().iter_mut().zip(displaced) {
+            *x = start - length * dx;
+        }
+    }
+
+    /// Moves sheet, pins and bodies on together by a part of the rest of their motions.
+    pub(super) fn drive(&mut self, problem: &StepProblem<'_>, part: f64) {
+        self.move_along(part);
+        if part == 1.0 {
+            let x = self.iterate.x_mut();
+            for v in problem.model.moving_pins() {
+                x[3 * v..3 * v + 3].copy_from_slice(&self.end[3 * v..3 * v + 3]);
+            }
+        }
+        self.iterate.advance_bodies(part);
+    }
+
+    /// Puts the iterate where inertia alone would take the sheet, unless contact or the limit of the strain is in the way, and pins and
+    /// bodies to the ends of their motions.
+    pub(super) fn predict(&mut self, problem: &mut StepProblem<'_>) {
+        self.start.copy_from_slice(problem.prediction);
+        problem.model.place_pins(problem.t(), &mut self.start);
+        if problem.is_bounded() {
+            for ((d, x), x0) in self.dx.iter_mut().zip(&self.start).zip(self.iterate.x()) {
+                *d = x - x0;
+            }
+            if safe_fraction(&mut self.iterate, problem, &self.dx) < 1.0 {
+                return;
+            }
+            self.iterate.advance_bodies(1.0);
+        }
+        self.iterate.x_mut().copy_from_slice(&self.start);
+    }
+
+    /// Puts pins in motion where they are at the end of the step.
+    pub(super) fn place_pins(&mut self, problem: &StepProblem<'_>) {
+        problem.model.place_pins(problem.t(), self.iterate.x_mut());
+    }
+
+    /// Lags friction anew at the iterate where its normal forces have changed by more than `settled`,
+    /// relative to the largest; whether they have.
+    pub(super) fn renew_friction(&mut self, problem: &StepProblem<'_>, settled: f64) -> bool {
+        let x0 = &problem.state.x;
+        self.iterate.renew_friction(problem.contact(), x0, settled)
+    }
+
+    /// Displaces the iterate off a saddle, in the direction that belongs to `seed`: for sheets that may be
+    /// exactly flat, where one direction of negative curvature is not enough.
+    pub(super) fn perturb(&mut self, problem: &mut StepProblem<'_>, seed: u64) {
+        let model = problem.model;
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        for (i, d) in self.dx.iter_mut().enumerate() {
+            let size = PERTURBATIONS[0] * model.shortest_rod(i / 3);
+            *d = rng.random_range(-size..=size);
+        }
+        model.clear_pinned(&mut self.dx);
+        let part = safe_fraction(&mut self.iterate, problem, &self.dx);
+        for (x, d) in self.iterate.x_mut().iter_mut().zip(&self.dx) {
+            *x += part * d;
+        }
+    }
+
+    /// Leaves a saddle: moves the iterate along a direction of negative curvature, if that lowers the value
+    /// by more than `least`; whether the iterate has moved. The matrix that is factorised has to be the
+    /// modified one.
+    ///
+    /// Factorising the Hessian `H` took out `N`, the pressure of the rods: `d^T N d` is the sum of
+    /// `max(-(L + r c), 0) |d_a - d_b|^2` over the rods. The curvature `d^T H d` is negative where the Rayleigh
+    /// quotient of `N` and `H + N` exceeds one. Power iterations that start from the direction that belongs
+    /// to `seed` find the largest quotient.
+    pub(super) fn leave_saddle(
+        &mut self,
+        problem: &mut StepProblem<'_>,
+        seed: u64,
+        least: f64,
+        effort: &mut SolverEffort<'_>,
+    ) -> bool {
+        let model = problem.model;
+        if !self.find_negative_curvature(model, seed, effort) {
+            return false;
+        }
+        let before = self.merit(problem);
+        self.start.copy_from_slice(self.iterate.x());
+        for size in PERTURBATIONS {
+            let scale = size * model.mean_length();
+            for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
+                *w = scale * d;
+            }
+            let contact = problem.contact_mut();
+            let part = self.iterate.safe_fraction(contact, &self.weighted);
+            let displaced = self.start.iter().zip(&self.weighted);
+            for (x, (x0, d)) in self.iterate.x_mut().iter_mut().zip(displaced) {
+                *x = x0 + part * d;
+            }
+            if self.merit(problem).value < before.value - least - before.round_off {
+                return true;
+            }
+            self.iterate.x_mut().copy_from_slice(&self.start);
+        }
+        self.merit(problem);
+        false
+    }
+
+    /// Sets `dx`, of largest component one, to a direction of negative curvature; whether there is one.
+    fn find_negative_curvature(
+        &mut self,
+        model: &SheetModel,
+        seed: u64,
+        effort: &mut SolverEffort<'_>,
+    ) -> bool {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        for d in &mut self.dx {
+            *d = rng.random_range(-1.0..=1.0);
+        }
+        model.clear_pinned(&mut self.dx);
+        let mut quotient = 0.0;
+        for _ in 0..CURVATURE_ITERATIONS {
+            self.apply_pressure(model);
+            self.difference.copy_from_slice(&self.weighted);
+            let (b, dx) = (&self.difference, &mut self.dx);
+            if self.matrix.solve_whole(model, b, dx, effort).is_err() {
+                return false;
+            }
+            let curvature = dot(&self.dx, &self.difference);
+            // Where no rod is under pressure there is no direction.
+            if !(curvature.is_finite() && curvature > 0.0) {
+                return false;
+            }
+            self.apply_pressure(model);
+            quotient = dot(&self.dx, &self.weighted) / curvature;
+            let largest = self.dx.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+            self.dx.iter_mut().for_each(|d| *d /= largest);
+        }
+        quotient > 1.0
+    }
+
+    /// Sets `weighted = N dx`, see [`Lagrangian::leave_saddle`].
+    fn apply_pressure(&mut self, model: &SheetModel) {
+        self.weighted.fill(0.0);
+        for (e, &[a, b]) in model.rods().edges().iter().enumerate() {
+            let pressure = (-self.estimates[e]).max(0.0);
+            for k in 0..3 {
+                let w = pressure * (self.dx[3 * a + k] - self.dx[3 * b + k]);
+                self.weighted[3 * a + k] += w;
+                self.weighted[3 * b + k] -= w;
+            }
+        }
+        model.clear_pinned(&mut self.weighted);
+    }
+}

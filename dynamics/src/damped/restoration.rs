@@ -1,0 +1,480 @@
+//! Projection of positions onto the rest lengths and of velocities onto their rates.
+
+mod correction;
+
+use crate::SheetModel;
+use crate::constraint::rows::VertexRows;
+use crate::contact::StepContact;
+use crate::damped::iterate::Iterate;
+use crate::linear::primal::{PrimalMatrix, penalties};
+use crate::step::effort::SolverEffort;
+use crate::step::unassigned::UnassignedMomentum;
+use nalgebra::Vector3;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Penalty (relative to the masses) that a projection starts from. From 1e9 the projection is
+/// a Gauss-Newton step to round-off wherever the rods are independent.
+const FIRST_PENALTY: f64 = 1e9;
+/// Bounds of the penalty while it adapts. Above 1e13 the masses drown in the round-off of the
+/// penalty and the matrix loses its definiteness; below 1e3 steps are too timid to be useful.
+const PENALTY_RANGE: (f64, f64) = (1e3, 1e13);
+/// Sufficient decrease of the length error per full step, the usual choice for Gauss-Newton.
+const SUFFICIENT_DECREASE: f64 = 0.1;
+/// A line search that has halved its step this often has stalled.
+const SMALLEST_STEP: f64 = 1e-2;
+
+/// Part of the error that an iteration leaves from which it counts as slow, and number of slow iterations
+/// in a row that make an iterate stationary. Two to eight cost the same; without a limit hanging sheets of
+/// 81 vertices need up to 400 iterations in steps of 5 ms.
+const SLOW: f64 = 0.9;
+const MAX_SLOW: usize = 4;
+/// Tolerance from which iterates are restored that may be far from the manifold: a stationary one is left
+/// to the caller, who takes a shorter step.
+const LOOSE_TOLERANCE: f64 = 1e-3;
+
+/// Part of the tolerance that is the goal of corrections with contact, which cost no factorisation. It keeps
+/// what round-off adds in later steps below the tolerance, and so a sheet at rest from having to fold.
+const RESERVE: f64 = 0.1;
+/// Passes of the method of multipliers: each contracts by the penalty, except along rods that are dependent.
+const PASSES: usize = 3;
+
+/// Growth of the displacement that opens a flat patch from one attempt to the next: the next
+/// one has to leave the basin that the last one fell back into.
+const OPENING_GROWTH: f64 = 4.0;
+/// Largest number of such displacements in contact, where they may be in vain; after these the caller
+/// minimises again. The first step of a sheet that lies flat on a table takes 490 factorisations without a
+/// limit (means of 24 starts), 350 with three to five, and 610 with two.
+const MAX_OPENINGS_IN_CONTACT: i32 = 4;
+/// Largest such displacement, in rod lengths: beyond, faces could turn over.
+const LARGEST_OPENING: f64 = 0.05;
+
+/// Moves positions to the nearest ones, in the sense of the mass matrix, that have the rest
+/// lengths: a Levenberg-Marquardt iteration with line search
+///
+/// ```text
+/// (M + r G^T G) dx = -r G^T c(x),
+/// ```
+///
+/// with `r` raised while steps contract slowly or the masses hold them back, and lowered when the line search
+/// shortens them. Positive definite at any rank of `G`, so flat states are no obstacle; close to them
+/// convergence is linear instead of quadratic.
+///
+/// Where there is contact its Hessian joins the mass matrix, so that the nearest positions are those that
+/// press least on it, and nothing is passed through on the way.
+pub(crate) struct Restoration {
+    axial: Vec<f64>,
+    transverse: Vec<f64>,
+    unit: Vec<f64>,
+    c: Vec<f64>,
+    w: Vec<f64>,
+    rhs: Vec<f64>,
+    dx: Vec<f64>,
+    start: Vec<f64>,
+    /// Minus the gradient of contact at `start`, newtons times the factor of its energy.
+    contact_start: Vec<f64>,
+    /// Momentum that the iterations of the last projection of positions gave, kilogram metres.
+    pub(crate) unassigned: UnassignedMomentum,
+    /// Vertices on curves and surfaces.
+    pub(crate) vertex_rows: VertexRows,
+}
+
+/// When a projection stops.
+#[derive(Clone, Copy)]
+pub(crate) struct RestorationGoal<'a> {
+    /// Largest edge strain wanted.
+    pub(crate) tolerance: f64,
+    pub(crate) max_iterations: usize,
+    /// Time of the vertex constraints, seconds.
+    pub(crate) t: f64,
+    /// What loads the vertex constraints already: one-sided ones under load are kept as equalities. May be
+    /// empty.
+    pub(crate) loads: &'a [Vector3<f64>],
+    pub(crate) matrix: FirstMatrix,
+}
+
+/// The matrix that a projection begins with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FirstMatrix {
+    /// One that is assembled at the positions given.
+    Assembled,
+    /// That which is factorised, of positions nearby. (Not used where there are vertex constraints.)
+    Factorised,
+}
+
+/// Contact that a projection has to keep.
+pub(crate) struct RestorationContact<'a, 'b> {
+    pub(crate) contact: &'a mut StepContact<'b>,
+    /// Factor of its energy in the incremental potential, `h^2`.
+    pub(crate) scale: f64,
+}
+
+/// How the linear system of an iteration went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Solved {
+    /// There is a step.
+    Yes,
+    /// The masses drown in the round-off of the penalty.
+    PenaltyTooLarge,
+    /// The linear algebra failed.
+    No,
+}
+
+impl Restoration {
+    pub(crate) fn new(model: &SheetModel) -> Self {
+        let (n, m) = (model.coordinate_count(), model.rods().len());
+        Self {
+            axial: vec![0.0; m],
+            transverse: vec![0.0; m],
+            unit: penalties(model, 1.0),
+            c: vec![0.0; m],
+            w: vec![0.0; m],
+            rhs: vec![0.0; n],
+            dx: vec![0.0; n],
+            start: vec![0.0; n],
+            contact_start: vec![0.0; n],
+            unassigned: UnassignedMomentum::new(model),
+            vertex_rows: VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0),
+        }
+    }
+
+    /// Restores the lengths of an iterate in place; returns the strain reached, which exceeds
+    /// `goal.tolerance` if `goal.max_iterations` did not suffice.
+    pub(crate) fn positions(
+        &mut self,
+        model: &SheetModel,
+        matrix: &mut PrimalMatrix,
+        mut contact: Option<RestorationContact<'_, '_>>,
+        iterate: &mut Iterate,
+        goal: RestorationGoal<'_>,
+        effort: &mut SolverEffort<'_>,
+    ) -> f64 {
+        let tolerance = goal.tolerance;
+        let (mut penalty, mut slow) = (FIRST_PENALTY, 0_usize);
+        let max_openings = match (tolerance >= LOOSE_TOLERANCE, &contact) {
+            (true, _) => 0,
+            (false, Some(_)) => MAX_OPENINGS_IN_CONTACT,
+            (false, None) => i32::MAX,
+        };
+        let mut openings = 0;
+        self.begin(model, &goal, iterate);
+        if goal.matrix == FirstMatrix::Factorised && model.constraints().is_empty() {
+            let target = match contact {
+                Some(_) => RESERVE * tolerance,
+                None => tolerance,
+            };
+            self.correct(model, matrix, contact.as_mut(), iterate, target);
+        }
+        let mut strain = self.worst(model, iterate.x());
+        for _ in 0..goal.max_iterations {
+            if strain <= tolerance || strain.is_nan() {
+                break;
+            }
+            if !effort.count_factorisation() {
+                break;
+            }
+            effort.iterations += 1;
+            match self.solve(model, matrix, contact.as_mut(), iterate, penalty) {
+                Solved::Yes => {}
+                Solved::PenaltyTooLarge if penalty > PENALTY_RANGE.0 => {
+                    penalty = (penalty * 1e-2).max(PENALTY_RANGE.0);
+                    continue;
+                }
+                Solved::PenaltyTooLarge | Solved::No => break,
+            }
+            let before = self.error();
+            self.start.copy_from_slice(iterate.x());
+            let geometry = contact.as_mut().map(|c| &mut *c.contact);
+            let limit = iterate.safe_fraction(geometry, &self.dx);
+            if limit < SMALLEST_STEP {
+                // Contact is in the way; more pressure has to build up before.
+                break;
+            }
+            let linear = self.linearised_error(model, iterate.x());
+            let (length, after) = self.line_search(model, goal.t, iterate, limit, before);
+            self.keep_momentum(model, contact.as_ref(), iterate, None);
+            if after > RESERVE * before && self.worst(model, iterate.x()) <= tolerance {
+                return self.worst(model, iterate.x());
+            }
+            slow = if after > SLOW * before { slow + 1 } else { 0 };
+            let is_stationary = length < SMALLEST_STEP || slow >= MAX_SLOW;
+            if linear > SLOW * before && penalty < PENALTY_RANGE.1 && slow < MAX_SLOW {
+                // The masses hold the step back.
+                penalty *= 100.0;
+            } else if is_stationary && openings == max_openings {
+                strain = self.worst(model, iterate.x());
+                break;
+            } else if is_stationary {
+                // Stationary, but not solved: the error lies across the range of G, which happens where a
+                // patch is flat and asks for a fold. A displacement of order sqrt(strain), in any
+                // direction, opens it.
+                penalty = FIRST_PENALTY;
+                let size = OPENING_GROWTH.powi(openings) * strain.sqrt();
+                let size = size.min(LARGEST_OPENING);
+                self.unfold(model, contact.as_mut(), iterate, size);
+                openings += 1;
+                slow = 0;
+                self.evaluate(model, goal.t, iterate.x());
+            } else if length < limit {
+                penalty *= 0.1;
+            } else if limit == 1.0 && after > 0.1 * before {
+                penalty *= 10.0;
+            }
+            penalty = penalty.clamp(PENALTY_RANGE.0, PENALTY_RANGE.1);
+            strain = self.worst(model, iterate.x());
+        }
+        strain
+    }
+
+    /// Forgets earlier restorations and evaluates the constraints at the iterate.
+    fn begin(&mut self, model: &SheetModel, goal: &RestorationGoal<'_>, iterate: &Iterate) {
+        self.unassigned.clear();
+        for (i, c) in model.constraints().iter().enumerate() {
+            let is_loaded = goal.loads.get(i).is_some_and(|l| l.x < 0.0);
+            self.vertex_rows.equality[i] = is_loaded || !c.is_one_sided();
+        }
+        self.vertex_rows.corrected.fill(false);
+        self.evaluate(model, goal.t, iterate.x());
+    }
+
+    /// Evaluates the constraints.
+    fn evaluate(&mut self, model: &SheetModel, t: f64, x: &[f64]) {
+        model.rods().residual_into(x, &mut self.c);
+        self.vertex_rows.evaluate(model.constraints(), t, x);
+    }
+
+    /// Solves `(M + h^2 B'' + r G^T G) dx = -r G^T c`.
+    fn solve(
+        &mut self,
+        model: &SheetModel,
+        matrix: &mut PrimalMatrix,
+        contact: Option<&mut RestorationContact<'_, '_>>,
+        iterate: &mut Iterate,
+        penalty: f64,
+    ) -> Solved {
+        let rods = model.rods();
+        for e in 0..self.c.len() {
+            self.axial[e] = penalty * self.unit[e];
+            self.w[e] = -self.axial[e] * self.c[e];
+        }
+        self.transverse.fill(0.0);
+        let geometry = contact.as_ref().map(|c| &*c.contact);
+        if let Some(terms) = iterate.terms(geometry)
+            && matrix.make_room(model, &terms).is_err()
+        {
+            return Solved::No;
+        }
+        matrix.assemble(model, iterate.x(), &self.axial, &self.transverse);
+        self.rhs.fill(0.0);
+        self.vertex_rows
+            .add_projection(penalty, &mut matrix.sink(model), &mut self.rhs);
+        if let Some(contact) = &contact
+            && let Some(terms) = iterate.terms(Some(contact.contact))
+        {
+            matrix.add_contact(model, &terms, contact.scale);
+        }
+        self.keep_contact_forces(contact.as_deref(), iterate);
+        if matrix.factorize().is_err() {
+            return Solved::PenaltyTooLarge;
+        }
+        rods.apply_transpose_add(iterate.x(), &self.w, &mut self.rhs);
+        matrix.solve(model, &self.rhs, &mut self.dx);
+        Solved::Yes
+    }
+
+    /// Halves the step from `limit` on until the error decreases sufficiently; the part of the step and the
+    /// error there.
+    fn line_search(
+        &mut self,
+        model: &SheetModel,
+        t: f64,
+        iterate: &mut Iterate,
+        limit: f64,
+        before: f64,
+    ) -> (f64, f64) {
+        let mut length = limit;
+        loop {
+            for (i, xi) in iterate.x_mut().iter_mut().enumerate() {
+                *xi = self.start[i] + length * self.dx[i];
+            }
+            self.evaluate(model, t, iterate.x());
+            let after = self.error();
+            let is_enough = after <= (1.0 - SUFFICIENT_DECREASE * length) * before;
+            if is_enough || length < SMALLEST_STEP {
+                return (length, after);
+            }
+            length *= 0.5;
+        }
+    }
+
+    /// Largest strain or relative violation of a vertex constraint, those being evaluated.
+    fn worst(&self, model: &SheetModel, x: &[f64]) -> f64 {
+        let strain = model.constrained_strain(x);
+        if model.constraints().is_empty() {
+            return strain;
+        }
+        let violation = self.vertex_rows.largest_violation();
+        // `max` would pass over a value that is not a number.
+        if violation.is_nan() {
+            violation
+        } else {
+            strain.max(violation)
+        }
+    }
+
+    /// Displaces every free vertex by up to `relative` lengths of its shortest rod.
+    fn unfold(
+        &mut self,
+        model: &SheetModel,
+        contact: Option<&mut RestorationContact<'_, '_>>,
+        iterate: &mut Iterate,
+        relative: f64,
+    ) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed_of(iterate.x()));
+        for (i, d) in self.dx.iter_mut().enumerate() {
+            let size = relative * model.shortest_rod(i / 3);
+            *d = rng.random_range(-size..=size);
+        }
+        model.clear_pinned(&mut self.dx);
+        let part = iterate.safe_fraction(contact.map(|c| &mut *c.contact), &self.dx);
+        for (xi, d) in iterate.x_mut().iter_mut().zip(&self.dx) {
+            *xi += part * d;
+        }
+    }
+
+    /// Releases one-sided constraints that the last projection of positions did not press on.
+    pub(crate) fn release(&mut self, model: &SheetModel) {
+        for (i, c) in model.constraints().iter().enumerate() {
+            self.vertex_rows.equality[i] = !c.is_one_sided() || self.vertex_rows.corrected[i];
+        }
+    }
+
+    /// Keeps the forces of contact at the iterate, where an iteration starts.
+    fn keep_contact_forces(
+        &mut self,
+        contact: Option<&RestorationContact<'_, '_>>,
+        iterate: &mut Iterate,
+    ) {
+        if let Some(RestorationContact { contact, scale }) = contact
+            && self.unassigned.has_room()
+            && let Some(terms) = iterate.terms(Some(contact))
+        {
+            self.contact_start.fill(0.0);
+            terms.add_gradient(-scale, &mut self.contact_start);
+        }
+    }
+
+    /// Keeps the momentum that rods and vertex constraints gave in the iteration from `start` to the iterate.
+    /// The rods have the directions of the positions `rods_at`, those of `start` if none are given.
+    fn keep_momentum(
+        &mut self,
+        model: &SheetModel,
+        contact: Option<&RestorationContact<'_, '_>>,
+        iterate: &mut Iterate,
+        rods_at: Option<&[f64]>,
+    ) {
+        if !self.unassigned.has_room() {
+            return;
+        }
+        for ((d, x), x0) in self.dx.iter_mut().zip(iterate.x()).zip(&self.start) {
+            *d = x - x0;
+        }
+        model
+            .mass()
+            .apply(model.topology(), &self.dx, &mut self.rhs);
+        let active = &self.vertex_rows.active;
+        let sum = self.unassigned.push(
+            rods_at.unwrap_or(&self.start),
+            active,
+            self.rhs.iter().copied(),
+        );
+        if let Some(RestorationContact { contact, scale }) = contact
+            && let Some(terms) = iterate.terms(Some(contact))
+        {
+            for (s, g) in sum.iter_mut().zip(&self.contact_start) {
+                *s += g;
+            }
+            terms.add_gradient(*scale, sum);
+        }
+    }
+
+    /// Projects `v` in place onto `G(x) v = 0` (and, at the vertex constraints that are equalities,
+    /// `J v + rate = 0` with `J` as last evaluated), nearest in the sense of the mass matrix, by
+    /// the method of multipliers: each solve with `M + r G^T G` is followed by the update of
+    /// the multipliers, all with one factor.
+    ///
+    /// Returns the largest rate left, relative to the speed and the length of the rod.
+    pub(crate) fn velocities(
+        &mut self,
+        model: &SheetModel,
+        matrix: &mut PrimalMatrix,
+        x: &[f64],
+        v: &mut [f64],
+        rates: &[Vector3<f64>],
+        effort: &mut SolverEffort<'_>,
+    ) -> f64 {
+        let rods = model.rods();
+        for e in 0..rods.len() {
+            self.axial[e] = FIRST_PENALTY * self.unit[e];
+        }
+        self.transverse.fill(0.0);
+        matrix.assemble(model, x, &self.axial, &self.transverse);
+        self.vertex_rows
+            .add_equalities(FIRST_PENALTY, &mut matrix.sink(model));
+        if !effort.count_factorisation() || matrix.factorize().is_err() {
+            return f64::INFINITY;
+        }
+        let mut rate = f64::INFINITY;
+        for _ in 0..PASSES {
+            rods.apply(x, v, &mut self.c);
+            let speed = v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            rate = self
+                .c
+                .iter()
+                .zip(rods.lengths())
+                .fold(0.0_f64, |m, (c, l)| m.max(c.abs() / l));
+            self.rhs.fill(0.0);
+            let slip = self
+                .vertex_rows
+                .add_rates(FIRST_PENALTY, rates, v, &mut self.rhs);
+            rate = rate.max(slip) / speed.max(f64::MIN_POSITIVE);
+            if rate < 1e-15 {
+                break;
+            }
+            for e in 0..rods.len() {
+                self.w[e] = -self.axial[e] * self.c[e];
+            }
+            rods.apply_transpose_add(x, &self.w, &mut self.rhs);
+            matrix.solve(model, &self.rhs, &mut self.dx);
+            for (vi, d) in v.iter_mut().zip(&self.dx) {
+                *vi += d;
+            }
+        }
+        rate
+    }
+
+    /// What the linearised lengths leave of the error after the whole step.
+    fn linearised_error(&mut self, model: &SheetModel, x: &[f64]) -> f64 {
+        model.rods().apply(x, &self.dx, &mut self.w);
+        let errors = self.c.iter().zip(&self.w).zip(&self.unit);
+        errors
+            .map(|((c, w), u)| u * (c + w).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// Norm of the errors, rods weighted as in the least-squares problem that a step solves.
+    fn error(&self) -> f64 {
+        let errors = self.c.iter().zip(&self.unit);
+        let rods = errors.map(|(c, u)| c * c * u).sum::<f64>();
+        (rods + self.vertex_rows.squared_error()).sqrt()
+    }
+}
+
+/// A seed that depends on positions to the last bit: a displacement that did not help is not drawn again, and
+/// none depends on what was done before.
+fn seed_of(x: &[f64]) -> u64 {
+    x.iter().fold(0, |seed: u64, x| {
+        seed.rotate_left(7).wrapping_add(x.to_bits())
+    })
+}

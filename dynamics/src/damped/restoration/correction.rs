@@ -1,0 +1,80 @@
+//! Corrections of small length errors with a matrix that is factorised already.
+
+use super::{Restoration, RestorationContact};
+use crate::SheetModel;
+use crate::damped::iterate::Iterate;
+use crate::linear::primal::PrimalMatrix;
+
+/// Largest number of corrections. Hanging sheets of 512 triangles (eight starts) take 11.7 factorisations a
+/// step without corrections, 9.6 with at most four and 9.7 with at most eight; tablecloths a tenth less with
+/// four.
+const MAX_CORRECTIONS: usize = 4;
+/// Part of the strain that a correction leaves from which the next one is not worth its solve. With 0.01, 0.1
+/// and 0.5 the hanging sheets take 10.5, 9.6 and 9.7 factorisations a step.
+const SLOW_CORRECTION: f64 = 0.1;
+
+impl Restoration {
+    /// Brings the largest strain towards `target` with the matrix `K = H + G^T r G` that was factorised last,
+    /// by corrections
+    ///
+    /// ```text
+    /// K dx = -G^T r c(x)
+    /// ```
+    ///
+    /// with the `G` of the matrix: the chord method. Each leaves a part of the error that is as small as the
+    /// displacement from where the matrix was assembled. After a step of Newton's method on the incremental
+    /// potential `H` is its Hessian, and a correction is the displacement that raises the potential least.
+    /// Ends where a correction gains too little, and stays where the best one has led. The constraints have
+    /// to be evaluated at the iterate, and there must be none at vertices.
+    pub(super) fn correct(
+        &mut self,
+        model: &SheetModel,
+        matrix: &mut PrimalMatrix,
+        mut contact: Option<&mut RestorationContact<'_, '_>>,
+        iterate: &mut Iterate,
+        target: f64,
+    ) {
+        let rods = model.rods();
+        let mut strain = self.worst(model, iterate.x());
+        for _ in 0..MAX_CORRECTIONS {
+            if strain <= target || strain.is_nan() {
+                return;
+            }
+            let Some(linearisation) = matrix.linearisation() else {
+                return;
+            };
+            for (w, (r, c)) in self
+                .w
+                .iter_mut()
+                .zip(linearisation.penalties.iter().zip(&self.c))
+            {
+                *w = -r * c;
+            }
+            self.rhs.fill(0.0);
+            rods.apply_transpose_add(linearisation.x, &self.w, &mut self.rhs);
+            matrix.solve(model, &self.rhs, &mut self.dx);
+            self.start.copy_from_slice(iterate.x());
+            self.keep_contact_forces(contact.as_deref(), iterate);
+            let geometry = contact.as_mut().map(|c| &mut *c.contact);
+            if iterate.safe_fraction(geometry, &self.dx) < 1.0 {
+                return;
+            }
+            for (x, d) in iterate.x_mut().iter_mut().zip(&self.dx) {
+                *x += d;
+            }
+            self.evaluate(model, 0.0, iterate.x());
+            let before = strain;
+            strain = self.worst(model, iterate.x());
+            if strain >= before || strain.is_nan() {
+                iterate.x_mut().copy_from_slice(&self.start);
+                self.evaluate(model, 0.0, iterate.x());
+                return;
+            }
+            let rods_at = matrix.linearisation().map(|l| l.x);
+            self.keep_momentum(model, contact.as_deref(), iterate, rods_at);
+            if strain > SLOW_CORRECTION * before {
+                return;
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Making and checking states to start from.
+
+use crate::constraint::rows::point;
+use crate::damped::iterate::Iterate;
+use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
+use crate::linear::primal::PrimalMatrix;
+use crate::model::support::Support;
+use crate::options::OptionsError;
+use crate::step::effort::SolverEffort;
+use crate::step::report::StepError;
+use crate::{SheetModel, SimulationError, State};
+use isosheet_mesh::{EdgeId, VertexId};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Largest relative length error of a start state. Files keep six to eight digits and are
+/// projected first; anything within this bound is closed by the first step unnoticed.
+const START_STRAIN: f64 = 1e-8;
+
+/// Most iterations of [`project_positions`]; a thousand is ten times what crumpled states need.
+const MAX_ITERATIONS: usize = 1000;
+
+/// Moves positions (`3V`, in place) to nearby ones with the rest lengths, pinned vertices kept. Returns the
+/// largest relative length error left.
+///
+/// # Errors
+/// [`SimulationError`] if `x` has the wrong length, `tolerance` is not between 1e-15 and 1, or no
+/// positions with a relative length error below it were found; `x` is then unchanged.
+pub fn project_positions(
+    model: &SheetModel,
+    x: &mut [f64],
+    tolerance: f64,
+) -> Result<f64, SimulationError> {
+    OptionsError::check_range("tolerance", tolerance, 1e-15, 1.0)?;
+    check_count(model, x)?;
+    let mut matrix = PrimalMatrix::of_rods(model)?;
+    let mut effort = SolverEffort::default();
+    let mut moved = Iterate::without_contact(x.to_vec());
+    let strain = Restoration::new(model).positions(
+        model,
+        &mut matrix,
+        None,
+        &mut moved,
+        RestorationGoal {
+            tolerance,
+            max_iterations: MAX_ITERATIONS,
+            t: 0.0,
+            loads: &[],
+            matrix: FirstMatrix::Assembled,
+        },
+        &mut effort,
+    );
+    if strain <= tolerance {
+        x.copy_from_slice(moved.x());
+        Ok(strain)
+    } else {
+        Err(SimulationError::Start(StepError::Projection {
+            strain,
+            tolerance,
+            iterations: effort.iterations,
+        }))
+    }
+}
+
+fn check_count(model: &SheetModel, x: &[f64]) -> Result<(), SimulationError> {
+    let expected = model.coordinate_count();
+    if x.len() == expected {
+        Ok(())
+    } else {
+        Err(SimulationError::StateLength {
+            positions: x.len(),
+            velocities: x.len(),
+            expected,
+        })
+    }
+}
+
+/// Displaces positions (`3V`, in place) off a flat or otherwise singular state: every free vertex
+/// by at most `amplitude` mean edge lengths in a random direction, then back onto the rest
+/// lengths. Returns the largest relative length error left.
+///
+/// Which way the sheet will fold is decided by `seed`, so runs can be repeated.
+///
+/// # Errors
+/// [`SimulationError`] if the amplitude is not between 0 and 1 or no positions with the rest
+/// lengths were found; `x` is then unchanged.
+pub fn leave_flat(
+    model: &SheetModel,
+    x: &mut [f64],
+    amplitude: f64,
+    seed: u64,
+) -> Result<f64, SimulationError> {
+    OptionsError::check_range("amplitude", amplitude, 0.0, 1.0)?;
+    check_count(model, x)?;
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let size = amplitude * model.mean_length();
+    let mut displacement: Vec<f64> = (0..x.len())
+        .map(|_| rng.random_range(-size..=size))
+        .collect();
+    model.clear_pinned(&mut displacement);
+    let mut moved: Vec<f64> = x.iter().zip(&displacement).map(|(x, d)| x + d).collect();
+    let strain = project_positions(model, &mut moved, 1e-12)?;
+    x.copy_from_slice(&moved);
+    Ok(strain)
+}
+
+/// Refuses positions and velocities that are not finite.
+pub(crate) fn check_finite(state: &State) -> Result<(), StepError> {
+    if !state.t.is_finite() {
+        return Err(StepError::Time { t: state.t });
+    }
+    for values in [&state.x, &state.v] {
+        if let Some(i) = values.iter().position(|v| !v.is_finite()) {
+            return Err(StepError::NonFiniteState {
+                vertex: VertexId((i / 3) as u32),
+                value: values[i],
+                t: state.t,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses prescribed motions that are not finite or do not start where the state is.
+pub(crate) fn check_motions(model: &SheetModel, state: &State) -> Result<(), StepError> {
+    let t = state.t;
+    if let Some((support, value)) = model.find_bad_motion(t) {
+        return Err(StepError::NonFiniteMotion { support, value, t });
+    }
+    let mut placed = state.x.clone();
+    model.place_pins(t, &mut placed);
+    let pins = model.moving_pins().map(|v| {
+        let v = VertexId(v as u32);
+        let distance = (point(&placed, v) - point(&state.x, v)).norm();
+        (Support::Pin(v), distance, v)
+    });
+    let constraints = model.constraints().iter().enumerate().map(|(index, c)| {
+        let vertex = c.vertex();
+        let distance = c.violation(t, &point(&state.x, vertex));
+        (Support::Constraint { index, vertex }, distance, vertex)
+    });
+    for (support, distance, v) in pins.chain(constraints) {
+        let allowed = START_STRAIN * model.shortest_rod(v.index());
+        if distance.is_nan() || distance > allowed {
+            return Err(StepError::OffSupport {
+                support,
+                distance,
+                t,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses states that are not finite or not on the rest lengths.
+pub(crate) fn check_state(model: &SheetModel, state: &State) -> Result<(), StepError> {
+    check_finite(state)?;
+    if let Some(elastic) = model.elastic_sheet()
+        && let Some((face, strain)) = elastic.beyond_limit(&state.x)
+    {
+        return Err(StepError::BeyondStrainLimit {
+            face,
+            strain,
+            limit: elastic.limit(),
+            t: state.t,
+        });
+    }
+    let rods = model.rods();
+    if model.constrained_strain(&state.x) <= START_STRAIN {
+        return Ok(());
+    }
+    let length = |e: usize| {
+        let [a, b] = rods.edges()[e];
+        (0..3)
+            .map(|k| (state.x[3 * a + k] - state.x[3 * b + k]).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let strain = |e: usize| (length(e) / rods.lengths()[e] - 1.0).abs();
+    let worst = (0..rods.len())
+        .max_by(|&a, &b| strain(a).total_cmp(&strain(b)))
+        .unwrap_or(0);
+    Err(StepError::OffConstraints {
+        edge: EdgeId(worst as u32),
+        length: length(worst),
+        rest: rods.lengths()[worst],
+        t: state.t,
+    })
+}

@@ -1,0 +1,154 @@
+//! Steps and multipliers against the equations of the saddle-point system.
+
+use super::{LinearisedRows, MultiplierGoal, MultiplierSolver};
+use crate::SheetModel;
+use crate::linear::primal::{PrimalMatrix, penalties};
+use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
+
+/// A square of 25 vertices, pinned at a corner, and crumpled by random displacements of a given size
+/// (metres).
+fn model(crumple: f64) -> (SheetModel, Vec<f64>) {
+    let flat = generate::isotropic_square(1, 1.0).unwrap();
+    let mut x = flat.positions().to_vec();
+    for (i, x) in x.iter_mut().enumerate().skip(3) {
+        *x += crumple * (1.7 * i as f64).sin();
+    }
+    let sheet = Sheet::new(x.clone(), &flat.face_indices()).unwrap();
+    let model = SheetModel::new(&sheet, 0.2, MassKind::Lumped).unwrap();
+    (model.with_pins(&[VertexId(0)]).unwrap(), x)
+}
+
+/// What the solver makes of a step `-dx`.
+struct Outcome {
+    dx: Vec<f64>,
+    multipliers: Vec<f64>,
+    violation: f64,
+}
+
+/// The step for a force and for values of the equations, with rods so many times as stiff as the masses.
+fn solve(
+    model: &SheetModel,
+    x: &[f64],
+    (force, values): (&[f64], &[f64]),
+    stiffness: f64,
+    max_iterations: usize,
+) -> Outcome {
+    let unit_penalty = penalties(model, 1.0);
+    let axial: Vec<f64> = unit_penalty.iter().map(|u| stiffness * u).collect();
+    let edges = model.rods().len();
+    let mut matrix = PrimalMatrix::new(model).unwrap();
+    matrix.assemble(model, x, &axial, &vec![0.0; edges]);
+    matrix.factorize().unwrap();
+    let rods = model.rods();
+    let weighted: Vec<f64> = axial.iter().zip(values).map(|(r, c)| r * c).collect();
+    let mut right = force.to_vec();
+    rods.apply_transpose_add(x, &weighted, &mut right);
+    model.clear_pinned(&mut right);
+    let mut dx = vec![0.0; x.len()];
+    matrix.solve(model, &right, &mut dx);
+    let mut multipliers = vec![0.0; rods.len()];
+    let mut system = LinearisedRows {
+        model,
+        matrix: &mut matrix,
+        x,
+        values,
+        stiffness,
+        unit_penalty: &unit_penalty,
+    };
+    let goal = MultiplierGoal {
+        max_iterations,
+        violation: 1e-14,
+        change: 0.0,
+        longest: f64::INFINITY,
+    };
+    let mut solver = MultiplierSolver::new(model);
+    let violation = solver.improve(&mut system, &mut multipliers, &mut dx, goal);
+    Outcome {
+        dx,
+        multipliers,
+        violation,
+    }
+}
+
+/// Largest entries of `M dx - G^T L - f` and of `G dx - c`, relative to those of `f` and `c`: both vanish
+/// for the solution of the saddle-point system and for nothing else.
+fn residuals(
+    model: &SheetModel,
+    x: &[f64],
+    (force, values): (&[f64], &[f64]),
+    outcome: &Outcome,
+) -> [f64; 2] {
+    let rods = model.rods();
+    let mut balance = vec![0.0; x.len()];
+    model.apply_mass(&outcome.dx, &mut balance);
+    let down: Vec<f64> = outcome.multipliers.iter().map(|l| -l).collect();
+    rods.apply_transpose_add(x, &down, &mut balance);
+    model.clear_pinned(&mut balance);
+    let mut change = vec![0.0; rods.len()];
+    rods.apply(x, &outcome.dx, &mut change);
+    [apart(&balance, force), apart(&change, values)]
+}
+
+/// A force on each coordinate, and values of the equations that a displacement has (dependent equations have
+/// no solution otherwise).
+fn load(model: &SheetModel, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let wave = |k: f64| (0..x.len()).map(move |i| (k * i as f64).cos()).collect();
+    let (mut force, mut displacement): (Vec<f64>, Vec<f64>) = (wave(2.3), wave(0.7));
+    model.clear_pinned(&mut force);
+    model.clear_pinned(&mut displacement);
+    let rods = model.rods();
+    let mut values = vec![0.0; rods.len()];
+    rods.apply(x, &displacement, &mut values);
+    (force, values)
+}
+
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let size = b.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
+    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, f64::max) / size
+}
+
+#[test]
+fn steps_and_multipliers_solve_the_saddle_point_system() {
+    // Rods that are hardly stiffer than the masses, so that nearly all is left to the iterations.
+    let (model, x) = model(0.05);
+    let (force, values) = load(&model, &x);
+    let load = (&force[..], &values[..]);
+    let first = solve(&model, &x, load, 10.0, 0);
+    let [balance, rates] = residuals(&model, &x, load, &first);
+    assert!(balance < 1e-13, "out of balance by {balance}");
+    assert!(rates > 1e-3 && first.violation > 1e-3, "{rates}");
+    let last = solve(&model, &x, load, 10.0, 100);
+    let errors = residuals(&model, &x, load, &last);
+    assert!(errors.iter().all(|e| *e < 1e-12), "{errors:?}");
+}
+
+#[test]
+fn dependent_equations_have_a_step_too() {
+    // In a flat sheet one equation for each interior vertex depends on the others.
+    let (model, x) = model(0.0);
+    let (force, values) = load(&model, &x);
+    let load = (&force[..], &values[..]);
+    let last = solve(&model, &x, load, 10.0, 100);
+    let errors = residuals(&model, &x, load, &last);
+    assert!(errors.iter().all(|e| *e < 1e-12), "{errors:?}");
+}
+
+#[test]
+fn nearly_dependent_equations_take_as_many_iterations_as_there_are_of_them() {
+    // Nine interior vertices: the dual matrix has nine small eigenvalues, of the order of the square of the
+    // fold angles.
+    let (model, x) = model(1e-5);
+    let (force, values) = load(&model, &x);
+    let violation = |iterations| solve(&model, &x, (&force, &values), 1e8, iterations).violation;
+    let [first, after_four, after_twelve] = [0, 4, 12].map(violation);
+    assert!(first > 1e-3, "{first} before the first iteration");
+    assert!(
+        after_four > 1e-3 * first,
+        "{after_four} after four iterations"
+    );
+    assert!(
+        after_twelve < 1e-6 * first,
+        "{after_twelve} after twelve iterations"
+    );
+}

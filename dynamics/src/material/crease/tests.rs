@@ -1,0 +1,269 @@
+use super::*;
+use crate::linear::primal::PrimalMatrix;
+use crate::{Method, SheetModel, Simulation, State};
+use isosheet_mesh::{MassKind, fold_angle, generate};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// A crumpled M^1 and springs on all its interior edges, some of them driven.
+fn crumpled() -> (Sheet, Vec<f64>) {
+    let sheet = generate::isotropic_square(1, 1.0).expect("valid");
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let x = sheet.positions().iter();
+    let x = x.map(|p| p + rng.random_range(-0.08..0.08)).collect();
+    (sheet, x)
+}
+
+fn interior(t: &Topology) -> Vec<EdgeId> {
+    t.edge_ids().filter(|e| !t.is_boundary_edge(*e)).collect()
+}
+
+fn springs(t: &Topology, rest: impl Fn(EdgeId) -> f64) -> CreaseSprings {
+    let springs = interior(t).into_iter().map(|edge| {
+        let angle = rest(edge);
+        CreaseSpring {
+            edge,
+            stiffness: 0.5 + 0.01 * edge.index() as f64,
+            rest: if edge.index() % 2 == 0 {
+                RestAngle::from(angle)
+            } else {
+                RestAngle::from(move |t| angle * t)
+            },
+        }
+    });
+    CreaseSprings::new(t, springs.collect()).expect("interior edges")
+}
+
+fn gradient(p: &CreaseSprings, t: f64, x: &[f64]) -> Vec<f64> {
+    let mut g = vec![0.0; x.len()];
+    p.add_gradient(t, x, &mut g);
+    g
+}
+
+#[test]
+fn angles_are_those_of_the_mesh_in_sign_and_size() {
+    let (sheet, x) = crumpled();
+    let t = sheet.topology();
+    for e in interior(t) {
+        let spring = CreaseSpring {
+            edge: e,
+            stiffness: 1.0,
+            rest: 0.0.into(),
+        };
+        let own = CreaseSprings::new(t, vec![spring]).expect("interior");
+        let moment = own.moments(0.0, &x)[0];
+        let angle = fold_angle(t, &x, e).expect("interior");
+        assert!(
+            (moment + angle).abs() < 1e-13,
+            "{e}: {moment} against {angle}"
+        );
+    }
+}
+
+#[test]
+fn the_gradient_matches_differences_of_the_energy() {
+    let (sheet, x) = crumpled();
+    let p = springs(sheet.topology(), |e| 0.7 * (e.index() as f64).sin());
+    let (time, h) = (1.3, 1e-5);
+    let g = gradient(&p, time, &x);
+    let largest = g.iter().fold(0.0f64, |m, g| m.max(g.abs()));
+    for i in 0..x.len() {
+        let at = |s: f64| {
+            let mut moved = x.clone();
+            moved[i] += s * h;
+            p.energy(time, &moved)
+        };
+        // Fourth order.
+        let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
+        assert!(
+            (slope - g[i]).abs() < 1e-9 * largest,
+            "coordinate {i}: {slope} against {}",
+            g[i]
+        );
+    }
+}
+
+#[test]
+fn the_hessian_matches_differences_of_the_gradient_where_the_springs_rest() {
+    let (sheet, x) = crumpled();
+    let t = sheet.topology();
+    let rest: Vec<f64> = t
+        .edge_ids()
+        .map(|e| fold_angle(t, &x, e).unwrap_or(0.0))
+        .collect();
+    let p = springs(t, |e| rest[e.index()]);
+    // Driven angles are at their amplitude at t = 1.
+    let pinned = [VertexId(3), VertexId(12)];
+    let model = SheetModel::new(&sheet, 1e-9, MassKind::Lumped)
+        .and_then(|m| m.with_potential(p).with_pins(&pinned))
+        .expect("valid");
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut d: Vec<f64> = x.iter().map(|_| rng.random_range(-1.0..1.0)).collect();
+    model.clear_pinned(&mut d);
+    let mut matrix = PrimalMatrix::new(&model).expect("pattern");
+    let none = vec![0.0; model.rods().len()];
+    matrix.assemble(&model, &x, &none, &none);
+    matrix.add_potentials(&model, 1.0, &x, 1.0);
+    let product = matrix.product(&model, &d);
+    let h = 1e-5;
+    let force = |s: f64| {
+        let moved: Vec<f64> = x.iter().zip(&d).map(|(x, d)| x + s * h * d).collect();
+        let mut f = vec![0.0; x.len()];
+        model.potential_force(1.0, &moved, &mut f);
+        f
+    };
+    let (up, down) = (force(1.0), force(-1.0));
+    let largest = product.iter().fold(0.0f64, |m, p| m.max(p.abs()));
+    for i in 0..x.len() {
+        let slope = -(up[i] - down[i]) / (2.0 * h);
+        assert!(
+            (slope - product[i]).abs() < 1e-6 * largest,
+            "coordinate {i}: {slope} against {}",
+            product[i]
+        );
+    }
+}
+
+#[test]
+fn a_fold_that_passes_shut_goes_on() {
+    let sheet = generate::fan(2, 1.0, 1.0).expect("valid");
+    let t = sheet.topology();
+    let spring = CreaseSpring {
+        edge: interior(t)[0],
+        stiffness: 2.0,
+        rest: 3.0.into(),
+    };
+    let p = CreaseSprings::new(t, vec![spring]).expect("interior");
+    let hinge = &p.hinges[0];
+    assert!((hinge.excess(0.0, -3.1) - (TAU - 6.1)).abs() < 1e-14);
+    assert!((hinge.excess(0.0, 3.1) - 0.1).abs() < 1e-14);
+}
+
+#[test]
+fn what_makes_no_sense_is_named() {
+    let sheet = generate::isotropic_square(0, 1.0).expect("valid");
+    let t = sheet.topology();
+    let make = |edge: EdgeId, stiffness: f64, angle: f64| {
+        let rest = RestAngle::from(angle);
+        let spring = CreaseSpring {
+            edge,
+            stiffness,
+            rest,
+        };
+        CreaseSprings::new(t, vec![spring]).map(|_| ())
+    };
+    let edge = interior(t)[0];
+    let rim = t
+        .edge_ids()
+        .find(|e| t.is_boundary_edge(*e))
+        .expect("a rim");
+    assert_eq!(
+        make(rim, 1.0, 0.0),
+        Err(CreaseError::NotInterior { edge: rim })
+    );
+    let beyond = EdgeId(99);
+    assert_eq!(
+        make(beyond, 1.0, 0.0),
+        Err(CreaseError::NotInterior { edge: beyond })
+    );
+    let stiffness = -1.0;
+    assert_eq!(
+        make(edge, stiffness, 0.0),
+        Err(CreaseError::Stiffness { edge, stiffness })
+    );
+    assert_eq!(
+        make(edge, 1.0, 4.0),
+        Err(CreaseError::Angle { edge, angle: 4.0 })
+    );
+    assert!(CreaseSprings::bending(&sheet, f64::NAN).is_err());
+    assert!(make(edge, 0.0, PI).is_ok());
+}
+
+#[test]
+fn bending_along_grid_lines_has_the_energy_of_a_plate() {
+    let (n, side, rigidity, radius) = (8, 0.8, 0.3, 0.5);
+    let sheet = generate::grid(n, n, side, side, generate::Diagonals::UnionJack).expect("valid");
+    let step = side / n as f64;
+    // Chords of length `step` on a circle: lines along y, folds 2 asin(step / 2R).
+    let turn = 2.0 * (0.5 * step / radius).asin();
+    let mut place = vec![[0.0, 0.0]];
+    for i in 0..n {
+        let a = turn * (i as f64 + 0.5);
+        let [u, w] = place[i];
+        place.push([u + step * a.cos(), w + step * a.sin()]);
+    }
+    let x: Vec<f64> = sheet
+        .positions()
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .flat_map(|p| {
+            let [u, w] = place[(p[0] / step).round() as usize];
+            [u, p[1], w]
+        })
+        .collect();
+    let energy = CreaseSprings::bending(&sheet, rigidity)
+        .expect("valid")
+        .energy(0.0, &x);
+    // n - 1 lines inside, each for a row of cells; the two outermost half-cells are not bent.
+    let exact = 0.5 * rigidity * (turn / step).powi(2) * side * step * (n - 1) as f64;
+    assert!((energy - exact).abs() < 1e-12 * exact, "{energy} {exact}");
+}
+
+/// Steps of a millisecond: until its fastest moment.
+const DRIVEN: usize = 500;
+
+/// The rest angle that is driven, radians.
+fn ramp(t: f64) -> f64 {
+    1.2 * t * t * (3.0 - 2.0 * t)
+}
+
+/// Two triangles folded along their edge by a driven spring against one of equal stiffness that is at rest
+/// when flat: the final angle, the work of the drive and the energy that is missing.
+fn driven(method: Method) -> [f64; 3] {
+    let sheet = Sheet::new(
+        vec![0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.1, 0.1, 0.0, 0.0, 0.1, 0.0],
+        &[[0, 1, 2], [0, 2, 3]],
+    )
+    .expect("a square");
+    let t = sheet.topology();
+    let edge = t.find_edge(VertexId(0), VertexId(2)).expect("the diagonal");
+    let rests = [ramp.into(), 0.0.into()];
+    let springs = rests.map(|rest| CreaseSpring {
+        edge,
+        stiffness: 1e-2,
+        rest,
+    });
+    let springs = CreaseSprings::new(t, springs.into()).expect("interior");
+    let model = SheetModel::new(&sheet, 1e-3, MassKind::Lumped)
+        .expect("valid")
+        .with_potential(springs);
+    let start = State::at_rest(sheet.positions().to_vec());
+    let mut run = Simulation::new(model, start, method).expect("valid");
+    let mut report = run.step(1e-3).expect("accepted");
+    for _ in 1..DRIVEN {
+        report = run.step(1e-3).expect("accepted");
+    }
+    let angle = fold_angle(run.model().topology(), &run.state().x, edge).expect("interior");
+    [angle, report.work, report.energy_drift]
+}
+
+#[test]
+fn the_work_of_the_drive_closes_the_energy_balance() {
+    // Half of the rest angle is the static balance, and what the two springs then store the work; kinetic
+    // energy and inertia change both by a thousandth.
+    let half = 0.5 * ramp(1e-3 * DRIVEN as f64);
+    let exact = 0.5 * 2.0 * 1e-2 * half * half;
+    for (method, bound) in [
+        (Method::EnergyMomentum(Default::default()), 1e-5),
+        (Method::Bdf2(Default::default()), 1e-3),
+    ] {
+        let [angle, work, drift] = driven(method.clone());
+        assert!((angle - half).abs() < 1e-2, "{method:?}: {angle} rad");
+        assert!((work - exact).abs() < 1e-2 * exact, "{method:?}: {work} J");
+        assert!(
+            drift.abs() < bound * exact,
+            "{method:?}: {drift:e} J of {work:e} J"
+        );
+    }
+}

@@ -1,0 +1,201 @@
+//! Materials of sheets: what a square metre weighs, and how it resists stretching and bending.
+
+mod catalogue;
+pub(crate) mod crease;
+pub(crate) mod elastic_sheet;
+pub(crate) mod plate_bending;
+#[cfg(test)]
+mod tests;
+
+use crate::options::OptionsError;
+use crate::{ElasticSheet, ElasticSheetError};
+use isosheet_mesh::{Advice, Sheet};
+use serde::{Deserialize, Serialize};
+
+/// A material in the form of a sheet.
+///
+/// [`Material::named`] looks one up, and each has a constructor of its own, whose documentation says where the
+/// numbers are from. [`Material::isotropic`] makes one of Young's modulus and thickness. The numbers can be
+/// changed after that:
+///
+/// ```
+/// use isosheet_dynamics::Material;
+///
+/// let mut paper = Material::named("office paper")?;
+/// paper.rigidity = 2.5e-4; // bent across the direction in which the paper was made
+/// paper.validate()?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// All of them are isotropic. Paper is about twice as stiff in the direction in which it was made as across,
+/// and woven cloth is many times softer in shear than along its yarns.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct Material {
+    /// Mass of a square metre, kg/m2.
+    pub density: f64,
+    /// Membrane stiffness, Young's modulus times thickness `E h`, N/m.
+    pub stiffness: f64,
+    /// Flexural rigidity `D`, N m. That of a plate is `E h^3 / (12 (1 - nu^2))`; paper and cloth, whose fibres
+    /// move against one another, are softer than this.
+    pub rigidity: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// The largest principal strain that a sheet of this material may have: [`Material::STRAIN_LIMIT`], or
+    /// more for materials that stretch visibly in use.
+    pub strain_limit: f64,
+}
+
+/// A material of the catalogue.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct NamedMaterial {
+    /// Its name.
+    pub name: &'static str,
+    /// What the sheet is: mass, thickness, kind.
+    pub form: &'static str,
+    /// Where the numbers are from.
+    pub source: &'static str,
+    /// The numbers.
+    pub material: Material,
+}
+
+/// A sheet of one isotropic material, for [`Material::isotropic`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Isotropic {
+    /// Young's modulus, Pa.
+    pub youngs: f64,
+    /// Thickness, m.
+    pub thickness: f64,
+    /// Mass of a cubic metre, kg/m3.
+    pub density: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+}
+
+impl Isotropic {
+    /// Membrane stiffness `E h`, flexural rigidity `E h^3 / (12 (1 - nu^2))` and mass `rho h`.
+    const fn sheet(self) -> Material {
+        let Self {
+            youngs,
+            thickness,
+            density,
+            poisson,
+        } = self;
+        Material {
+            density: density * thickness,
+            stiffness: youngs * thickness,
+            rigidity: youngs * thickness * thickness * thickness
+                / (12.0 * (1.0 - poisson * poisson)),
+            poisson,
+            strain_limit: Material::STRAIN_LIMIT,
+        }
+    }
+}
+
+/// A name that no material has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no material has the name \"{name}\"; the names, nearest first, are {}", names.join(", "))]
+pub struct UnknownMaterial {
+    /// The name that was asked for.
+    pub name: String,
+    /// The names of all materials, those that are most alike first.
+    pub names: Vec<&'static str>,
+}
+
+impl Advice for UnknownMaterial {
+    fn advice(&self) -> Option<&'static str> {
+        Some(
+            "choose one of them, or give the numbers of your own material with `Material::isotropic`",
+        )
+    }
+}
+
+impl Material {
+    /// The strain limit of materials that do not stretch visibly: 1 %. This is no yield point. Metals yield,
+    /// and paper tears, at 0.1 to 3 %; a sheet that is bent without folds has strains far below that, and one
+    /// whose mesh is too coarse for its bends has larger ones, which the limit keeps invisible.
+    pub const STRAIN_LIMIT: f64 = ElasticSheet::LIMIT;
+
+    /// The sheet of an isotropic material of constant thickness: metals, films, rubber.
+    ///
+    /// # Errors
+    /// [`OptionsError`] naming the number that makes no sense, of the material or of the sheet
+    /// ([`Material::validate`]). The ranges are far beyond those of all materials.
+    pub fn isotropic(material: Isotropic) -> Result<Self, OptionsError> {
+        OptionsError::check_range("youngs", material.youngs, 1.0, 1e15)?;
+        OptionsError::check_range("thickness", material.thickness, 1e-12, 1e12)?;
+        OptionsError::check_range("density", material.density, 1e-3, 1e6)?;
+        OptionsError::check_range("poisson", material.poisson, 0.0, 0.5)?;
+        let sheet = material.sheet();
+        sheet.validate()?;
+        Ok(sheet)
+    }
+
+    /// Checks the numbers. The ranges are far beyond those of all sheets; a strain limit has to be below 0.5, the
+    /// compression of an edge to nothing.
+    ///
+    /// # Errors
+    /// [`OptionsError`] naming the number that makes no sense.
+    pub fn validate(&self) -> Result<(), OptionsError> {
+        OptionsError::check_range("density", self.density, 1e-9, 1e9)?;
+        OptionsError::check_range("stiffness", self.stiffness, 1e-9, 1e18)?;
+        OptionsError::check_range("rigidity", self.rigidity, 0.0, 1e18)?;
+        OptionsError::check_range("poisson", self.poisson, 0.0, 0.5)?;
+        OptionsError::check_range("strain_limit", self.strain_limit, 1e-6, 0.49)
+    }
+
+    /// The elasticity in the plane of a sheet of this material: softened as far as the mesh needs
+    /// ([`ElasticSheet::softened`]), with the limit of the strain. The flexural rigidity is not part of it: add a
+    /// [`PlateBending`](crate::PlateBending).
+    ///
+    /// # Errors
+    /// [`ElasticSheetError`].
+    pub fn elastic_sheet(&self, sheet: &Sheet) -> Result<ElasticSheet, ElasticSheetError> {
+        ElasticSheet::new(sheet, self.stiffness, self.poisson)?
+            .softened(self.rigidity)?
+            .with_limit(self.strain_limit)
+    }
+
+    /// The material of a name of the catalogue, such as `office paper`. Capital letters, and `-` or `_` for a
+    /// space, make no difference.
+    ///
+    /// # Errors
+    /// [`UnknownMaterial`], with all names.
+    pub fn named(name: &str) -> Result<Self, UnknownMaterial> {
+        let wanted = plain(name);
+        let found = Self::catalogue().iter().find(|m| plain(m.name) == wanted);
+        match found {
+            Some(found) => Ok(found.material),
+            None => {
+                let mut names: Vec<&'static str> = Self::names().collect();
+                names.sort_by(|a, b| {
+                    let likeness = |name| strsim::jaro_winkler(&plain(name), &wanted);
+                    likeness(b).total_cmp(&likeness(a))
+                });
+                Err(UnknownMaterial {
+                    name: name.to_owned(),
+                    names,
+                })
+            }
+        }
+    }
+
+    /// The names of all materials.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        Self::catalogue().iter().map(|m| m.name)
+    }
+
+    /// All materials that have a name.
+    pub fn catalogue() -> &'static [NamedMaterial] {
+        catalogue::ALL
+    }
+}
+
+/// A name as it is compared.
+fn plain(name: &str) -> String {
+    let name = name.trim().to_lowercase().replace(['-', '_'], " ");
+    name.replace("aluminum", "aluminium")
+}

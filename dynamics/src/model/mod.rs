@@ -1,0 +1,506 @@
+//! The mechanical system: rods, masses, pins, potentials and forces.
+
+pub(crate) mod clamps;
+#[cfg(test)]
+mod derivative_tests;
+pub(crate) mod immobile;
+pub(crate) mod load;
+pub(crate) mod load_scale;
+pub mod potential;
+pub(crate) mod state;
+pub(crate) mod support;
+mod supports;
+
+use crate::State;
+use crate::constraint::VertexConstraint;
+use crate::material::elastic_sheet::{ElasticSheet, strain_barrier};
+use crate::model::load_scale::LoadScale;
+use crate::model::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
+use crate::motion::MotionError;
+use isosheet_mesh::wording::given;
+use isosheet_mesh::{
+    Advice, LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
+};
+use supports::MovingPin;
+
+/// Why a model cannot be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// The mass does not fit the sheet.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The mass matrix belongs to another sheet.
+    #[error("the mass matrix is for {masses} vertices, the sheet has {vertex_count}")]
+    MassLength {
+        /// Vertices of the mass matrix.
+        masses: usize,
+        /// Vertices of the sheet.
+        vertex_count: usize,
+    },
+    /// A vertex has no mass.
+    #[error("{vertex} has mass {mass} kg", mass = given(*mass))]
+    Mass {
+        /// The vertex.
+        vertex: VertexId,
+        /// Its mass.
+        mass: f64,
+    },
+    /// A pinned vertex does not exist.
+    #[error("{vertex} is pinned, but the sheet has only {vertex_count} vertices")]
+    NoSuchVertex {
+        /// The vertex.
+        vertex: VertexId,
+        /// Number of vertices.
+        vertex_count: usize,
+    },
+    /// A prescribed motion cannot be used.
+    #[error("the motion prescribed for {vertex} cannot be used: {source}")]
+    Motion {
+        /// The vertex that is pinned or constrained.
+        vertex: VertexId,
+        /// What is wrong with its motion.
+        source: MotionError,
+    },
+    /// The elastic sheet belongs to another sheet.
+    #[error("the elastic sheet is made for {found} faces, the sheet has {face_count}")]
+    ElasticSheet {
+        /// Faces that it was built for.
+        found: usize,
+        /// Faces of the sheet.
+        face_count: usize,
+    },
+    /// The damping rate is negative or not finite.
+    #[error("damping rate is {rate}", rate = given(*rate))]
+    Damping {
+        /// The rate given, 1/s.
+        rate: f64,
+    },
+}
+
+impl Advice for ModelError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::Mesh(error) => error.advice(),
+            Self::MassLength { .. } | Self::ElasticSheet { .. } => Some("build it for this sheet"),
+            Self::Mass { .. } => Some("give every vertex that is not pinned a positive mass"),
+            Self::Motion { source, .. } => source.advice(),
+            Self::Damping { .. } => Some("give a finite rate of at least 0 per second"),
+            Self::NoSuchVertex { .. } => None,
+        }
+    }
+}
+
+/// What keeps the lengths of a sheet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Isometry {
+    /// Rigid rods along all edges: lengths are exact, and the sheet folds along the lines of its mesh alone.
+    #[default]
+    Rods,
+    /// The elasticity of the material, an [`ElasticSheet`]: edges stretch up to a limit.
+    Elastic,
+}
+
+/// Marks a vertex without unknowns in [`SheetModel::free_index`].
+pub(crate) const PINNED: u32 = u32::MAX;
+
+/// A sheet as a mechanical system: rigid rods between point masses (or with a consistent mass
+/// matrix), some vertices pinned, acted on by potentials, forces and velocity damping.
+///
+/// Only what is added costs anything; a pinned vertex has no unknowns.
+#[derive(Debug)]
+pub struct SheetModel {
+    topology: Topology,
+    isometry: Isometry,
+    /// The elasticity in the plane, where [`SheetModel::isometry`] is that.
+    elastic: Option<ElasticSheet>,
+    rods: LengthConstraints,
+    mass: MassMatrix,
+    potentials: Vec<Box<dyn Potential>>,
+    forces: Vec<Box<dyn Force>>,
+    damping: f64,
+    free_index: Vec<u32>,
+    free_count: usize,
+    moving_pins: Vec<MovingPin>,
+    constraints: Vec<VertexConstraint>,
+    mean_length: f64,
+    mean_mass: f64,
+    shortest_rods: Vec<f64>,
+}
+
+impl SheetModel {
+    /// A free sheet of the given total mass (kilograms), spread evenly, without gravity.
+    ///
+    /// # Errors
+    /// [`ModelError::Mesh`] if the mass is not positive and finite.
+    pub fn new(sheet: &Sheet, total_mass: f64, kind: MassKind) -> Result<Self, ModelError> {
+        let mass = MassMatrix::from_total(sheet, total_mass, kind)?;
+        Self::with_mass(sheet, mass)
+    }
+
+    /// A free sheet with the given mass matrix, without gravity.
+    ///
+    /// # Errors
+    /// [`ModelError::MassLength`]; [`ModelError::Mass`] if a vertex mass is not positive and finite.
+    pub fn with_mass(sheet: &Sheet, mass: MassMatrix) -> Result<Self, ModelError> {
+        let topology = sheet.topology().clone();
+        let n = topology.vertex_count();
+        let edges = topology.edge_count();
+        if mass.vertex.len() != n || mass.edge.as_ref().is_some_and(|e| e.len() != edges) {
+            return Err(ModelError::MassLength {
+                masses: mass.vertex.len(),
+                vertex_count: n,
+            });
+        }
+        if let Some(i) = mass
+            .vertex
+            .iter()
+            .position(|m| !(m.is_finite() && *m > 0.0))
+        {
+            return Err(ModelError::Mass {
+                vertex: VertexId(i as u32),
+                mass: mass.vertex[i],
+            });
+        }
+        let rods = LengthConstraints::new(sheet);
+        let mut shortest_rods = vec![f64::INFINITY; n];
+        for (e, l) in rods.edges().iter().zip(rods.lengths()) {
+            for &v in e {
+                shortest_rods[v] = l.min(shortest_rods[v]);
+            }
+        }
+        Ok(Self {
+            isometry: Isometry::Rods,
+            elastic: None,
+            rods,
+            shortest_rods,
+            mean_length: sheet.mean_length(),
+            mean_mass: mass.total() / n as f64,
+            mass,
+            potentials: Vec::new(),
+            forces: Vec::new(),
+            damping: 0.0,
+            free_index: (0..n as u32).collect(),
+            free_count: n,
+            moving_pins: Vec::new(),
+            constraints: Vec::new(),
+            topology,
+        })
+    }
+
+    /// Adds uniform gravity of 9.8 m/s2 along -z, the [`PAPER_GRAVITY`].
+    #[must_use]
+    pub fn with_gravity(self) -> Self {
+        self.with_acceleration(PAPER_GRAVITY)
+    }
+
+    /// Adds uniform gravity of the given acceleration, m/s2.
+    #[must_use]
+    pub fn with_acceleration(self, acceleration: [f64; 3]) -> Self {
+        let weights = self.mass.row_sums(&self.topology);
+        self.with_potential(Gravity::new(weights, acceleration))
+    }
+
+    /// Adds a potential.
+    #[must_use]
+    pub fn with_potential(mut self, potential: impl Potential + 'static) -> Self {
+        self.potentials.push(Box::new(potential));
+        self
+    }
+
+    /// Replaces the rigid rods by the elasticity of the material with a limit of its strain, see [`ElasticSheet`].
+    ///
+    /// For BDF2 and implicit Euler; other methods and charts are refused.
+    ///
+    /// ```
+    /// use isosheet_dynamics::{ElasticSheet, Method, PlateBending, SheetModel, Simulation, State};
+    /// use isosheet_mesh::{MassKind, VertexId, generate};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let sheet = generate::isotropic_square(2, 0.2)?;
+    /// let clamp: Vec<VertexId> = (0..18).map(VertexId).collect(); // two rows of vertices
+    /// let (stiffness, poisson, rigidity) = (3e5, 0.3, 5e-4); // office paper
+    /// let model = SheetModel::new(&sheet, 3.2e-3, MassKind::Lumped)?
+    ///     .with_gravity()
+    ///     .with_pins(&clamp)?
+    ///     .with_potential(PlateBending::clamped(&sheet, rigidity, &clamp)?)
+    ///     .with_elastic_sheet(ElasticSheet::new(&sheet, stiffness, poisson)?.softened(rigidity)?)?;
+    /// let start = State::at_rest(sheet.positions().to_vec());
+    /// let mut simulation = Simulation::new(model, start, Method::default())?;
+    /// let report = simulation.step(1.0 / 60.0)?;
+    /// assert!(report.strain < ElasticSheet::LIMIT);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// [`ModelError::ElasticSheet`] if it was built for another sheet.
+    pub fn with_elastic_sheet(mut self, elastic: ElasticSheet) -> Result<Self, ModelError> {
+        let (found, face_count) = (elastic.face_count(), self.topology.face_count());
+        if found != face_count {
+            return Err(ModelError::ElasticSheet { found, face_count });
+        }
+        self.isometry = Isometry::Elastic;
+        self.elastic = Some(elastic);
+        Ok(self)
+    }
+
+    /// Adds a non-conservative force.
+    #[must_use]
+    pub fn with_force(mut self, force: impl Force + 'static) -> Self {
+        self.forces.push(Box::new(force));
+        self
+    }
+
+    /// Sets the rate `gamma` (1/s) of the velocity damping `v <- v exp(-gamma h)` that follows
+    /// every step: the paper's "we add this damping force to the velocity" (Sec. 6).
+    ///
+    /// # Errors
+    /// [`ModelError::Damping`] if the rate is negative or not finite.
+    pub fn with_damping(mut self, rate: f64) -> Result<Self, ModelError> {
+        if !(rate.is_finite() && rate >= 0.0) {
+            return Err(ModelError::Damping { rate });
+        }
+        self.damping = rate;
+        Ok(self)
+    }
+
+    /// Connectivity.
+    pub fn topology(&self) -> &Topology {
+        &self.topology
+    }
+
+    /// What keeps the lengths.
+    pub fn isometry(&self) -> Isometry {
+        self.isometry
+    }
+
+    /// The rods; where the sheet is elastic, its edges, which keep no lengths.
+    pub fn rods(&self) -> &LengthConstraints {
+        &self.rods
+    }
+
+    /// Largest violation of the equations of isometry at positions `x` (`3V`, metres), which an accepted step
+    /// keeps below its tolerance: of rods the largest edge strain, zero for elastic sheets. Not a number if a
+    /// position is not.
+    ///
+    /// # Panics
+    /// If `x` is not of length `3V`.
+    pub fn constrained_strain(&self, x: &[f64]) -> f64 {
+        match self.isometry {
+            Isometry::Rods => self.rods.max_strain(x),
+            Isometry::Elastic => 0.0,
+        }
+    }
+
+    /// The mass matrix.
+    pub fn mass(&self) -> &MassMatrix {
+        &self.mass
+    }
+
+    /// The elasticity in the plane, of sheets that have it.
+    pub fn elastic_sheet(&self) -> Option<&ElasticSheet> {
+        self.elastic.as_ref()
+    }
+
+    /// The potentials in the order in which they were added, and after them that of an elastic sheet, for an energy
+    /// balance of each of them.
+    pub fn potentials(&self) -> impl Iterator<Item = &dyn Potential> {
+        let elastic = self.elastic.iter().map(|e| e as &dyn Potential);
+        self.potentials.iter().map(Box::as_ref).chain(elastic)
+    }
+
+    /// The potentials without that of an elastic sheet.
+    pub(crate) fn outer_potentials(&self) -> impl Iterator<Item = &dyn Potential> {
+        self.potentials.iter().map(Box::as_ref)
+    }
+
+    /// Sets the stiffness of the barrier of an elastic sheet for a simulation that goes on at a state: to a known one
+    /// (joules per square metre), or to what the state asks for.
+    pub(crate) fn set_strain_barrier(&mut self, state: &State, known: Option<f64>) {
+        let acceleration = LoadScale::at(self, state).acceleration;
+        if let Some(elastic) = &mut self.elastic {
+            elastic.set_acceleration(acceleration);
+            elastic.set_barrier(known.unwrap_or(0.0));
+        }
+        if known.is_none() {
+            self.raise_strain_barrier(state);
+        }
+    }
+
+    /// Raises the stiffness of the barrier of an elastic sheet to what a state asks for; the energy that this adds to
+    /// the sheet, joules.
+    pub(crate) fn raise_strain_barrier(&mut self, state: &State) -> f64 {
+        let Some(elastic) = &self.elastic else {
+            return 0.0;
+        };
+        let needed = strain_barrier(self, elastic, state);
+        let Some(elastic) = self.elastic.as_mut().filter(|e| needed > e.barrier()) else {
+            return 0.0;
+        };
+        let before = elastic.energy(state.t, &state.x);
+        elastic.set_barrier(needed);
+        elastic.energy(state.t, &state.x) - before
+    }
+
+    /// Whether the sheet has a limit of its strain.
+    pub(crate) fn has_strain_limit(&self) -> bool {
+        self.elastic.is_some()
+    }
+
+    /// Largest part of the displacement `dx`, at most one, that is proven to stay within the limit of the strain.
+    pub(crate) fn fraction_within_limit(&self, x: &[f64], dx: &[f64]) -> f64 {
+        self.elastic
+            .as_ref()
+            .map_or(1.0, |elastic| elastic.safe_fraction(x, dx))
+    }
+
+    /// The non-conservative forces in the order in which they were added.
+    pub fn forces(&self) -> &[Box<dyn Force>] {
+        &self.forces
+    }
+
+    /// Rate of the velocity damping, 1/s.
+    pub fn damping(&self) -> f64 {
+        self.damping
+    }
+
+    /// Number of vertices that are not pinned.
+    pub(crate) fn free_count(&self) -> usize {
+        self.free_count
+    }
+
+    /// Position of each vertex among the free ones.
+    pub(crate) fn free_index(&self) -> &[u32] {
+        &self.free_index
+    }
+
+    /// Number of coordinates `3V`.
+    pub fn coordinate_count(&self) -> usize {
+        3 * self.free_index.len()
+    }
+
+    /// Mean rest length of the rods, metres: the length scale of tolerances.
+    pub fn mean_length(&self) -> f64 {
+        self.mean_length
+    }
+
+    /// Length of the shortest rod at a vertex, metres: the scale of displacements that must not
+    /// turn a face over.
+    pub(crate) fn shortest_rod(&self, vertex: usize) -> f64 {
+        self.shortest_rods[vertex]
+    }
+
+    /// Mean vertex mass, kilograms: the mass scale of tolerances.
+    pub(crate) fn mean_mass(&self) -> f64 {
+        self.mean_mass
+    }
+
+    /// Total potential energy, joules.
+    pub fn potential_energy(&self, t: f64, x: &[f64]) -> f64 {
+        self.potentials().map(|p| p.energy(t, x)).sum()
+    }
+
+    /// Whether a potential depends on time.
+    pub(crate) fn has_driven_potentials(&self) -> bool {
+        self.potentials().any(|p| p.is_driven())
+    }
+
+    /// Work of changing the driven potentials while the sheet moves from `x0` at `t0` to `x1` at `t1`,
+    /// joules: the integral of dV/dt at fixed positions, by the mean of the changes at both.
+    pub(crate) fn potential_work(&self, (t0, x0): (f64, &[f64]), (t1, x1): (f64, &[f64])) -> f64 {
+        let driven = self.potentials().filter(|p| p.is_driven());
+        let change = |p: &dyn Potential, x: &[f64]| p.energy(t1, x) - p.energy(t0, x);
+        driven.map(|p| 0.5 * (change(p, x0) + change(p, x1))).sum()
+    }
+
+    /// Kinetic energy `v^T M v / 2` (Eq. 2), joules.
+    pub fn kinetic_energy(&self, v: &[f64]) -> f64 {
+        self.mass.kinetic_energy(&self.topology, v)
+    }
+
+    /// Conservative force `f = -dV/dx`, overwriting `f`; zero at pinned vertices.
+    pub fn potential_force(&self, t: f64, x: &[f64], f: &mut [f64]) {
+        self.whole_potential_force(t, x, f);
+        self.clear_pinned(f);
+    }
+
+    /// As [`SheetModel::potential_force`], at pinned vertices too.
+    pub(crate) fn whole_potential_force(&self, t: f64, x: &[f64], f: &mut [f64]) {
+        f.fill(0.0);
+        for p in self.potentials() {
+            p.add_gradient(t, x, f);
+        }
+        f.iter_mut().for_each(|v| *v = -*v);
+    }
+
+    /// Sum of the non-conservative forces, overwriting `f`; zero at pinned vertices.
+    pub(crate) fn applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.whole_applied_force(t, x, v, f);
+        self.clear_pinned(f);
+    }
+
+    /// As [`SheetModel::applied_force`], at pinned vertices too.
+    pub(crate) fn whole_applied_force(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        f.fill(0.0);
+        for force in &self.forces {
+            force.add_force(t, x, v, f);
+        }
+    }
+
+    /// Whether every potential is linear, so that its force is constant.
+    pub(crate) fn has_constant_forces(&self) -> bool {
+        self.potentials()
+            .all(|p| p.shape() == PotentialShape::Linear)
+    }
+
+    /// `out = M v`, zero at pinned vertices.
+    pub fn apply_mass(&self, v: &[f64], out: &mut [f64]) {
+        self.mass.apply(&self.topology, v, out);
+        self.clear_pinned(out);
+    }
+
+    /// Sets the entries of pinned vertices to zero.
+    pub(crate) fn clear_pinned(&self, f: &mut [f64]) {
+        if self.free_count == self.free_index.len() {
+            return;
+        }
+        for (i, row) in self.free_index.iter().zip(f.as_chunks_mut::<3>().0) {
+            if *i == PINNED {
+                *row = [0.0; 3];
+            }
+        }
+    }
+
+    /// Largest `|f_i| / m_i` of forces, momenta or impulses: the size of a residual that weighs
+    /// light and heavy vertices alike. Infinite if any is not a number.
+    pub(crate) fn largest_acceleration(&self, f: &[f64]) -> f64 {
+        f.iter().enumerate().fold(0.0, |m: f64, (i, f)| {
+            // `max` would pass over a value that is not a number.
+            let a = f.abs() / self.mass.vertex[i / 3];
+            if a.is_nan() { f64::INFINITY } else { m.max(a) }
+        })
+    }
+
+    /// Linear momentum, kg m/s.
+    pub fn linear_momentum(&self, v: &[f64]) -> [f64; 3] {
+        let mut p = vec![0.0; v.len()];
+        self.mass.apply(&self.topology, v, &mut p);
+        p.as_chunks::<3>()
+            .0
+            .iter()
+            .fold([0.0; 3], |s, r| [s[0] + r[0], s[1] + r[1], s[2] + r[2]])
+    }
+
+    /// Angular momentum about the origin, kg m2/s.
+    pub fn angular_momentum(&self, x: &[f64], v: &[f64]) -> [f64; 3] {
+        let mut p = vec![0.0; v.len()];
+        self.mass.apply(&self.topology, v, &mut p);
+        let mut l = [0.0; 3];
+        for (r, p) in x.as_chunks::<3>().0.iter().zip(p.as_chunks::<3>().0) {
+            l[0] += r[1] * p[2] - r[2] * p[1];
+            l[1] += r[2] * p[0] - r[0] * p[2];
+            l[2] += r[0] * p[1] - r[1] * p[0];
+        }
+        l
+    }
+}

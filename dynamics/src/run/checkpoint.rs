@@ -1,0 +1,508 @@
+//! Checkpoints: a simulation between two steps, as a value and as a file.
+
+use crate::chart::{ChartMotion, ChartOptions};
+use crate::contact::BarrierPotential;
+use crate::step::energy_account::EnergyAccount;
+use crate::step::integrator::Moment;
+use crate::{Isometry, Method, SheetModel, StepControl};
+use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
+use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// Version of the format. It grows with every change of the fields, because the binary format does not name
+/// them.
+const VERSION: u32 = 9;
+
+/// First bytes of a checkpoint file.
+const MAGIC: &[u8; 8] = b"isosheet";
+
+/// Everything that the next step depends on besides the model and the contact: state, history of multistep
+/// methods, multipliers, energy sums, method and options, and in a chart its reference state, coordinates and
+/// momenta.
+///
+/// Model and contact are supplied again by [`Simulation::resume`](crate::Simulation::resume), because they
+/// may hold functions. A simulation that is resumed continues bit for bit as it would have continued without
+/// a stop.
+///
+/// # Format
+/// [`Checkpoint::to_bytes`]: the eight bytes `isosheet`, the version (little-endian `u32`), the fields in the
+/// `postcard` encoding, and the CRC-32 of all that as a little-endian `u32`. [`Checkpoint::to_json`]: the
+/// same fields by name, numbers with as many digits as a round trip needs.
+///
+/// ```
+/// use isosheet_dynamics::{Checkpoint, Method, SheetModel, Simulation, State};
+/// use isosheet_mesh::{MassKind, VertexId, generate};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let sheet = generate::isotropic_square(1, 0.21)?;
+/// let model = || -> Result<SheetModel, isosheet_dynamics::ModelError> {
+///     SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?.with_gravity().with_pins(&[VertexId(20)])
+/// };
+/// let start = State::at_rest(sheet.positions().to_vec());
+/// let mut simulation = Simulation::new(model()?, start, Method::default())?;
+/// simulation.step(1.0 / 60.0)?;
+///
+/// let bytes = simulation.checkpoint().to_bytes()?;
+/// let mut resumed = Simulation::resume(model()?, None, Checkpoint::from_bytes(&bytes)?)?;
+/// assert_eq!(resumed.step(1.0 / 60.0)?, simulation.step(1.0 / 60.0)?);
+/// assert_eq!(resumed.state(), simulation.state());
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Checkpoint {
+    version: u32,
+    pub(crate) sheet: SheetFingerprint,
+    pub(crate) energy: EnergySums,
+    pub(crate) motion: Motion,
+}
+
+/// What moves the sheet, and where the motion is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) enum Motion {
+    /// A chart-free method.
+    Free(Box<FreeMotion>),
+    /// A method in a chart.
+    Chart(Box<InChart>),
+}
+
+/// A simulation in a chart between two steps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct InChart {
+    pub(crate) options: ChartOptions,
+    pub(crate) motion: ChartMotion,
+    /// Velocities of the vertices at the end of the last step, `3V`, metres per second.
+    pub(crate) velocities: Vec<f64>,
+    /// Forces of the supports at the end of the last step, newtons; empty before the first.
+    pub(crate) reactions: Vec<Vector3<f64>>,
+    pub(crate) has_contact: bool,
+    /// Mean forces of contact over the last step, `3V`, newtons; empty before the first and without contact.
+    pub(crate) contact_forces: Vec<f64>,
+}
+
+/// A chart-free simulation between two steps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct FreeMotion {
+    pub(crate) method: Method,
+    pub(crate) control: StepControl,
+    pub(crate) moment: Moment,
+    pub(crate) account: EnergyAccount,
+    pub(crate) has_moved: bool,
+    /// Vertices that were pinned at the start because they cannot move.
+    pub(crate) fixed: Vec<u32>,
+    /// The barrier of contact, in scenes that have any.
+    pub(crate) barrier: Option<BarrierPotential>,
+    /// The stiffness of the barrier at the limit of the strain, joules per square metre, of elastic sheets.
+    pub(crate) strain_barrier: Option<f64>,
+}
+
+impl FreeMotion {
+    /// Refuses numbers that are not finite, which a checkpoint that was changed from outside may have.
+    pub(crate) fn check_numbers(&self) -> Result<(), CheckpointError> {
+        let Moment { state, history, .. } = &self.moment;
+        let previous = history.previous.as_ref().unwrap_or(state);
+        let multipliers = &history.multipliers;
+        check_finite("times", &[state.t, previous.t, multipliers.step])?;
+        check_finite("positions", &state.x)?;
+        check_finite("velocities", &state.v)?;
+        check_finite("positions of the step before", &previous.x)?;
+        check_finite("velocities of the step before", &previous.v)?;
+        check_finite("multipliers of the isometry", &multipliers.rods)?;
+        check_finite("stiffnesses of the rods", &[history.rod_stiffness])?;
+        check_finite(
+            "stiffnesses of the strain barrier",
+            self.strain_barrier.as_slice(),
+        )
+    }
+}
+
+/// Refuses an array of the wrong length.
+pub(crate) fn check_length(
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> Result<(), CheckpointError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(CheckpointError::Length {
+        what,
+        found,
+        expected,
+    })
+}
+
+/// Refuses an array with a number that is not finite.
+pub(crate) fn check_finite(what: &'static str, values: &[f64]) -> Result<(), CheckpointError> {
+    match values.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(CheckpointError::NotFinite {
+            what,
+            index,
+            value: values[index],
+        }),
+    }
+}
+
+/// Sums of the energy balance since the start.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct EnergySums {
+    /// Total energy at the start, joules.
+    pub(crate) start: f64,
+    /// Work done on the sheet, joules.
+    pub(crate) work: f64,
+    /// Energy taken out by velocity damping, joules.
+    pub(crate) dissipated: f64,
+    /// Energy lost to friction and impacts, joules.
+    pub(crate) friction: f64,
+}
+
+/// What tells one model from another: counts for the message, sums of bits for certainty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct SheetFingerprint {
+    vertices: usize,
+    edges: usize,
+    connectivity: u64,
+    /// Rest lengths, and what keeps them.
+    lengths: u64,
+    masses: u64,
+    supports: u64,
+}
+
+impl EnergySums {
+    /// Refuses sums that are not finite.
+    pub(crate) fn check(&self) -> Result<(), CheckpointError> {
+        let Self {
+            start,
+            work,
+            dissipated,
+            friction,
+        } = *self;
+        check_finite("sums of energies", &[start, work, dissipated, friction])
+    }
+}
+
+impl SheetFingerprint {
+    /// Of a model as its user built it.
+    pub(crate) fn of(model: &SheetModel) -> Self {
+        let crc = Crc::<u64>::new(&CRC_64_XZ);
+        let sum = |bytes: &mut dyn Iterator<Item = u64>| {
+            let mut digest = crc.digest();
+            bytes.for_each(|b| digest.update(&b.to_le_bytes()));
+            digest.finalize()
+        };
+        let (rods, mass) = (model.rods(), model.mass());
+        let faces = model.topology().faces().iter();
+        let edge_mass = mass.edge.iter().flatten();
+        let pins = model.pins().into_iter().map(|v| u64::from(v.0));
+        let constrained = model.constraints().iter().map(|c| u64::from(c.vertex().0));
+        let isometry = match model.isometry() {
+            Isometry::Rods => None,
+            Isometry::Elastic => Some(u64::MAX),
+        };
+        Self {
+            vertices: model.topology().vertex_count(),
+            edges: rods.len(),
+            connectivity: sum(&mut faces.flatten().map(|v| u64::from(v.0))),
+            lengths: sum(&mut rods.lengths().iter().map(|l| l.to_bits()).chain(isometry)),
+            masses: sum(&mut mass.vertex.iter().chain(edge_mass).map(|m| m.to_bits())),
+            supports: sum(&mut pins.chain([u64::MAX]).chain(constrained)),
+        }
+    }
+
+    /// Refuses another model.
+    fn check(&self, found: &Self) -> Result<(), CheckpointError> {
+        let differs = |what| Err(CheckpointError::OtherSheet { what });
+        if (self.vertices, self.edges) != (found.vertices, found.edges) {
+            Err(CheckpointError::OtherSize {
+                expected: [self.vertices, self.edges],
+                found: [found.vertices, found.edges],
+            })
+        } else if self.connectivity != found.connectivity {
+            differs("connectivity")
+        } else if self.lengths != found.lengths {
+            differs("rest lengths or isometry")
+        } else if self.masses != found.masses {
+            differs("masses")
+        } else if self.supports != found.supports {
+            differs("pins or vertex constraints")
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Why a checkpoint cannot be read or resumed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CheckpointError {
+    /// The bytes are not a checkpoint.
+    #[error(
+        "these {length} bytes are no checkpoint of isosheet: they do not begin with `isosheet`"
+    )]
+    NoCheckpoint {
+        /// Number of bytes.
+        length: usize,
+    },
+    /// The checkpoint has another version.
+    #[error("the checkpoint has version {found}, this program reads version {supported}")]
+    Version {
+        /// Version of the checkpoint.
+        found: u32,
+        /// Version that this program reads.
+        supported: u32,
+    },
+    /// The file is damaged.
+    #[error("the checkpoint is damaged: its checksum is {found:08x} instead of {expected:08x}")]
+    Damaged {
+        /// Checksum in the file.
+        expected: u32,
+        /// Checksum of the bytes.
+        found: u32,
+    },
+    /// The fields cannot be decoded.
+    #[error("the checkpoint cannot be decoded: {0}")]
+    Decode(String),
+    /// The fields cannot be encoded.
+    #[error("the checkpoint cannot be encoded: {0}")]
+    Encode(String),
+    /// The sheet has another size.
+    #[error(
+        "the checkpoint is of a sheet of {} vertices and {} edges, the model has {} and {}",
+        expected[0], expected[1], found[0], found[1]
+    )]
+    OtherSize {
+        /// Vertices and edges in the checkpoint.
+        expected: [usize; 2],
+        /// Vertices and edges of the model.
+        found: [usize; 2],
+    },
+    /// The sheet is another one.
+    #[error("the {what} of the model are not those of the checkpoint")]
+    OtherSheet {
+        /// What differs.
+        what: &'static str,
+    },
+    /// A value of the state makes no sense.
+    #[error("{what} of the checkpoint has {found} values where the model needs {expected}")]
+    Length {
+        /// Which array.
+        what: &'static str,
+        /// Values in the checkpoint.
+        found: usize,
+        /// Values that the model needs.
+        expected: usize,
+    },
+    /// A number of the state is not finite.
+    #[error(
+        "{what} of the checkpoint have the value {value} at index {index}: the checkpoint was \
+         changed from outside",
+        value = given(*value)
+    )]
+    NotFinite {
+        /// Which array.
+        what: &'static str,
+        /// Index in the array.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A vertex of the checkpoint does not exist.
+    #[error(
+        "the checkpoint names vertex {vertex}, the model has only {vertices} vertices: the checkpoint was changed from outside"
+    )]
+    NoSuchVertex {
+        /// The vertex.
+        vertex: u32,
+        /// Vertices of the model.
+        vertices: usize,
+    },
+    /// Contact is missing or was not expected.
+    #[error("the checkpoint was made {} contact and is resumed {} it",
+        if *.expected { "with" } else { "without" }, if *.expected { "without" } else { "with" })]
+    Contact {
+        /// Whether the checkpoint has contact.
+        expected: bool,
+    },
+    /// A chart is missing or was not expected.
+    #[error("the checkpoint is of a simulation {}",
+        if *.in_chart { "in a chart" } else { "without a chart" })]
+    Chart {
+        /// Whether the checkpoint is of a simulation in a chart.
+        in_chart: bool,
+    },
+}
+
+impl Advice for CheckpointError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoCheckpoint { .. } => Some("give the bytes of a checkpoint"),
+            Self::Version { .. } => Some("continue with the program that wrote it"),
+            Self::Damaged { .. } | Self::NotFinite { .. } | Self::NoSuchVertex { .. } => {
+                Some("use an earlier checkpoint")
+            }
+            Self::OtherSize { .. } | Self::OtherSheet { .. } => {
+                Some("supply the model that the checkpoint was made with")
+            }
+            Self::Contact { .. } => Some("supply the contact that the checkpoint was made with"),
+            Self::Chart { in_chart: true } => Some("use `Simulation::resume_in_chart`"),
+            Self::Chart { in_chart: false } => Some("use `Simulation::resume`"),
+            Self::Decode(..) | Self::Encode(..) | Self::Length { .. } => None,
+        }
+    }
+}
+
+impl Checkpoint {
+    pub(crate) fn new(sheet: SheetFingerprint, energy: EnergySums, motion: Motion) -> Self {
+        Self {
+            version: VERSION,
+            sheet,
+            energy,
+            motion,
+        }
+    }
+
+    /// Refuses a model other than the one that the checkpoint was made with.
+    pub(crate) fn check_model(&self, model: &SheetModel) -> Result<(), CheckpointError> {
+        self.sheet.check(&SheetFingerprint::of(model))
+    }
+
+    /// The binary form.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Encode`] if memory runs out.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend_from_slice(&self.version.to_le_bytes());
+        let mut bytes =
+            postcard::to_extend(self, bytes).map_err(|e| CheckpointError::Encode(e.to_string()))?;
+        bytes.extend_from_slice(&checksum(&bytes).to_le_bytes());
+        Ok(bytes)
+    }
+
+    /// Reads the binary form.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] if the bytes are no checkpoint, one of another version, or damaged.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
+        let length = bytes.len();
+        let no_checkpoint = CheckpointError::NoCheckpoint { length };
+        let rest = bytes.strip_prefix(MAGIC).ok_or(no_checkpoint.clone())?;
+        let (version, rest) = rest.split_first_chunk::<4>().ok_or(no_checkpoint.clone())?;
+        check_version(u32::from_le_bytes(*version))?;
+        let (fields, sum) = rest.split_last_chunk::<4>().ok_or(no_checkpoint)?;
+        let expected = u32::from_le_bytes(*sum);
+        let found = checksum(&bytes[..length - sum.len()]);
+        if found != expected {
+            return Err(CheckpointError::Damaged { expected, found });
+        }
+        let decoded = postcard::from_bytes(fields);
+        let checkpoint: Self = decoded.map_err(|e| CheckpointError::Decode(e.to_string()))?;
+        check_version(checkpoint.version)?;
+        Ok(checkpoint)
+    }
+
+    /// The JSON form.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Encode`] if memory runs out.
+    pub fn to_json(&self) -> Result<String, CheckpointError> {
+        serde_json::to_string(self).map_err(|e| CheckpointError::Encode(e.to_string()))
+    }
+
+    /// Reads the JSON form.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] if the text is no checkpoint or one of another version.
+    pub fn from_json(text: &str) -> Result<Self, CheckpointError> {
+        /// The one field that all versions have.
+        #[derive(Deserialize)]
+        struct Header {
+            version: u32,
+        }
+        let decode = |e: serde_json::Error| CheckpointError::Decode(e.to_string());
+        let header: Header = serde_json::from_str(text).map_err(decode)?;
+        check_version(header.version)?;
+        serde_json::from_str(text).map_err(decode)
+    }
+}
+
+fn check_version(found: u32) -> Result<(), CheckpointError> {
+    if found == VERSION {
+        Ok(())
+    } else {
+        Err(CheckpointError::Version {
+            found,
+            supported: VERSION,
+        })
+    }
+}
+
+fn checksum(bytes: &[u8]) -> u32 {
+    Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Checkpoint, CheckpointError, Motion};
+    use crate::{Method, SheetModel, Simulation, SimulationError, State};
+    use isosheet_mesh::{MassKind, VertexId, generate};
+
+    /// A square that hangs by a corner.
+    fn model() -> SheetModel {
+        let sheet = generate::isotropic_square(0, 0.2).unwrap();
+        let model = SheetModel::new(&sheet, 1e-3, MassKind::Lumped).unwrap();
+        model.with_gravity().with_pins(&[VertexId(6)]).unwrap()
+    }
+
+    /// After a step.
+    fn checkpoint() -> Checkpoint {
+        let sheet = generate::isotropic_square(0, 0.2).unwrap();
+        let start = State::at_rest(sheet.positions().to_vec());
+        let mut simulation = Simulation::new(model(), start, Method::default()).unwrap();
+        simulation.step(1.0 / 60.0).unwrap();
+        simulation.checkpoint()
+    }
+
+    #[test]
+    fn what_was_changed_from_outside_is_refused() {
+        let good = checkpoint();
+        assert!(Simulation::resume(model(), None, good.clone()).is_ok());
+        let changes: [fn(&mut super::FreeMotion); 6] = [
+            |m| m.moment.state.t = f64::INFINITY,
+            |m| m.moment.state.x[4] = f64::NAN,
+            |m| m.moment.state.v[26] = f64::NEG_INFINITY,
+            |m| m.moment.balance.pins[18] = f64::NAN,
+            |m| m.moment.balance.pins.truncate(26),
+            |m| m.moment.history.rod_stiffness = f64::NAN,
+        ];
+        for (k, change) in changes.into_iter().enumerate() {
+            let mut changed = good.clone();
+            let Motion::Free(motion) = &mut changed.motion else {
+                unreachable!("the method needs no chart");
+            };
+            change(motion);
+            let refused = Simulation::resume(model(), None, changed);
+            assert!(
+                matches!(
+                    refused.map(drop),
+                    Err(SimulationError::Checkpoint(
+                        CheckpointError::NotFinite { .. } | CheckpointError::Length { .. }
+                    ))
+                ),
+                "change {k}"
+            );
+        }
+        let mut changed = good;
+        changed.energy.work = f64::NAN;
+        let error = Simulation::resume(model(), None, changed)
+            .map(drop)
+            .unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains("sums of energies") && text.contains("index 1"),
+            "{text}"
+        );
+    }
+}

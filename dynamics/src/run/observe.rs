@@ -1,0 +1,232 @@
+//! Whole runs: steps of equal length, watched by observers.
+
+use crate::step::report::{StepError, StepReport};
+use crate::{Simulation, State};
+use std::ops::ControlFlow;
+
+/// Watches a run.
+///
+/// Closures `FnMut(&Simulation, &StepReport) -> ControlFlow<()>` are observers, too.
+pub trait Observer {
+    /// Called once before the first step.
+    fn start(&mut self, _simulation: &Simulation) {}
+
+    /// Called after every step. [`ControlFlow::Break`] ends the run after this step.
+    fn step(&mut self, simulation: &Simulation, report: &StepReport) -> ControlFlow<()>;
+}
+
+impl<F: FnMut(&Simulation, &StepReport) -> ControlFlow<()>> Observer for F {
+    fn step(&mut self, simulation: &Simulation, report: &StepReport) -> ControlFlow<()> {
+        self(simulation, report)
+    }
+}
+
+/// Keeps the state at the start and after every so many steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frames {
+    every: usize,
+    steps: usize,
+    states: Vec<State>,
+}
+
+impl Frames {
+    /// A frame after every `every` steps; zero counts as one.
+    pub fn every(every: usize) -> Self {
+        Self {
+            every: every.max(1),
+            steps: 0,
+            states: Vec::new(),
+        }
+    }
+
+    /// The frames so far, that of the start first.
+    pub fn states(&self) -> &[State] {
+        &self.states
+    }
+}
+
+impl Observer for Frames {
+    fn start(&mut self, simulation: &Simulation) {
+        self.states.push(simulation.state().clone());
+    }
+
+    fn step(&mut self, simulation: &Simulation, _report: &StepReport) -> ControlFlow<()> {
+        self.steps += 1;
+        if self.steps.is_multiple_of(self.every) {
+            self.states.push(simulation.state().clone());
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// Keeps the report of every step.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct History {
+    reports: Vec<StepReport>,
+}
+
+impl History {
+    /// The reports so far.
+    pub fn reports(&self) -> &[StepReport] {
+        &self.reports
+    }
+}
+
+impl Observer for History {
+    fn step(&mut self, _simulation: &Simulation, report: &StepReport) -> ControlFlow<()> {
+        self.reports.push(report.clone());
+        ControlFlow::Continue(())
+    }
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RunEnd {
+    /// The whole time has passed.
+    Complete,
+    /// An observer ended it.
+    Stopped,
+    /// The step control stopped at a taut state, see
+    /// [`Unsatisfiable::StopTaut`](crate::Unsatisfiable::StopTaut).
+    Taut,
+}
+
+/// Part of a step by which the duration of a run may differ from a whole number of steps, to allow for
+/// round-off: enough for the product of a step and a number of steps up to a million.
+const ROUND_OFF: f64 = 1e-9;
+
+impl Simulation {
+    /// Advances by `duration` seconds in steps of `step` seconds, the last one shorter where the duration
+    /// asks for it, and shows every step to the observers, in their order. A duration of a whole number of
+    /// steps gives the same bits as as many calls of [`Simulation::step`].
+    ///
+    /// ```
+    /// use isosheet_dynamics::{Frames, History, Method, RunEnd, SheetModel, Simulation, State};
+    /// use isosheet_mesh::{MassKind, VertexId, generate};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let sheet = generate::isotropic_square(1, 0.21)?;
+    /// let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?
+    ///     .with_gravity()
+    ///     .with_pins(&[VertexId(20)])?;
+    /// let start = State::at_rest(sheet.positions().to_vec());
+    /// let mut simulation = Simulation::new(model, start, Method::default())?;
+    /// let (mut frames, mut history) = (Frames::every(2), History::default());
+    /// let end = simulation.run(0.1, 1.0 / 60.0, &mut [&mut frames, &mut history])?;
+    /// assert_eq!(end, RunEnd::Complete);
+    /// assert_eq!((frames.states().len(), history.reports().len()), (4, 6));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Simulation::step`]; [`StepError::StepSize`] if the duration is not positive and finite. What the
+    /// observers have kept up to then stays with them.
+    pub fn run(
+        &mut self,
+        duration: f64,
+        step: f64,
+        observers: &mut [&mut dyn Observer],
+    ) -> Result<RunEnd, StepError> {
+        let start = self.state().t;
+        for h in [step, duration] {
+            if !(h.is_finite() && h > 0.0) {
+                return Err(StepError::StepSize { h, t: start });
+            }
+        }
+        for observer in &mut *observers {
+            observer.start(self);
+        }
+        let count = (duration / step - ROUND_OFF).ceil().max(1.0) as u64;
+        // Not from the time reached, whose round-off grows with the number of steps.
+        let rest = duration - (count - 1) as f64 * step;
+        let last = if (rest - step).abs() > ROUND_OFF * step {
+            rest
+        } else {
+            step
+        };
+        for k in 1..=count {
+            let report = self.step(if k < count { step } else { last })?;
+            let mut go_on = true;
+            for observer in &mut *observers {
+                go_on &= observer.step(self, &report).is_continue();
+            }
+            if report.taut.is_some() {
+                return Ok(RunEnd::Taut);
+            }
+            if !go_on && k < count {
+                return Ok(RunEnd::Stopped);
+            }
+        }
+        Ok(RunEnd::Complete)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Method, SheetModel};
+    use isosheet_mesh::{MassKind, Sheet, VertexId};
+
+    /// A triangle that swings about its pinned edge.
+    fn triangle() -> Simulation {
+        let x = vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.3, 0.8, 0.0];
+        let sheet = Sheet::new(x.clone(), &[[0, 1, 2]]).expect("a triangle");
+        let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped)
+            .and_then(|m| m.with_gravity().with_pins(&[VertexId(0), VertexId(1)]))
+            .expect("valid");
+        Simulation::new(model, State::at_rest(x), Method::default()).expect("valid")
+    }
+
+    /// The clock gains more than a billionth of a step by round-off in so many steps.
+    #[test]
+    fn a_run_of_whole_steps_has_the_bits_of_single_steps() {
+        let (h, count) = (2e-3, 20_000);
+        let (mut whole, mut single) = (triangle(), triangle());
+        let mut history = History::default();
+        let end = whole.run(count as f64 * h, h, &mut [&mut history]);
+        assert_eq!(end, Ok(RunEnd::Complete));
+        let reports: Vec<_> = (0..count).map(|_| single.step(h).expect("taken")).collect();
+        assert!((single.state().t - count as f64 * h).abs() > ROUND_OFF * h);
+        assert_eq!(history.reports(), reports);
+        assert_eq!(whole.state(), single.state());
+    }
+
+    #[test]
+    fn the_last_step_is_as_short_as_the_duration_asks() {
+        let mut simulation = triangle();
+        let mut history = History::default();
+        let end = simulation.run(0.035, 0.01, &mut [&mut history]);
+        assert_eq!(end, Ok(RunEnd::Complete));
+        let steps: Vec<f64> = history.reports().iter().map(|r| r.h).collect();
+        assert_eq!(steps[..3], [0.01; 3]);
+        assert_eq!(steps.len(), 4);
+        assert!((steps[3] - 0.005).abs() < 1e-15);
+        assert!((simulation.state().t - 0.035).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_observer_ends_a_run_and_durations_without_sense_are_refused() {
+        let mut simulation = triangle();
+        let mut frames = Frames::every(2);
+        let mut until = |_: &Simulation, report: &StepReport| match report.t {
+            t if t > 0.045 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        };
+        let end = simulation.run(1.0, 0.01, &mut [&mut frames, &mut until]);
+        assert_eq!(end, Ok(RunEnd::Stopped));
+        // Those at the start and after the second and the fourth of five steps.
+        assert_eq!(frames.states().len(), 3);
+        let t = simulation.state().t;
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            for (duration, step) in [(bad, 0.01), (1.0, bad)] {
+                let refused = simulation.run(duration, step, &mut []);
+                let Err(StepError::StepSize { h, t: at }) = refused else {
+                    panic!("{refused:?}");
+                };
+                assert_eq!((h.to_bits(), at), (bad.to_bits(), t));
+            }
+        }
+        assert_eq!(simulation.state().t, t);
+    }
+}

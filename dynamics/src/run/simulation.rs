@@ -1,0 +1,544 @@
+//! A sheet in motion: state, integrator, step control and energy balance.
+
+use crate::chart::engine::ChartEngine;
+use crate::chart::{ChartOptions, ChartSimulation};
+use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact};
+use crate::damped::start::{check_finite, check_motions, check_state};
+use crate::run::checkpoint::{Checkpoint, CheckpointError, EnergySums, Motion, SheetFingerprint};
+use crate::run::simulation_error::SimulationError;
+use crate::step::effort::{SolverEffort, StepProgress};
+use crate::step::engine::Engine as FreeEngine;
+use crate::step::reaction::Reaction;
+use crate::step::report::{StepError, StepReport, StepTotals};
+use crate::{Method, SheetModel, State, StepControl};
+use isosheet_coords::Chart;
+use isosheet_mesh::VertexId;
+use std::ops::ControlFlow;
+
+/// A sheet in motion. Owns the model, the state and the integrator.
+///
+/// ```
+/// use isosheet_dynamics::{Method, SheetModel, Simulation, State};
+/// use isosheet_mesh::{MassKind, VertexId, generate};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let sheet = generate::isotropic_square(1, 0.21)?;
+/// let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?
+///     .with_gravity()
+///     .with_pins(&[VertexId(20)])?;
+/// let start = State::at_rest(sheet.positions().to_vec());
+/// let mut simulation = Simulation::new(model, start, Method::default())?;
+/// let report = simulation.step(1.0 / 60.0)?;
+/// assert!(report.strain < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Simulation {
+    engine: Engine,
+    /// What tells the model, as its user built it, from another one.
+    sheet: SheetFingerprint,
+    energy: EnergySums,
+    /// Room for a sum of forces, `3V`.
+    force: Vec<f64>,
+}
+
+/// A simulation can move to another thread.
+const _: fn() = || {
+    fn is_send<T: Send>() {}
+    is_send::<Simulation>();
+};
+
+enum Engine {
+    Free(Box<FreeEngine>),
+    Chart(Box<ChartEngine>),
+}
+
+impl Simulation {
+    /// A simulation of `model` from `state` by one of the chart-free methods.
+    ///
+    /// Velocities of pinned vertices are set to zero, or to those of their motion. Vertices on a straight
+    /// line of rods between two pins at rest cannot move either, and become pins: the upper edge of a banner
+    /// that hangs by its corners. (The tension that would keep them in place against a force
+    /// perpendicular to the line is infinite; as pins they have a share of the reactions.)
+    ///
+    /// # Errors
+    /// [`SimulationError`] if the options or the state make no sense, or the state does not
+    /// have the rest lengths to 1e-8 (see
+    /// [`project_positions`](crate::project_positions)).
+    pub fn new(
+        model: SheetModel,
+        mut state: State,
+        method: Method,
+    ) -> Result<Self, SimulationError> {
+        check_length(&model, &state)?;
+        check_motions(&model, &state)?;
+        let sheet = SheetFingerprint::of(&model);
+        model.clear_pinned(&mut state.v);
+        model.set_pin_velocities(state.t, MOTION_SPAN, &mut state.v);
+        check_state(&model, &state)?;
+        let engine = Engine::Free(Box::new(FreeEngine::new(model, method, state)?));
+        Ok(Self::start(engine, sheet))
+    }
+
+    /// A simulation of `model` from `state` in system coordinates: the paper's scheme and its
+    /// relatives (see [`chart`](crate::chart)).
+    ///
+    /// Of the velocities only the part that keeps the lengths is used. Supports that the chart does not
+    /// eliminate are closure equations, see [`ChartSimulation::from_state`].
+    ///
+    /// # Errors
+    /// [`SimulationError`] if the options or the state make no sense, or the chart is singular or
+    /// too ill-conditioned at the state.
+    pub fn in_chart(
+        model: SheetModel,
+        mut state: State,
+        chart: Box<dyn Chart>,
+        options: ChartOptions,
+    ) -> Result<Self, SimulationError> {
+        check_length(&model, &state)?;
+        check_motions(&model, &state)?;
+        check_state(&model, &state)?;
+        let sheet = SheetFingerprint::of(&model);
+        let mut simulation = ChartSimulation::from_state(model, chart, options, &state)?;
+        state.v = simulation.velocities()?;
+        let engine = Engine::Chart(Box::new(ChartEngine::new(simulation, state)));
+        Ok(Self::start(engine, sheet))
+    }
+
+    fn start(engine: Engine, sheet: SheetFingerprint) -> Self {
+        let mut simulation = Self {
+            engine,
+            sheet,
+            energy: EnergySums::default(),
+            force: Vec::new(),
+        };
+        simulation.force = vec![0.0; simulation.state().x.len()];
+        simulation.energy.start = simulation.energy();
+        simulation
+    }
+
+    /// Everything that the next step depends on besides model and contact, as a value.
+    pub fn checkpoint(&self) -> Checkpoint {
+        let motion = match &self.engine {
+            Engine::Free(engine) => Motion::Free(Box::new(engine.motion())),
+            Engine::Chart(chart) => Motion::Chart(Box::new(chart.motion())),
+        };
+        Checkpoint::new(self.sheet, self.energy, motion)
+    }
+
+    /// Continues from a checkpoint of a chart-free method, with the model and the contact that it was made
+    /// with: bit for bit as the simulation would have continued that the checkpoint was made of.
+    ///
+    /// # Errors
+    /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of
+    /// simulation, or has numbers that are not finite.
+    pub fn resume(
+        model: SheetModel,
+        contact: Option<Box<dyn Contact>>,
+        checkpoint: Checkpoint,
+    ) -> Result<Self, SimulationError> {
+        checkpoint.check_model(&model)?;
+        checkpoint.energy.check()?;
+        let Motion::Free(motion) = checkpoint.motion else {
+            return Err(CheckpointError::Chart { in_chart: true }.into());
+        };
+        let engine = FreeEngine::resume(model, contact, *motion)?;
+        let engine = Engine::Free(Box::new(engine));
+        Ok(Self::resumed(engine, checkpoint.sheet, checkpoint.energy))
+    }
+
+    /// Continues from a checkpoint of a simulation in a chart, with the model, the chart and the contact that
+    /// it was started with: bit for bit as the simulation would have continued.
+    ///
+    /// # Errors
+    /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of
+    /// simulation, or has numbers that are not finite.
+    pub fn resume_in_chart(
+        model: SheetModel,
+        chart: Box<dyn Chart>,
+        contact: Option<Box<dyn Contact>>,
+        checkpoint: Checkpoint,
+    ) -> Result<Self, SimulationError> {
+        checkpoint.check_model(&model)?;
+        checkpoint.energy.check()?;
+        let Motion::Chart(motion) = checkpoint.motion else {
+            return Err(CheckpointError::Chart { in_chart: false }.into());
+        };
+        let engine = ChartEngine::resume(model, chart, contact, *motion)?;
+        let engine = Engine::Chart(Box::new(engine));
+        Ok(Self::resumed(engine, checkpoint.sheet, checkpoint.energy))
+    }
+
+    fn resumed(engine: Engine, sheet: SheetFingerprint, energy: EnergySums) -> Self {
+        let mut simulation = Self {
+            engine,
+            sheet,
+            energy,
+            force: Vec::new(),
+        };
+        simulation.force = vec![0.0; simulation.state().x.len()];
+        simulation
+    }
+
+    /// Replaces the step control of a chart-free method.
+    ///
+    /// # Errors
+    /// [`SimulationError`] if it makes no sense.
+    pub fn with_control(mut self, control: StepControl) -> Result<Self, SimulationError> {
+        match &mut self.engine {
+            Engine::Free(engine) => engine.set_control(control)?,
+            Engine::Chart(_) => return Err(SimulationError::ChartControl),
+        }
+        Ok(self)
+    }
+
+    /// Adds contact with bodies and of the sheet with itself: a barrier that keeps every gap positive at
+    /// every accepted step; in a chart impulses, see [`ChartSimulation::with_contact`].
+    ///
+    /// # Errors
+    /// [`SimulationError::Contact`] if the method has no place for contact or something touches already.
+    pub fn with_contact(
+        mut self,
+        contact: impl Contact + 'static,
+    ) -> Result<Self, SimulationError> {
+        match &mut self.engine {
+            Engine::Free(engine) => engine.set_contact(Box::new(contact))?,
+            Engine::Chart(chart) => chart.simulation.set_contact(Box::new(contact))?,
+        }
+        self.energy.start = self.energy();
+        Ok(self)
+    }
+
+    /// Free vertices that became pins at the start because rods to fixed vertices hold them in place (see
+    /// [`SheetModel::immobile_vertices`]). Empty in charts.
+    pub fn immobile_vertices(&self) -> &[VertexId] {
+        match &self.engine {
+            Engine::Free(engine) => engine.immobile(),
+            Engine::Chart(_) => &[],
+        }
+    }
+
+    /// The contacts at the present state; `None` in scenes without contact.
+    pub fn contacts(&self) -> Option<&ActiveContacts> {
+        match &self.engine {
+            Engine::Free(engine) => engine.contact().map(|(_, contacts)| &contacts.active),
+            Engine::Chart(chart) => chart.simulation.contacts(),
+        }
+    }
+
+    /// What the sheet does to the bodies, in the order in which they were added; empty without contact, and
+    /// in charts, where impulses act ([`ChartSimulation::impulses`]).
+    pub fn body_loads(&self) -> Vec<BodyLoad> {
+        self.barrier().map_or_else(Vec::new, |(contact, contacts)| {
+            contact.terms(contacts, &self.state().x).loads()
+        })
+    }
+
+    /// Force of contact on each vertex of the sheet, newtons (`3V`): of bodies and of the sheet on itself,
+    /// normal forces and friction together. `None` in scenes without contact.
+    ///
+    /// Under BDF2 and implicit Euler these are the forces at the end of the last accepted sub-step,
+    /// `-d(B + D)/dx` with the barrier potential `B` and the friction potential `D` of the sub-step. In a
+    /// chart they are the impulses of the last step over its duration: a mean.
+    ///
+    /// An edge or a face that touches shares its force out to its corners by the weights of the closest
+    /// point. The forces of a contact of the sheet with itself add up to zero; over all vertices the sum is
+    /// minus that of the forces on the bodies ([`Simulation::body_loads`]), and enters the balance of
+    /// momentum that [`Simulation::reactions`] states. Before the first step
+    /// there is no friction, and in a chart there is no force. The friction of a
+    /// step acts with the normal forces for which the step was solved: a contact that has just opened may
+    /// have friction without a normal force. With rigid rods the projection that ends a step changes the
+    /// forces once more, to second order: those of a flat sheet at rest balance its weight to a percent.
+    pub fn contact_forces(&self) -> Option<Vec<f64>> {
+        match &self.engine {
+            Engine::Free(engine) => {
+                let (contact, contacts) = engine.contact()?;
+                Some(contact.terms(contacts, &self.state().x).vertex_forces())
+            }
+            Engine::Chart(chart) => chart.contact_forces(),
+        }
+    }
+
+    /// Gap of each vertex of the sheet, metres: the smallest gap of the contacts in which the vertex takes
+    /// part, by itself or as a corner of an edge or a face that does. A gap is a distance less the thickness
+    /// of the sheet (and the radius of a rounded body). Contacts reach as far as the activation distance of
+    /// the barrier; a vertex without any has that distance as its gap. `None` in scenes without contact.
+    pub fn vertex_gaps(&self) -> Option<Vec<f64>> {
+        let reach = match &self.engine {
+            Engine::Free(engine) => engine.contact()?.0.barrier().activation(),
+            Engine::Chart(chart) => chart.simulation.activation()?,
+        };
+        let vertices = self.model().topology().vertex_count();
+        Some(self.contacts()?.vertex_gaps(vertices, reach))
+    }
+
+    /// Contact that acts by its barrier.
+    fn barrier(&self) -> Option<(&RunContact, &ContactState)> {
+        match &self.engine {
+            Engine::Free(engine) => engine.contact(),
+            Engine::Chart(_) => None,
+        }
+    }
+
+    /// Forces of the pins and vertex constraints on the sheet in the last accepted sub-step, newtons, pins
+    /// first; empty before the first step. In charts the forces at the end of the step.
+    ///
+    /// The forces come from the integrator's own balance of momentum: at a pin `R = M a - f + G^T lambda`
+    /// with the discrete acceleration `a` and the multipliers `lambda` (tension positive) of the sub-step, at
+    /// a vertex constraint with Jacobian `J` and multipliers `mu` `R = -J^T mu`. The reactions of a sub-step
+    /// of `h` seconds, the forces of bodies on the sheet, the weight and the other forces add up to the rate
+    /// of change of the momentum `p = sum M v` that belongs to the method, before velocity damping, which
+    /// acts after the step:
+    ///
+    /// | method | rate of `p` | weight and other forces |
+    /// |---|---|---|
+    /// | BDF2 | `(3/2 p1 - 2 p0 + 1/2 p_) / h`; after a restart as implicit Euler | at the end |
+    /// | implicit Euler | `(p1 - p0) / h` | at the end |
+    /// | projection, energy-momentum, RATTLE | `(p1 - p0) / h` | over the step |
+    ///
+    /// For BDF2 with steps in the ratio `w` the rate is `(p1 - (1 + b) p0 + b p_) / (k h)` with
+    /// `b = w^2 / (1 + 2w)` and `k = (1 + w) / (1 + 2w)`. The difference quotient `(p1 - p0) / h` of a BDF2
+    /// step is another number, and differs from the sum of the forces by as much as they change in the step.
+    ///
+    /// The conservative methods keep this balance to round-off. The damped methods leave two things over:
+    /// what Newton's method leaves at free vertices, which shrinks with its tolerance, and, where there is
+    /// contact, the change of the contact forces by the projection that ends a step, beyond first order.
+    ///
+    /// For the damped methods this call factorises a matrix of the size of a step's for every iteration of
+    /// the last projection: ask only when the forces are wanted.
+    pub fn reactions(&self) -> Vec<Reaction> {
+        match &self.engine {
+            Engine::Free(engine) => {
+                let balance = engine.balance();
+                balance.map_or_else(Vec::new, |b| b.reactions(&engine.model, engine.state().t))
+            }
+            Engine::Chart(chart) => chart.reactions.clone(),
+        }
+    }
+
+    /// Force of each rod in the last accepted sub-step, newtons, tension positive, in the order of the edges:
+    /// the multiplier of its length equation times its length.
+    ///
+    /// `None` where the method does not solve for these forces: in charts, for elastic
+    /// sheets and in projection
+    /// ([`Method::solves_for_rod_forces`]).
+    ///
+    /// | method | the forces are those |
+    /// |---|---|
+    /// | BDF2, implicit Euler | at the end of the sub-step |
+    /// | energy-momentum | over the sub-step, in the mean |
+    /// | RATTLE | at the start of the sub-step, in compositions of the last of its parts |
+    ///
+    /// All forces are zero before the first step, after a sub-step of the [`Fallback`](crate::Fallback),
+    /// and in free fall under the energy-momentum method. The force of a rod between two vertices that cannot move is zero, since
+    /// nothing determines it. Where rods depend on each other, as in a flat sheet, their forces are not
+    /// unique. BDF2 and implicit Euler, which take such states, give the least forces (in the sum of their
+    /// squares) that load the free vertices as the multipliers of the step do; loads across folds flatter
+    /// than some 0.3 degrees, which rods could only carry with 200 times their size, are left out. This call
+    /// then factorises a matrix of the size of a step's. Without the share of the projection that ends a
+    /// damped step, which is of the size of the tolerances.
+    pub fn rod_forces(&self) -> Option<Vec<f64>> {
+        match &self.engine {
+            Engine::Free(engine) => engine.rod_forces(),
+            Engine::Chart(_) => None,
+        }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &SheetModel {
+        match &self.engine {
+            Engine::Free(engine) => &engine.model,
+            Engine::Chart(chart) => chart.simulation.mechanics().model(),
+        }
+    }
+
+    /// The simulation in system coordinates, if this is one: coordinates, momenta, step range.
+    pub fn chart(&self) -> Option<&ChartSimulation> {
+        match &self.engine {
+            Engine::Free(_) => None,
+            Engine::Chart(chart) => Some(&chart.simulation),
+        }
+    }
+
+    /// Time, positions and velocities.
+    pub fn state(&self) -> &State {
+        match &self.engine {
+            Engine::Free(engine) => engine.state(),
+            Engine::Chart(chart) => &chart.state,
+        }
+    }
+
+    /// Total energy `T + V`, contact included, joules.
+    pub fn energy(&self) -> f64 {
+        self.model().kinetic_energy(&self.state().v) + self.potential_energy()
+    }
+
+    fn potential_energy(&self) -> f64 {
+        let State { t, x, .. } = self.state();
+        let potential = self.model().potential_energy(*t, x);
+        match self.barrier() {
+            None => potential,
+            Some((contact, contacts)) => potential + contact.barrier_energy(contacts),
+        }
+    }
+
+    /// Advances by exactly `h` seconds, in sub-steps where the integrator rejects the whole or,
+    /// in a chart, where its own step control asks for them.
+    ///
+    /// # Errors
+    /// [`StepError`]; the state is then that of the last accepted sub-step.
+    pub fn step(&mut self, h: f64) -> Result<StepReport, StepError> {
+        self.advance(h, StepTotals::default())
+    }
+
+    /// As [`Simulation::step`], watched: before each factorisation, in a chart before each sub-step, the
+    /// closure sees what has been done of the step, and may end it. The result does not depend on a watch that
+    /// lets the step go on.
+    ///
+    /// ```
+    /// # use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepError};
+    /// # use isosheet_mesh::{MassKind, VertexId, generate};
+    /// # use std::ops::ControlFlow;
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// # let sheet = generate::isotropic_square(1, 0.21)?;
+    /// # let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?
+    /// #     .with_gravity()
+    /// #     .with_pins(&[VertexId(20)])?;
+    /// # let start = State::at_rest(sheet.positions().to_vec());
+    /// let mut simulation = Simulation::new(model, start, Method::default())?;
+    /// let mut watch = |progress: &isosheet_dynamics::StepProgress| match progress.factorisations {
+    ///     0 => ControlFlow::Continue(()),
+    ///     _ => ControlFlow::Break(()),
+    /// };
+    /// let step = simulation.step_watched(1.0 / 60.0, &mut watch);
+    /// assert_eq!(step, Err(StepError::Interrupted { t: 0.0 }));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Simulation::step`]; [`StepError::Interrupted`] if the watch ended the step.
+    pub fn step_watched(
+        &mut self,
+        h: f64,
+        watch: &mut dyn FnMut(&StepProgress) -> ControlFlow<()>,
+    ) -> Result<StepReport, StepError> {
+        let effort = SolverEffort::watched(watch);
+        let totals = StepTotals {
+            effort,
+            ..StepTotals::default()
+        };
+        self.advance(h, totals)
+    }
+
+    fn advance(&mut self, h: f64, mut totals: StepTotals<'_>) -> Result<StepReport, StepError> {
+        let start = self.state().t;
+        check_finite(self.state())?;
+        if !(h.is_finite() && h > 0.0) || start + h <= start {
+            return Err(StepError::StepSize { h, t: start });
+        }
+        self.check_forces()?;
+        let end = start + h;
+        let done = match &mut self.engine {
+            Engine::Free(engine) => engine.advance(h, &mut totals),
+            Engine::Chart(chart) => chart.advance(end, &mut totals),
+        };
+        self.energy.work += totals.work;
+        self.energy.dissipated += totals.dissipated;
+        self.energy.friction += totals.friction;
+        done?;
+        self.check_energies()?;
+        Ok(self.report(h, &totals))
+    }
+
+    /// Refuses energies that are not finite.
+    fn check_energies(&self) -> Result<(), StepError> {
+        let State { t, v, .. } = self.state();
+        for (quantity, value) in [
+            ("the potential energy", self.potential_energy()),
+            ("the kinetic energy", self.model().kinetic_energy(v)),
+            ("the work of the applied forces", self.energy.work),
+        ] {
+            if !value.is_finite() {
+                return Err(StepError::NonFiniteEnergy {
+                    quantity,
+                    value,
+                    t: *t,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// What a step of `h` seconds did.
+    fn report(&self, h: f64, totals: &StepTotals<'_>) -> StepReport {
+        let model = self.model();
+        let State { t, x, v } = self.state();
+        let (kinetic, potential) = (model.kinetic_energy(v), self.potential_energy());
+        let EnergySums {
+            start,
+            work,
+            dissipated,
+            friction,
+        } = self.energy;
+        StepReport {
+            t: *t,
+            h,
+            substeps: totals.substeps,
+            rejected: totals.rejected,
+            iterations: totals.effort.iterations,
+            factorisations: totals.effort.factorisations,
+            residual: totals.residual,
+            kinetic,
+            potential,
+            work,
+            dissipated,
+            friction,
+            energy_drift: kinetic + potential - work + dissipated + friction - start,
+            strain: model.rods().max_strain(x),
+            constrained_strain: model.constrained_strain(x),
+            taut: totals.taut,
+            violation: model.largest_violation(*t, x),
+            gap: self.contacts().map(ActiveContacts::gap),
+            outcome: totals.outcome,
+        }
+    }
+
+    /// Refuses potentials and forces that are not finite at the state.
+    fn check_forces(&mut self) -> Result<(), StepError> {
+        let mut sum = std::mem::take(&mut self.force);
+        let State { t, x, v } = self.state();
+        let model = self.model();
+        model.potential_force(*t, x, &mut sum);
+        for force in model.forces() {
+            force.add_force(*t, x, v, &mut sum);
+        }
+        let bad = sum.iter().position(|f| !f.is_finite());
+        let result = match bad {
+            None => Ok(()),
+            Some(i) => Err(StepError::NonFiniteForce {
+                vertex: VertexId((i / 3) as u32),
+                value: sum[i],
+                t: *t,
+            }),
+        };
+        self.force = sum;
+        result
+    }
+}
+
+/// Over parts of this time (seconds) the velocities of moving pins at the start are taken by differences.
+const MOTION_SPAN: f64 = 1e-2;
+
+fn check_length(model: &SheetModel, state: &State) -> Result<(), SimulationError> {
+    let expected = model.coordinate_count();
+    if state.x.len() == expected && state.v.len() == expected {
+        Ok(())
+    } else {
+        Err(SimulationError::StateLength {
+            positions: state.x.len(),
+            velocities: state.v.len(),
+            expected,
+        })
+    }
+}

@@ -1,0 +1,203 @@
+//! Rods that depend on each other and block a motion.
+
+use crate::constraint::rows::point;
+use crate::linear::rod_least_squares::RodLeastSquares;
+use crate::{Isometry, SheetModel, State};
+use isosheet_coords::linalg::norm_inf;
+use isosheet_mesh::VertexId;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Singular value of the rigidity matrix of unit rods below which rods count as dependent: the bound of
+/// [`rod_rank`](crate::rod_rank).
+const DEPENDENT: f64 = 1e-5;
+/// Passes of the regularisation, see [`RodLeastSquares::reduce`]: of ten times the bound [`DEPENDENT`] 1e-8 is left
+/// over.
+const PASSES: usize = 4;
+/// Part of the second-order elongations, or of random forces, that other displacements have to leave over for a
+/// motion to count as blocked, or rods as dependent. The part is 1e-5 or less where a sheet may fold along a line
+/// of the mesh, and a tenth or more where it may not.
+const BLOCKED: f64 = 1e-2;
+/// Part of the largest value from which the displacement of a vertex, and what is left over of the elongation
+/// of a rod, count.
+const CONSIDERABLE: f64 = 0.1;
+
+/// The free vertices that inertia and loads would move within `h` seconds, and which rods block; none where
+/// the motion is not blocked to second order, and for sheets without rods.
+///
+/// The displacement `d` that inertia and loads alone would give is projected onto those that keep all
+/// lengths to first order, `A d = 0` with the rigidity matrix `A` of unit rods. To second order it makes rods
+/// longer by `q_e = |d_a - d_b|^2 / (2 l_e)`. A motion exists only if a displacement `w` of second order makes
+/// up for that, `A w = -q`. Where rods depend on each other, as in a flat sheet, the part of `q` that no `w`
+/// reaches is a self-stress: the rods that it acts in block the motion (Connelly and Whiteley, SIAM J.
+/// Discrete Math. 9, 1996).
+pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec<VertexId> {
+    let x = &state.x;
+    let Some(mut solver) =
+        rods_of(model).and_then(|model| RodLeastSquares::new(model, x, DEPENDENT))
+    else {
+        return Vec::new();
+    };
+    let rods = model.rods();
+    let lengths = rods.lengths();
+    let mut d = free_displacement(model, state, h);
+    let mut rates = vec![0.0; rods.len()];
+    rods.apply(x, &d, &mut rates);
+    for (r, l) in rates.iter_mut().zip(lengths) {
+        *r /= l;
+    }
+    solver.reduce(model, x, PASSES, &mut rates, &mut d);
+    let largest = norm_inf(&d);
+    if largest == 0.0 {
+        return Vec::new();
+    }
+    let elongation = |([a, b], l): (&[usize; 2], &f64)| {
+        let [a, b] = [a, b].map(|v| point(&d, VertexId(*v as u32)));
+        ((a - b) / largest).norm_squared() / (2.0 * l)
+    };
+    let mut left: Vec<f64> = rods.edges().iter().zip(lengths).map(elongation).collect();
+    let asked = norm_inf(&left);
+    // Ends of rods that move alike but for round-off make no elongation.
+    if asked * model.mean_length() <= f64::EPSILON {
+        return Vec::new();
+    }
+    solver.reduce(model, x, PASSES, &mut left, &mut vec![0.0; x.len()]);
+    let most = norm_inf(&left);
+    if most <= BLOCKED * asked {
+        return Vec::new();
+    }
+    let mut vertices = free_ends(model, &left, most);
+    vertices.retain(|v| point(&d, *v).norm() >= CONSIDERABLE * largest);
+    vertices
+}
+
+/// The free vertices at rods that depend on others at positions `x` (`3V`, metres); none for sheets without rods.
+///
+/// The rods are those in which the self-stresses act that a random vector of forces has a part of.
+pub(crate) fn dependent_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
+    let Some(mut solver) =
+        rods_of(model).and_then(|model| RodLeastSquares::new(model, x, DEPENDENT))
+    else {
+        return Vec::new();
+    };
+    let mut rng = ChaCha8Rng::seed_from_u64(0);
+    let count = model.rods().len();
+    let mut left: Vec<f64> = (0..count).map(|_| rng.random_range(-1.0..1.0)).collect();
+    for (left, [a, b]) in left.iter_mut().zip(model.rods().edges()) {
+        if [a, b].iter().all(|v| model.is_pinned(VertexId(**v as u32))) {
+            *left = 0.0;
+        }
+    }
+    solver.reduce(model, x, PASSES, &mut left, &mut vec![0.0; x.len()]);
+    match norm_inf(&left) {
+        most if most > BLOCKED => free_ends(model, &left, most),
+        _ => Vec::new(),
+    }
+}
+
+/// A model, if it is one of rods.
+fn rods_of(model: &SheetModel) -> Option<&SheetModel> {
+    (model.isometry() == Isometry::Rods).then_some(model)
+}
+
+/// The free vertices at the rods at which a value counts beside the largest one.
+fn free_ends(model: &SheetModel, values: &[f64], largest: f64) -> Vec<VertexId> {
+    let counting = model.rods().edges().iter().zip(values);
+    let counting = counting.filter(|(_, q)| q.abs() >= CONSIDERABLE * largest);
+    let ends = counting.flat_map(|(ends, _)| ends.map(|v| VertexId(v as u32)));
+    let mut vertices: Vec<VertexId> = ends.filter(|v| !model.is_pinned(*v)).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    vertices
+}
+
+/// The displacement of all vertices within `h` seconds if there were no rods.
+fn free_displacement(model: &SheetModel, state: &State, h: f64) -> Vec<f64> {
+    let State { t, x, v } = state;
+    let mut force = vec![0.0; x.len()];
+    let mut applied = vec![0.0; x.len()];
+    model.potential_force(*t, x, &mut force);
+    model.applied_force(*t, x, v, &mut applied);
+    let masses = &model.mass().vertex;
+    let free = |i: usize| h * v[i] + h * h * (force[i] + applied[i]) / masses[i / 3];
+    let mut d: Vec<f64> = (0..x.len()).map(free).collect();
+    model.clear_pinned(&mut d);
+    let mut end = x.clone();
+    model.place_pins(t + h, &mut end);
+    for (d, (end, x)) in d.iter_mut().zip(end.iter().zip(x)) {
+        *d += end - x;
+    }
+    d
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isosheet_mesh::{MassKind, Sheet, generate};
+
+    const STEP: f64 = 1.0 / 60.0;
+
+    /// The blocked vertices of a flat sheet, at rest under its weight, with the vertices pinned for which the
+    /// function is at most zero.
+    fn blocked(sheet: &Sheet, beyond: impl Fn([f64; 3]) -> f64) -> (SheetModel, Vec<VertexId>) {
+        let vertices = sheet.topology().vertex_ids();
+        let pins: Vec<VertexId> = vertices
+            .filter(|v| beyond(sheet.position(*v)) <= 0.0)
+            .collect();
+        let model = SheetModel::new(sheet, 0.1, MassKind::Lumped)
+            .and_then(|m| m.with_gravity().with_pins(&pins))
+            .unwrap();
+        let state = State::at_rest(sheet.positions().to_vec());
+        let found = blocked_vertices(&model, &state, STEP);
+        (model, found)
+    }
+
+    /// Along lines of the mesh clamped sheets fold, across them they do not.
+    #[test]
+    fn clamps_across_the_mesh_block() {
+        for cells in [4, 8] {
+            let sheet = generate::anisotropic_grid(cells, cells, 1.0, 1.0).unwrap();
+            let h = 1.0 / cells as f64;
+            assert_eq!(blocked(&sheet, |p| p[0] - 1.01 * h).1, []);
+            assert_eq!(blocked(&sheet, |p| p[1] - 1.01 * h).1, []);
+            let (model, found) = blocked(&sheet, |p| p[0] + 0.4 * p[1] - 0.4);
+            assert!(found.len() > 2, "{found:?}");
+            // They are free, and some are beside the clamp.
+            assert!(found.iter().all(|v| !model.is_pinned(*v)), "{found:?}");
+            let beside = |v: &VertexId| {
+                let mut near = model.topology().neighbours(*v);
+                near.any(|n| model.is_pinned(n))
+            };
+            assert!(found.iter().any(beside), "{found:?}");
+        }
+    }
+
+    /// The rods around each interior vertex of a flat sheet depend on each other, those of a folded one do not.
+    #[test]
+    fn rods_of_flat_parts_are_dependent() {
+        let sheet = generate::isotropic_square(1, 1.0).unwrap();
+        let model = SheetModel::new(&sheet, 0.1, MassKind::Lumped).unwrap();
+        let mut x = sheet.positions().to_vec();
+        // (A random self-stress leaves some of the vertices nearly free of forces.)
+        assert!(dependent_vertices(&model, &x).len() > x.len() / 6);
+        for p in x.chunks_mut(3) {
+            p[2] = 0.2 * (3.0 * p[0]).sin() * (1.0 + p[1]);
+        }
+        let folded = Sheet::new(x.clone(), &sheet.face_indices()).unwrap();
+        let model = SheetModel::new(&folded, 0.1, MassKind::Lumped).unwrap();
+        assert_eq!(dependent_vertices(&model, &x), []);
+    }
+
+    /// Without a clamp, and for elastic sheets, nothing blocks.
+    #[test]
+    fn free_and_elastic_sheets_are_not_blocked() {
+        let sheet = generate::delaunay_square(1.0, 0.2, 5).unwrap();
+        assert_eq!(blocked(&sheet, |_| 1.0).1, []);
+        let (model, found) = blocked(&sheet, |p| p[0] + 0.4 * p[1] - 0.4);
+        assert!(!found.is_empty());
+        let elasticity = crate::ElasticSheet::new(&sheet, 1e3, 0.3).unwrap();
+        let model = model.with_elastic_sheet(elasticity).unwrap();
+        let state = State::at_rest(sheet.positions().to_vec());
+        assert_eq!(blocked_vertices(&model, &state, STEP), []);
+    }
+}

@@ -1,0 +1,213 @@
+//! What damped methods may gain in energy.
+
+use crate::step::report::StepError;
+use crate::{SheetModel, State};
+use isosheet_coords::linalg::norm_inf;
+use serde::{Deserialize, Serialize};
+
+/// Share of the kinetic energy that a damped method may gain in one step. Compressed rods that snap
+/// through can feed implicit methods; shorter steps, and steps of implicit Euler, do not let them.
+const MAX_GAIN: f64 = 0.1;
+
+/// Share of the largest kinetic energy so far that all steps together may gain: second-order methods err to
+/// either side by about that at the longest steps that resolve a motion.
+const MAX_NET_GAIN: f64 = 0.02;
+
+/// Relative displacement that the tolerance of the lengths leaves open: over a short step it looks
+/// like a velocity.
+const POSITION_NOISE: f64 = 1e-11;
+
+/// Round-off of the energies and of the work, relative to their sizes: the projections that end a step leave
+/// 1e-12 of the lengths, and forces of rods above the weight do work over that.
+const RELATIVE_ROUND_OFF: f64 = 1e-9;
+
+/// The work of bodies, pins and moving constraints is known to the accuracy of the trapezoidal rule only.
+const DRIVES: f64 = 5.0;
+
+/// Gains and losses of the steps of a damped method, which should but lose: numerical errors alone, without
+/// the work of forces, bodies and supports.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct EnergyAccount {
+    /// Sum of all gains, losses being negative, joules.
+    net: f64,
+    /// Sum of what steps could not know of, joules.
+    unknown: f64,
+    /// Largest kinetic energy so far, joules.
+    kinetic: f64,
+}
+
+/// Energy that a step exchanges with what is not the sheet.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Exchange {
+    /// Work of the non-conservative forces, joules.
+    pub(crate) forces: f64,
+    /// Work of moving pins and vertex constraints, joules.
+    pub(crate) supports: f64,
+    /// Work of moving bodies, joules.
+    pub(crate) bodies: f64,
+    /// Change of the barrier potential, joules.
+    pub(crate) barrier: f64,
+    /// Energy that the tolerance of the lengths leaves open in contact, joules.
+    pub(crate) length_slack: f64,
+}
+
+impl EnergyAccount {
+    /// The account after a step.
+    ///
+    /// # Errors
+    /// [`StepError::EnergyGain`] if the step gains too much, [`StepError::NonFiniteEnergy`] if its energy
+    /// is not a finite number.
+    pub(crate) fn after(
+        &self,
+        model: &SheetModel,
+        before: &State,
+        after: &State,
+        exchange: &Exchange,
+    ) -> Result<Self, StepError> {
+        let kinetic = [&before.v, &after.v].map(|v| model.kinetic_energy(v));
+        let potential = [&before.x, &after.x].map(|x| model.potential_energy(after.t, x));
+        let drives = exchange.bodies.abs() + exchange.supports.abs();
+        let gain = kinetic[1] + potential[1] + exchange.barrier
+            - kinetic[0]
+            - potential[0]
+            - exchange.forces
+            - exchange.supports
+            - exchange.bodies;
+        if !gain.is_finite() {
+            // A comparison with a bound would let it pass, and spoil the account for good.
+            return Err(StepError::NonFiniteEnergy {
+                quantity: "the energy gained in the step",
+                value: gain,
+                t: after.t,
+            });
+        }
+        let size = norm_inf(&after.x);
+        let noise = POSITION_NOISE * size / (after.t - before.t);
+        let energies = kinetic[0] + potential[0].abs() + potential[1].abs();
+        let mut round_off = RELATIVE_ROUND_OFF * (energies + exchange.forces.abs() + drives)
+            + model.mass().total() * noise * noise
+            + exchange.length_slack;
+        let share = kinetic[0].max(kinetic[1]) + DRIVES * drives;
+        let net = self.net + gain;
+        let largest = self.kinetic.max(kinetic[0]);
+        let unknown = |round_off| self.unknown + round_off + MAX_GAIN * DRIVES * drives;
+        let is_too_much = |round_off| {
+            gain > MAX_GAIN * share + round_off
+                || gain > round_off
+                    && net > MAX_NET_GAIN * largest.max(kinetic[1]) + unknown(round_off)
+        };
+        if is_too_much(round_off) {
+            // Forces far above the weight do work over the noise of positions, which energies near zero do
+            // not show.
+            round_off += POSITION_NOISE * size * force_sum(model, after);
+            if is_too_much(round_off) {
+                return Err(StepError::EnergyGain {
+                    t: before.t,
+                    h: after.t - before.t,
+                    gain,
+                    kinetic: kinetic[1],
+                });
+            }
+        }
+        Ok(Self {
+            net,
+            unknown: unknown(round_off),
+            kinetic: largest,
+        })
+    }
+
+    /// Takes energy out, joules: what velocity damping dissipates. (A two-step method that remembers the
+    /// undamped past gives part of it back.)
+    pub(crate) fn spend(&mut self, dissipated: f64) {
+        self.net -= dissipated;
+    }
+}
+
+/// Sum of the magnitudes of the components of the conservative forces, newtons.
+fn force_sum(model: &SheetModel, state: &State) -> f64 {
+    let mut force = vec![0.0; state.x.len()];
+    model.potential_force(state.t, &state.x, &mut force);
+    force.iter().map(|f| f.abs()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isosheet_mesh::{MassKind, generate};
+
+    /// Flies through a cycle of speeds, metres per second; the first step that is refused.
+    fn refused(speeds: &[f64], dissipated: f64, bodies: f64) -> Option<usize> {
+        let sheet = generate::isotropic_square(0, 1.0).unwrap();
+        let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped).unwrap();
+        let state = |k: usize| State {
+            t: k as f64,
+            x: sheet.positions().to_vec(),
+            v: vec![speeds[k]; sheet.positions().len()],
+        };
+        let mut account = EnergyAccount::default();
+        let exchange = Exchange {
+            bodies,
+            ..Exchange::default()
+        };
+        (1..speeds.len()).find(|&k| {
+            let after = account.after(&model, &state(k - 1), &state(k), &exchange);
+            account = *after.as_ref().unwrap_or(&account);
+            account.spend(dissipated);
+            after.is_err()
+        })
+    }
+
+    #[test]
+    fn gains_add_up() {
+        // The kinetic energy is 3/2 v^2: gains of 1 % each.
+        let gains = |n: i32| (0..n).map(|k| 1.01_f64.powf(0.5 * f64::from(k)));
+        let up: Vec<f64> = gains(9).collect();
+        assert_eq!(refused(&up, 0.0, 0.0), Some(3));
+        // A loss before makes up for them, and so does what damping takes out.
+        let down: Vec<f64> = [1.06].into_iter().chain(gains(9)).collect();
+        assert_eq!(refused(&down, 0.0, 0.0), None);
+        assert_eq!(refused(&up, 0.02, 0.0), None);
+        // One step may gain more than all of them, but not more than a tenth.
+        assert_eq!(refused(&[1.2, 1.0, 1.04], 0.0, 0.0), None);
+        assert_eq!(refused(&[1.2, 1.0, 1.06], 0.0, 0.0), Some(2));
+    }
+
+    #[test]
+    fn work_of_bodies_counts_roughly() {
+        assert_eq!(refused(&[1.0, 1.1], 0.0, 0.2), None);
+        assert_eq!(refused(&[1.0, 1.1], 0.0, 0.0), Some(1));
+    }
+
+    /// Pulls the first vertex along x, its energy zero at `origin`.
+    #[derive(Debug)]
+    struct Pull {
+        force: f64,
+        origin: f64,
+    }
+
+    impl crate::Potential for Pull {
+        fn energy(&self, _t: f64, x: &[f64]) -> f64 {
+            -self.force * (x[0] - self.origin)
+        }
+
+        fn add_gradient(&self, _t: f64, _x: &[f64], gradient: &mut [f64]) {
+            gradient[0] -= self.force;
+        }
+    }
+
+    #[test]
+    fn a_strong_force_over_the_noise_of_positions_is_no_gain() {
+        let sheet = generate::isotropic_square(0, 1.0).unwrap();
+        let model = SheetModel::new(&sheet, 1.0, MassKind::Lumped).unwrap();
+        let origin = sheet.positions()[0];
+        let model = model.with_potential(Pull { force: 1e6, origin });
+        let start = State::at_rest(sheet.positions().to_vec());
+        let enter = |back: f64| {
+            let mut end = start.clone();
+            (end.t, end.x[0]) = (1e-3, origin - back);
+            EnergyAccount::default().after(&model, &start, &end, &Exchange::default())
+        };
+        assert!(enter(1e-12).is_ok());
+        assert!(enter(1e-9).is_err());
+    }
+}

@@ -1,0 +1,267 @@
+//! What all chart-free integrators have in common: they propose, and leave it to the step control to commit.
+
+use crate::contact::{ContactState, ContactWork, StepContact};
+use crate::step::effort::SolverEffort;
+use crate::step::history::{History, Multipliers};
+use crate::step::reaction::{Balance, ForceTime};
+use crate::step::report::{StepError, StepOutcome};
+use crate::{SheetModel, State};
+use serde::{Deserialize, Serialize};
+
+/// What an integrator moves: a sheet, and what the sheet may touch.
+pub(crate) struct Scene<'a> {
+    /// The sheet.
+    pub(crate) model: &'a SheetModel,
+    /// Contact, in scenes that name it.
+    pub(crate) contact: Option<StepContact<'a>>,
+}
+
+/// A point of a motion: all that the next step depends on besides the scene and the options of the method.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Moment {
+    /// Time, positions and velocities.
+    pub(crate) state: State,
+    /// What the method remembers of earlier steps.
+    pub(crate) history: History,
+    /// Forces of the supports in the step that ended here. Meaningless before the first step.
+    pub(crate) balance: Balance,
+    /// The contacts at the state, with the friction of the step that ended here; `None` without contact.
+    pub(crate) contacts: Option<ContactState>,
+}
+
+/// A sub-step that could be taken.
+#[derive(Debug, Clone)]
+pub(crate) struct Proposal {
+    /// Where the sub-step would end.
+    pub(crate) moment: Moment,
+    /// What it would achieve.
+    pub(crate) account: StepAccount,
+}
+
+/// What a proposed sub-step achieves.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StepAccount {
+    /// Relative residual of the momentum balance.
+    pub(crate) residual: f64,
+    /// Work of the non-conservative forces, joules.
+    pub(crate) work: f64,
+    /// How the sub-step was obtained.
+    pub(crate) outcome: StepOutcome,
+    /// What contact did; zero without contact.
+    pub(crate) contact: ContactWork,
+}
+
+impl Proposal {
+    /// Room for the proposals of a method.
+    pub(crate) fn new(model: &SheetModel, traits: MethodTraits) -> Self {
+        Self {
+            moment: Moment::at(
+                State::at_rest(vec![0.0; model.coordinate_count()]),
+                model,
+                traits,
+            ),
+            account: StepAccount::without_contact(0.0, 0.0, StepOutcome::Newton),
+        }
+    }
+}
+
+impl Moment {
+    /// A start without memory.
+    pub(crate) fn at(state: State, model: &SheetModel, traits: MethodTraits) -> Self {
+        Self {
+            state,
+            history: History::default(),
+            balance: match traits.demand {
+                RodDemand::Independent => Balance::new(model, ForceTime::Mean),
+                RodDemand::Nothing => Balance::with_unassigned(model, ForceTime::End),
+            },
+            contacts: None,
+        }
+    }
+}
+
+impl Moment {
+    /// What a checkpoint keeps.
+    pub(crate) fn compact(&self) -> Self {
+        Self {
+            state: self.state.clone(),
+            history: self.history.clone(),
+            balance: self.balance.compact(),
+            contacts: self.contacts.clone(),
+        }
+    }
+
+    /// Takes over another moment of the same model, in place.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.state.copy_from(&other.state);
+        self.history.copy_from(&other.history);
+        self.balance.copy_from(&other.balance);
+        self.set_contacts(other.contacts.as_ref());
+    }
+
+    /// Sets the contacts, in place.
+    pub(crate) fn set_contacts(&mut self, contacts: Option<&ContactState>) {
+        match (&mut self.contacts, contacts) {
+            (Some(mine), Some(other)) => mine.copy_from(other),
+            (mine, other) => *mine = other.cloned(),
+        }
+    }
+}
+
+impl StepAccount {
+    pub(crate) fn without_contact(residual: f64, work: f64, outcome: StepOutcome) -> Self {
+        Self {
+            residual,
+            work,
+            outcome,
+            contact: ContactWork::default(),
+        }
+    }
+}
+
+/// A sub-step to be proposed: from where, how long, and with how much of the history.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Attempt<'a> {
+    /// Where the sub-step begins.
+    pub(crate) state: &'a State,
+    /// Its length, seconds. (Negative ones occur inside compositions.)
+    pub(crate) h: f64,
+    history: &'a History,
+    memory: Memory,
+}
+
+/// How much of the history a sub-step begins with. Each refusal of a sub-step takes away from it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Memory {
+    /// Nothing: the step is that of a one-step method, from a first guess without multipliers.
+    Restart,
+    /// The state before the present one; the multipliers were no good as a first guess.
+    State,
+    /// Everything.
+    All,
+}
+
+/// No multipliers.
+static NONE: Multipliers = Multipliers {
+    step: 0.0,
+    rods: Vec::new(),
+    constraints: Vec::new(),
+};
+
+impl<'a> Attempt<'a> {
+    /// A sub-step of `h` seconds from a moment.
+    pub(crate) fn new(start: &'a Moment, h: f64, memory: Memory) -> Self {
+        Self {
+            state: &start.state,
+            h,
+            history: &start.history,
+            memory,
+        }
+    }
+
+    /// The state before the present one, for methods that look back.
+    pub(crate) fn previous(&self) -> Option<&'a State> {
+        match self.memory {
+            Memory::Restart => None,
+            Memory::State | Memory::All => self.history.previous.as_ref(),
+        }
+    }
+
+    /// Multipliers of the step before, as a first guess.
+    pub(crate) fn multipliers(&self) -> &'a Multipliers {
+        match self.memory {
+            Memory::Restart | Memory::State => &NONE,
+            Memory::All => &self.history.multipliers,
+        }
+    }
+
+    /// Pairs of vertices that the matrix had room for at the start.
+    pub(crate) fn couplings(&self) -> &'a [[u32; 2]] {
+        &self.history.couplings
+    }
+
+    /// Stiffness of the rods in the linear systems of the step before; zero if there were none.
+    pub(crate) fn rod_stiffness(&self) -> f64 {
+        self.history.rod_stiffness
+    }
+
+    /// Impulses of the step before and their factor in this one, the ratio of the steps: zero if there are
+    /// none.
+    pub(crate) fn scaled_multipliers(&self) -> (f64, &'a Multipliers) {
+        let last = self.multipliers();
+        let ratio = if last.step == 0.0 {
+            0.0
+        } else {
+            self.h / last.step
+        };
+        (ratio, last)
+    }
+}
+
+/// A one-step or multistep method, as a function from a moment to a proposal.
+///
+/// An integrator owns work arrays and factorisations, and nothing that a later step depends on: after a
+/// refusal, and after a proposal that is not committed, it answers the same question with the same bits.
+pub(crate) trait Integrator: Send {
+    /// Proposes a sub-step. On success `proposal` is complete; after an error its contents have no meaning.
+    ///
+    /// `effort` is counted up in either case.
+    ///
+    /// # Errors
+    /// [`StepError`] says why there is no such step.
+    fn propose(
+        &mut self,
+        scene: Scene<'_>,
+        attempt: Attempt<'_>,
+        proposal: &mut Proposal,
+        effort: &mut SolverEffort<'_>,
+    ) -> Result<(), StepError>;
+
+    /// What the method asks of a scene and what it can take.
+    fn traits(&self) -> MethodTraits;
+}
+
+/// What a method asks of a scene, and what it can take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct MethodTraits {
+    /// What the method asks of the rods.
+    pub(crate) demand: RodDemand,
+    /// How the method takes contact.
+    pub(crate) contact: ContactSupport,
+}
+
+impl MethodTraits {
+    /// BDF2 and implicit Euler: minimisations, at any rank of the rods, with contact as a barrier.
+    pub(crate) fn minimising() -> Self {
+        Self {
+            demand: RodDemand::Nothing,
+            contact: ContactSupport::Barrier,
+        }
+    }
+
+    /// Energy-momentum and RATTLE.
+    pub(crate) fn conservative() -> Self {
+        Self {
+            demand: RodDemand::Independent,
+            contact: ContactSupport::None,
+        }
+    }
+}
+
+/// How a method takes contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ContactSupport {
+    /// As a barrier potential within the step.
+    Barrier,
+    /// Not at all.
+    None,
+}
+
+/// What an integrator asks of the rods' rigidity matrix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum RodDemand {
+    /// Loaded rods have to be independent: the method solves for their impulses and keeps the energy.
+    Independent,
+    /// Nothing: the method minimises, at any rank, and dissipates energy. One-sided constraints have a place.
+    Nothing,
+}

@@ -1,0 +1,16 @@
+//! One step of a chart-free method: who proposes, who decides, who commits.
+
+pub(crate) mod blocked;
+pub(crate) mod control;
+pub(crate) mod effort;
+pub(crate) mod energy_account;
+pub(crate) mod engine;
+pub(crate) mod feasibility;
+pub(crate) mod history;
+pub(crate) mod integrator;
+pub(crate) mod method;
+pub(crate) mod reaction;
+pub(crate) mod report;
+pub(crate) mod rod_forces;
+pub(crate) mod subdivision;
+pub(crate) mod unassigned;

@@ -1,0 +1,334 @@
+//! Forces of pins, curves and surfaces on the sheet.
+
+use crate::SheetModel;
+use crate::constraint::rows::{VertexRows, add, point};
+use crate::contact::ContactTerms;
+use crate::model::support::Support;
+use crate::run::checkpoint::{CheckpointError, check_finite, check_length};
+use crate::step::unassigned::UnassignedMomentum;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// The force of a support on the sheet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reaction {
+    /// The support.
+    pub support: Support,
+    /// Its force on the sheet, newtons: at rest the sum over all supports is minus the weight.
+    pub force: Vector3<f64>,
+}
+
+/// The supports of a model in the order of their reactions: pins, then vertex constraints.
+pub(crate) fn supports(model: &SheetModel) -> impl Iterator<Item = Support> + '_ {
+    let constraints = model.constraints().iter().enumerate();
+    let constraints = constraints.map(|(index, c)| Support::Constraint {
+        index,
+        vertex: c.vertex(),
+    });
+    model
+        .pins()
+        .into_iter()
+        .map(Support::Pin)
+        .chain(constraints)
+}
+
+/// At what time of a step forces are known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum ForceTime {
+    /// At its end.
+    End,
+    /// Their mean over it.
+    Mean,
+}
+
+/// Forces of all supports in the last accepted step, from the integrator's own balance of momentum: at a pin
+/// `R = M a - f + G^T lambda` with the discrete acceleration and the multipliers (tension positive) of the
+/// step, at a vertex constraint `R = -J^T mu`. [`Simulation::reactions`](crate::Simulation::reactions) says
+/// for each method which rate of the momentum they balance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Balance {
+    /// At pinned vertices the force of the pin, elsewhere zero; `3V`, newtons.
+    pub pins: Vec<f64>,
+    /// Of each vertex constraint the multipliers of its equations, newtons. Of the damped methods, here and
+    /// in the other two, without the share that supports have in projections.
+    pub multipliers: Vec<Vector3<f64>>,
+    /// Of each vertex constraint its force on the vertex, newtons.
+    pub constraints: Vec<Vector3<f64>>,
+    /// When.
+    pub time: ForceTime,
+    /// Newtons that are not shared out between the supports yet.
+    pub(crate) unassigned: UnassignedMomentum,
+    /// Room for intermediate results, `3V`.
+    #[serde(skip)]
+    work: Vec<f64>,
+}
+
+impl Balance {
+    pub(crate) fn new(model: &SheetModel, time: ForceTime) -> Self {
+        let n = if model.has_supports() {
+            model.coordinate_count()
+        } else {
+            0
+        };
+        let m = model.constraints().len();
+        Self {
+            pins: vec![0.0; n],
+            multipliers: vec![Vector3::zeros(); m],
+            constraints: vec![Vector3::zeros(); m],
+            time,
+            unassigned: UnassignedMomentum::default(),
+            work: vec![0.0; n],
+        }
+    }
+
+    /// With room for what is shared out later.
+    pub(crate) fn with_unassigned(model: &SheetModel, time: ForceTime) -> Self {
+        Self {
+            unassigned: UnassignedMomentum::new(model),
+            ..Self::new(model, time)
+        }
+    }
+
+    /// Starts with the inertia `M a`; returns false where there is nothing to balance.
+    pub(crate) fn begin(&mut self, model: &SheetModel, a: impl Fn(usize) -> f64) -> bool {
+        for (i, w) in self.work.iter_mut().enumerate() {
+            *w = a(i);
+        }
+        if self.pins.is_empty() {
+            return false;
+        }
+        model
+            .mass()
+            .apply(model.topology(), &self.work, &mut self.pins);
+        self.multipliers.fill(Vector3::zeros());
+        self.constraints.fill(Vector3::zeros());
+        self.unassigned.clear();
+        true
+    }
+
+    /// Adds more inertia.
+    pub(crate) fn add_inertia(&mut self, model: &SheetModel, a: impl Fn(usize) -> f64) {
+        for (i, w) in self.work.iter_mut().enumerate() {
+            *w = a(i);
+        }
+        if !self.pins.is_empty() {
+            let mut inertia = vec![0.0; self.work.len()];
+            model
+                .mass()
+                .apply(model.topology(), &self.work, &mut inertia);
+            self.work = inertia;
+            self.add_work(1.0);
+        }
+    }
+
+    /// Takes over the forces of another balance, in place.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.pins.clone_from(&other.pins);
+        self.multipliers.clone_from(&other.multipliers);
+        self.constraints.clone_from(&other.constraints);
+        self.time = other.time;
+        self.unassigned.copy_from(&other.unassigned);
+    }
+
+    /// Refuses arrays of the wrong length and numbers that are not finite.
+    pub(crate) fn check(&self, model: &SheetModel) -> Result<(), CheckpointError> {
+        let (n, m) = (model.coordinate_count(), model.constraints().len());
+        let pins = if model.has_supports() { n } else { 0 };
+        check_length("forces of pins", self.pins.len(), pins)?;
+        check_finite("forces of pins", &self.pins)?;
+        for forces in [&self.multipliers, &self.constraints] {
+            check_length("forces of vertex constraints", forces.len(), m)?;
+            for force in forces {
+                check_finite("forces of vertex constraints", force.as_slice())?;
+            }
+        }
+        self.unassigned.check(n, m)
+    }
+
+    /// The forces alone, without room for further ones.
+    pub(crate) fn compact(&self) -> Self {
+        Self {
+            pins: self.pins.clone(),
+            multipliers: self.multipliers.clone(),
+            constraints: self.constraints.clone(),
+            time: self.time,
+            unassigned: self.unassigned.compact(),
+            work: Vec::new(),
+        }
+    }
+
+    /// Sets all forces to zero.
+    pub(crate) fn clear(&mut self) {
+        self.pins.fill(0.0);
+        self.multipliers.fill(Vector3::zeros());
+        self.constraints.fill(Vector3::zeros());
+    }
+
+    /// Adds a share of other forces.
+    pub(crate) fn add_share(&mut self, other: &Balance, share: f64) {
+        for (p, q) in self.pins.iter_mut().zip(&other.pins) {
+            *p += share * q;
+        }
+        for (p, q) in self.multipliers.iter_mut().zip(&other.multipliers) {
+            *p += share * q;
+        }
+        for (p, q) in self.constraints.iter_mut().zip(&other.constraints) {
+            *p += share * q;
+        }
+    }
+
+    /// Takes off `share` of the potentials' forces.
+    pub(crate) fn add_potentials(&mut self, model: &SheetModel, t: f64, x: &[f64], share: f64) {
+        self.work.fill(0.0);
+        for p in model.potentials() {
+            p.add_gradient(t, x, &mut self.work);
+        }
+        self.add_work(share);
+    }
+
+    /// Takes off `share` of the non-conservative forces.
+    pub(crate) fn add_applied(
+        &mut self,
+        model: &SheetModel,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        share: f64,
+    ) {
+        self.work.fill(0.0);
+        for force in model.forces() {
+            force.add_force(t, x, v, &mut self.work);
+        }
+        self.add_work(-share);
+    }
+
+    /// Takes off the forces of contact.
+    pub(crate) fn add_contact(&mut self, contact: &ContactTerms<'_>) {
+        contact.add_gradient(1.0, &mut self.pins);
+    }
+
+    /// Takes off the forces of the rods, `-share G(x)^T multipliers`.
+    pub(crate) fn add_rods(
+        &mut self,
+        model: &SheetModel,
+        x: &[f64],
+        multipliers: &[f64],
+        share: f64,
+    ) {
+        self.work.fill(0.0);
+        model
+            .rods()
+            .apply_transpose_add(x, multipliers, &mut self.work);
+        self.add_work(share);
+    }
+
+    /// Adds a share of the vertex constraints' multipliers with their equations as last evaluated.
+    pub(crate) fn add_constraints(
+        &mut self,
+        rows: &VertexRows,
+        multipliers: &[Vector3<f64>],
+        share: f64,
+    ) {
+        for (i, m) in multipliers.iter().enumerate() {
+            self.multipliers[i] += share * m;
+            self.constraints[i] -= rows.local(i).jacobian.tr_mul(&(share * m));
+        }
+    }
+
+    /// Adds loads of vertex constraints: multipliers and forces.
+    pub(crate) fn add_loads(&mut self, loads: impl Iterator<Item = (Vector3<f64>, Vector3<f64>)>) {
+        for (i, (multiplier, force)) in loads.enumerate() {
+            self.multipliers[i] += multiplier;
+            self.constraints[i] += force;
+        }
+    }
+
+    fn add_work(&mut self, share: f64) {
+        for (p, w) in self.pins.iter_mut().zip(&self.work) {
+            *p += share * w;
+        }
+    }
+
+    /// Leaves only what is at pins; what is at free vertices at positions `x` goes to the unassigned,
+    /// for the rods and the vertex constraints `active`.
+    pub(crate) fn leave(&mut self, model: &SheetModel, x: &[f64], active: &[bool]) {
+        self.work.copy_from_slice(&self.pins);
+        for (c, f) in model.constraints().iter().zip(&self.constraints) {
+            add(&mut self.work, c.vertex(), &-f);
+        }
+        model.clear_pinned(&mut self.work);
+        self.unassigned.push(x, active, self.work.iter().copied());
+        self.finish(model);
+    }
+
+    /// Leaves only what is at pins.
+    pub(crate) fn finish(&mut self, model: &SheetModel) {
+        for v in model
+            .topology()
+            .vertex_ids()
+            .filter(|&v| !model.is_pinned(v))
+        {
+            self.pins[3 * v.index()..3 * v.index() + 3].fill(0.0);
+        }
+    }
+
+    /// Adds the shares of the unassigned of a step that ended at time `t`.
+    pub(crate) fn settle(&mut self, model: &SheetModel, t: f64) {
+        let shares = self.unassigned.shares(model, t);
+        self.unassigned.clear();
+        for (p, share) in self.pins.iter_mut().zip(&shares.pins) {
+            *p += share;
+        }
+        self.add_loads(shares.loads.into_iter());
+        self.finish(model);
+    }
+
+    /// The forces, with the shares of the unassigned of a step that ended at time `t`.
+    pub(crate) fn reactions(&self, model: &SheetModel, t: f64) -> Vec<Reaction> {
+        let shares = self.unassigned.shares(model, t);
+        let pins = model.pins().into_iter().map(|v| Reaction {
+            support: Support::Pin(v),
+            force: point(&self.pins, v) + point(&shares.pins, v),
+        });
+        let forces = self.constraints.iter().zip(&shares.loads);
+        let constraints = model.constraints().iter().zip(forces).enumerate();
+        let constraints = constraints.map(|(index, (c, (own, (_, share))))| Reaction {
+            support: Support::Constraint {
+                index,
+                vertex: c.vertex(),
+            },
+            force: own + share,
+        });
+        pins.chain(constraints).collect()
+    }
+
+    /// Work that moving pins and vertex constraints do on the sheet in a step from `x0` at `t0` to `x1` at
+    /// `t1`, joules: with the mean forces or, where they are known at the end, by the trapezoidal rule with
+    /// those of the step before.
+    pub(crate) fn drive_work(
+        &self,
+        model: &SheetModel,
+        before: Option<&Balance>,
+        (t0, x0): (f64, &[f64]),
+        (t1, x1): (f64, &[f64]),
+    ) -> f64 {
+        let before = before.filter(|_| self.time == ForceTime::End);
+        let mut work = 0.0;
+        for v in model.moving_pins() {
+            for i in 3 * v..3 * v + 3 {
+                let force = before.map_or(self.pins[i], |b| 0.5 * (self.pins[i] + b.pins[i]));
+                work += force * (x1[i] - x0[i]);
+            }
+        }
+        for (i, c) in model.constraints().iter().enumerate() {
+            if c.moves() {
+                let p = 0.5 * (point(x0, c.vertex()) + point(x1, c.vertex()));
+                let change = c.at(t1, &p).value - c.at(t0, &p).value;
+                let own = self.multipliers[i];
+                let load = before.map_or(own, |b| 0.5 * (own + b.multipliers[i]));
+                work += load.dot(&change);
+            }
+        }
+        work
+    }
+}

@@ -1,0 +1,458 @@
+//! What a step tells, and why a step fails.
+
+use crate::chart::ChartDynamicsError;
+use crate::contact::BodyMotionError;
+use crate::model::support::Support;
+use crate::step::effort::SolverEffort;
+use crate::step::feasibility::Excess;
+use isosheet_coords::linalg::LinalgError;
+use isosheet_mesh::wording::{brief, counted, given};
+use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
+
+/// How a step was obtained.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StepOutcome {
+    /// Newton's method alone.
+    Newton,
+    /// Newton's method with a modified, positive definite matrix or shortened steps, as near
+    /// flat states need it.
+    Globalised,
+    /// As `Globalised`, and a seeded perturbation decided which way the sheet folds.
+    BranchSeeded,
+    /// The integrator asked for rejected every sub-step, and implicit Euler took one instead.
+    Fallback,
+    /// Explicitly, in a chart.
+    Chart,
+    /// As `Chart`, and the chart was rebased on the way.
+    Rebased,
+}
+
+/// What one call of [`Simulation::step`](crate::Simulation::step) did.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct StepReport {
+    /// Time at the end of the step, seconds.
+    pub t: f64,
+    /// Length of the step, seconds.
+    pub h: f64,
+    /// Accepted sub-steps; 1 unless some had to be shortened.
+    pub substeps: usize,
+    /// Sub-steps that were tried and rejected.
+    pub rejected: usize,
+    /// Newton iterations, those of rejected sub-steps included.
+    pub iterations: usize,
+    /// Matrix factorisations, those of rejected sub-steps included.
+    pub factorisations: usize,
+    /// Largest relative residual of the momentum balance over the sub-steps. For the
+    /// conservative integrators the largest acceleration left over against the largest one
+    /// asked for; for implicit Euler the Newton decrement before the last iteration against
+    /// the inertia term of the incremental potential (root of the energy ratio), an upper bound
+    /// of what that iteration left; for the projection step the length rates left over against
+    /// the speed.
+    pub residual: f64,
+    /// Kinetic energy at the end, joules.
+    pub kinetic: f64,
+    /// Potential energy at the end, contact included, joules.
+    pub potential: f64,
+    /// Work done since the start by the non-conservative forces, by moving bodies, pins and vertex
+    /// constraints, and by changing driven potentials
+    /// ([`Potential::is_driven`](crate::Potential::is_driven)), joules.
+    pub work: f64,
+    /// Energy taken out since the start by velocity damping, joules.
+    pub dissipated: f64,
+    /// Energy lost to friction since the start, in charts to impacts, joules.
+    pub friction: f64,
+    /// `T + V - work + dissipated + friction` minus its value at the start, joules: the error of the
+    /// integrator, zero for the exact motion.
+    pub energy_drift: f64,
+    /// Largest relative edge length error at the end.
+    pub strain: f64,
+    /// Largest violation of the equations of isometry at the end, which the tolerance of the method bounds:
+    /// the edge strain of rods, zero for elastic sheets (see
+    /// [`SheetModel::constrained_strain`](crate::SheetModel::constrained_strain)).
+    pub constrained_strain: f64,
+    /// Smallest gap to an obstacle or between parts of the sheet, metres; `None` without contact.
+    pub gap: Option<f64>,
+    /// Largest distance by which a vertex constraint is broken at the end, metres; `None` without
+    /// constraints.
+    pub violation: Option<f64>,
+    /// Set where the step stopped at a taut state (see [`Unsatisfiable`](crate::Unsatisfiable)).
+    pub taut: Option<Excess>,
+    /// How the hardest sub-step was obtained.
+    pub outcome: StepOutcome,
+}
+
+impl StepReport {
+    /// Total energy `H = T + V` (Liu, Tang and Joneja 2007, Eq. 17), joules.
+    pub fn hamiltonian(&self) -> f64 {
+        self.kinetic + self.potential
+    }
+}
+
+/// Why a step could not be taken. [`Simulation::step`](crate::Simulation::step) leaves the state at the last
+/// accepted sub-step.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// The step size makes no sense.
+    #[error("the step size is {h} s at t = {t} s", h = brief(*h), t = brief(*t))]
+    StepSize {
+        /// The step size given, seconds.
+        h: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// The time of the state is not finite.
+    #[error("the time of the state is {t} s", t = brief(*t))]
+    Time {
+        /// The time given, seconds.
+        t: f64,
+    },
+    /// An energy or the work of a force is not finite.
+    #[error("{quantity} is {value} J at t = {t} s", value = brief(*value), t = brief(*t))]
+    NonFiniteEnergy {
+        /// Which one.
+        quantity: &'static str,
+        /// Its value, joules.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// No positions with the rest lengths were found.
+    #[error(
+        "no positions with the rest lengths were found near the ones given: the best have edge \
+         strain {strain} after {iterations} iterations, {tolerance} was asked for",
+        strain = brief(*strain), tolerance = given(*tolerance)
+    )]
+    Projection {
+        /// Relative edge length error reached.
+        strain: f64,
+        /// The tolerance.
+        tolerance: f64,
+        /// Iterations done.
+        iterations: usize,
+    },
+    /// A position or velocity of the state is not finite.
+    #[error(
+        "{vertex} has position or velocity {value} at t = {t} s",
+        value = brief(*value), t = brief(*t)
+    )]
+    NonFiniteState {
+        /// The vertex.
+        vertex: VertexId,
+        /// The value found.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// A prescribed motion is not finite.
+    #[error(
+        "the prescribed motion of {support} gives {value} at t = {t} s",
+        value = brief(*value), t = brief(*t)
+    )]
+    NonFiniteMotion {
+        /// What moves.
+        support: Support,
+        /// A coordinate, metres.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// The prescribed motion of a body is not finite.
+    #[error(transparent)]
+    Body(#[from] BodyMotionError),
+    /// The start state is not where a support has it.
+    #[error(
+        "{support} is {distance} m away from its vertex at t = {t} s",
+        distance = brief(*distance), t = brief(*t)
+    )]
+    OffSupport {
+        /// The support.
+        support: Support,
+        /// The distance, metres.
+        distance: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// A potential or force returned a value that is not finite.
+    #[error(
+        "a potential or force is {value} at {vertex}, t = {t} s",
+        value = brief(*value), t = brief(*t)
+    )]
+    NonFiniteForce {
+        /// The vertex.
+        vertex: VertexId,
+        /// The value found.
+        value: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// The start state does not have the rest lengths.
+    #[error(
+        "{edge} of {rest} m is {} at t = {t} s",
+        off_by(length - rest), rest = brief(*rest), t = brief(*t)
+    )]
+    OffConstraints {
+        /// The worst edge.
+        edge: EdgeId,
+        /// Its length, metres.
+        length: f64,
+        /// Its rest length, metres.
+        rest: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// An elastic sheet is stretched or compressed beyond its limit at the start.
+    #[error(
+        "{face} has the strain {strain} at t = {t} s, and the limit of the elastic sheet is {limit}",
+        strain = brief(*strain), limit = given(*limit), t = brief(*t)
+    )]
+    BeyondStrainLimit {
+        /// The face with the largest strain.
+        face: FaceId,
+        /// The norm of its strain ([`ElasticSheet`](crate::ElasticSheet)).
+        strain: f64,
+        /// The limit.
+        limit: f64,
+        /// Time, seconds.
+        t: f64,
+    },
+    /// Newton's method did not converge.
+    #[error(
+        "Newton's method stopped at residual {residual}, edge strain {strain} after {iterations} \
+         iterations at t = {t} s, h = {h} s",
+        residual = brief(*residual), strain = brief(*strain), t = brief(*t), h = brief(*h)
+    )]
+    NotConverged {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// Iterations done.
+        iterations: usize,
+        /// Relative residual of the momentum balance.
+        residual: f64,
+        /// Relative edge length error reached.
+        strain: f64,
+    },
+    /// A damped step would have created energy.
+    #[error(
+        "a step of {h} s at t = {t} s would create {gain} J (kinetic energy {kinetic} J): rods in \
+         compression snap through faster than the step resolves",
+        h = brief(*h), t = brief(*t), gain = brief(*gain), kinetic = brief(*kinetic)
+    )]
+    EnergyGain {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// Energy created, joules.
+        gain: f64,
+        /// Kinetic energy at the end of the step, joules.
+        kinetic: f64,
+    },
+    /// A step would have ended in contact.
+    #[error(
+        "a step of {h} s at t = {t} s would close the smallest gap to {gap} m",
+        h = brief(*h), t = brief(*t), gap = brief(*gap)
+    )]
+    Contact {
+        /// Time at the start of the step, seconds.
+        t: f64,
+        /// Step size, seconds.
+        h: f64,
+        /// The gap, metres.
+        gap: f64,
+    },
+    /// The length constraints are dependent, or so nearly that the multipliers are noise.
+    #[error(
+        "the length constraints are dependent or nearly so at t = {t} s ({rank_deficiency} \
+         redundant, smallest singular value of the rigidity matrix with unit rods \
+         {smallest_singular_value}): this integrator has no unique rod forces there",
+        t = brief(*t), smallest_singular_value = brief(*smallest_singular_value)
+    )]
+    RankDeficient {
+        /// Time, seconds.
+        t: f64,
+        /// Number of dependent constraints.
+        rank_deficiency: usize,
+        /// Smallest singular value of the rigidity matrix with rows scaled to unit rods; zero
+        /// if the matrix has fewer unknowns than rods.
+        smallest_singular_value: f64,
+    },
+    /// Moving supports ask for more than the rods allow.
+    #[error(
+        "{} asks for {} m more than the rods allow at t = {} s (the taut state at t = {t} s is kept)",
+        excess.support, brief(excess.distance), brief(excess.t),
+        t = brief(*t)
+    )]
+    Unsatisfiable {
+        /// Time of the last state, seconds.
+        t: f64,
+        /// Which support, by how much and when.
+        excess: Excess,
+    },
+    /// Even the smallest step allowed was rejected.
+    #[error(
+        "no step of at least {min_step} s was accepted at t = {t} s; last reason: {cause}",
+        min_step = brief(*min_step), t = brief(*t)
+    )]
+    StepTooSmall {
+        /// Time, seconds.
+        t: f64,
+        /// Smallest step allowed, seconds.
+        min_step: f64,
+        /// Why the last step was rejected.
+        cause: Box<StepError>,
+    },
+    /// A sheet of rods locks: no motion was found, and rods block the one that inertia and loads ask for, or
+    /// depend on each other while supports and bodies rest.
+    #[error(
+        "the sheet locks at t = {t} s: no motion was found with {}, and the rods at {} depend on each other (a \
+         sheet of rods folds along lines of edges only)",
+        counted(*.factorisations, "factorisation", "factorisations"), listed(.vertices),
+        t = brief(*t)
+    )]
+    Locked {
+        /// Time of the last accepted sub-step, seconds.
+        t: f64,
+        /// Factorisations since then ([`StepControl::max_factorisations`](crate::StepControl::max_factorisations)
+        /// bounds them).
+        factorisations: usize,
+        /// The free vertices that could not move, at rods that depend on each other.
+        vertices: Vec<VertexId>,
+    },
+    /// The watch of [`Simulation::step_watched`](crate::Simulation::step_watched) ended the step.
+    #[error("the step was interrupted after t = {t} s", t = brief(*t))]
+    Interrupted {
+        /// Time of the last accepted sub-step, seconds.
+        t: f64,
+    },
+    /// Motion in a chart failed.
+    #[error("at t = {t} s: {source}", t = brief(*t))]
+    Chart {
+        /// Time, seconds.
+        t: f64,
+        /// The reason.
+        source: Box<ChartDynamicsError>,
+    },
+    /// The linear algebra failed.
+    #[error("linear solve failed at t = {t} s: {source}", t = brief(*t))]
+    Linalg {
+        /// Time, seconds.
+        t: f64,
+        /// The reason.
+        source: LinalgError,
+    },
+}
+
+impl Advice for StepError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::StepSize { .. } => Some("give a positive finite step"),
+            Self::Time { .. } => Some("start at a finite time"),
+            Self::NonFiniteEnergy { .. } => Some("check the user-supplied potentials and forces"),
+            Self::Projection { .. } => {
+                Some("start closer to the rest lengths or raise the tolerance")
+            }
+            Self::NonFiniteState { .. } => Some("set finite positions and velocities"),
+            Self::NonFiniteMotion { .. } => Some("check the function"),
+            Self::Body(error) => error.advice(),
+            Self::OffSupport { .. } => Some("start with the vertex in place"),
+            Self::NonFiniteForce { .. } => Some("check the user-supplied functions"),
+            Self::OffConstraints { .. } => {
+                Some("start from a state on the constraints (see `project_positions`)")
+            }
+            Self::BeyondStrainLimit { .. } => {
+                Some("start from a shape that is stretched less, or raise the limit of the strain")
+            }
+            Self::NotConverged { .. } | Self::EnergyGain { .. } | Self::Contact { .. } => {
+                Some("take a smaller step")
+            }
+            Self::RankDeficient { .. } => Some(
+                "start from a folded state, displace the sheet with `leave_flat`, allow a `Fallback`, or use \
+                 BDF2",
+            ),
+            Self::Unsatisfiable { .. } => {
+                Some("stop the motion before that, or allow `Unsatisfiable::StopTaut`")
+            }
+            Self::StepTooSmall { cause, .. } => cause.advice(),
+            Self::Locked { .. } => Some(
+                "give the sheet the stiffness of its material (`SheetModel::with_elastic_sheet`), make a mesh with a line \
+                 of edges along each clamp, or allow more `StepControl::max_factorisations`",
+            ),
+            Self::Interrupted { .. } => {
+                Some("the state is that of the last accepted sub-step: step on from there")
+            }
+            Self::Chart { source, .. } => source.advice(),
+            Self::Linalg { source, .. } => source.advice(),
+        }
+    }
+}
+
+/// What was done on the way to the end of a step, kept also if the step fails half-way.
+#[derive(Debug)]
+pub(crate) struct StepTotals<'w> {
+    pub(crate) substeps: usize,
+    pub(crate) rejected: usize,
+    pub(crate) effort: SolverEffort<'w>,
+    pub(crate) residual: f64,
+    pub(crate) outcome: StepOutcome,
+    pub(crate) work: f64,
+    pub(crate) dissipated: f64,
+    pub(crate) friction: f64,
+    pub(crate) taut: Option<Excess>,
+}
+
+impl Default for StepTotals<'_> {
+    fn default() -> Self {
+        Self {
+            substeps: 0,
+            rejected: 0,
+            effort: SolverEffort::default(),
+            residual: 0.0,
+            outcome: StepOutcome::Newton,
+            work: 0.0,
+            dissipated: 0.0,
+            friction: 0.0,
+            taut: None,
+        }
+    }
+}
+
+/// The error of an iteration of a step of `h` seconds at time `t` that did not converge.
+pub(crate) fn not_converged(
+    t: f64,
+    h: f64,
+    effort: &SolverEffort<'_>,
+    residual: f64,
+    strain: f64,
+) -> StepError {
+    StepError::NotConverged {
+        t,
+        h,
+        iterations: effort.iterations,
+        residual,
+        strain,
+    }
+}
+
+/// By how much a length is off, in words.
+fn off_by(by: f64) -> String {
+    let side = if by < 0.0 { "short" } else { "long" };
+    format!("{} m too {side}", brief(by.abs()))
+}
+
+/// The first of some vertices by name, and the number of the others.
+fn listed(vertices: &[VertexId]) -> String {
+    /// As many as a line of text takes.
+    const NAMED: usize = 5;
+    let named: Vec<String> = vertices.iter().take(NAMED).map(|v| v.to_string()).collect();
+    match vertices.len().saturating_sub(NAMED) {
+        0 => named.join(", "),
+        more => format!(
+            "{} and {}",
+            named.join(", "),
+            counted(more, "other", "others")
+        ),
+    }
+}
