@@ -79,11 +79,12 @@ mod motion;
 mod options;
 mod run;
 mod step;
+mod vectors;
 
 pub use conservative::energy_momentum::EnergyMomentumOptions;
 pub use conservative::rattle::RattleOptions;
 pub use constraint::VertexConstraint;
-pub use damped::implicit::ImplicitOptions;
+pub use damped::options::ImplicitOptions;
 pub use damped::projection_step::ProjectionStepOptions;
 pub use damped::start::{leave_flat, project_positions};
 pub use linear::rank::{RodRank, rod_rank};
@@ -92,6 +93,7 @@ pub use material::elastic_sheet::{ElasticDeformation, ElasticSheet, ElasticSheet
 pub use material::plate_bending::{PlateBending, PlateBendingError};
 pub use material::{Isotropic, Material, NamedMaterial, UnknownMaterial};
 pub use model::clamps::ClampAcrossMesh;
+pub use model::immobile::immobile_vertices;
 pub use model::load::{AccelerationField, LoadError, VertexLoad};
 pub use model::potential::{Force, Gravity, HessianSink, PAPER_GRAVITY, Potential, PotentialShape};
 pub use model::state::State;
@@ -103,15 +105,16 @@ pub use motion::{
     RigidMotion, RigidProfile,
 };
 pub use options::OptionsError;
-pub use run::checkpoint::{Checkpoint, CheckpointError};
+pub use run::checkpoint::Checkpoint;
 pub use run::observe::{Frames, History, Observer, RunEnd};
 pub use run::simulation::Simulation;
-pub use run::simulation_error::SimulationError;
+pub use step::checkpoint_error::CheckpointError;
 pub use step::effort::StepProgress;
 pub use step::feasibility::Excess;
 pub use step::method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use step::reaction::Reaction;
 pub use step::report::{StepError, StepOutcome, StepReport};
+pub use step::simulation_error::SimulationError;
 
 pub use model::potential;
 pub use nalgebra;

@@ -2,10 +2,11 @@
 
 use super::{ChartDynamicsError, ChartSimulation};
 use crate::contact::Contact;
-use crate::run::checkpoint::{CheckpointError, InChart, check_finite, check_length};
-use crate::run::simulation_error::SimulationError;
+use crate::run::checkpoint::InChart;
+use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::reaction::{Reaction, supports};
 use crate::step::report::{StepError, StepOutcome, StepTotals};
+use crate::step::simulation_error::SimulationError;
 use crate::{SheetModel, State};
 use isosheet_coords::Chart;
 

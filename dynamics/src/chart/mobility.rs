@@ -29,9 +29,9 @@
 mod projection;
 
 use super::{ChartDynamicsError, ChartMechanics};
-use crate::constraint::rows::point;
 use crate::model::support::Support;
 use crate::step::reaction::Balance;
+use crate::vectors::point;
 use isosheet_coords::SaddlePoint;
 use isosheet_mesh::VertexId;
 use nalgebra::{DMatrix, DVector, Matrix2x3, SymmetricEigen, Vector2, Vector3};

@@ -1,13 +1,15 @@
 //! The energy-momentum integrator.
 
+use super::mean_pin_velocities;
 use crate::constraint::conservative::ConservativeRows;
-use crate::linear::primal::{dot, strain_floor, velocity_round_off};
 use crate::linear::saddle::{SaddleMatrix, System};
+use crate::model::round_off::{strain_floor, velocity_round_off};
 use crate::options::OptionsError;
 use crate::step::effort::SolverEffort;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::reaction::Balance;
 use crate::step::report::{StepError, StepOutcome, not_converged};
+use crate::vectors::dot;
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
 use serde::{Deserialize, Serialize};
@@ -210,20 +212,6 @@ impl EnergyMomentum {
         };
         let strain = model.rods().max_strain(&self.x1);
         (relative, self.constraints.worst(strain))
-    }
-}
-
-/// Sets the mean velocities over a step of pins in prescribed motion; uses `x` for room.
-pub(crate) fn mean_pin_velocities(
-    model: &SheetModel,
-    state: &State,
-    h: f64,
-    x: &mut [f64],
-    w: &mut [f64],
-) {
-    model.place_pins(state.t + h, x);
-    for i in model.moving_pins().flat_map(|v| 3 * v..3 * v + 3) {
-        w[i] = (x[i] - state.x[i]) / h;
     }
 }
 

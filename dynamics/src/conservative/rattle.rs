@@ -1,15 +1,16 @@
 //! RATTLE and its fourth-order composition.
 
-use crate::conservative::energy_momentum::mean_pin_velocities;
+use super::mean_pin_velocities;
 use crate::constraint::conservative::ConservativeRows;
-use crate::linear::primal::{dot, strain_floor, velocity_round_off};
 use crate::linear::saddle::{SaddleMatrix, System};
+use crate::model::round_off::{strain_floor, velocity_round_off};
 use crate::options::OptionsError;
 use crate::step::effort::SolverEffort;
 use crate::step::history::Multipliers;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::reaction::{Balance, ForceTime};
 use crate::step::report::{StepError, StepOutcome, not_converged};
+use crate::vectors::dot;
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::{LinalgError, norm_inf};
 use nalgebra::Vector2;

@@ -2,6 +2,7 @@
 
 use super::{ConstrainedVertex, LocalEquations, VertexConstraint};
 use crate::model::potential::HessianSink;
+use crate::vectors::{add, point};
 use isosheet_mesh::VertexId;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
@@ -276,19 +277,6 @@ impl VertexRows {
             }
         }
         largest
-    }
-}
-
-/// The coordinates of a vertex.
-pub(crate) fn point(x: &[f64], v: VertexId) -> Vector3<f64> {
-    let i = 3 * v.index();
-    Vector3::new(x[i], x[i + 1], x[i + 2])
-}
-
-/// Adds to the coordinates of a vertex.
-pub(crate) fn add(x: &mut [f64], v: VertexId, d: &Vector3<f64>) {
-    for k in 0..3 {
-        x[3 * v.index() + k] += d[k];
     }
 }
 

@@ -1,7 +1,8 @@
 //! The barrier as a function of the gap.
 
-use super::ContactLaws;
-use crate::model::load_scale::{LoadScale, constant_acceleration, diameter};
+use super::{ContactLaws, Stiffness};
+use crate::model::load_scale::{LoadScale, constant_acceleration};
+use crate::vectors::diameter;
 use crate::{SheetModel, State};
 use isosheet_mesh::Advice;
 use nalgebra::Vector3;
@@ -13,22 +14,6 @@ const REST: f64 = 0.5;
 
 /// Vertices whose weight it carries.
 const LOAD: f64 = 100.0;
-
-/// Stiffness `kappa` of the barrier potential `kappa b`, constant over a run.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Stiffness {
-    /// A contact that carries a hundred vertices of mean mass under the largest acceleration that the
-    /// potentials cause at the start keeps half the activation distance: `kappa = 100 m a d_hat /
-    /// |b'(1/2)|`, the slope taken by the gap over `d_hat`; one that carries its own vertex only keeps
-    /// 95 %. A draped sheet hangs on a few contacts. Ten times less and they close to where the
-    /// barrier is steep, ten times more and light contacts become hard: on draped
-    /// sheets of 81 and 289 vertices either costs up to five times the Newton iterations. Without a constant force
-    /// such as weight the acceleration is at least that of the paper's gravity, 9.8 m/s2, and at least the one that
-    /// stops the sheet from its largest speed within its own size.
-    Automatic,
-    /// A given value, joules.
-    Joules(f64),
-}
 
 /// The barrier potential of a gap `g`, a distance less the thickness of the sheet: `phi(g) = kappa b(z)` with
 /// the stiffness `kappa`, the activation distance `d_hat`, `z = (g / d_hat)^2` and

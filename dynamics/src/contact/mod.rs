@@ -38,14 +38,14 @@ mod terms;
 mod vertex_data;
 
 pub use active::{ActiveContact, ActiveContacts, Rolling};
-pub use barrier::{BarrierError, BarrierPotential, Stiffness};
+pub use barrier::{BarrierError, BarrierPotential};
 pub(crate) use body::advanced;
 pub use body::{BodyMotion, BodyMotions, BodyPlace, StepMotion, StepSpan};
 pub use error::{BodyMotionError, ContactError, ContactPair};
 pub use friction::{Coefficients, Friction, FrictionError};
 pub use impulse::ContactPoint;
 pub use lagged::{FrictionContact, LaggedFriction};
-pub use laws::ContactLaws;
+pub use laws::{ContactLaws, Stiffness};
 pub use parallel::ParallelEdges;
 pub(crate) use run::{RunContact, StepContact, check_start};
 

@@ -11,7 +11,7 @@ mod tests;
 use crate::ImplicitOptions;
 use crate::contact::{ContactState, ContactWork};
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationContact, RestorationGoal};
-use crate::linear::primal::strain_floor;
+use crate::model::round_off::strain_floor;
 use crate::step::effort::SolverEffort;
 use crate::step::history::History;
 use crate::step::integrator::Attempt;

@@ -2,8 +2,9 @@
 
 use crate::damped::iterate::Iterate;
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
-use crate::linear::primal::{PrimalMatrix, strain_floor};
+use crate::linear::primal::PrimalMatrix;
 use crate::model::PINNED;
+use crate::model::round_off::strain_floor;
 use crate::options::OptionsError;
 use crate::step::effort::SolverEffort;
 use crate::step::integrator::{

@@ -1,6 +1,5 @@
 //! Making and checking states to start from.
 
-use crate::constraint::rows::point;
 use crate::damped::iterate::Iterate;
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::linear::primal::PrimalMatrix;
@@ -8,6 +7,7 @@ use crate::model::support::Support;
 use crate::options::OptionsError;
 use crate::step::effort::SolverEffort;
 use crate::step::report::StepError;
+use crate::vectors::point;
 use crate::{SheetModel, SimulationError, State};
 use isosheet_mesh::{EdgeId, VertexId};
 use rand::{RngExt, SeedableRng};

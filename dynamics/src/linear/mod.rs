@@ -1,5 +1,6 @@
 //! The matrices of a step, how they are laid out, and solvers for the multipliers of rods.
 
+pub(crate) mod free;
 pub(crate) mod layout;
 pub(crate) mod multipliers;
 pub(crate) mod primal;

@@ -1,7 +1,8 @@
 //! Multipliers of linearised equations of isometry, by conjugate gradients.
 
 use crate::SheetModel;
-use crate::linear::primal::{PrimalMatrix, dot};
+use crate::linear::primal::PrimalMatrix;
+use crate::vectors::dot;
 
 /// Improves the multipliers of a linearised step.
 ///

@@ -6,13 +6,14 @@ mod iterative;
 mod whole;
 
 use crate::contact::{ContactTerms, CouplingSink};
+use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{FULL, LOWER, Layout};
 use crate::model::PINNED;
 use crate::step::effort::SolverEffort;
-use crate::{HessianSink, Isometry, SheetModel, State};
+use crate::{HessianSink, SheetModel};
 use cost::{Direct, expected_iterations};
 use far::FarCouplings;
-use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt, norm_inf};
+use isosheet_coords::linalg::{LinalgError, Pattern, SparseLlt};
 use isosheet_mesh::{EdgeId, VertexId};
 use iterative::{ConjugateGradients, Ending, Goal};
 use nalgebra::Matrix3;
@@ -577,79 +578,6 @@ fn block_start(pattern: &Pattern, row: u32, col: u32) -> Option<[usize; 3]> {
         *s = first + rows.binary_search(&(3 * row as usize)).ok()?;
     }
     Some(start)
-}
-
-/// Copies the free entries of `full` (`3V`) into `packed`.
-pub(crate) fn gather(model: &SheetModel, full: &[f64], packed: &mut [f64]) {
-    for (v, &i) in model.free_index().iter().enumerate() {
-        if i != PINNED {
-            let i = 3 * i as usize;
-            packed[i..i + 3].copy_from_slice(&full[3 * v..3 * v + 3]);
-        }
-    }
-}
-
-/// Copies `packed` to the free entries of `full` (`3V`) and zeroes the others.
-pub(crate) fn scatter(model: &SheetModel, packed: &[f64], full: &mut [f64]) {
-    for (v, &i) in model.free_index().iter().enumerate() {
-        let row = &mut full[3 * v..3 * v + 3];
-        if i == PINNED {
-            row.fill(0.0);
-        } else {
-            let i = 3 * i as usize;
-            row.copy_from_slice(&packed[i..i + 3]);
-        }
-    }
-}
-
-/// Penalty of each rod, `kappa` times the inverse of `G M^-1 G^T` at rest: `kappa m_e / l_e^2` with `m_e` the
-/// reduced mass of its free ends, kilograms per square metre. It is scale free, so that slivers and heavy
-/// vertices are treated alike.
-pub(crate) fn penalties(model: &SheetModel, kappa: f64) -> Vec<f64> {
-    let rods = model.rods();
-    let inverse = |v: usize| {
-        if model.free_index()[v] == PINNED {
-            0.0
-        } else {
-            1.0 / model.mass().vertex[v]
-        }
-    };
-    if model.isometry() == Isometry::Elastic {
-        return vec![0.0; rods.len()];
-    }
-    rods.edges()
-        .iter()
-        .zip(rods.lengths())
-        .map(|(&[a, b], l)| {
-            let sum = inverse(a) + inverse(b);
-            if sum == 0.0 {
-                0.0
-            } else {
-                kappa / (sum * l * l)
-            }
-        })
-        .collect()
-}
-
-/// Smallest edge strain that round-off in the coordinates allows to ask for.
-pub(crate) fn strain_floor(model: &SheetModel, state: &State) -> f64 {
-    let size = norm_inf(&state.x);
-    let shortest = model
-        .rods()
-        .lengths()
-        .iter()
-        .fold(f64::INFINITY, |m, l| m.min(*l));
-    4.0 * f64::EPSILON * (size / shortest + 1.0)
-}
-
-/// Inner product.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Velocities below this are round-off: of the speed, and of positions over a step.
-pub(crate) fn velocity_round_off(state: &State, h: f64) -> f64 {
-    16.0 * f64::EPSILON * (norm_inf(&state.x) / h.abs() + norm_inf(&state.v))
 }
 
 #[cfg(test)]

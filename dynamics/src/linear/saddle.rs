@@ -1,8 +1,8 @@
 //! The unsymmetric saddle-point matrix of the conservative integrators.
 
 use crate::constraint::conservative::SaddleBlocks;
+use crate::linear::free::{gather, scatter};
 use crate::linear::layout::{DIAGONAL, FULL, Layout, Slots};
-use crate::linear::primal::{gather, scatter};
 use crate::model::PINNED;
 use crate::step::effort::SolverEffort;
 use crate::step::report::StepOutcome;

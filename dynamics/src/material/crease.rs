@@ -1,8 +1,8 @@
 //! Torsion springs at the edges: creases that are folded by driven rest angles, and the bending stiffness of
 //! the material.
 
-use crate::constraint::rows::point;
 use crate::motion::profile::{Profile, ProfileError};
+use crate::vectors::point;
 use crate::{HessianSink, Potential};
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{Advice, EdgeId, Sheet, Topology, VertexId};

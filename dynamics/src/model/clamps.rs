@@ -1,6 +1,6 @@
 //! Clamps that no line of edges runs along.
 
-use crate::constraint::rows::point;
+use crate::vectors::point;
 use crate::{Isometry, SheetModel};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;

@@ -27,8 +27,12 @@ const OFF_LINE: f64 = 1e-3;
 /// block the infinitesimal flexes (Connelly and Whiteley, SIAM J. Discrete Math. 9, 1996); large flat
 /// patches may be immobile as a whole without being found.
 ///
-/// `x`: positions, `3V`, metres.
-pub(crate) fn immobile_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
+/// `x`: positions, `3V`, metres. Empty for elastic sheets.
+///
+/// # Panics
+/// If the length of `x` is not three times the number of vertices.
+pub fn immobile_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
+    assert_eq!(x.len(), model.coordinate_count(), "length of the positions");
     if model.isometry() != Isometry::Rods {
         return Vec::new();
     }

@@ -1,5 +1,6 @@
 //! The sizes of accelerations and speeds that barriers have to withstand.
 
+use crate::vectors::largest_norm;
 use crate::{PAPER_GRAVITY, PotentialShape, SheetModel, State};
 use nalgebra::Vector3;
 
@@ -42,21 +43,4 @@ pub(crate) fn constant_acceleration(model: &SheetModel, state: &State) -> Option
     }
     let largest = largest_norm(&gradient);
     (largest > 0.0 && largest.is_finite()).then_some(largest)
-}
-
-/// Largest norm of the vectors of the vertices.
-pub(crate) fn largest_norm(values: &[f64]) -> f64 {
-    let vectors = values.as_chunks::<3>().0.iter();
-    vectors
-        .map(|v| Vector3::from(*v).norm())
-        .fold(0.0, f64::max)
-}
-
-/// Diagonal of the box around the vertices, metres.
-pub(crate) fn diameter(x: &[f64]) -> f64 {
-    let extent = |k: usize| {
-        let values = || x.as_chunks::<3>().0.iter().map(move |p| p[k]);
-        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
-    };
-    Vector3::new(extent(0), extent(1), extent(2)).norm()
 }

@@ -7,6 +7,7 @@ pub(crate) mod immobile;
 pub(crate) mod load;
 pub(crate) mod load_scale;
 pub mod potential;
+pub(crate) mod round_off;
 pub(crate) mod state;
 pub(crate) mod support;
 mod supports;
@@ -14,14 +15,13 @@ mod supports;
 use crate::State;
 use crate::constraint::VertexConstraint;
 use crate::material::elastic_sheet::{ElasticSheet, strain_barrier};
-use crate::model::load_scale::LoadScale;
 use crate::model::potential::{Force, Gravity, PAPER_GRAVITY, Potential, PotentialShape};
 use crate::motion::MotionError;
 use isosheet_mesh::wording::given;
 use isosheet_mesh::{
     Advice, LengthConstraints, MassKind, MassMatrix, MeshError, Sheet, Topology, VertexId,
 };
-use supports::MovingPin;
+use support::MovingPin;
 
 /// Why a model cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -314,10 +314,15 @@ impl SheetModel {
         self.potentials.iter().map(Box::as_ref)
     }
 
-    /// Sets the stiffness of the barrier of an elastic sheet for a simulation that goes on at a state: to a known one
-    /// (joules per square metre), or to what the state asks for.
-    pub(crate) fn set_strain_barrier(&mut self, state: &State, known: Option<f64>) {
-        let acceleration = LoadScale::at(self, state).acceleration;
+    /// Sets the stiffness of the barrier of an elastic sheet for a simulation that goes on at a state with the largest
+    /// acceleration by constant forces (metres per second squared): to a known one (joules per square metre), or to
+    /// what the state asks for.
+    pub(crate) fn set_strain_barrier(
+        &mut self,
+        state: &State,
+        acceleration: f64,
+        known: Option<f64>,
+    ) {
         if let Some(elastic) = &mut self.elastic {
             elastic.set_acceleration(acceleration);
             elastic.set_barrier(known.unwrap_or(0.0));
@@ -333,7 +338,7 @@ impl SheetModel {
         let Some(elastic) = &self.elastic else {
             return 0.0;
         };
-        let needed = strain_barrier(self, elastic, state);
+        let needed = strain_barrier(self.mass.total(), elastic, state);
         let Some(elastic) = self.elastic.as_mut().filter(|e| needed > e.barrier()) else {
             return 0.0;
         };

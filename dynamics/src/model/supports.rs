@@ -1,20 +1,12 @@
 //! Pins and vertex constraints of a model, and their motions.
 
 use super::{ModelError, PINNED, SheetModel};
-use crate::constraint::rows::point;
 use crate::constraint::{ConstrainedVertex, VertexConstraint};
-use crate::model::immobile::immobile_vertices;
-use crate::model::support::Support;
+use crate::model::support::{MovingPin, Support};
 use crate::motion::PointMotion;
+use crate::vectors::point;
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
-
-/// A pinned vertex in prescribed motion.
-#[derive(Debug)]
-pub(super) struct MovingPin {
-    vertex: usize,
-    motion: PointMotion,
-}
 
 impl SheetModel {
     /// Pins vertices where they are: they lose their unknowns (the single external point
@@ -232,17 +224,5 @@ impl SheetModel {
         let others = (0..self.constraints.len()).filter(is_first);
         let others = others.filter(|k| !self.is_pinned(constrained(*k)));
         self.free_index.len() - self.free_count + others.count()
-    }
-
-    /// Free vertices that rods to pins at rest hold in place at positions `x` (`3V`, metres): those with three
-    /// fixed neighbours that are not on a line, those on straight lines of rods between fixed vertices, and
-    /// those at the end of such a line which could only turn about other fixed ones. Not all are found; flat
-    /// patches may be immobile as a whole. Empty for elastic sheets.
-    ///
-    /// # Panics
-    /// If the length of `x` is not three times the number of vertices.
-    pub fn immobile_vertices(&self, x: &[f64]) -> Vec<VertexId> {
-        assert_eq!(x.len(), self.coordinate_count(), "length of the positions");
-        immobile_vertices(self, x)
     }
 }

@@ -3,4 +3,3 @@
 pub(crate) mod checkpoint;
 pub(crate) mod observe;
 pub(crate) mod simulation;
-pub(crate) mod simulation_error;

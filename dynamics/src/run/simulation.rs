@@ -4,12 +4,13 @@ use crate::chart::engine::ChartEngine;
 use crate::chart::{ChartOptions, ChartSimulation};
 use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact};
 use crate::damped::start::{check_finite, check_motions, check_state};
-use crate::run::checkpoint::{Checkpoint, CheckpointError, EnergySums, Motion, SheetFingerprint};
-use crate::run::simulation_error::SimulationError;
+use crate::run::checkpoint::{Checkpoint, EnergySums, Motion, SheetFingerprint};
+use crate::step::checkpoint_error::CheckpointError;
 use crate::step::effort::{SolverEffort, StepProgress};
 use crate::step::engine::Engine as FreeEngine;
 use crate::step::reaction::Reaction;
 use crate::step::report::{StepError, StepReport, StepTotals};
+use crate::step::simulation_error::SimulationError;
 use crate::{Method, SheetModel, State, StepControl};
 use isosheet_coords::Chart;
 use isosheet_mesh::VertexId;
@@ -210,7 +211,7 @@ impl Simulation {
     }
 
     /// Free vertices that became pins at the start because rods to fixed vertices hold them in place (see
-    /// [`SheetModel::immobile_vertices`]). Empty in charts.
+    /// [`immobile_vertices`](crate::immobile_vertices)). Empty in charts.
     pub fn immobile_vertices(&self) -> &[VertexId] {
         match &self.engine {
             Engine::Free(engine) => engine.immobile(),

@@ -1,7 +1,7 @@
 //! Rods that depend on each other and block a motion.
 
-use crate::constraint::rows::point;
 use crate::linear::rod_least_squares::RodLeastSquares;
+use crate::vectors::point;
 use crate::{Isometry, SheetModel, State};
 use isosheet_coords::linalg::norm_inf;
 use isosheet_mesh::VertexId;

@@ -5,8 +5,10 @@ use crate::damped::implicit::ImplicitEuler;
 use crate::linear::rank::rod_rank;
 use crate::material::elastic_sheet::ElasticSheet;
 use crate::model::immobile::immobile_vertices;
-use crate::run::checkpoint::{CheckpointError, FreeMotion, check_length};
+use crate::model::load_scale::LoadScale;
+use crate::run::checkpoint::FreeMotion;
 use crate::step::blocked::{blocked_vertices, dependent_vertices};
+use crate::step::checkpoint_error::{CheckpointError, check_length};
 use crate::step::control::{Decision, Stepping, take_substep};
 use crate::step::energy_account::{EnergyAccount, Exchange};
 use crate::step::feasibility::{Excess, excess};
@@ -50,7 +52,8 @@ impl Engine {
         let fixed = immobile_vertices(&model, &state.x);
         model.fix(&fixed);
         model.clear_velocities(&fixed, &mut state.v);
-        model.set_strain_barrier(&state, None);
+        let acceleration = LoadScale::at(&model, &state).acceleration;
+        model.set_strain_barrier(&state, acceleration, None);
         Self::with_fixed(model, method, state, fixed)
     }
 
@@ -110,7 +113,9 @@ impl Engine {
         motion.check_numbers()?;
         let fixed: Vec<VertexId> = motion.fixed.iter().copied().map(VertexId).collect();
         model.fix(&fixed);
-        model.set_strain_barrier(&motion.moment.state, motion.strain_barrier);
+        let start = &motion.moment.state;
+        let acceleration = LoadScale::at(&model, start).acceleration;
+        model.set_strain_barrier(start, acceleration, motion.strain_barrier);
         motion.moment.balance.check(&model)?;
         check_energy(&model, &motion.moment.state)?;
         let state = motion.moment.state.clone();

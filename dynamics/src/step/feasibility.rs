@@ -1,8 +1,9 @@
 //! Supports that ask for more than the rods allow.
 
-use crate::constraint::rows::{HessianPart, VertexRows, add, point};
+use crate::constraint::rows::{HessianPart, VertexRows};
 use crate::linear::primal::PrimalMatrix;
 use crate::model::support::Support;
+use crate::vectors::{add, point};
 use crate::{SheetModel, State};
 use isosheet_mesh::VertexId;
 use nalgebra::Vector3;
@@ -60,7 +61,7 @@ pub(crate) fn excess(model: &SheetModel, state: &State, t: f64) -> Option<Excess
 
 /// As stiff for rods between two pins as for a rod of the mean mass.
 fn penalties(model: &SheetModel) -> Vec<f64> {
-    let mut penalty = crate::linear::primal::penalties(model, STIFFNESS);
+    let mut penalty = crate::linear::free::penalties(model, STIFFNESS);
     for (p, l) in penalty.iter_mut().zip(model.rods().lengths()) {
         if *p == 0.0 {
             *p = STIFFNESS * model.mean_mass() / (l * l);

@@ -2,7 +2,8 @@
 
 use crate::conservative::energy_momentum::{EnergyMomentum, EnergyMomentumOptions};
 use crate::conservative::rattle::{Rattle, RattleComposition, RattleOptions};
-use crate::damped::implicit::{Bdf2, ImplicitEuler, ImplicitOptions};
+use crate::damped::implicit::{Bdf2, ImplicitEuler};
+use crate::damped::options::ImplicitOptions;
 use crate::damped::projection_step::{ProjectionStep, ProjectionStepOptions};
 use crate::options::OptionsError;
 use crate::step::integrator::Integrator;

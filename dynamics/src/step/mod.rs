@@ -1,6 +1,7 @@
 //! One step of a chart-free method: who proposes, who decides, who commits.
 
 pub(crate) mod blocked;
+pub(crate) mod checkpoint_error;
 pub(crate) mod control;
 pub(crate) mod effort;
 pub(crate) mod energy_account;
@@ -12,5 +13,6 @@ pub(crate) mod method;
 pub(crate) mod reaction;
 pub(crate) mod report;
 pub(crate) mod rod_forces;
+pub(crate) mod simulation_error;
 pub(crate) mod subdivision;
 pub(crate) mod unassigned;

@@ -1,11 +1,12 @@
 //! Forces of pins, curves and surfaces on the sheet.
 
 use crate::SheetModel;
-use crate::constraint::rows::{VertexRows, add, point};
+use crate::constraint::rows::VertexRows;
 use crate::contact::ContactTerms;
 use crate::model::support::Support;
-use crate::run::checkpoint::{CheckpointError, check_finite, check_length};
+use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
 use crate::step::unassigned::UnassignedMomentum;
+use crate::vectors::{add, point};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

@@ -2,8 +2,9 @@
 
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
-use crate::linear::primal::{PrimalMatrix, penalties};
-use crate::run::checkpoint::{CheckpointError, check_finite, check_length};
+use crate::linear::free::penalties;
+use crate::linear::primal::PrimalMatrix;
+use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
 use isosheet_coords::linalg::norm_inf;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

@@ -6,7 +6,7 @@ use super::{RunError, Summary};
 use crate::format::{HistoryRow, SeriesBody, Trajectory, read_history, read_json};
 use crate::scene::SceneFile;
 use isosheet_collide::Obstacle;
-use isosheet_dynamics::SheetModel;
+use isosheet_dynamics::{SheetModel, immobile_vertices};
 use isosheet_mesh::{Sheet, VertexId};
 use nalgebra::{Isometry3, Vector3};
 use std::path::Path;
@@ -24,7 +24,7 @@ pub struct Recording {
     pub modelled: Vec<String>,
     /// Vertices that are pinned, at rest or in motion.
     pub pins: Vec<VertexId>,
-    /// Vertices that rods to pins keep in place ([`SheetModel::immobile_vertices`](isosheet_dynamics::SheetModel::immobile_vertices)).
+    /// Vertices that rods to pins keep in place ([`immobile_vertices`]).
     pub immobile: Vec<VertexId>,
     /// The model at its start.
     pub(crate) model: SheetModel,
@@ -62,7 +62,7 @@ impl Recording {
         };
         Ok(Self {
             name: name_of(folder),
-            immobile: setup.model.immobile_vertices(&setup.start.x),
+            immobile: immobile_vertices(&setup.model, &setup.start.x),
             pins: setup.model.pins(),
             model: setup.model,
             modelled: setup.modelled,

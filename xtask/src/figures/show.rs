@@ -5,6 +5,7 @@ use crate::draw::{Shot, Viewpoint};
 use crate::report::Effort;
 use crate::runs::{Run, RunSummary};
 use anyhow::Result;
+use isosheet_dynamics::immobile_vertices;
 use isosheet_io::picture::Solid;
 use isosheet_io::view::Replay;
 use isosheet_mesh::VertexId;
@@ -90,7 +91,7 @@ impl View {
             scene, trajectory, ..
         } = run;
         let setup = scene.setup()?;
-        let immobile = setup.model.immobile_vertices(&setup.start.x);
+        let immobile = immobile_vertices(&setup.model, &setup.start.x);
         let bodies = setup.obstacles;
         let quick = effort.quick_or(" --quick", "");
         let replay = Replay {

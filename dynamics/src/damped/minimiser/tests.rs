@@ -241,7 +241,7 @@ fn a_restoration_is_a_projection_to_first_order() {
         let moved: Vec<f64> = x.iter().zip(&displaced).map(|(a, b)| a - b).collect();
         let mut momentum = vec![0.0; x.len()];
         model.apply_mass(&moved, &mut momentum);
-        left.push(crate::linear::primal::dot(&momentum, &tangent).abs());
+        left.push(crate::vectors::dot(&momentum, &tangent).abs());
     }
     assert!(left[1] < 0.3 * left[0], "{left:?}");
 }

@@ -2,7 +2,8 @@
 
 use super::{LinearisedRows, MultiplierGoal, MultiplierSolver};
 use crate::SheetModel;
-use crate::linear::primal::{PrimalMatrix, penalties};
+use crate::linear::free::penalties;
+use crate::linear::primal::PrimalMatrix;
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 
 /// A square of 25 vertices, pinned at a corner, and crumpled by random displacements of a given size

@@ -1,4 +1,6 @@
 use super::*;
+use crate::linear::free::penalties;
+use crate::vectors::dot;
 use crate::{CreaseSprings, ElasticSheet, PlateBending};
 use isosheet_mesh::{MassKind, Sheet, generate};
 use rand::{RngExt, SeedableRng};

@@ -2,7 +2,7 @@
 
 use super::limit::StrainLimit;
 use crate::HessianSink;
-use crate::constraint::rows::point;
+use crate::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
 use nalgebra::{Matrix3, Vector2, Vector3};
 

@@ -1,8 +1,8 @@
 //! How stiff the barrier at the limit of the strain has to be.
 
 use super::ElasticSheet;
-use crate::model::load_scale::{diameter, largest_norm};
-use crate::{SheetModel, State};
+use crate::State;
+use crate::vectors::{diameter, largest_norm};
 
 /// Stiffness of the barrier in parts of the energy of the motion to come, see [`strain_barrier`]. From 0.01 to
 /// 3 all runs end; factorisations a step with 0.003, 0.01, 0.03, 0.1, 0.3, 1 and 3: 40 clamped sheets 5.6, 4.7, 4.8,
@@ -10,12 +10,12 @@ use crate::{SheetModel, State};
 /// 8.8, 8.1, 9.1, 10, 11, 13, 15.
 const BARRIER: f64 = 0.03;
 
-/// The stiffness `kappa` of the barrier that an elastic sheet needs at a state, joules per square metre: 3 % of
+/// The stiffness `kappa` of the barrier that an elastic sheet of a mass (kilograms) needs at a state, joules per square metre: 3 % of
 /// `rho (a L + v^2)`, with the mass per area `rho`, the largest acceleration `a` by constant forces (9.8 m/s2 if
 /// there are none), the diameter `L` of the sheet and its largest speed `v`. What is in parentheses is about the
 /// square of the speed with which the sheet meets an obstacle.
-pub(crate) fn strain_barrier(model: &SheetModel, elastic: &ElasticSheet, state: &State) -> f64 {
-    let density = model.mass().total() / elastic.area();
+pub(crate) fn strain_barrier(mass: f64, elastic: &ElasticSheet, state: &State) -> f64 {
+    let density = mass / elastic.area();
     let speed = largest_norm(&state.v);
     BARRIER * density * (elastic.acceleration * diameter(&state.x) + speed * speed)
 }

@@ -1,6 +1,6 @@
 //! Second derivatives of positions on a triangle mesh, from the positions of vertices nearby.
 
-use crate::constraint::rows::point;
+use crate::vectors::point;
 use isosheet_mesh::{EdgeId, FaceId, Sheet, VertexId};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 use std::f64::consts::SQRT_2;

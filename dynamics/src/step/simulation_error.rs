@@ -3,7 +3,7 @@
 use crate::chart::ChartDynamicsError;
 use crate::contact::ContactError;
 use crate::options::OptionsError;
-use crate::run::checkpoint::CheckpointError;
+use crate::step::checkpoint_error::CheckpointError;
 use crate::step::report::StepError;
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::Advice;

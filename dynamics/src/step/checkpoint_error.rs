@@ -1,0 +1,151 @@
+//! Why a checkpoint cannot be used, and the checks of its arrays.
+
+use isosheet_mesh::Advice;
+use isosheet_mesh::wording::given;
+
+/// Why a checkpoint cannot be read or resumed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CheckpointError {
+    /// The bytes are not a checkpoint.
+    #[error(
+        "these {length} bytes are no checkpoint of isosheet: they do not begin with `isosheet`"
+    )]
+    NoCheckpoint {
+        /// Number of bytes.
+        length: usize,
+    },
+    /// The checkpoint has another version.
+    #[error("the checkpoint has version {found}, this program reads version {supported}")]
+    Version {
+        /// Version of the checkpoint.
+        found: u32,
+        /// Version that this program reads.
+        supported: u32,
+    },
+    /// The file is damaged.
+    #[error("the checkpoint is damaged: its checksum is {found:08x} instead of {expected:08x}")]
+    Damaged {
+        /// Checksum in the file.
+        expected: u32,
+        /// Checksum of the bytes.
+        found: u32,
+    },
+    /// The fields cannot be decoded.
+    #[error("the checkpoint cannot be decoded: {0}")]
+    Decode(String),
+    /// The fields cannot be encoded.
+    #[error("the checkpoint cannot be encoded: {0}")]
+    Encode(String),
+    /// The sheet has another size.
+    #[error(
+        "the checkpoint is of a sheet of {} vertices and {} edges, the model has {} and {}",
+        expected[0], expected[1], found[0], found[1]
+    )]
+    OtherSize {
+        /// Vertices and edges in the checkpoint.
+        expected: [usize; 2],
+        /// Vertices and edges of the model.
+        found: [usize; 2],
+    },
+    /// The sheet is another one.
+    #[error("the {what} of the model are not those of the checkpoint")]
+    OtherSheet {
+        /// What differs.
+        what: &'static str,
+    },
+    /// A value of the state makes no sense.
+    #[error("{what} of the checkpoint has {found} values where the model needs {expected}")]
+    Length {
+        /// Which array.
+        what: &'static str,
+        /// Values in the checkpoint.
+        found: usize,
+        /// Values that the model needs.
+        expected: usize,
+    },
+    /// A number of the state is not finite.
+    #[error(
+        "{what} of the checkpoint have the value {value} at index {index}: the checkpoint was \
+         changed from outside",
+        value = given(*value)
+    )]
+    NotFinite {
+        /// Which array.
+        what: &'static str,
+        /// Index in the array.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A vertex of the checkpoint does not exist.
+    #[error(
+        "the checkpoint names vertex {vertex}, the model has only {vertices} vertices: the checkpoint was changed from outside"
+    )]
+    NoSuchVertex {
+        /// The vertex.
+        vertex: u32,
+        /// Vertices of the model.
+        vertices: usize,
+    },
+    /// Contact is missing or was not expected.
+    #[error("the checkpoint was made {} contact and is resumed {} it",
+        if *.expected { "with" } else { "without" }, if *.expected { "without" } else { "with" })]
+    Contact {
+        /// Whether the checkpoint has contact.
+        expected: bool,
+    },
+    /// A chart is missing or was not expected.
+    #[error("the checkpoint is of a simulation {}",
+        if *.in_chart { "in a chart" } else { "without a chart" })]
+    Chart {
+        /// Whether the checkpoint is of a simulation in a chart.
+        in_chart: bool,
+    },
+}
+
+impl Advice for CheckpointError {
+    fn advice(&self) -> Option<&'static str> {
+        match self {
+            Self::NoCheckpoint { .. } => Some("give the bytes of a checkpoint"),
+            Self::Version { .. } => Some("continue with the program that wrote it"),
+            Self::Damaged { .. } | Self::NotFinite { .. } | Self::NoSuchVertex { .. } => {
+                Some("use an earlier checkpoint")
+            }
+            Self::OtherSize { .. } | Self::OtherSheet { .. } => {
+                Some("supply the model that the checkpoint was made with")
+            }
+            Self::Contact { .. } => Some("supply the contact that the checkpoint was made with"),
+            Self::Chart { in_chart: true } => Some("use `Simulation::resume_in_chart`"),
+            Self::Chart { in_chart: false } => Some("use `Simulation::resume`"),
+            Self::Decode(..) | Self::Encode(..) | Self::Length { .. } => None,
+        }
+    }
+}
+
+/// Refuses an array of the wrong length.
+pub(crate) fn check_length(
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> Result<(), CheckpointError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(CheckpointError::Length {
+        what,
+        found,
+        expected,
+    })
+}
+
+/// Refuses an array with a number that is not finite.
+pub(crate) fn check_finite(what: &'static str, values: &[f64]) -> Result<(), CheckpointError> {
+    match values.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(CheckpointError::NotFinite {
+            what,
+            index,
+            value: values[index],
+        }),
+    }
+}
