@@ -113,8 +113,10 @@ pub use step::effort::StepProgress;
 pub use step::feasibility::Excess;
 pub use step::method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use step::reaction::Reaction;
+pub use step::reason::Reason;
 pub use step::report::{StepError, StepOutcome, StepReport};
 pub use step::simulation_error::SimulationError;
+pub use step::trace::{Continuation, Cut, TraceEvent};
 
 pub use model::potential;
 pub use nalgebra;

@@ -8,6 +8,7 @@ use crate::options::OptionsError;
 use crate::step::effort::SolverEffort;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::reaction::Balance;
+use crate::step::reason::Reason;
 use crate::step::report::{StepError, StepOutcome, not_converged};
 use crate::vectors::dot;
 use crate::{SheetModel, State};
@@ -348,7 +349,14 @@ impl EnergyMomentum {
             (residual, strain) = self.residuals(model, state, h);
         };
         if !converged {
-            return Err(not_converged(state.t, h, effort, residual, strain));
+            return Err(not_converged(
+                state.t,
+                h,
+                effort,
+                Reason::Iterations,
+                residual,
+                strain,
+            ));
         }
         Ok((residual, outcome))
     }

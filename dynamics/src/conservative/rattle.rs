@@ -9,6 +9,7 @@ use crate::step::effort::SolverEffort;
 use crate::step::history::Multipliers;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::reaction::{Balance, ForceTime};
+use crate::step::reason::Reason;
 use crate::step::report::{StepError, StepOutcome, not_converged};
 use crate::vectors::dot;
 use crate::{SheetModel, State};
@@ -182,7 +183,14 @@ impl Rattle {
                 || !effort.goes_on()
                 || !(residual.is_finite() && strain < 1.0)
             {
-                return Err(not_converged(state.t, h, effort, residual, strain));
+                return Err(not_converged(
+                    state.t,
+                    h,
+                    effort,
+                    Reason::Iterations,
+                    residual,
+                    strain,
+                ));
             }
             iterations += 1;
             effort.iterations += 1;
@@ -376,7 +384,14 @@ impl Rattle {
         let (rate, balance) = self.velocity_errors(model, state, h);
         if rate > VELOCITY_TOLERANCE || balance > VELOCITY_TOLERANCE || rate.is_nan() {
             let strain = model.rods().max_strain(&self.x1);
-            return Err(not_converged(state.t, h, effort, rate.max(balance), strain));
+            return Err(not_converged(
+                state.t,
+                h,
+                effort,
+                Reason::Iterations,
+                rate.max(balance),
+                strain,
+            ));
         }
         work += 0.5 * h * dot(&self.applied, &self.momentum);
         self.finish_balance(model, h);

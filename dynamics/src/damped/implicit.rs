@@ -148,7 +148,7 @@ fn two_step(
     }
     moment.state.x.copy_from_slice(minimiser.x());
     moment.state.t = state.t + h;
-    moment.balance.copy_from(&minimiser.balance);
+    moment.balance.copy_from(minimiser.balance());
     moment.set_contacts(minimiser.contact_state());
     minimiser.remember(k * h, &mut moment.history);
     proposal.account = StepAccount {

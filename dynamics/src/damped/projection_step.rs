@@ -11,6 +11,7 @@ use crate::step::integrator::{
     Attempt, ContactSupport, Integrator, MethodTraits, Proposal, RodDemand, Scene, StepAccount,
 };
 use crate::step::reaction::{Balance, ForceTime};
+use crate::step::reason::Reason;
 use crate::step::report::{StepError, StepOutcome, not_converged};
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
@@ -184,7 +185,14 @@ impl Integrator for ProjectionStep {
             effort,
         );
         if !residual.is_finite() {
-            return Err(not_converged(state.t, h, effort, residual, strain));
+            return Err(not_converged(
+                state.t,
+                h,
+                effort,
+                Reason::LinearAlgebra,
+                residual,
+                strain,
+            ));
         }
         self.set_balance(model, state, h);
         let moment = &mut proposal.moment;
@@ -265,7 +273,14 @@ impl ProjectionStep {
         );
         self.x = iterate.into_x();
         if strain > tolerance || strain.is_nan() {
-            return Err(not_converged(state.t, h, effort, 0.0, strain));
+            return Err(not_converged(
+                state.t,
+                h,
+                effort,
+                Reason::DependentRods,
+                0.0,
+                strain,
+            ));
         }
         // Where nothing moves that holds it, the start has the rest lengths too: a projection that ends
         // further away than it is not the nearest point, and would create energy.
@@ -278,7 +293,14 @@ impl ProjectionStep {
         let to_result = distance(&self.x, &mut self.v, &self.predicted);
         let to_start = distance(&state.x, &mut self.v, &self.predicted);
         if !model.has_drives() && to_result > to_start * (1.0 + DISTANCE_SLACK) {
-            return Err(not_converged(state.t, h, effort, 0.0, strain));
+            return Err(not_converged(
+                state.t,
+                h,
+                effort,
+                Reason::AboveStart,
+                0.0,
+                strain,
+            ));
         }
         Ok(strain)
     }

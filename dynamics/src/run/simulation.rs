@@ -6,11 +6,12 @@ use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact
 use crate::damped::start::{check_finite, check_motions, check_state};
 use crate::run::checkpoint::{Checkpoint, EnergySums, Motion, SheetFingerprint};
 use crate::step::checkpoint_error::CheckpointError;
-use crate::step::effort::{SolverEffort, StepProgress};
+use crate::step::effort::{SolverEffort, StepProgress, TraceSink};
 use crate::step::engine::Engine as FreeEngine;
 use crate::step::reaction::Reaction;
 use crate::step::report::{StepError, StepReport, StepTotals};
 use crate::step::simulation_error::SimulationError;
+use crate::step::trace::TraceEvent;
 use crate::{Method, SheetModel, State, StepControl};
 use isosheet_coords::Chart;
 use isosheet_mesh::VertexId;
@@ -41,6 +42,8 @@ pub struct Simulation {
     energy: EnergySums,
     /// Room for a sum of forces, `3V`.
     force: Vec<f64>,
+    /// Who is told what the iterations do.
+    trace: Option<Box<TraceSink>>,
 }
 
 /// A simulation can move to another thread.
@@ -112,6 +115,7 @@ impl Simulation {
             sheet,
             energy: EnergySums::default(),
             force: Vec::new(),
+            trace: None,
         };
         simulation.force = vec![0.0; simulation.state().x.len()];
         simulation.energy.start = simulation.energy();
@@ -176,6 +180,7 @@ impl Simulation {
             sheet,
             energy,
             force: Vec::new(),
+            trace: None,
         };
         simulation.force = vec![0.0; simulation.state().x.len()];
         simulation
@@ -191,6 +196,35 @@ impl Simulation {
             Engine::Chart(_) => return Err(SimulationError::ChartControl),
         }
         Ok(self)
+    }
+
+    /// Tells a sink what the steps to come do: each iteration and why it was cut, each phase, refusal and accepted
+    /// sub-step ([`TraceEvent`]). The result does not depend on the sink, and without one nothing is paid. In charts
+    /// nothing is told.
+    ///
+    /// ```
+    /// # use isosheet_dynamics::{Method, SheetModel, Simulation, State, TraceEvent};
+    /// # use isosheet_mesh::{MassKind, VertexId, generate};
+    /// # use std::sync::mpsc;
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// # let sheet = generate::isotropic_square(1, 0.21)?;
+    /// # let model = SheetModel::new(&sheet, 3.5e-3, MassKind::Lumped)?
+    /// #     .with_gravity()
+    /// #     .with_pins(&[VertexId(20)])?;
+    /// # let start = State::at_rest(sheet.positions().to_vec());
+    /// let (sender, events) = mpsc::channel();
+    /// let mut simulation = Simulation::new(model, start, Method::default())?
+    ///     .with_trace(move |event| drop(sender.send(event.clone())));
+    /// let report = simulation.step(1.0 / 60.0)?;
+    /// let iterations = events.try_iter().filter(|e| matches!(e, TraceEvent::Iteration { .. }));
+    /// assert!((1..=report.iterations).contains(&iterations.count()));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_trace(mut self, sink: impl FnMut(&TraceEvent) + Send + 'static) -> Self {
+        self.trace = Some(Box::new(sink));
+        self
     }
 
     /// Adds contact with bodies and of the sheet with itself: a barrier that keeps every gap positive at
@@ -389,7 +423,7 @@ impl Simulation {
     /// # Errors
     /// [`StepError`]; the state is then that of the last accepted sub-step.
     pub fn step(&mut self, h: f64) -> Result<StepReport, StepError> {
-        self.advance(h, StepTotals::default())
+        self.advance(h, None)
     }
 
     /// As [`Simulation::step`], watched: before each factorisation, in a chart before each sub-step, the
@@ -424,15 +458,31 @@ impl Simulation {
         h: f64,
         watch: &mut dyn FnMut(&StepProgress) -> ControlFlow<()>,
     ) -> Result<StepReport, StepError> {
-        let effort = SolverEffort::watched(watch);
-        let totals = StepTotals {
-            effort,
-            ..StepTotals::default()
-        };
-        self.advance(h, totals)
+        self.advance(h, Some(watch))
     }
 
-    fn advance(&mut self, h: f64, mut totals: StepTotals<'_>) -> Result<StepReport, StepError> {
+    /// Advances with the trace of the simulation.
+    fn advance(
+        &mut self,
+        h: f64,
+        watch: Option<&mut dyn FnMut(&StepProgress) -> ControlFlow<()>>,
+    ) -> Result<StepReport, StepError> {
+        let mut trace = self.trace.take();
+        let watch = watch.map(|watch| &mut *watch as _);
+        let totals = StepTotals {
+            effort: SolverEffort::new(watch, trace.as_deref_mut()),
+            ..StepTotals::default()
+        };
+        let report = self.advance_traced(h, totals);
+        self.trace = trace;
+        report
+    }
+
+    fn advance_traced(
+        &mut self,
+        h: f64,
+        mut totals: StepTotals<'_>,
+    ) -> Result<StepReport, StepError> {
         let start = self.state().t;
         check_finite(self.state())?;
         if !(h.is_finite() && h > 0.0) || start + h <= start {

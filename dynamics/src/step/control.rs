@@ -27,6 +27,18 @@ pub(crate) enum Decision<E> {
     Stop(E),
 }
 
+impl<E> Decision<E> {
+    /// Its name in a trace.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Restart => "restart",
+            Self::Shorten(_) => "shorten",
+            Self::FallBack(_) => "fall back",
+            Self::Stop(_) => "stop",
+        }
+    }
+}
+
 /// Something that moves in sub-steps.
 pub(crate) trait Stepping {
     /// Why a sub-step was refused.

@@ -1,5 +1,7 @@
 //! The work that a step takes, and who watches it.
 
+use crate::step::reason::Reason;
+use crate::step::trace::TraceEvent;
 use std::fmt;
 use std::ops::ControlFlow;
 
@@ -18,6 +20,9 @@ pub struct StepProgress {
 /// Is asked between factorisations whether a step goes on.
 type Watch<'w> = &'w mut dyn FnMut(&StepProgress) -> ControlFlow<()>;
 
+/// Is told what the iterations do.
+pub(crate) type TraceSink = dyn FnMut(&TraceEvent) + Send;
+
 /// Counters of attempted sub-steps, filled also when they fail.
 #[derive(Default)]
 pub(crate) struct SolverEffort<'w> {
@@ -28,6 +33,7 @@ pub(crate) struct SolverEffort<'w> {
     /// Start of the sub-step that is attempted, seconds.
     pub(crate) t: f64,
     watch: Option<Watch<'w>>,
+    sink: Option<&'w mut TraceSink>,
     is_interrupted: bool,
     /// Matrix factorisations until the last accepted state.
     begun: usize,
@@ -37,11 +43,32 @@ pub(crate) struct SolverEffort<'w> {
 }
 
 impl<'w> SolverEffort<'w> {
-    /// No work yet, watched.
-    pub(crate) fn watched(watch: Watch<'w>) -> Self {
+    /// No work yet; with who watches it, and who is told what the iterations do.
+    pub(crate) fn new(watch: Option<Watch<'w>>, sink: Option<&'w mut TraceSink>) -> Self {
         Self {
-            watch: Some(watch),
+            watch,
+            sink,
             ..Self::default()
+        }
+    }
+
+    /// Whether somebody listens to [`SolverEffort::trace`].
+    pub(crate) fn is_traced(&self) -> bool {
+        self.sink.is_some()
+    }
+
+    /// Tells an event, which is made only if somebody listens.
+    pub(crate) fn trace(&mut self, event: impl FnOnce() -> TraceEvent) {
+        if let Some(sink) = &mut self.sink {
+            sink(&event());
+        }
+    }
+
+    /// The reason of a failure: that the iteration has been ended, if it has, and else the one given.
+    pub(crate) fn failed(&self, reason: Reason) -> Reason {
+        match self.is_spent || self.is_interrupted {
+            true => Reason::Ended,
+            false => reason,
         }
     }
 

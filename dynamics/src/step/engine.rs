@@ -19,6 +19,7 @@ use crate::step::reaction::Balance;
 use crate::step::report::{StepError, StepOutcome, StepTotals};
 use crate::step::rod_forces::rod_forces;
 use crate::step::subdivision::Subdivision;
+use crate::step::trace::TraceEvent;
 use crate::{
     Fallback, Isometry, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
 };
@@ -377,12 +378,38 @@ impl Substeps<'_, '_> {
             account: *account,
             exchange,
         };
-        // The conservative methods keep the energy by themselves, and the fallback is the last resort.
-        if integrator.traits().demand == RodDemand::Nothing && !is_fallback {
+        // The conservative methods keep the energy by themselves.
+        if integrator.traits().demand == RodDemand::Nothing || is_fallback {
             self.pending.account = account.after(model, before, after, &exchange)?;
             return Ok(());
         }
         check_energy(model, after)
+    }
+
+    /// What follows from a refusal that another sub-step may mend:
+    ///
+    /// | refused | with a history | without | by the fallback |
+    /// |---|---|---|---|
+    /// | since it would create energy | restart as a one-step method | halve | stop |
+    /// | for any other reason | halve | halve | stop |
+    ///
+    /// Where the step is not to be halved any more, the fallback takes it if there is one.
+    fn follow(&mut self, refusal: StepError) -> Decision<Stop> {
+        let looks_back = self.memory > Memory::Restart && self.engine.moment.history.looks_back();
+        let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
+        if self.proposer == Proposer::Fallback {
+            Decision::Stop(self.stop(refusal))
+        } else if gains_energy && looks_back {
+            // Contact came or went, or rods snapped through: the history of the motion does not continue.
+            Decision::Restart
+        } else if let Some(shorter) = self.lengths.halve(self.engine.control.min_fraction) {
+            self.memory = self.memory.min(Memory::State);
+            Decision::Shorten(shorter)
+        } else if self.engine.fallback.is_some() {
+            Decision::FallBack(self.lengths.lengthen())
+        } else {
+            Decision::Stop(self.stop(refusal))
+        }
     }
 }
 
@@ -407,7 +434,7 @@ impl Stepping for Substeps<'_, '_> {
         self.attempt(h)
     }
 
-    fn decide(&mut self, refusal: StepError, _h: f64) -> Decision<Stop> {
+    fn decide(&mut self, refusal: StepError, h: f64) -> Decision<Stop> {
         if matches!(
             refusal,
             StepError::NonFiniteMotion { .. }
@@ -418,21 +445,19 @@ impl Stepping for Substeps<'_, '_> {
             return Decision::Stop(Stop::Error(refusal));
         }
         self.totals.rejected += 1;
-        let looks_back = self.memory > Memory::Restart && self.engine.moment.history.looks_back();
-        let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
-        if self.proposer == Proposer::Fallback {
-            Decision::Stop(self.stop(refusal))
-        } else if gains_energy && looks_back {
-            // Contact came or went, or rods snapped through: the history of the motion does not continue.
-            Decision::Restart
-        } else if let Some(shorter) = self.lengths.halve(self.engine.control.min_fraction) {
-            self.memory = self.memory.min(Memory::State);
-            Decision::Shorten(shorter)
-        } else if self.engine.fallback.is_some() {
-            Decision::FallBack(self.lengths.lengthen())
-        } else {
-            Decision::Stop(self.stop(refusal))
+        let error = self.totals.effort.is_traced().then(|| refusal.to_string());
+        let decision = self.follow(refusal);
+        if let Some(error) = error {
+            let (t, decision) = (self.engine.state().t, decision.name());
+            let event = || TraceEvent::Refused {
+                t,
+                h,
+                error,
+                decision,
+            };
+            self.totals.effort.trace(event);
         }
+        decision
     }
 
     fn restart(&mut self) -> Result<(), Stop> {
@@ -474,6 +499,12 @@ impl Stepping for Substeps<'_, '_> {
             engine.moment.history.multipliers.clear();
             totals.outcome = totals.outcome.max(StepOutcome::Fallback);
         }
+        let (t, factorisations) = (engine.moment.state.t, totals.effort.spent());
+        totals.effort.trace(|| TraceEvent::Accepted {
+            t,
+            h,
+            factorisations,
+        });
         totals.effort.begin(self.limit);
         (self.memory, self.proposer) = (Memory::All, Proposer::Method);
         Ok(())

@@ -5,6 +5,7 @@ use crate::contact::BodyMotionError;
 use crate::model::support::Support;
 use crate::step::effort::SolverEffort;
 use crate::step::feasibility::Excess;
+use crate::step::reason::Reason;
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
@@ -219,7 +220,7 @@ pub enum StepError {
     /// Newton's method did not converge.
     #[error(
         "Newton's method stopped at residual {residual}, edge strain {strain} after {iterations} \
-         iterations at t = {t} s, h = {h} s",
+         iterations at t = {t} s, h = {h} s: {reason}",
         residual = brief(*residual), strain = brief(*strain), t = brief(*t), h = brief(*h)
     )]
     NotConverged {
@@ -233,6 +234,8 @@ pub enum StepError {
         residual: f64,
         /// Relative edge length error reached.
         strain: f64,
+        /// Why.
+        reason: Reason,
     },
     /// A damped step would have created energy.
     #[error(
@@ -424,6 +427,7 @@ pub(crate) fn not_converged(
     t: f64,
     h: f64,
     effort: &SolverEffort<'_>,
+    reason: Reason,
     residual: f64,
     strain: f64,
 ) -> StepError {
@@ -433,6 +437,7 @@ pub(crate) fn not_converged(
         iterations: effort.iterations,
         residual,
         strain,
+        reason,
     }
 }
 

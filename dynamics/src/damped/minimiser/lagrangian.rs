@@ -10,6 +10,7 @@ use crate::linear::primal::PrimalMatrix;
 use crate::model::PINNED;
 use crate::step::effort::SolverEffort;
 use crate::step::report::StepError;
+use crate::step::trace::Cut;
 use crate::vectors::dot;
 use crate::{HessianSink, SheetModel};
 use isosheet_coords::linalg::LinalgError;
@@ -67,6 +68,8 @@ pub(crate) struct Lagrangian {
     energy_at: Evaluated,
     /// Solution of the last linear system: minus the search direction.
     pub(super) dx: Vec<f64>,
+    /// What cut that step.
+    cut: Cut,
     /// Where the line search starts.
     pub(super) start: Vec<f64>,
     /// Where prescribed motions end, at the pinned vertices.
@@ -119,9 +122,14 @@ impl HessianSink for HessianProduct<'_> {
 
 /// Largest part of a displacement of the iterate, at most one, that is proven to bring nothing into contact and to
 /// stay within the limit of the strain, see [`Iterate::safe_fraction`].
-fn safe_fraction(iterate: &mut Iterate, problem: &mut StepProblem<'_>, dx: &[f64]) -> f64 {
+fn safe_fraction(iterate: &mut Iterate, problem: &mut StepProblem<'_>, dx: &[f64]) -> (f64, Cut) {
     let within_limit = problem.model.fraction_within_limit(iterate.x(), dx);
-    within_limit.min(iterate.safe_fraction(problem.contact_mut(), dx))
+    let free = iterate.safe_fraction(problem.contact_mut(), dx);
+    match (within_limit, free) {
+        (1.0, 1.0) => (1.0, Cut::Nothing),
+        _ if free <= within_limit => (free, Cut::Contact),
+        _ => (within_limit, Cut::StrainLimit),
+    }
 }
 
 /// Time and positions at which potentials were evaluated. Multipliers change more often than positions.
@@ -206,6 +214,7 @@ impl Lagrangian {
             energy: 0.0,
             energy_at: Evaluated::new(n),
             dx: vec![0.0; n],
+            cut: Cut::Nothing,
             start: vec![0.0; n],
             end: vec![0.0; n],
             axial: vec![0.0; m],
@@ -529,13 +538,21 @@ impl Lagrangian {
                 self.dx[i] = x[i] - self.end[i];
             }
         }
+        self.cut = Cut::Nothing;
         if !problem.is_bounded() {
             return 1.0;
         }
         for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
             *w = -d;
         }
-        safe_fraction(&mut self.iterate, problem, &self.weighted)
+        let part;
+        (part, self.cut) = safe_fraction(&mut self.iterate, problem, &self.weighted);
+        part
+    }
+
+    /// What cut the step for which the safe part was asked last.
+    pub(super) fn cut(&self) -> Cut {
+        self.cut
     }
 
     /// Puts the iterate at the part `length` of the step `-dx` from the start of the line search.
@@ -567,7 +584,7 @@ impl Lagrangian {
             for ((d, x), x0) in self.dx.iter_mut().zip(&self.start).zip(self.iterate.x()) {
                 *d = x - x0;
             }
-            if safe_fraction(&mut self.iterate, problem, &self.dx) < 1.0 {
+            if safe_fraction(&mut self.iterate, problem, &self.dx).0 < 1.0 {
                 return;
             }
             self.iterate.advance_bodies(1.0);
@@ -597,7 +614,7 @@ impl Lagrangian {
             *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
-        let part = safe_fraction(&mut self.iterate, problem, &self.dx);
+        let (part, _) = safe_fraction(&mut self.iterate, problem, &self.dx);
         for (x, d) in self.iterate.x_mut().iter_mut().zip(&self.dx) {
             *x += part * d;
         }

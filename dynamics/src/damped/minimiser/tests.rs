@@ -279,7 +279,7 @@ fn the_minimum_does_not_depend_on_what_is_factorised() {
         let minimise = |is_iterative: bool| {
             let mut minimiser = Minimiser::new(model, options.clone()).unwrap();
             if !is_iterative {
-                minimiser.lagrangian.matrix.leave_iteration();
+                minimiser.work.lagrangian.matrix.leave_iteration();
             }
             let problem = StepProblem {
                 model,
@@ -292,7 +292,10 @@ fn the_minimum_does_not_depend_on_what_is_factorised() {
             };
             let mut effort = SolverEffort::default();
             minimiser.minimise(problem, &mut effort).unwrap();
-            assert_eq!(minimiser.lagrangian.matrix.is_iterative(), is_iterative);
+            assert_eq!(
+                minimiser.work.lagrangian.matrix.is_iterative(),
+                is_iterative
+            );
             (minimiser.x().to_vec(), effort.factorisations)
         };
         let (iterative, count) = minimise(true);

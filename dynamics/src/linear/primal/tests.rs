@@ -2,6 +2,7 @@ use super::*;
 use crate::linear::free::penalties;
 use crate::vectors::dot;
 use crate::{CreaseSprings, ElasticSheet, PlateBending};
+use isosheet_coords::linalg::norm_inf;
 use isosheet_mesh::{MassKind, Sheet, generate};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -5,6 +5,7 @@ use super::*;
 use crate::contact::contact_tests::{Floor, model, sheet};
 use crate::step::effort::SolverEffort;
 use crate::step::integrator::{MethodTraits, StepAccount};
+use crate::step::reason::Reason;
 use crate::step::report::not_converged;
 use isosheet_mesh::{MassKind, Sheet, generate};
 use serde::Serialize;
@@ -47,7 +48,14 @@ impl Integrator for Scripted {
         let answer = self.script.get(seen.len()).copied();
         let (start, h) = (attempt.state, attempt.h);
         if !effort.count_factorisation() {
-            return Err(not_converged(start.t, h, effort, 1.0, 1.0));
+            return Err(not_converged(
+                start.t,
+                h,
+                effort,
+                Reason::Iterations,
+                1.0,
+                1.0,
+            ));
         }
         seen.push(Seen {
             t: start.t,
@@ -66,7 +74,16 @@ impl Integrator for Scripted {
         moment.history.multipliers.rods.clear();
         moment.balance.pins.fill(f64::NAN);
         let factor = match answer.unwrap_or(Answer::Accept) {
-            Answer::Diverge => return Err(not_converged(start.t, h, effort, 1.0, 1.0)),
+            Answer::Diverge => {
+                return Err(not_converged(
+                    start.t,
+                    h,
+                    effort,
+                    Reason::Iterations,
+                    1.0,
+                    1.0,
+                ));
+            }
             Answer::Gain => 2.0,
             Answer::Accept => 1.0,
         };

@@ -1,0 +1,606 @@
+//! Newton's method on the incremental potential of a step, in a phase.
+
+use super::lagrangian::{Definiteness, Merit, RodLoad};
+use super::phase::{Multipliers, Phase, Saddle, Start};
+use super::problem::StepProblem;
+use super::workspace::{LengthGoal, Workspace};
+use crate::constraint::rows::HessianPart;
+use crate::damped::restoration::FirstMatrix;
+use crate::linear::multipliers::MultiplierGoal;
+use crate::step::effort::SolverEffort;
+use crate::step::reason::Reason;
+use crate::step::report::StepOutcome;
+use crate::step::trace::{Continuation, Cut, TraceEvent};
+
+/// Stiffnesses of the rods in the linear systems that solve for their multipliers, in units of that of the
+/// masses. The systems are regularised saddle-point systems `[H G^T; G -1/r]` with penalties `r`, solved by
+/// elimination of the multipliers; [`MultiplierSolver`](crate::linear::multipliers::MultiplierSolver) takes the
+/// regularisation out again. With the first stiffness steps keep momentum and symmetries to round-off, with 1e11
+/// no longer. Where the multipliers do not converge, the second is used from then on, in later steps, too: beyond
+/// it the masses drown in the round-off of the penalty. (Strips of rods on edge, at rest: 10 to 16 factorisations
+/// a step, and 16 to 280 where every step begins with the first.)
+const STIFFNESS: [f64; 2] = [1e10, 1e13];
+/// Length of an iteration for the multipliers beyond which rods count as dependent: the inverse of the
+/// smallest eigenvalue that is not taken to be zero. Multipliers of nearly dependent rods may grow without
+/// bound. Strips of rods that stand on edge take five times the factorisations at rest without this bound.
+const LONGEST_ITERATION: f64 = 3.0;
+/// Conjugate gradient iterations for the multipliers of a step: nearly dependent rods, as in a sheet that
+/// lies flat, have a few eigenvalues each of which takes an iteration. With none, clamped strips of nearly
+/// dependent rods need three to ten times the factorisations; 6 and 16 differ by less than a tenth.
+const MULTIPLIER_ITERATIONS: usize = 8;
+/// Change of the multipliers, relative to the largest, from which an iteration is not worth its solve. With
+/// 1e-3 a sheet at rest on a table needs three times as many steps.
+const MULTIPLIERS_SETTLED: f64 = 1e-4;
+/// Passes in which the multipliers of vertex constraints follow those of the isometry.
+const CONSTRAINT_PASSES: usize = 4;
+/// Number of iterations after which decreases of the size of length errors are noise. Where there are finite
+/// multipliers, Newton's method has converged by then, and small motions of taut sheets are below that size.
+/// Where there are none, the last decreases only fall as the inverse of the number of iterations.
+const NOISE_PATIENCE: usize = 10;
+/// Part of the energy that the tolerance of the lengths leaves open, `tolerance * sum |L| l^2`, that counts
+/// as noise then: length errors of different rods have different signs. Strips on edge at rest need 15 to
+/// 930 factorisations a step without this rule, and 11 to 100 with it.
+const LENGTH_NOISE: f64 = 0.1;
+/// Largest number of iterations of a restoration of an iterate: more are a sign that the step is not a small
+/// one.
+const MAX_RESTORATION: usize = 12;
+/// Part of the promised decrease that has to come true (Armijo's condition).
+const ARMIJO: f64 = 1e-4;
+/// Growth of the penalty from round to round. Ten keeps Newton's method close to its quadratic range: with
+/// thirty a sheet draping on a floor needs twice the iterations.
+const GROWTH: f64 = 10.0;
+
+/// How a minimisation ended.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Minimum {
+    /// Relative Newton decrement before the last iteration.
+    pub(crate) residual: f64,
+    /// What it took.
+    pub(crate) outcome: StepOutcome,
+}
+
+/// Why a phase found no minimum.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Failure {
+    pub(super) reason: Reason,
+    /// Relative Newton decrement before the last iteration.
+    pub(super) residual: f64,
+}
+
+/// A search direction and what the merit function says of it.
+struct Direction {
+    before: Merit,
+    slope: f64,
+    hessian: Definiteness,
+}
+
+/// What a search direction promises.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Quality {
+    /// More than the tolerance.
+    Descends,
+    /// No more than the tolerance: the iteration has converged.
+    Converged,
+    /// No more than round-off, or than what the tolerance of the lengths leaves open.
+    RoundOff,
+}
+
+/// Minimises the incremental potential `Phi` along the rest lengths by steps
+///
+/// ```text
+/// (M + h^2 (V + B + D)'' + P + r G^T G) dx + G^T L = -grad Phi - r G^T c
+/// ```
+///
+/// with `P` the geometric stiffness of the rods (its positive part where the matrix is indefinite). The phase says
+/// where the multipliers `L` come from: from the same linear system with `G dx = -c` (stabilised sequential
+/// quadratic programming; Gill, Kungurtsev and Robinson, Math. Program. 163, 2017), or from rounds with growing
+/// penalties `r` (augmented Lagrangian; Nocedal and Wright, "Numerical Optimization", 2006, Sec. 17.3). Both
+/// solve the same kind of system. Every step is cut to its safe part in contact, brought near the rest lengths
+/// where the phase asks for it (Waechter and Biegler, Math. Program. 106, 2006), and halved where the merit
+/// function `Phi + (L + r c / 2) c` does not decrease. At the end the lengths are restored exactly.
+pub(super) struct Newton<'a, 'b, 'w> {
+    work: &'a mut Workspace,
+    problem: &'a mut StepProblem<'b>,
+    effort: &'a mut SolverEffort<'w>,
+    phase: Phase,
+    round: usize,
+    /// Penalty of the rods in the merit function of this round.
+    penalty: f64,
+    iterations: usize,
+    /// How often the iteration has gone on because friction had not settled where it had converged.
+    friction_updates: usize,
+    /// Whether the iteration has left a saddle.
+    has_left_saddle: bool,
+    /// The part of the Hessian that is tried first: all of it until that turns out to be indefinite.
+    hessian: HessianPart,
+    residual: f64,
+    outcome: StepOutcome,
+}
+
+impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
+    pub(super) fn new(
+        work: &'a mut Workspace,
+        problem: &'a mut StepProblem<'b>,
+        effort: &'a mut SolverEffort<'w>,
+        phase: Phase,
+    ) -> Self {
+        Self {
+            work,
+            problem,
+            effort,
+            round: 0,
+            penalty: phase.merit_penalty,
+            phase,
+            iterations: 0,
+            friction_updates: 0,
+            has_left_saddle: false,
+            hessian: HessianPart::Full,
+            residual: f64::INFINITY,
+            outcome: StepOutcome::Newton,
+        }
+    }
+
+    /// Minimises from the start of the phase.
+    pub(super) fn run(mut self) -> Result<Minimum, Failure> {
+        self.iterate().map_err(|reason| Failure {
+            reason,
+            residual: self.residual,
+        })
+    }
+
+    fn iterate(&mut self) -> Result<Minimum, Reason> {
+        self.begin();
+        while self.iterations < self.phase.iterations {
+            self.iterations += 1;
+            let is_driven = self.work.lagrangian.is_driven(self.problem);
+            let mut direction = self.direction()?;
+            let mut limit = self.work.lagrangian.begin_line_search(self.problem);
+            if is_driven {
+                self.drive(limit)?;
+                continue;
+            }
+            limit = self.correct(limit, &mut direction);
+            let quality = self.judge(&direction);
+            let Some(length) = self.advance(limit, &direction, quality)? else {
+                // What a step can still gain is round-off.
+                return self
+                    .restore_lengths()
+                    .then(|| self.minimum())
+                    .ok_or(Reason::NoDescent);
+            };
+            if length < 1.0 {
+                self.outcome = self.outcome.max(StepOutcome::Globalised);
+                continue;
+            }
+            let is_renewed = self.renew_friction();
+            if quality != Quality::Descends
+                && self.is_near()
+                && !self.goes_on(&direction, is_renewed)
+                && self.finish()?
+            {
+                return Ok(self.minimum());
+            }
+        }
+        Err(Reason::Iterations)
+    }
+
+    fn minimum(&self) -> Minimum {
+        Minimum {
+            residual: self.residual,
+            outcome: self.outcome,
+        }
+    }
+
+    /// Places the iterate, and sets multipliers and penalties.
+    fn begin(&mut self) {
+        let Workspace {
+            lagrangian,
+            options,
+            rod_stiffness,
+            remembered,
+            ..
+        } = &mut *self.work;
+        match (self.phase.remembers, self.phase.multipliers) {
+            (true, _) => lagrangian.multipliers.copy_from_slice(remembered),
+            (false, Multipliers::Solved) => lagrangian.multipliers.fill(0.0),
+            (false, Multipliers::Rounds) => lagrangian.clear_multipliers(),
+        }
+        let first = STIFFNESS[usize::from(self.problem.has_contact())];
+        if self.phase.multipliers == Multipliers::Solved {
+            // Contact is not kept to round-off.
+            *rod_stiffness = rod_stiffness.max(first);
+        }
+        let problem = &mut *self.problem;
+        match self.phase.start {
+            Start::Prediction => lagrangian.predict(problem),
+            Start::Beginning if problem.is_bounded() => {}
+            Start::Beginning => lagrangian.place_pins(problem),
+            Start::Lower if !problem.has_contact() && problem.model.has_drives() => {
+                lagrangian.set_stiffness(options.stiffness, options.stiffness);
+                lagrangian.place_pins(problem);
+                let start = lagrangian.merit(problem).value;
+                lagrangian.predict(problem);
+                if lagrangian.merit(problem).value >= start {
+                    lagrangian.begin(problem);
+                    lagrangian.place_pins(problem);
+                }
+            }
+            // The prediction may be beyond an obstacle.
+            Start::Lower => {}
+        }
+        lagrangian.set_stiffness(self.penalty, options.stiffness);
+        lagrangian.merit(problem);
+    }
+
+    /// Solves for the step `-dx` at the iterate and, where the phase asks for it, for the multipliers.
+    fn direction(&mut self) -> Result<Direction, Reason> {
+        self.effort.iterations += 1;
+        let hessian = match self.phase.multipliers {
+            Multipliers::Solved => self.solve_with_multipliers()?,
+            Multipliers::Rounds => self.solve()?,
+        };
+        if hessian == Definiteness::Modified && self.phase.multipliers == Multipliers::Rounds {
+            self.outcome = self.outcome.max(StepOutcome::Globalised);
+        }
+        let lagrangian = &mut self.work.lagrangian;
+        let before = lagrangian.merit(self.problem);
+        let slope = lagrangian.slope();
+        if !slope.is_finite() {
+            return Err(Reason::LinearAlgebra);
+        }
+        Ok(Direction {
+            before,
+            slope,
+            hessian,
+        })
+    }
+
+    /// Sets the residual of a search direction; what the direction promises.
+    fn judge(&mut self, direction: &Direction) -> Quality {
+        let Direction { before, slope, .. } = direction;
+        let tolerance = match self.round {
+            0 => self.work.options.tolerance,
+            _ => self.phase.round_tolerance,
+        };
+        if slope.abs() <= before.round_off + self.noise(before) {
+            self.residual = 0.0;
+            return Quality::RoundOff;
+        }
+        self.residual = (slope.abs() / before.inertia).sqrt();
+        match slope.abs() <= tolerance * before.inertia {
+            true => Quality::Converged,
+            false => Quality::Descends,
+        }
+    }
+
+    /// Sets the step `-dx` with the multipliers of the round.
+    fn solve(&mut self) -> Result<Definiteness, Reason> {
+        let stiffness = self.work.options.stiffness;
+        loop {
+            let lagrangian = &mut self.work.lagrangian;
+            lagrangian.set_stiffness(self.penalty, stiffness);
+            lagrangian.set_gradient(self.problem);
+            let hessian = lagrangian
+                .factorize(self.problem, RodLoad::Estimates, self.hessian, self.effort)
+                .map_err(|_| self.effort.failed(Reason::LinearAlgebra))?;
+            match lagrangian.solve(self.problem.model, self.effort) {
+                Ok(_) => {
+                    return Ok(hessian);
+                }
+                // The Hessian turned out not to be positive definite.
+                Err(_) if self.hessian == HessianPart::Full => {
+                    self.hessian = HessianPart::PositiveSemidefinite;
+                }
+                Err(_) => return Err(Reason::LinearAlgebra),
+            }
+        }
+    }
+
+    /// Sets the step `-dx` and the multipliers that it asks for.
+    fn solve_with_multipliers(&mut self) -> Result<Definiteness, Reason> {
+        let model = self.problem.model;
+        let goal = self.multiplier_goal();
+        let Workspace {
+            lagrangian,
+            rod_stiffness,
+            options,
+            ..
+        } = &mut *self.work;
+        loop {
+            // Vertex constraints stay as soft as in the merit function: their curvature goes by the
+            // multiplier estimates, which a large penalty would make those of length errors.
+            lagrangian.set_stiffness(*rod_stiffness, options.stiffness);
+            let hessian = lagrangian
+                .factorize(
+                    self.problem,
+                    RodLoad::Multipliers,
+                    self.hessian,
+                    self.effort,
+                )
+                .map_err(|_| self.effort.failed(Reason::LinearAlgebra))?;
+            // What makes the Hessian indefinite rarely ends within a step.
+            if hessian == Definiteness::Modified {
+                self.hessian = HessianPart::PositiveSemidefinite;
+            }
+            lagrangian.keep_multipliers();
+            let mut violation = None;
+            for _ in 0..CONSTRAINT_PASSES {
+                lagrangian.set_gradient(self.problem);
+                if lagrangian.solve(model, self.effort).is_err() {
+                    violation = None;
+                    break;
+                }
+                violation = Some(lagrangian.improve_multipliers(model, goal));
+                let [change, largest] = lagrangian.vertex_rows.update_after(&lagrangian.dx);
+                if change <= MULTIPLIERS_SETTLED * largest {
+                    break;
+                }
+            }
+            let Some(violation) = violation else {
+                // The Hessian turned out not to be positive definite.
+                if self.hessian == HessianPart::PositiveSemidefinite {
+                    return Err(Reason::LinearAlgebra);
+                }
+                self.hessian = HessianPart::PositiveSemidefinite;
+                lagrangian.restore_multipliers();
+                continue;
+            };
+            if violation <= goal.violation || *rod_stiffness == STIFFNESS[1] {
+                // The merit function has the new multipliers.
+                lagrangian.set_stiffness(self.penalty, options.stiffness);
+                lagrangian.set_gradient(self.problem);
+                return Ok(hessian);
+            }
+            *rod_stiffness = STIFFNESS[1];
+            lagrangian.restore_multipliers();
+        }
+    }
+
+    /// When the multipliers of a step are good enough: once the linearised lengths are within the tolerance.
+    fn multiplier_goal(&self) -> MultiplierGoal {
+        MultiplierGoal {
+            max_iterations: MULTIPLIER_ITERATIONS,
+            violation: self.work.strain_tolerance(self.problem),
+            change: MULTIPLIERS_SETTLED,
+            longest: LONGEST_ITERATION,
+        }
+    }
+
+    /// Moves sheet, pins and bodies on together by a part of the rest of their motions.
+    fn drive(&mut self, part: f64) -> Result<(), Reason> {
+        if part == 0.0 {
+            return Err(Reason::Blocked);
+        }
+        self.trace(part, Cut::Driven, Definiteness::Definite);
+        self.work.lagrangian.drive(self.problem, part);
+        self.work.lagrangian.merit(self.problem);
+        Ok(())
+    }
+
+    /// Applies the second-order correction for contact to a step of which only the part `limit` is safe; the
+    /// part that is safe then.
+    fn correct(&mut self, limit: f64, direction: &mut Direction) -> f64 {
+        if limit == 1.0 || self.phase.multipliers == Multipliers::Rounds {
+            return limit;
+        }
+        let lagrangian = &mut self.work.lagrangian;
+        let limit = lagrangian.correct_gaps(self.problem, limit, self.effort);
+        direction.slope = lagrangian.slope();
+        limit
+    }
+
+    /// Goes on along the step; the part of it that was taken. Where the step would mend the lengths against the
+    /// potential, the lengths are restored instead, which counts as a whole step: along exact lengths steps descend.
+    /// Nothing if there is no descent, but no more than round-off was promised.
+    fn advance(
+        &mut self,
+        limit: f64,
+        direction: &Direction,
+        quality: Quality,
+    ) -> Result<Option<f64>, Reason> {
+        if direction.slope > direction.before.round_off {
+            self.trace(0.0, Cut::Lengths, direction.hessian);
+            if !self.restore_lengths() {
+                return Err(self.effort.failed(Reason::DependentRods));
+            }
+            self.work.lagrangian.merit(self.problem);
+            return Ok(Some(1.0));
+        }
+        let length = self.line_search(limit, direction);
+        let cut = match length {
+            Some(length) if length == limit => self.work.lagrangian.cut(),
+            _ => Cut::Merit,
+        };
+        self.trace(length.unwrap_or(0.0), cut, direction.hessian);
+        match length {
+            None if quality != Quality::RoundOff => Err(self.effort.failed(Reason::NoDescent)),
+            length => Ok(length),
+        }
+    }
+
+    /// Goes on by up to `limit` of the step, not far from the rest lengths; the part of the step, or nothing if
+    /// it does not decrease the merit function.
+    fn line_search(&mut self, limit: f64, direction: &Direction) -> Option<f64> {
+        let mut length = limit;
+        for _ in 0..=self.phase.halvings {
+            self.work.lagrangian.move_along(length);
+            if self.keeps_lengths() {
+                let Direction { before, slope, .. } = direction;
+                let now = self.work.lagrangian.merit(self.problem);
+                let promised = before.value + ARMIJO * length * slope;
+                if now.value <= promised + before.round_off {
+                    return Some(length);
+                }
+            }
+            length *= 0.5;
+            self.work.lagrangian.return_to_start(self.problem);
+        }
+        None
+    }
+
+    /// Brings the iterate to lengths that the phase allows; whether that succeeds.
+    fn keeps_lengths(&mut self) -> bool {
+        if self.phase.iterate_strain == f64::INFINITY {
+            return true;
+        }
+        let to = LengthGoal {
+            strain: self.phase.iterate_strain,
+            max_iterations: MAX_RESTORATION,
+            matrix: FirstMatrix::Factorised,
+        };
+        self.work.restore(self.problem, to, self.effort) <= to.strain
+    }
+
+    /// Size of decreases that are noise of the lengths, besides round-off.
+    fn noise(&self, merit: &Merit) -> f64 {
+        if self.iterations <= NOISE_PATIENCE || self.phase.multipliers == Multipliers::Rounds {
+            return 0.0;
+        }
+        LENGTH_NOISE * self.work.options.strain_tolerance * merit.rod_scale
+    }
+
+    /// Whether the restoration at the end will be a small displacement, or further rounds see to that.
+    fn is_near(&self) -> bool {
+        self.phase.multipliers == Multipliers::Rounds
+            || self.phase.small_strain == f64::INFINITY
+            || self.strain() <= self.phase.small_strain
+    }
+
+    fn strain(&self) -> f64 {
+        let x = self.work.lagrangian.iterate.x();
+        self.problem.model.constrained_strain(x)
+    }
+
+    /// Lags friction anew at the iterate, unless it has settled or been renewed too often; whether it was
+    /// renewed.
+    ///
+    /// Friction follows after every full step, not only where the minimisation with lagged friction has
+    /// converged: sheets of 289 vertices on a table need three quarters of the factorisations.
+    fn renew_friction(&mut self) -> bool {
+        if self.friction_updates == self.phase.friction_updates {
+            return false;
+        }
+        let lagrangian = &mut self.work.lagrangian;
+        let is_renewed = lagrangian.renew_friction(self.problem, self.phase.friction_tolerance);
+        if is_renewed {
+            lagrangian.merit(self.problem);
+        }
+        is_renewed
+    }
+
+    /// Begins anew from a point that has converged but is no minimum: a saddle, where the sheet could fold
+    /// either way, or one whose friction belonged to other normal forces and was renewed. Returns false if
+    /// there is no reason to.
+    fn goes_on(&mut self, direction: &Direction, is_renewed: bool) -> bool {
+        let may_be_saddle = direction.hessian == Definiteness::Modified && !self.has_left_saddle;
+        let because = if may_be_saddle && self.leave_saddle(direction) {
+            self.has_left_saddle = true;
+            Continuation::Saddle
+        } else if is_renewed {
+            self.friction_updates += 1;
+            Continuation::Friction
+        } else {
+            return false;
+        };
+        self.effort.trace(|| TraceEvent::GoesOn { because });
+        self.iterations = 0;
+        true
+    }
+
+    /// Leaves a saddle as the phase says; whether the iterate has moved.
+    fn leave_saddle(&mut self, direction: &Direction) -> bool {
+        let Workspace {
+            lagrangian,
+            options,
+            ..
+        } = &mut *self.work;
+        match self.phase.saddle {
+            Saddle::Ignored => false,
+            Saddle::Curvature => {
+                let least = options.tolerance * direction.before.inertia;
+                lagrangian.leave_saddle(self.problem, options.seed, least, self.effort)
+            }
+            Saddle::Perturbation => {
+                self.outcome = StepOutcome::BranchSeeded;
+                lagrangian.perturb(self.problem, options.seed);
+                lagrangian.merit(self.problem);
+                true
+            }
+        }
+    }
+
+    /// Ends at a point that has converged: whether its lengths are exact now. Otherwise the next round begins, or the
+    /// iteration goes on.
+    fn finish(&mut self) -> Result<bool, Reason> {
+        let is_last = self.round + 1 == self.phase.rounds;
+        if self.phase.multipliers == Multipliers::Rounds {
+            let lagrangian = &mut self.work.lagrangian;
+            for e in 0..lagrangian.c.len() {
+                lagrangian.multipliers[e] += lagrangian.penalty(e) * lagrangian.c[e];
+            }
+            lagrangian.vertex_rows.update();
+            if !is_last && self.strain() > self.phase.small_strain {
+                self.penalty *= GROWTH;
+                self.begin_round();
+                return Ok(false);
+            }
+        }
+        if self.restore_lengths() {
+            return Ok(true);
+        }
+        self.work.lagrangian.merit(self.problem);
+        match self.phase.multipliers {
+            Multipliers::Solved => {}
+            Multipliers::Rounds if is_last => {
+                return Err(self.effort.failed(Reason::DependentRods));
+            }
+            Multipliers::Rounds => self.begin_round(),
+        }
+        Ok(false)
+    }
+
+    fn begin_round(&mut self) {
+        self.round += 1;
+        self.iterations = 0;
+        self.friction_updates = 0;
+        let because = Continuation::Round;
+        self.effort.trace(|| TraceEvent::GoesOn { because });
+        let lagrangian = &mut self.work.lagrangian;
+        lagrangian.set_stiffness(self.penalty, self.work.options.stiffness);
+        lagrangian.merit(self.problem);
+    }
+
+    /// Restores the lengths exactly; whether that succeeds.
+    fn restore_lengths(&mut self) -> bool {
+        let to = LengthGoal {
+            strain: self.work.strain_tolerance(self.problem),
+            max_iterations: self.phase.last_restoration,
+            matrix: match self.phase.multipliers {
+                Multipliers::Solved => FirstMatrix::Factorised,
+                Multipliers::Rounds => FirstMatrix::Assembled,
+            },
+        };
+        self.work.restore(self.problem, to, self.effort) <= to.strain
+    }
+
+    /// Tells what an iteration did.
+    fn trace(&mut self, length: f64, cut: Cut, hessian: Definiteness) {
+        if !self.effort.is_traced() {
+            return;
+        }
+        let contact = self.problem.contact();
+        let terms = self.work.lagrangian.iterate.terms(contact);
+        let contacts = terms.map_or(0, |terms| terms.active.list().len());
+        let event = TraceEvent::Iteration {
+            iteration: self.iterations,
+            round: self.round,
+            residual: self.residual,
+            strain: self.strain(),
+            length,
+            cut,
+            is_definite: hessian == Definiteness::Definite,
+            contacts,
+        };
+        self.effort.trace(|| event);
+    }
+}

@@ -1,0 +1,113 @@
+//! What all phases of a minimisation work on.
+
+use super::lagrangian::Lagrangian;
+use super::problem::StepProblem;
+use crate::damped::restoration::{FirstMatrix, Restoration, RestorationContact, RestorationGoal};
+use crate::model::round_off::strain_floor;
+use crate::step::effort::SolverEffort;
+use crate::step::reaction::{Balance, ForceTime};
+use crate::{ImplicitOptions, SheetModel};
+use isosheet_coords::linalg::LinalgError;
+
+/// The Lagrangian at the iterate, the restoration of the lengths, and what one step leaves to the next.
+pub(crate) struct Workspace {
+    pub(super) options: ImplicitOptions,
+    pub(super) lagrangian: Lagrangian,
+    pub(super) restoration: Restoration,
+    /// Forces of the supports at the result.
+    pub(crate) balance: Balance,
+    /// Multipliers of the step before, scaled to this one; zero where there are none.
+    pub(super) remembered: Vec<f64>,
+    /// Stiffness of the rods in the linear systems, in units of that of the masses: that of the step before,
+    /// and after a minimisation that of this one. Zero where there was none.
+    pub(super) rod_stiffness: f64,
+}
+
+/// What a restoration of the lengths is to reach.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LengthGoal {
+    /// Largest strain of the isometry.
+    pub(super) strain: f64,
+    pub(super) max_iterations: usize,
+    pub(super) matrix: FirstMatrix,
+}
+
+impl Workspace {
+    pub(super) fn new(model: &SheetModel, options: ImplicitOptions) -> Result<Self, LinalgError> {
+        Ok(Self {
+            lagrangian: Lagrangian::new(model)?,
+            restoration: Restoration::new(model),
+            balance: Balance::with_unassigned(model, ForceTime::End),
+            remembered: vec![0.0; model.rods().len()],
+            rod_stiffness: 0.0,
+            options,
+        })
+    }
+
+    /// Restores the lengths at the iterate against the given loads of the supports and the contact forces.
+    /// Returns the strain reached. The forces of the supports are those before, with their share in the
+    /// restoration.
+    pub(super) fn restore(
+        &mut self,
+        problem: &mut StepProblem<'_>,
+        to: LengthGoal,
+        effort: &mut SolverEffort<'_>,
+    ) -> f64 {
+        let per = 1.0 / (problem.h * problem.h);
+        let is_last = to.strain <= self.strain_tolerance(problem);
+        if is_last {
+            self.set_balance(problem);
+        }
+        let (model, t) = (problem.model, problem.t());
+        let lagrangian = &mut self.lagrangian;
+        let goal = RestorationGoal {
+            tolerance: to.strain,
+            max_iterations: to.max_iterations.min(self.options.max_projections),
+            t,
+            loads: &lagrangian.vertex_rows.multipliers,
+            matrix: to.matrix,
+        };
+        let contact = problem.contact_mut().map(|contact| RestorationContact {
+            contact,
+            scale: 1.0 / per,
+        });
+        let (matrix, iterate) = (&mut lagrangian.matrix, &mut lagrangian.iterate);
+        let strain = self
+            .restoration
+            .positions(model, matrix, contact, iterate, goal, effort);
+        if is_last {
+            self.balance
+                .unassigned
+                .append(&self.restoration.unassigned, per);
+        }
+        strain
+    }
+
+    /// Edge strain that accepted positions may have.
+    pub(super) fn strain_tolerance(&self, problem: &StepProblem<'_>) -> f64 {
+        let floor = strain_floor(problem.model, problem.state);
+        self.options.strain_tolerance.max(floor)
+    }
+
+    /// Forces of the supports at the iterate, with what it leaves unbalanced.
+    fn set_balance(&mut self, problem: &StepProblem<'_>) {
+        let (model, state) = (problem.model, problem.state);
+        let per = 1.0 / (problem.h * problem.h);
+        let lagrangian = &mut self.lagrangian;
+        let (x, prediction) = (lagrangian.iterate.x(), problem.prediction);
+        if !self.balance.begin(model, |i| per * (x[i] - prediction[i])) {
+            return;
+        }
+        self.balance.add_potentials(model, problem.t(), x, 1.0);
+        self.balance
+            .add_applied(model, state.t, &state.x, &state.v, 1.0);
+        if let Some(terms) = lagrangian.iterate.terms(problem.contact()) {
+            self.balance.add_contact(&terms);
+        }
+        let (rows, x) = (&lagrangian.vertex_rows, lagrangian.iterate.x());
+        self.balance
+            .add_rods(model, x, &lagrangian.multipliers, per);
+        self.balance.add_constraints(rows, &rows.multipliers, per);
+        self.balance.leave(model, x, &rows.active);
+    }
+}
