@@ -117,6 +117,8 @@ pub use step::reason::Reason;
 pub use step::report::{StepError, StepOutcome, StepReport};
 pub use step::simulation_error::SimulationError;
 pub use step::trace::{Continuation, Cut, TraceEvent};
+#[doc(hidden)]
+pub use step::tuning::{Constant, Tuning};
 
 pub use model::potential;
 pub use nalgebra;

@@ -5,6 +5,7 @@ use crate::damped::minimiser::problem::StepProblem;
 use crate::step::effort::SolverEffort;
 use crate::step::integrator::{Attempt, Integrator, MethodTraits, Proposal, Scene, StepAccount};
 use crate::step::report::StepError;
+use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 
@@ -18,9 +19,13 @@ impl ImplicitEuler {
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
-    pub(crate) fn new(model: &SheetModel, options: ImplicitOptions) -> Result<Self, LinalgError> {
+    pub(crate) fn new(
+        model: &SheetModel,
+        options: ImplicitOptions,
+        tuning: &Tuning,
+    ) -> Result<Self, LinalgError> {
         Ok(Self {
-            minimiser: Minimiser::new(model, options)?,
+            minimiser: Minimiser::new(model, options, tuning)?,
         })
     }
 }
@@ -56,9 +61,13 @@ impl Bdf2 {
     ///
     /// # Errors
     /// [`LinalgError::Symbolic`] if memory runs out.
-    pub(crate) fn new(model: &SheetModel, options: ImplicitOptions) -> Result<Self, LinalgError> {
+    pub(crate) fn new(
+        model: &SheetModel,
+        options: ImplicitOptions,
+        tuning: &Tuning,
+    ) -> Result<Self, LinalgError> {
         Ok(Self {
-            minimiser: Minimiser::new(model, options)?,
+            minimiser: Minimiser::new(model, options, tuning)?,
         })
     }
 }

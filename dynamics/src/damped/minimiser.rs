@@ -17,6 +17,7 @@ use crate::step::reaction::Balance;
 use crate::step::reason::Reason;
 use crate::step::report::{self, StepError};
 use crate::step::trace::TraceEvent;
+use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, SheetModel};
 use isosheet_coords::linalg::LinalgError;
 use lagrangian::Merit;
@@ -24,12 +25,6 @@ use newton::{Failure, Minimum, Newton};
 use phase::{Faces, Multipliers, Phase};
 use problem::StepProblem;
 use workspace::Workspace;
-
-/// Part of the largest fold that the tolerance of the lengths allows by which contact at rest may move.
-const FOLD_PART: f64 = 0.1;
-/// Allowance for round-off, in units of its estimate, when two values of the incremental potential are
-/// compared.
-const COMPARISON_SLACK: f64 = 10.0;
 
 /// Finds the positions with the rest lengths that minimise the incremental potential of a step: a
 /// minimisation that always descends, in place of a root finder that may not converge.
@@ -49,11 +44,15 @@ pub(crate) struct Minimiser {
 }
 
 impl Minimiser {
-    pub(crate) fn new(model: &SheetModel, options: ImplicitOptions) -> Result<Self, LinalgError> {
+    pub(crate) fn new(
+        model: &SheetModel,
+        options: ImplicitOptions,
+        tuning: &Tuning,
+    ) -> Result<Self, LinalgError> {
         let n = model.coordinate_count();
         Ok(Self {
-            work: Workspace::new(model, options)?,
-            faces: Faces::of(model),
+            work: Workspace::new(model, options, *tuning)?,
+            faces: Faces::of(model, tuning),
             prediction: vec![0.0; n],
             applied: vec![0.0; n],
         })
@@ -138,7 +137,7 @@ impl Minimiser {
         self.work.lagrangian.begin(problem);
         let is_driven = self.work.lagrangian.is_driven(problem) || problem.model.has_drives();
         let bound = (!is_driven).then(|| self.work.lagrangian.merit(problem));
-        let phases = Phase::table(problem, self.faces, &self.work.options);
+        let phases = Phase::table(problem, self.faces, &self.work.options, &self.work.tuning);
         let mut found = Err(Failure {
             reason: Reason::Iterations,
             residual: f64::INFINITY,
@@ -206,8 +205,8 @@ impl Minimiser {
             Multipliers::Rounds => now.rod_scale.max(bound.rod_scale),
         };
         let slack = problem.h * problem.h * self.length_slack(problem)
-            + COMPARISON_SLACK * (now.round_off + bound.round_off)
-            + COMPARISON_SLACK * self.work.options.strain_tolerance * rod_scale;
+            + self.work.tuning.comparison_slack * (now.round_off + bound.round_off)
+            + self.work.tuning.comparison_slack * self.work.options.strain_tolerance * rod_scale;
         now.potential <= bound.potential + slack
     }
 
@@ -221,6 +220,6 @@ impl Minimiser {
         }
         let fold = self.work.options.strain_tolerance.sqrt() * problem.model.mean_length();
         let force = &self.work.lagrangian.force;
-        FOLD_PART * fold * force.iter().map(|f| f.abs()).sum::<f64>()
+        self.work.tuning.fold_part * fold * force.iter().map(|f| f.abs()).sum::<f64>()
     }
 }

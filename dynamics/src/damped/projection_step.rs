@@ -13,6 +13,7 @@ use crate::step::integrator::{
 use crate::step::reaction::{Balance, ForceTime};
 use crate::step::reason::Reason;
 use crate::step::report::{StepError, StepOutcome, not_converged};
+use crate::step::tuning::Tuning;
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::LinalgError;
 use serde::{Deserialize, Serialize};
@@ -71,12 +72,13 @@ impl ProjectionStep {
     pub(crate) fn new(
         model: &SheetModel,
         options: ProjectionStepOptions,
+        tuning: &Tuning,
     ) -> Result<Self, LinalgError> {
         let n = model.coordinate_count();
         Ok(Self {
             options,
             matrix: PrimalMatrix::of_rods(model)?,
-            restoration: Restoration::new(model),
+            restoration: Restoration::new(model, *tuning),
             force: vec![0.0; n],
             applied: vec![0.0; n],
             acceleration: vec![0.0; n],

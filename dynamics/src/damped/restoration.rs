@@ -9,46 +9,11 @@ use crate::damped::iterate::Iterate;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::step::effort::SolverEffort;
+use crate::step::tuning::Tuning;
 use crate::step::unassigned::UnassignedMomentum;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-
-/// Penalty (relative to the masses) that a projection starts from. From 1e9 the projection is
-/// a Gauss-Newton step to round-off wherever the rods are independent.
-const FIRST_PENALTY: f64 = 1e9;
-/// Bounds of the penalty while it adapts. Above 1e13 the masses drown in the round-off of the
-/// penalty and the matrix loses its definiteness; below 1e3 steps are too timid to be useful.
-const PENALTY_RANGE: (f64, f64) = (1e3, 1e13);
-/// Sufficient decrease of the length error per full step, the usual choice for Gauss-Newton.
-const SUFFICIENT_DECREASE: f64 = 0.1;
-/// A line search that has halved its step this often has stalled.
-const SMALLEST_STEP: f64 = 1e-2;
-
-/// Part of the error that an iteration leaves from which it counts as slow, and number of slow iterations
-/// in a row that make an iterate stationary. Two to eight cost the same; without a limit hanging sheets of
-/// 81 vertices need up to 400 iterations in steps of 5 ms.
-const SLOW: f64 = 0.9;
-const MAX_SLOW: usize = 4;
-/// Tolerance from which iterates are restored that may be far from the manifold: a stationary one is left
-/// to the caller, who takes a shorter step.
-const LOOSE_TOLERANCE: f64 = 1e-3;
-
-/// Part of the tolerance that is the goal of corrections with contact, which cost no factorisation. It keeps
-/// what round-off adds in later steps below the tolerance, and so a sheet at rest from having to fold.
-const RESERVE: f64 = 0.1;
-/// Passes of the method of multipliers: each contracts by the penalty, except along rods that are dependent.
-const PASSES: usize = 3;
-
-/// Growth of the displacement that opens a flat patch from one attempt to the next: the next
-/// one has to leave the basin that the last one fell back into.
-const OPENING_GROWTH: f64 = 4.0;
-/// Largest number of such displacements in contact, where they may be in vain; after these the caller
-/// minimises again. The first step of a sheet that lies flat on a table takes 490 factorisations without a
-/// limit (means of 24 starts), 350 with three to five, and 610 with two.
-const MAX_OPENINGS_IN_CONTACT: i32 = 4;
-/// Largest such displacement, in rod lengths: beyond, faces could turn over.
-const LARGEST_OPENING: f64 = 0.05;
 
 /// Moves positions to the nearest ones, in the sense of the mass matrix, that have the rest
 /// lengths: a Levenberg-Marquardt iteration with line search
@@ -64,6 +29,7 @@ const LARGEST_OPENING: f64 = 0.05;
 /// Where there is contact its Hessian joins the mass matrix, so that the nearest positions are those that
 /// press least on it, and nothing is passed through on the way.
 pub(crate) struct Restoration {
+    tuning: Tuning,
     axial: Vec<f64>,
     transverse: Vec<f64>,
     unit: Vec<f64>,
@@ -122,9 +88,10 @@ enum Solved {
 }
 
 impl Restoration {
-    pub(crate) fn new(model: &SheetModel) -> Self {
+    pub(crate) fn new(model: &SheetModel, tuning: Tuning) -> Self {
         let (n, m) = (model.coordinate_count(), model.rods().len());
         Self {
+            tuning,
             axial: vec![0.0; m],
             transverse: vec![0.0; m],
             unit: penalties(model, 1.0),
@@ -151,17 +118,17 @@ impl Restoration {
         effort: &mut SolverEffort<'_>,
     ) -> f64 {
         let tolerance = goal.tolerance;
-        let (mut penalty, mut slow) = (FIRST_PENALTY, 0_usize);
-        let max_openings = match (tolerance >= LOOSE_TOLERANCE, &contact) {
+        let (mut penalty, mut slow) = (self.tuning.restoration_penalty, 0_usize);
+        let max_openings = match (tolerance >= self.tuning.loose_restoration, &contact) {
             (true, _) => 0,
-            (false, Some(_)) => MAX_OPENINGS_IN_CONTACT,
+            (false, Some(_)) => self.tuning.openings_in_contact as i32,
             (false, None) => i32::MAX,
         };
         let mut openings = 0;
         self.begin(model, &goal, iterate);
         if goal.matrix == FirstMatrix::Factorised && model.constraints().is_empty() {
             let target = match contact {
-                Some(_) => RESERVE * tolerance,
+                Some(_) => self.tuning.reserve * tolerance,
                 None => tolerance,
             };
             self.correct(model, matrix, contact.as_mut(), iterate, target);
@@ -177,8 +144,9 @@ impl Restoration {
             effort.iterations += 1;
             match self.solve(model, matrix, contact.as_mut(), iterate, penalty) {
                 Solved::Yes => {}
-                Solved::PenaltyTooLarge if penalty > PENALTY_RANGE.0 => {
-                    penalty = (penalty * 1e-2).max(PENALTY_RANGE.0);
+                Solved::PenaltyTooLarge if penalty > self.tuning.smallest_penalty => {
+                    penalty = (penalty / self.tuning.penalty_step.powi(2))
+                        .max(self.tuning.smallest_penalty);
                     continue;
                 }
                 Solved::PenaltyTooLarge | Solved::No => break,
@@ -187,21 +155,31 @@ impl Restoration {
             self.start.copy_from_slice(iterate.x());
             let geometry = contact.as_mut().map(|c| &mut *c.contact);
             let limit = iterate.safe_fraction(geometry, &self.dx);
-            if limit < SMALLEST_STEP {
+            if limit < self.tuning.smallest_length {
                 // Contact is in the way; more pressure has to build up before.
                 break;
             }
             let linear = self.linearised_error(model, iterate.x());
             let (length, after) = self.line_search(model, goal.t, iterate, limit, before);
             self.keep_momentum(model, contact.as_ref(), iterate, None);
-            if after > RESERVE * before && self.worst(model, iterate.x()) <= tolerance {
+            if after > self.tuning.contraction * before
+                && self.worst(model, iterate.x()) <= tolerance
+            {
                 return self.worst(model, iterate.x());
             }
-            slow = if after > SLOW * before { slow + 1 } else { 0 };
-            let is_stationary = length < SMALLEST_STEP || slow >= MAX_SLOW;
-            if linear > SLOW * before && penalty < PENALTY_RANGE.1 && slow < MAX_SLOW {
+            slow = if after > self.tuning.slow * before {
+                slow + 1
+            } else {
+                0
+            };
+            let is_stationary = length < self.tuning.smallest_length
+                || slow >= self.tuning.slow_iterations as usize;
+            if linear > self.tuning.slow * before
+                && penalty < self.tuning.largest_penalty
+                && slow < self.tuning.slow_iterations as usize
+            {
                 // The masses hold the step back.
-                penalty *= 100.0;
+                penalty *= self.tuning.penalty_step.powi(2);
             } else if is_stationary && openings == max_openings {
                 strain = self.worst(model, iterate.x());
                 break;
@@ -209,19 +187,19 @@ impl Restoration {
                 // Stationary, but not solved: the error lies across the range of G, which happens where a
                 // patch is flat and asks for a fold. A displacement of order sqrt(strain), in any
                 // direction, opens it.
-                penalty = FIRST_PENALTY;
-                let size = OPENING_GROWTH.powi(openings) * strain.sqrt();
-                let size = size.min(LARGEST_OPENING);
+                penalty = self.tuning.restoration_penalty;
+                let size = self.tuning.opening_growth.powi(openings) * strain.sqrt();
+                let size = size.min(self.tuning.largest_opening);
                 self.unfold(model, contact.as_mut(), iterate, size);
                 openings += 1;
                 slow = 0;
                 self.evaluate(model, goal.t, iterate.x());
             } else if length < limit {
-                penalty *= 0.1;
-            } else if limit == 1.0 && after > 0.1 * before {
-                penalty *= 10.0;
+                penalty /= self.tuning.penalty_step;
+            } else if limit == 1.0 && after > self.tuning.contraction * before {
+                penalty *= self.tuning.penalty_step;
             }
-            penalty = penalty.clamp(PENALTY_RANGE.0, PENALTY_RANGE.1);
+            penalty = penalty.clamp(self.tuning.smallest_penalty, self.tuning.largest_penalty);
             strain = self.worst(model, iterate.x());
         }
         strain
@@ -300,8 +278,8 @@ impl Restoration {
             }
             self.evaluate(model, t, iterate.x());
             let after = self.error();
-            let is_enough = after <= (1.0 - SUFFICIENT_DECREASE * length) * before;
-            if is_enough || length < SMALLEST_STEP {
+            let is_enough = after <= (1.0 - self.tuning.sufficient_decrease * length) * before;
+            if is_enough || length < self.tuning.smallest_length {
                 return (length, after);
             }
             length *= 0.5;
@@ -416,17 +394,17 @@ impl Restoration {
     ) -> f64 {
         let rods = model.rods();
         for e in 0..rods.len() {
-            self.axial[e] = FIRST_PENALTY * self.unit[e];
+            self.axial[e] = self.tuning.restoration_penalty * self.unit[e];
         }
         self.transverse.fill(0.0);
         matrix.assemble(model, x, &self.axial, &self.transverse);
         self.vertex_rows
-            .add_equalities(FIRST_PENALTY, &mut matrix.sink(model));
+            .add_equalities(self.tuning.restoration_penalty, &mut matrix.sink(model));
         if !effort.count_factorisation() || matrix.factorize().is_err() {
             return f64::INFINITY;
         }
         let mut rate = f64::INFINITY;
-        for _ in 0..PASSES {
+        for _ in 0..self.tuning.velocity_passes as usize {
             rods.apply(x, v, &mut self.c);
             let speed = v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             rate = self
@@ -435,9 +413,12 @@ impl Restoration {
                 .zip(rods.lengths())
                 .fold(0.0_f64, |m, (c, l)| m.max(c.abs() / l));
             self.rhs.fill(0.0);
-            let slip = self
-                .vertex_rows
-                .add_rates(FIRST_PENALTY, rates, v, &mut self.rhs);
+            let slip = self.vertex_rows.add_rates(
+                self.tuning.restoration_penalty,
+                rates,
+                v,
+                &mut self.rhs,
+            );
             rate = rate.max(slip) / speed.max(f64::MIN_POSITIVE);
             if rate < 1e-15 {
                 break;

@@ -7,6 +7,7 @@ use crate::model::support::Support;
 use crate::options::OptionsError;
 use crate::step::effort::SolverEffort;
 use crate::step::report::StepError;
+use crate::step::tuning::Tuning;
 use crate::vectors::point;
 use crate::{SheetModel, SimulationError, State};
 use isosheet_mesh::{EdgeId, VertexId};
@@ -36,7 +37,7 @@ pub fn project_positions(
     let mut matrix = PrimalMatrix::of_rods(model)?;
     let mut effort = SolverEffort::default();
     let mut moved = Iterate::without_contact(x.to_vec());
-    let strain = Restoration::new(model).positions(
+    let strain = Restoration::new(model, Tuning::default()).positions(
         model,
         &mut matrix,
         None,

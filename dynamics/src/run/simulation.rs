@@ -12,6 +12,7 @@ use crate::step::reaction::Reaction;
 use crate::step::report::{StepError, StepReport, StepTotals};
 use crate::step::simulation_error::SimulationError;
 use crate::step::trace::TraceEvent;
+use crate::step::tuning::Tuning;
 use crate::{Method, SheetModel, State, StepControl};
 use isosheet_coords::Chart;
 use isosheet_mesh::VertexId;
@@ -193,6 +194,19 @@ impl Simulation {
     pub fn with_control(mut self, control: StepControl) -> Result<Self, SimulationError> {
         match &mut self.engine {
             Engine::Free(engine) => engine.set_control(control)?,
+            Engine::Chart(_) => return Err(SimulationError::ChartControl),
+        }
+        Ok(self)
+    }
+
+    /// Replaces the constants of the damped methods: for the report that measures what each of them is worth.
+    ///
+    /// # Errors
+    /// [`SimulationError::ChartControl`] in charts, [`SimulationError::Linalg`] if memory runs out.
+    #[doc(hidden)]
+    pub fn with_tuning(mut self, tuning: Tuning) -> Result<Self, SimulationError> {
+        match &mut self.engine {
+            Engine::Free(engine) => engine.set_tuning(tuning)?,
             Engine::Chart(_) => return Err(SimulationError::ChartControl),
         }
         Ok(self)

@@ -1,28 +1,10 @@
 //! What damped methods may gain in energy.
 
 use crate::step::report::StepError;
+use crate::step::tuning::Tuning;
 use crate::{SheetModel, State};
 use isosheet_coords::linalg::norm_inf;
 use serde::{Deserialize, Serialize};
-
-/// Share of the kinetic energy that a damped method may gain in one step. Compressed rods that snap
-/// through can feed implicit methods; shorter steps, and steps of implicit Euler, do not let them.
-const MAX_GAIN: f64 = 0.1;
-
-/// Share of the largest kinetic energy so far that all steps together may gain: second-order methods err to
-/// either side by about that at the longest steps that resolve a motion.
-const MAX_NET_GAIN: f64 = 0.02;
-
-/// Relative displacement that the tolerance of the lengths leaves open: over a short step it looks
-/// like a velocity.
-const POSITION_NOISE: f64 = 1e-11;
-
-/// Round-off of the energies and of the work, relative to their sizes: the projections that end a step leave
-/// 1e-12 of the lengths, and forces of rods above the weight do work over that.
-const RELATIVE_ROUND_OFF: f64 = 1e-9;
-
-/// The work of bodies, pins and moving constraints is known to the accuracy of the trapezoidal rule only.
-const DRIVES: f64 = 5.0;
 
 /// Gains and losses of the steps of a damped method, which should but lose: numerical errors alone, without
 /// the work of forces, bodies and supports.
@@ -63,6 +45,7 @@ impl EnergyAccount {
         before: &State,
         after: &State,
         exchange: &Exchange,
+        tuning: &Tuning,
     ) -> Result<Self, StepError> {
         let kinetic = [&before.v, &after.v].map(|v| model.kinetic_energy(v));
         let potential = [&before.x, &after.x].map(|x| model.potential_energy(after.t, x));
@@ -82,24 +65,25 @@ impl EnergyAccount {
             });
         }
         let size = norm_inf(&after.x);
-        let noise = POSITION_NOISE * size / (after.t - before.t);
+        let noise = tuning.position_noise * size / (after.t - before.t);
         let energies = kinetic[0] + potential[0].abs() + potential[1].abs();
-        let mut round_off = RELATIVE_ROUND_OFF * (energies + exchange.forces.abs() + drives)
+        let mut round_off = tuning.energy_round_off * (energies + exchange.forces.abs() + drives)
             + model.mass().total() * noise * noise
             + exchange.length_slack;
-        let share = kinetic[0].max(kinetic[1]) + DRIVES * drives;
+        let share = kinetic[0].max(kinetic[1]) + tuning.drive_uncertainty * drives;
         let net = self.net + gain;
         let largest = self.kinetic.max(kinetic[0]);
-        let unknown = |round_off| self.unknown + round_off + MAX_GAIN * DRIVES * drives;
+        let unknown =
+            |round_off| self.unknown + round_off + tuning.gain * tuning.drive_uncertainty * drives;
         let is_too_much = |round_off| {
-            gain > MAX_GAIN * share + round_off
+            gain > tuning.gain * share + round_off
                 || gain > round_off
-                    && net > MAX_NET_GAIN * largest.max(kinetic[1]) + unknown(round_off)
+                    && net > tuning.net_gain * largest.max(kinetic[1]) + unknown(round_off)
         };
         if is_too_much(round_off) {
             // Forces far above the weight do work over the noise of positions, which energies near zero do
             // not show.
-            round_off += POSITION_NOISE * size * force_sum(model, after);
+            round_off += tuning.position_noise * size * force_sum(model, after);
             if is_too_much(round_off) {
                 return Err(StepError::EnergyGain {
                     t: before.t,
@@ -150,7 +134,13 @@ mod tests {
             ..Exchange::default()
         };
         (1..speeds.len()).find(|&k| {
-            let after = account.after(&model, &state(k - 1), &state(k), &exchange);
+            let after = account.after(
+                &model,
+                &state(k - 1),
+                &state(k),
+                &exchange,
+                &Tuning::default(),
+            );
             account = *after.as_ref().unwrap_or(&account);
             account.spend(dissipated);
             after.is_err()
@@ -205,7 +195,13 @@ mod tests {
         let enter = |back: f64| {
             let mut end = start.clone();
             (end.t, end.x[0]) = (1e-3, origin - back);
-            EnergyAccount::default().after(&model, &start, &end, &Exchange::default())
+            EnergyAccount::default().after(
+                &model,
+                &start,
+                &end,
+                &Exchange::default(),
+                &Tuning::default(),
+            )
         };
         assert!(enter(1e-12).is_ok());
         assert!(enter(1e-9).is_err());

@@ -20,6 +20,7 @@ use crate::step::report::{StepError, StepOutcome, StepTotals};
 use crate::step::rod_forces::rod_forces;
 use crate::step::subdivision::Subdivision;
 use crate::step::trace::TraceEvent;
+use crate::step::tuning::Tuning;
 use crate::{
     Fallback, Isometry, Method, SheetModel, SimulationError, State, StepControl, Unsatisfiable,
 };
@@ -34,6 +35,7 @@ pub(crate) struct Engine {
     fixed: Vec<VertexId>,
     integrator: Box<dyn Integrator>,
     control: StepControl,
+    tuning: Tuning,
     fallback: Option<Box<dyn Integrator>>,
     /// Where the sheet is. Nothing but [`Substeps::commit`] changes it.
     moment: Moment,
@@ -67,7 +69,8 @@ impl Engine {
         if model.isometry() != Isometry::Rods && !method.is_minimising() {
             return Err(SimulationError::Elastic);
         }
-        let integrator = method.build(&model)?;
+        let tuning = Tuning::default();
+        let integrator = method.build(&model, &tuning)?;
         let control = StepControl::default();
         let traits = integrator.traits();
         if traits.demand == RodDemand::Independent
@@ -78,9 +81,10 @@ impl Engine {
         Ok(Self {
             moment: Moment::at(state, &model, traits),
             proposal: Proposal::new(&model, traits),
-            fallback: fallback(&model, &control)?,
+            fallback: fallback(&model, &control, &tuning)?,
             integrator,
             control,
+            tuning,
             contact: None,
             account: EnergyAccount::default(),
             has_moved: false,
@@ -177,14 +181,22 @@ impl Engine {
 
     pub(crate) fn set_control(&mut self, control: StepControl) -> Result<(), SimulationError> {
         control.validate()?;
-        self.fallback = fallback(&self.model, &control)?;
+        self.fallback = fallback(&self.model, &control, &self.tuning)?;
         self.control = control;
+        Ok(())
+    }
+
+    /// Replaces the constants of the damped methods.
+    pub(crate) fn set_tuning(&mut self, tuning: Tuning) -> Result<(), SimulationError> {
+        self.tuning = tuning;
+        self.integrator = self.method.build(&self.model, &tuning)?;
+        self.fallback = fallback(&self.model, &self.control, &tuning)?;
         Ok(())
     }
 
     /// Advances by `h` seconds. On failure the state is that of the last committed sub-step.
     pub(crate) fn advance(&mut self, h: f64, totals: &mut StepTotals<'_>) -> Result<(), StepError> {
-        let lengths = Subdivision::new(self.state().t, h);
+        let lengths = Subdivision::new(self.state().t, h, self.tuning.patience as usize);
         let mut run = Substeps {
             limit: self.work_limit(),
             engine: self,
@@ -331,6 +343,7 @@ impl Substeps<'_, '_> {
             account,
             has_moved,
             proposal,
+            tuning,
             ..
         } = &mut *self.engine;
         let t = moment.state.t + h;
@@ -380,7 +393,7 @@ impl Substeps<'_, '_> {
         };
         // The conservative methods keep the energy by themselves.
         if integrator.traits().demand == RodDemand::Nothing || is_fallback {
-            self.pending.account = account.after(model, before, after, &exchange)?;
+            self.pending.account = account.after(model, before, after, &exchange, tuning)?;
             return Ok(());
         }
         check_energy(model, after)
@@ -515,9 +528,10 @@ impl Stepping for Substeps<'_, '_> {
 fn fallback(
     model: &SheetModel,
     control: &StepControl,
+    tuning: &Tuning,
 ) -> Result<Option<Box<dyn Integrator>>, SimulationError> {
     Ok(match &control.fallback {
-        Fallback::ImplicitEuler(o) => Some(Box::new(ImplicitEuler::new(model, o.clone())?)),
+        Fallback::ImplicitEuler(o) => Some(Box::new(ImplicitEuler::new(model, o.clone(), tuning)?)),
         Fallback::Refuse => None,
     })
 }

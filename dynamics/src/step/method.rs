@@ -7,6 +7,7 @@ use crate::damped::options::ImplicitOptions;
 use crate::damped::projection_step::{ProjectionStep, ProjectionStepOptions};
 use crate::options::OptionsError;
 use crate::step::integrator::Integrator;
+use crate::step::tuning::Tuning;
 use crate::{SheetModel, SimulationError};
 use serde::{Deserialize, Serialize};
 
@@ -97,19 +98,23 @@ impl Method {
     }
 
     /// Validates the options and analyses the model.
-    pub(crate) fn build(&self, model: &SheetModel) -> Result<Box<dyn Integrator>, SimulationError> {
+    pub(crate) fn build(
+        &self,
+        model: &SheetModel,
+        tuning: &Tuning,
+    ) -> Result<Box<dyn Integrator>, SimulationError> {
         Ok(match self.clone() {
             Self::ImplicitEuler(o) => {
                 o.validate()?;
-                Box::new(ImplicitEuler::new(model, o)?)
+                Box::new(ImplicitEuler::new(model, o, tuning)?)
             }
             Self::Bdf2(o) => {
                 o.validate()?;
-                Box::new(Bdf2::new(model, o)?)
+                Box::new(Bdf2::new(model, o, tuning)?)
             }
             Self::Projection(o) => {
                 o.validate()?;
-                Box::new(ProjectionStep::new(model, o)?)
+                Box::new(ProjectionStep::new(model, o, tuning)?)
             }
             Self::EnergyMomentum(o) => {
                 o.validate()?;

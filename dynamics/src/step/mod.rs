@@ -17,4 +17,5 @@ pub(crate) mod rod_forces;
 pub(crate) mod simulation_error;
 pub(crate) mod subdivision;
 pub(crate) mod trace;
+pub(crate) mod tuning;
 pub(crate) mod unassigned;

@@ -1,9 +1,5 @@
 //! Lengths of the sub-steps of a step: halves of halves, on a binary grid that ends at the step exactly.
 
-/// Sub-steps accepted after a refusal before a longer one is tried: a singular state takes a few steps to
-/// pass, and trying too soon is what most refusals were.
-const PATIENCE: usize = 4;
-
 /// Sub-steps `h / 2^k` of a step of `h` seconds.
 #[derive(Debug, Clone)]
 pub(crate) struct Subdivision {
@@ -14,17 +10,20 @@ pub(crate) struct Subdivision {
     /// Fraction of the step that is done.
     done: f64,
     patience: usize,
+    /// Sub-steps accepted after a refusal before a longer one is tried.
+    most_patience: usize,
 }
 
 impl Subdivision {
     /// Of a step of `h` seconds from the time `start`.
-    pub(crate) fn new(start: f64, h: f64) -> Self {
+    pub(crate) fn new(start: f64, h: f64, patience: usize) -> Self {
         Self {
             start,
             h,
             fraction: 1.0,
             done: 0.0,
             patience: 0,
+            most_patience: patience,
         }
     }
 
@@ -54,7 +53,7 @@ impl Subdivision {
             return None;
         }
         self.fraction *= 0.5;
-        self.patience = PATIENCE;
+        self.patience = self.most_patience;
         Some(self.length())
     }
 
@@ -89,7 +88,7 @@ mod tests {
 
     #[test]
     fn sub_steps_end_at_the_step() {
-        let mut steps = Subdivision::new(1.0, 0.3);
+        let mut steps = Subdivision::new(1.0, 0.3, 4);
         let mut refusals = 0;
         let (mut t, mut count) = (1.0, 0_usize);
         while !steps.is_finished() {
@@ -111,7 +110,7 @@ mod tests {
 
     #[test]
     fn halving_ends() {
-        let mut steps = Subdivision::new(0.0, 1.0);
+        let mut steps = Subdivision::new(0.0, 1.0, 4);
         assert_eq!(steps.halve(1.0), None);
         assert_eq!(steps.halve(0.25), Some(0.5));
         assert_eq!(steps.halve(0.25), Some(0.25));

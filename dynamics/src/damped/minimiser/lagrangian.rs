@@ -11,6 +11,7 @@ use crate::model::PINNED;
 use crate::step::effort::SolverEffort;
 use crate::step::report::StepError;
 use crate::step::trace::Cut;
+use crate::step::tuning::Tuning;
 use crate::vectors::dot;
 use crate::{HessianSink, SheetModel};
 use isosheet_coords::linalg::LinalgError;
@@ -18,21 +19,6 @@ use isosheet_mesh::{EdgeId, VertexId};
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-
-/// Displacements along a direction of negative curvature, largest component in mean rod lengths, in the order
-/// in which they are tried. Strains grow with the square of a displacement, and an iterate that has been
-/// displaced too far returns slowly: with 1e-2 a sheet of 8192 triangles takes three times as many
-/// factorisations in steps of 0.25 ms, and with 1e-3 twice as many as with 1e-4; for sheets of up to 512
-/// triangles there is no difference.
-const PERTURBATIONS: [f64; 2] = [1e-4, 1e-5];
-/// Power iterations for a direction of negative curvature. Each takes one solve with the factorisation at
-/// hand.
-const CURVATURE_ITERATIONS: usize = 6;
-
-/// Bound on the number of operations that a term of the value goes through, for its round-off.
-const ROUND_OFF_OPERATIONS: f64 = 8.0;
-/// The same for the squares of length errors that are themselves round-off of the positions.
-const POSITION_OPERATIONS: f64 = 64.0;
 
 /// The augmented Lagrangian at an iterate,
 ///
@@ -43,6 +29,7 @@ const POSITION_OPERATIONS: f64 = 64.0;
 /// with the multipliers `L_e` of the rods (`h^2` times force densities, tension positive) and penalties
 /// `r_e`.
 pub(crate) struct Lagrangian {
+    pub(super) tuning: Tuning,
     pub(super) iterate: Iterate,
     pub(super) matrix: PrimalMatrix,
     pub(super) multipliers: Vec<f64>,
@@ -194,10 +181,11 @@ pub(super) enum RodLoad {
 }
 
 impl Lagrangian {
-    pub(super) fn new(model: &SheetModel) -> Result<Self, LinalgError> {
+    pub(super) fn new(model: &SheetModel, tuning: Tuning) -> Result<Self, LinalgError> {
         let (n, m) = (model.coordinate_count(), model.rods().len());
         let vertices = model.constrained_vertices();
         Ok(Self {
+            tuning,
             iterate: Iterate::new(n),
             matrix: PrimalMatrix::new(model)?,
             multipliers: vec![0.0; m],
@@ -302,7 +290,8 @@ impl Lagrangian {
             value: potential + rods,
             potential,
             rod_scale,
-            round_off: ROUND_OFF_OPERATIONS * f64::EPSILON * sizes + POSITION_OPERATIONS * squares,
+            round_off: self.tuning.round_off_operations * f64::EPSILON * sizes
+                + self.tuning.position_operations * squares,
         }
     }
 
@@ -610,7 +599,7 @@ impl Lagrangian {
         let model = problem.model;
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         for (i, d) in self.dx.iter_mut().enumerate() {
-            let size = PERTURBATIONS[0] * model.shortest_rod(i / 3);
+            let size = self.tuning.perturbation * model.shortest_rod(i / 3);
             *d = rng.random_range(-size..=size);
         }
         model.clear_pinned(&mut self.dx);
@@ -641,7 +630,7 @@ impl Lagrangian {
         }
         let before = self.merit(problem);
         self.start.copy_from_slice(self.iterate.x());
-        for size in PERTURBATIONS {
+        for size in [self.tuning.perturbation, 0.1 * self.tuning.perturbation] {
             let scale = size * model.mean_length();
             for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
                 *w = scale * d;
@@ -674,7 +663,7 @@ impl Lagrangian {
         }
         model.clear_pinned(&mut self.dx);
         let mut quotient = 0.0;
-        for _ in 0..CURVATURE_ITERATIONS {
+        for _ in 0..self.tuning.curvature_iterations as usize {
             self.apply_pressure(model);
             self.difference.copy_from_slice(&self.weighted);
             let (b, dx) = (&self.difference, &mut self.dx);

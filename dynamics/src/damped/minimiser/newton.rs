@@ -12,44 +12,6 @@ use crate::step::reason::Reason;
 use crate::step::report::StepOutcome;
 use crate::step::trace::{Continuation, Cut, TraceEvent};
 
-/// Stiffnesses of the rods in the linear systems that solve for their multipliers, in units of that of the
-/// masses. The systems are regularised saddle-point systems `[H G^T; G -1/r]` with penalties `r`, solved by
-/// elimination of the multipliers; [`MultiplierSolver`](crate::linear::multipliers::MultiplierSolver) takes the
-/// regularisation out again. With the first stiffness steps keep momentum and symmetries to round-off, with 1e11
-/// no longer. Where the multipliers do not converge, the second is used from then on, in later steps, too: beyond
-/// it the masses drown in the round-off of the penalty. (Strips of rods on edge, at rest: 10 to 16 factorisations
-/// a step, and 16 to 280 where every step begins with the first.)
-const STIFFNESS: [f64; 2] = [1e10, 1e13];
-/// Length of an iteration for the multipliers beyond which rods count as dependent: the inverse of the
-/// smallest eigenvalue that is not taken to be zero. Multipliers of nearly dependent rods may grow without
-/// bound. Strips of rods that stand on edge take five times the factorisations at rest without this bound.
-const LONGEST_ITERATION: f64 = 3.0;
-/// Conjugate gradient iterations for the multipliers of a step: nearly dependent rods, as in a sheet that
-/// lies flat, have a few eigenvalues each of which takes an iteration. With none, clamped strips of nearly
-/// dependent rods need three to ten times the factorisations; 6 and 16 differ by less than a tenth.
-const MULTIPLIER_ITERATIONS: usize = 8;
-/// Change of the multipliers, relative to the largest, from which an iteration is not worth its solve. With
-/// 1e-3 a sheet at rest on a table needs three times as many steps.
-const MULTIPLIERS_SETTLED: f64 = 1e-4;
-/// Passes in which the multipliers of vertex constraints follow those of the isometry.
-const CONSTRAINT_PASSES: usize = 4;
-/// Number of iterations after which decreases of the size of length errors are noise. Where there are finite
-/// multipliers, Newton's method has converged by then, and small motions of taut sheets are below that size.
-/// Where there are none, the last decreases only fall as the inverse of the number of iterations.
-const NOISE_PATIENCE: usize = 10;
-/// Part of the energy that the tolerance of the lengths leaves open, `tolerance * sum |L| l^2`, that counts
-/// as noise then: length errors of different rods have different signs. Strips on edge at rest need 15 to
-/// 930 factorisations a step without this rule, and 11 to 100 with it.
-const LENGTH_NOISE: f64 = 0.1;
-/// Largest number of iterations of a restoration of an iterate: more are a sign that the step is not a small
-/// one.
-const MAX_RESTORATION: usize = 12;
-/// Part of the promised decrease that has to come true (Armijo's condition).
-const ARMIJO: f64 = 1e-4;
-/// Growth of the penalty from round to round. Ten keeps Newton's method close to its quadratic range: with
-/// thirty a sheet draping on a floor needs twice the iterations.
-const GROWTH: f64 = 10.0;
-
 /// How a minimisation ended.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Minimum {
@@ -198,6 +160,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             options,
             rod_stiffness,
             remembered,
+            tuning,
             ..
         } = &mut *self.work;
         match (self.phase.remembers, self.phase.multipliers) {
@@ -205,7 +168,10 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             (false, Multipliers::Solved) => lagrangian.multipliers.fill(0.0),
             (false, Multipliers::Rounds) => lagrangian.clear_multipliers(),
         }
-        let first = STIFFNESS[usize::from(self.problem.has_contact())];
+        let first = match self.problem.has_contact() {
+            true => tuning.last_stiffness,
+            false => tuning.first_stiffness,
+        };
         if self.phase.multipliers == Multipliers::Solved {
             // Contact is not kept to round-off.
             *rod_stiffness = rod_stiffness.max(first);
@@ -304,6 +270,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             lagrangian,
             rod_stiffness,
             options,
+            tuning,
             ..
         } = &mut *self.work;
         loop {
@@ -324,7 +291,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             }
             lagrangian.keep_multipliers();
             let mut violation = None;
-            for _ in 0..CONSTRAINT_PASSES {
+            for _ in 0..tuning.constraint_passes as usize {
                 lagrangian.set_gradient(self.problem);
                 if lagrangian.solve(model, self.effort).is_err() {
                     violation = None;
@@ -332,7 +299,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 }
                 violation = Some(lagrangian.improve_multipliers(model, goal));
                 let [change, largest] = lagrangian.vertex_rows.update_after(&lagrangian.dx);
-                if change <= MULTIPLIERS_SETTLED * largest {
+                if change <= tuning.multipliers_settled * largest {
                     break;
                 }
             }
@@ -345,13 +312,13 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 lagrangian.restore_multipliers();
                 continue;
             };
-            if violation <= goal.violation || *rod_stiffness == STIFFNESS[1] {
+            if violation <= goal.violation || *rod_stiffness == tuning.last_stiffness {
                 // The merit function has the new multipliers.
                 lagrangian.set_stiffness(self.penalty, options.stiffness);
                 lagrangian.set_gradient(self.problem);
                 return Ok(hessian);
             }
-            *rod_stiffness = STIFFNESS[1];
+            *rod_stiffness = tuning.last_stiffness;
             lagrangian.restore_multipliers();
         }
     }
@@ -359,10 +326,10 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// When the multipliers of a step are good enough: once the linearised lengths are within the tolerance.
     fn multiplier_goal(&self) -> MultiplierGoal {
         MultiplierGoal {
-            max_iterations: MULTIPLIER_ITERATIONS,
+            max_iterations: self.work.tuning.multiplier_iterations as usize,
             violation: self.work.strain_tolerance(self.problem),
-            change: MULTIPLIERS_SETTLED,
-            longest: LONGEST_ITERATION,
+            change: self.work.tuning.multipliers_settled,
+            longest: self.work.tuning.longest_iteration,
         }
     }
 
@@ -427,7 +394,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             if self.keeps_lengths() {
                 let Direction { before, slope, .. } = direction;
                 let now = self.work.lagrangian.merit(self.problem);
-                let promised = before.value + ARMIJO * length * slope;
+                let promised = before.value + self.work.tuning.armijo * length * slope;
                 if now.value <= promised + before.round_off {
                     return Some(length);
                 }
@@ -445,7 +412,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         }
         let to = LengthGoal {
             strain: self.phase.iterate_strain,
-            max_iterations: MAX_RESTORATION,
+            max_iterations: self.work.tuning.iterate_restoration as usize,
             matrix: FirstMatrix::Factorised,
         };
         self.work.restore(self.problem, to, self.effort) <= to.strain
@@ -453,10 +420,12 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
 
     /// Size of decreases that are noise of the lengths, besides round-off.
     fn noise(&self, merit: &Merit) -> f64 {
-        if self.iterations <= NOISE_PATIENCE || self.phase.multipliers == Multipliers::Rounds {
+        if self.iterations <= (self.work.tuning.noise_patience as usize)
+            || self.phase.multipliers == Multipliers::Rounds
+        {
             return 0.0;
         }
-        LENGTH_NOISE * self.work.options.strain_tolerance * merit.rod_scale
+        self.work.tuning.length_noise * self.work.options.strain_tolerance * merit.rod_scale
     }
 
     /// Whether the restoration at the end will be a small displacement, or further rounds see to that.
@@ -540,7 +509,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             }
             lagrangian.vertex_rows.update();
             if !is_last && self.strain() > self.phase.small_strain {
-                self.penalty *= GROWTH;
+                self.penalty *= self.work.tuning.penalty_growth;
                 self.begin_round();
                 return Ok(false);
             }

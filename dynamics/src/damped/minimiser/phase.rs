@@ -1,53 +1,9 @@
 //! The phases of a minimisation, as a table.
 
 use super::problem::StepProblem;
+use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, Isometry, SheetModel};
 use isosheet_mesh::area_from_lengths;
-
-/// Part of [`ImplicitOptions::max_iterations`] that is the largest number of iterations of programming in
-/// contact, 20 by default: a draping sheet needs three to six, a sheet at rest two to six, an impact more where
-/// contact cuts them. (Otherwise all iterations may be used: a hanging sheet of 2000 triangles needs up to 50 at
-/// 60 steps a second.)
-const PART_IN_CONTACT: usize = 4;
-/// Edge strain that iterates may have. Hanging sheets of 289 vertices need 9.2, 9.3, 10.0 and 9.7
-/// factorisations a step (means of 24 starts) with 0.01, 0.03, 0.1 and 0.3; of sheets of 2048 and 8192
-/// triangles some starts need several times as many with 0.03 and more.
-const ITERATE_STRAIN: f64 = 1e-2;
-/// The same in contact, which cuts the long first iterations that would go far: a disk of 688 vertices on a
-/// ball needs 18.3 factorisations a step, 19.5 with 0.03 and 21.4 with 0.01.
-const ITERATE_STRAIN_IN_CONTACT: f64 = 1e-1;
-/// Largest number of step halvings in contact; after these the next phase begins. Two, four and six make
-/// 13 000, 10 500 and 10 600 factorisations of eight tablecloths.
-const MAX_HALVINGS_IN_CONTACT: usize = 4;
-/// Largest number of step halvings without contact, where the next phase takes longer. With two, a third of the
-/// steps of a hanging sheet of 2000 triangles uses it; with 30, a thousand steps a second need half as many
-/// factorisations more.
-const MAX_HALVINGS: usize = 8;
-/// Halvings of the augmented Lagrangian, which is the last resort: a part of 1e-9.
-const MAX_HALVINGS_AT_LAST: usize = 30;
-/// Largest number of rounds of the method of multipliers in contact. A sheet that lies flat resists a
-/// restoration of its lengths: it would have to fold against the barrier, by the root of the length error.
-/// Multipliers take the load instead, and each round shrinks the error by the penalty.
-const MAX_ROUNDS_IN_CONTACT: usize = 12;
-/// Tolerance of the rounds after the first where they are loose: they only shift load from the penalty to the
-/// multipliers.
-const LOOSE_TOLERANCE: f64 = 1e-2;
-/// Edge strain from which the restoration at the end is a small displacement.
-const SMALL_STRAIN: f64 = 1e-5;
-/// Largest number of iterations of the restoration that ends programming. Where they do not suffice, programming
-/// goes on from there. With 10, 20 and 40 hanging sheets of 2048 triangles need 16 600, 13 100 and 14 300
-/// factorisations.
-const MAX_LAST_RESTORATION: usize = 20;
-/// Relative change of friction's normal forces below which they count as settled in a round, and largest number
-/// of renewals in a round. With the tolerance of programming, 1e-3, and five renewals a disk of 688 vertices on a
-/// ball needs 16.7 factorisations a step, and 12.5 with these.
-const FRICTION_SETTLED: f64 = 0.05;
-const MAX_FRICTION_UPDATES: usize = 2;
-/// Altitude of a face, in parts of its longest side, from which rods 1e10 times as stiff as the masses hold
-/// the face: a length error `d` of the long sides moves the apex of a face of altitude `a l` by `d l / a`, so
-/// that slimmer faces need less than the 1e-10 that such rods let through for an error of 1e-4 in the
-/// altitude.
-const SLIVER: f64 = 1e-3;
 
 /// What the slimmest face of a sheet allows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,13 +15,13 @@ pub(super) enum Faces {
 }
 
 impl Faces {
-    pub(super) fn of(model: &SheetModel) -> Self {
+    pub(super) fn of(model: &SheetModel, tuning: &Tuning) -> Self {
         let lengths = model.rods().lengths();
         let is_sliver = |f| {
             let sides = model.topology().face_edges(f).map(|e| lengths[e.index()]);
             let longest = sides.iter().fold(0.0, |longest, side| side.max(longest));
             // (Rounded lengths of a sliver may make no triangle; its area is zero.)
-            2.0 * area_from_lengths(sides) < SLIVER * longest * longest
+            2.0 * area_from_lengths(sides) < tuning.sliver * longest * longest
         };
         if model.topology().face_ids().any(is_sliver) {
             Self::Slivers
@@ -152,13 +108,14 @@ impl Phase {
         problem: &StepProblem<'_>,
         faces: Faces,
         options: &ImplicitOptions,
+        tuning: &Tuning,
     ) -> [Option<Self>; 3] {
         let model = problem.model;
         let has_slivers = faces == Faces::Slivers;
         let is_rods = model.isometry() == Isometry::Rods;
         let has_contact = problem.has_contact();
-        let programming = Self::programming(problem, options);
-        let prediction = Self::rounds(problem, faces, options);
+        let programming = Self::programming(problem, options, tuning);
+        let prediction = Self::rounds(problem, faces, options, tuning);
         let exact = prediction.exact(options);
         let repeats = !has_slivers && !has_contact && problem.prediction == problem.state.x;
         let last = (!repeats).then_some(exact);
@@ -177,7 +134,7 @@ impl Phase {
         }
     }
 
-    fn programming(problem: &StepProblem<'_>, options: &ImplicitOptions) -> Self {
+    fn programming(problem: &StepProblem<'_>, options: &ImplicitOptions, tuning: &Tuning) -> Self {
         let has_contact = problem.has_contact();
         // In contact the Lagrangian alone is the merit function: augmented it may grow along a step that mends
         // lengths against the barrier. And the multipliers of nearly dependent rods are arbitrary from step to
@@ -188,29 +145,29 @@ impl Phase {
             multipliers: Multipliers::Solved,
             remembers: !has_contact,
             iterate_strain: match has_contact {
-                true => ITERATE_STRAIN_IN_CONTACT,
-                false => ITERATE_STRAIN,
+                true => tuning.iterate_strain_in_contact,
+                false => tuning.iterate_strain,
             },
             merit_penalty: match has_contact {
                 true => 0.0,
                 false => options.stiffness,
             },
             iterations: match has_contact {
-                true => (options.max_iterations / PART_IN_CONTACT).max(1),
+                true => (options.max_iterations / tuning.contact_iteration_share as usize).max(1),
                 false => options.max_iterations,
             },
             halvings: match has_contact {
-                true => MAX_HALVINGS_IN_CONTACT,
-                false => MAX_HALVINGS,
+                true => tuning.halvings_in_contact as usize,
+                false => tuning.halvings as usize,
             },
             rounds: 1,
             round_tolerance: options.tolerance,
             small_strain: match has_contact {
                 // Iterates are exact enough.
                 true => f64::INFINITY,
-                false => SMALL_STRAIN,
+                false => tuning.small_strain,
             },
-            last_restoration: MAX_LAST_RESTORATION,
+            last_restoration: tuning.last_restoration as usize,
             friction_tolerance: options.friction_tolerance,
             friction_updates: options.max_friction_updates,
             saddle: match has_contact {
@@ -220,7 +177,12 @@ impl Phase {
         }
     }
 
-    fn rounds(problem: &StepProblem<'_>, faces: Faces, options: &ImplicitOptions) -> Self {
+    fn rounds(
+        problem: &StepProblem<'_>,
+        faces: Faces,
+        options: &ImplicitOptions,
+        tuning: &Tuning,
+    ) -> Self {
         let has_contact = problem.has_contact();
         // The multipliers of programming grow without bound where rods are nearly dependent, and are no start
         // here; those of this phase, which slivers begin with, are.
@@ -232,19 +194,21 @@ impl Phase {
             iterate_strain: f64::INFINITY,
             merit_penalty: options.stiffness,
             iterations: options.max_iterations,
-            halvings: MAX_HALVINGS_AT_LAST,
+            halvings: tuning.halvings_at_last as usize,
             rounds: match has_contact {
-                true => MAX_ROUNDS_IN_CONTACT,
+                true => tuning.rounds_in_contact as usize,
                 false => 1,
             },
-            round_tolerance: options.tolerance.max(LOOSE_TOLERANCE),
+            round_tolerance: options.tolerance.max(tuning.loose_tolerance),
             small_strain: match has_contact {
-                true => SMALL_STRAIN,
+                true => tuning.small_strain,
                 false => f64::INFINITY,
             },
             last_restoration: options.max_projections,
-            friction_tolerance: options.friction_tolerance.max(FRICTION_SETTLED),
-            friction_updates: options.max_friction_updates.min(MAX_FRICTION_UPDATES),
+            friction_tolerance: options.friction_tolerance.max(tuning.friction_settled),
+            friction_updates: options
+                .max_friction_updates
+                .min(tuning.friction_updates as usize),
             saddle: Saddle::Perturbation,
         }
     }

@@ -4,9 +4,6 @@ use super::lagrangian::Lagrangian;
 use super::problem::StepProblem;
 use crate::step::effort::SolverEffort;
 
-/// Part of the slope that a corrected step has to keep, so that it still descends.
-const KEPT_SLOPE: f64 = 0.1;
-
 impl Lagrangian {
     /// Corrects the step `-dx`, of which only the part `limit` is safe, for gaps that close faster than to
     /// first order. Keeps the correction where a larger part of the corrected step is safe; the part that is
@@ -53,7 +50,7 @@ impl Lagrangian {
         for (d, change) in self.dx.iter_mut().zip(&self.weighted) {
             *d -= change;
         }
-        if self.slope() > KEPT_SLOPE * slope {
+        if self.slope() > self.tuning.kept_slope * slope {
             self.dx.copy_from_slice(&self.uncorrected);
             return limit;
         }

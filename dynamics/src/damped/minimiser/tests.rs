@@ -8,6 +8,7 @@ use crate::damped::iterate::Iterate;
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::linear::primal::PrimalMatrix;
 use crate::step::effort::SolverEffort;
+use crate::step::tuning::Tuning;
 use crate::{CreaseSprings, ElasticSheet, ImplicitOptions, PlateBending, SheetModel, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
 
@@ -64,7 +65,7 @@ impl Scene {
     /// The augmented Lagrangian at the prediction, with multipliers of both signs.
     fn lagrangian(&self, stiffness: f64) -> Lagrangian {
         let mut problem = self.problem();
-        let mut lagrangian = Lagrangian::new(&self.model).unwrap();
+        let mut lagrangian = Lagrangian::new(&self.model, Tuning::default()).unwrap();
         lagrangian.begin(&mut problem);
         lagrangian.set_stiffness(stiffness, stiffness);
         for (e, l) in lagrangian.multipliers.iter_mut().enumerate() {
@@ -216,7 +217,7 @@ fn a_restoration_is_a_projection_to_first_order() {
             loads: &[],
             matrix: FirstMatrix::Assembled,
         };
-        let strain = Restoration::new(model).positions(
+        let strain = Restoration::new(model, Tuning::default()).positions(
             model,
             &mut matrix,
             None,
@@ -229,7 +230,7 @@ fn a_restoration_is_a_projection_to_first_order() {
         let x = iterate.x().to_vec();
         let mut tangent: Vec<f64> = (0..x.len()).map(|i| (0.3 * i as f64).cos()).collect();
         model.clear_pinned(&mut tangent);
-        let rate = Restoration::new(model).velocities(
+        let rate = Restoration::new(model, Tuning::default()).velocities(
             model,
             &mut matrix,
             &x,
@@ -277,7 +278,7 @@ fn the_minimum_does_not_depend_on_what_is_factorised() {
             ..ImplicitOptions::default()
         };
         let minimise = |is_iterative: bool| {
-            let mut minimiser = Minimiser::new(model, options.clone()).unwrap();
+            let mut minimiser = Minimiser::new(model, options.clone(), &Tuning::default()).unwrap();
             if !is_iterative {
                 minimiser.work.lagrangian.matrix.leave_iteration();
             }

@@ -6,12 +6,14 @@ use crate::damped::restoration::{FirstMatrix, Restoration, RestorationContact, R
 use crate::model::round_off::strain_floor;
 use crate::step::effort::SolverEffort;
 use crate::step::reaction::{Balance, ForceTime};
+use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, SheetModel};
 use isosheet_coords::linalg::LinalgError;
 
 /// The Lagrangian at the iterate, the restoration of the lengths, and what one step leaves to the next.
 pub(crate) struct Workspace {
     pub(super) options: ImplicitOptions,
+    pub(super) tuning: Tuning,
     pub(super) lagrangian: Lagrangian,
     pub(super) restoration: Restoration,
     /// Forces of the supports at the result.
@@ -33,14 +35,19 @@ pub(super) struct LengthGoal {
 }
 
 impl Workspace {
-    pub(super) fn new(model: &SheetModel, options: ImplicitOptions) -> Result<Self, LinalgError> {
+    pub(super) fn new(
+        model: &SheetModel,
+        options: ImplicitOptions,
+        tuning: Tuning,
+    ) -> Result<Self, LinalgError> {
         Ok(Self {
-            lagrangian: Lagrangian::new(model)?,
-            restoration: Restoration::new(model),
+            lagrangian: Lagrangian::new(model, tuning)?,
+            restoration: Restoration::new(model, tuning),
             balance: Balance::with_unassigned(model, ForceTime::End),
             remembered: vec![0.0; model.rods().len()],
             rod_stiffness: 0.0,
             options,
+            tuning,
         })
     }
 

@@ -5,14 +5,6 @@ use crate::SheetModel;
 use crate::damped::iterate::Iterate;
 use crate::linear::primal::PrimalMatrix;
 
-/// Largest number of corrections. Hanging sheets of 512 triangles (eight starts) take 11.7 factorisations a
-/// step without corrections, 9.6 with at most four and 9.7 with at most eight; tablecloths a tenth less with
-/// four.
-const MAX_CORRECTIONS: usize = 4;
-/// Part of the strain that a correction leaves from which the next one is not worth its solve. With 0.01, 0.1
-/// and 0.5 the hanging sheets take 10.5, 9.6 and 9.7 factorisations a step.
-const SLOW_CORRECTION: f64 = 0.1;
-
 impl Restoration {
     /// Brings the largest strain towards `target` with the matrix `K = H + G^T r G` that was factorised last,
     /// by corrections
@@ -36,7 +28,7 @@ impl Restoration {
     ) {
         let rods = model.rods();
         let mut strain = self.worst(model, iterate.x());
-        for _ in 0..MAX_CORRECTIONS {
+        for _ in 0..self.tuning.corrections as usize {
             if strain <= target || strain.is_nan() {
                 return;
             }
@@ -72,7 +64,7 @@ impl Restoration {
             }
             let rods_at = matrix.linearisation().map(|l| l.x);
             self.keep_momentum(model, contact.as_deref(), iterate, rods_at);
-            if strain > SLOW_CORRECTION * before {
+            if strain > self.tuning.contraction * before {
                 return;
             }
         }

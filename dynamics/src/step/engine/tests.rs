@@ -307,7 +307,8 @@ fn the_fallback_starts_without_a_history() {
         let expected = |engine: &mut Engine, memory| {
             let traits = engine.integrator.traits();
             let mut proposal = Proposal::new(&engine.model, traits);
-            let mut method = ImplicitEuler::new(&engine.model, Default::default()).unwrap();
+            let mut method =
+                ImplicitEuler::new(&engine.model, Default::default(), &engine.tuning).unwrap();
             let scene = Scene {
                 model: &engine.model,
                 contact: None,
@@ -452,7 +453,7 @@ fn check_purity(mut engine: Engine, what: &str) -> Moment {
         assert!(again.as_ref() == Ok(&first), "{what}: after {length} s");
     }
     // Nor on what its maker did before: an integrator that has proposed nothing says the same.
-    engine.integrator = engine.method.build(&engine.model).unwrap();
+    engine.integrator = engine.method.build(&engine.model, &engine.tuning).unwrap();
     let fresh = propose(&mut engine, start, h);
     assert!(fresh.as_ref() == Ok(&first), "{what}: anew");
     start.clone()
