@@ -127,10 +127,19 @@ pub struct StepPart {
     pub factorisations: usize,
 }
 
+/// Is told what the iterations of the steps do, see
+/// [`Simulation::with_trace`](isosheet_dynamics::Simulation::with_trace).
+pub type TraceSink = Box<dyn FnMut(&isosheet_dynamics::TraceEvent) + Send>;
+
 /// Watches a run.
 pub trait Watch {
     /// Called before the first step.
     fn begin(&mut self, _beginning: &Beginning) {}
+
+    /// Who is told what the iterations of the steps do; asked once, before the first step.
+    fn trace(&mut self) -> Option<TraceSink> {
+        None
+    }
 
     /// Called between the factorisations of a step. [`ControlFlow::Break`] gives the step up, writes a
     /// checkpoint of the state before it and stops.
@@ -238,6 +247,9 @@ fn simulate_in(
         vertices: facts.sheet.topology().vertex_count(),
         warnings,
     });
+    if let Some(sink) = watch.trace() {
+        stepping.simulation.set_trace(sink);
+    }
     let advanced = advance(&mut stepping, watch);
     if file.scene().output.trajectory {
         let written = write_trajectory(&open, &facts.sheet, facts.frame);

@@ -237,8 +237,13 @@ impl Simulation {
     /// ```
     #[must_use]
     pub fn with_trace(mut self, sink: impl FnMut(&TraceEvent) + Send + 'static) -> Self {
-        self.trace = Some(Box::new(sink));
+        self.set_trace(sink);
         self
+    }
+
+    /// As [`Simulation::with_trace`], in place.
+    pub fn set_trace(&mut self, sink: impl FnMut(&TraceEvent) + Send + 'static) {
+        self.trace = Some(Box::new(sink));
     }
 
     /// Adds contact with bodies and of the sheet with itself: a barrier that keeps every gap positive at

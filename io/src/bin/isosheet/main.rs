@@ -20,6 +20,7 @@ mod progress;
 mod simulate;
 mod start;
 mod sweep;
+mod trace;
 mod workers;
 mod write;
 

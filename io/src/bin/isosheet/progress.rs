@@ -3,8 +3,9 @@
 use crate::exit::Format;
 use crate::interrupt;
 use crate::message::{counted, is_quiet, is_verbose, print_progress, print_warnings, with_advice};
+use crate::trace::TraceFile;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use isosheet_io::run::{Beginning, StepPart, Tick, Watch};
+use isosheet_io::run::{Beginning, StepPart, Tick, TraceSink, Watch};
 use serde_json::{Value, json};
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
@@ -27,10 +28,11 @@ pub(crate) struct Progress {
     stepped: Instant,
     /// Steps that other processes took before.
     before: u64,
+    trace: Option<TraceFile>,
 }
 
 impl Progress {
-    pub(crate) fn new(format: Format) -> Self {
+    pub(crate) fn new(format: Format, trace: Option<TraceFile>) -> Self {
         Self {
             format,
             bar: None,
@@ -38,6 +40,7 @@ impl Progress {
             last: Instant::now(),
             stepped: Instant::now(),
             before: 0,
+            trace,
         }
     }
 
@@ -101,6 +104,10 @@ impl Watch for Progress {
             bar.reset_eta();
             self.bar = Some(bar);
         }
+    }
+
+    fn trace(&mut self) -> Option<TraceSink> {
+        self.trace.as_ref().map(TraceFile::sink)
     }
 
     fn within_step(&mut self, part: &StepPart) -> ControlFlow<()> {

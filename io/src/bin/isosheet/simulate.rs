@@ -6,6 +6,7 @@ use crate::interrupt;
 use crate::message::{counted, print_message, print_result, print_warnings, with_advice};
 use crate::open::open_page;
 use crate::progress::{Progress, event};
+use crate::trace::TraceFile;
 use clap::Args;
 use isosheet_io::run::{Outcome, RunError, Summary, resume_folder, simulate, simulate_anew};
 use isosheet_io::scene::SceneFile;
@@ -65,6 +66,10 @@ struct How {
     /// Number of threads, at most 1024; the results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     threads: u16,
+    /// Write what the iterations of every step did to a file, a JSON object a line: see the page "How a damped step
+    /// is found" of the book
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
     /// Open the page of the run in a browser, at its end
     #[arg(long)]
     open: bool,
@@ -97,10 +102,14 @@ impl How {
         run: impl FnOnce(&mut Progress) -> Result<Outcome, RunError>,
     ) -> Done {
         let format = self.format();
-        let mut progress = Progress::new(format);
+        let trace = self.trace.as_deref().map(TraceFile::create).transpose()?;
+        let mut progress = Progress::new(format, trace.clone());
         let outcome = run(&mut progress);
         progress.end();
         let outcome = outcome.map_err(Failure::from)?;
+        if let Some(trace) = trace {
+            trace.check()?;
+        }
         let (event_name, summary) = match outcome {
             Outcome::AlreadyComplete(summary) => ("already complete", summary),
             Outcome::Complete(summary) => ("complete", summary),

@@ -1,0 +1,77 @@
+//! The file of `--trace`: one line of JSON for each iteration, phase, refusal and accepted part of a step.
+
+use crate::Done;
+use crate::exit::{Code, Failure};
+use isosheet_dynamics::{TraceEvent, Tuning};
+use isosheet_io::run::TraceSink;
+use serde_json::json;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A trace that is being written.
+#[derive(Clone, Debug)]
+pub(crate) struct TraceFile {
+    path: PathBuf,
+    /// The file, or why nothing more can be written to it.
+    file: Arc<Mutex<io::Result<BufWriter<File>>>>,
+}
+
+impl TraceFile {
+    /// A new file, which replaces one of this name. Its first line has the constants of the solver.
+    pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
+        let mut file = File::create(path).map(BufWriter::new);
+        if let Ok(open) = &mut file {
+            let head = json!({
+                "event": "tuning", "version": env!("CARGO_PKG_VERSION"), "constants": Tuning::default(),
+            });
+            if let Err(error) = writeln!(open, "{head}") {
+                file = Err(error);
+            }
+        }
+        let trace = Self {
+            path: path.to_owned(),
+            file: Arc::new(Mutex::new(file)),
+        };
+        trace.check().map(|()| trace)
+    }
+
+    /// What a run tells its events.
+    pub(crate) fn sink(&self) -> TraceSink {
+        let file = Arc::clone(&self.file);
+        Box::new(move |event| {
+            let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+            if let Ok(open) = &mut *file
+                && let Err(error) = write_line(open, event)
+            {
+                *file = Err(error);
+            }
+        })
+    }
+
+    /// Refuses a trace that could not be written.
+    pub(crate) fn check(&self) -> Done {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let written = match &mut *file {
+            Ok(open) => open.flush(),
+            Err(error) => Err(io::Error::new(error.kind(), error.to_string())),
+        };
+        written.map_err(|error| {
+            let path = self.path.display();
+            let message = format!("cannot write the trace {path}: {error}");
+            Failure::new(Code::Output, message)
+                .remedy("give a file in a folder that can be written to")
+        })
+    }
+}
+
+/// Writes an event. What was decided is on the disk at once: a run that is killed leaves its trace.
+fn write_line(file: &mut BufWriter<File>, event: &TraceEvent) -> io::Result<()> {
+    serde_json::to_writer(&mut *file, event)?;
+    file.write_all(b"\n")?;
+    match event {
+        TraceEvent::Iteration { .. } | TraceEvent::GoesOn { .. } => Ok(()),
+        _ => file.flush(),
+    }
+}
