@@ -91,6 +91,28 @@ impl SparseLdlt {
         Ok(())
     }
 
+    /// Number of negative eigenvalues, by Sylvester's law of inertia: that of negative entries of `D`.
+    pub fn negative_eigenvalues(&self) -> usize {
+        match self.symbolic.raw() {
+            ch::SymbolicCholeskyRaw::Simplicial(symbolic) => {
+                let first = |column: &usize| self.factor[*column] < 0.0;
+                symbolic.col_ptr()[..self.order()]
+                    .iter()
+                    .filter(|c| first(c))
+                    .count()
+            }
+            ch::SymbolicCholeskyRaw::Supernodal(symbolic) => {
+                let factor = ch::supernodal::SupernodalLdltRef::new(symbolic, &self.factor);
+                let negative = |s: usize| {
+                    let block = factor.supernode(s).val();
+                    let columns = block.ncols();
+                    (0..columns).filter(|k| block[(*k, *k)] < 0.0).count()
+                };
+                (0..symbolic.n_supernodes()).map(negative).sum()
+            }
+        }
+    }
+
     /// Solves `A x = b` in place with the current factor.
     pub fn solve(&mut self, rhs: &mut [f64]) {
         let n = self.order();
@@ -122,6 +144,8 @@ mod tests {
         for (got, want) in b.iter().zip([1.0, 2.0, 3.0]) {
             assert!((got - want).abs() < 1e-14, "{b:?}");
         }
+        // The determinant is 2 (-1) - 3 < 0, and two of the diagonal are positive.
+        assert_eq!(ldlt.negative_eigenvalues(), 1);
         ldlt.values_mut().fill(0.0);
         assert!(ldlt.factorize().is_err());
     }

@@ -130,7 +130,7 @@ fn describe_sheet(sheet: &Sheet, model: &SheetModel, x: &[f64]) -> String {
             "{} as given (rank {} of {} rods, smallest singular value {:.1e})",
             rank.deficiency, rank.rank, rank.rods, rank.smallest
         ),
-        None => "not computed as given: more than 1000 rods".to_owned(),
+        None => "not computed as given: a position is not finite".to_owned(),
     };
     let [shortest, longest] = [
         sheet
