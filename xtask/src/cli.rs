@@ -10,6 +10,7 @@ use crate::measured::{self, MeasuredArgs};
 use crate::reproduce::{self, ReproduceArgs};
 use crate::scale::{self, ScaleArgs};
 use crate::speed_vs_error::{self, SpeedArgs};
+use crate::tuning::{self, TuningArgs};
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
@@ -57,6 +58,11 @@ pub(crate) enum Command {
     /// tables. Finished yardsticks are kept, as in `reproduce-figures`. A run that does not end is an entry
     /// of a table. The exit code is 0 unless a requirement is missed that is not declared to be.
     Locking(LockingArgs),
+    /// Measure what each constant of a damped step is worth: halve and double it over eight starts of nine kinds of
+    /// scene, and count factorisations, CPU seconds and failures
+    ///
+    /// Writes DIR/index.html, DIR/kinds.csv and DIR/constants.csv and prints the tables. What was measured is kept.
+    Tuning(TuningArgs),
     /// Put the solvers through the cases that break others, and report what they do
     ///
     /// Writes DIR/index.html (self-contained), DIR/verdicts.csv, DIR/verdicts.json and DIR/figures, and
@@ -88,6 +94,7 @@ impl Command {
             Self::SpeedVsError(args) => speed_vs_error::run(args),
             Self::Scale(args) => scale::run(args),
             Self::Locking(args) => locking::run(args),
+            Self::Tuning(args) => tuning::run(args),
             Self::HardCases(args) => hard_cases::run(args),
             Self::Measured(args) => measured::run(args),
             Self::Gallery(args) => gallery::run(args),

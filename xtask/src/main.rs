@@ -32,6 +32,7 @@ mod speed_vs_error;
 mod store;
 mod threads;
 mod timing;
+mod tuning;
 
 use clap::Parser;
 use std::process::ExitCode;

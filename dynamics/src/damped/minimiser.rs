@@ -205,8 +205,9 @@ impl Minimiser {
             Multipliers::Rounds => now.rod_scale.max(bound.rod_scale),
         };
         let slack = problem.h * problem.h * self.length_slack(problem)
-            + self.work.tuning.comparison_slack * (now.round_off + bound.round_off)
-            + self.work.tuning.comparison_slack * self.work.options.strain_tolerance * rod_scale;
+            + now.round_off
+            + bound.round_off
+            + self.work.options.strain_tolerance * rod_scale;
         now.potential <= bound.potential + slack
     }
 
@@ -220,6 +221,6 @@ impl Minimiser {
         }
         let fold = self.work.options.strain_tolerance.sqrt() * problem.model.mean_length();
         let force = &self.work.lagrangian.force;
-        self.work.tuning.fold_part * fold * force.iter().map(|f| f.abs()).sum::<f64>()
+        fold * force.iter().map(|f| f.abs()).sum::<f64>()
     }
 }

@@ -267,6 +267,7 @@ impl ProjectionStep {
             RestorationGoal {
                 tolerance,
                 max_iterations: self.options.max_projections,
+                may_be_far: false,
                 t: state.t + h,
                 loads: &[],
                 matrix: FirstMatrix::Assembled,

@@ -52,6 +52,9 @@ pub(crate) struct RestorationGoal<'a> {
     /// Largest edge strain wanted.
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: usize,
+    /// Whether the positions may be far from the lengths: then a stationary iterate is left to the caller, who
+    /// takes a shorter step.
+    pub(crate) may_be_far: bool,
     /// Time of the vertex constraints, seconds.
     pub(crate) t: f64,
     /// What loads the vertex constraints already: one-sided ones under load are kept as equalities. May be
@@ -119,7 +122,7 @@ impl Restoration {
     ) -> f64 {
         let tolerance = goal.tolerance;
         let (mut penalty, mut slow) = (self.tuning.restoration_penalty, 0_usize);
-        let max_openings = match (tolerance >= self.tuning.loose_restoration, &contact) {
+        let max_openings = match (goal.may_be_far, &contact) {
             (true, _) => 0,
             (false, Some(_)) => self.tuning.openings_in_contact as i32,
             (false, None) => i32::MAX,
@@ -144,9 +147,8 @@ impl Restoration {
             effort.iterations += 1;
             match self.solve(model, matrix, contact.as_mut(), iterate, penalty) {
                 Solved::Yes => {}
-                Solved::PenaltyTooLarge if penalty > self.tuning.smallest_penalty => {
-                    penalty = (penalty / self.tuning.penalty_step.powi(2))
-                        .max(self.tuning.smallest_penalty);
+                Solved::PenaltyTooLarge if penalty > 1.0 => {
+                    penalty = (penalty / self.tuning.penalty_step.powi(2)).max(1.0);
                     continue;
                 }
                 Solved::PenaltyTooLarge | Solved::No => break,
@@ -175,7 +177,7 @@ impl Restoration {
             let is_stationary = length < self.tuning.smallest_length
                 || slow >= self.tuning.slow_iterations as usize;
             if linear > self.tuning.slow * before
-                && penalty < self.tuning.largest_penalty
+                && penalty < self.tuning.last_stiffness
                 && slow < self.tuning.slow_iterations as usize
             {
                 // The masses hold the step back.
@@ -199,7 +201,7 @@ impl Restoration {
             } else if limit == 1.0 && after > self.tuning.contraction * before {
                 penalty *= self.tuning.penalty_step;
             }
-            penalty = penalty.clamp(self.tuning.smallest_penalty, self.tuning.largest_penalty);
+            penalty = penalty.clamp(1.0, self.tuning.last_stiffness);
             strain = self.worst(model, iterate.x());
         }
         strain
@@ -278,7 +280,7 @@ impl Restoration {
             }
             self.evaluate(model, t, iterate.x());
             let after = self.error();
-            let is_enough = after <= (1.0 - self.tuning.sufficient_decrease * length) * before;
+            let is_enough = after <= (1.0 - self.tuning.armijo * length) * before;
             if is_enough || length < self.tuning.smallest_length {
                 return (length, after);
             }
@@ -404,7 +406,8 @@ impl Restoration {
             return f64::INFINITY;
         }
         let mut rate = f64::INFINITY;
-        for _ in 0..self.tuning.velocity_passes as usize {
+        loop {
+            let before = rate;
             rods.apply(x, v, &mut self.c);
             let speed = v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             rate = self
@@ -420,8 +423,9 @@ impl Restoration {
                 &mut self.rhs,
             );
             rate = rate.max(slip) / speed.max(f64::MIN_POSITIVE);
-            if rate < 1e-15 {
-                break;
+            // A rate that is not a number ends the passes too.
+            if rate < 4.0 * f64::EPSILON || !(rate < self.tuning.contraction * before) {
+                return rate;
             }
             for e in 0..rods.len() {
                 self.w[e] = -self.axial[e] * self.c[e];
@@ -432,7 +436,6 @@ impl Restoration {
                 *vi += d;
             }
         }
-        rate
     }
 
     /// What the linearised lengths leave of the error after the whole step.

@@ -45,6 +45,7 @@ pub fn project_positions(
         RestorationGoal {
             tolerance,
             max_iterations: MAX_ITERATIONS,
+            may_be_far: false,
             t: 0.0,
             loads: &[],
             matrix: FirstMatrix::Assembled,

@@ -291,7 +291,7 @@ impl Lagrangian {
             potential,
             rod_scale,
             round_off: self.tuning.round_off_operations * f64::EPSILON * sizes
-                + self.tuning.position_operations * squares,
+                + self.tuning.round_off_operations.powi(2) * squares,
         }
     }
 
@@ -663,7 +663,7 @@ impl Lagrangian {
         }
         model.clear_pinned(&mut self.dx);
         let mut quotient = 0.0;
-        for _ in 0..self.tuning.curvature_iterations as usize {
+        for _ in 0..self.tuning.inner_iterations as usize {
             self.apply_pressure(model);
             self.difference.copy_from_slice(&self.weighted);
             let (b, dx) = (&self.difference, &mut self.dx);

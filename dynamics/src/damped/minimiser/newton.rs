@@ -224,10 +224,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// Sets the residual of a search direction; what the direction promises.
     fn judge(&mut self, direction: &Direction) -> Quality {
         let Direction { before, slope, .. } = direction;
-        let tolerance = match self.round {
-            0 => self.work.options.tolerance,
-            _ => self.phase.round_tolerance,
-        };
+        let tolerance = self.work.options.tolerance;
         if slope.abs() <= before.round_off + self.noise(before) {
             self.residual = 0.0;
             return Quality::RoundOff;
@@ -291,7 +288,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             }
             lagrangian.keep_multipliers();
             let mut violation = None;
-            for _ in 0..tuning.constraint_passes as usize {
+            for _ in 0..tuning.inner_iterations as usize {
                 lagrangian.set_gradient(self.problem);
                 if lagrangian.solve(model, self.effort).is_err() {
                     violation = None;
@@ -299,7 +296,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 }
                 violation = Some(lagrangian.improve_multipliers(model, goal));
                 let [change, largest] = lagrangian.vertex_rows.update_after(&lagrangian.dx);
-                if change <= tuning.multipliers_settled * largest {
+                if change <= options.tolerance * largest {
                     break;
                 }
             }
@@ -326,9 +323,9 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// When the multipliers of a step are good enough: once the linearised lengths are within the tolerance.
     fn multiplier_goal(&self) -> MultiplierGoal {
         MultiplierGoal {
-            max_iterations: self.work.tuning.multiplier_iterations as usize,
+            max_iterations: self.work.tuning.inner_iterations as usize,
             violation: self.work.strain_tolerance(self.problem),
-            change: self.work.tuning.multipliers_settled,
+            change: self.work.options.tolerance,
             longest: self.work.tuning.longest_iteration,
         }
     }
@@ -412,7 +409,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
         }
         let to = LengthGoal {
             strain: self.phase.iterate_strain,
-            max_iterations: self.work.tuning.iterate_restoration as usize,
+            max_iterations: self.work.tuning.restorations as usize,
             matrix: FirstMatrix::Factorised,
         };
         self.work.restore(self.problem, to, self.effort) <= to.strain

@@ -78,11 +78,10 @@ pub(super) struct Phase {
     pub(super) merit_penalty: f64,
     /// Iterations until the next round, continuation or failure.
     pub(super) iterations: usize,
+    /// Largest number of halvings of a search direction; those of the last phases end at round-off.
     pub(super) halvings: usize,
     /// Rounds of the method of multipliers.
     pub(super) rounds: usize,
-    /// Tolerance of the rounds after the first.
-    pub(super) round_tolerance: f64,
     /// Strain from which the restoration at the end is a small displacement.
     pub(super) small_strain: f64,
     /// Largest number of iterations of this restoration.
@@ -144,10 +143,7 @@ impl Phase {
             start: Start::Lower,
             multipliers: Multipliers::Solved,
             remembers: !has_contact,
-            iterate_strain: match has_contact {
-                true => tuning.iterate_strain_in_contact,
-                false => tuning.iterate_strain,
-            },
+            iterate_strain: tuning.iterate_strain,
             merit_penalty: match has_contact {
                 true => 0.0,
                 false => options.stiffness,
@@ -156,18 +152,14 @@ impl Phase {
                 true => (options.max_iterations / tuning.contact_iteration_share as usize).max(1),
                 false => options.max_iterations,
             },
-            halvings: match has_contact {
-                true => tuning.halvings_in_contact as usize,
-                false => tuning.halvings as usize,
-            },
+            halvings: tuning.halvings as usize,
             rounds: 1,
-            round_tolerance: options.tolerance,
             small_strain: match has_contact {
                 // Iterates are exact enough.
                 true => f64::INFINITY,
                 false => tuning.small_strain,
             },
-            last_restoration: tuning.last_restoration as usize,
+            last_restoration: tuning.restorations as usize,
             friction_tolerance: options.friction_tolerance,
             friction_updates: options.max_friction_updates,
             saddle: match has_contact {
@@ -194,21 +186,18 @@ impl Phase {
             iterate_strain: f64::INFINITY,
             merit_penalty: options.stiffness,
             iterations: options.max_iterations,
-            halvings: tuning.halvings_at_last as usize,
+            halvings: f64::MANTISSA_DIGITS as usize,
             rounds: match has_contact {
                 true => tuning.rounds_in_contact as usize,
                 false => 1,
             },
-            round_tolerance: options.tolerance.max(tuning.loose_tolerance),
             small_strain: match has_contact {
                 true => tuning.small_strain,
                 false => f64::INFINITY,
             },
             last_restoration: options.max_projections,
             friction_tolerance: options.friction_tolerance.max(tuning.friction_settled),
-            friction_updates: options
-                .max_friction_updates
-                .min(tuning.friction_updates as usize),
+            friction_updates: options.max_friction_updates,
             saddle: Saddle::Perturbation,
         }
     }
@@ -220,7 +209,6 @@ impl Phase {
             name: "exact rounds",
             start: Start::Beginning,
             remembers: false,
-            round_tolerance: options.tolerance,
             small_strain: self.small_strain.min(options.strain_tolerance),
             ..self
         }

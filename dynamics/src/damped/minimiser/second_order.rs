@@ -29,7 +29,6 @@ impl Lagrangian {
         limit: f64,
         effort: &mut SolverEffort<'_>,
     ) -> f64 {
-        let slope = self.slope();
         self.uncorrected.copy_from_slice(&self.dx);
         for (w, d) in self.weighted.iter_mut().zip(&self.dx) {
             *w = -d;
@@ -50,7 +49,7 @@ impl Lagrangian {
         for (d, change) in self.dx.iter_mut().zip(&self.weighted) {
             *d -= change;
         }
-        if self.slope() > self.tuning.kept_slope * slope {
+        if self.slope() >= 0.0 {
             self.dx.copy_from_slice(&self.uncorrected);
             return limit;
         }

@@ -213,6 +213,7 @@ fn a_restoration_is_a_projection_to_first_order() {
         let goal = RestorationGoal {
             tolerance: 1e-13,
             max_iterations: 30,
+            may_be_far: false,
             t: 0.0,
             loads: &[],
             matrix: FirstMatrix::Assembled,

@@ -70,6 +70,7 @@ impl Workspace {
         let goal = RestorationGoal {
             tolerance: to.strain,
             max_iterations: to.max_iterations.min(self.options.max_projections),
+            may_be_far: !is_last,
             t,
             loads: &lagrangian.vertex_rows.multipliers,
             matrix: to.matrix,

@@ -28,7 +28,7 @@ impl Restoration {
     ) {
         let rods = model.rods();
         let mut strain = self.worst(model, iterate.x());
-        for _ in 0..self.tuning.corrections as usize {
+        loop {
             if strain <= target || strain.is_nan() {
                 return;
             }

@@ -1,0 +1,293 @@
+//! `tuning`: what each constant of a damped step is worth, measured by changing it.
+
+use crate::interrupt;
+use crate::progress::Progress;
+use crate::report::{Cell, Cost, Effort, Options, Page, Part, Table, excerpt, machine};
+use crate::runs::FigureScene;
+use crate::store::Store;
+use anyhow::{Context, Result};
+use clap::Args;
+use cpu_time::ThreadTime;
+use isosheet_dynamics::{Constant, Tuning};
+use isosheet_io::scene::StartingPoint;
+use maud::html;
+use serde::{Deserialize, Serialize};
+
+/// Arguments of `tuning`.
+#[derive(Debug, Args)]
+pub(crate) struct TuningArgs {
+    #[command(flatten)]
+    options: Options,
+}
+
+/// A kind of scene, of which each start has other small displacements.
+struct Kind {
+    name: &'static str,
+    /// A file of `xtask/scenes`, or a kind of `isosheet new`.
+    scene: &'static str,
+    edits: &'static [&'static str],
+    /// Size of the displacements as a part of the mean edge length.
+    perturbation: f64,
+    steps: usize,
+}
+
+/// All kinds.
+const KINDS: [Kind; 9] = [
+    Kind {
+        name: "hanging",
+        scene: "fig12",
+        edits: &["sheet.mesh.square.level=3", "contact={self_contact=false}"],
+        perturbation: 1e-3,
+        steps: 60,
+    },
+    Kind {
+        name: "bending",
+        scene: "fig12",
+        edits: &[
+            "contact={self_contact=false}",
+            "sheet.bending={hinges={rigidity=5e-4}}",
+        ],
+        perturbation: 1e-3,
+        steps: 60,
+    },
+    Kind {
+        name: "drape",
+        scene: "fig15",
+        edits: &["contact.self_contact=false"],
+        perturbation: 1e-3,
+        steps: 45,
+    },
+    Kind {
+        name: "drape, itself",
+        scene: "fig14",
+        edits: &[
+            "sheet.mesh.rectangle.columns=8",
+            "sheet.mesh.rectangle.rows=8",
+        ],
+        perturbation: 1e-3,
+        steps: 60,
+    },
+    Kind {
+        name: "feed",
+        scene: "fig16",
+        edits: &[],
+        perturbation: 1e-4,
+        steps: 160,
+    },
+    Kind {
+        name: "stamp",
+        scene: "fig13",
+        edits: &["sheet.mesh.square.level=2"],
+        perturbation: 1e-4,
+        steps: 90,
+    },
+    Kind {
+        name: "elastic clamp",
+        scene: "clamp",
+        edits: &[],
+        perturbation: 1e-4,
+        steps: 60,
+    },
+    Kind {
+        name: "crease pattern",
+        scene: "fig17",
+        edits: &["sheet.mesh.miura.columns=6", "sheet.mesh.miura.rows=6"],
+        perturbation: 1e-4,
+        steps: 60,
+    },
+    Kind {
+        name: "conservative",
+        scene: "fig12",
+        edits: &[
+            "contact={self_contact=false}",
+            "sheet.damping=0.0",
+            "method={integrator=\"energy_momentum\",step=0.002,fallback={implicit_euler={}}}",
+        ],
+        perturbation: 0.1,
+        steps: 60,
+    },
+];
+
+/// What all starts of a kind cost.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Measured {
+    cost: Cost,
+    /// Runs that ended early.
+    failures: usize,
+}
+
+/// The kinds with one constant changed.
+#[derive(Clone, Debug)]
+struct Changed {
+    constant: &'static Constant,
+    /// With half the value, and with twice the value.
+    kinds: [Vec<Measured>; 2],
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &TuningArgs) -> Result<()> {
+    let store = args.options.open("tuning")?;
+    let starts = store.effort.quick_or(1, 8);
+    let base = all_kinds(&store, "as it is", Tuning::default(), starts)?;
+    let constants = match store.effort {
+        Effort::Quick => &Tuning::TABLE[..1],
+        _ => Tuning::TABLE,
+    };
+    let change = |constant: &'static Constant| {
+        let with = |factor: f64| {
+            let mut tuning = Tuning::default();
+            *(constant.place)(&mut tuning) *= factor;
+            let name = format!("{} x{factor}", constant.name);
+            all_kinds(&store, &name, tuning, starts)
+        };
+        let kinds = [with(0.5)?, with(2.0)?];
+        Ok(Changed { constant, kinds })
+    };
+    let changed: Vec<Changed> = constants.iter().map(change).collect::<Result<_>>()?;
+    let tables = [base_table(&base, starts), table(&base, &changed)];
+    for table in &tables {
+        print!("{}", table.text());
+        table.write_to(&store.path(&format!("{}.csv", table.name)))?;
+    }
+    let about = format!(
+        "Each constant of the damped methods is halved and doubled over {starts} starts of {} kinds of scene. Runs are chaotic: ratios \
+         of a kind that differ from 1 by less than a tenth are noise. Machine: {}.",
+        KINDS.len(),
+        machine()
+    );
+    let body = html! { p { (about) } @for table in &tables { (table) } };
+    let page = Page {
+        heading: "Tuning",
+        ..Page::new("isosheet: tuning", body)
+    };
+    page.write(&store, "index.html")?;
+    let parts = [
+        Part::text("about", &about),
+        Part::table("kinds", &tables[0]),
+        Part::table("constants", &tables[1]),
+    ];
+    excerpt::write(&store, "tuning", &parts)
+}
+
+/// Measures all kinds of scene with some constants.
+fn all_kinds(store: &Store, name: &str, tuning: Tuning, starts: u64) -> Result<Vec<Measured>> {
+    let file = name.replace(' ', "-");
+    store.keep(&store.unit(file, name), |_| {
+        let bar = Progress::start(name, KINDS.len());
+        let mut all = Vec::new();
+        for kind in &KINDS {
+            let mut measured = Measured::default();
+            for seed in 1..=starts {
+                interrupt::check()?;
+                kind.run(seed, tuning, store.effort, &mut measured)
+                    .with_context(|| kind.name)?;
+            }
+            all.push(measured);
+            bar.step();
+        }
+        bar.finish("measured");
+        Ok(all)
+    })
+}
+
+impl Kind {
+    fn run(&self, seed: u64, tuning: Tuning, effort: Effort, sum: &mut Measured) -> Result<()> {
+        let mut edits: Vec<String> = self.edits.iter().map(|&edit| edit.to_owned()).collect();
+        let Self { perturbation, .. } = self;
+        edits.push(format!(
+            "sheet.start={{perturbation={perturbation:?},seed={seed}}}"
+        ));
+        let start = StartingPoint::ALL.iter().find(|s| s.name() == self.scene);
+        let scene = match start {
+            Some(start) => FigureScene::starting_at(*start, &edits)?,
+            None => FigureScene::of(self.scene, self.name, &edits)?,
+        };
+        let mut simulation = scene.setup()?.start()?.with_tuning(tuning)?;
+        let clock = ThreadTime::now();
+        for _ in 0..effort.quick_or(3, self.steps) {
+            match simulation.step(scene.frame()) {
+                Ok(report) => sum.cost.add(&report),
+                Err(_) => {
+                    sum.failures += 1;
+                    break;
+                }
+            }
+        }
+        sum.cost.cpu += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+}
+
+fn base_table(base: &[Measured], starts: u64) -> Table {
+    Table::of(
+        format!("What {starts} starts of each kind cost with the constants as they are."),
+        KINDS.iter().zip(base),
+        &[
+            ("kind", &|(k, _)| k.name.into()),
+            ("steps", &|(_, m)| m.cost.steps.into()),
+            ("factorisations per step", &|(_, m)| {
+                m.cost.factorisations_per_step().into()
+            }),
+            ("CPU seconds", &|(_, m)| m.cost.cpu.into()),
+            ("failures", &|(_, m)| m.failures.into()),
+        ],
+    )
+    .named("kinds")
+}
+
+/// The geometric mean over the kinds of a ratio, and the largest one with its kind.
+fn ratios(
+    base: &[Measured],
+    changed: &[Measured],
+    of: impl Fn(&Cost) -> f64,
+) -> (f64, f64, &'static str) {
+    let ratio = |(kind, (b, c)): (&Kind, (&Measured, &Measured))| {
+        let per_step = |m: &Measured| of(&m.cost) / m.cost.steps.max(1) as f64;
+        (per_step(c) / per_step(b), kind.name)
+    };
+    let all: Vec<(f64, &str)> = KINDS
+        .iter()
+        .zip(base.iter().zip(changed))
+        .map(ratio)
+        .collect();
+    let mean = all.iter().map(|(r, _)| r.ln()).sum::<f64>() / all.len() as f64;
+    let distance = |r: &f64| r.ln().abs();
+    let far = all
+        .iter()
+        .max_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0)));
+    let (far, name) = far.copied().unwrap_or((1.0, ""));
+    (mean.exp(), far, name)
+}
+
+fn table(base: &[Measured], changed: &[Changed]) -> Table {
+    let factorisations = |c: &Changed, k: usize| {
+        let (mean, far, kind) = ratios(base, &c.kinds[k], |cost| cost.factorisations as f64);
+        Cell::from(format!("{mean:.2} ({kind} {far:.2})"))
+    };
+    let cpu = |c: &Changed, k: usize| {
+        let (mean, ..) = ratios(base, &c.kinds[k], |cost| cost.cpu);
+        Cell::from(format!("{mean:.2}"))
+    };
+    let failures = |of: &[Measured]| of.iter().map(|m| m.failures).sum::<usize>();
+    let more = |c: &Changed, k: usize| {
+        let more = failures(&c.kinds[k]) as i64 - failures(base) as i64;
+        Cell::from(format!("{more:+}"))
+    };
+    Table::of(
+        "The constants, with factorisations a step, CPU seconds a step and failures where a constant is halved and doubled, against those \
+         with the constants as they are: geometric means over the kinds, in brackets the kind that differs most.",
+        changed,
+        &[
+            ("constant", &|c| c.constant.name.into()),
+            ("value", &|c| c.constant.value.into()),
+            ("factorisations, halved", &|c| factorisations(c, 0)),
+            ("doubled", &|c| factorisations(c, 1)),
+            ("CPU, halved", &|c| cpu(c, 0)),
+            ("CPU, doubled", &|c| cpu(c, 1)),
+            ("failures, halved", &|c| more(c, 0)),
+            ("failures, doubled", &|c| more(c, 1)),
+            ("what it is", &|c| c.constant.reason.trim().into()),
+        ],
+    )
+    .named("constants")
+}
