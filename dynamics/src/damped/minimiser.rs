@@ -205,9 +205,10 @@ impl Minimiser {
             Multipliers::Rounds => now.rod_scale.max(bound.rod_scale),
         };
         let slack = problem.h * problem.h * self.length_slack(problem)
-            + now.round_off
-            + bound.round_off
-            + self.work.options.strain_tolerance * rod_scale;
+            + self.work.tuning.comparison_slack
+                * (now.round_off
+                    + bound.round_off
+                    + self.work.options.strain_tolerance * rod_scale);
         now.potential <= bound.potential + slack
     }
 

@@ -118,6 +118,9 @@ tuning! {
     /// Penalty, over the masses, that a restoration starts from: a Gauss-Newton step to round-off wherever
     /// the rods are independent.
     restoration_penalty = 1e9,
+    /// Allowance for round-off, in units of its estimate, when a minimum is compared with the start of the step. With 1 a
+    /// triangle that hangs at rest counts as raised, and the next phase loses five digits of the rods' forces.
+    comparison_slack = 10.0,
     /// Factor by which a restoration changes its penalty; its square where the masses hold the step back.
     penalty_step = 10.0,
     /// Part of the length error that an iteration leaves above which it is slow: a correction with the matrix
