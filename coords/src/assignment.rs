@@ -17,17 +17,17 @@
 //!
 //! The union-jack sheets of the paper have no closures from any start vertex; a general mesh does.
 
+mod error;
 mod options;
 mod propagation;
 mod rules;
 
+pub use error::AssignmentError;
 pub use options::{AssignmentOptions, Degenerate};
 pub use rules::{Assignment, Closure, Placing, Rule};
 
-use isosheet_mesh::wording::brief;
-use isosheet_mesh::{Advice, Sheet, VertexId};
+use isosheet_mesh::{Sheet, VertexId};
 use propagation::Propagation;
-use thiserror::Error;
 
 /// Where the propagation of `sys_coord_assnmt_single` starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,58 +36,6 @@ pub enum Start {
     Pinned(VertexId),
     /// A free vertex with its three Cartesian coordinates.
     Free(VertexId),
-}
-
-/// Why coordinates cannot be assigned.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum AssignmentError {
-    /// A pin or start names a vertex that the mesh does not have.
-    #[error("{vertex} does not exist, the mesh has {count} vertices")]
-    NoSuchVertex {
-        /// The vertex.
-        vertex: VertexId,
-        /// Number of vertices.
-        count: usize,
-    },
-    /// A vertex is listed twice among pins and starts.
-    #[error("{vertex} is listed twice among pins and starts")]
-    Repeated {
-        /// The vertex.
-        vertex: VertexId,
-    },
-    /// A start vertex lies in a component that already has a pin or a start.
-    #[error("start {vertex} lies in a component that has a pin or another start")]
-    UnusedStart {
-        /// The vertex.
-        vertex: VertexId,
-    },
-    /// The state has the wrong number of values.
-    #[error("the state has {found} values, expected {expected} (three per vertex)")]
-    StateLength {
-        /// Values given.
-        found: usize,
-        /// Values needed.
-        expected: usize,
-    },
-    /// An option is out of range.
-    #[error("option volume is {volume}", volume = brief(*volume))]
-    Volume {
-        /// Its value.
-        volume: f64,
-    },
-}
-
-impl Advice for AssignmentError {
-    fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::Repeated { .. } => Some("list it once"),
-            Self::UnusedStart { .. } => Some("remove it"),
-            Self::Volume { .. } => {
-                Some("give a value from 0 to 1, the volumes that three unit vectors can span")
-            }
-            Self::NoSuchVertex { .. } | Self::StateLength { .. } => None,
-        }
-    }
 }
 
 /// `sys_coord_assnmt_single`: assign system coordinates from one start vertex

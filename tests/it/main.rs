@@ -17,6 +17,7 @@ mod impacts;
 mod invariance;
 mod locking;
 mod materials;
+mod modules;
 mod orders;
 mod origami;
 mod robust;

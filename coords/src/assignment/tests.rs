@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::testing::{isotropic_square, random_sheet};
-use isosheet_mesh::EdgeId;
+use isosheet_mesh::{Advice, EdgeId};
 use proptest::prelude::*;
 
 /// The algorithm of Sec. 3.3 as printed: quadratic, no priority structure. Vertex, front, known neighbours.

@@ -4,7 +4,82 @@
 //! which handbooks and data sheets agree to a few per cent. Paper, cloth and leather differ from sort to sort by
 //! a factor of two, and from direction to direction as well: the numbers are typical ones.
 
-use super::{Isotropic, Material, NamedMaterial};
+use super::{Isotropic, Material};
+use isosheet_mesh::Advice;
+
+/// A material of the catalogue.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct NamedMaterial {
+    /// Its name.
+    pub name: &'static str,
+    /// What the sheet is: mass, thickness, kind.
+    pub form: &'static str,
+    /// Where the numbers are from.
+    pub source: &'static str,
+    /// The numbers.
+    pub material: Material,
+}
+
+/// A name that no material has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no material has the name \"{name}\"; the names, nearest first, are {}", names.join(", "))]
+pub struct UnknownMaterial {
+    /// The name that was asked for.
+    pub name: String,
+    /// The names of all materials, those that are most alike first.
+    pub names: Vec<&'static str>,
+}
+
+impl Advice for UnknownMaterial {
+    fn advice(&self) -> Option<&'static str> {
+        Some(
+            "choose one of them, or give the numbers of your own material with `Material::isotropic`",
+        )
+    }
+}
+
+impl Material {
+    /// The material of a name of the catalogue, such as `office paper`. Capital letters, and `-` or `_` for a
+    /// space, make no difference.
+    ///
+    /// # Errors
+    /// [`UnknownMaterial`], with all names.
+    pub fn named(name: &str) -> Result<Self, UnknownMaterial> {
+        let wanted = plain(name);
+        let found = Self::catalogue().iter().find(|m| plain(m.name) == wanted);
+        match found {
+            Some(found) => Ok(found.material),
+            None => {
+                let mut names: Vec<&'static str> = Self::names().collect();
+                names.sort_by(|a, b| {
+                    let likeness = |name| strsim::jaro_winkler(&plain(name), &wanted);
+                    likeness(b).total_cmp(&likeness(a))
+                });
+                Err(UnknownMaterial {
+                    name: name.to_owned(),
+                    names,
+                })
+            }
+        }
+    }
+
+    /// The names of all materials.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        Self::catalogue().iter().map(|m| m.name)
+    }
+
+    /// All materials that have a name.
+    pub fn catalogue() -> &'static [NamedMaterial] {
+        ALL
+    }
+}
+
+/// A name as it is compared.
+pub(super) fn plain(name: &str) -> String {
+    let name = name.trim().to_lowercase().replace(['-', '_'], " ");
+    name.replace("aluminum", "aluminium")
+}
 
 /// Makes the constructors of materials, and [`ALL`] of the same text.
 macro_rules! catalogue {
@@ -22,7 +97,7 @@ macro_rules! catalogue {
         }
 
         /// All of them, in groups.
-        pub(super) const ALL: &[NamedMaterial] = &[
+        const ALL: &[NamedMaterial] = &[
             $(NamedMaterial {
                 name: $name,
                 form: $form,

@@ -7,9 +7,11 @@ pub(crate) mod plate_bending;
 #[cfg(test)]
 mod tests;
 
+pub use catalogue::{NamedMaterial, UnknownMaterial};
+
 use crate::options::OptionsError;
 use crate::{ElasticSheet, ElasticSheetError};
-use isosheet_mesh::{Advice, Sheet};
+use isosheet_mesh::Sheet;
 use serde::{Deserialize, Serialize};
 
 /// A material in the form of a sheet.
@@ -47,20 +49,6 @@ pub struct Material {
     pub strain_limit: f64,
 }
 
-/// A material of the catalogue.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct NamedMaterial {
-    /// Its name.
-    pub name: &'static str,
-    /// What the sheet is: mass, thickness, kind.
-    pub form: &'static str,
-    /// Where the numbers are from.
-    pub source: &'static str,
-    /// The numbers.
-    pub material: Material,
-}
-
 /// A sheet of one isotropic material, for [`Material::isotropic`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -92,24 +80,6 @@ impl Isotropic {
             poisson,
             strain_limit: Material::STRAIN_LIMIT,
         }
-    }
-}
-
-/// A name that no material has.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no material has the name \"{name}\"; the names, nearest first, are {}", names.join(", "))]
-pub struct UnknownMaterial {
-    /// The name that was asked for.
-    pub name: String,
-    /// The names of all materials, those that are most alike first.
-    pub names: Vec<&'static str>,
-}
-
-impl Advice for UnknownMaterial {
-    fn advice(&self) -> Option<&'static str> {
-        Some(
-            "choose one of them, or give the numbers of your own material with `Material::isotropic`",
-        )
     }
 }
 
@@ -158,44 +128,4 @@ impl Material {
             .softened(self.rigidity)?
             .with_limit(self.strain_limit)
     }
-
-    /// The material of a name of the catalogue, such as `office paper`. Capital letters, and `-` or `_` for a
-    /// space, make no difference.
-    ///
-    /// # Errors
-    /// [`UnknownMaterial`], with all names.
-    pub fn named(name: &str) -> Result<Self, UnknownMaterial> {
-        let wanted = plain(name);
-        let found = Self::catalogue().iter().find(|m| plain(m.name) == wanted);
-        match found {
-            Some(found) => Ok(found.material),
-            None => {
-                let mut names: Vec<&'static str> = Self::names().collect();
-                names.sort_by(|a, b| {
-                    let likeness = |name| strsim::jaro_winkler(&plain(name), &wanted);
-                    likeness(b).total_cmp(&likeness(a))
-                });
-                Err(UnknownMaterial {
-                    name: name.to_owned(),
-                    names,
-                })
-            }
-        }
-    }
-
-    /// The names of all materials.
-    pub fn names() -> impl Iterator<Item = &'static str> {
-        Self::catalogue().iter().map(|m| m.name)
-    }
-
-    /// All materials that have a name.
-    pub fn catalogue() -> &'static [NamedMaterial] {
-        catalogue::ALL
-    }
-}
-
-/// A name as it is compared.
-fn plain(name: &str) -> String {
-    let name = name.trim().to_lowercase().replace(['-', '_'], " ");
-    name.replace("aluminum", "aluminium")
 }

@@ -1,3 +1,4 @@
+use super::catalogue::plain;
 use super::*;
 
 /// Materials whose thickness is a part of their form: name, thickness (m), Young's modulus (Pa).

@@ -219,8 +219,3 @@ fn by_extension<T: Copy>(
             .collect(),
     })
 }
-
-/// The path without its extension: the folder of the files of single frames.
-fn folder_of(path: &Path) -> PathBuf {
-    path.with_extension("")
-}

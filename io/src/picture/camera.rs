@@ -177,6 +177,11 @@ impl Camera {
     }
 }
 
+/// The centre of gravity of a triangle.
+pub(super) fn centre(corners: &[[f64; 3]; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0)
+}
+
 /// Unit normal of a triangle.
 pub(super) fn normal(corners: &[[f64; 3]; 3]) -> [f64; 3] {
     unit(&cross(

@@ -1,6 +1,6 @@
 //! Ambient occlusion: how much of the surroundings a point sees.
 
-use super::camera::normal;
+use super::camera::{centre, normal};
 use super::pieces::Piece;
 use super::solid::Triangles;
 use super::vector::{axpy, cross, dot, sub, unit};
@@ -137,7 +137,7 @@ fn spots(pieces: &[Piece], scene: &Triangles) -> (Vec<Spot>, Vec<[usize; 3]>) {
             let flat = normal(&points).map(|c| side * c);
             let skin = scene.skin(piece.face);
             let n = skin.map_or(flat, |skin| skin.normal(&flat, &scene.x[vertex]));
-            let centroid = super::sheet::centre(&points);
+            let centroid = centre(&points);
             let group = (first..spots.len()).find(|&s| dot(&unit(&spots[s].normal), &n) > SMOOTH);
             let group = group.unwrap_or_else(|| {
                 spots.push(Spot {

@@ -1,6 +1,6 @@
 //! Faces of bodies cut into pieces that are small in the picture.
 
-use super::camera::{Camera, normal};
+use super::camera::{Camera, centre, normal};
 use super::solid::{Skin, Triangles};
 use super::vector::{dot, sub};
 use std::collections::HashMap;
@@ -96,7 +96,7 @@ impl Cutter<'_> {
     /// The piece with the side from which it is seen, unless that is never seen.
     fn seen(&self, piece: Piece, x: &[[f64; 3]], skin: Option<&Skin>) -> Option<Piece> {
         let points = piece.corners.map(|v| x[v]);
-        let centre = [0, 1, 2].map(|k| (points[0][k] + points[1][k] + points[2][k]) / 3.0);
+        let centre = centre(&points);
         let back = dot(&normal(&points), &self.camera.viewer(&centre)) < 0.0;
         let is_hidden = back && skin.is_some_and(Skin::hides_backs);
         (!is_hidden).then_some(Piece { back, ..piece })

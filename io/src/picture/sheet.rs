@@ -1,6 +1,6 @@
 //! A shaded picture of a sheet.
 
-use super::camera::{Camera, normal};
+use super::camera::{Camera, centre, normal};
 use super::canvas::{Image, Light, light};
 use super::error::PictureError;
 use super::occlusion::Occlusion;
@@ -353,11 +353,6 @@ impl<'a> Painter<'a> {
         }
         strokes
     }
-}
-
-/// The centre of gravity of a triangle.
-pub(super) fn centre(corners: &[[f64; 3]; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! A shaded picture of a sheet as a vector drawing.
 
-use super::camera::{Camera, normal};
+use super::camera::{Camera, centre, normal};
 use super::canvas::srgb;
 use super::error::PictureError;
-use super::sheet::{INK, LIFT, Look, Painter, SheetPicture, centre, light_on};
+use super::sheet::{INK, LIFT, Look, Painter, SheetPicture, light_on};
 use super::solid::{Skin, Triangles};
 use super::vector::axpy;
 use std::fmt::Write;

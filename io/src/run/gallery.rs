@@ -1,15 +1,17 @@
 //! One page of many runs.
 
+mod entry;
 mod error;
 mod page;
 
+pub use entry::GalleryEntry;
 pub use error::GalleryError;
 
 use super::folder::{RunFolder, holds_other_files, remove_unfinished};
-use super::{Film, FilmOptions, Recording, Summary};
+use super::{Film, FilmOptions, Recording};
 use crate::format::{read_json, write_atomically, write_json};
 use crate::picture::PictureError;
-use serde::{Deserialize, Serialize};
+use entry::RUNS;
 use std::collections::HashSet;
 use std::fs;
 use std::io::Write;
@@ -38,30 +40,9 @@ pub struct Gallery {
     pub left_out: Vec<(PathBuf, String)>,
 }
 
-/// A run in a gallery.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct GalleryEntry {
-    /// The name of its files, made of ASCII letters, digits, `-`, `_` and `.`.
-    pub name: String,
-    /// The folder of the run, as it was found.
-    pub folder: PathBuf,
-    /// The name of the run: that of its folder without `-run` at its end.
-    pub title: String,
-    /// The comment at the top of the scene, up to the first line that ends with a full stop; empty without
-    /// one.
-    pub caption: String,
-    /// The time that was reached, seconds.
-    pub t: f64,
-    /// Number of vertices.
-    pub vertices: usize,
-    /// What came of the run, if it is complete.
-    pub summary: Option<Summary>,
-}
-
 impl Gallery {
     const INDEX: &'static str = "index.html";
     const DATA: &'static str = "gallery.json";
-    const RUNS: &'static str = "runs";
 
     /// Makes the gallery of all runs in `folders` and beneath them, in the order of `folders` and, beneath
     /// each, of names. Links to other folders are not followed. After a kill the same call makes the gallery
@@ -84,7 +65,7 @@ impl Gallery {
             return Err(GalleryError::NoRuns { folders });
         }
         let before = Self::before(out)?;
-        for folder in [out.to_owned(), out.join(Self::RUNS)] {
+        for folder in [out.to_owned(), out.join(RUNS)] {
             // Files that cannot be removed are in nobody's way.
             let _ = remove_unfinished(&folder);
         }
@@ -105,7 +86,7 @@ impl Gallery {
                 Err(reason) => gallery.left_out.push((folder, reason)),
             }
         }
-        let page = page::page(&gallery);
+        let page = page::page(&gallery.entries, &gallery.left_out);
         write_atomically(&out.join(Self::INDEX), |w| w.write_all(page.as_bytes()))?;
         write_json(&out.join(Self::DATA), &gallery.entries)?;
         for old in before.iter().filter(|old| !names.contains(&old.name)) {
@@ -124,7 +105,7 @@ impl Gallery {
             return Ok(read_json(&data)?);
         }
         let path = || out.to_owned();
-        match holds_other_files(out, &[Self::RUNS, Self::INDEX]) {
+        match holds_other_files(out, &[RUNS, Self::INDEX]) {
             Ok(false) => Ok(Vec::new()),
             Ok(true) => Err(GalleryError::Foreign { folder: path() }),
             Err(source) => Err(GalleryError::Read {
@@ -137,7 +118,7 @@ impl Gallery {
 
 /// Page and picture of a run, relative to the gallery.
 fn files(name: &str) -> [PathBuf; 2] {
-    ["html", "png"].map(|extension| Path::new(Gallery::RUNS).join(format!("{name}.{extension}")))
+    ["html", "png"].map(|extension| Path::new(RUNS).join(format!("{name}.{extension}")))
 }
 
 /// Adds a folder if it is that of a run, and returns the folders beneath it otherwise.

@@ -14,11 +14,14 @@
 
 mod engine;
 mod error;
+mod run;
+mod shell;
 mod table;
 mod variation;
 
 pub use engine::Engine;
 pub use error::{RefusedRuns, SweepError};
+pub use run::SweepRun;
 pub use variation::{Variation, VariationError};
 
 pub(crate) use table::SweepTable;
@@ -26,7 +29,7 @@ pub(crate) use table::SweepTable;
 use super::folder::holds_other_files;
 use crate::format::write_atomically;
 use crate::scene::{KeyPart, SceneFile, SceneFileError};
-use engine::shell_word;
+use shell::shell_word;
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -41,23 +44,10 @@ pub struct Sweep {
     count: usize,
 }
 
-/// One run of a sweep.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SweepRun {
-    /// Its number, from 0.
-    pub number: usize,
-    /// The name of its folder in that of the sweep: the number with at least three digits.
-    pub folder: String,
-    /// The value of each key of the sweep, as TOML.
-    pub values: Vec<String>,
-    /// What the sweep changes in the scene, as `key=value`: the edits that all runs have, and its own.
-    pub edits: Vec<String>,
-}
-
 impl Sweep {
     /// Most runs of a sweep: a hundred times the longest array that Slurm accepts as it is installed (1001),
     /// and a check of all of them takes minutes. A larger number is taken for a mistake.
-    pub const MOST_RUNS: usize = 100_000;
+    pub const MOST_RUNS: usize = run::MOST_RUNS;
 
     const TABLE: &'static str = "runs.csv";
     const COMMANDS: &'static str = "commands.txt";

@@ -1,6 +1,6 @@
 //! Wavefront OBJ files.
 
-use super::{ExportError, Series, folder_of};
+use super::{ExportError, Series};
 use crate::format::atomic::write_atomically;
 use crate::format::obj_write::{frame_path, write_lines};
 use std::io::Write;
@@ -21,7 +21,7 @@ pub(super) fn write(
 /// Writes one file for each frame in a folder, and beside it one with the bodies in their places, one object each;
 /// of bodies that rest a single one.
 pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathBuf>, ExportError> {
-    let folder = folder_of(path);
+    let folder = path.with_extension("");
     let mut files = Vec::new();
     let bodies = series.bodies();
     let rest = bodies.iter().all(|body| body.rests());

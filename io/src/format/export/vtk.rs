@@ -1,6 +1,6 @@
 //! VTK: one `.vtp` file for each frame and a `.pvd` file that lists them.
 
-use super::{ExportError, FieldSupport, Series, folder_of};
+use super::{ExportError, FieldSupport, Series};
 use crate::format::atomic::write_atomically;
 use isosheet_mesh::EdgeId;
 use std::fmt::Write as _;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// Writes the bodies and the list of their files, if there are any, then the frames and, last, their list.
 pub(super) fn write_series(path: &Path, series: &Series<'_>) -> Result<Vec<PathBuf>, ExportError> {
-    let folder = folder_of(path);
+    let folder = path.with_extension("");
     let folder_name = folder
         .file_name()
         .unwrap_or_default()

@@ -1,6 +1,7 @@
 //! Reading FOLD files (Flexible Origami List Datastructure, versions 1.0 to 1.2,
 //! <https://github.com/edemaine/fold>).
 
+mod choice;
 mod cuts;
 mod frames;
 mod pattern;
@@ -8,7 +9,7 @@ mod problem;
 #[cfg(test)]
 mod tests;
 
-pub use frames::FoldFrame;
+pub use choice::FoldFrame;
 pub use problem::FoldProblem;
 
 use super::error::{Located, MeshFileProblem, Place};

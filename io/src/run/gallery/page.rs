@@ -1,7 +1,8 @@
 //! The page of a gallery.
 
-use super::{Gallery, GalleryEntry};
+use super::entry::{GalleryEntry, RUNS};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::path::PathBuf;
 
 const STYLE: &str = "\
 :root{color-scheme:light dark;--text:#222;--muted:#667;--page:#fff;--rule:#dde;--link:#0b57a4}
@@ -17,9 +18,8 @@ p{margin:.3rem 0 .6rem}dl{display:grid;grid-template-columns:auto 1fr;gap:.05rem
 dt{color:var(--muted)}dd{margin:0;font-variant-numeric:tabular-nums}.folder{color:var(--muted);font-size:.8rem;
 overflow-wrap:anywhere;margin:.6rem 0 0}footer{margin:2rem 0;color:var(--muted);overflow-wrap:anywhere}";
 
-/// The page.
-pub(super) fn page(gallery: &Gallery) -> String {
-    let entries = &gallery.entries;
+/// The page of the runs, and of folders that are not shown with the reasons.
+pub(super) fn page(entries: &[GalleryEntry], left_out: &[(PathBuf, String)]) -> String {
     let count = match entries.len() {
         1 => "1 run".to_owned(),
         n => format!("{n} runs"),
@@ -39,11 +39,11 @@ pub(super) fn page(gallery: &Gallery) -> String {
                     p { (count) ". A picture shows the end of its run and leads to the page that plays it." }
                 }
                 main { @for entry in entries { (card(entry)) } }
-                @if !gallery.left_out.is_empty() {
+                @if !left_out.is_empty() {
                     footer {
                         h2 { "Not shown" }
                         ul {
-                            @for (folder, reason) in &gallery.left_out {
+                            @for (folder, reason) in left_out {
                                 li { (folder.display()) ": " (reason) }
                             }
                         }
@@ -56,7 +56,7 @@ pub(super) fn page(gallery: &Gallery) -> String {
 }
 
 fn card(entry: &GalleryEntry) -> Markup {
-    let [page, picture] = ["html", "png"].map(|e| format!("{}/{}.{e}", Gallery::RUNS, entry.name));
+    let [page, picture] = ["html", "png"].map(|e| format!("{}/{}.{e}", RUNS, entry.name));
     html! {
         article {
             a href=(page) { img src=(picture) alt={ "The sheet at the end of " (entry.title) } loading="lazy"; }

@@ -1,6 +1,6 @@
 //! Why a sweep cannot be made, run or collected.
 
-use super::{Sweep, SweepRun};
+use super::run::{MOST_RUNS, SweepRun};
 use crate::format::{JsonError, WriteError};
 use crate::scene::SceneFileError;
 use isosheet_mesh::Advice;
@@ -24,7 +24,7 @@ pub enum SweepError {
         second: String,
     },
     /// There are too many runs.
-    #[error("these are {count} runs, more than {}", Sweep::MOST_RUNS)]
+    #[error("these are {count} runs, more than {MOST_RUNS}")]
     TooMany {
         /// The number of runs.
         count: usize,

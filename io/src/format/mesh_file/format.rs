@@ -1,0 +1,57 @@
+//! Formats of mesh files.
+
+use std::path::Path;
+
+/// A format of meshes, as the extension of a file says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MeshFormat {
+    /// Wavefront OBJ, `.obj`.
+    Obj,
+    /// Object File Format of Geomview, `.off`.
+    Off,
+    /// Stereolithography, binary or text, `.stl`.
+    Stl,
+    /// Polygon File Format of Stanford, binary or text, `.ply`.
+    Ply,
+    /// Flexible Origami List Datastructure 1.0 to 1.2, `.fold`.
+    Fold,
+    /// Graphics Library Transmission Format 2.0 as text with its buffers, `.gltf`.
+    Gltf,
+    /// The same in one binary file, `.glb`.
+    Glb,
+}
+
+impl MeshFormat {
+    /// All formats that are read.
+    pub const ALL: [Self; 7] = [
+        Self::Obj,
+        Self::Off,
+        Self::Stl,
+        Self::Ply,
+        Self::Fold,
+        Self::Gltf,
+        Self::Glb,
+    ];
+
+    /// The extension, without a dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Off => "off",
+            Self::Stl => "stl",
+            Self::Ply => "ply",
+            Self::Fold => "fold",
+            Self::Gltf => "gltf",
+            Self::Glb => "glb",
+        }
+    }
+
+    /// The format of a file by its extension, in capital or small letters; `None` for all others.
+    pub fn of(path: &Path) -> Option<Self> {
+        let found = path.extension()?;
+        Self::ALL
+            .into_iter()
+            .find(|f| found.eq_ignore_ascii_case(f.extension()))
+    }
+}

@@ -1,0 +1,175 @@
+//! The mesh that a file has.
+
+use super::error::MeshFileError;
+use isosheet_mesh::generate::FoldAssignment;
+use isosheet_mesh::{Sheet, Topology, VertexId};
+use std::path::{Path, PathBuf};
+
+/// What an edge of a FOLD file is meant to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EdgeAssignment {
+    /// `B`: the boundary of the sheet.
+    Boundary,
+    /// `M`: folds away from the side from which faces are counter-clockwise.
+    Mountain,
+    /// `V`: folds towards that side.
+    Valley,
+    /// `F`: stays flat.
+    Flat,
+    /// `U`, or not said.
+    Unassigned,
+    /// `C`: the sheet is cut here; its two sides have vertices of their own.
+    Cut,
+    /// `J`: joins two triangles of one panel; stays flat.
+    Join,
+}
+
+/// An edge of a FOLD file, or a diagonal of one of its polygons.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FileCrease {
+    /// The vertices at its ends, from 0.
+    pub ends: [u32; 2],
+    /// What it is meant to do; diagonals stay flat.
+    pub assignment: EdgeAssignment,
+    /// The fold angle that the file gives, in radians within [-pi, pi], positive for a valley.
+    pub angle: Option<f64>,
+}
+
+/// What reading changed besides cutting polygons into triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReadingChanges {
+    /// Vertices that were welded to another one.
+    pub welded_vertices: usize,
+    /// Faces that were removed because two of their corners were welded.
+    pub collapsed_faces: usize,
+    /// Faces of flat crease patterns that were clockwise and have been reversed.
+    pub reversed_faces: usize,
+    /// Vertices that were added because the sheet is cut there.
+    pub vertices_at_cuts: usize,
+}
+
+/// The vertices and triangles of a mesh file, as numbered there (from 0), not yet checked to be a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshFile {
+    /// Coordinates x0 y0 z0 x1 ..., in the file's unit and axes. Two formats say what these are, and are
+    /// converted: FOLD files with a unit of length to metres; glTF files, which have y upwards, to z upwards.
+    pub positions: Vec<f64>,
+    /// Triangles, as wound in the file.
+    pub faces: Vec<[u32; 3]>,
+    /// How many faces had more than three corners and were cut.
+    pub polygons: usize,
+    /// The cuts of these: edges that are not in the file, inside of what was one flat panel.
+    pub diagonals: Vec<[u32; 2]>,
+    /// The edges of a FOLD file and the diagonals; empty for other formats.
+    pub creases: Vec<FileCrease>,
+    /// What reading changed.
+    pub changes: ReadingChanges,
+    pub(super) path: PathBuf,
+}
+
+impl MeshFile {
+    /// A mesh that is in no file.
+    pub(crate) fn of_frame(
+        positions: Vec<f64>,
+        faces: Vec<[u32; 3]>,
+        creases: Vec<FileCrease>,
+    ) -> Self {
+        Self {
+            positions,
+            faces,
+            polygons: 0,
+            diagonals: Vec::new(),
+            creases,
+            changes: ReadingChanges::default(),
+            path: PathBuf::new(),
+        }
+    }
+
+    /// The number of vertices, used or not.
+    pub fn vertex_count(&self) -> usize {
+        self.positions.len() / 3
+    }
+
+    /// The file that the mesh was read from; empty for a frame of a run.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Removes vertices that belong to no face and renumbers the rest in order; returns how many were
+    /// removed.
+    pub fn drop_unreferenced(&mut self) -> usize {
+        let mut used = vec![false; self.vertex_count()];
+        for &v in self.faces.iter().flatten() {
+            used[v as usize] = true;
+        }
+        let mut label = vec![0u32; used.len()];
+        let mut kept = Vec::with_capacity(self.positions.len());
+        for (v, _) in used.iter().enumerate().filter(|(_, u)| **u) {
+            label[v] = (kept.len() / 3) as u32;
+            kept.extend_from_slice(&self.positions[3 * v..3 * v + 3]);
+        }
+        self.diagonals
+            .retain(|e| e.iter().all(|&v| used[v as usize]));
+        self.creases
+            .retain(|c| c.ends.iter().all(|&v| used[v as usize]));
+        self.relabel(&label);
+        let removed = used.len() - kept.len() / 3;
+        self.positions = kept;
+        removed
+    }
+
+    /// Gives each vertex that faces and edges refer to a new number.
+    pub(super) fn relabel(&mut self, label: &[u32]) {
+        let edges = self.diagonals.iter_mut().flatten();
+        let creases = self.creases.iter_mut().flat_map(|c| &mut c.ends);
+        for v in self.faces.iter_mut().flatten().chain(edges).chain(creases) {
+            *v = label[*v as usize];
+        }
+    }
+
+    /// Checks that the faces are an oriented surface of rigid triangles, and makes it a sheet.
+    ///
+    /// # Errors
+    /// [`MeshFileProblem::Mesh`](super::MeshFileProblem::Mesh) with the file's name. Indices in it are
+    /// counted from 0.
+    pub fn into_sheet(self) -> Result<Sheet, MeshFileError> {
+        let Self {
+            positions,
+            faces,
+            path,
+            ..
+        } = self;
+        Sheet::new(positions, &faces).map_err(|e| MeshFileError {
+            path,
+            place: None,
+            problem: e.into(),
+        })
+    }
+
+    /// What each edge of a topology of the faces is meant to do; `None` unless the file is a FOLD file with
+    /// edges, and for an edge inside the sheet that the file leaves unassigned.
+    pub fn fold_assignments(&self, t: &Topology) -> Option<Vec<Option<FoldAssignment>>> {
+        if self.creases.is_empty() {
+            return None;
+        }
+        let mut assignments = vec![None; t.edge_count()];
+        for crease in &self.creases {
+            let [a, b] = crease.ends.map(VertexId);
+            let inside = a.index().max(b.index()) < t.vertex_count();
+            if let Some(e) = inside.then(|| t.find_edge(a, b)).flatten() {
+                assignments[e.index()] = match crease.assignment {
+                    EdgeAssignment::Mountain => Some(FoldAssignment::Mountain),
+                    EdgeAssignment::Valley => Some(FoldAssignment::Valley),
+                    EdgeAssignment::Flat | EdgeAssignment::Join => Some(FoldAssignment::Flat),
+                    EdgeAssignment::Boundary | EdgeAssignment::Unassigned | EdgeAssignment::Cut => {
+                        None
+                    }
+                };
+            }
+        }
+        for e in t.edge_ids().filter(|&e| t.is_boundary_edge(e)) {
+            assignments[e.index()] = Some(FoldAssignment::Boundary);
+        }
+        Some(assignments)
+    }
+}
