@@ -27,8 +27,8 @@
 //!
 //! Every accepted step has the rest lengths to the tolerance of its method (a relative 1e-12 or better by
 //! default, or the round-off of the coordinates where that is larger), finite energies, and, with a damped
-//! method, an energy gain of at most a tenth of the kinetic energy in a step and a fiftieth of the largest
-//! kinetic energy in all steps together: compressed rods that snap through can feed any implicit method. Such
+//! method or the fallback, an energy gain of at most a tenth of the kinetic energy in a step and a fiftieth of the
+//! largest kinetic energy in all steps together: compressed rods that snap through can feed any implicit method. Such
 //! steps are taken with implicit Euler, or shortened.
 //!
 //! # Isometry

@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImplicitOptions {
-    /// Penalty of the rods in the augmented Lagrangian, relative to the masses: rods are `stiffness` times as
-    /// stiff as the inertia term. Default 1e4: where steps along the manifold fail, a hundred times more
-    /// needs several times the Newton iterations, a hundred times less twice the projections.
+    /// Penalty of length errors and of vertex constraints in the merit function, relative to the masses. Default
+    /// 1e4: in the augmented Lagrangian a hundred times more needs several times the iterations, a hundred times less
+    /// twice the projections.
     pub stiffness: f64,
     /// Newton's method stops when the decrease it still promises is this fraction of the
     /// inertia term of the incremental potential. Default 1e-4, far below the error of the
@@ -19,17 +19,15 @@ pub struct ImplicitOptions {
     /// Largest relative edge length error of an accepted step. Default 1e-12. Round-off sets a floor of a
     /// few units in the last place of the coordinates.
     pub strain_tolerance: f64,
-    /// Largest number of Newton iterations of one minimisation: of sequential quadratic programming (a
-    /// quarter of this number in contact; the count begins anew after a renewal of friction or a perturbation
-    /// of a saddle), or of one round of the augmented Lagrangian. Default 80.
+    /// Largest number of iterations of Newton's method in a phase, a quarter of it in the first phase in contact. The
+    /// count begins anew with each round of the augmented Lagrangian, lagged friction and saddle. Default 80.
     pub max_iterations: usize,
-    /// Largest number of iterations of one restoration of the lengths. Default 400; sequential quadratic
-    /// programming gives up after at most 20 of these.
+    /// Largest number of iterations of one restoration of the lengths. Default 400; the first phase gives up after at
+    /// most 20 of these.
     pub max_projections: usize,
     /// Largest change of a normal force of friction, relative to the largest normal force, between its last
     /// two evaluations in a step. Default 1e-3. With 1e-5 sheets that drape need a fifth more factorisations;
-    /// with 0.05 they need as many as with 1e-3. Steps for which the augmented Lagrangian takes over may end
-    /// with changes of up to 0.05 ([`StepOutcome`](crate::StepOutcome) names them).
+    /// with 0.05 they need as many as with 1e-3. In the augmented Lagrangian 0.05 at least.
     pub friction_tolerance: f64,
     /// How often an iteration that has converged goes on because friction exceeds its tolerance. Default 5;
     /// without friction it never does.

@@ -26,11 +26,10 @@ pub enum Method {
     /// ```
     ///
     /// Equivalently `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)` over all
-    /// positions with the rest lengths. The minimum is found by sequential quadratic programming along the
-    /// manifold of rest lengths, and where that fails by an augmented Lagrangian, minimised by Newton's
-    /// method with a line search; a projection then makes the lengths exact. In contact with supports or
-    /// bodies that move the augmented Lagrangian comes first. Non-conservative forces are taken at the
-    /// start of the step.
+    /// positions with the rest lengths. Newton's method with a line search finds the minimum: first with the
+    /// multipliers of the rods from the linear systems (sequential quadratic programming), and where that fails,
+    /// for elastic sheets, and in contact with supports that move, with those of an augmented Lagrangian. A
+    /// projection then makes the lengths exact. Non-conservative forces are taken at the start of the step.
     ///
     /// First order, strongly dissipative, stable at any step. A sheet that starts exactly flat needs no
     /// special treatment.

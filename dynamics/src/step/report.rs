@@ -14,10 +14,10 @@ use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StepOutcome {
-    /// Newton's method alone.
+    /// Newton's method with full steps.
     Newton,
-    /// Newton's method with a modified, positive definite matrix or shortened steps, as near
-    /// flat states need it.
+    /// Newton's method with shortened steps or a modified, positive definite matrix, as near flat states and impacts
+    /// need it.
     Globalised,
     /// As `Globalised`, and a seeded perturbation decided which way the sheet folds.
     BranchSeeded,

@@ -337,6 +337,28 @@ fn the_fallback_starts_without_a_history() {
     }
 }
 
+/// The fallback is held to the energy balance like every other damped step.
+#[test]
+fn a_fallback_that_gains_energy_is_refused() {
+    let control = StepControl {
+        min_fraction: 1.0,
+        fallback: Fallback::ImplicitEuler(Default::default()),
+        ..StepControl::default()
+    };
+    let (mut engine, _) = scripted(&[Answer::Diverge], control);
+    engine.fallback = Some(Box::new(Scripted {
+        script: vec![Answer::Gain],
+        seen: Arc::default(),
+    }));
+    let before = engine.state().clone();
+    let error = engine.advance(H, &mut StepTotals::default()).unwrap_err();
+    let StepError::StepTooSmall { cause, .. } = &error else {
+        panic!("{error}");
+    };
+    assert!(matches!(**cause, StepError::EnergyGain { .. }), "{error}");
+    assert_eq!(engine.state(), &before);
+}
+
 /// An attempt that the limit of the effort ends is made again without a limit, and what is accepted is the same.
 #[test]
 fn the_limit_of_the_effort_changes_nothing_that_is_accepted() {
