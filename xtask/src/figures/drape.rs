@@ -273,7 +273,7 @@ pub(super) fn fig14(store: &Store) -> Result<Made> {
         here: format!("{rods} {}", along(&all)).into(),
         pictures: vec![
             all[0].picture("fig14.png", effort)?,
-            all[1].picture("fig14-elastic.png", effort)?,
+            all[2 * levels.len() - 1].picture("fig14-elastic.png", effort)?,
             ends("fig14-ends.png", &each, effort)?,
             Picture::svg("fig14-folds", &profiles(&all), alt),
         ],
@@ -293,7 +293,7 @@ fn along(all: &[Draped]) -> String {
     let [rods, plastic] = of_each(all, count);
     format!(
         "With rods a fold runs from table corner to cloth corner at {rods} corners; with {PLASTIC}, an elastic sheet that resists \
-         bending, at {plastic}."
+         bending (the second sequence, on the finest mesh), at {plastic}."
     )
 }
 
@@ -340,12 +340,14 @@ fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 3]> {
         let name = format!("drape-octagon-{name}");
         polygon(&name, 8, effort.quick_or(0.2, spacing), effort)
     };
-    let octagons = vec![
+    let mut octagons = vec![
         ("244/440".to_owned(), octagon(effort)?),
         ("finer".to_owned(), fine("fine", 0.045)?),
-        ("finest".to_owned(), fine("finest", 0.03)?),
-        ("rings".to_owned(), ringed(8, RINGS[2].1, effort)?),
     ];
+    if effort != Effort::Quick {
+        octagons.push(("finest".to_owned(), fine("finest", 0.03)?));
+    }
+    octagons.push(("rings".to_owned(), ringed(8, RINGS[2].1, effort)?));
     let irregular = |n: u32, spacing| {
         let name = format!("drape-{n}-gon");
         polygon(&name, n, effort.quick_or(0.2, spacing), effort)
@@ -360,7 +362,7 @@ fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 3]> {
         polygons.push(("round, finer".to_owned(), finer));
     }
     let mut films = Vec::new();
-    for film in FILMS.into_iter().take(effort.quick_or(1, 3)) {
+    for film in effort.quick_or(&FILMS[1..2], &FILMS) {
         for (label, scene) in [
             octagons[1].clone(),
             ("round".to_owned(), irregular(48, 0.06)?),
@@ -396,7 +398,8 @@ pub(super) fn fig15(store: &Store) -> Result<Made> {
         here: format!("{here} {} {}", along(&octagons), trend(irregular, &films)).into(),
         pictures: vec![
             octagons[0].picture("fig15.png", effort)?,
-            octagons[1].picture("fig15-elastic.png", effort)?,
+            // The last ones are the rings.
+            octagons[octagons.len() - 3].picture("fig15-elastic.png", effort)?,
             ends("fig15-ends.png", &octagons.iter().collect::<Vec<_>>(), effort)?,
             Picture::svg("fig15-folds", &profiles(&octagons), folds_alt),
             ends("fig15-polygons.png", &shown, effort)?,
