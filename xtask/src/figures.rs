@@ -131,31 +131,50 @@ fn through_itself(scene: &FigureScene) -> &'static str {
     }
 }
 
+/// A quantity, and what was measured of it.
+type Row = (&'static str, String);
+
 /// Quantities with what was measured of them.
-fn measured(rows: impl IntoIterator<Item = (&'static str, String)>) -> Table {
-    let rows = rows
-        .into_iter()
-        .map(|(name, value)| vec![name.to_owned(), value]);
-    Table::new("Measured", &["quantity", "value"]).with_texts(rows)
+fn measured(rows: impl IntoIterator<Item = Row>) -> Table {
+    compared(&["value"], &[rows.into_iter().collect()])
+}
+
+/// Quantities with what was measured of them in several runs, whose names and columns are given.
+fn compared(names: &[&str], columns: &[Vec<Row>]) -> Table {
+    let rows = columns.first().map_or(0, Vec::len);
+    let row = |k: usize| {
+        let values = columns.iter().map(|column| column[k].1.clone());
+        [columns[0][k].0.to_owned()]
+            .into_iter()
+            .chain(values)
+            .collect()
+    };
+    Table::new("Measured", &[&["quantity"], names].concat()).with_texts((0..rows).map(row))
 }
 
 /// What the course of a run was.
-fn course(run: &RunSummary) -> [(&'static str, String); 4] {
+fn course(run: &RunSummary) -> [Row; 6] {
     let course = &run.course;
     let steps = format!(
         "{} frames, {} rejected steps",
         course.cost.steps, course.cost.rejected
     );
+    let rods = || "none: rods".into();
     [
         ("simulated", format!("{:.1} s, {steps}", course.time)),
         (
-            "wall seconds for a simulated second",
-            format!("{:.2}", run.slowness()),
+            "CPU seconds for a simulated second",
+            format!("{:.2}", course.cpu_rate().unwrap_or_default()),
         ),
         (
-            "largest strain of an edge",
-            format!("{:.0e}", course.strain),
+            "factorisations for a frame",
+            format!(
+                "{:.1}",
+                course.cost.factorisations_per_step().unwrap_or_default()
+            ),
         ),
+        ("largest strain", format!("{:.0e}", run.strain())),
+        ("membrane stiffness", run.stiffness().unwrap_or_else(rods)),
         ("smallest gap", gap(course.gap)),
     ]
 }

@@ -168,6 +168,7 @@ fn a_quick_run_of_everything_writes_readable_runs() {
         "fig10-stamping-free",
         "fig10-drape-octagon-free",
         "fig11-crumple-m1-contact",
+        "fig11-crumple-m1-contact-office-paper",
         "fig12-crumple-m2-contact",
     ];
     for name in played {

@@ -59,7 +59,7 @@ impl Bend {
 
 impl ElasticSummary {
     /// Of a model at the start of a run; none for a sheet of rods.
-    pub(crate) fn of(model: &SheetModel) -> Option<Self> {
+    pub fn of(model: &SheetModel) -> Option<Self> {
         let elastic = model.elastic_sheet()?;
         let size = elastic.unsoftened_size();
         Some(Self {
@@ -74,7 +74,7 @@ impl ElasticSummary {
     }
 
     /// Takes in the positions `x` (`3V`, metres) at a time (seconds).
-    pub(crate) fn observe(&mut self, model: &SheetModel, t: f64, x: &[f64]) {
+    pub fn observe(&mut self, model: &SheetModel, t: f64, x: &[f64]) {
         let Some(deformation) = model.elastic_deformation(x) else {
             return;
         };

@@ -2,12 +2,15 @@
 
 use super::marks::{self, Marks};
 use super::show::View;
-use super::{Effort, Made, Picture, Play, Table, course, measured, through_itself};
+use super::{Effort, Made, Picture, Play, Row, compared, course, through_itself};
 use crate::runs::{self, FigureScene, Hanging, Run, RunSummary, Shape};
 use crate::store::Store;
 use anyhow::Result;
 use isosheet_io::scene::Integrator;
 use serde_json::json;
+
+/// What elastic sheets are made of.
+pub(super) const PAPER_SHEET: &str = "office paper";
 
 /// Times of the pictures, seconds. The fall takes the first third of a second; then the sheet swings,
 /// crumples and comes to rest.
@@ -31,23 +34,51 @@ pub(super) fn without_contact(level: u32, effort: Effort) -> Result<FigureScene>
     scene(level, effort)?.without_self_contact(&format!("crumple-m{level}"))
 }
 
+/// The same with an elastic sheet of paper.
+fn elastic(level: u32, effort: Effort) -> Result<FigureScene> {
+    scene(level, effort)?.made_of(PAPER_SHEET)
+}
+
 pub(super) fn make(figure: u8, level: u32, store: &Store) -> Result<Made> {
     let run = Run::of(store, scene(level, store.effort)?)?;
     let free = Run::of(store, without_contact(level, store.effort)?)?.summary;
+    let elastic = Run::of(store, elastic(level, store.effort)?)?;
+    let columns = [describe(&run, Some(&free))?, describe(&elastic, None)?];
+    let [rods_bent, paper_bent] = [end_shape(&run)?.bending, end_shape(&elastic)?.bending];
+    let verdict = if paper_bent < CRUMPLED * rods_bent {
+        "does not crumple"
+    } else {
+        "crumples, too"
+    };
+    let file = |kind: &str| format!("fig{figure:02}{kind}.png");
     let mut made = Made {
         title: ["Crumpled paper, M¹", "Crumpled paper, M²"][level as usize - 1].into(),
         paper: PAPER[level as usize - 1].into(),
-        here: "A square of office paper falls from exactly flat and horizontal; the side that was above is warm, the other one blue.".into(),
-        pictures: vec![picture(&format!("fig{figure:02}.png"), &run, store.effort)?],
-        pages: vec![page(figure, &run, store.effort)?],
-        tables: vec![describe(&run, &free, store.effort)?],
-        facts: json!({ "run": run.summary, "without_contact": free }),
+        here: format!(
+            "A square of office paper falls from exactly flat and horizontal (the side that was above is warm, the other one blue), first as \
+             rods, which do not resist bending, then as an elastic sheet, which bends as {PAPER_SHEET} does and {verdict}: at the end its \
+             total bending is {paper_bent:.2} rad times its side, and that of the rods {rods_bent:.2}."
+        )
+        .into(),
+        pictures: vec![
+            picture(&file(""), &run, store.effort)?,
+            picture(&file("-elastic"), &elastic, store.effort)?,
+        ],
+        pages: vec![
+            page(figure, &run, store.effort)?,
+            page(figure, &elastic, store.effort)?,
+        ],
+        tables: vec![compared(&["rods", PAPER_SHEET], &columns)],
+        facts: json!({ "run": run.summary, "without_contact": free, "elastic": elastic.summary }),
     };
     if figure == 12 {
         add_softness_and_marks(&mut made, store)?;
     }
     Ok(made)
 }
+
+/// A sheet with less than this part of the total bending of rods is not crumpled.
+const CRUMPLED: f64 = 0.1;
 
 const PAPER: [&str; 2] = [
     "A piece of paper modelled by M¹ is held at its left-upper corner, falls and crumples.",
@@ -58,16 +89,22 @@ const PAPER: [&str; 2] = [
 /// What Fig. 12 has beside Fig. 11: a finer mesh, softness by mesh, and marks.
 fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
     if store.effort != Effort::Quick {
-        let finer = Run::of(store, scene(3, store.effort)?)?;
-        let picture = picture("fig12-m3.png", &finer, store.effort)?;
-        made.pictures.push(picture);
-        made.pages.push(page(12, &finer, store.effort)?);
-        made.here += " The second sequence is of M³, which the paper does not show.";
+        for (file, scene) in [
+            ("fig12-m3.png", scene as Scenes),
+            ("fig12-m3-elastic.png", elastic),
+        ] {
+            let finer = Run::of(store, scene(3, store.effort)?)?;
+            made.pictures.push(picture(file, &finer, store.effort)?);
+            made.pages.push(page(12, &finer, store.effort)?);
+        }
+        made.here += " The other two sequences are of M³, which the paper does not show.";
     }
     let part = super::softness::make(store.effort, without_contact)?;
-    let all = concentration(store)?;
+    let both = [concentration(store, scene)?, concentration(store, elastic)?];
     let alt = "How much of the fold angles the sharpest edges carry over time, and how many of the final marks are there already";
-    let plot = Picture::svg("fig12-marks", &marks::plot(&all), alt);
+    let plot = Picture::svg("fig12-marks", &marks::plot([&both[0], &both[1]]), alt);
+    let all = both.concat();
+    *made.here.to_mut() += &part.finding;
     made.pictures.extend([part.picture, plot]);
     made.tables.extend([part.table, marks::table(&all)]);
     made.facts["softness"] = part.facts;
@@ -75,19 +112,27 @@ fn add_softness_and_marks(made: &mut Made, store: &Store) -> Result<()> {
     Ok(())
 }
 
+/// The scene of each level of the mesh.
+type Scenes = fn(u32, Effort) -> Result<FigureScene>;
+
 /// The concentration of folds in the runs of M^1 to M^3.
-fn concentration(store: &Store) -> Result<Vec<Marks>> {
+fn concentration(store: &Store, scene: Scenes) -> Result<Vec<Marks>> {
     let levels = [(1, "M¹"), (2, "M²"), (3, "M³")];
     let levels = &levels[..store.effort.quick_or(2, 3)];
     let of = |&(level, name): &(u32, &str)| {
         let run = Run::of(store, scene(level, store.effort)?)?;
-        Ok(Marks::of(name, &run.sheet, &run.trajectory))
+        let name = format!("{name}, {}", run.scene.sheet_name());
+        Ok(Marks::of(&name, &run.sheet, &run.trajectory))
     };
     levels.iter().map(of).collect()
 }
 
+fn end_shape(run: &Run) -> Result<Shape> {
+    Shape::of(&Hanging::of(&run.scene)?, run.end())
+}
+
 /// What was measured of a run; `free` is the sheet that may pass through itself.
-fn describe(run: &Run, free: &RunSummary, effort: Effort) -> Result<Table> {
+fn describe(run: &Run, free: Option<&RunSummary>) -> Result<Vec<Row>> {
     let (scene, s) = (&run.scene, &run.summary);
     let (hanging, mass) = (Hanging::of(scene)?, runs::mass(scene)?);
     let mut rows = vec![
@@ -111,25 +156,31 @@ fn describe(run: &Run, free: &RunSummary, effort: Effort) -> Result<Table> {
         ),
     ];
     rows.extend(course(s));
-    let times = s.slowness() / free.slowness().max(1e-12);
-    rows.push((
-        "times as long as without self-contact",
-        format!("{times:.1}"),
-    ));
-    if effort != Effort::Quick {
-        let depth = Shape::of(&hanging, run.end())?.centre_depth;
-        rows.extend([
-            (
-                "kinetic energy at the end, of the potential energy released",
-                format!("{:.0e}", s.motion_left),
+    let times = |free: &RunSummary| format!("{:.1}", s.slowness() / free.slowness().max(1e-12));
+    let shape = Shape::of(&hanging, run.end())?;
+    rows.extend([
+        (
+            "times as long as without self-contact",
+            free.map_or("–".into(), times),
+        ),
+        (
+            "kinetic energy at the end, of the potential energy released",
+            format!("{:.0e}", s.motion_left),
+        ),
+        (
+            "depth of the centre of mass at the end",
+            format!(
+                "{:.3} sides (a rigid plate: {:.3})",
+                shape.centre_depth,
+                runs::PLATE
             ),
-            (
-                "depth of the centre of mass at the end",
-                format!("{depth:.3} sides (a rigid plate: {:.3})", runs::PLATE),
-            ),
-        ]);
-    }
-    Ok(measured(rows))
+        ),
+        (
+            "total bending at the end",
+            format!("{:.2} rad times the side", shape.bending),
+        ),
+    ]);
+    Ok(rows)
 }
 
 /// The integrator in words.
@@ -164,15 +215,16 @@ fn view(run: &Run) -> Result<(View, usize)> {
 pub(super) fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
     let (view, level) = view(run)?;
     let (level, free) = (["M⁰", "M¹", "M²", "M³"][level], through_itself(&run.scene));
-    let label = format!("crumpled paper, {level}{free}");
+    let label = format!("crumpled paper, {level}, {}{free}", run.scene.sheet_name());
     view.play(run, effort, figure, &label)
 }
 
 /// The sequence of a run.
 fn picture(file: &str, run: &Run, effort: Effort) -> Result<Picture> {
     let (view, level) = view(run)?;
+    let sheet = run.scene.sheet_name();
     let alt = format!(
-        "A sheet of paper held at its left-upper corner falls from flat and crumples, mesh M{level}"
+        "A sheet of paper held at its left-upper corner falls from flat, mesh M{level}, {sheet}"
     );
     view.picture(run, effort, [file, &alt], &TIMES)
 }

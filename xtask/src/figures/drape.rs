@@ -12,6 +12,14 @@ use crate::store::Store;
 use anyhow::Result;
 use isosheet_mesh::{Dof, Sheet};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
+
+/// What elastic tablecloths are made of. The bending length of this film, the third root of its rigidity over its weight,
+/// is 5 cm, which the meshes of the figures resolve; a thinner film would make finer folds than they can.
+const PLASTIC: &str = "acetate film";
+
+/// Films for the number of folds: softer, the same, and stiffer.
+const FILMS: [&str; 3] = ["polyethylene film", PLASTIC, "PET film"];
 
 /// Times of the pictures, seconds.
 const TIMES: [f64; 6] = [0.0, 0.15, 0.3, 0.6, 1.2, 8.0];
@@ -25,8 +33,6 @@ struct Draped {
     /// How far the hem hangs below the table, as part of its distance from the table in the flat cloth (means
     /// over the vertices of the hem): 1 for a cloth that hangs straight down.
     drop: f64,
-    /// Internal degrees of freedom.
-    internal: i64,
 }
 
 fn drape(label: &str, scene: FigureScene, store: &Store) -> Result<Draped> {
@@ -38,9 +44,20 @@ fn drape(label: &str, scene: FigureScene, store: &Store) -> Result<Draped> {
         folds: Folds::of(sheet, x, &layout.table, &layout.cloth),
         hem: Hem::of(sheet, x),
         drop: drop(sheet, x, &layout),
-        internal: Dof::of(sheet.topology()).internal,
         run,
     })
+}
+
+/// Cloths of rods and the same of plastic, alternately.
+fn of_both(scenes: Vec<(String, FigureScene)>, store: &Store) -> Result<Vec<Draped>> {
+    let mut all = Vec::new();
+    for (label, scene) in scenes {
+        let elastic = scene.made_of(PLASTIC)?;
+        for scene in [scene, elastic] {
+            all.push(drape(&label, scene, store)?);
+        }
+    }
+    Ok(all)
 }
 
 fn drop(sheet: &Sheet, x: &[f64], layout: &Layout) -> f64 {
@@ -57,13 +74,34 @@ fn drop(sheet: &Sheet, x: &[f64], layout: &Layout) -> f64 {
 
 impl Draped {
     fn picture(&self, file: &str, effort: Effort) -> Result<Picture> {
-        let label = &self.label;
-        let alt = format!("{label}: it is let go flat above a table, falls and drapes");
+        let alt = format!(
+            "{}: it is let go flat above a table, falls and drapes",
+            self.name()
+        );
         VIEW.picture(&self.run, effort, [file, &alt], &TIMES)
     }
 
+    fn name(&self) -> String {
+        format!("{}, {}", self.label, self.sheet())
+    }
+
+    fn sheet(&self) -> &str {
+        self.run.scene.sheet_name()
+    }
+
+    /// Whether its lengths are kept by rods.
+    fn is_of_rods(&self) -> bool {
+        self.run.summary.elastic.is_none()
+    }
+
+    /// Internal degrees of freedom, which rods leave.
+    fn internal(&self) -> Option<String> {
+        let dof = Dof::of(self.run.sheet.topology()).internal;
+        self.is_of_rods().then(|| dof.to_string())
+    }
+
     fn facts(&self) -> Value {
-        json!({ "run": self.run.summary, "folds": self.folds, "drop": self.drop, "internal_dof": self.internal, "hem": {
+        json!({ "run": self.run.summary, "folds": self.folds, "drop": self.drop, "internal_dof": self.internal(), "hem": {
             "folds": self.hem.folds, "spacing_spread": self.hem.spacing_spread, "size_spread": self.hem.size_spread, "wave": self.hem.wave,
         } })
     }
@@ -86,21 +124,25 @@ pub(super) fn page(figure: u8, label: &str, run: &Run, effort: Effort) -> Result
     VIEW.play(run, effort, figure, &format!("draped cloth, {label}{free}"))
 }
 
-/// The pages of some cloths; one that is there twice has a single page.
-fn pages<'a>(
-    figure: u8,
-    all: impl Iterator<Item = &'a Draped>,
-    effort: Effort,
-) -> Result<Vec<Play>> {
-    let mut pages: Vec<Play> = Vec::new();
-    let mut played: Vec<&str> = Vec::new();
-    for d in all {
-        if !played.contains(&d.run.scene.name()) {
-            played.push(d.run.scene.name());
-            pages.push(page(figure, &d.label, &d.run, effort)?);
-        }
-    }
-    Ok(pages)
+/// The pages of some cloths.
+fn pages(figure: u8, all: &[&Draped], effort: Effort) -> Result<Vec<Play>> {
+    let of = |d: &&Draped| page(figure, &d.name(), &d.run, effort);
+    all.iter().map(of).collect()
+}
+
+/// The ends of cloths: those of rods in the first row, the same of plastic below.
+fn ends(file: &str, all: &[&Draped], effort: Effort) -> Result<Picture> {
+    let of = |rods: bool| all.iter().filter(move |d| d.is_of_rods() == rods);
+    let rows: Vec<_> = of(true)
+        .chain(of(false))
+        .map(|d| (d.name(), &d.run))
+        .collect();
+    let view = View {
+        columns: rows.len() / 2,
+        ..VIEW
+    };
+    let alt = format!("The cloths at rest: of rods in the first row, of {PLASTIC} in the second");
+    view.ends(&rows, effort, [file, &alt])
 }
 
 fn mesh(d: &Draped) -> Cell {
@@ -111,7 +153,9 @@ fn fold_table(all: &[Draped]) -> Table {
     let part = |part: f64| Cell::from(whole_percent(part));
     Table::of(
         "Principal folds at rest, in the part of the cloth that hangs beyond the first row of cells at the table's edge. Bending is edge length \
-                  times size of the fold angle. At the corners: within one mean edge of a line from a table corner to its cloth \
+                  times size of the fold angle. A fold runs along a corner line, from a table corner to its cloth corner, if the cloth is in the \
+                  outer half of a bulge there at all of three distances from the table (in brackets: the part of all directions from the \
+                  axis in which it is, which is what chance gives). At the corners: within one mean edge of a line from a table corner to its cloth \
                   corner. Strongest edges: the fewest that carry half of the bending. Angle with the nearest of these \
                   lines: weighted by bending (in brackets: of all edges, what the mesh alone gives). Drop: how far the hem hangs below the table, of its distance \
                   from the table in the flat cloth. Triangles whose edges keep their lengths leave a cloth only as many internal degrees of freedom as it has \
@@ -119,7 +163,12 @@ fn fold_table(all: &[Draped]) -> Table {
         all,
         &[
             ("cloth", &|d| d.label.as_str().into()),
+            ("sheet", &|d| d.sheet().into()),
             ("V/F", &|d| mesh(d)),
+            ("folds along corner lines", &|d| {
+                let (along, all, part) = d.folds.along;
+                format!("{along} of {all} ({})", whole_percent(part)).into()
+            }),
             ("bending at the corners", &|d| {
                 part(d.folds.share_at_corners)
             }),
@@ -134,13 +183,13 @@ fn fold_table(all: &[Draped]) -> Table {
             ("angle", &|d| {
                 format!("{:.0}° ({:.0}°)", d.folds.angle[0], d.folds.angle[1]).into()
             }),
-            ("internal DOF", &|d| d.internal.to_string().into()),
+            ("internal DOF", &|d| d.internal().into()),
             ("drop", &|d| part(d.drop)),
         ],
     )
 }
 
-/// Bending density by distance from the corner lines.
+/// Bending density by distance from the corner lines: cloths of rods, and of plastic.
 fn profiles(all: &[Draped]) -> Charts {
     let looks = [
         (palette::VERMILION, Marker::Square),
@@ -151,13 +200,17 @@ fn profiles(all: &[Draped]) -> Charts {
     let all_points = || all.iter().flat_map(|d| &d.folds.profile);
     let far = all_points().map(|p| p[0] + 0.5).fold(1.0, f64::max);
     let top = 1.1 * all_points().map(|p| p[1]).fold(1.0, f64::max);
-    let label = "distance from the nearest corner line (mean edges)";
     let of = |(d, (colour, marker)): (&Draped, _)| {
         Series::line(&d.label, colour, d.folds.profile.clone()).marked(marker)
     };
-    let series = all.iter().zip(looks).map(of).collect();
-    let y = Axis::linear("bending (mean = 1)", [0.0, top]);
-    Chart::new(Axis::linear(label, [0.0, far]), y, [230.0, 130.0], series).into()
+    Charts::row([true, false].map(|rods| {
+        let of_one = all.iter().filter(|d| d.is_of_rods() == rods);
+        let series = of_one.zip(looks).map(of).collect();
+        let kind = if rods { "rods" } else { PLASTIC };
+        let label = format!("mean edges from a corner line, {kind}");
+        let y = Axis::linear("bending (mean = 1)", [0.0, top]);
+        Chart::new(Axis::linear(&label, [0.0, far]), y, [165.0, 118.0], series)
+    }))
 }
 
 /// What holds for each run.
@@ -167,6 +220,7 @@ fn runs_table(all: &[&Draped]) -> Table {
         all,
         &[
             ("cloth", &|d| d.label.as_str().into()),
+            ("sheet", &|d| d.sheet().into()),
             ("V/F", &|d| mesh(d)),
             ("at rest from", &|d| {
                 let time = d.run.summary.at_rest_from;
@@ -175,12 +229,16 @@ fn runs_table(all: &[&Draped]) -> Table {
             ("kinetic energy left", &|d| {
                 format!("{:.0e}", d.run.summary.motion_left).into()
             }),
-            ("wall s per simulated s", &|d| {
-                format!("{:.2}", d.run.summary.slowness()).into()
+            ("CPU s per simulated s", &|d| {
+                d.run.summary.course.cpu_rate().into()
+            }),
+            ("factorisations per frame", &|d| {
+                d.run.summary.course.cost.factorisations_per_step().into()
             }),
             ("largest strain", &|d| {
-                format!("{:.0e}", d.run.summary.course.strain).into()
+                format!("{:.0e}", d.run.summary.strain()).into()
             }),
+            ("membrane stiffness", &|d| d.run.summary.stiffness().into()),
             ("smallest gap", &|d| {
                 super::gap(d.run.summary.course.gap).into()
             }),
@@ -188,119 +246,192 @@ fn runs_table(all: &[&Draped]) -> Table {
     )
 }
 
-const CONDITIONS: &str = "Cloth of 0.2 kg/m², velocity damping 2/s, friction 0.3 with the table and itself, self-contact on, gap below which contact acts 5 mm; \
+const CONDITIONS: &str = "Rods of 0.2 kg/m², films of their own mass, velocity damping 2/s, friction 0.3 with the table and itself, self-contact on, gap below which contact acts 5 mm; \
                           let go exactly flat 5 mm above the table, 8 s. At rest: kinetic energy below 1e-6 of the potential energy released, to the end of the run.";
 
 pub(super) fn fig14(store: &Store) -> Result<Made> {
     let effort = store.effort;
-    let (fine, name) = effort.quick_or((1, "M¹"), (3, "M³"));
-    let all = vec![
-        drape("M²", rectangle(2, effort)?, store)?,
-        drape(name, rectangle(fine, effort)?, store)?,
-        drape("irregular", irregular(effort)?, store)?,
-    ];
+    let names = ["M¹", "M²", "M³", "M⁴"];
+    let levels = effort.quick_or(&[2, 1][..], &[2, 3, 4]);
+    let mut scenes = Vec::new();
+    for &level in levels {
+        scenes.push((
+            names[level as usize - 1].to_owned(),
+            rectangle(level, effort)?,
+        ));
+    }
+    scenes.push(("irregular".to_owned(), irregular(effort)?));
+    let all = of_both(scenes, store)?;
+    let each: Vec<&Draped> = all.iter().collect();
     let alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
+    let rods = "The diagonals of the regular meshes lead through the corners of the table and could favour what is to be shown: the irregular \
+                triangulation, which has no such lines, is the check.";
     Ok(Made {
         title: "Rectangular cloth on a rectangular table".into(),
         paper: "A rectangular plastic tablecloth is draped over a rectangular table with M², and with a second resolution: the principal folds run from \
                 the table corners to the cloth corners.".into(),
-        here: "The diagonals of the regular meshes lead through the corners of the table and could favour what is to be shown: the irregular \
-               triangulation, which has no such lines, is the check."
-            .into(),
+        here: format!("{rods} {}", along(&all)).into(),
         pictures: vec![
             all[0].picture("fig14.png", effort)?,
-            all[1].picture("fig14-fine.png", effort)?,
-            all[2].picture("fig14-irregular.png", effort)?,
+            all[2 * levels.len() - 1].picture("fig14-elastic.png", effort)?,
+            ends("fig14-ends.png", &each, effort)?,
             Picture::svg("fig14-folds", &profiles(&all), alt),
         ],
-        pages: pages(14, all.iter(), effort)?,
-        tables: vec![fold_table(&all), runs_table(&all.iter().collect::<Vec<_>>())],
+        pages: pages(14, &each, effort)?,
+        tables: vec![fold_table(&all), runs_table(&each)],
         facts: json!(all.iter().map(Draped::facts).collect::<Vec<_>>()),
     })
+}
+
+/// At how many corners folds run from table corners to cloth corners, in a sentence.
+fn along(all: &[Draped]) -> String {
+    let count = |d: &Draped| {
+        let (along, corners, part) = d.folds.along;
+        let chance = part * corners as f64;
+        format!("{along} of {corners} ({}; {chance:.1} by chance)", d.label)
+    };
+    let [rods, plastic] = of_each(all, count);
+    format!(
+        "With rods a fold runs from table corner to cloth corner at {rods} corners; with {PLASTIC}, an elastic sheet that resists \
+         bending (the second sequence, on the finest mesh), at {plastic}."
+    )
+}
+
+/// A text for each cloth of rods, and for each of plastic.
+fn of_each(all: &[Draped], text: impl Fn(&Draped) -> String) -> [String; 2] {
+    [true, false].map(|rods| {
+        let some = all.iter().filter(|d| d.is_of_rods() == rods);
+        some.map(&text).collect::<Vec<_>>().join(", ")
+    })
+}
+
+/// What becomes of the folds with more and more corners, the last polygon being the roundest one, and with other films.
+fn trend(irregular: &[Draped], films: &[Draped]) -> String {
+    let folds = |d: &Draped| format!("{} ({})", d.hem.folds, d.label);
+    let [rods, plastic] = of_each(irregular, folds);
+    let [round_rods, round_plastic] = [true, false].map(|rods| {
+        let last = irregular.iter().rfind(|d| d.is_of_rods() == rods);
+        last.map_or(String::new(), |d| d.hem.pattern())
+    });
+    let film = |d: &Draped| format!("{} ({}, {})", d.hem.folds, d.sheet(), d.label);
+    let films: Vec<String> = films.iter().map(film).collect();
+    format!(
+        "With more and more corners, irregular meshes have {rods} folds with rods and {plastic} with {PLASTIC}; those of the last, \
+         round cloth are {round_rods} with rods and {round_plastic} with {PLASTIC}. The film decides how many there are, from the \
+         softest to the stiffest: {}.",
+        films.join(", ")
+    )
 }
 
 /// Corners and rings of the polygons with about as many faces as the octagon, whose rings are as wide as the
 /// cells of M³.
 const RINGS: [(u32, u32); 5] = [(4, 11), (6, 9), (8, 8), (12, 7), (16, 6)];
 
-/// Corners of the irregular polygons of the study; the last stands for the circle.
-const SIDES: [u32; 6] = [4, 6, 8, 12, 16, 48];
+/// Corners of the irregular polygons of the study; 48 stand for the circle.
+const SIDES: [u32; 5] = [4, 6, 8, 12, 16];
 
-/// The octagons, and the polygons with more and more corners, of which the second number is the round one.
-fn fig15_cloths(store: &Store) -> Result<(Vec<Draped>, Vec<Draped>, usize)> {
+/// Polygons that the picture shows.
+const SHOWN: [&str; 4] = ["n = 4", "n = 8", "n = 16", "round, finer"];
+
+/// The octagons, the polygons with more and more corners, and octagons and round cloths of several films.
+fn fig15_cloths(store: &Store) -> Result<[Vec<Draped>; 3]> {
     let effort = store.effort;
-    let fine = polygon("drape-octagon-fine", 8, effort.quick_or(0.2, 0.045), effort)?;
-    let octagons = vec![
-        drape("244/440", octagon(effort)?, store)?,
-        drape("finer", fine, store)?,
-        drape("rings", ringed(8, RINGS[2].1, effort)?, store)?,
+    let fine = |name: &str, spacing| {
+        let name = format!("drape-octagon-{name}");
+        polygon(&name, 8, effort.quick_or(0.2, spacing), effort)
+    };
+    let mut octagons = vec![
+        ("244/440".to_owned(), octagon(effort)?),
+        ("finer".to_owned(), fine("fine", 0.045)?),
     ];
+    if effort != Effort::Quick {
+        octagons.push(("finest".to_owned(), fine("finest", 0.03)?));
+    }
+    octagons.push(("rings".to_owned(), ringed(8, RINGS[2].1, effort)?));
+    let irregular = |n: u32, spacing| {
+        let name = format!("drape-{n}-gon");
+        polygon(&name, n, effort.quick_or(0.2, spacing), effort)
+    };
     let mut polygons = Vec::new();
-    let (sides, spacing) = effort.quick_or((&SIDES[..1], 0.2), (&SIDES, 0.06));
-    for &n in sides {
-        let label = match n {
-            48 => "round".to_owned(),
-            _ => format!("n = {n}"),
-        };
-        let scene = polygon(&format!("drape-{n}-gon"), n, spacing, effort)?;
-        polygons.push(drape(&label, scene, store)?);
+    for &n in effort.quick_or(&SIDES[..1], &SIDES) {
+        polygons.push((format!("n = {n}"), irregular(n, 0.06)?));
     }
-    let round = polygons.len() - 1;
+    if effort != Effort::Quick {
+        polygons.push(("round".to_owned(), irregular(48, 0.06)?));
+        let finer = polygon("drape-48-gon-finer", 48, 0.03, effort)?;
+        polygons.push(("round, finer".to_owned(), finer));
+    }
+    let mut films = Vec::new();
+    for film in effort.quick_or(&FILMS[1..2], &FILMS) {
+        for (label, scene) in [
+            octagons[1].clone(),
+            ("round".to_owned(), irregular(48, 0.06)?),
+        ] {
+            films.push(drape(&label, scene.made_of(film)?, store)?);
+        }
+    }
     for &(n, rings) in effort.quick_or(&RINGS[2..3], &RINGS) {
-        let label = format!("n = {n}, rings");
-        polygons.push(drape(&label, ringed(n, rings, effort)?, store)?);
+        polygons.push((format!("n = {n}, rings"), ringed(n, rings, effort)?));
     }
-    Ok((octagons, polygons, round))
+    Ok([of_both(octagons, store)?, of_both(polygons, store)?, films])
 }
 
 pub(super) fn fig15(store: &Store) -> Result<Made> {
-    let (octagons, polygons, round) = fig15_cloths(store)?;
+    let effort = store.effort;
+    let [octagons, polygons, films] = fig15_cloths(store)?;
     let alt = "Distance of the hem from the axis, that of the flat cloth = 1, by angle, for polygons with more and more corners";
     let folds_alt = "How the bending of the overhang depends on the distance from the lines from table corners to cloth corners";
-    let all = || octagons.iter().chain(&polygons);
+    // Some cloths belong to more than one group.
+    let mut seen = BTreeSet::new();
+    let mut all: Vec<&Draped> = octagons.iter().chain(&polygons).chain(&films).collect();
+    all.retain(|d| seen.insert(d.run.scene.name()));
+    let irregular = polygons.iter().take_while(|d| !d.label.ends_with("rings"));
+    let irregular = &polygons[..irregular.count()];
+    let is_shown = |d: &&Draped| SHOWN.contains(&d.label.as_str());
+    let shown: Vec<&Draped> = polygons.iter().filter(is_shown).collect();
+    let here = "In the irregular meshes and in 244/440, a lattice of triangles, no mesh line runs from a table corner to its cloth corner, and in \
+                the meshes of concentric rings some do.";
     Ok(Made {
         title: "Octagonal cloth on an octagonal table".into(),
         paper: "An octagonal plastic tablecloth (244/440) is draped over an octagonal table: principal folds run from table corners to cloth corners, and for \
                 more and more corners the paper infers that uniform folding patterns will occur.".into(),
-        here: "In the irregular meshes and in 244/440, a lattice of triangles, no mesh line runs from a table corner to its cloth corner, and in \
-               the meshes of concentric rings some do."
-            .into(),
+        here: format!("{here} {} {}", along(&octagons), trend(irregular, &films)).into(),
         pictures: vec![
-            octagons[0].picture("fig15.png", store.effort)?,
-            octagons[1].picture("fig15-fine.png", store.effort)?,
+            octagons[0].picture("fig15.png", effort)?,
+            // The last ones are the rings.
+            octagons[octagons.len() - 3].picture("fig15-elastic.png", effort)?,
+            ends("fig15-ends.png", &octagons.iter().collect::<Vec<_>>(), effort)?,
             Picture::svg("fig15-folds", &profiles(&octagons), folds_alt),
-            octagons[2].picture("fig15-rings.png", store.effort)?,
-            polygons[round].picture("fig15-round.png", store.effort)?,
+            ends("fig15-polygons.png", &shown, effort)?,
             Picture::svg("fig15-hems", &hems(&polygons), alt),
         ],
-        pages: pages(15, all(), store.effort)?,
+        pages: pages(15, &all, effort)?,
         tables: vec![
             fold_table(&octagons),
             hem_table(&polygons),
-            runs_table(&all().collect::<Vec<_>>()),
+            hem_table(&films),
+            runs_table(&all),
         ],
         facts: json!({
             "octagons": octagons.iter().map(Draped::facts).collect::<Vec<_>>(),
             "polygons": polygons.iter().map(Draped::facts).collect::<Vec<_>>(),
+            "films": films.iter().map(Draped::facts).collect::<Vec<_>>(),
         }),
     })
 }
-
-/// Spacing and size of folds that spread by less than this part of their means make a uniform pattern.
-const UNIFORM: f64 = 0.2;
 
 /// The hems of the polygons, one small plot each.
 fn hems(all: &[Draped]) -> Charts {
     let plot = |d: &Draped| {
         let ticks = [0.0, 180.0, 360.0].map(|a| (a, format!("{a:.0}")));
-        let label = format!("angle (°), {}", d.label);
+        let label = format!("angle (°), {}", d.name());
         let x = Axis::named(&label, [0.0, 360.0], ticks.to_vec());
         let y = Axis::linear("distance", [0.5, 1.0]);
         let hem = Series::line("", palette::BLUE, d.hem.curve.clone());
         Chart::new(x, y, [120.0, 60.0], vec![hem]).with_legend(Legend::None)
     };
     let charts: Vec<Chart> = all.iter().map(plot).collect();
-    Charts(charts.chunks(3).map(<[Chart]>::to_vec).collect())
+    Charts(charts.chunks(4).map(<[Chart]>::to_vec).collect())
 }
 
 fn hem_table(all: &[Draped]) -> Table {
@@ -313,25 +444,24 @@ fn hem_table(all: &[Draped]) -> Table {
         all,
         &[
             ("cloth", &|d| d.label.as_str().into()),
+            ("sheet", &|d| d.sheet().into()),
             ("V/F", &|d| mesh(d)),
             ("folds", &|d| d.hem.folds.to_string().into()),
+            ("along corner lines", &|d| {
+                let (along, _, part) = d.folds.along;
+                format!("{along} ({})", whole_percent(part)).into()
+            }),
             ("spread of spacing", &|d| part(d.hem.spacing_spread)),
             ("spread of size", &|d| part(d.hem.size_spread)),
             ("uniform", &|d| {
-                let Hem {
-                    folds,
-                    spacing_spread,
-                    size_spread,
-                    ..
-                } = d.hem;
-                let is_uniform = folds > 1 && spacing_spread.max(size_spread) < UNIFORM;
+                let is_uniform = d.hem.is_even() == [true; 2];
                 if is_uniform { "yes" } else { "no" }.into()
             }),
             ("wave", &|d| {
                 let (wave, share) = d.hem.wave;
                 format!("{wave} ({})", whole_percent(share)).into()
             }),
-            ("internal DOF", &|d| d.internal.to_string().into()),
+            ("internal DOF", &|d| d.internal().into()),
             ("drop", &|d| part(d.drop)),
             ("at rest from", &|d| {
                 let time = d.run.summary.at_rest_from;

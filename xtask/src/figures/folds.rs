@@ -32,6 +32,17 @@ impl Outline {
             })
             .fold(f64::NEG_INFINITY, f64::max)
     }
+
+    /// Where the ray from the origin, which is inside, through a point leaves the outline: the distance of the
+    /// point over that of the outline.
+    fn gauge(&self, [x, y]: [f64; 2]) -> f64 {
+        let sides = self.corners.iter().zip(self.corners.iter().cycle().skip(1));
+        let ratio = |([a, b], [c, d]): (&[f64; 2], &[f64; 2])| {
+            let [u, v] = [d - b, a - c];
+            (u * x + v * y) / (u * a + v * b)
+        };
+        sides.map(ratio).fold(0.0, f64::max)
+    }
 }
 
 /// The folds of the part of a cloth that hangs over the edge of its table.
@@ -55,6 +66,8 @@ pub(super) struct Folds {
     pub(super) strongest: [usize; 2],
     /// Distance from the nearest corner line (in mean edges) and bending density over the mean, in bins.
     pub(super) profile: Vec<[f64; 2]>,
+    /// Corner lines along which a fold runs, their number, and the part of all directions in which one runs.
+    pub(super) along: (usize, usize, f64),
 }
 
 /// Width of a bin of the profile, mean edges.
@@ -116,8 +129,72 @@ impl Folds {
             angle,
             strongest,
             profile,
+            along: along_corner_lines(sheet, x, table, cloth),
         }
     }
+}
+
+/// Parts of the way from the edge of the table to the hem at which a fold has to be seen.
+const STATIONS: [f64; 3] = [0.35, 0.65, 0.95];
+
+/// A fold runs in a direction, seen from the axis, if the cloth is in the outer half of an outward bulge there at all of
+/// [`STATIONS`]: to how many corner lines that applies, how many there are, and to which part of all directions it
+/// applies, which is what chance would give the corners.
+fn along_corner_lines(
+    sheet: &Sheet,
+    x: &[f64],
+    table: &Outline,
+    cloth: &Outline,
+) -> (usize, usize, f64) {
+    let inner = cloth.gauge(table.corners[0]);
+    let mut runs = [true; SAMPLES];
+    for s in STATIONS {
+        let ring = ring(sheet, x, cloth, inner + s * (1.0 - inner));
+        let mut outer = [false; SAMPLES];
+        for (top, height) in peaks(&ring, s * PROMINENCE) {
+            for step in [1, SAMPLES - 1] {
+                let mut k = top;
+                while ring[k] >= ring[top] - 0.5 * height {
+                    outer[k] = true;
+                    k = (k + step) % SAMPLES;
+                }
+            }
+        }
+        runs.iter_mut()
+            .zip(outer)
+            .for_each(|(all, one)| *all &= one);
+    }
+    let at = |[a, b]: &[f64; 2]| {
+        let place = b.atan2(*a).rem_euclid(TAU) / TAU * SAMPLES as f64;
+        runs[place.round() as usize % SAMPLES]
+    };
+    let along = cloth.corners.iter().filter(|c| at(c)).count();
+    let part = runs.iter().filter(|r| **r).count() as f64 / SAMPLES as f64;
+    (along, cloth.corners.len(), part)
+}
+
+/// The curve of the cloth that was `level` times its outline in the flat cloth: the distance from the axis, divided by
+/// that in the flat cloth, by angle.
+fn ring(sheet: &Sheet, x: &[f64], cloth: &Outline, level: f64) -> Vec<f64> {
+    let t = sheet.topology();
+    let mut points = Vec::new();
+    for ends in t.edges() {
+        let flat = ends.map(|v| sheet.position(v));
+        let gauges = flat.map(|[a, b, _]| cloth.gauge([a, b]) - level);
+        if (gauges[0] < 0.0) == (gauges[1] < 0.0) {
+            continue;
+        }
+        let s = gauges[0] / (gauges[0] - gauges[1]);
+        let mix = |a: f64, b: f64| a + s * (b - a);
+        let now = ends.map(|v| [x[3 * v.index()], x[3 * v.index() + 1]]);
+        let [[a, b], [c, d]] = [
+            [0, 1].map(|k| mix(flat[0][k], flat[1][k])),
+            [0, 1].map(|k| mix(now[0][k], now[1][k])),
+        ];
+        points.push([b.atan2(a).rem_euclid(TAU), c.hypot(d) / a.hypot(b)]);
+    }
+    points.sort_by(|p, q| p[0].total_cmp(&q[0]));
+    resample(&points)
 }
 
 fn creases(sheet: &Sheet, x: &[f64], table: &Outline, cloth: &Outline) -> Vec<Crease> {
@@ -180,7 +257,30 @@ const PROMINENCE: f64 = 0.02;
 /// Points at which the hem is sampled.
 const SAMPLES: usize = 720;
 
+/// Spacing and size of folds that spread by less than this part of their means make a uniform pattern.
+const UNIFORM: f64 = 0.2;
+
 impl Hem {
+    /// Whether its folds are evenly spaced, and whether they are of one size.
+    pub(super) fn is_even(&self) -> [bool; 2] {
+        [self.spacing_spread, self.size_spread].map(|spread| self.folds > 1 && spread < UNIFORM)
+    }
+
+    /// How even its folds are, in words.
+    pub(super) fn pattern(&self) -> String {
+        let [spacing, size] = self.is_even();
+        let [spacing, size] = [
+            if spacing { "evenly" } else { "unevenly" },
+            if size {
+                "of one size"
+            } else {
+                "of different sizes"
+            },
+        ];
+        let [a, b] = [self.spacing_spread, self.size_spread].map(|s| 100.0 * s);
+        format!("{spacing} spaced (spread {a:.0} %) and {size} (spread {b:.0} %)")
+    }
+
     /// Measures the hem of positions `x` of a cloth around the z axis.
     pub(super) fn of(sheet: &Sheet, x: &[f64]) -> Self {
         let t = sheet.topology();
@@ -292,7 +392,7 @@ fn spread(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use isosheet_mesh::generate::isotropic_square;
-    use isosheet_mesh::generate::regular_outline;
+    use isosheet_mesh::generate::{polygon_rings, regular_outline};
 
     #[test]
     fn outside_is_the_distance_from_the_sides() {
@@ -363,5 +463,34 @@ mod tests {
             .collect();
         let f = Folds::of(&sheet, &wave, &table, &cloth);
         assert!(f.density_at_corners < 1.5 && f.angle[0] > 20.0, "{f:?}");
+    }
+
+    #[test]
+    fn folds_along_corner_lines_are_told_from_others() {
+        let cloth = Outline::of(regular_outline(8, 1.0).unwrap());
+        assert!((cloth.gauge([0.5, 0.0]) / cloth.gauge([0.25, 0.0]) - 2.0).abs() < 1e-14);
+        let mut corners = cloth.corners.iter();
+        assert!(corners.all(|c| (cloth.gauge(*c) - 1.0).abs() < 1e-14));
+        let table = Outline::of(regular_outline(8, 0.5).unwrap());
+        let [a, b] = cloth.corners[0];
+        let sheet = polygon_rings(&regular_outline(8, 1.0).unwrap(), 24).unwrap();
+        // Eight folds that grow from the table on, turned by an angle against the corners.
+        let draped = |turn: f64| -> Vec<f64> {
+            let positions = sheet.positions().as_chunks::<3>().0.iter();
+            let moved = positions.flat_map(|[x, y, z]| {
+                let angle = y.atan2(*x) - b.atan2(a) - turn;
+                let out = (cloth.gauge([*x, *y]) - 0.5).max(0.0);
+                let s = 1.0 + 0.3 * out * (8.0 * angle).cos();
+                [s * x, s * y, *z]
+            });
+            moved.collect()
+        };
+        let along = |turn: f64| Folds::of(&sheet, &draped(turn), &table, &cloth).along;
+        let (all, of, part) = along(0.0);
+        assert!((all, of) == (8, 8) && (part - 0.5).abs() < 0.1, "{part}");
+        assert_eq!(along(TAU / 16.0).0, 0);
+        // A flat cloth has folds nowhere.
+        let flat = Folds::of(&sheet, sheet.positions(), &table, &cloth);
+        assert_eq!(flat.along, (0, 8, 0.0));
     }
 }

@@ -1,7 +1,7 @@
 //! Crescent marks: how far the folds of a crumpled sheet concentrate in few edges.
 
 use super::crescent::Crescent;
-use super::{Table, whole_percent};
+use super::{Table, degrees, whole_percent};
 use crate::draw::{Axis, Chart, Charts, Colour, Legend, Series, palette};
 use crate::report::Cell;
 use isosheet_io::Trajectory;
@@ -14,6 +14,9 @@ const SHARPEST: f64 = 0.05;
 /// An edge counts as one of the sharpest if its fold angle is at least this part of the last one's: a
 /// symmetric sheet has folds that are equal but for round-off.
 const TIE: f64 = 0.99;
+
+/// Bends by less than this over an edge are no marks, radians: an eye sees folds from about five degrees on.
+const MARK: f64 = 0.1;
 
 /// What this part of the edges would carry if fold angles were normally distributed: E(|x|; |x| > 1.96 s) /
 /// E|x| = exp(-1.96^2 / 2).
@@ -29,7 +32,9 @@ pub(super) struct Marks {
     /// Time, part of the sum of all sizes of fold angles that the sharpest edges carry then, and the part of
     /// the sharpest edges at the end that are among the sharpest already.
     pub(super) shares: Vec<[f64; 3]>,
-    /// Shape of the largest connected mark at the end, if it has any.
+    /// The smallest fold angle of the sharpest edges at the end, radians.
+    pub(super) least: f64,
+    /// Shape of the largest connected mark at the end, if there are marks.
     pub(super) shape: Option<Crescent>,
 }
 
@@ -39,7 +44,7 @@ impl Marks {
         let inner: Vec<EdgeId> = t.edge_ids().filter(|e| !t.is_boundary_edge(*e)).collect();
         let count = ((SHARPEST * inner.len() as f64).round() as usize).max(1);
         let mut frames = Vec::new();
-        let mut shape = None;
+        let (mut shape, mut last_least) = (None, 0.0);
         for k in 0..trajectory.len() {
             let Some(x) = trajectory.frame(k) else {
                 continue;
@@ -52,8 +57,10 @@ impl Marks {
             let top: f64 = folds[..count].iter().map(|f| f.0).sum();
             // The sheet starts flat, where there is nothing to share.
             if all > 1e-6 {
-                shape = Crescent::largest(sheet, &folds[..count]);
                 let least = folds[count - 1].0;
+                last_least = least;
+                let marks = (least >= MARK).then(|| Crescent::largest(sheet, &folds[..count]));
+                shape = marks.flatten();
                 frames.push((trajectory.times()[k], top / all, least, in_order));
             }
         }
@@ -76,6 +83,7 @@ impl Marks {
                 .iter()
                 .map(|(t, share, least, folds)| [*t, *share, kept(*least, folds)])
                 .collect(),
+            least: last_least,
             shape,
         }
     }
@@ -103,11 +111,11 @@ impl Marks {
 
 const COLOURS: [Colour; 3] = [palette::VERMILION, palette::GREEN, palette::BLUE];
 
-/// The shares over time, and how many of the final marks are there already.
-pub(super) fn plot(all: &[Marks]) -> Charts {
-    let ends = all.iter().filter_map(|m| Some(m.shares.last()?[0]));
+/// The shares over time of rods and of paper, and how many of the final marks of rods are there already.
+pub(super) fn plot([rods, paper]: [&[Marks]; 2]) -> Charts {
+    let ends = rods.iter().filter_map(|m| Some(m.shares.last()?[0]));
     let end = ends.fold(0.0, f64::max);
-    let panel = |label: &str, column: usize, guide: Option<Series>| {
+    let panel = |all: &[Marks], label: &str, column: usize, guide: Option<Series>| {
         let of = |(m, colour): (&Marks, Colour)| {
             let points = m.shares.iter().map(|s| [s[0], 100.0 * s[column]]);
             Series::line(&m.name, colour, points.collect())
@@ -118,10 +126,11 @@ pub(super) fn plot(all: &[Marks]) -> Charts {
         Chart::new(x, y, [165.0, 118.0], series)
     };
     let normal = [0.0, end].map(|t| [t, 100.0 * NORMAL]).to_vec();
-    let normal = Series::guide("normal", normal);
-    let left = panel("share of fold angle (%)", 1, Some(normal));
-    let right = panel("final marks present (%)", 2, None).with_legend(Legend::None);
-    Charts::row([left, right])
+    let normal = Some(Series::guide("normal", normal));
+    let [left, below] =
+        [rods, paper].map(|all| panel(all, "share of fold angle (%)", 1, normal.clone()));
+    let right = panel(rods, "final marks present (%)", 2, None).with_legend(Legend::None);
+    Charts(vec![vec![left, right], vec![below]])
 }
 
 /// A mark is an arc if the circle leaves at most this part of the mean square distance from the line.
@@ -131,18 +140,20 @@ pub(super) fn table(all: &[Marks]) -> Table {
     let caption = format!(
         "Marks: the part of the sum of all sizes of fold angles that the sharpest {:.0} % of the inner edges carry ({:.0} % if all \
              folds were equal, {:.0} % if they were normally distributed), and how many of the edges that are sharpest at the end are among \
-             the sharpest earlier (to 1 %, as symmetric folds are equal). Late: mean over the second half of the run. The largest connected mark at the end is compared, in the flat \
+             the sharpest earlier (to 1 %, as symmetric folds are equal). Late: mean over the second half of the run. There are marks where all of these edges are bent by {:.1}° at least. The largest connected mark at the end is compared, in the flat \
              sheet, with the arc of a crescent: the angle in which the centre of the best circle sees it (a straight fold: near zero), and \
              what is left of its mean square distance from the best line when the line is bent to the circle (0 %: a perfect arc, at most {:.0} %: \
-             an arc). The model has neither bending stiffness nor memory: no fold is permanent by itself, and the table shows where folds gather and \
+             an arc). Rods have neither bending stiffness nor memory, and the elastic sheet has no memory: no fold is permanent by itself, and the table shows where folds gather and \
              whether they stay there.",
         100.0 * SHARPEST,
         100.0 * SHARPEST,
         100.0 * NORMAL,
+        MARK.to_degrees(),
         100.0 * ARC
     );
     let shape = |m: &Marks, f: fn(&Crescent) -> String| Cell::from(m.shape.as_ref().map(f));
     let share = |part: f64| Cell::from(whole_percent(part));
+    let marks = |m: &Marks, part: f64| Cell::from((m.least >= MARK).then(|| whole_percent(part)));
     Table::of(
         caption,
         all,
@@ -154,8 +165,9 @@ pub(super) fn table(all: &[Marks]) -> Table {
             ("share at 0.2 s", &|m| share(m.at(0.2, 1))),
             ("share at 0.6 s", &|m| share(m.at(0.6, 1))),
             ("share, late", &|m| share(m.late(1))),
-            ("final marks present at 0.6 s", &|m| share(m.at(0.6, 2))),
-            ("late", &|m| share(m.late(2))),
+            ("least of these, end", &|m| degrees(m.least).into()),
+            ("final marks present at 0.6 s", &|m| marks(m, m.at(0.6, 2))),
+            ("late", &|m| marks(m, m.late(2))),
             ("edges of the largest mark", &|m| {
                 shape(m, |c| c.edges.to_string())
             }),

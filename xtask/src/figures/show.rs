@@ -81,6 +81,32 @@ impl View {
         times: &[f64],
     ) -> Result<Picture> {
         let shots = self.shots(run, &choose(run.trajectory.times(), times))?;
+        self.montage(shots, effort, [file, alt])
+    }
+
+    /// The last frames of runs, which have labels, as a picture.
+    pub(super) fn ends(
+        &self,
+        runs: &[(String, &Run)],
+        effort: Effort,
+        texts: [&str; 2],
+    ) -> Result<Picture> {
+        let mut shots = Vec::new();
+        for (label, run) in runs {
+            for shot in self.shots(run, &[run.trajectory.len() - 1])? {
+                let label = label.clone();
+                shots.push(Shot { label, ..shot });
+            }
+        }
+        self.montage(shots, effort, texts)
+    }
+
+    fn montage(
+        &self,
+        shots: Vec<Shot<'_>>,
+        effort: Effort,
+        [file, alt]: [&str; 2],
+    ) -> Result<Picture> {
         let seen = self.from(effort.quick_or(170, 470));
         Picture::shaded(file, &seen.montage(shots, self.columns)?, alt)
     }

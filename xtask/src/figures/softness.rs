@@ -1,5 +1,6 @@
 //! How soft a sheet is, by mesh level: what the paper says of Figs. 11 and 12 by eye.
 
+use super::crumple::PAPER_SHEET;
 use super::{Effort, Picture, Table, whole_percent};
 use crate::draw::{Axis, Chart, Charts, Marker, Series, palette, superscript};
 use crate::report::extremes;
@@ -25,12 +26,15 @@ const FINE: f64 = 1.0 / 2000.0;
 pub(super) struct Softness {
     pub(super) picture: Picture,
     pub(super) table: Table,
+    /// How the total bending depends on the mesh, in a sentence.
+    pub(super) finding: String,
     pub(super) facts: Value,
 }
 
 /// The falls of one mesh.
 struct Level {
     level: u32,
+    sheet: String,
     vertices: usize,
     faces: usize,
     internal: i64,
@@ -40,15 +44,23 @@ struct Level {
     freedom: Vec<[f64; 2]>,
 }
 
+/// Rods and paper.
+const SHEETS: [Option<&str>; 2] = [None, Some(PAPER_SHEET)];
+
+/// A scene with rods in it, or the same of a material.
+fn of_sheet(scene: FigureScene, material: Option<&str>) -> Result<FigureScene> {
+    material.map_or(Ok(scene.clone()), |name| scene.made_of(name))
+}
+
 /// The freedom of the fall from 0.03 s to 0.12 s.
-fn freedom(level: u32) -> Result<Vec<[f64; 2]>> {
+fn freedom(level: u32, material: Option<&str>) -> Result<Vec<[f64; 2]>> {
     let edits = [
         format!("sheet.mesh.square.level={level}"),
         "contact.self_contact=false".to_owned(),
         format!("method.step={FINE:?}"),
         runs::for_frames(240, FINE),
     ];
-    let scene = FigureScene::of("fig12", "fall", &edits)?;
+    let scene = of_sheet(FigureScene::of("fig12", "fall", &edits)?, material)?;
     let (sheet, plate, free) = (
         runs::fall(&scene)?,
         runs::plate_fall(&scene)?,
@@ -94,17 +106,21 @@ pub(super) fn make(
 ) -> Result<Softness> {
     let (levels, members) = effort.quick_or((0..2, 2), (0..4, MEMBERS));
     let mut all = Vec::new();
-    for level in levels {
-        let scene = fall(level, effort)?;
+    for (level, material) in SHEETS
+        .iter()
+        .flat_map(|m| levels.clone().map(move |l| (l, *m)))
+    {
+        let scene = of_sheet(fall(level, effort)?, material)?;
         let sheet = scene.sheet()?;
         let t = sheet.topology();
         all.push(Level {
             level,
+            sheet: scene.sheet_name().to_owned(),
             vertices: t.vertex_count(),
             faces: t.face_count(),
             internal: Dof::of(t).internal,
             falls: runs::ensemble(&scene, BUMP, members)?,
-            freedom: freedom(level)?,
+            freedom: freedom(level, material)?,
         });
     }
     let alt =
@@ -112,41 +128,67 @@ pub(super) fn make(
     Ok(Softness {
         picture: Picture::svg("fig12-softness", &plots(&all), alt),
         table: table(&all),
+        finding: finding(&all),
         facts: Value::Array(
             all.iter()
-                .map(|l| json!({ "level": l.level, "freedom": l.early(), "freedom_at": EARLY, "bump": BUMP, "falls": l.falls }))
+                .map(|l| json!({ "level": l.level, "sheet": l.sheet, "freedom": l.early(), "freedom_at": EARLY, "bump": BUMP, "falls": l.falls }))
                 .collect(),
         ),
     })
 }
 
+fn finding(all: &[Level]) -> String {
+    let of = |levels: &[Level]| {
+        let ends = [&levels[0], &levels[levels.len() - 1]];
+        let [coarse, fine] =
+            ends.map(|l| format!("{:.2} ({})", mean(&l.values(bending)), l.name()));
+        format!("from {coarse} to {fine} with {}", levels[0].sheet)
+    };
+    let sheets: Vec<String> = all.chunk_by(|a, b| a.sheet == b.sheet).map(of).collect();
+    let members = all.first().map_or(0, |l| l.falls.len());
+    format!(
+        " With finer meshes the total bending over the run, in the mean of {members} falls, goes {}.",
+        sheets.join(" and ")
+    )
+}
+
 fn plots(all: &[Level]) -> Charts {
-    let size = [165.0, 118.0];
-    let x = Axis::linear("time (s)", [0.03, 0.12]);
-    let y = Axis::linear("freedom of the fall", [0.0, 1.0]);
-    let left = Chart::new(x, y, size, all.iter().flat_map(freedom_series).collect());
-    let place = |l: &Level| f64::from(l.level);
-    let bar = |l: &Level| {
-        let values = l.values(bending);
-        let [low, high] = extremes(values.iter().copied()).unwrap_or_default();
-        [place(l), low, mean(&values), high]
-    };
-    let bars: Vec<[f64; 4]> = all.iter().map(bar).collect();
-    let means = bars.iter().map(|b| [b[0], b[2]]).collect();
-    let top = 1.1 * bars.iter().map(|b| b[3]).fold(0.0, f64::max);
-    let ticks = all.iter().map(|l| (place(l), l.name()));
-    let last = all.last().map_or(0.0, place);
-    let bending = Series {
-        bars,
-        ..Series::line("mean and range", palette::BLUE, means).marked(Marker::Square)
-    };
-    let right = Chart::new(
-        Axis::named("mesh", [-0.25, last + 0.25], ticks.collect()),
+    let size = [140.0, 118.0];
+    let sheets = all.chunk_by(|a, b| a.sheet == b.sheet);
+    let mut charts = Vec::new();
+    let mut series = Vec::new();
+    for (levels, (colour, marker, aside)) in sheets.zip([
+        (palette::VERMILION, Marker::Disc, -0.07),
+        (palette::BLUE, Marker::Square, 0.07),
+    ]) {
+        let sheet = &levels[0].sheet;
+        let x = Axis::linear(&format!("time (s), {sheet}"), [0.03, 0.12]);
+        let y = Axis::linear("freedom of the fall", [0.0, 1.0]);
+        let freedom = levels.iter().flat_map(freedom_series).collect();
+        charts.push(Chart::new(x, y, size, freedom));
+        let bar = |l: &Level| {
+            let values = l.values(bending);
+            let [low, high] = extremes(values.iter().copied()).unwrap_or_default();
+            [f64::from(l.level) + aside, low, mean(&values), high]
+        };
+        let bars: Vec<[f64; 4]> = levels.iter().map(bar).collect();
+        let means = bars.iter().map(|b| [b[0], b[2]]).collect();
+        series.push(Series {
+            bars,
+            ..Series::line(sheet, colour, means).marked(marker)
+        });
+    }
+    let top = series.iter().flat_map(|s| &s.bars).map(|b| b[3]);
+    let top = 1.1 * top.fold(0.0, f64::max);
+    let last = all.last().map_or(0, |l| l.level);
+    let ticks = (0..=last).map(|l| (f64::from(l), format!("M{}", superscript(l))));
+    charts.push(Chart::new(
+        Axis::named("mesh", [-0.25, f64::from(last) + 0.25], ticks.collect()),
         Axis::linear("total bending (rad · side)", [0.0, top]),
         size,
-        vec![bending],
-    );
-    Charts::row([left, right])
+        series,
+    ));
+    Charts::row(charts)
 }
 
 fn bending(fall: &Member) -> f64 {
@@ -193,8 +235,9 @@ fn table(all: &[Level]) -> Table {
         all,
         &[
             ("mesh", &|l| l.name().into()),
+            ("sheet", &|l| l.sheet.as_str().into()),
             ("V/F", &|l| format!("{}/{}", l.vertices, l.faces).into()),
-            ("internal DOF", &|l| l.internal.to_string().into()),
+            ("internal DOF of rods", &|l| l.internal.to_string().into()),
             ("freedom of the fall", &|l| whole_percent(l.early()).into()),
             ("total bending", &|l| range(l, 2, bending)),
             ("width", &|l| range(l, 2, |m| m.shape.extent)),

@@ -1,12 +1,15 @@
 //! Fig. 13: a square die punches a sheet of metal upwards.
 
 use super::show::View;
-use super::{Effort, Made, Picture, Play, course, measured};
+use super::{Effort, Made, Picture, Play, Row, compared, course, through_itself};
 use crate::draw::{Axis, Chart, Charts, Series, palette};
 use crate::runs::{FigureScene, Run};
 use crate::store::Store;
 use anyhow::Result;
-use serde_json::json;
+use serde_json::{Value, json};
+
+/// What the elastic blank is made of.
+const METAL: &str = "steel sheet";
 
 /// The scene of the figure.
 pub(super) fn scene(effort: Effort) -> Result<FigureScene> {
@@ -35,99 +38,147 @@ const VIEW: View = View {
 
 /// The page that plays a run.
 pub(super) fn page(figure: u8, run: &Run, effort: Effort) -> Result<Play> {
-    let label = if run.scene.scene().contact.self_contact {
-        "stamping"
-    } else {
-        "stamping, the sheet passing through itself"
-    };
-    VIEW.play(run, effort, figure, label)
+    let (sheet, free) = (run.scene.sheet_name(), through_itself(&run.scene));
+    VIEW.play(run, effort, figure, &format!("stamping, {sheet}{free}"))
+}
+
+/// A sheet that has been punched.
+struct Punched {
+    run: Run,
+    /// Stroke (mm) and force on the die (N).
+    curve: Vec<[f64; 2]>,
+    /// Its largest force, and the weight of the sheet, newtons.
+    peak: f64,
+    weight: f64,
+    /// The whole stroke, metres, and the time that it takes, seconds.
+    stroke: f64,
+    full: f64,
+}
+
+impl Punched {
+    fn of(store: &Store, scene: FigureScene) -> Result<Self> {
+        let run = Run::of(store, scene)?;
+        let rise = |key: &str| {
+            let key = format!("/obstacle/0/motion/z/ramp/{key}");
+            run.scene.value::<f64>(&key)
+        };
+        let stroke = rise("to")? - rise("from")?;
+        let full = rise("end")? - rise("begin")?;
+        // The sheet presses the die down.
+        let forces = run.forces(DIE).into_iter().filter(|f| f[0] <= full);
+        let curve: Vec<[f64; 2]> = forces
+            .map(|f| [1e3 * stroke / full * f[0], -f[3]])
+            .collect();
+        Ok(Self {
+            peak: curve.iter().map(|p| p[1]).fold(0.0, f64::max),
+            weight: 9.8 * run.scene.scene().sheet.areal_density() * run.sheet.area(),
+            curve,
+            stroke,
+            full,
+            run,
+        })
+    }
+
+    fn picture(&self, file: &str, effort: Effort) -> Result<Picture> {
+        let sheet = self.run.scene.sheet_name();
+        let alt = format!(
+            "A square die rises through the opening of a frame and punches the sheet that lies on it, {sheet}"
+        );
+        let times = STROKES.map(|s| s * self.full);
+        VIEW.picture(&self.run, effort, [file, &alt], &times)
+    }
+
+    fn rows(&self) -> Result<Vec<Row>> {
+        let scene = &self.run.scene;
+        let value = |key: &str| scene.value::<f64>(key);
+        // The bottom of the holders above the top of the frame.
+        let thickness = value("/obstacle/2/shape/box/size/2")?;
+        let bottom = value("/obstacle/2/pose/position/2")? - 0.5 * thickness;
+        let clearance = bottom - value("/obstacle/1/shape/frame/top")?;
+        let millimetres = |length: f64| format!("{:.0} mm", 1e3 * length);
+        let blank = format!(
+            "{:.1} m wide, {:.1} kg/m² (half a millimetre of steel)",
+            self.run.sheet.area().sqrt(),
+            scene.scene().sheet.areal_density()
+        );
+        let motion = [self.stroke / self.full, self.stroke].map(millimetres);
+        let holders = [value("/obstacle/2/shape/box/size/1")?, clearance].map(millimetres);
+        let mut rows = vec![
+            ("blank", blank),
+            (
+                "opening of the frame",
+                millimetres(value("/obstacle/1/shape/frame/opening")?),
+            ),
+            (
+                "width of the die",
+                millimetres(value("/obstacle/0/shape/box/size/0")?),
+            ),
+            ("speed and stroke of the die", motion.join("/s, ")),
+            (
+                "width of the holders, and their height above the frame",
+                holders.join(", "),
+            ),
+            (
+                "friction on all tools",
+                scene.scene().obstacle[DIE].friction.to_string(),
+            ),
+            ("largest force on the die", format!("{:.1} N", self.peak)),
+            ("weight of the blank", format!("{:.1} N", self.weight)),
+        ];
+        rows.extend(course(&self.run.summary));
+        Ok(rows)
+    }
+
+    /// Its force on the die over the stroke.
+    fn plot(&self) -> Chart {
+        let stroke = 1e3 * self.stroke;
+        let x = Axis::linear("stroke (mm)", [0.0, stroke]);
+        let label = format!("force on the die (N), {}", self.run.scene.sheet_name());
+        let y = Axis::linear(&label, [0.0, 1.1 * self.peak.max(self.weight)]);
+        let series = vec![
+            Series::line("force", palette::BLUE, self.curve.clone()),
+            Series::guide("weight", vec![[0.0, self.weight], [stroke, self.weight]]),
+        ];
+        Chart::new(x, y, [165.0, 118.0], series)
+    }
+
+    fn facts(&self) -> Value {
+        let Self {
+            run,
+            peak,
+            weight,
+            curve,
+            ..
+        } = self;
+        json!({ "run": run.summary, "peak_force": peak, "weight": weight, "stroke_mm_and_force_n": curve })
+    }
 }
 
 pub(super) fn make(store: &Store) -> Result<Made> {
-    let whole = Run::of(store, scene(store.effort)?)?;
-    let (scene, run) = (whole.scene.scene(), &whole.summary);
-    let (density, blank, forces) = (scene.sheet.areal_density(), &whole.sheet, whole.forces(DIE));
-    let value = |key: &str| whole.scene.value::<f64>(key);
-    let rise = |key: &str| value(&format!("/obstacle/0/motion/z/ramp/{key}"));
-    let stroke = rise("to")? - rise("from")?;
-    let full = rise("end")? - rise("begin")?;
-    let speed = stroke / full;
-    // The bottom of the holders above the top of the frame.
-    let thickness = value("/obstacle/2/shape/box/size/2")?;
-    let bottom = value("/obstacle/2/pose/position/2")? - 0.5 * thickness;
-    let clearance = bottom - value("/obstacle/1/shape/frame/top")?;
-    // The sheet presses the die down.
-    let curve: Vec<[f64; 2]> = forces
-        .iter()
-        .filter(|f| f[0] <= full)
-        .map(|f| [1e3 * speed * f[0], -f[3]])
-        .collect();
-    let peak = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
-    let weight = 9.8 * density * blank.area();
-    let pressed =
-        "A square die rises through the opening of a frame and punches the sheet that lies on it";
-    let times = STROKES.map(|s| s * full);
-    let plot = plot(&curve, weight, 1e3 * stroke, peak);
+    let effort = store.effort;
+    let rods = scene(effort)?;
+    let steel = Punched::of(store, rods.made_of(METAL)?)?;
+    let rods = Punched::of(store, rods)?;
     let alt = "Force of the sheet on the die over its stroke";
-    let millimetres = |length: f64| format!("{:.0} mm", 1e3 * length);
-    let mut rows = vec![
-        (
-            "blank",
-            format!(
-                "{:.1} m wide, {density:.1} kg/m² (half a millimetre of steel)",
-                blank.area().sqrt()
-            ),
-        ),
-        (
-            "opening of the frame",
-            millimetres(value("/obstacle/1/shape/frame/opening")?),
-        ),
-        (
-            "width of the die",
-            millimetres(value("/obstacle/0/shape/box/size/0")?),
-        ),
-        (
-            "speed and stroke of the die",
-            format!("{}/s, {}", millimetres(speed), millimetres(stroke)),
-        ),
-        (
-            "width of the holders, and their height above the frame",
-            format!(
-                "{}, {}",
-                millimetres(value("/obstacle/2/shape/box/size/1")?),
-                millimetres(clearance)
-            ),
-        ),
-        (
-            "friction on all tools",
-            scene.obstacle[DIE].friction.to_string(),
-        ),
-        ("largest force on the die", format!("{peak:.1} N")),
-        ("weight of the blank", format!("{weight:.1} N")),
-    ];
-    rows.extend(course(run));
+    let plot = Charts::row([rods.plot(), steel.plot()]);
     Ok(Made {
         title: "Sheet metal stamping".into(),
         paper: "A square die punches a sheet (M³, 289/512) upwards; the sequence shows how the buckled developable surface is formed.".into(),
-        here: "Four holders above the sides of the frame, which are not drawn, let the blank draw in at the sides and buckle at the \
-               corners; the holding conditions of the paper are not known."
-            .into(),
-        tables: vec![measured(rows)],
+        here: format!(
+            "Four holders above the sides of the frame, which are not drawn, let the blank draw in at the sides and buckle at the \
+             corners; the holding conditions of the paper are not known. The first sequence is of rods, the second of an elastic {METAL}, \
+             which bends as half a millimetre of steel does and never yields: it presses the die with up to {:.0} N, and rods with up to \
+             {:.0} N.",
+            steel.peak, rods.peak
+        )
+        .into(),
+        tables: vec![compared(&["rods", METAL], &[rods.rows()?, steel.rows()?])],
         pictures: vec![
-            VIEW.picture(&whole, store.effort, ["fig13.png", pressed], &times)?,
+            rods.picture("fig13.png", effort)?,
+            steel.picture("fig13-elastic.png", effort)?,
             Picture::svg("fig13-force", &plot, alt),
         ],
-        pages: vec![page(13, &whole, store.effort)?],
-        facts: json!({ "run": run, "peak_force": peak, "weight": weight, "stroke_mm_and_force_n": curve }),
+        pages: vec![page(13, &rods.run, effort)?, page(13, &steel.run, effort)?],
+        facts: json!({ "rods": rods.facts(), "elastic": steel.facts() }),
     })
-}
-
-fn plot(curve: &[[f64; 2]], weight: f64, stroke: f64, peak: f64) -> Charts {
-    let x = Axis::linear("stroke (mm)", [0.0, stroke]);
-    let y = Axis::linear("force on the die (N)", [0.0, 1.1 * peak.max(weight)]);
-    let series = vec![
-        Series::line("force", palette::BLUE, curve.to_vec()),
-        Series::guide("weight", vec![[0.0, weight], [stroke, weight]]),
-    ];
-    Chart::new(x, y, [230.0, 130.0], series).into()
 }

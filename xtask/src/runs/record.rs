@@ -6,17 +6,19 @@ use crate::report::Table;
 use crate::store::{Files, Store, Unit};
 use anyhow::{Result, ensure};
 use isosheet_dynamics::{Simulation, StepOutcome, StepReport};
+use isosheet_io::run::ElasticSummary;
 use isosheet_io::scene::SupportForces;
 use isosheet_io::{
     HistoryRow, HistoryWriter, Trajectory, frame_path, read_history, write_json, write_obj,
 };
 use isosheet_mesh::Sheet;
+use isosheet_mesh::wording::brief;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// A run with an edge strain from here on is an error: what every figure promises is that nothing stretches.
+/// A run of rods with an edge strain from here on is an error: figures of rods promise that nothing stretches.
 const STRAIN: f64 = 1e-10;
 
 /// A sheet with less kinetic energy than this part of the potential energy released is at rest.
@@ -44,6 +46,8 @@ pub(crate) struct RunSummary {
     pub(crate) paths: [usize; 4],
     /// Kinetic energy at the end as part of the potential energy released.
     pub(crate) motion_left: f64,
+    /// How an elastic sheet was softened and deformed; none for rods.
+    pub(crate) elastic: Option<ElasticSummary>,
 }
 
 /// Where the energy went, joules.
@@ -65,6 +69,18 @@ impl RunSummary {
     /// Wall time over simulated time: below one is faster than real time.
     pub(crate) fn slowness(&self) -> f64 {
         self.course.cost.wall / self.course.time.max(1e-12)
+    }
+
+    /// Largest strain: of an edge of rods, of a face of an elastic sheet.
+    pub(crate) fn strain(&self) -> f64 {
+        self.elastic.map_or(self.course.strain, |e| e.strain)
+    }
+
+    /// Membrane stiffness of an elastic sheet, softened where the mesh is coarse, and that of its material, in words.
+    pub(crate) fn stiffness(&self) -> Option<String> {
+        let e = self.elastic?;
+        let [least, most] = e.used.map(brief);
+        Some(format!("{least} to {most} of {} N/m", brief(e.stiffness)))
     }
 
     /// Takes a step of a run into account that started with the energy `before`, joules.
@@ -179,7 +195,8 @@ fn folder(scene: &FigureScene) -> String {
 
 /// What every run has to keep at every frame.
 fn check(report: &StepReport) -> Result<()> {
-    let StepReport { t, strain, gap, .. } = *report;
+    let StepReport { t, gap, .. } = *report;
+    let strain = report.constrained_strain;
     ensure!(
         strain < STRAIN,
         "at t = {t} s an edge is strained by {strain:e}, {STRAIN:e} is the limit"
@@ -221,6 +238,14 @@ impl Recorder<'_> {
         if let Some(r) = report {
             check(r)?;
             self.found.summary.add(r, self.start);
+            if let Some(elastic) = &mut self.found.summary.elastic {
+                elastic.observe(simulation.model(), t, &state.x);
+                let (strain, limit) = (elastic.strain, elastic.limit);
+                ensure!(
+                    strain < limit,
+                    "at t = {t} s a face is strained by {strain:e}, beyond {limit:e}"
+                );
+            }
             (row.h, row.iterations, row.factorisations) = (r.h, r.iterations, r.factorisations);
             (row.rejected, row.strain) = (r.rejected, r.strain);
             // An infinite gap means that nothing is within reach.
@@ -258,7 +283,13 @@ fn record(scene: &FigureScene, files: &mut Files<'_>) -> Result<Found> {
         folder: &folder,
         // The sheet starts at rest.
         start: simulation.energy(),
-        found: Found::default(),
+        found: Found {
+            summary: RunSummary {
+                elastic: ElasticSummary::of(simulation.model()),
+                ..RunSummary::default()
+            },
+            ..Found::default()
+        },
     };
     recorder.frame(&simulation, None)?;
     let stop = &scene.scene().stop;

@@ -1,12 +1,13 @@
 //! The scenes of the figures: files of the folder `xtask/scenes`, which `isosheet simulate` runs too.
 
 use anyhow::{Context, Result};
-use isosheet_io::scene::{Scene, SceneFile, Setup, StartingPoint};
+use isosheet_io::scene::{Material, Scene, SceneFile, Setup, StartingPoint};
 use isosheet_mesh::Sheet;
 use serde::de::DeserializeOwned;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 use std::path::Path;
+use toml_edit::DocumentMut;
 
 /// The folder of the files.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
@@ -71,6 +72,38 @@ impl FigureScene {
     /// None that is known.
     pub(crate) fn without_self_contact(&self, name: &str) -> Result<Self> {
         self.edited(name, &[THROUGH_ITSELF.to_owned()])
+    }
+
+    /// The same scene with an elastic sheet of a named material in place of rods. The material brings its own mass.
+    ///
+    /// # Errors
+    /// A name that no material has.
+    pub(crate) fn made_of(&self, material: &str) -> Result<Self> {
+        let text = self.file.text();
+        let mut document: DocumentMut = text.text.parse()?;
+        for key in ["mass", "density"] {
+            document["sheet"]
+                .as_table_mut()
+                .map(|sheet| sheet.remove(key));
+        }
+        document["sheet"]["material"] = toml_edit::value(material);
+        Ok(Self {
+            name: format!(
+                "{}-{}",
+                self.name,
+                material.replace(' ', "-").to_lowercase()
+            ),
+            file: SceneFile::parse(document.to_string(), &text.path, &[])?,
+        })
+    }
+
+    /// What the sheet is made of, in words.
+    pub(crate) fn sheet_name(&self) -> &str {
+        match &self.scene().sheet.material {
+            Some(Material::Named(name)) => name,
+            Some(Material::Plate(_)) => "plate",
+            None => "rods",
+        }
     }
 
     /// Name of the folder of the run.
@@ -157,6 +190,28 @@ mod tests {
             assert_eq!(output.steps_per_frame(scene.frame()), 1, "{name}");
             let rest = &scene.scene().stop.rest;
             assert!(rest.is_none(), "figures show all of {name}");
+        }
+    }
+
+    /// Whatever mass its rods have, a material brings its own.
+    #[test]
+    fn a_material_takes_the_place_of_rods() {
+        for file in ["fig12", "fig14", "fig15-rings"] {
+            let rods = FigureScene::of(file, file, &[]).unwrap();
+            let elastic = rods.made_of("PET film").unwrap();
+            let names = (
+                elastic.name().to_owned(),
+                elastic.sheet_name(),
+                rods.sheet_name(),
+            );
+            assert_eq!(names, (format!("{file}-pet-film"), "PET film", "rods"));
+            let setup = elastic.setup().unwrap();
+            assert!(setup.model.elastic_sheet().is_some());
+            let mass: f64 = setup.model.mass().vertex.iter().sum();
+            assert!(
+                (mass / setup.sheet.area() / 0.139 - 1.0).abs() < 1e-9,
+                "{file}"
+            );
         }
     }
 }
