@@ -6,7 +6,7 @@ use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact
 use crate::damped::start::{check_finite, check_motions, check_state};
 use crate::run::checkpoint::{Checkpoint, EnergySums, Motion, SheetFingerprint};
 use crate::step::checkpoint_error::CheckpointError;
-use crate::step::effort::{SolverEffort, StepProgress, TraceSink};
+use crate::step::effort::{SolverEffort, StepProgress, TraceSink, Watch};
 use crate::step::engine::Engine as FreeEngine;
 use crate::step::reaction::Reaction;
 use crate::step::report::{StepError, StepReport, StepTotals};
@@ -484,7 +484,7 @@ impl Simulation {
     fn advance(
         &mut self,
         h: f64,
-        watch: Option<&mut dyn FnMut(&StepProgress) -> ControlFlow<()>>,
+        watch: Option<Watch<'_>>,
     ) -> Result<StepReport, StepError> {
         let mut trace = self.trace.take();
         let watch = watch.map(|watch| &mut *watch as _);

@@ -18,7 +18,7 @@ pub struct StepProgress {
 }
 
 /// Is asked between factorisations whether a step goes on.
-type Watch<'w> = &'w mut dyn FnMut(&StepProgress) -> ControlFlow<()>;
+pub(crate) type Watch<'w> = &'w mut dyn FnMut(&StepProgress) -> ControlFlow<()>;
 
 /// Is told what the iterations do.
 pub(crate) type TraceSink = dyn FnMut(&TraceEvent) + Send;

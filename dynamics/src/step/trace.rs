@@ -27,7 +27,7 @@ pub enum TraceEvent {
         /// Decrease that the search direction promises, relative to the inertia term (root of the energy ratio);
         /// zero where it is round-off.
         residual: f64,
-        /// Largest violation of the equations of isometry before the iteration.
+        /// Largest violation of the equations of isometry after the iteration.
         strain: f64,
         /// Part of the search direction that was taken.
         length: f64,
