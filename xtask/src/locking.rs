@@ -10,12 +10,14 @@ mod cantilever;
 pub(crate) mod clamped;
 mod compliance;
 mod cone;
+mod cone_mesh;
 mod cylinder;
 mod declared;
 mod disk;
 mod dots;
 mod drape;
 mod everyday;
+mod excess;
 mod fear;
 mod folded;
 mod grids;
@@ -139,7 +141,7 @@ impl Yardstick {
 }
 
 /// All of them, in the order of the page.
-static YARDSTICKS: [Yardstick; 15] = [
+static YARDSTICKS: [Yardstick; 16] = [
     Yardstick::new(["clamped", "Clamped sheets", clamped::ABOUT], clamped::make),
     Yardstick::new(
         ["everyday", "Everyday scenes", everyday::ABOUT],
@@ -160,6 +162,10 @@ static YARDSTICKS: [Yardstick; 15] = [
     Yardstick::new(
         ["d-cone", "A disk pushed into a ring", cone::ABOUT],
         cone::make,
+    ),
+    Yardstick::new(
+        ["e-cone", "A disk with a wedge inserted", excess::ABOUT],
+        excess::make,
     ),
     Yardstick::new(
         ["softening", "The bound of the stiffness", softening::ABOUT],

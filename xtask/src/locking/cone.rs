@@ -1,6 +1,7 @@
 //! A disk that is pushed into a ring: the developable cone.
 
 use super::Findings;
+use super::cone_mesh::{KINDS, Kind, Mesh, RADIUS, rim};
 use super::meshes::{nearest, vertices};
 use super::model::{Model, Plate, Tried, at_most};
 use super::nudge::{Nudge, Ring};
@@ -13,11 +14,9 @@ use crate::report::{Table, extremes, number};
 use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::{PointProfile, Profile, SheetModel};
-use isosheet_mesh::generate::{self, Diagonals};
-use isosheet_mesh::{Sheet, VertexId};
+use isosheet_mesh::Sheet;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use std::fmt;
 
 pub(super) const ABOUT: &str = "A disk of office paper (radius R = 0.1 m, 5e-4 N m, without weight) lies with its rim on a frictionless ring and is pushed into it at its \
     centre by d = 0.1 R within 2 s. It comes to rest as a developable cone: one fold leaves the ring, the other vertices of the rim stay on it. For small d / R the \
@@ -25,8 +24,7 @@ pub(super) const ABOUT: &str = "A disk of office paper (radius R = 0.1 m, 5e-4 N
     2.5 s, choose the place of the fold. Measured at rest: folds that lift off by more than 0.1 d, the angle over which the rim is more than 0.02 d above the ring, and the elastic energy over D (d / R)². \
     The reference has the stiffness of the material on an irregular mesh with half the spacing (four times as many vertices).";
 
-/// Radius and depth, metres.
-const RADIUS: f64 = 0.1;
+/// Depth, metres.
 const DEPTH: f64 = 0.1 * RADIUS;
 
 /// Mass per area (kg/m2), flexural rigidity (N m), rate of damping (1/s).
@@ -50,67 +48,9 @@ const STIFF: f64 = 1e5;
 /// The nudge in total over `D / R`: some part of the force that the centre needs, 24 D / R.
 const NUDGE: f64 = 3.0;
 
-/// Corners of the disk.
-const CORNERS: usize = 60;
-
 /// Lifts above the ring, as parts of the depth, that end a fold and that make one.
 const ENDS: f64 = 0.02;
 const FOLDS: f64 = 0.1;
-
-/// A mesh: the spacing is the radius over `rings`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Mesh {
-    kind: Kind,
-    rings: usize,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-enum Kind {
-    /// Circles about the centre: every ray from the centre is close to mesh lines.
-    Concentric,
-    /// Squares with alternating diagonals, the squares about the centre made circles.
-    UnionJack,
-    /// Irregular, with a seed.
-    Delaunay(u64),
-}
-
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Concentric => f.write_str("concentric"),
-            Self::UnionJack => f.write_str("union jack"),
-            Self::Delaunay(seed) => write!(f, "Delaunay {seed}"),
-        }
-    }
-}
-
-impl Mesh {
-    /// The disk about the origin.
-    fn disk(self) -> Result<Sheet> {
-        let cell = RADIUS / self.rings as f64;
-        let corner = |k: usize| {
-            let (s, c) = (TAU * k as f64 / CORNERS as f64).sin_cos();
-            [RADIUS * c, RADIUS * s]
-        };
-        Ok(match self.kind {
-            Kind::Concentric => generate::disk(self.rings, RADIUS)?,
-            Kind::UnionJack => {
-                let n = 2 * self.rings;
-                let square = generate::grid(n, n, 2.0, 2.0, Diagonals::UnionJack)?;
-                square.map_positions(|[x, y, z]| {
-                    let (x, y) = (x - 1.0, y - 1.0);
-                    // Squares about the centre become circles.
-                    let scale = RADIUS * x.abs().max(y.abs()) / x.hypot(y).max(f64::MIN_POSITIVE);
-                    [scale * x, scale * y, z]
-                })?
-            }
-            Kind::Delaunay(seed) => {
-                let outline: Vec<[f64; 2]> = (0..CORNERS).map(corner).collect();
-                generate::delaunay(&outline, cell, seed)?
-            }
-        })
-    }
-}
 
 /// What is measured at rest.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -134,16 +74,6 @@ fn plate() -> Plate<'static> {
         clamped: &[],
         creases: &[],
     }
-}
-
-fn rim(sheet: &Sheet) -> Vec<VertexId> {
-    let mut rim: Vec<VertexId> = sheet.topology().boundary_loops().concat();
-    let angle = |v: &VertexId| {
-        let [x, y, _] = sheet.position(*v);
-        y.atan2(x)
-    };
-    rim.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
-    rim
 }
 
 fn model(of: Model, sheet: &Sheet) -> Result<SheetModel> {
@@ -255,15 +185,6 @@ fn arcs(lifts: &[[f64; 2]], bound: f64) -> impl Iterator<Item = Arc> {
     arcs.extend(open);
     arcs.into_iter()
 }
-
-/// The meshes, and the names of their kinds.
-const KINDS: [(Kind, &str); 5] = [
-    (Kind::Concentric, "concentric"),
-    (Kind::UnionJack, "union jack"),
-    (Kind::Delaunay(1), "Delaunay"),
-    (Kind::Delaunay(2), "Delaunay"),
-    (Kind::Delaunay(3), "Delaunay"),
-];
 
 /// The reference: an irregular mesh.
 const REFERENCE: Kind = Kind::Delaunay(1);
@@ -468,20 +389,5 @@ mod tests {
         assert_eq!(arcs(&around, 4.0).count(), 0);
         let whole: Vec<Arc> = arcs(&around, -1.0).collect();
         assert!((whole[0].angle - TAU).abs() < 1e-12);
-    }
-
-    #[test]
-    fn disks_have_their_rim_on_the_circle() {
-        for (kind, _) in KINDS {
-            let sheet = Mesh { kind, rings: 6 }.disk().unwrap();
-            assert_eq!(sheet.topology().boundary_loops().len(), 1, "{kind}");
-            for v in rim(&sheet) {
-                let [x, y, _] = sheet.position(v);
-                assert!(
-                    (0.99..1.0 + 1e-9).contains(&(x.hypot(y) / RADIUS)),
-                    "{kind}"
-                );
-            }
-        }
     }
 }
