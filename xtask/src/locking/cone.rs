@@ -1,11 +1,11 @@
 //! A disk that is pushed into a ring: the developable cone.
 
 use super::Findings;
-use super::cone_mesh::{KINDS, Kind, Mesh, RADIUS, rim};
+use super::cone_mesh::{Kind, Mesh, RADIUS, rim};
 use super::meshes::{nearest, vertices};
 use super::model::{Model, Plate, Tried, at_most};
 use super::nudge::{Nudge, Ring};
-use super::panels::{Panel, charts};
+use super::panels::{BANDS, Panel, charts};
 use super::records::Records;
 use super::scene::Scene;
 use crate::draw::{Axis, Charts};
@@ -22,7 +22,7 @@ pub(super) const ABOUT: &str = "A disk of office paper (radius R = 0.1 m, 5e-4 N
     centre by d = 0.1 R within 2 s. It comes to rest as a developable cone: one fold leaves the ring, the other vertices of the rim stay on it. For small d / R the \
     fold spans 139 degrees in theory (Cerda and Mahadevan, Phys. Rev. Lett. 80, 1998); at d / R = 0.1 and with a core of finite size the sector is smaller. Upward forces on a tenth of the rim, which are gone after \
     2.5 s, choose the place of the fold. Measured at rest: folds that lift off by more than 0.1 d, the angle over which the rim is more than 0.02 d above the ring, and the elastic energy over D (d / R)². \
-    The reference has the stiffness of the material on an irregular mesh with half the spacing (four times as many vertices).";
+    The reference has the stiffness of the material on an irregular mesh with half the spacing (four times as many vertices); the elastic sheet on that mesh stands beside it.";
 
 /// Depth, metres.
 const DEPTH: f64 = 0.1 * RADIUS;
@@ -199,10 +199,10 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
     let effort = records.store.effort;
     let sizes: &[usize] = effort.quick_or(&[4], &[6, 10, 16]);
     let judged = sizes.last().copied().unwrap_or(1);
-    let kinds = effort.quick_or(&KINDS[2..3], &KINDS[..]);
+    let kinds = effort.quick_or(&Kind::ALL[2..3], &Kind::ALL[..]);
     let meshes: Vec<Mesh> = kinds
         .iter()
-        .flat_map(|&(kind, _)| sizes.iter().map(move |&rings| Mesh { kind, rings }))
+        .flat_map(|&kind| sizes.iter().map(move |&rings| Mesh { kind, rings }))
         .collect();
     let finest = Mesh {
         kind: REFERENCE,
@@ -251,14 +251,24 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
         ]
     });
     let targets = targets.collect();
+    all.extend(
+        records.runs("elastic beside the reference", &[finest], |mesh| {
+            measure(Model::Elastic, *mesh, &plan(effort.quick_or(5.0, 1200.0)))
+        })?,
+    );
     all.extend(reference);
+    let sizes = [sizes, &[finest.rings]].concat();
     let findings = Findings {
         tables: vec![table(&all)],
         files: Vec::new(),
-        remarks: Model::ALL.map(|m| remark(m, &all)).to_vec(),
+        remarks: Model::ALL
+            .map(|m| remark(m, &all))
+            .into_iter()
+            .chain([BANDS.to_owned()])
+            .collect(),
         targets,
     };
-    Ok((findings, Some(plot(&all, sizes))))
+    Ok((findings, Some(plot(&all, &sizes))))
 }
 
 fn table(all: &[Pushed]) -> Table {
@@ -308,11 +318,9 @@ fn plot(all: &[Pushed], sizes: &[usize]) -> Charts {
     });
     let x = Axis::at("h, mm", ticks.collect());
     let panel = |title: &str, y: Axis, value: fn(&Cone) -> f64| {
-        let number = |kind: Kind| KINDS.iter().position(|k| k.0 == kind).unwrap_or(0);
-        let of = all.iter().filter(|p| sizes.contains(&p.job.rings));
         let point = |p: &Pushed| {
             let at = [RADIUS / p.job.rings as f64, p.if_good(value)?];
-            Some((p.model, number(p.job.kind), at))
+            Some((p.model, at))
         };
         let exact = all.last().and_then(|p| p.if_good(value));
         let ends = |exact: f64| {
@@ -322,7 +330,7 @@ fn plot(all: &[Pushed], sizes: &[usize]) -> Charts {
         Panel {
             title: title.to_owned(),
             axes: [x.clone(), y],
-            points: of.filter_map(point).collect(),
+            points: all.iter().filter_map(point).collect(),
             guides: exact.map(ends).into_iter().collect(),
         }
     };
@@ -336,7 +344,7 @@ fn plot(all: &[Pushed], sizes: &[usize]) -> Charts {
             c.sector
         }),
     ];
-    charts(vec![row], &Model::ALL, &KINDS.map(|k| k.1), "reference")
+    charts(vec![row], &Model::ALL, "reference")
 }
 
 /// The disk on the irregular mesh with another bound of the stiffness.

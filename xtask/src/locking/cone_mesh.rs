@@ -68,14 +68,16 @@ impl Mesh {
     }
 }
 
-/// The meshes, and the names of their kinds.
-pub(super) const KINDS: [(Kind, &str); 5] = [
-    (Kind::Concentric, "concentric"),
-    (Kind::UnionJack, "union jack"),
-    (Kind::Delaunay(1), "Delaunay"),
-    (Kind::Delaunay(2), "Delaunay"),
-    (Kind::Delaunay(3), "Delaunay"),
-];
+impl Kind {
+    /// Those that are compared.
+    pub(super) const ALL: [Self; 5] = [
+        Self::Concentric,
+        Self::UnionJack,
+        Self::Delaunay(1),
+        Self::Delaunay(2),
+        Self::Delaunay(3),
+    ];
+}
 
 /// The vertices of the rim in the order of their angles.
 pub(super) fn rim(sheet: &Sheet) -> Vec<VertexId> {
@@ -94,7 +96,7 @@ mod tests {
 
     #[test]
     fn disks_have_their_rim_on_the_circle() {
-        for (kind, _) in KINDS {
+        for kind in Kind::ALL {
             let sheet = Mesh { kind, rings: 6 }.disk().unwrap();
             assert_eq!(sheet.topology().boundary_loops().len(), 1, "{kind}");
             for v in rim(&sheet) {
