@@ -248,8 +248,8 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
         }
     }
     let findings = Findings {
-        tables: vec![table(&all), orders(&all)],
-        files: Vec::new(),
+        tables: vec![summary(&all, sizes), orders(&all)],
+        files: vec![table(&all)],
         remarks: Model::ALL
             .map(|m| remark(m, &all, finest))
             .into_iter()
@@ -258,6 +258,35 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
         targets,
     };
     Ok((findings, Some(plot(&all, sizes))))
+}
+
+fn summary(all: &[Wedged], sizes: &[usize]) -> Table {
+    let sizes = sizes.iter();
+    let rows = sizes.flat_map(|&rings| Model::ALL.map(|model| (rings, model)));
+    let of = |&(rings, model): &(usize, Model)| {
+        let is_of = move |w: &&Wedged| (w.job.rings, w.model) == (rings, model);
+        all.iter().filter(is_of).collect::<Vec<_>>()
+    };
+    let largest = |of: &[&Wedged], error: Measure| {
+        let values = of.iter().filter_map(|w| error(w));
+        values.reduce(f64::max)
+    };
+    Table::of(
+        "Disks with a wedge (R / h: radius over spacing): how many of the five meshes come to rest, and the largest errors of those that do",
+        rows,
+        &[
+            ("R/h", &|r| r.0.into()),
+            ("model", &|r| r.1.to_string().into()),
+            ("at rest", &|r| of(r).iter().filter(|w| w.course.is_good()).count().into()),
+            ("error of the energy", &|r| largest(&of(r), ERRORS[0].1).into()),
+            ("error of the place", &|r| largest(&of(r), ERRORS[1].1).into()),
+            ("CPU seconds of a run", &|r| {
+                let of = of(r);
+                (of.iter().map(|w| w.course.cost.cpu).sum::<f64>() / of.len() as f64).into()
+            }),
+        ],
+    )
+    .named("e-cone")
 }
 
 fn table(all: &[Wedged]) -> Table {
@@ -284,7 +313,7 @@ fn table(all: &[Wedged]) -> Table {
             ("message", &|w| w.course.ending.message().into()),
         ],
     )
-    .named("e-cone")
+    .named("e-cone-all")
 }
 
 /// The fitted orders of both errors: a row for each model and mesh.
