@@ -269,7 +269,7 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
     let sizes: &[usize] = effort.quick_or(&[2], &[2, 4, 8]);
     let grids: &[Grid] = effort.quick_or(&[Grid::Delaunay(1)], &Grid::ALL);
     let plan = Plan::new(STEP, 30.0)
-        .within(effort.quick_or(1.0, 30.0))
+        .within(effort.quick_or(1.0, 120.0))
         .until_rest(REST);
     let mut jobs = Vec::new();
     for shape in grids
