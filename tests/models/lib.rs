@@ -1,12 +1,13 @@
 //! Mechanical problems, shared by the tests that span several crates and by reports. Each model gives a
 //! sheet, a start state and the exact motion, but for [`tumbling`], which gives a start alone, for
-//! [`RigidBody`], which gives the motion of any sheet that cannot bend, for [`Elastica`], a strip at rest, and for
-//! [`buckled`] strips.
+//! [`RigidBody`], which gives the motion of any sheet that cannot bend, and for states of rest: [`Elastica`],
+//! [`buckled`] strips and [`ExcessCone`].
 
 mod buckled;
 mod catenary;
 mod elastica;
 mod elliptic;
+mod excess_cone;
 mod flap;
 mod linkage;
 mod pendulum;
@@ -19,6 +20,7 @@ pub use buckled::buckled;
 pub use catenary::Catenary;
 pub use elastica::{Elastica, Hanging};
 pub use elliptic::{agm, complete_k, jacobi};
+pub use excess_cone::ExcessCone;
 pub use flap::Flap;
 pub use linkage::Linkage;
 pub use pendulum::Pendulum;

@@ -70,6 +70,10 @@ impl Advice for PlateBendingError {
 /// second order in the size of the faces on any mesh. (The stiffness of
 /// [`CreaseSprings::bending`](crate::CreaseSprings::bending) depends on how mesh and bend run.)
 ///
+/// Of the sheet that the plate is made of, the edge lengths alone count: where its rest positions are folded, the plate
+/// is flat at rest all the same, and a cone or another shape that no flat sheet has may be given in any positions with
+/// its lengths.
+///
 /// The Hessian is constant and positive semidefinite. It couples vertices that have no common edge, some 30
 /// to each vertex. Implicit steps of all but small and very stiff sheets factorise a matrix without these
 /// couplings, and take them into account by conjugate gradients: a step costs about twice as much as with rods

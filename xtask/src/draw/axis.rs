@@ -68,6 +68,19 @@ impl Axis {
         }
     }
 
+    /// The same without its label.
+    pub(crate) fn unlabelled(self) -> Self {
+        Self {
+            label: String::new(),
+            ..self
+        }
+    }
+
+    /// The nearest value on the axis.
+    pub(super) fn nearest(&self, value: f64) -> f64 {
+        value.clamp(self.range[0], self.range[1])
+    }
+
     /// Values at the ends.
     pub(super) fn ends(&self) -> [f64; 2] {
         self.range

@@ -63,7 +63,7 @@ pub(crate) struct Chart {
 pub(crate) struct Charts(pub(crate) Vec<Vec<Chart>>);
 
 /// Sizes of what is around the area inside the axes, points: labels of the axes, title, line of runs without
-/// a value, free room, and what a legend needs besides its lines and names.
+/// a value, free room (also around all charts), and what a legend needs besides its lines and names.
 const LEFT: f64 = 42.0;
 const BELOW: f64 = 28.0;
 const TITLE: f64 = 14.0;
@@ -192,6 +192,11 @@ impl Chart {
             let (look, line) = (s.look(), stroke(s.colour, 1.1));
             match s.line {
                 Line::None => {}
+                Line::Area => {
+                    let corners = s.points.iter().map(|p| (p[0], self.y.nearest(p[1])));
+                    let area = Polygon::new(corners.collect::<Vec<_>>(), rgba(s.colour));
+                    chart.draw_series([area])?;
+                }
                 Line::Solid => {
                     chart.draw_series(LineSeries::new(points.clone(), line))?;
                 }
@@ -325,11 +330,12 @@ impl Charts {
                 .sum::<f64>()
                 .max(1.0),
         ];
+        let size = size.map(|s| s + 2.0 * ROOM);
         let [w, h] = size.map(|s| units(s) as u32);
         let root = SVGBackend::with_string(svg, (w, h)).into_drawing_area();
-        let mut y = 0.0;
+        let mut y = ROOM;
         for row in &self.0 {
-            let mut x = 0.0;
+            let mut x = ROOM;
             for chart in row {
                 let outer = chart.outer();
                 let [x0, y0, w, h] = [x, y, outer[0], outer[1]].map(units);

@@ -14,8 +14,6 @@ pub(crate) enum Marker {
     Square,
     Triangle,
     Diamond,
-    /// A triangle with its tip down.
-    Down,
 }
 
 impl Marker {
@@ -29,7 +27,6 @@ impl Marker {
             }
             Self::Square => &[[-0.88, -0.88], [0.88, -0.88], [0.88, 0.88], [-0.88, 0.88]],
             Self::Triangle => &[[-1.12, -0.76], [1.12, -0.76], [0.0, 1.24]],
-            Self::Down => &[[-1.12, 0.76], [0.0, -1.24], [1.12, 0.76]],
             Self::Diamond => &[[0.0, -1.25], [1.25, 0.0], [0.0, 1.25], [-1.25, 0.0]],
         };
         corners.iter().map(|c| c.map(|c| radius * c)).collect()

@@ -22,6 +22,8 @@ pub(crate) enum Line {
     None,
     Solid,
     Dashed,
+    /// The points are corners of an area, which is cut off at the ends of the vertical axis.
+    Area,
 }
 
 /// Colours and symbols of the series of a plot, in order.
@@ -33,6 +35,9 @@ const STYLES: [(Colour, Marker); 6] = [
     (palette::PURPLE, Marker::Disc),
     (palette::SKY, Marker::Square),
 ];
+
+/// Opacity of areas: three of them over one another can be told apart.
+const OPACITY: f64 = 0.2;
 
 impl Series {
     /// A named sequence of points with a solid line and without symbols.
@@ -68,6 +73,16 @@ impl Series {
     /// A grey dashed line for comparison.
     pub(crate) fn guide(name: &str, points: Vec<[f64; 2]>) -> Self {
         Self::line(name, palette::GREY, points).dashed()
+    }
+
+    /// The area between two curves over the same places: place, lower and upper value.
+    pub(crate) fn band(colour: Colour, curves: &[[f64; 3]]) -> Self {
+        let lower = curves.iter().map(|c| [c[0], c[1]]);
+        let upper = curves.iter().rev().map(|c| [c[0], c[2]]);
+        Self {
+            line: Line::Area,
+            ..Self::line("", colour.alpha(OPACITY), lower.chain(upper).collect())
+        }
     }
 
     /// The same with symbols.

@@ -1,10 +1,11 @@
 //! A disk that is pushed into a ring: the developable cone.
 
 use super::Findings;
+use super::cone_mesh::{Kind, Mesh, RADIUS, rim};
 use super::meshes::{nearest, vertices};
 use super::model::{Model, Plate, Tried, at_most};
 use super::nudge::{Nudge, Ring};
-use super::panels::{Panel, charts};
+use super::panels::{BANDS, Panel, charts};
 use super::records::Records;
 use super::scene::Scene;
 use crate::draw::{Axis, Charts};
@@ -13,20 +14,17 @@ use crate::report::{Table, extremes, number};
 use crate::runs::Plan;
 use anyhow::Result;
 use isosheet_dynamics::{PointProfile, Profile, SheetModel};
-use isosheet_mesh::generate::{self, Diagonals};
-use isosheet_mesh::{Sheet, VertexId};
+use isosheet_mesh::Sheet;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use std::fmt;
 
 pub(super) const ABOUT: &str = "A disk of office paper (radius R = 0.1 m, 5e-4 N m, without weight) lies with its rim on a frictionless ring and is pushed into it at its \
     centre by d = 0.1 R within 2 s. It comes to rest as a developable cone: one fold leaves the ring, the other vertices of the rim stay on it. For small d / R the \
     fold spans 139 degrees in theory (Cerda and Mahadevan, Phys. Rev. Lett. 80, 1998); at d / R = 0.1 and with a core of finite size the sector is smaller. Upward forces on a tenth of the rim, which are gone after \
     2.5 s, choose the place of the fold. Measured at rest: folds that lift off by more than 0.1 d, the angle over which the rim is more than 0.02 d above the ring, and the elastic energy over D (d / R)². \
-    The reference has the stiffness of the material on an irregular mesh with half the spacing (four times as many vertices).";
+    The reference has the stiffness of the material on an irregular mesh with half the spacing (four times as many vertices); the elastic sheet on that mesh stands beside it.";
 
-/// Radius and depth, metres.
-const RADIUS: f64 = 0.1;
+/// Depth, metres.
 const DEPTH: f64 = 0.1 * RADIUS;
 
 /// Mass per area (kg/m2), flexural rigidity (N m), rate of damping (1/s).
@@ -50,67 +48,9 @@ const STIFF: f64 = 1e5;
 /// The nudge in total over `D / R`: some part of the force that the centre needs, 24 D / R.
 const NUDGE: f64 = 3.0;
 
-/// Corners of the disk.
-const CORNERS: usize = 60;
-
 /// Lifts above the ring, as parts of the depth, that end a fold and that make one.
 const ENDS: f64 = 0.02;
 const FOLDS: f64 = 0.1;
-
-/// A mesh: the spacing is the radius over `rings`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Mesh {
-    kind: Kind,
-    rings: usize,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-enum Kind {
-    /// Circles about the centre: every ray from the centre is close to mesh lines.
-    Concentric,
-    /// Squares with alternating diagonals, the squares about the centre made circles.
-    UnionJack,
-    /// Irregular, with a seed.
-    Delaunay(u64),
-}
-
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Concentric => f.write_str("concentric"),
-            Self::UnionJack => f.write_str("union jack"),
-            Self::Delaunay(seed) => write!(f, "Delaunay {seed}"),
-        }
-    }
-}
-
-impl Mesh {
-    /// The disk about the origin.
-    fn disk(self) -> Result<Sheet> {
-        let cell = RADIUS / self.rings as f64;
-        let corner = |k: usize| {
-            let (s, c) = (TAU * k as f64 / CORNERS as f64).sin_cos();
-            [RADIUS * c, RADIUS * s]
-        };
-        Ok(match self.kind {
-            Kind::Concentric => generate::disk(self.rings, RADIUS)?,
-            Kind::UnionJack => {
-                let n = 2 * self.rings;
-                let square = generate::grid(n, n, 2.0, 2.0, Diagonals::UnionJack)?;
-                square.map_positions(|[x, y, z]| {
-                    let (x, y) = (x - 1.0, y - 1.0);
-                    // Squares about the centre become circles.
-                    let scale = RADIUS * x.abs().max(y.abs()) / x.hypot(y).max(f64::MIN_POSITIVE);
-                    [scale * x, scale * y, z]
-                })?
-            }
-            Kind::Delaunay(seed) => {
-                let outline: Vec<[f64; 2]> = (0..CORNERS).map(corner).collect();
-                generate::delaunay(&outline, cell, seed)?
-            }
-        })
-    }
-}
 
 /// What is measured at rest.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -134,16 +74,6 @@ fn plate() -> Plate<'static> {
         clamped: &[],
         creases: &[],
     }
-}
-
-fn rim(sheet: &Sheet) -> Vec<VertexId> {
-    let mut rim: Vec<VertexId> = sheet.topology().boundary_loops().concat();
-    let angle = |v: &VertexId| {
-        let [x, y, _] = sheet.position(*v);
-        y.atan2(x)
-    };
-    rim.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
-    rim
 }
 
 fn model(of: Model, sheet: &Sheet) -> Result<SheetModel> {
@@ -256,15 +186,6 @@ fn arcs(lifts: &[[f64; 2]], bound: f64) -> impl Iterator<Item = Arc> {
     arcs.into_iter()
 }
 
-/// The meshes, and the names of their kinds.
-const KINDS: [(Kind, &str); 5] = [
-    (Kind::Concentric, "concentric"),
-    (Kind::UnionJack, "union jack"),
-    (Kind::Delaunay(1), "Delaunay"),
-    (Kind::Delaunay(2), "Delaunay"),
-    (Kind::Delaunay(3), "Delaunay"),
-];
-
 /// The reference: an irregular mesh.
 const REFERENCE: Kind = Kind::Delaunay(1);
 
@@ -278,10 +199,10 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
     let effort = records.store.effort;
     let sizes: &[usize] = effort.quick_or(&[4], &[6, 10, 16]);
     let judged = sizes.last().copied().unwrap_or(1);
-    let kinds = effort.quick_or(&KINDS[2..3], &KINDS[..]);
+    let kinds = effort.quick_or(&Kind::ALL[2..3], &Kind::ALL[..]);
     let meshes: Vec<Mesh> = kinds
         .iter()
-        .flat_map(|&(kind, _)| sizes.iter().map(move |&rings| Mesh { kind, rings }))
+        .flat_map(|&kind| sizes.iter().map(move |&rings| Mesh { kind, rings }))
         .collect();
     let finest = Mesh {
         kind: REFERENCE,
@@ -330,14 +251,24 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
         ]
     });
     let targets = targets.collect();
+    all.extend(
+        records.runs("elastic beside the reference", &[finest], |mesh| {
+            measure(Model::Elastic, *mesh, &plan(effort.quick_or(5.0, 1200.0)))
+        })?,
+    );
     all.extend(reference);
+    let sizes = [sizes, &[finest.rings]].concat();
     let findings = Findings {
         tables: vec![table(&all)],
         files: Vec::new(),
-        remarks: Model::ALL.map(|m| remark(m, &all)).to_vec(),
+        remarks: Model::ALL
+            .map(|m| remark(m, &all))
+            .into_iter()
+            .chain([BANDS.to_owned()])
+            .collect(),
         targets,
     };
-    Ok((findings, Some(plot(&all, sizes))))
+    Ok((findings, Some(plot(&all, &sizes))))
 }
 
 fn table(all: &[Pushed]) -> Table {
@@ -387,11 +318,9 @@ fn plot(all: &[Pushed], sizes: &[usize]) -> Charts {
     });
     let x = Axis::at("h, mm", ticks.collect());
     let panel = |title: &str, y: Axis, value: fn(&Cone) -> f64| {
-        let number = |kind: Kind| KINDS.iter().position(|k| k.0 == kind).unwrap_or(0);
-        let of = all.iter().filter(|p| sizes.contains(&p.job.rings));
         let point = |p: &Pushed| {
             let at = [RADIUS / p.job.rings as f64, p.if_good(value)?];
-            Some((p.model, number(p.job.kind), at))
+            Some((p.model, at))
         };
         let exact = all.last().and_then(|p| p.if_good(value));
         let ends = |exact: f64| {
@@ -401,7 +330,7 @@ fn plot(all: &[Pushed], sizes: &[usize]) -> Charts {
         Panel {
             title: title.to_owned(),
             axes: [x.clone(), y],
-            points: of.filter_map(point).collect(),
+            points: all.iter().filter_map(point).collect(),
             guides: exact.map(ends).into_iter().collect(),
         }
     };
@@ -415,7 +344,7 @@ fn plot(all: &[Pushed], sizes: &[usize]) -> Charts {
             c.sector
         }),
     ];
-    charts(vec![row], &Model::ALL, &KINDS.map(|k| k.1), "reference")
+    charts(vec![row], &Model::ALL, "reference")
 }
 
 /// The disk on the irregular mesh with another bound of the stiffness.
@@ -468,20 +397,5 @@ mod tests {
         assert_eq!(arcs(&around, 4.0).count(), 0);
         let whole: Vec<Arc> = arcs(&around, -1.0).collect();
         assert!((whole[0].angle - TAU).abs() < 1e-12);
-    }
-
-    #[test]
-    fn disks_have_their_rim_on_the_circle() {
-        for (kind, _) in KINDS {
-            let sheet = Mesh { kind, rings: 6 }.disk().unwrap();
-            assert_eq!(sheet.topology().boundary_loops().len(), 1, "{kind}");
-            for v in rim(&sheet) {
-                let [x, y, _] = sheet.position(v);
-                assert!(
-                    (0.99..1.0 + 1e-9).contains(&(x.hypot(y) / RADIUS)),
-                    "{kind}"
-                );
-            }
-        }
     }
 }

@@ -9,14 +9,18 @@ const LOCKS: &str = "rods lock where a bend follows no line of the mesh";
 const COARSE: &str = "elastic paper locks on coarse meshes, less strongly than rods";
 const FOLDS: &str = "the mesh decides how many folds there are";
 const FINE_FOLDS: &str = "without bending stiffness folds become finer with every refinement; rods and fine meshes need more iterations";
+/// What softened faces of the elastic sheet do not reach.
+const UNEVEN: &str = "on some meshes the errors of the coarsest one are small by chance, which lowers the fitted order";
+const STRAINED: &str = "steps with stiff faces or near the limit of strain take more iterations than weaker membranes, for which the target was set";
 const CROSSED: &str =
     "strips that bend much about the diagonals of squares with both diagonals stretch";
 const SOFT_TIP: &str = "softened faces near the tip of a cone stretch instead of bending";
+const CAUGHT: &str = "on the union jack mesh the stiff sheet is caught in another state, with a fold that is several times as high";
 const WALL: &str = "runs are stopped after a wall time, so that the number depends on the machine";
 const QUICK: &str = "the meshes and times of the quick form are too small for it";
 
 /// What is missed: yardstick, start of the quantity, models, reason.
-const OPEN: [(&str, &str, &[&str], &str); 21] = [
+const OPEN: [(&str, &str, &[&str], &str); 27] = [
     (
         "clamped",
         "mean factorisations a step, BDF2, refusing",
@@ -26,20 +30,27 @@ const OPEN: [(&str, &str, &[&str], &str); 21] = [
     ("clamped", "part of the sheets", &[], WALL),
     ("everyday", "part of the scenes", &[], WALL),
     ("cylinder", "", &["rods"], LOCKS),
-    ("cylinder", "order", &["elastic (paper)"], COARSE),
-    ("cylinder", "relative error", &["elastic (paper)"], COARSE),
+    ("cylinder", "order", &["real stiffness"], COARSE),
+    ("cylinder", "order", &["elastic"], UNEVEN),
+    ("cylinder", "relative error", &["real stiffness"], COARSE),
     ("cantilever", "relative error", &["rods"], LOCKS),
     (
         "iterations",
         "factorisations a step at M^4, no",
-        &["rods", "elastic (paper)", "elastic sheet"],
+        &["rods", "real stiffness", "elastic"],
         FINE_FOLDS,
     ),
     (
         "iterations",
         "factorisations a step at M^4, D",
-        &["rods", "elastic (paper)"],
+        &["rods"],
         FINE_FOLDS,
+    ),
+    (
+        "iterations",
+        "factorisations a step at M^4, D",
+        &[],
+        STRAINED,
     ),
     (
         "iterations",
@@ -50,8 +61,14 @@ const OPEN: [(&str, &str, &[&str], &str); 21] = [
     (
         "iterations",
         "factorisations a step at M^5, D",
-        &["rods", "elastic (paper)"],
+        &["rods"],
         FINE_FOLDS,
+    ),
+    (
+        "iterations",
+        "factorisations a step at M^5, D",
+        &[],
+        STRAINED,
     ),
     ("drape", "part of the seeds", &[], FOLDS),
     ("buckling", "relative error", &["rods"], LOCKS),
@@ -63,15 +80,18 @@ const OPEN: [(&str, &str, &[&str], &str); 21] = [
         &["elastic"],
         CROSSED,
     ),
-    ("d-cone", "difference of the", &[], SOFT_TIP),
+    ("d-cone", "difference of the", &["elastic"], SOFT_TIP),
+    ("d-cone", "difference of the", &["real stiffness"], CAUGHT),
     ("d-cone", "", &["rods"], LOCKS),
+    ("e-cone", "relative error", &["rods"], LOCKS),
+    ("e-cone", "relative error", &["real stiffness"], COARSE),
     ("creases", "mean error", &["rods"], LOCKS),
-    ("creases", "mean error", &["real stiffness"], COARSE),
+    ("creases", "mean error", &["real stiffness"], WALL),
     ("fear", "part of the scenes", &["rods"], LOCKS),
 ];
 
 /// What the quick form does not show: accuracies that need finer meshes and longer runs.
-const NOT_QUICK: [(&str, &str); 9] = [
+const NOT_QUICK: [(&str, &str); 10] = [
     ("iterations", "factorisations"),
     ("cylinder", "order"),
     ("cylinder", "relative error"),
@@ -80,6 +100,7 @@ const NOT_QUICK: [(&str, &str); 9] = [
     ("clamped", "mean factorisations a step"),
     ("strips", "relative error"),
     ("d-cone", ""),
+    ("e-cone", ""),
     ("creases", ""),
 ];
 
@@ -111,8 +132,8 @@ mod tests {
         assert_eq!(
             why(
                 "cylinder",
-                "elastic sheet",
-                "order of the error of the energy",
+                "elastic",
+                "relative error of the energy at M^3, every mesh and direction",
                 standard
             ),
             None
@@ -143,7 +164,7 @@ mod tests {
             assert_eq!(why("drape", "rods", "smallest gap, m", effort), None);
         }
         assert_eq!(
-            why("cylinder", "elastic sheet", "order of", Effort::Quick),
+            why("cylinder", "elastic", "relative error", Effort::Quick),
             Some(QUICK)
         );
     }

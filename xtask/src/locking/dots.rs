@@ -134,6 +134,8 @@ impl Figure {
                 } else {
                     Legend::None
                 };
+                let y = y.clone();
+                let y = if i == 0 { y } else { y.unlabelled() };
                 self.chart(panel, y).with_legend(legend)
             };
             panels.iter().enumerate().map(chart).collect()
@@ -141,7 +143,7 @@ impl Figure {
         Charts(rows.collect())
     }
 
-    fn chart(&self, panel: &Panel, y: &Axis) -> Chart {
+    fn chart(&self, panel: &Panel, y: Axis) -> Chart {
         let guide = |points: &Vec<[f64; 2]>| Series::guide("", points.clone());
         let mut series: Vec<Series> = panel.guides.iter().map(guide).collect();
         for isometry in Isometry::ALL {
@@ -149,7 +151,7 @@ impl Figure {
             series.extend((0..self.meshes.len()).map(of_mesh));
         }
         series.extend(self.legend());
-        Chart::new(self.x.clone(), y.clone(), self.size, series)
+        Chart::new(self.x.clone(), y, self.size, series)
             .titled(&panel.title)
             .with_missing(self.missing(panel))
     }

@@ -33,17 +33,6 @@ impl Grid {
         Self::Delaunay(3),
     ];
 
-    /// The names of their kinds, without seeds.
-    pub(super) const KINDS: [&str; 7] = [
-        "aligned",
-        "union jack",
-        "one-way",
-        "crossed",
-        "Delaunay",
-        "Delaunay",
-        "Delaunay",
-    ];
-
     /// A flat rectangle (corners `low` and `high`, metres) with squares of the side `cell`.
     pub(super) fn rectangle(self, low: [f64; 2], high: [f64; 2], cell: f64) -> Result<Sheet> {
         let (pattern, cell, degrees) = match self {
@@ -56,11 +45,6 @@ impl Grid {
             Self::Delaunay(seed) => (Pattern::Delaunay, cell, f64::from(seed)),
         };
         pattern.rectangle(low, high, cell, degrees.to_radians())
-    }
-
-    /// The place in [`Grid::ALL`].
-    pub(super) fn number(self) -> usize {
-        Self::ALL.iter().position(|g| *g == self).unwrap_or(0)
     }
 }
 

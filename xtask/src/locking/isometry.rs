@@ -99,7 +99,7 @@ impl Isometry {
         match self {
             Self::Rods => palette::VERMILION,
             Self::Paper => palette::BLUE,
-            Self::Elastic => palette::PURPLE,
+            Self::Elastic => palette::GREEN,
         }
     }
 
@@ -118,8 +118,8 @@ impl fmt::Display for Isometry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Rods => "rods",
-            Self::Paper => "elastic (paper)",
-            Self::Elastic => "elastic sheet",
+            Self::Paper => "real stiffness",
+            Self::Elastic => "elastic",
         })
     }
 }

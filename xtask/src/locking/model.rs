@@ -6,7 +6,7 @@ use crate::report::{Bound, Requirement};
 use crate::runs::Course;
 use anyhow::Result;
 use isosheet_dynamics::{CreaseSprings, ElasticSheet, PlateBending, Potential, SheetModel};
-use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId};
+use isosheet_mesh::{EdgeId, MassKind, Sheet, VertexId, fold_angle};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -74,6 +74,36 @@ impl Model {
         Ok(self.sheet(sheet, plate)?.potential_energy(0.0, x))
     }
 
+    /// The elastic energy of each face, joules; that of a spring belongs to both faces of its edge in equal parts.
+    pub(super) fn face_energies(
+        self,
+        sheet: &Sheet,
+        plate: Plate<'_>,
+        x: &[f64],
+    ) -> Result<Vec<f64>> {
+        if let Some(faces) = self.sheet(sheet, plate)?.elastic_deformation(x) {
+            let sums = faces.stretching.iter().zip(&faces.bending);
+            return Ok(sums.map(|(s, b)| s + b).collect());
+        }
+        let t = sheet.topology();
+        let mut energies = vec![0.0; t.face_count()];
+        for edge in t.edge_ids().filter(|e| !plate.creases.contains(e)) {
+            let ([Some(left), Some(right)], Some(angle)) =
+                (t.edge_faces(edge), fold_angle(t, x, edge))
+            else {
+                continue;
+            };
+            let faces = [left, right].map(|f| f.index());
+            let area: f64 = faces.iter().map(|f| sheet.face_areas()[*f]).sum();
+            // See [`CreaseSprings::bending`].
+            let stiffness = plate.rigidity * sheet.lengths()[edge.index()].powi(2) / area;
+            for face in faces {
+                energies[face] += 0.25 * stiffness * angle * angle;
+            }
+        }
+        Ok(energies)
+    }
+
     /// The colour in figures.
     pub(super) fn colour(self) -> Colour {
         match self {
@@ -133,4 +163,31 @@ pub(super) fn at_most(
 ) -> Requirement {
     let side = (Bound::AtMost, bound);
     Requirement::of(model.to_string(), quantity, side, values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isosheet_mesh::generate;
+
+    #[test]
+    fn the_energies_of_the_faces_are_that_of_the_sheet() {
+        let sheet = generate::isotropic_square(2, 0.1).unwrap();
+        let plate = Plate {
+            density: 0.08,
+            rigidity: 5e-4,
+            clamped: &[],
+            creases: &[EdgeId(3)],
+        };
+        let bent = sheet
+            .map_positions(|[x, y, _]| [x, y, 0.1 * x * x + 0.05 * x * y])
+            .unwrap();
+        for model in Model::ALL {
+            let x = bent.positions();
+            let faces = model.face_energies(&sheet, plate, x).unwrap();
+            let whole = model.energy(&sheet, plate, x).unwrap();
+            let part = faces.iter().sum::<f64>() / whole;
+            assert!((part - 1.0).abs() < 1e-12, "{model}: {part}");
+        }
+    }
 }

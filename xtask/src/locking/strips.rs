@@ -4,7 +4,7 @@ use super::grids::Grid;
 use super::meshes::{vertices, with_line};
 use super::model::{Model, Plate, Tried, at_most};
 use super::nudge::Nudge;
-use super::panels::{Panel, charts};
+use super::panels::{BANDS, Panel, charts};
 use super::records::Records;
 use super::scene::{End, Scene};
 use super::{Findings, order};
@@ -327,7 +327,11 @@ pub(super) fn make(records: &Records<'_>) -> Result<(Findings, Option<Charts>)> 
             orders(&all, grids, ERRORS[1]),
         ],
         files: vec![table(&all)],
-        remarks: Model::ALL.map(|m| remark(m, &all)).to_vec(),
+        remarks: Model::ALL
+            .map(|m| remark(m, &all))
+            .into_iter()
+            .chain([BANDS.to_owned()])
+            .collect(),
         targets,
     };
     Ok((findings, Some(plot(&all, grids, sizes))))
@@ -463,7 +467,7 @@ fn plot(all: &[Strip], grids: &[Grid], sizes: &[usize]) -> Charts {
             let of = all
                 .iter()
                 .filter(|s| s.job.case == case && grids.contains(&s.job.grid));
-            let point = |s: &Strip| Some((s.model, s.job.grid.number(), [s.spacing(), error(s)?]));
+            let point = |s: &Strip| Some((s.model, [s.spacing(), error(s)?]));
             let two = ends.iter().map(|h| [*h, 0.02]).collect();
             Panel {
                 title: case.to_string(),
@@ -474,7 +478,7 @@ fn plot(all: &[Strip], grids: &[Grid], sizes: &[usize]) -> Charts {
         };
         Case::ALL.map(panel).to_vec()
     });
-    charts(rows.to_vec(), &Model::ALL, &Grid::KINDS, "2 %")
+    charts(rows.to_vec(), &Model::ALL, "2 %")
 }
 
 /// Strips that bend much on meshes without lines across the bend, with another bound of the stiffness: the
