@@ -481,11 +481,7 @@ impl Simulation {
     }
 
     /// Advances with the trace of the simulation.
-    fn advance(
-        &mut self,
-        h: f64,
-        watch: Option<Watch<'_>>,
-    ) -> Result<StepReport, StepError> {
+    fn advance(&mut self, h: f64, watch: Option<Watch<'_>>) -> Result<StepReport, StepError> {
         let mut trace = self.trace.take();
         let watch = watch.map(|watch| &mut *watch as _);
         let totals = StepTotals {

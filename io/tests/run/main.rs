@@ -16,6 +16,7 @@ mod rod_forces;
 mod skip;
 mod sweeps;
 mod tools;
+mod traces;
 mod trajectories;
 
 use isosheet_io::read_json;
