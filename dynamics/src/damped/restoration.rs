@@ -423,8 +423,8 @@ impl Restoration {
                 &mut self.rhs,
             );
             rate = rate.max(slip) / speed.max(f64::MIN_POSITIVE);
-            // A rate that is not a number ends the passes too.
-            if rate < 4.0 * f64::EPSILON || !(rate < self.tuning.contraction * before) {
+            let is_better = rate < self.tuning.contraction * before;
+            if rate < 4.0 * f64::EPSILON || !is_better {
                 return rate;
             }
             for e in 0..rods.len() {
