@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 /// What elastic tablecloths are made of. The bending length of this film, the third root of its rigidity over its weight,
-/// is 5 cm, which the meshes of the figures resolve; a thinner film would make finer folds than they can.
+/// is 5 cm: longer than the edges of the finer meshes, and a fifth of the overhang. The page says how other films fold.
 const PLASTIC: &str = "acetate film";
 
 /// Films for the number of folds: softer, the same, and stiffer.
@@ -313,12 +313,17 @@ fn trend(irregular: &[Draped], films: &[Draped]) -> String {
         let last = irregular.iter().rfind(|d| d.is_of_rods() == rods);
         last.map_or(String::new(), |d| d.hem.pattern())
     });
-    let film = |d: &Draped| format!("{} ({}, {})", d.hem.folds, d.sheet(), d.label);
-    let films: Vec<String> = films.iter().map(film).collect();
+    let film = |d: &Draped| {
+        let (along, corners, _) = d.folds.along;
+        let folds = d.hem.folds;
+        format!("{folds} and {along} of {corners} ({})", d.sheet())
+    };
+    // The others are round.
+    let films: Vec<String> = films.iter().step_by(2).map(film).collect();
     format!(
         "With more and more corners, irregular meshes have {rods} folds with rods and {plastic} with {PLASTIC}; those of the last, \
-         round cloth are {round_rods} with rods and {round_plastic} with {PLASTIC}. The film decides how many there are, from the \
-         softest to the stiffest: {}.",
+         round cloth are {round_rods} with rods and {round_plastic} with {PLASTIC}. The film decides how many folds there are and at \
+         how many corners, from the softest to the stiffest on the finer octagon: {}.",
         films.join(", ")
     )
 }
