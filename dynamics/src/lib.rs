@@ -110,7 +110,7 @@ pub use run::observe::{Frames, History, Observer, RunEnd};
 pub use run::simulation::Simulation;
 pub use step::checkpoint_error::CheckpointError;
 pub use step::effort::StepProgress;
-pub use step::feasibility::Excess;
+pub use step::infeasibility::Infeasibility;
 pub use step::method::{Fallback, Method, StepControl, Unsatisfiable};
 pub use step::reaction::Reaction;
 pub use step::reason::Reason;

@@ -16,22 +16,22 @@ mod error;
 mod impact;
 mod mechanics;
 mod mobility;
-mod motion;
 mod options;
 mod resume;
 mod simulation;
 mod solver;
+mod state;
 mod stepping;
 mod substep;
 
 pub use error::ChartDynamicsError;
 pub use impact::ContactImpulse;
 pub use mechanics::{ChartMechanics, Equations};
-pub(crate) use motion::ChartMotion;
-pub use motion::StepRange;
 pub use options::{ChartMethod, ChartOptions, ChartStepControl, PositionUpdate, Rebase};
 pub use simulation::{ChartSimulation, ChartStepReport};
 pub use solver::{MassSolver, MassSolverKind};
+pub(crate) use state::ChartState;
+pub use state::StepRange;
 
 #[cfg(test)]
 mod tests;

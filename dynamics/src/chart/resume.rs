@@ -1,7 +1,7 @@
 //! What a checkpoint keeps of a motion in a chart, and how a simulation continues from it.
 
-use super::motion::ChartMotion;
 use super::simulation::ChartSimulation;
+use super::state::ChartState;
 use super::stepping::Stepper;
 use super::{ChartDynamicsError, ChartMechanics, ChartOptions};
 use crate::SheetModel;
@@ -10,9 +10,9 @@ use isosheet_coords::Chart;
 
 impl ChartSimulation {
     /// What a checkpoint keeps.
-    pub(crate) fn motion(&self) -> ChartMotion {
+    pub(crate) fn motion(&self) -> ChartState {
         let (eigenvalue, eigenvector) = self.stepper.power();
-        ChartMotion {
+        ChartState {
             eigenvalue,
             eigenvector: eigenvector.to_vec(),
             balance: self.motion.balance.as_ref().map(Balance::compact),
@@ -21,7 +21,7 @@ impl ChartSimulation {
     }
 
     /// Back to the motion before a step, and to its chart if the step has replaced that.
-    pub(super) fn restore(&mut self, motion: ChartMotion) {
+    pub(super) fn restore(&mut self, motion: ChartState) {
         if let Some(chart) = self.replaced.take() {
             self.stepper.mechanics.exchange(chart);
         }
@@ -35,7 +35,7 @@ impl ChartSimulation {
         model: SheetModel,
         mut chart: Box<dyn Chart>,
         options: ChartOptions,
-        motion: ChartMotion,
+        motion: ChartState,
     ) -> Result<Self, ChartDynamicsError> {
         let n = model.coordinate_count();
         let reference = motion.reference.as_ref().unwrap_or(&motion.state.x);
@@ -80,7 +80,7 @@ impl ChartSimulation {
         Ok(Self {
             stepper,
             options,
-            motion: ChartMotion { balance, ..motion },
+            motion: ChartState { balance, ..motion },
             contact: None,
             replaced: None,
         })

@@ -2,7 +2,7 @@
 
 use super::contact::ChartContact;
 use super::mechanics::ReplacedChart;
-use super::motion::{ChartMotion, StepRange};
+use super::state::{ChartState, StepRange};
 use super::stepping::{PhaseState, Stepper};
 use super::{
     ChartDynamicsError, ChartMechanics, ChartOptions, ChartStepControl, ContactImpulse, Rebase,
@@ -46,7 +46,7 @@ pub struct ChartStepReport {
 pub struct ChartSimulation {
     pub(super) stepper: Stepper,
     pub(super) options: ChartOptions,
-    pub(super) motion: ChartMotion,
+    pub(super) motion: ChartState,
     pub(super) contact: Option<ChartContact>,
     /// The chart at the start of the present step, if the step has replaced it.
     pub(super) replaced: Option<ReplacedChart>,
@@ -131,7 +131,7 @@ impl ChartSimulation {
         };
         let pins = stepper.mobility.pin_positions();
         let mut simulation = Self {
-            motion: ChartMotion::start(t, state, step, pins),
+            motion: ChartState::start(t, state, step, pins),
             stepper,
             options,
             contact: None,

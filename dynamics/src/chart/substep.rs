@@ -1,8 +1,8 @@
 //! One step in a chart: proposals of the method, judged by the step control and by contact.
 
 use super::energy_bound::{EnergyBound, Verdict};
-use super::motion::StepRange;
 use super::simulation::ChartSimulation;
+use super::state::StepRange;
 use super::stepping::PhaseState;
 use super::{ChartDynamicsError, ChartStepControl, ChartStepReport, Rebase};
 use crate::contact::{ActiveContacts, StepSpan};

@@ -231,25 +231,25 @@ impl Integrator for EnergyMomentum {
         let (model, state, h) = (scene.model, attempt.state, attempt.h);
         self.begin(model, &attempt);
         let (residual, outcome) = self.solve(model, state, h, effort)?;
-        let moment = &mut proposal.moment;
+        let solver = &mut proposal.solver;
         // Impulses of dependent rods are not unique, and what a regularised solve makes of round-off in their
         // lengths would buckle the next step: they are found anew there.
         if outcome == StepOutcome::Newton {
             let constraints = self.constraints.full_impulses();
-            moment
+            solver
                 .history
                 .multipliers
                 .set(h, &self.impulse, constraints);
         } else {
-            moment.history.multipliers.clear();
+            solver.history.multipliers.clear();
         }
-        self.set_balance(model, state, h, &mut moment.balance);
+        self.set_balance(model, state, h, &mut solver.balance);
         for i in 0..self.w.len() {
-            moment.state.v[i] = 2.0 * self.w[i] - state.v[i];
+            solver.state.v[i] = 2.0 * self.w[i] - state.v[i];
         }
-        model.set_pin_velocities(state.t + h, h, &mut moment.state.v);
-        moment.state.x.copy_from_slice(&self.x1);
-        moment.state.t = state.t + h;
+        model.set_pin_velocities(state.t + h, h, &mut solver.state.v);
+        solver.state.x.copy_from_slice(&self.x1);
+        solver.state.t = state.t + h;
         let work = h * dot(&self.applied, &self.w);
         proposal.account = StepAccount::without_contact(residual, work, outcome);
         Ok(())

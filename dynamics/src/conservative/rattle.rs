@@ -430,13 +430,13 @@ impl Integrator for Rattle {
         proposal: &mut Proposal,
         effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
-        let moment = &mut proposal.moment;
-        moment.state.copy_from(attempt.state);
-        let multipliers = &mut moment.history.multipliers;
+        let solver = &mut proposal.solver;
+        solver.state.copy_from(attempt.state);
+        let multipliers = &mut solver.history.multipliers;
         multipliers.copy_from(attempt.multipliers());
-        let state = &mut moment.state;
+        let state = &mut solver.state;
         proposal.account = self.advance(scene.model, state, multipliers, attempt.h, effort)?;
-        moment.balance.copy_from(&self.balance);
+        solver.balance.copy_from(&self.balance);
         Ok(())
     }
 }
@@ -471,23 +471,23 @@ impl Integrator for RattleComposition {
     ) -> Result<(), StepError> {
         let (model, h) = (scene.model, attempt.h);
         let a = 1.0 / (4.0 - 4.0_f64.cbrt());
-        let moment = &mut proposal.moment;
-        moment.state.copy_from(attempt.state);
-        let multipliers = &mut moment.history.multipliers;
+        let solver = &mut proposal.solver;
+        solver.state.copy_from(attempt.state);
+        let multipliers = &mut solver.history.multipliers;
         multipliers.copy_from(attempt.multipliers());
-        moment.balance.clear();
+        solver.balance.clear();
         let mut total = StepAccount::without_contact(0.0, 0.0, StepOutcome::Newton);
         for part in [a, a, 1.0 - 4.0 * a, a, a] {
-            let state = &mut moment.state;
+            let state = &mut solver.state;
             let done = self
                 .rattle
                 .advance(model, state, multipliers, part * h, effort)?;
             total.residual = total.residual.max(done.residual);
             total.work += done.work;
             total.outcome = total.outcome.max(done.outcome);
-            moment.balance.add_share(&self.rattle.balance, part);
+            solver.balance.add_share(&self.rattle.balance, part);
         }
-        moment.state.t = attempt.state.t + h;
+        solver.state.t = attempt.state.t + h;
         proposal.account = total;
         Ok(())
     }

@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// Part of the activation distance that a loaded contact keeps.
-const REST: f64 = 0.5;
+const GAP_UNDER_LOAD: f64 = 0.5;
 
 /// Vertices whose weight it carries.
-const LOAD: f64 = 100.0;
+const VERTICES_CARRIED: f64 = 100.0;
 
 /// The barrier potential of a gap `g`, a distance less the thickness of the sheet: `phi(g) = kappa b(z)` with
 /// the stiffness `kappa`, the activation distance `d_hat`, `z = (g / d_hat)^2` and
@@ -94,10 +94,10 @@ impl BarrierPotential {
             Stiffness::Automatic => {
                 let acceleration = load(model, state);
                 let unit = Self::new(laws.activation, 1.0)?;
-                let force = unit.force(REST * laws.activation);
+                let force = unit.force(GAP_UNDER_LOAD * laws.activation);
                 Self::new(
                     laws.activation,
-                    LOAD * model.mean_mass() * acceleration / force,
+                    VERTICES_CARRIED * model.mean_mass() * acceleration / force,
                 )
             }
         }

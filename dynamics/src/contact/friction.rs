@@ -66,7 +66,7 @@ pub struct Friction {
 
 /// Width of the passage from the static to the kinetic coefficient in smoothing distances: as wide
 /// as keeps its steepest descent (0.75 of the jump per `e`) below the ascent before it.
-const PASSAGE: f64 = 2.0;
+const TRANSITION_WIDTH: f64 = 2.0;
 
 /// Coefficients that make no sense.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -157,7 +157,7 @@ impl Friction {
         if u < 1.0 {
             self.rest * (2.0 - u) / e
         } else {
-            let w = ((u - 1.0) / PASSAGE).min(1.0);
+            let w = ((u - 1.0) / TRANSITION_WIDTH).min(1.0);
             (self.rest - (self.rest - self.sliding) * (3.0 - 2.0 * w) * w * w) / y
         }
     }
@@ -169,8 +169,8 @@ impl Friction {
         if u < 1.0 {
             2.0 * self.rest * (1.0 - u) / e
         } else {
-            let w = ((u - 1.0) / PASSAGE).min(1.0);
-            -(self.rest - self.sliding) * 6.0 * (1.0 - w) * w / (PASSAGE * e)
+            let w = ((u - 1.0) / TRANSITION_WIDTH).min(1.0);
+            -(self.rest - self.sliding) * 6.0 * (1.0 - w) * w / (TRANSITION_WIDTH * e)
         }
     }
 
@@ -183,10 +183,10 @@ impl Friction {
         if u < 1.0 {
             return self.rest * e * u * u * (1.0 - u / 3.0);
         }
-        let w = (u - 1.0) / PASSAGE;
+        let w = (u - 1.0) / TRANSITION_WIDTH;
         let c = w.min(1.0);
-        let passed = PASSAGE * e * c * c * c * (1.0 - 0.5 * c);
-        let beyond = PASSAGE * e * (w - c);
+        let passed = TRANSITION_WIDTH * e * c * c * c * (1.0 - 0.5 * c);
+        let beyond = TRANSITION_WIDTH * e * (w - c);
         self.rest * (2.0 / 3.0 * e + y - e) - (self.rest - self.sliding) * (passed + beyond)
     }
 }

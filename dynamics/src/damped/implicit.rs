@@ -42,7 +42,7 @@ impl Integrator for ImplicitEuler {
         proposal: &mut Proposal,
         effort: &mut SolverEffort<'_>,
     ) -> Result<(), StepError> {
-        proposal.moment.history.previous = None;
+        proposal.solver.history.previous = None;
         two_step(&mut self.minimiser, scene, attempt, None, proposal, effort)
     }
 }
@@ -97,7 +97,7 @@ impl Integrator for Bdf2 {
             proposal,
             effort,
         )?;
-        let history = &mut proposal.moment.history;
+        let history = &mut proposal.solver.history;
         history.set_previous(Some(state));
         // The damping that follows the step acts on the whole history, or a rate `gamma` would act as
         // `3/2 gamma`: `v1 = 4/3 v0 - 1/3 v_` amplifies what is taken from `v0` alone.
@@ -148,18 +148,18 @@ fn two_step(
     let outcome = minimiser.minimise(problem, effort);
     (minimiser.applied, minimiser.prediction) = (applied, prediction);
     let (minimum, contact) = outcome?;
-    let moment = &mut proposal.moment;
+    let solver = &mut proposal.solver;
     let mut work = 0.0;
     for i in 0..state.x.len() {
         let dx = minimiser.x()[i] - state.x[i];
         work += minimiser.applied[i] * dx;
-        moment.state.v[i] = (dx - b * (state.x[i] - before.x[i])) / (k * h);
+        solver.state.v[i] = (dx - b * (state.x[i] - before.x[i])) / (k * h);
     }
-    moment.state.x.copy_from_slice(minimiser.x());
-    moment.state.t = state.t + h;
-    moment.balance.copy_from(minimiser.balance());
-    moment.set_contacts(minimiser.contact_state());
-    minimiser.remember(k * h, &mut moment.history);
+    solver.state.x.copy_from_slice(minimiser.x());
+    solver.state.t = state.t + h;
+    solver.balance.copy_from(minimiser.balance());
+    solver.set_contacts(minimiser.contact_state());
+    minimiser.remember(k * h, &mut solver.history);
     proposal.account = StepAccount {
         residual: minimum.residual,
         work,

@@ -86,7 +86,7 @@ impl ProjectionStep {
             x: vec![0.0; n],
             v: vec![0.0; n],
             none: vec![0.0; model.rods().len()],
-            balance: Balance::with_unassigned(model, ForceTime::End),
+            balance: Balance::with_residual(model, ForceTime::End),
         })
     }
 
@@ -110,8 +110,8 @@ impl ProjectionStep {
         self.balance
             .add_applied(model, state.t, &state.x, &state.v, 1.0);
         self.balance.finish(model);
-        let unassigned = &mut self.balance.unassigned;
-        unassigned.append(&self.restoration.unassigned, 1.0 / (h * h));
+        let residual_momentum = &mut self.balance.residual_momentum;
+        residual_momentum.append(&self.restoration.residual_momentum, 1.0 / (h * h));
         for i in 0..self.x.len() {
             self.acceleration[i] = if free[i / 3] == PINNED {
                 0.0
@@ -122,7 +122,7 @@ impl ProjectionStep {
         let mass = model.mass();
         mass.apply(model.topology(), &self.acceleration, &mut self.force);
         let equalities = &self.restoration.vertex_rows.equality;
-        unassigned.push(&self.x, equalities, self.force.iter().copied());
+        residual_momentum.push(&self.x, equalities, self.force.iter().copied());
         if model.has_drives() {
             // The work of what moves needs them.
             self.balance.settle(model, state.t + h);
@@ -197,11 +197,11 @@ impl Integrator for ProjectionStep {
             ));
         }
         self.set_balance(model, state, h);
-        let moment = &mut proposal.moment;
-        moment.balance.copy_from(&self.balance);
-        moment.state.x.copy_from_slice(&self.x);
-        moment.state.v.copy_from_slice(&self.v);
-        moment.state.t = end;
+        let solver = &mut proposal.solver;
+        solver.balance.copy_from(&self.balance);
+        solver.state.x.copy_from_slice(&self.x);
+        solver.state.v.copy_from_slice(&self.v);
+        solver.state.t = end;
         proposal.account = StepAccount::without_contact(residual, work, StepOutcome::Newton);
         Ok(())
     }

@@ -9,8 +9,8 @@ use crate::damped::iterate::Iterate;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::step::effort::SolverEffort;
+use crate::step::residual_momentum::ResidualMomentum;
 use crate::step::tuning::Tuning;
-use crate::step::unassigned::UnassignedMomentum;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -41,7 +41,7 @@ pub(crate) struct Restoration {
     /// Minus the gradient of contact at `start`, newtons times the factor of its energy.
     contact_start: Vec<f64>,
     /// Momentum that the iterations of the last projection of positions gave, kilogram metres.
-    pub(crate) unassigned: UnassignedMomentum,
+    pub(crate) residual_momentum: ResidualMomentum,
     /// Vertices on curves and surfaces.
     pub(crate) vertex_rows: VertexRows,
 }
@@ -104,7 +104,7 @@ impl Restoration {
             dx: vec![0.0; n],
             start: vec![0.0; n],
             contact_start: vec![0.0; n],
-            unassigned: UnassignedMomentum::new(model),
+            residual_momentum: ResidualMomentum::new(model),
             vertex_rows: VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0),
         }
     }
@@ -209,7 +209,7 @@ impl Restoration {
 
     /// Forgets earlier restorations and evaluates the constraints at the iterate.
     fn begin(&mut self, model: &SheetModel, goal: &RestorationGoal<'_>, iterate: &Iterate) {
-        self.unassigned.clear();
+        self.residual_momentum.clear();
         for (i, c) in model.constraints().iter().enumerate() {
             let is_loaded = goal.loads.get(i).is_some_and(|l| l.x < 0.0);
             self.vertex_rows.equality[i] = is_loaded || !c.is_one_sided();
@@ -337,7 +337,7 @@ impl Restoration {
         iterate: &mut Iterate,
     ) {
         if let Some(RestorationContact { contact, scale }) = contact
-            && self.unassigned.has_room()
+            && self.residual_momentum.has_room()
             && let Some(terms) = iterate.terms(Some(contact))
         {
             self.contact_start.fill(0.0);
@@ -354,7 +354,7 @@ impl Restoration {
         iterate: &mut Iterate,
         rods_at: Option<&[f64]>,
     ) {
-        if !self.unassigned.has_room() {
+        if !self.residual_momentum.has_room() {
             return;
         }
         for ((d, x), x0) in self.dx.iter_mut().zip(iterate.x()).zip(&self.start) {
@@ -364,7 +364,7 @@ impl Restoration {
             .mass()
             .apply(model.topology(), &self.dx, &mut self.rhs);
         let active = &self.vertex_rows.active;
-        let sum = self.unassigned.push(
+        let sum = self.residual_momentum.push(
             rods_at.unwrap_or(&self.start),
             active,
             self.rhs.iter().copied(),

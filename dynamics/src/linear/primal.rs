@@ -26,7 +26,7 @@ const EXTRA_LIMIT: usize = 2;
 /// the matrix: each Newton iteration leaves so much of the error of the one before (Dembo, Eisenstat and Steihaug,
 /// SIAM J. Numer. Anal. 19, 1982). Hanging sheets of 289 and 1089 vertices take as many factorisations with 0.3, 0.1,
 /// 0.01 and 0.001 as with the whole matrix.
-const ACCURACY: f64 = 0.1;
+const GRADIENT_ACCURACY: f64 = 0.1;
 
 /// The symmetric matrix
 ///
@@ -379,7 +379,7 @@ impl PrimalMatrix {
     /// Whether conjugate gradients are expected to be cheaper than a factorisation of the whole matrix.
     fn is_iteration_cheaper(&self) -> bool {
         let substitutes = self.far.substitute_norm();
-        let expected = expected_iterations(substitutes, self.masses, ACCURACY);
+        let expected = expected_iterations(substitutes, self.masses, GRADIENT_ACCURACY);
         // (A substitute that is not a number is left to the factorisation of the whole matrix.)
         expected <= self.iterations_worth() as f64
     }
@@ -475,7 +475,7 @@ impl PrimalMatrix {
         }
         gather(model, b, &mut self.rhs);
         let goal = Goal {
-            relative: ACCURACY,
+            relative: GRADIENT_ACCURACY,
             max_iterations: self.iterations_worth(),
         };
         let (ending, _) = self

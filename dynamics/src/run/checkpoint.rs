@@ -1,18 +1,16 @@
 //! Checkpoints: a simulation between two steps, as a value and as a file.
 
-use crate::chart::{ChartMotion, ChartOptions};
-use crate::contact::BarrierPotential;
+use crate::chart::{ChartOptions, ChartState};
 use crate::step::checkpoint_error::{CheckpointError, check_finite};
-use crate::step::energy_account::EnergyAccount;
-use crate::step::integrator::Moment;
-use crate::{Isometry, Method, SheetModel, StepControl};
+use crate::step::free_state::FreeState;
+use crate::{Isometry, SheetModel};
 use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Version of the format. It grows with every change of the fields, because the binary format does not name
 /// them.
-const VERSION: u32 = 9;
+const VERSION: u32 = 10;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";
@@ -55,14 +53,14 @@ pub struct Checkpoint {
     version: u32,
     pub(crate) sheet: SheetFingerprint,
     pub(crate) energy: EnergySums,
-    pub(crate) motion: Motion,
+    pub(crate) motion: EngineState,
 }
 
 /// What moves the sheet, and where the motion is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) enum Motion {
+pub(crate) enum EngineState {
     /// A chart-free method.
-    Free(Box<FreeMotion>),
+    Free(Box<FreeState>),
     /// A method in a chart.
     Chart(Box<InChart>),
 }
@@ -71,7 +69,7 @@ pub(crate) enum Motion {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct InChart {
     pub(crate) options: ChartOptions,
-    pub(crate) motion: ChartMotion,
+    pub(crate) motion: ChartState,
     /// Velocities of the vertices at the end of the last step, `3V`, metres per second.
     pub(crate) velocities: Vec<f64>,
     /// Forces of the supports at the end of the last step, newtons; empty before the first.
@@ -79,42 +77,6 @@ pub(crate) struct InChart {
     pub(crate) has_contact: bool,
     /// Mean forces of contact over the last step, `3V`, newtons; empty before the first and without contact.
     pub(crate) contact_forces: Vec<f64>,
-}
-
-/// A chart-free simulation between two steps.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct FreeMotion {
-    pub(crate) method: Method,
-    pub(crate) control: StepControl,
-    pub(crate) moment: Moment,
-    pub(crate) account: EnergyAccount,
-    pub(crate) has_moved: bool,
-    /// Vertices that were pinned at the start because they cannot move.
-    pub(crate) fixed: Vec<u32>,
-    /// The barrier of contact, in scenes that have any.
-    pub(crate) barrier: Option<BarrierPotential>,
-    /// The stiffness of the barrier at the limit of the strain, joules per square metre, of elastic sheets.
-    pub(crate) strain_barrier: Option<f64>,
-}
-
-impl FreeMotion {
-    /// Refuses numbers that are not finite, which a checkpoint that was changed from outside may have.
-    pub(crate) fn check_numbers(&self) -> Result<(), CheckpointError> {
-        let Moment { state, history, .. } = &self.moment;
-        let previous = history.previous.as_ref().unwrap_or(state);
-        let multipliers = &history.multipliers;
-        check_finite("times", &[state.t, previous.t, multipliers.step])?;
-        check_finite("positions", &state.x)?;
-        check_finite("velocities", &state.v)?;
-        check_finite("positions of the step before", &previous.x)?;
-        check_finite("velocities of the step before", &previous.v)?;
-        check_finite("multipliers of the isometry", &multipliers.rods)?;
-        check_finite("stiffnesses of the rods", &[history.rod_stiffness])?;
-        check_finite(
-            "stiffnesses of the strain barrier",
-            self.strain_barrier.as_slice(),
-        )
-    }
 }
 
 /// Sums of the energy balance since the start.
@@ -206,7 +168,7 @@ impl SheetFingerprint {
 }
 
 impl Checkpoint {
-    pub(crate) fn new(sheet: SheetFingerprint, energy: EnergySums, motion: Motion) -> Self {
+    pub(crate) fn new(sheet: SheetFingerprint, energy: EnergySums, motion: EngineState) -> Self {
         Self {
             version: VERSION,
             sheet,
@@ -297,7 +259,7 @@ fn checksum(bytes: &[u8]) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Checkpoint, CheckpointError, Motion};
+    use super::{Checkpoint, CheckpointError, EngineState};
     use crate::{Method, SheetModel, Simulation, SimulationError, State};
     use isosheet_mesh::{MassKind, VertexId, generate};
 
@@ -321,17 +283,17 @@ mod tests {
     fn what_was_changed_from_outside_is_refused() {
         let good = checkpoint();
         assert!(Simulation::resume(model(), None, good.clone()).is_ok());
-        let changes: [fn(&mut super::FreeMotion); 6] = [
-            |m| m.moment.state.t = f64::INFINITY,
-            |m| m.moment.state.x[4] = f64::NAN,
-            |m| m.moment.state.v[26] = f64::NEG_INFINITY,
-            |m| m.moment.balance.pins[18] = f64::NAN,
-            |m| m.moment.balance.pins.truncate(26),
-            |m| m.moment.history.rod_stiffness = f64::NAN,
+        let changes: [fn(&mut super::FreeState); 6] = [
+            |m| m.solver.state.t = f64::INFINITY,
+            |m| m.solver.state.x[4] = f64::NAN,
+            |m| m.solver.state.v[26] = f64::NEG_INFINITY,
+            |m| m.solver.balance.pins[18] = f64::NAN,
+            |m| m.solver.balance.pins.truncate(26),
+            |m| m.solver.history.rod_stiffness = f64::NAN,
         ];
         for (k, change) in changes.into_iter().enumerate() {
             let mut changed = good.clone();
-            let Motion::Free(motion) = &mut changed.motion else {
+            let EngineState::Free(motion) = &mut changed.motion else {
                 unreachable!("the method needs no chart");
             };
             change(motion);

@@ -4,7 +4,7 @@ use crate::chart::engine::ChartEngine;
 use crate::chart::{ChartOptions, ChartSimulation};
 use crate::contact::{ActiveContacts, BodyLoad, Contact, ContactState, RunContact};
 use crate::damped::start::{check_finite, check_motions, check_state};
-use crate::run::checkpoint::{Checkpoint, EnergySums, Motion, SheetFingerprint};
+use crate::run::checkpoint::{Checkpoint, EnergySums, EngineState, SheetFingerprint};
 use crate::step::checkpoint_error::CheckpointError;
 use crate::step::effort::{SolverEffort, StepProgress, TraceSink, Watch};
 use crate::step::engine::Engine as FreeEngine;
@@ -126,8 +126,8 @@ impl Simulation {
     /// Everything that the next step depends on besides model and contact, as a value.
     pub fn checkpoint(&self) -> Checkpoint {
         let motion = match &self.engine {
-            Engine::Free(engine) => Motion::Free(Box::new(engine.motion())),
-            Engine::Chart(chart) => Motion::Chart(Box::new(chart.motion())),
+            Engine::Free(engine) => EngineState::Free(Box::new(engine.motion())),
+            Engine::Chart(chart) => EngineState::Chart(Box::new(chart.motion())),
         };
         Checkpoint::new(self.sheet, self.energy, motion)
     }
@@ -145,7 +145,7 @@ impl Simulation {
     ) -> Result<Self, SimulationError> {
         checkpoint.check_model(&model)?;
         checkpoint.energy.check()?;
-        let Motion::Free(motion) = checkpoint.motion else {
+        let EngineState::Free(motion) = checkpoint.motion else {
             return Err(CheckpointError::Chart { in_chart: true }.into());
         };
         let engine = FreeEngine::resume(model, contact, *motion)?;
@@ -167,7 +167,7 @@ impl Simulation {
     ) -> Result<Self, SimulationError> {
         checkpoint.check_model(&model)?;
         checkpoint.energy.check()?;
-        let Motion::Chart(motion) = checkpoint.motion else {
+        let EngineState::Chart(motion) = checkpoint.motion else {
             return Err(CheckpointError::Chart { in_chart: false }.into());
         };
         let engine = ChartEngine::resume(model, chart, contact, *motion)?;

@@ -10,17 +10,17 @@ use rand_chacha::ChaCha8Rng;
 
 /// Singular value of the rigidity matrix of unit rods below which rods count as dependent: the bound of
 /// [`rod_rank`](crate::rod_rank).
-const DEPENDENT: f64 = 1e-5;
-/// Passes of the regularisation, see [`RodLeastSquares::reduce`]: of ten times the bound [`DEPENDENT`] 1e-8 is left
+const DEPENDENT_BELOW: f64 = 1e-5;
+/// Passes of the regularisation, see [`RodLeastSquares::reduce`]: of ten times the bound [`DEPENDENT_BELOW`] 1e-8 is left
 /// over.
-const PASSES: usize = 4;
+const REGULARISATION_PASSES: usize = 4;
 /// Part of the second-order elongations, or of random forces, that other displacements have to leave over for a
 /// motion to count as blocked, or rods as dependent. The part is 1e-5 or less where a sheet may fold along a line
 /// of the mesh, and a tenth or more where it may not.
-const BLOCKED: f64 = 1e-2;
+const UNREACHED_PART: f64 = 1e-2;
 /// Part of the largest value from which the displacement of a vertex, and what is left over of the elongation
 /// of a rod, count.
-const CONSIDERABLE: f64 = 0.1;
+const COUNTED_PART: f64 = 0.1;
 
 /// The free vertices that inertia and loads would move within `h` seconds, and which rods block; none where
 /// the motion is not blocked to second order, and for sheets without rods.
@@ -34,7 +34,7 @@ const CONSIDERABLE: f64 = 0.1;
 pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec<VertexId> {
     let x = &state.x;
     let Some(mut solver) =
-        rods_of(model).and_then(|model| RodLeastSquares::new(model, x, DEPENDENT))
+        rods_of(model).and_then(|model| RodLeastSquares::new(model, x, DEPENDENT_BELOW))
     else {
         return Vec::new();
     };
@@ -46,7 +46,7 @@ pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec
     for (r, l) in rates.iter_mut().zip(lengths) {
         *r /= l;
     }
-    solver.reduce(model, x, PASSES, &mut rates, &mut d);
+    solver.reduce(model, x, REGULARISATION_PASSES, &mut rates, &mut d);
     let largest = norm_inf(&d);
     if largest == 0.0 {
         return Vec::new();
@@ -61,13 +61,19 @@ pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec
     if asked * model.mean_length() <= f64::EPSILON {
         return Vec::new();
     }
-    solver.reduce(model, x, PASSES, &mut left, &mut vec![0.0; x.len()]);
+    solver.reduce(
+        model,
+        x,
+        REGULARISATION_PASSES,
+        &mut left,
+        &mut vec![0.0; x.len()],
+    );
     let most = norm_inf(&left);
-    if most <= BLOCKED * asked {
+    if most <= UNREACHED_PART * asked {
         return Vec::new();
     }
     let mut vertices = free_ends(model, &left, most);
-    vertices.retain(|v| point(&d, *v).norm() >= CONSIDERABLE * largest);
+    vertices.retain(|v| point(&d, *v).norm() >= COUNTED_PART * largest);
     vertices
 }
 
@@ -76,7 +82,7 @@ pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec
 /// The rods are those in which the self-stresses act that a random vector of forces has a part of.
 pub(crate) fn dependent_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
     let Some(mut solver) =
-        rods_of(model).and_then(|model| RodLeastSquares::new(model, x, DEPENDENT))
+        rods_of(model).and_then(|model| RodLeastSquares::new(model, x, DEPENDENT_BELOW))
     else {
         return Vec::new();
     };
@@ -88,9 +94,15 @@ pub(crate) fn dependent_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId>
             *left = 0.0;
         }
     }
-    solver.reduce(model, x, PASSES, &mut left, &mut vec![0.0; x.len()]);
+    solver.reduce(
+        model,
+        x,
+        REGULARISATION_PASSES,
+        &mut left,
+        &mut vec![0.0; x.len()],
+    );
     match norm_inf(&left) {
-        most if most > BLOCKED => free_ends(model, &left, most),
+        most if most > UNREACHED_PART => free_ends(model, &left, most),
         _ => Vec::new(),
     }
 }
@@ -103,7 +115,7 @@ fn rods_of(model: &SheetModel) -> Option<&SheetModel> {
 /// The free vertices at the rods at which a value counts beside the largest one.
 fn free_ends(model: &SheetModel, values: &[f64], largest: f64) -> Vec<VertexId> {
     let counting = model.rods().edges().iter().zip(values);
-    let counting = counting.filter(|(_, q)| q.abs() >= CONSIDERABLE * largest);
+    let counting = counting.filter(|(_, q)| q.abs() >= COUNTED_PART * largest);
     let ends = counting.flat_map(|(ends, _)| ends.map(|v| VertexId(v as u32)));
     let mut vertices: Vec<VertexId> = ends.filter(|v| !model.is_pinned(*v)).collect();
     vertices.sort_unstable();

@@ -6,14 +6,14 @@ use crate::linear::rank::rod_rank;
 use crate::material::elastic_sheet::ElasticSheet;
 use crate::model::immobile::immobile_vertices;
 use crate::model::load_scale::LoadScale;
-use crate::run::checkpoint::FreeMotion;
 use crate::step::blocked::{blocked_vertices, dependent_vertices};
 use crate::step::checkpoint_error::{CheckpointError, check_length};
 use crate::step::control::{Decision, Stepping, take_substep};
 use crate::step::energy_account::{EnergyAccount, Exchange};
-use crate::step::feasibility::{Excess, excess};
+use crate::step::free_state::FreeState;
+use crate::step::infeasibility::{Infeasibility, infeasibility};
 use crate::step::integrator::{
-    Attempt, ContactSupport, Integrator, Memory, Moment, Proposal, RodDemand, Scene,
+    Attempt, ContactSupport, Integrator, Memory, Proposal, RodDemand, Scene, SolverState,
 };
 use crate::step::reaction::Balance;
 use crate::step::report::{StepError, StepOutcome, StepTotals};
@@ -38,7 +38,7 @@ pub(crate) struct Engine {
     tuning: Tuning,
     fallback: Option<Box<dyn Integrator>>,
     /// Where the sheet is. Nothing but [`Substeps::commit`] changes it.
-    moment: Moment,
+    solver: SolverState,
     account: EnergyAccount,
     /// Steps taken since the start.
     has_moved: bool,
@@ -79,7 +79,7 @@ impl Engine {
             return Err(SimulationError::OneSided { index });
         }
         Ok(Self {
-            moment: Moment::at(state, &model, traits),
+            solver: SolverState::at(state, &model, traits),
             proposal: Proposal::new(&model, traits),
             fallback: fallback(&model, &control, &tuning)?,
             integrator,
@@ -95,11 +95,11 @@ impl Engine {
     }
 
     /// What a checkpoint keeps.
-    pub(crate) fn motion(&self) -> FreeMotion {
-        FreeMotion {
+    pub(crate) fn motion(&self) -> FreeState {
+        FreeState {
             method: self.method.clone(),
             control: self.control.clone(),
-            moment: self.moment.compact(),
+            solver: self.solver.compact(),
             account: self.account,
             has_moved: self.has_moved,
             fixed: self.fixed.iter().map(|v| v.0).collect(),
@@ -112,27 +112,27 @@ impl Engine {
     pub(crate) fn resume(
         mut model: SheetModel,
         contact: Option<Box<dyn Contact>>,
-        motion: FreeMotion,
+        motion: FreeState,
     ) -> Result<Self, SimulationError> {
         check_lengths(&model, &motion)?;
         motion.check_numbers()?;
         let fixed: Vec<VertexId> = motion.fixed.iter().copied().map(VertexId).collect();
         model.fix(&fixed);
-        let start = &motion.moment.state;
+        let start = &motion.solver.state;
         let acceleration = LoadScale::at(&model, start).acceleration;
         model.set_strain_barrier(start, acceleration, motion.strain_barrier);
-        motion.moment.balance.check(&model)?;
-        check_energy(&model, &motion.moment.state)?;
-        let state = motion.moment.state.clone();
+        motion.solver.balance.check(&model)?;
+        check_energy(&model, &motion.solver.state)?;
+        let state = motion.solver.state.clone();
         let mut engine = Self::with_fixed(model, motion.method, state, fixed)?;
         engine.set_control(motion.control)?;
-        engine.moment.copy_from(&motion.moment);
+        engine.solver.copy_from(&motion.solver);
         engine.account = motion.account;
         engine.has_moved = motion.has_moved;
         engine.contact = match (contact, motion.barrier) {
             (None, None) => None,
             (Some(contact), Some(barrier)) => {
-                let state = &engine.moment.state;
+                let state = &engine.solver.state;
                 Some(RunContact::resume(contact, barrier, &engine.model, state)?)
             }
             (_, barrier) => {
@@ -145,12 +145,12 @@ impl Engine {
 
     /// Contact, if the scene has any.
     pub(crate) fn contact(&self) -> Option<(&RunContact, &ContactState)> {
-        self.contact.as_ref().zip(self.moment.contacts.as_ref())
+        self.contact.as_ref().zip(self.solver.contacts.as_ref())
     }
 
     /// Forces of the rods in the last accepted sub-step; `None` where the method does not solve for them.
     pub(crate) fn rod_forces(&self) -> Option<Vec<f64>> {
-        let Moment { state, history, .. } = &self.moment;
+        let SolverState { state, history, .. } = &self.solver;
         rod_forces(&self.model, &self.method, &history.multipliers, &state.x)
     }
 
@@ -160,12 +160,12 @@ impl Engine {
     }
 
     pub(crate) fn state(&self) -> &State {
-        &self.moment.state
+        &self.solver.state
     }
 
     /// Forces of the supports in the last sub-step.
     pub(crate) fn balance(&self) -> Option<&Balance> {
-        self.has_moved.then_some(&self.moment.balance)
+        self.has_moved.then_some(&self.solver.balance)
     }
 
     /// Adds contact.
@@ -173,9 +173,9 @@ impl Engine {
         if self.integrator.traits().contact == ContactSupport::None {
             return Err(ContactError::Method.into());
         }
-        let (contact, contacts) = RunContact::new(contact, &self.model, &self.moment.state)?;
+        let (contact, contacts) = RunContact::new(contact, &self.model, &self.solver.state)?;
         self.contact = Some(contact);
-        self.moment.contacts = Some(contacts);
+        self.solver.contacts = Some(contacts);
         Ok(())
     }
 
@@ -211,8 +211,8 @@ impl Engine {
             let h = run.lengths.length();
             match take_substep(&mut run, h) {
                 Ok(()) => (),
-                Err(Stop::Taut(excess)) => {
-                    run.totals.taut = Some(excess);
+                Err(Stop::Taut(infeasibility)) => {
+                    run.totals.taut = Some(infeasibility);
                     return Ok(());
                 }
                 Err(Stop::Error(error)) => return Err(error),
@@ -231,9 +231,9 @@ impl Engine {
     }
 
     /// By how much moving supports ask for more than the rods allow until time `t`, if they do.
-    fn excess(&self, t: f64) -> Option<Excess> {
+    fn infeasibility(&self, t: f64) -> Option<Infeasibility> {
         let is_driven = self.model.has_drives() && self.model.isometry() == Isometry::Rods;
-        is_driven.then(|| excess(&self.model, self.state(), t))?
+        is_driven.then(|| infeasibility(&self.model, self.state(), t))?
     }
 
     /// Whether supports and bodies rest until time `end`, seconds.
@@ -291,7 +291,7 @@ struct Pending {
 /// Why a step ends early.
 enum Stop {
     /// At a taut state, as the step control allows.
-    Taut(Excess),
+    Taut(Infeasibility),
     Error(StepError),
 }
 
@@ -300,10 +300,10 @@ impl Substeps<'_, '_> {
     /// as the integrator said.
     fn stop(&mut self, cause: StepError) -> Stop {
         let t = self.engine.state().t;
-        if let Some(excess) = self.engine.excess(self.lengths.end()) {
+        if let Some(infeasibility) = self.engine.infeasibility(self.lengths.end()) {
             return match self.engine.control.unsatisfiable {
-                Unsatisfiable::StopTaut => Stop::Taut(excess),
-                Unsatisfiable::Refuse => Stop::Error(StepError::Unsatisfiable { t, excess }),
+                Unsatisfiable::StopTaut => Stop::Taut(infeasibility),
+                Unsatisfiable::Refuse => Stop::Error(StepError::Unsatisfiable { t, infeasibility }),
             };
         }
         let known = self.locked().or_else(|| self.engine.rank_deficient());
@@ -319,8 +319,8 @@ impl Substeps<'_, '_> {
     fn locked(&mut self) -> Option<StepError> {
         self.limit?;
         let rests = self.engine.surroundings_rest(self.lengths.end());
-        let Engine { model, moment, .. } = &*self.engine;
-        let state = &moment.state;
+        let Engine { model, solver, .. } = &*self.engine;
+        let state = &solver.state;
         let mut vertices = blocked_vertices(model, state, self.lengths.length());
         if vertices.is_empty() && rests {
             vertices = dependent_vertices(model, &state.x);
@@ -339,20 +339,20 @@ impl Substeps<'_, '_> {
             contact,
             integrator,
             fallback,
-            moment,
+            solver,
             account,
             has_moved,
             proposal,
             tuning,
             ..
         } = &mut *self.engine;
-        let t = moment.state.t + h;
+        let t = solver.state.t + h;
         if let Some((support, value)) = model.find_bad_motion(t) {
             return Err(StepError::NonFiniteMotion { support, value, t });
         }
         if let Some(contact) = contact {
             contact.check_bodies(StepSpan {
-                t0: moment.state.t,
+                t0: solver.state.t,
                 h,
             })?;
         }
@@ -360,19 +360,19 @@ impl Substeps<'_, '_> {
             model,
             contact: contact.as_mut().map(RunContact::step),
         };
-        let attempt = Attempt::new(moment, h, self.memory);
+        let attempt = Attempt::new(solver, h, self.memory);
         let effort = &mut self.totals.effort;
         let is_fallback = self.proposer == Proposer::Fallback;
-        effort.t = moment.state.t;
+        effort.t = solver.state.t;
         let proposed = match fallback {
             Some(fallback) if is_fallback => fallback.propose(scene, attempt, proposal, effort),
             _ => integrator.propose(scene, attempt, proposal, effort),
         };
         if effort.is_interrupted() {
-            return Err(StepError::Interrupted { t: moment.state.t });
+            return Err(StepError::Interrupted { t: solver.state.t });
         }
         proposed?;
-        let (before, after) = (&moment.state, &proposal.moment.state);
+        let (before, after) = (&solver.state, &proposal.solver.state);
         let step = &proposal.account;
         let mut exchange = Exchange {
             forces: step.work,
@@ -382,9 +382,9 @@ impl Substeps<'_, '_> {
             ..Exchange::default()
         };
         if model.has_drives() {
-            let kept = has_moved.then_some(&moment.balance);
+            let kept = has_moved.then_some(&solver.balance);
             let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
-            let balance = &proposal.moment.balance;
+            let balance = &proposal.solver.balance;
             exchange.supports = balance.drive_work(model, kept, ends.0, ends.1);
         }
         self.pending = Pending {
@@ -408,7 +408,7 @@ impl Substeps<'_, '_> {
     ///
     /// Where the step is not to be halved any more, the fallback takes it if there is one.
     fn follow(&mut self, refusal: StepError) -> Decision<Stop> {
-        let looks_back = self.memory > Memory::Restart && self.engine.moment.history.looks_back();
+        let looks_back = self.memory > Memory::Restart && self.engine.solver.history.looks_back();
         let gains_energy = matches!(refusal, StepError::EnergyGain { .. });
         if self.proposer == Proposer::Fallback {
             Decision::Stop(self.stop(refusal))
@@ -438,7 +438,7 @@ impl Stepping for Substeps<'_, '_> {
         if !self.totals.effort.is_spent() {
             return proposed;
         }
-        if self.engine.excess(self.lengths.end()).is_none()
+        if self.engine.infeasibility(self.lengths.end()).is_none()
             && let Some(error) = self.locked()
         {
             return Err(error);
@@ -486,14 +486,14 @@ impl Stepping for Substeps<'_, '_> {
     fn commit(&mut self, h: f64) -> Result<(), Stop> {
         let engine = &mut *self.engine;
         let (step, exchange) = (engine.proposal.account, self.pending.exchange);
-        std::mem::swap(&mut engine.moment, &mut engine.proposal.moment);
+        std::mem::swap(&mut engine.solver, &mut engine.proposal.solver);
         engine.account = self.pending.account;
         engine.has_moved = true;
         // The end of the step is set by the caller, free of accumulated round-off.
-        engine.moment.state.t = self.lengths.advance();
+        engine.solver.state.t = self.lengths.advance();
         let totals = &mut *self.totals;
         if engine.model.has_driven_potentials() {
-            let (before, after) = (&engine.proposal.moment.state, &engine.moment.state);
+            let (before, after) = (&engine.proposal.solver.state, &engine.solver.state);
             let ends = ((before.t, &before.x[..]), (after.t, &after.x[..]));
             totals.work += engine.model.potential_work(ends.0, ends.1);
         }
@@ -502,17 +502,17 @@ impl Stepping for Substeps<'_, '_> {
         totals.outcome = totals.outcome.max(step.outcome);
         totals.work += exchange.forces + exchange.supports + exchange.bodies;
         totals.friction += step.contact.friction;
-        let dissipated = damp(&engine.model, &mut engine.moment.state, h);
+        let dissipated = damp(&engine.model, &mut engine.solver.state, h);
         totals.dissipated += dissipated;
         engine.account.spend(dissipated);
-        totals.work += engine.model.raise_strain_barrier(&engine.moment.state);
+        totals.work += engine.model.raise_strain_barrier(&engine.solver.state);
         if self.proposer == Proposer::Fallback {
             // What the fallback remembers means nothing to the method that was asked for.
-            engine.moment.history.previous = None;
-            engine.moment.history.multipliers.clear();
+            engine.solver.history.previous = None;
+            engine.solver.history.multipliers.clear();
             totals.outcome = totals.outcome.max(StepOutcome::Fallback);
         }
-        let (t, factorisations) = (engine.moment.state.t, totals.effort.spent());
+        let (t, factorisations) = (engine.solver.state.t, totals.effort.spent());
         totals.effort.trace(|| TraceEvent::Accepted {
             t,
             h,
@@ -550,13 +550,13 @@ fn check_energy(model: &SheetModel, state: &State) -> Result<(), StepError> {
 }
 
 /// Refuses arrays of the wrong length.
-fn check_lengths(model: &SheetModel, motion: &FreeMotion) -> Result<(), CheckpointError> {
+fn check_lengths(model: &SheetModel, motion: &FreeState) -> Result<(), CheckpointError> {
     let (n, m, k) = (
         model.coordinate_count(),
         model.rods().len(),
         model.constraints().len(),
     );
-    let Moment { state, history, .. } = &motion.moment;
+    let SolverState { state, history, .. } = &motion.solver;
     let previous = history.previous.as_ref().unwrap_or(state);
     let multipliers = &history.multipliers;
     let optional = |length: usize, expected: usize| if length == 0 { expected } else { length };

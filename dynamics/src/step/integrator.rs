@@ -18,7 +18,7 @@ pub(crate) struct Scene<'a> {
 
 /// A point of a motion: all that the next step depends on besides the scene and the options of the method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Moment {
+pub(crate) struct SolverState {
     /// Time, positions and velocities.
     pub(crate) state: State,
     /// What the method remembers of earlier steps.
@@ -33,7 +33,7 @@ pub(crate) struct Moment {
 #[derive(Debug, Clone)]
 pub(crate) struct Proposal {
     /// Where the sub-step would end.
-    pub(crate) moment: Moment,
+    pub(crate) solver: SolverState,
     /// What it would achieve.
     pub(crate) account: StepAccount,
 }
@@ -55,7 +55,7 @@ impl Proposal {
     /// Room for the proposals of a method.
     pub(crate) fn new(model: &SheetModel, traits: MethodTraits) -> Self {
         Self {
-            moment: Moment::at(
+            solver: SolverState::at(
                 State::at_rest(vec![0.0; model.coordinate_count()]),
                 model,
                 traits,
@@ -65,7 +65,7 @@ impl Proposal {
     }
 }
 
-impl Moment {
+impl SolverState {
     /// A start without memory.
     pub(crate) fn at(state: State, model: &SheetModel, traits: MethodTraits) -> Self {
         Self {
@@ -73,14 +73,14 @@ impl Moment {
             history: History::default(),
             balance: match traits.demand {
                 RodDemand::Independent => Balance::new(model, ForceTime::Mean),
-                RodDemand::Nothing => Balance::with_unassigned(model, ForceTime::End),
+                RodDemand::Nothing => Balance::with_residual(model, ForceTime::End),
             },
             contacts: None,
         }
     }
 }
 
-impl Moment {
+impl SolverState {
     /// What a checkpoint keeps.
     pub(crate) fn compact(&self) -> Self {
         Self {
@@ -91,7 +91,7 @@ impl Moment {
         }
     }
 
-    /// Takes over another moment of the same model, in place.
+    /// Takes over another solver state of the same model, in place.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.state.copy_from(&other.state);
         self.history.copy_from(&other.history);
@@ -149,8 +149,8 @@ static NONE: Multipliers = Multipliers {
 };
 
 impl<'a> Attempt<'a> {
-    /// A sub-step of `h` seconds from a moment.
-    pub(crate) fn new(start: &'a Moment, h: f64, memory: Memory) -> Self {
+    /// A sub-step of `h` seconds from a solver state.
+    pub(crate) fn new(start: &'a SolverState, h: f64, memory: Memory) -> Self {
         Self {
             state: &start.state,
             h,
@@ -198,7 +198,7 @@ impl<'a> Attempt<'a> {
     }
 }
 
-/// A one-step or multistep method, as a function from a moment to a proposal.
+/// A one-step or multistep method, as a function from a solver state to a proposal.
 ///
 /// An integrator owns work arrays and factorisations, and nothing that a later step depends on: after a
 /// refusal, and after a proposal that is not committed, it answers the same question with the same bits.

@@ -5,7 +5,7 @@ use crate::constraint::rows::VertexRows;
 use crate::contact::ContactTerms;
 use crate::model::support::Support;
 use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
-use crate::step::unassigned::UnassignedMomentum;
+use crate::step::residual_momentum::ResidualMomentum;
 use crate::vectors::{add, point};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -58,7 +58,7 @@ pub(crate) struct Balance {
     /// When.
     pub time: ForceTime,
     /// Newtons that are not shared out between the supports yet.
-    pub(crate) unassigned: UnassignedMomentum,
+    pub(crate) residual_momentum: ResidualMomentum,
     /// Room for intermediate results, `3V`.
     #[serde(skip)]
     work: Vec<f64>,
@@ -77,15 +77,15 @@ impl Balance {
             multipliers: vec![Vector3::zeros(); m],
             constraints: vec![Vector3::zeros(); m],
             time,
-            unassigned: UnassignedMomentum::default(),
+            residual_momentum: ResidualMomentum::default(),
             work: vec![0.0; n],
         }
     }
 
     /// With room for what is shared out later.
-    pub(crate) fn with_unassigned(model: &SheetModel, time: ForceTime) -> Self {
+    pub(crate) fn with_residual(model: &SheetModel, time: ForceTime) -> Self {
         Self {
-            unassigned: UnassignedMomentum::new(model),
+            residual_momentum: ResidualMomentum::new(model),
             ..Self::new(model, time)
         }
     }
@@ -103,7 +103,7 @@ impl Balance {
             .apply(model.topology(), &self.work, &mut self.pins);
         self.multipliers.fill(Vector3::zeros());
         self.constraints.fill(Vector3::zeros());
-        self.unassigned.clear();
+        self.residual_momentum.clear();
         true
     }
 
@@ -128,7 +128,7 @@ impl Balance {
         self.multipliers.clone_from(&other.multipliers);
         self.constraints.clone_from(&other.constraints);
         self.time = other.time;
-        self.unassigned.copy_from(&other.unassigned);
+        self.residual_momentum.copy_from(&other.residual_momentum);
     }
 
     /// Refuses arrays of the wrong length and numbers that are not finite.
@@ -143,7 +143,7 @@ impl Balance {
                 check_finite("forces of vertex constraints", force.as_slice())?;
             }
         }
-        self.unassigned.check(n, m)
+        self.residual_momentum.check(n, m)
     }
 
     /// The forces alone, without room for further ones.
@@ -153,7 +153,7 @@ impl Balance {
             multipliers: self.multipliers.clone(),
             constraints: self.constraints.clone(),
             time: self.time,
-            unassigned: self.unassigned.compact(),
+            residual_momentum: self.residual_momentum.compact(),
             work: Vec::new(),
         }
     }
@@ -250,7 +250,7 @@ impl Balance {
         }
     }
 
-    /// Leaves only what is at pins; what is at free vertices at positions `x` goes to the unassigned,
+    /// Leaves only what is at pins; what is at free vertices at positions `x` goes to the residual momentum,
     /// for the rods and the vertex constraints `active`.
     pub(crate) fn leave(&mut self, model: &SheetModel, x: &[f64], active: &[bool]) {
         self.work.copy_from_slice(&self.pins);
@@ -258,7 +258,8 @@ impl Balance {
             add(&mut self.work, c.vertex(), &-f);
         }
         model.clear_pinned(&mut self.work);
-        self.unassigned.push(x, active, self.work.iter().copied());
+        self.residual_momentum
+            .push(x, active, self.work.iter().copied());
         self.finish(model);
     }
 
@@ -273,10 +274,10 @@ impl Balance {
         }
     }
 
-    /// Adds the shares of the unassigned of a step that ended at time `t`.
+    /// Adds the shares of the residual momentum of a step that ended at time `t`.
     pub(crate) fn settle(&mut self, model: &SheetModel, t: f64) {
-        let shares = self.unassigned.shares(model, t);
-        self.unassigned.clear();
+        let shares = self.residual_momentum.shares(model, t);
+        self.residual_momentum.clear();
         for (p, share) in self.pins.iter_mut().zip(&shares.pins) {
             *p += share;
         }
@@ -284,9 +285,9 @@ impl Balance {
         self.finish(model);
     }
 
-    /// The forces, with the shares of the unassigned of a step that ended at time `t`.
+    /// The forces, with the shares of the residual momentum of a step that ended at time `t`.
     pub(crate) fn reactions(&self, model: &SheetModel, t: f64) -> Vec<Reaction> {
-        let shares = self.unassigned.shares(model, t);
+        let shares = self.residual_momentum.shares(model, t);
         let pins = model.pins().into_iter().map(|v| Reaction {
             support: Support::Pin(v),
             force: point(&self.pins, v) + point(&shares.pins, v),

@@ -4,7 +4,7 @@ use crate::chart::ChartDynamicsError;
 use crate::contact::BodyMotionError;
 use crate::model::support::Support;
 use crate::step::effort::SolverEffort;
-use crate::step::feasibility::Excess;
+use crate::step::infeasibility::Infeasibility;
 use crate::step::reason::Reason;
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::wording::{brief, counted, given};
@@ -78,7 +78,7 @@ pub struct StepReport {
     /// constraints.
     pub violation: Option<f64>,
     /// Set where the step stopped at a taut state (see [`Unsatisfiable`](crate::Unsatisfiable)).
-    pub taut: Option<Excess>,
+    pub taut: Option<Infeasibility>,
     /// How the hardest sub-step was obtained.
     pub outcome: StepOutcome,
 }
@@ -285,14 +285,14 @@ pub enum StepError {
     /// Moving supports ask for more than the rods allow.
     #[error(
         "{} asks for {} m more than the rods allow at t = {} s (the taut state at t = {t} s is kept)",
-        excess.support, brief(excess.distance), brief(excess.t),
+        infeasibility.support, brief(infeasibility.distance), brief(infeasibility.t),
         t = brief(*t)
     )]
     Unsatisfiable {
         /// Time of the last state, seconds.
         t: f64,
         /// Which support, by how much and when.
-        excess: Excess,
+        infeasibility: Infeasibility,
     },
     /// Even the smallest step allowed was rejected.
     #[error(
@@ -403,7 +403,7 @@ pub(crate) struct StepTotals<'w> {
     pub(crate) work: f64,
     pub(crate) dissipated: f64,
     pub(crate) friction: f64,
-    pub(crate) taut: Option<Excess>,
+    pub(crate) taut: Option<Infeasibility>,
 }
 
 impl Default for StepTotals<'_> {

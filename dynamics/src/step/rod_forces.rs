@@ -36,7 +36,7 @@ const FLATTEST_FOLD: f64 = 5e-3;
 /// Passes of iterated regularisation. Of the force of a singular value `s` the part
 /// `(s0^2 / (s^2 + s0^2))^passes` is missing, with `s0` the [`FLATTEST_FOLD`]: in folds of ten times that angle
 /// 1e-8.
-const PASSES: usize = 4;
+const REGULARISATION_PASSES: usize = 4;
 
 /// The forces of the rods of which these are the multipliers at positions `x`, newtons, see
 /// [`Simulation::rod_forces`](crate::Simulation::rod_forces).
@@ -78,7 +78,13 @@ pub(crate) fn rod_forces(
 fn least_forces(model: &SheetModel, x: &[f64], given: &[f64]) -> Option<Vec<f64>> {
     let mut solver = RodLeastSquares::new(model, x, FLATTEST_FOLD)?;
     let mut left = given.to_vec();
-    solver.reduce(model, x, PASSES, &mut left, &mut vec![0.0; x.len()]);
+    solver.reduce(
+        model,
+        x,
+        REGULARISATION_PASSES,
+        &mut left,
+        &mut vec![0.0; x.len()],
+    );
     Some(
         given
             .iter()

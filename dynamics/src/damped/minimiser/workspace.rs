@@ -43,7 +43,7 @@ impl Workspace {
         Ok(Self {
             lagrangian: Lagrangian::new(model, tuning)?,
             restoration: Restoration::new(model, tuning),
-            balance: Balance::with_unassigned(model, ForceTime::End),
+            balance: Balance::with_residual(model, ForceTime::End),
             remembered: vec![0.0; model.rods().len()],
             rod_stiffness: 0.0,
             options,
@@ -85,8 +85,8 @@ impl Workspace {
             .positions(model, matrix, contact, iterate, goal, effort);
         if is_last {
             self.balance
-                .unassigned
-                .append(&self.restoration.unassigned, per);
+                .residual_momentum
+                .append(&self.restoration.residual_momentum, per);
         }
         strain
     }

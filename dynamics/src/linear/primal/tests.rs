@@ -134,7 +134,7 @@ fn directions_are_those_of_the_whole_matrix() {
                 dot(&e, &whole.product(&model, &e)).sqrt()
             };
             let (left, before) = (error(&direction), error(&first));
-            assert!(left < ACCURACY * before, "{left} of {before}");
+            assert!(left < GRADIENT_ACCURACY * before, "{left} of {before}");
             // The same product by either way.
             let [a, b] = [
                 matrix.product(&model, &first),

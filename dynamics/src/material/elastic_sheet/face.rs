@@ -42,10 +42,10 @@ impl Strained {
 }
 
 /// Part of its distance from the limit that a face keeps in one displacement, at least.
-const KEPT: f64 = 0.1;
+const KEPT_MARGIN: f64 = 0.1;
 
 /// The part of a displacement that is safe is found up to this part of itself.
-const BISECTION: f64 = 0.02;
+const BISECTION_WIDTH: f64 = 0.02;
 
 /// Parts of a displacement below this count as zero.
 const SMALLEST_PART: f64 = 1e-12;
@@ -194,7 +194,7 @@ impl Face {
     }
 
     /// Largest part of the displacement `dx`, at most `most`, along which the strain keeps its distance from the
-    /// limit but for [`KEPT`] of it.
+    /// limit but for [`KEPT_MARGIN`] of it.
     ///
     /// Along the displacement the square of the norm is a polynomial of degree four. Where its coefficients in
     /// Bernstein's basis on an interval are below a bound, it is below the bound; otherwise the interval is
@@ -205,7 +205,7 @@ impl Face {
         let first = Vector3::from_fn(|k, _| at.vectors[k].dot(&changes[k]));
         let second = Vector3::from_fn(|k, _| 0.5 * changes[k].norm_squared());
         let (e0, e1, e2) = (at.strain, self.strains * first, self.strains * second);
-        let bound = limit - KEPT * (limit - e0.norm());
+        let bound = limit - KEPT_MARGIN * (limit - e0.norm());
         if e0.norm() + most * (e1.norm() + most * e2.norm()) <= bound {
             return most;
         }
@@ -223,7 +223,7 @@ impl Face {
                 to = most;
             } else {
                 to = 0.5 * (from + to);
-                if to - from <= BISECTION * from {
+                if to - from <= BISECTION_WIDTH * from {
                     break;
                 }
                 if to < SMALLEST_PART {

@@ -68,11 +68,11 @@ impl Integrator for Scripted {
             },
         });
         effort.iterations += 1;
-        let moment = &mut proposal.moment;
+        let solver = &mut proposal.solver;
         // A refusal leaves its marks on the whole proposal.
-        moment.state.x.fill(f64::NAN);
-        moment.history.multipliers.rods.clear();
-        moment.balance.pins.fill(f64::NAN);
+        solver.state.x.fill(f64::NAN);
+        solver.history.multipliers.rods.clear();
+        solver.balance.pins.fill(f64::NAN);
         let factor = match answer.unwrap_or(Answer::Accept) {
             Answer::Diverge => {
                 return Err(not_converged(
@@ -87,16 +87,16 @@ impl Integrator for Scripted {
             Answer::Gain => 2.0,
             Answer::Accept => 1.0,
         };
-        let State { t, x, v } = &mut moment.state;
+        let State { t, x, v } = &mut solver.state;
         *t = start.t + h;
         for i in 0..x.len() {
             v[i] = factor * start.v[i];
             x[i] = start.x[i] + h * v[i];
         }
-        moment.history.set_previous(Some(start));
-        let multipliers = &mut moment.history.multipliers;
+        solver.history.set_previous(Some(start));
+        let multipliers = &mut solver.history.multipliers;
         (multipliers.step, multipliers.rods) = (h, vec![h]);
-        moment.balance.pins.fill(h);
+        solver.balance.pins.fill(h);
         proposal.account = StepAccount::without_contact(h, 0.0, StepOutcome::Newton);
         Ok(())
     }
@@ -281,7 +281,7 @@ fn a_step_that_fails_half_way_keeps_what_was_committed() {
     let (mut engine, _) = scripted(&script, control.clone());
     assert!(engine.advance(H, &mut StepTotals::default()).is_err());
     let (mut half, _) = scripted(&[], control);
-    half.moment.history.multipliers.clear();
+    half.solver.history.multipliers.clear();
     half.advance(0.5 * H, &mut StepTotals::default()).unwrap();
     assert!(bits(&engine.motion()) == bits(&half.motion()));
 }
@@ -298,12 +298,12 @@ fn the_fallback_starts_without_a_history() {
         };
         let (mut engine, seen) = scripted(&refusals, control);
         // Tumbling, so that multipliers matter; with multipliers that are wrong.
-        let State { x, v, .. } = &mut engine.moment.state;
+        let State { x, v, .. } = &mut engine.solver.state;
         for (p, v) in x.chunks(3).zip(v.chunks_mut(3)) {
             v.copy_from_slice(&[-2.0 * p[1], 2.0 * p[0], 0.3]);
         }
         let rods = engine.model.rods().len();
-        engine.moment.history.multipliers.rods = vec![1.0; rods];
+        engine.solver.history.multipliers.rods = vec![1.0; rods];
         let expected = |engine: &mut Engine, memory| {
             let traits = engine.integrator.traits();
             let mut proposal = Proposal::new(&engine.model, traits);
@@ -313,11 +313,11 @@ fn the_fallback_starts_without_a_history() {
                 model: &engine.model,
                 contact: None,
             };
-            let attempt = Attempt::new(&engine.moment, H, memory);
+            let attempt = Attempt::new(&engine.solver, H, memory);
             method
                 .propose(scene, attempt, &mut proposal, &mut SolverEffort::default())
                 .unwrap();
-            bits(&(&proposal.moment.state.x, &proposal.moment.state.v))
+            bits(&(&proposal.solver.state.x, &proposal.solver.state.v))
         };
         let without = expected(&mut engine, Memory::Restart);
         let with = expected(&mut engine, Memory::All);
@@ -332,7 +332,7 @@ fn the_fallback_starts_without_a_history() {
         assert_eq!(smallest, Some(0.25 * H));
         let State { x, v, .. } = engine.state();
         assert!(bits(&(x, v)) == without);
-        let history = &engine.moment.history;
+        let history = &engine.solver.history;
         assert!(history.previous.is_none() && history.multipliers.rods.is_empty());
     }
 }
@@ -415,8 +415,8 @@ fn methods() -> [Method; 6] {
     ]
 }
 
-/// A proposal from a moment: its bits, or the error.
-fn propose(engine: &mut Engine, start: &Moment, h: f64) -> Result<Vec<u8>, StepError> {
+/// A proposal from a solver state: its bits, or the error.
+fn propose(engine: &mut Engine, start: &SolverState, h: f64) -> Result<Vec<u8>, StepError> {
     let Engine {
         model,
         contact,
@@ -445,18 +445,18 @@ fn propose(engine: &mut Engine, start: &Moment, h: f64) -> Result<Vec<u8>, StepE
         contact.length_slack,
     ];
     let account = (residual, work, outcome, contact);
-    Ok(bits(&(&proposal.moment.compact(), account)))
+    Ok(bits(&(&proposal.solver.compact(), account)))
 }
 
 /// Proposals of an integrator do not depend on what it proposed before.
 ///
-/// Returns the moment from which the proposals start.
-fn check_purity(mut engine: Engine, what: &str) -> Moment {
+/// Returns the solver state from which the proposals start.
+fn check_purity(mut engine: Engine, what: &str) -> SolverState {
     let h = 1.0 / 240.0;
-    let mut moments = vec![engine.moment.clone()];
+    let mut moments = vec![engine.solver.clone()];
     for _ in 0..12 {
         engine.advance(h, &mut StepTotals::default()).unwrap();
-        moments.push(engine.moment.clone());
+        moments.push(engine.solver.clone());
     }
     let start = moments.last().unwrap();
     let first = propose(&mut engine, start, h).unwrap_or_else(|e| panic!("{what}: {e}"));
@@ -468,8 +468,8 @@ fn check_purity(mut engine: Engine, what: &str) -> Moment {
         // A refusal, if anything is one.
         (start, 1e6 * h),
     ];
-    for (moment, length) in others {
-        let other = propose(&mut engine, moment, length);
+    for (solver, length) in others {
+        let other = propose(&mut engine, solver, length);
         assert!(other.as_ref() != Ok(&first), "{what}: not another proposal");
         let again = propose(&mut engine, start, h);
         assert!(again.as_ref() == Ok(&first), "{what}: after {length} s");

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 /// A demand that cannot be met.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Excess {
+pub struct Infeasibility {
     /// The support, of those that move, that pulls most against the taut rods.
     pub support: Support,
     /// How far it would have to give way for the rods to have their lengths, to first order; metres.
@@ -20,14 +20,14 @@ pub struct Excess {
 }
 
 /// Stiffness of the rods relative to the masses over a squared second: what is left of inertia is round-off.
-const STIFFNESS: f64 = 1e9;
+const ROD_STIFFNESS: f64 = 1e9;
 /// Most Newton iterations; taut rods converge in about ten.
 const MAX_ITERATIONS: usize = 100;
 /// Forces on free vertices, relative to those at the supports, up to which the stretched sheet is in
 /// equilibrium.
-const BALANCED: f64 = 1e-6;
+const BALANCED_PART: f64 = 1e-6;
 /// Strain below which lengths that were not met are a matter of convergence.
-const MET: f64 = 1e-7;
+const MET_STRAIN: f64 = 1e-7;
 /// Line searches that halve this often have stalled.
 const MAX_HALVINGS: usize = 30;
 
@@ -38,20 +38,20 @@ const MAX_HALVINGS: usize = 30;
 /// state. Where the minimum is not zero the tensions `w_e = p_e c_e` are in equilibrium at all free vertices:
 /// by Farkas' lemma for the linearised lengths no small motion meets them, and the support that bears the
 /// force `F` has to give way by `sum_e w_e c_e / |F|`.
-pub(crate) fn excess(model: &SheetModel, state: &State, t: f64) -> Option<Excess> {
+pub(crate) fn infeasibility(model: &SheetModel, state: &State, t: f64) -> Option<Infeasibility> {
     let mut fit = Fit::new(model, state, t)?;
     let mut energy = fit.energy();
     for _ in 0..MAX_ITERATIONS {
-        if fit.force() <= BALANCED * fit.largest_support().1 {
+        if fit.force() <= BALANCED_PART * fit.largest_support().1 {
             break;
         }
         energy = fit.descend(energy)?;
     }
-    if fit.force() > BALANCED.sqrt() * fit.largest_support().1 || fit.strain() < MET {
+    if fit.force() > BALANCED_PART.sqrt() * fit.largest_support().1 || fit.strain() < MET_STRAIN {
         return None;
     }
     let (support, force) = fit.largest_support();
-    (force > 0.0).then(|| Excess {
+    (force > 0.0).then(|| Infeasibility {
         support,
         // Twice the energy is the sum of tension times elongation.
         distance: 2.0 * energy / force,
@@ -61,10 +61,10 @@ pub(crate) fn excess(model: &SheetModel, state: &State, t: f64) -> Option<Excess
 
 /// As stiff for rods between two pins as for a rod of the mean mass.
 fn penalties(model: &SheetModel) -> Vec<f64> {
-    let mut penalty = crate::linear::free::penalties(model, STIFFNESS);
+    let mut penalty = crate::linear::free::penalties(model, ROD_STIFFNESS);
     for (p, l) in penalty.iter_mut().zip(model.rods().lengths()) {
         if *p == 0.0 {
-            *p = STIFFNESS * model.mean_mass() / (l * l);
+            *p = ROD_STIFFNESS * model.mean_mass() / (l * l);
         }
     }
     penalty
@@ -92,7 +92,11 @@ impl<'a> Fit<'a> {
         let mut fit = Self {
             model,
             matrix: PrimalMatrix::of_rods(model).ok()?,
-            rows: VertexRows::new(model.constraints(), model.constrained_vertices(), STIFFNESS),
+            rows: VertexRows::new(
+                model.constraints(),
+                model.constrained_vertices(),
+                ROD_STIFFNESS,
+            ),
             penalty: penalties(model),
             c: vec![0.0; m],
             tension: vec![0.0; m],

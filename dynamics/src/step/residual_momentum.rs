@@ -11,19 +11,19 @@ use serde::{Deserialize, Serialize};
 
 /// Largest number of entries, one for each iteration of a projection; projections need three to six. The
 /// momentum of later iterations is added to the last entry.
-const ROOM: usize = 16;
+const MAX_ENTRIES: usize = 16;
 /// Penalty relative to the masses: beyond, the masses drown in round-off.
-const PENALTY: f64 = 1e9;
+const ROD_PENALTY: f64 = 1e9;
 /// Passes of the method of multipliers: each contracts what is left by the penalty, except along rods that
 /// are nearly dependent.
 const MAX_PASSES: usize = 30;
 /// Part of the momentum that may be left: the sum of the supports' forces is as good.
-const BALANCED: f64 = 1e-12;
+const BALANCED_PART: f64 = 1e-12;
 
 /// The parts of a step's change of momentum that no multiplier is known for, each with the positions whose
 /// rods and vertex constraints gave it: iterations of a projection, and what a minimisation left.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct UnassignedMomentum {
+pub(crate) struct ResidualMomentum {
     entries: Vec<Entry>,
     len: usize,
 }
@@ -38,7 +38,7 @@ struct Entry {
     momentum: Vec<f64>,
 }
 
-/// Forces of the supports that a unassigned asks for.
+/// Forces of the supports that a residual momentum asks for.
 pub(crate) struct Shares {
     /// At pinned vertices; `3V`.
     pub(crate) pins: Vec<f64>,
@@ -46,7 +46,7 @@ pub(crate) struct Shares {
     pub(crate) loads: Vec<(Vector3<f64>, Vector3<f64>)>,
 }
 
-impl UnassignedMomentum {
+impl ResidualMomentum {
     /// With room, except where nothing holds the sheet. (The default has none.)
     pub(crate) fn new(model: &SheetModel) -> Self {
         let n = model.coordinate_count();
@@ -55,7 +55,7 @@ impl UnassignedMomentum {
             active: vec![false; model.constraints().len()],
             momentum: vec![0.0; n],
         };
-        let room = if model.has_supports() { ROOM } else { 0 };
+        let room = if model.has_supports() { MAX_ENTRIES } else { 0 };
         Self {
             entries: vec![entry; room],
             len: 0,
@@ -86,7 +86,7 @@ impl UnassignedMomentum {
         active: &[bool],
         momentum: impl Iterator<Item = f64>,
     ) -> &mut [f64] {
-        if self.len < ROOM {
+        if self.len < MAX_ENTRIES {
             let entry = &mut self.entries[self.len];
             self.len += 1;
             entry.x.copy_from_slice(x);
@@ -100,7 +100,7 @@ impl UnassignedMomentum {
         &mut entry.momentum
     }
 
-    /// Takes over another unassigned, in place.
+    /// Takes over another one, in place.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         if self.entries.len() < other.len {
             self.clone_from(other);
@@ -127,7 +127,7 @@ impl UnassignedMomentum {
         Ok(())
     }
 
-    /// Adds a multiple of another unassigned.
+    /// Adds a multiple of another one.
     pub(crate) fn append(&mut self, other: &Self, factor: f64) {
         for entry in &other.entries[..other.len] {
             let momentum = entry.momentum.iter().map(|m| factor * m);
@@ -154,7 +154,7 @@ impl UnassignedMomentum {
             return shares;
         };
         let mut rows = VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0);
-        let (along, transverse) = (penalties(model, PENALTY), vec![0.0; edges]);
+        let (along, transverse) = (penalties(model, ROD_PENALTY), vec![0.0; edges]);
         let (mut left, mut answer) = (vec![0.0; n], vec![0.0; n]);
         let (mut tension, mut change) = (vec![0.0; edges], vec![0.0; edges]);
         for Entry {
@@ -167,7 +167,7 @@ impl UnassignedMomentum {
             rows.clear();
             rows.equality.copy_from_slice(active);
             matrix.assemble(model, x, &along, &transverse);
-            rows.add_equalities(PENALTY, &mut matrix.sink(model));
+            rows.add_equalities(ROD_PENALTY, &mut matrix.sink(model));
             if matrix.factorize().is_err() {
                 continue;
             }
@@ -180,7 +180,7 @@ impl UnassignedMomentum {
                 let mut free = left.clone();
                 model.clear_pinned(&mut free);
                 let size = norm_inf(&free);
-                if size <= *goal.get_or_insert(BALANCED * size) {
+                if size <= *goal.get_or_insert(BALANCED_PART * size) {
                     break;
                 }
                 matrix.solve(model, &free, &mut answer);
@@ -188,7 +188,7 @@ impl UnassignedMomentum {
                 for ((w, c), p) in tension.iter_mut().zip(&change).zip(&along) {
                     *w -= p * c;
                 }
-                rows.add_displacement(PENALTY, &answer);
+                rows.add_displacement(ROD_PENALTY, &answer);
             }
             for (p, f) in shares.pins.iter_mut().zip(&left) {
                 *p += f;

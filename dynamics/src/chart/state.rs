@@ -20,7 +20,7 @@ pub struct StepRange {
 
 /// Where a motion in a chart is: all that the next step depends on besides model, contact and options.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ChartMotion {
+pub(crate) struct ChartState {
     /// Time, seconds.
     pub(super) t: f64,
     pub(super) state: PhaseState,
@@ -49,7 +49,7 @@ pub(crate) struct ChartMotion {
     pub(super) impulses: Vec<ContactImpulse>,
 }
 
-impl ChartMotion {
+impl ChartState {
     /// Refuses numbers that are not finite, which a checkpoint that was changed from outside may have.
     pub(crate) fn check_numbers(&self) -> Result<(), CheckpointError> {
         check_finite("times", &[self.t])?;
