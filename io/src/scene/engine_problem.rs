@@ -3,7 +3,7 @@
 use super::key::Key;
 use super::problem::Problem;
 use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
-use isosheet_dynamics::{Excess, SheetModel, Simulation, SimulationError, StepError, Support};
+use isosheet_dynamics::{Infeasibility, SheetModel, Simulation, SimulationError, StepError, Support};
 use isosheet_mesh::VertexId;
 use isosheet_mesh::wording::brief;
 use nalgebra::Vector3;
@@ -139,7 +139,7 @@ impl Origins {
                 "check the profiles of the motion",
             ),
             StepError::Unsatisfiable {
-                excess: Excess { support, .. },
+                infeasibility: Infeasibility { support, .. },
                 ..
             } => (
                 self.support_key(*support).name("hold"),
