@@ -263,8 +263,8 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 8,
-            supported: 9
+            found: 11,
+            supported: 10
         }
     ));
     // Every other byte is under the checksum, the checksum included.
@@ -282,8 +282,8 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert_eq!(
         Checkpoint::from_json(&other),
         Err(CheckpointError::Version {
-            found: 8,
-            supported: 9
+            found: 9,
+            supported: 10
         })
     );
     assert!(matches!(

@@ -410,7 +410,7 @@ fn supports_that_do_not_start_in_place_are_refused() {
 
 /// Two opposite corners of a folded strip are pulled apart further than its diagonal.
 #[test]
-fn pulling_beyond_taut_names_the_pin_and_the_excess() {
+fn pulling_beyond_taut_names_the_pin_and_the_demand() {
     let run = |unsatisfiable| {
         let (sheet, model) = triangle(0.3);
         let far = |t: f64| [0.3 + 0.5 * t, 0.0, 0.0];
@@ -429,13 +429,13 @@ fn pulling_beyond_taut_names_the_pin_and_the_excess() {
     };
     let mut simulation = run(Unsatisfiable::Refuse);
     let error = simulation.step(0.01).expect_err("beyond taut");
-    let StepError::Unsatisfiable { t, excess } = error else {
+    let StepError::Unsatisfiable { t, infeasibility } = error else {
         panic!("{error}");
     };
-    assert_eq!(excess.support, Support::Pin(VertexId(1)));
+    assert_eq!(infeasibility.support, Support::Pin(VertexId(1)));
     assert!(
-        t < 0.01 && (excess.distance / 0.005 - 1.0).abs() < 0.05,
-        "{excess:?}"
+        t < 0.01 && (infeasibility.distance / 0.005 - 1.0).abs() < 0.05,
+        "{infeasibility:?}"
     );
     let mut simulation = run(Unsatisfiable::StopTaut);
     let report = simulation.step(0.01).expect("stops");

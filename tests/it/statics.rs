@@ -263,13 +263,13 @@ fn a_straight_line_of_rods_does_not_give() {
             let h = 0.01;
             let (corner, mut simulation) = run(Unsatisfiable::Refuse);
             let error = simulation.step(h).expect_err("beyond taut");
-            let StepError::Unsatisfiable { t, excess } = error else {
+            let StepError::Unsatisfiable { t, infeasibility } = error else {
                 panic!("M{level}: {error}");
             };
-            assert_eq!(excess.support, Support::Pin(corner));
+            assert_eq!(infeasibility.support, Support::Pin(corner));
             assert!(
-                t < 0.1 * h && (excess.distance / (pull * h) - 1.0).abs() < 0.05,
-                "{excess:?}"
+                t < 0.1 * h && (infeasibility.distance / (pull * h) - 1.0).abs() < 0.05,
+                "{infeasibility:?}"
             );
             let (_, mut simulation) = run(Unsatisfiable::StopTaut);
             let report = simulation.step(h).expect("stops");

@@ -160,7 +160,9 @@ fn a_sheet_is_crumpled_from_four_sides() {
         bodies,
         0.2,
     );
-    scene.run(0.35, H, |_, _| ());
+    // Steps that resolve how the flat sheet buckles when the plates arrive: with four times as long ones the height that
+    // it jumps to depends on whether that step is divided.
+    scene.run(0.35, 0.25 * H, |_, _| ());
     // The plates are 0.6 SIDE + 2 margin apart. The sheet fills the space between them but for folds that
     // stand away from the plates; measured from 80 sheets whose masses differ by 1e-9 each: 75 % to 99.8 %,
     // all but four of 160 numbers above 85 %.
@@ -334,10 +336,10 @@ fn a_sheet_is_crumpled_between_closing_spheres() {
         scene.run(0.45, H, |_, _| ());
         let ([left, right], [low, high]) = (extent(scene.x(), 0), extent(scene.x(), 2));
         // A sheet that is turned by the spheres but not wrapped round them keeps its width to a few
-        // percent. Round-off decides whether it folds along its sides or along a diagonal. Measured: 0.57
-        // to 0.81 of the width.
+        // percent. Round-off decides whether it folds along its sides or along a diagonal. Measured with these steps
+        // and with steps of a half and an eighth: 0.35 to 0.87 of the width.
         assert!(
-            (0.5 * SIDE..0.85 * SIDE).contains(&(right - left)),
+            (0.3 * SIDE..0.9 * SIDE).contains(&(right - left)),
             "from {left} to {right} m"
         );
         // The outer parts stand on end, one upwards and one downwards. Measured: 0.845 to 0.93 of the side;

@@ -3,7 +3,9 @@
 use super::key::Key;
 use super::problem::Problem;
 use isosheet_dynamics::contact::{BodyMotionError, ContactError, ContactPair};
-use isosheet_dynamics::{Infeasibility, SheetModel, Simulation, SimulationError, StepError, Support};
+use isosheet_dynamics::{
+    Infeasibility, SheetModel, Simulation, SimulationError, StepError, Support,
+};
 use isosheet_mesh::VertexId;
 use isosheet_mesh::wording::brief;
 use nalgebra::Vector3;

@@ -134,7 +134,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                 self.outcome = self.outcome.max(StepOutcome::Globalised);
                 continue;
             }
-            let is_renewed = self.renew_friction();
+            let is_renewed = self.renew_friction(quality);
             if quality != Quality::Descends
                 && self.is_near()
                 && !self.goes_on(&direction, is_renewed)
@@ -440,10 +440,13 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
     /// Lags friction anew at the iterate, unless it has settled or been renewed too often; whether it was
     /// renewed.
     ///
-    /// Friction follows after every full step, not only where the minimisation with lagged friction has
-    /// converged: sheets of 289 vertices on a table need three quarters of the factorisations.
-    fn renew_friction(&mut self) -> bool {
-        if self.friction_updates == self.phase.friction_updates {
+    /// In programming friction follows after every full step, not only where the minimisation with lagged friction has
+    /// converged: sheets of 289 vertices on a table need three quarters of the factorisations. In rounds, which begin far
+    /// from the minimum, a flat sheet between closing plates would use all iterations.
+    fn renew_friction(&mut self, quality: Quality) -> bool {
+        let is_early =
+            self.phase.multipliers == Multipliers::Rounds && quality == Quality::Descends;
+        if is_early || self.friction_updates == self.phase.friction_updates {
             return false;
         }
         let lagrangian = &mut self.work.lagrangian;
