@@ -130,7 +130,8 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                     .then(|| self.minimum())
                     .ok_or(Reason::NoDescent);
             };
-            if length < 1.0 {
+            // Noise alone cuts a step that promises no more than round-off.
+            if length < 1.0 && quality != Quality::RoundOff {
                 self.outcome = self.outcome.max(StepOutcome::Globalised);
                 continue;
             }
