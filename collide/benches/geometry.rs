@@ -2,9 +2,7 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use isosheet_collide::distance::{edge_edge, point_triangle};
-use isosheet_collide::{
-    BroadPhase, Candidates, CcdOptions, ContactMesh, Moving, Shape, TriangleSurface,
-};
+use isosheet_collide::{BroadPhase, Candidates, CcdOptions, ContactMesh, Shape, TriangleSurface};
 use isosheet_mesh::generate;
 use nalgebra::Vector3;
 use std::hint::black_box;
@@ -84,22 +82,6 @@ fn broad_phase(c: &mut Criterion) {
         });
         group.bench_function(BenchmarkId::new("pairs", faces), |b| {
             b.iter(|| phase.self_candidates(black_box(&mut pairs)));
-        });
-        group.bench_function(BenchmarkId::new("smallest distance", faces), |b| {
-            b.iter(|| pairs.smallest_distance(&mesh, black_box(&x)));
-        });
-        // A common slide and a wave of a tenth of an edge.
-        let dx: Vec<f64> = (0..x.len())
-            .map(|i| 0.1 * h * (1.0 + (7.0 * i as f64).sin()))
-            .collect();
-        let options = CcdOptions::default();
-        group.bench_function(BenchmarkId::new("safe fraction", faces), |b| {
-            let moving = Moving {
-                mesh: &mesh,
-                x: &x,
-                dx: &dx,
-            };
-            b.iter(|| pairs.safe_fraction(black_box(moving), &options, 1.0));
         });
     }
     group.finish();

@@ -295,7 +295,7 @@ impl BroadPhase {
     }
 
     /// Pairs of this mesh with another whose boxes overlap since the last updates of both; `out` is
-    /// overwritten. [`CrossCandidates`] answers queries over these pairs.
+    /// overwritten.
     pub fn candidates_with(&self, other: &Self, out: &mut CrossCandidates) {
         out.vertex_face.clear();
         out.face_vertex.clear();

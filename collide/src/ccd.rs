@@ -17,7 +17,7 @@
 //! Nothing is solved for, so there is no root to lose. The bound holds for *every* unit vector `n`: an
 //! inexact closest point costs progress, never safety. Round-off is subtracted from each gap.
 
-use crate::distance::{edge_edge, point_edge, point_point, point_triangle};
+use crate::distance::{edge_edge, point_triangle};
 use isosheet_mesh::Advice;
 use nalgebra::Vector3;
 use thiserror::Error;
@@ -96,18 +96,6 @@ impl CcdOptions {
             return Err(CcdOptionsError::Iterations);
         }
         Ok(())
-    }
-
-    /// A time up to which two points `[p, q]` keep their distance above the separation; at most
-    /// `limit` (0 to 1). See [`CcdOptions::point_triangle`].
-    pub fn point_point(&self, x: &[Vector3<f64>; 2], dx: &[Vector3<f64>; 2], limit: f64) -> f64 {
-        self.advance(x, dx, 1, limit, |x| point_point(x).difference)
-    }
-
-    /// A time up to which a point and an edge, `[p, a, b]`, keep their distance above the
-    /// separation; at most `limit` (0 to 1). See [`CcdOptions::point_triangle`].
-    pub fn point_edge(&self, x: &[Vector3<f64>; 3], dx: &[Vector3<f64>; 3], limit: f64) -> f64 {
-        self.advance(x, dx, 1, limit, |x| point_edge(x).difference)
     }
 
     /// A time up to which a point and a triangle, `[p, a, b, c]`, keep their distance above the

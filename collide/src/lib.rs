@@ -3,8 +3,8 @@
 //! * [`distance`]: squared distances of points, edges and triangles with closest points, gradients
 //!   and Hessians.
 //! * [`CcdOptions`]: how far a motion may go before two primitives touch.
-//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle; bulk
-//!   queries over these pairs, and [`crossings`] as a check that uses none of them.
+//! * [`BroadPhase`]: pairs of primitives that may meet, of a sheet with itself or with an obstacle.
+//! * [`crossings`]: edges that pass through faces, as a check without a tree or a distance.
 //! * [`Contacts`]: all of it together, as a step of [`isosheet_dynamics::contact`] asks for it, where barrier
 //!   and friction are functions of these distances.
 //! * [`Obstacle`]: half-space, box, ball, cylinder, capsule or [`TriangleSurface`], at rest or in a
@@ -46,22 +46,23 @@ mod ccd;
 mod constraint;
 mod contact_mesh;
 mod contacts;
+mod crossings;
 pub mod distance;
-mod narrow_phase;
 mod obstacle;
 mod signed_distance;
 mod surface;
 #[cfg(test)]
 mod testing;
+mod vectors;
 
 pub use broad_phase::{BroadPhase, Candidates, CrossCandidates};
 pub use ccd::{CcdOptions, CcdOptionsError};
 pub use contact_mesh::{ContactMesh, ContactMeshError};
 pub use contacts::{ContactOptions, Contacts, ContactsError};
+pub use crossings::{crossings, crossings_between};
 pub use distance::{Closest, Feature, Jet};
 pub use isosheet_dynamics::contact::{Coefficients, FrictionError, Stiffness};
 pub use nalgebra;
-pub use narrow_phase::{Moving, crossings, crossings_between};
 pub use obstacle::{ContactGeometry, Obstacle, ObstacleError, Shape};
 pub use signed_distance::SignedDistance;
 pub use surface::{SurfaceError, TriangleSurface, rounded_line};

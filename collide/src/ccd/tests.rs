@@ -119,20 +119,6 @@ proptest! {
             let separation = thick * distance(&x);
             check(&CcdOptions { separation, ..CcdOptions::default() }, query, distance, &x, &dx);
         }
-        // Point and edge, two points: as degenerate triangles and edges.
-        let options = CcdOptions::default();
-        let three = options.point_edge(&[x[0], x[1], x[2]], &[dx[0], dx[1], dx[2]], 1.0);
-        for k in 0..=100 {
-            let t = three * f64::from(k) / 100.0;
-            let d = point_edge(&moved(&[x[0], x[1], x[2]], &[dx[0], dx[1], dx[2]], t)).distance();
-            prop_assert!(d > 0.0 || three == 0.0);
-        }
-        let two = options.point_point(&[x[0], x[1]], &[dx[0], dx[1]], 1.0);
-        for k in 0..=100 {
-            let t = two * f64::from(k) / 100.0;
-            let d = point_point(&moved(&[x[0], x[1]], &[dx[0], dx[1]], t)).distance();
-            prop_assert!(d > 0.0 || two == 0.0);
-        }
     }
 
     /// A motion that leads through is stopped before: the root is computed, not sampled.
@@ -254,16 +240,23 @@ fn times_of_impact_are_right_up_to_the_remainder() {
         .map(|p| size * p);
         let t = fine.edge_edge(&x, &[zero, v(0.0, 0.0, -4.0) * size, zero, zero], 1.0);
         assert!((t / 0.5 - 1.0).abs() < 2e-6 && t < 0.5, "{t}");
-        // Two points head on.
-        let t = fine.point_point(
-            &[zero, v(size, 0.0, 0.0)],
-            &[v(3.0 * size, 0.0, 0.0), v(-size, 0.0, 0.0)],
+        // Two points head on, as a point and a triangle without extent.
+        let toward = v(-size, 0.0, 0.0);
+        let t = fine.point_triangle(
+            &[zero, -toward, -toward, -toward],
+            &[-3.0 * toward, toward, toward, toward],
             1.0,
         );
         assert!((t / 0.25 - 1.0).abs() < 2e-6 && t < 0.25, "{t}");
-        // A point and the end of an edge passed at a hair's breadth: no impact.
-        let x = [v(-1.0, 0.0, 0.0), v(0.0, 1e-5, 0.0), v(0.0, 1.0, 0.0)].map(|p| size * p);
-        let t = fine.point_edge(&x, &[v(2.0 * size, 0.0, 0.0), zero, zero], 1.0);
+        // A point and the end of an edge, a triangle without width, passed at a hair's breadth: no impact.
+        let x = [
+            v(-1.0, 0.0, 0.0),
+            v(0.0, 1e-5, 0.0),
+            v(0.0, 1.0, 0.0),
+            v(0.0, 1.0, 0.0),
+        ]
+        .map(|p| size * p);
+        let t = fine.point_triangle(&x, &[v(2.0 * size, 0.0, 0.0), zero, zero, zero], 1.0);
         assert_eq!(t, 1.0);
     }
 }

@@ -7,7 +7,7 @@ use super::neighbours::Neighbours;
 use super::path::{Course, PartOfStep};
 use crate::Shape;
 use crate::distance::{Closest, edge_edge, point_triangle};
-use crate::narrow_phase::{gather, smaller};
+use crate::vectors::{gather, smaller};
 use isosheet_dynamics::contact::{ContactKey, ContactKind};
 use nalgebra::Vector3;
 

@@ -6,7 +6,7 @@ use super::motion::{two_edges, vertex_face};
 use super::rolling::{edge_gradient, face_gradients};
 use crate::ContactMesh;
 use crate::distance::{Closest, edge_edge, point_triangle};
-use crate::narrow_phase::gather;
+use crate::vectors::gather;
 use isosheet_dynamics::contact::{
     ActiveContact, BodyPlace, ContactKey, ContactKind, ParallelEdges, Rolling,
 };

@@ -5,7 +5,7 @@ use super::displacements::Displacements;
 use super::motion::{self, SheetMotion};
 use super::path::PartOfStep;
 use crate::distance::{edge_edge, point_triangle};
-use crate::narrow_phase::{gather, larger};
+use crate::vectors::{gather, larger};
 use crate::{BroadPhase, Candidates, CrossCandidates};
 
 /// Skin of the lists, in mean edge lengths. With 0.06 and 0.25 a draping disk of 688 vertices takes 12 % and

@@ -3,7 +3,7 @@
 use super::motion::{SheetMotion, two_edges, vertex_face};
 use super::neighbours::Neighbours;
 use crate::distance::{edge_edge, point_triangle};
-use crate::narrow_phase::gather;
+use crate::vectors::gather;
 use isosheet_dynamics::contact::{ContactKey, ContactKind};
 use nalgebra::Vector3;
 

@@ -1,7 +1,8 @@
 //! Whether a simulation can start.
 
 use super::evaluate::Placed;
-use crate::narrow_phase::{gather, pierces};
+use crate::crossings::pierces;
+use crate::vectors::gather;
 use crate::{BroadPhase, ContactMesh, Shape};
 use isosheet_dynamics::contact::{ActiveContact, ContactError, ContactPair};
 use nalgebra::Vector3;

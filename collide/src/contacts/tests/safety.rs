@@ -1,8 +1,8 @@
 //! No accepted motion passes anything.
 
 use super::*;
-use crate::Candidates;
-use crate::{CcdOptions, crossings, crossings_between};
+use crate::testing::smallest_distance;
+use crate::{Candidates, CcdOptions, crossings, crossings_between};
 use isosheet_dynamics::contact::StepMotion;
 use proptest::prelude::*;
 
@@ -130,7 +130,7 @@ fn every_gap(contacts: &Contacts, x: &[f64]) -> f64 {
             }
         }
     }
-    all.smallest_distance(mesh, x) - contacts.options.thickness
+    smallest_distance(mesh, &all, x) - contacts.options.thickness
 }
 
 /// A die at 10 m/s, a millimetre below a sheet, and steps of a sixtieth of a second.

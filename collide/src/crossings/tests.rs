@@ -1,5 +1,6 @@
 use super::*;
-use crate::BroadPhase;
+use crate::testing::{safe_part, smallest_distance};
+use crate::{BroadPhase, Candidates, CcdOptions};
 use isosheet_mesh::generate;
 use proptest::prelude::*;
 
@@ -31,12 +32,12 @@ proptest! {
             let goal = add(&x, &dx, 1.0);
             phase.update(&x, &goal, 0.0);
             phase.self_candidates(&mut candidates);
-            let before = candidates.smallest_distance(&mesh, &x);
-            let t = candidates.safe_fraction(Moving { mesh: &mesh, x: &x, dx: &dx }, &options, 1.0);
+            let before = smallest_distance(&mesh, &candidates, &x);
+            let t = safe_part(&mesh, &candidates, &options, [&x, &dx]);
             cut += usize::from(t < 1.0);
             x = add(&x, &dx, t);
             prop_assert_eq!(crossings(&mesh, &x), Vec::<[u32; 2]>::new());
-            prop_assert!(candidates.smallest_distance(&mesh, &x) > 0.0);
+            prop_assert!(smallest_distance(&mesh, &candidates, &x) > 0.0);
             prop_assert!(before > 0.0);
         }
         prop_assert!(cut > 0, "no step was cut");
@@ -52,73 +53,38 @@ proptest! {
     ) {
         let sheet = generate::isotropic_square(1, 1.0).unwrap();
         let mesh = ContactMesh::from_topology(sheet.topology());
-        let body = ContactMesh::from_triangles(4, &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]).unwrap();
+        let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        let body = ContactMesh::from_triangles(4, &tetrahedron).unwrap();
         let [u, v] = place;
         let y = [u, v, gap, u + 0.1, v, gap + 0.2, u, v + 0.1, gap + 0.2, u, v, gap + 0.3];
         let dy: Vec<f64> = (0..12).map(|k| if k % 3 == 2 { -speed } else { 0.0 }).collect();
         let x = sheet.positions();
-        let zero = vec![0.0; x.len()];
         let separation = thickness * gap;
-        let mut sheet_boxes = BroadPhase::new(mesh.clone(), x);
-        let mut body_boxes = BroadPhase::new(body.clone(), &y);
-        sheet_boxes.update(x, x, separation);
-        body_boxes.update(&y, &add(&y, &dy, 1.0), 0.0);
-        let mut pairs = CrossCandidates::default();
-        sheet_boxes.candidates_with(&body_boxes, &mut pairs);
+        // Both as one mesh, of whose pairs those of the sheet with the body are kept.
+        let first = mesh.vertex_count() as u32;
+        let shifted = tetrahedron.map(|face| face.map(|v| first + v));
+        let faces: Vec<[u32; 3]> = mesh.faces().iter().copied().chain(shifted).collect();
+        let both = ContactMesh::from_triangles(mesh.vertex_count() + 4, &faces).unwrap();
+        let (z, dz) = ([x, &y].concat(), [&vec![0.0; x.len()][..], &dy].concat());
+        let mut phase = BroadPhase::new(both.clone(), &z);
+        let mut pairs = Candidates::default();
+        phase.update(&z, &add(&z, &dz, 1.0), separation);
+        phase.self_candidates(&mut pairs);
+        let is_across = |a: u32, b: u32| (a < first) != (b < first);
+        let of_face = |f: u32| both.faces()[f as usize][0];
+        let of_edge = |e: u32| both.edges()[e as usize][0];
+        pairs.vertex_face.retain(|&[v, f]| is_across(v, of_face(f)));
+        pairs.edge_edge.retain(|&[e, g]| is_across(of_edge(e), of_edge(g)));
         let options = CcdOptions { separation, ..CcdOptions::default() };
-        let sheet_moves = Moving { mesh: &mesh, x, dx: &zero };
-        let body_moves = Moving { mesh: &body, x: &y, dx: &dy };
-        let t = pairs.safe_fraction(sheet_moves, body_moves, &options, 1.0);
+        let t = safe_part(&both, &pairs, &options, [&z, &dz]);
         let impact = (gap - separation) / speed;
         prop_assert!(t < impact && t > 0.8 * impact, "{t} {impact}");
         let stopped = add(&y, &dy, t);
         prop_assert!(crossings_between(&body, &stopped, &mesh, x).is_empty());
         prop_assert!(crossings_between(&mesh, x, &body, &stopped).is_empty());
-        let left = pairs.smallest_distance([&mesh, &body], x, &stopped);
-        prop_assert!((left - (gap - t * speed)).abs() < 1e-12 && left > separation);
-        // The other way round too.
-        body_boxes.candidates_with(&sheet_boxes, &mut pairs);
-        let again = pairs.safe_fraction(body_moves, sheet_moves, &options, 1.0);
-        prop_assert!(again < impact && again > 0.8 * impact);
-        let left_again = pairs.smallest_distance([&body, &mesh], &stopped, x);
-        prop_assert!((left_again - left).abs() < 1e-15);
         let through = add(&y, &dy, (gap + 0.1) / speed);
         prop_assert!(!crossings_between(&body, &through, &mesh, x).is_empty());
     }
-}
-
-#[test]
-fn no_pairs_mean_no_limit_and_no_distance() {
-    let sheet = generate::isotropic_square(0, 1.0).unwrap();
-    let mesh = ContactMesh::from_topology(sheet.topology());
-    let none = Candidates::default();
-    let x = sheet.positions();
-    assert_eq!(none.smallest_distance(&mesh, x), f64::INFINITY);
-    let moving = Moving {
-        mesh: &mesh,
-        x,
-        dx: x,
-    };
-    assert_eq!(none.safe_fraction(moving, &CcdOptions::default(), 0.5), 0.5);
-    // A state that is not a number has no distance and no safe step.
-    let mut broken = x.to_vec();
-    broken[0] = f64::NAN;
-    let far_face = (0..)
-        .zip(mesh.faces())
-        .find(|(_, f)| !f.contains(&0))
-        .unwrap()
-        .0;
-    let pair = Candidates {
-        vertex_face: vec![[0, far_face]],
-        edge_edge: Vec::new(),
-    };
-    assert!(pair.smallest_distance(&mesh, &broken).is_nan());
-    let moving = Moving {
-        mesh: &mesh,
-        x: &broken,
-        dx: x,
-    };
-    assert_eq!(pair.safe_fraction(moving, &CcdOptions::default(), 1.0), 0.0);
 }
 
 /// A flat sheet crosses nothing, in whatever plane round-off leaves it.
