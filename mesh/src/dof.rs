@@ -126,16 +126,15 @@ mod tests {
     use crate::testing::{disks, octahedron, surfaces, torus};
     use crate::{LengthConstraints, Sheet};
 
-    /// Rank of G by singular values.
+    /// Rank of G by the singular values of its transpose.
     fn rank(sheet: &Sheet) -> usize {
         let g = LengthConstraints::new(sheet);
-        let mut values = vec![0.0; g.nnz()];
-        g.values_into(sheet.positions(), &mut values);
-        let mut dense = DMatrix::zeros(g.len(), sheet.positions().len());
-        for e in 0..g.len() {
-            for k in g.row_ptr()[e]..g.row_ptr()[e + 1] {
-                dense[(e, g.col_idx()[k])] = values[k];
-            }
+        let x = sheet.positions();
+        let mut dense = DMatrix::zeros(x.len(), g.len());
+        for (e, mut column) in dense.column_iter_mut().enumerate() {
+            let mut unit = vec![0.0; g.len()];
+            unit[e] = 1.0;
+            g.apply_transpose_add(x, &unit, column.as_mut_slice());
         }
         let sigma = dense.singular_values();
         sigma.iter().filter(|s| **s > 1e-10 * sigma.max()).count()

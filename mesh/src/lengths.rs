@@ -6,8 +6,8 @@ use crate::Sheet;
 ///
 /// `c_e(x) = (|x_a - x_b|^2 - l_e^2) / 2,`
 ///
-/// and the rigidity matrix G = dc/dx (E x 3V). Row e of G holds `x_a - x_b` at the three columns of a and
-/// `-(x_a - x_b)` at those of b, six numbers in all, so that its sparsity pattern never changes.
+/// and the products with the rigidity matrix G = dc/dx (E x 3V). Row e of G holds `x_a - x_b` at the three
+/// columns of a and `-(x_a - x_b)` at those of b.
 ///
 /// Because c is quadratic, `c(y) - c(x) = G((x + y)/2) (y - x)` holds exactly.
 ///
@@ -16,8 +16,6 @@ use crate::Sheet;
 pub struct LengthConstraints {
     edges: Vec<[usize; 2]>,
     lengths: Vec<f64>,
-    row_ptr: Vec<usize>,
-    col_idx: Vec<usize>,
     vertex_count: usize,
 }
 
@@ -30,24 +28,9 @@ impl LengthConstraints {
             .iter()
             .map(|e| e.map(|v| v.index()))
             .collect();
-        let row_ptr = (0..=edges.len()).map(|e| 6 * e).collect();
-        let mut col_idx = Vec::with_capacity(6 * edges.len());
-        for &[a, b] in &edges {
-            let (low, high) = (a.min(b), a.max(b));
-            col_idx.extend([
-                3 * low,
-                3 * low + 1,
-                3 * low + 2,
-                3 * high,
-                3 * high + 1,
-                3 * high + 2,
-            ]);
-        }
         Self {
             edges,
             lengths: sheet.lengths().to_vec(),
-            row_ptr,
-            col_idx,
             vertex_count: sheet.topology().vertex_count(),
         }
     }
@@ -80,57 +63,6 @@ impl LengthConstraints {
     #[inline]
     pub fn lengths(&self) -> &[f64] {
         &self.lengths
-    }
-
-    /// Row pointers of G in compressed-row form: row e has the entries `6 e .. 6 e + 6`.
-    #[inline]
-    pub fn row_ptr(&self) -> &[usize] {
-        &self.row_ptr
-    }
-
-    /// Column indices of G in compressed-row form, ascending within each row.
-    #[inline]
-    pub fn col_idx(&self) -> &[usize] {
-        &self.col_idx
-    }
-
-    /// The number of stored entries of G, 6 E.
-    #[inline]
-    pub fn nnz(&self) -> usize {
-        6 * self.edges.len()
-    }
-
-    /// The values of G(x) in the order of [`Self::col_idx`]: with it and [`Self::row_ptr`] the matrix for the
-    /// sparse solvers of other libraries.
-    ///
-    /// ```
-    /// # use isosheet_mesh::{LengthConstraints, generate};
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// let sheet = generate::isotropic_square(0, 1.0)?;
-    /// let (g, x) = (LengthConstraints::new(&sheet), sheet.positions());
-    /// let mut values = vec![0.0; g.nnz()];
-    /// g.values_into(x, &mut values);
-    /// // In a flat sheet all rods keep their lengths while the corner moves out of the plane.
-    /// let row = g.row_ptr()[0]..g.row_ptr()[1];
-    /// let rates = row.filter(|&k| g.col_idx()[k] % 3 == 2).map(|k| values[k]);
-    /// assert!(rates.into_iter().all(|rate| rate == 0.0));
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
-    /// # Panics
-    /// If `x` is not of length 3V or `values` not of length 6E.
-    pub fn values_into(&self, x: &[f64], values: &mut [f64]) {
-        self.check(x);
-        assert_eq!(values.len(), self.nnz(), "one value per stored entry");
-        for (&[a, b], row) in self.edges.iter().zip(values.chunks_exact_mut(6)) {
-            let (low, high) = (a.min(b), a.max(b));
-            for k in 0..3 {
-                let d = x[3 * low + k] - x[3 * high + k];
-                row[k] = d;
-                row[3 + k] = -d;
-            }
-        }
     }
 
     /// c(x), in square metres.
@@ -246,7 +178,7 @@ mod tests {
                 .iter()
                 .all(|c| c.abs() < 1e-17)
         );
-        assert_eq!((g.len(), g.nnz(), g.row_ptr().len()), (208, 1248, 209));
+        assert_eq!(g.len(), 208);
         assert!(!g.is_empty());
     }
 
@@ -265,41 +197,30 @@ mod tests {
     }
 
     #[test]
-    fn stored_values_agree_with_products_and_differences() {
+    fn products_agree_with_differences() {
         let sheet = isotropic_square(1, 1.0).unwrap();
         let g = LengthConstraints::new(&sheet);
         let x = bent(&sheet, 0.4);
-        let v = bent(&sheet, 5.0);
-        let mut values = vec![0.0; g.nnz()];
-        g.values_into(&x, &mut values);
-        let mut gv = vec![0.0; g.len()];
-        g.apply(&x, &v, &mut gv);
         let lambda: Vec<f64> = (0..g.len()).map(|e| (e as f64).cos()).collect();
         let mut force = vec![0.0; x.len()];
         g.apply_transpose_add(&x, &lambda, &mut force);
-        let mut force_csr = vec![0.0; x.len()];
         let h = 1e-6;
-        for e in 0..g.len() {
-            let row = g.row_ptr()[e]..g.row_ptr()[e + 1];
-            assert!(g.col_idx()[row.clone()].is_sorted());
-            let sum: f64 = row.clone().map(|k| values[k] * v[g.col_idx()[k]]).sum();
-            assert!((sum - gv[e]).abs() < 1e-14);
-            for k in row {
-                let c = g.col_idx()[k];
-                force_csr[c] += values[k] * lambda[e];
-                let (mut xp, mut xm) = (x.clone(), x.clone());
-                xp[c] += h;
-                xm[c] -= h;
-                let fd = (g.residual(&xp)[e] - g.residual(&xm)[e]) / (2.0 * h);
-                assert!(
-                    (fd - values[k]).abs() < 1e-8,
-                    "edge {e}, column {c}: {fd} against {}",
-                    values[k]
-                );
+        for c in 0..x.len() {
+            let mut unit = vec![0.0; x.len()];
+            unit[c] = 1.0;
+            let mut column = vec![0.0; g.len()];
+            g.apply(&x, &unit, &mut column);
+            let sum: f64 = column.iter().zip(&lambda).map(|(g, l)| g * l).sum();
+            assert!((sum - force[c]).abs() < 1e-14);
+            let (mut xp, mut xm) = (x.clone(), x.clone());
+            xp[c] += h;
+            xm[c] -= h;
+            let ends = g.residual(&xp).into_iter().zip(g.residual(&xm));
+            for (e, ((up, down), exact)) in ends.zip(&column).enumerate() {
+                let fd = (up - down) / (2.0 * h);
+                let worst = (fd - exact).abs();
+                assert!(worst < 1e-8, "edge {e}, column {c}: {fd} against {exact}");
             }
-        }
-        for (a, b) in force.iter().zip(&force_csr) {
-            assert!((a - b).abs() < 1e-14);
         }
     }
 
