@@ -215,41 +215,49 @@ mod tests {
     use super::super::testing::grids;
     use super::*;
 
-    fn laplacian(n: usize, shift: f64) -> SparseLlt {
-        let mut entries = Vec::new();
-        for i in 0..n as u32 {
-            entries.push((i, i));
-            if i + 1 < n as u32 {
-                entries.push((i + 1, i));
-            }
-        }
-        let (pattern, slots) = Pattern::from_entries(n, n, &entries);
-        let mut llt = SparseLlt::new(pattern).expect("small pattern");
-        for (k, &(r, c)) in entries.iter().enumerate() {
-            llt.values_mut()[slots[k] as usize] = if r == c { 2.0 + shift } else { -1.0 };
-        }
-        llt
+    /// The symbolic factorisation of the matrix of a chain of `n` unknowns.
+    fn chain(n: usize) -> SparseLlt {
+        let entries: Vec<(u32, u32)> = (0..n as u32).flat_map(|i| [(i, i), (i + 1, i)]).collect();
+        let (pattern, _) = Pattern::from_entries(n, n, &entries[..2 * n - 1]);
+        SparseLlt::new(pattern).expect("small pattern")
     }
 
+    /// Gives the matrix other values and factorises it: `diagonal` on the diagonal, and beside it couplings
+    /// around -1 that differ from each other and from those of other diagonals.
+    fn refactorise(llt: &mut SparseLlt, diagonal: f64) -> Result<(), LinalgError> {
+        let pattern = llt.pattern().clone();
+        for c in 0..pattern.cols() {
+            for k in pattern.col_ptr()[c]..pattern.col_ptr()[c + 1] {
+                llt.values_mut()[k] = if pattern.row_idx()[k] == c {
+                    diagonal
+                } else {
+                    -1.0 + 0.1 * (diagonal * k as f64).sin()
+                };
+            }
+        }
+        llt.factorize()
+    }
+
+    /// Two matrices with one symbolic factorisation, and an indefinite one between them.
     #[test]
     fn solves_and_refactorises() {
-        let n = 50;
-        let mut llt = laplacian(n, 0.0);
-        for shift in [0.0, 1.0] {
-            llt = if shift == 0.0 {
-                llt
-            } else {
-                laplacian(n, shift)
-            };
-            llt.factorize().expect("positive definite");
-            let x: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();
-            let mut b = vec![0.0; n];
-            llt.pattern()
-                .sub_symmetric_product(llt.values(), &x, &mut b);
-            b.iter_mut().for_each(|v| *v = -*v);
-            llt.solve(&mut b);
-            for i in 0..n {
-                assert!((b[i] - x[i]).abs() < 1e-12, "unknown {i}");
+        for mut llt in [chain(50), grid(31, 1)] {
+            for diagonal in [4.5, 0.0, 7.0] {
+                let result = refactorise(&mut llt, diagonal);
+                if diagonal == 0.0 {
+                    result.expect_err("a zero diagonal is indefinite");
+                    continue;
+                }
+                result.expect("diagonally dominant");
+                let x: Vec<f64> = (0..llt.order()).map(|i| (i as f64).sin()).collect();
+                let mut b = vec![0.0; llt.order()];
+                llt.pattern()
+                    .sub_symmetric_product(llt.values(), &x, &mut b);
+                b.iter_mut().for_each(|v| *v = -*v);
+                llt.solve(&mut b);
+                for i in 0..llt.order() {
+                    assert!((b[i] - x[i]).abs() < 1e-12, "unknown {i} of {diagonal}");
+                }
             }
         }
     }
@@ -321,7 +329,7 @@ mod tests {
     #[test]
     fn indefinite_is_an_error() {
         assert!(matches!(
-            laplacian(10, -2.0).factorize(),
+            refactorise(&mut chain(10), 0.0),
             Err(LinalgError::NotPositiveDefinite { order: 10, .. })
         ));
     }
