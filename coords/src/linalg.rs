@@ -30,5 +30,5 @@ pub use error::LinalgError;
 pub use ldlt::SparseLdlt;
 pub use llt::SparseLlt;
 pub use lu::SparseLu;
-pub use ordering::{Fill, Ordering, delay_multipliers, elimination_order};
+pub use ordering::{Fill, Ordering, elimination_order};
 pub use pattern::{Pattern, norm_inf};

@@ -11,8 +11,8 @@ use faer::{Conj, MatMut, Par, Side};
 /// Factorisation `A = L D L^T` without pivoting of a sparse symmetric matrix, stored as its
 /// lower triangle, in a given elimination order.
 ///
-/// Safe only where the order makes every leading block regular: see
-/// [`delay_multipliers`](super::delay_multipliers).
+/// Safe only where the order makes every leading block regular, as where every multiplier of a saddle-point
+/// matrix follows all of its own unknowns (Bridson 2007).
 pub struct SparseLdlt {
     pattern: Pattern,
     values: Vec<f64>,
