@@ -66,22 +66,24 @@ impl VertexRows {
         }
     }
 
-    /// Replaces the multipliers by their first-order estimates after the step `-dx`, the equations being
-    /// linearised: `L + p (c - J dx)`, of one-sided constraints the negative part. Returns the largest change
-    /// and the largest multiplier, kilogram metres.
-    pub(crate) fn update_after(&mut self, dx: &[f64]) -> [f64; 2] {
+    /// Replaces the multipliers of one-sided constraints by their first-order estimates after the step `-dx`, the
+    /// equations being linearised: the negative part of `L + p (c - J dx)`. Returns the largest change and the
+    /// largest of them, kilogram metres.
+    pub(crate) fn update_one_sided(&mut self, dx: &[f64]) -> [f64; 2] {
         let mut largest = [0.0_f64; 2];
         for i in 0..self.multipliers.len() {
+            if self.equality[i] {
+                self.active[i] = true;
+                continue;
+            }
             let (local, vertex) = (&self.local[i], self.vertices[i].vertex);
             let left = local.value - local.jacobian * point(dx, vertex);
-            let mut new = self.multipliers[i] + self.penalties[i] * left;
-            if !self.equality[i] {
-                new = Vector3::new(new.x.min(0.0), 0.0, 0.0);
-            }
+            let new = self.multipliers[i] + self.penalties[i] * left;
+            let new = Vector3::new(new.x.min(0.0), 0.0, 0.0);
             largest[0] = largest[0].max((new - self.multipliers[i]).norm());
             largest[1] = largest[1].max(new.norm());
             self.multipliers[i] = new;
-            self.active[i] = self.equality[i] || new.x < 0.0;
+            self.active[i] = new.x < 0.0;
         }
         largest
     }
@@ -97,6 +99,28 @@ impl VertexRows {
     /// The equations of a constraint at the last evaluation.
     pub(crate) fn local(&self, i: usize) -> &LocalEquations {
         &self.local[i]
+    }
+
+    pub(crate) fn vertex(&self, i: usize) -> VertexId {
+        self.vertices[i].vertex
+    }
+
+    /// Length of the shortest rod at the vertex of a constraint, metres.
+    pub(crate) fn length(&self, i: usize) -> f64 {
+        self.vertices[i].length
+    }
+
+    /// Penalty of a constraint, if it is an equality of a vertex that is free.
+    pub(crate) fn equality_penalty(&self, i: usize) -> Option<f64> {
+        (self.equality[i] && self.penalties[i] > 0.0).then_some(self.penalties[i])
+    }
+
+    /// The equations of such a constraint at the last evaluation; zero for others.
+    pub(crate) fn equality_value(&self, i: usize) -> Vector3<f64> {
+        match self.equality_penalty(i) {
+            Some(_) => self.local[i].value,
+            None => Vector3::zeros(),
+        }
     }
 
     fn indexed_vertices(&self) -> impl Iterator<Item = (usize, VertexId)> + '_ {
@@ -169,13 +193,6 @@ impl VertexRows {
         }
     }
 
-    /// Adds `J^T L`.
-    pub(crate) fn apply_transpose_add(&self, multipliers: &[Vector3<f64>], out: &mut [f64]) {
-        for (i, v) in self.indexed_vertices() {
-            add(out, v, &self.local[i].jacobian.tr_mul(&multipliers[i]));
-        }
-    }
-
     /// Replaces the multipliers by their first-order estimates.
     pub(crate) fn update(&mut self) {
         for i in 0..self.multipliers.len() {
@@ -239,44 +256,14 @@ impl VertexRows {
         }
     }
 
-    /// Updates the multipliers of the equalities for a displacement `y`: adds `-p J y`.
-    pub(crate) fn add_displacement(&mut self, penalty: f64, y: &[f64]) {
-        for (i, v) in self.vertices.iter().enumerate() {
-            if self.equality[i] {
-                let p = penalty * self.penalties[i];
-                self.multipliers[i] -= p * (self.local[i].jacobian * point(y, v.vertex));
-            }
-        }
-    }
-
     /// Adds `p J^T J` for the equalities, for velocities.
     pub(crate) fn add_equalities(&self, penalty: f64, hessian: &mut dyn HessianSink) {
         for (i, v) in self.indexed_vertices() {
-            if self.equality[i] {
-                let (p, j) = (penalty * self.penalties[i], &self.local[i].jacobian);
-                hessian.add_vertex(v, &(p * j.tr_mul(j)));
+            if let Some(own) = self.equality_penalty(i) {
+                let j = &self.local[i].jacobian;
+                hessian.add_vertex(v, &(penalty * own * j.tr_mul(j)));
             }
         }
-    }
-
-    /// Adds `-p J^T (J v + rate)` for the equalities; returns the largest `|J v + rate|`, metres per second.
-    pub(crate) fn add_rates(
-        &self,
-        penalty: f64,
-        rates: &[Vector3<f64>],
-        v: &[f64],
-        rhs: &mut [f64],
-    ) -> f64 {
-        let mut largest = 0.0_f64;
-        for (i, vertex) in self.indexed_vertices() {
-            if self.equality[i] && self.penalties[i] > 0.0 {
-                let (p, j) = (penalty * self.penalties[i], &self.local[i].jacobian);
-                let rate = j * point(v, vertex) + rates[i];
-                largest = largest.max(rate.norm());
-                add(rhs, vertex, &(-p * j.tr_mul(&rate)));
-            }
-        }
-        largest
     }
 }
 

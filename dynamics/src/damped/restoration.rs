@@ -6,6 +6,7 @@ use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
 use crate::contact::StepContact;
 use crate::damped::iterate::Iterate;
+use crate::linear::constrained::{ConstrainedSolver, ConstrainedSystem, SupportRows};
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::step::effort::SolverEffort;
@@ -38,6 +39,7 @@ pub(crate) struct Restoration {
     rhs: Vec<f64>,
     dx: Vec<f64>,
     start: Vec<f64>,
+    solver: ConstrainedSolver,
     /// Minus the gradient of contact at `start`, newtons times the factor of its energy.
     contact_start: Vec<f64>,
     /// Momentum that the iterations of the last projection of positions gave, kilogram metres.
@@ -103,6 +105,7 @@ impl Restoration {
             rhs: vec![0.0; n],
             dx: vec![0.0; n],
             start: vec![0.0; n],
+            solver: ConstrainedSolver::new(model),
             contact_start: vec![0.0; n],
             residual_momentum: ResidualMomentum::new(model),
             vertex_rows: VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0),
@@ -380,9 +383,8 @@ impl Restoration {
     }
 
     /// Projects `v` in place onto `G(x) v = 0` (and, at the vertex constraints that are equalities,
-    /// `J v + rate = 0` with `J` as last evaluated), nearest in the sense of the mass matrix, by
-    /// the method of multipliers: each solve with `M + r G^T G` is followed by the update of
-    /// the multipliers, all with one factor.
+    /// `J v + rate = 0` with `J` as last evaluated), nearest in the sense of the mass matrix, by passes of the
+    /// method of multipliers with one factorisation, see [`ConstrainedSolver`].
     ///
     /// Returns the largest rate left, relative to the speed and the length of the rod.
     pub(crate) fn velocities(
@@ -394,47 +396,45 @@ impl Restoration {
         rates: &[Vector3<f64>],
         effort: &mut SolverEffort<'_>,
     ) -> f64 {
-        let rods = model.rods();
-        for e in 0..rods.len() {
-            self.axial[e] = self.tuning.restoration_penalty * self.unit[e];
+        let penalty = self.tuning.restoration_penalty;
+        for e in 0..model.rods().len() {
+            self.axial[e] = penalty * self.unit[e];
         }
         self.transverse.fill(0.0);
         matrix.assemble(model, x, &self.axial, &self.transverse);
-        self.vertex_rows
-            .add_equalities(self.tuning.restoration_penalty, &mut matrix.sink(model));
+        let rows = &self.vertex_rows;
+        rows.add_equalities(penalty, &mut matrix.sink(model));
         if !effort.count_factorisation() || matrix.factorize().is_err() {
             return f64::INFINITY;
         }
+        let supports = SupportRows::Equalities { rows, penalty };
+        let mut system = ConstrainedSystem {
+            model,
+            matrix,
+            supports,
+        };
+        let solver = &mut self.solver;
         let mut rate = f64::INFINITY;
         loop {
             let before = rate;
-            rods.apply(x, v, &mut self.c);
+            solver.residual.clear();
+            for (i, r) in solver.residual.supports.iter_mut().enumerate() {
+                *r = rows
+                    .equality_penalty(i)
+                    .map_or(Vector3::zeros(), |_| -rates[i]);
+            }
+            solver.subtract(&system, v);
             let speed = v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-            rate = self
-                .c
-                .iter()
-                .zip(rods.lengths())
-                .fold(0.0_f64, |m, (c, l)| m.max(c.abs() / l));
-            self.rhs.fill(0.0);
-            let slip = self.vertex_rows.add_rates(
-                self.tuning.restoration_penalty,
-                rates,
-                v,
-                &mut self.rhs,
-            );
-            rate = rate.max(slip) / speed.max(f64::MIN_POSITIVE);
+            let lengths = model.rods().lengths();
+            let left = solver.residual.rods.iter().zip(lengths);
+            rate = left.fold(0.0_f64, |m, (r, l)| m.max(r.abs() / l));
+            let left = solver.residual.supports.iter();
+            rate = left.fold(rate, |m, r| m.max(r.norm())) / speed.max(f64::MIN_POSITIVE);
             let is_better = rate < self.tuning.contraction * before;
             if rate < 4.0 * f64::EPSILON || !is_better {
                 return rate;
             }
-            for e in 0..rods.len() {
-                self.w[e] = -self.axial[e] * self.c[e];
-            }
-            rods.apply_transpose_add(x, &self.w, &mut self.rhs);
-            matrix.solve(model, &self.rhs, &mut self.dx);
-            for (vi, d) in v.iter_mut().zip(&self.dx) {
-                *vi += d;
-            }
+            solver.pass(&mut system, v);
         }
     }
 

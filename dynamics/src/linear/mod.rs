@@ -1,8 +1,8 @@
 //! The matrices of a step, how they are laid out, and solvers for the multipliers of rods.
 
+pub(crate) mod constrained;
 pub(crate) mod free;
 pub(crate) mod layout;
-pub(crate) mod multipliers;
 pub(crate) mod primal;
 pub(crate) mod rank;
 pub(crate) mod rod_least_squares;

@@ -11,9 +11,6 @@ use rand_chacha::ChaCha8Rng;
 /// Singular value of the rigidity matrix of unit rods below which rods count as dependent: the bound of
 /// [`rod_rank`](crate::rod_rank).
 const DEPENDENT_BELOW: f64 = 1e-5;
-/// Passes of the regularisation, see [`RodLeastSquares::reduce`]: of ten times the bound [`DEPENDENT_BELOW`] 1e-8 is left
-/// over.
-const REGULARISATION_PASSES: usize = 4;
 /// Part of the second-order elongations, or of random forces, that other displacements have to leave over for a
 /// motion to count as blocked, or rods as dependent. The part is 1e-5 or less where a sheet may fold along a line
 /// of the mesh, and a tenth or more where it may not.
@@ -46,7 +43,10 @@ pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec
     for (r, l) in rates.iter_mut().zip(lengths) {
         *r /= l;
     }
-    solver.reduce(model, x, REGULARISATION_PASSES, &mut rates, &mut d);
+    let correction = solver.reduce(&mut rates);
+    for (d, c) in d.iter_mut().zip(correction) {
+        *d -= c;
+    }
     let largest = norm_inf(&d);
     if largest == 0.0 {
         return Vec::new();
@@ -61,13 +61,7 @@ pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec
     if asked * model.mean_length() <= f64::EPSILON {
         return Vec::new();
     }
-    solver.reduce(
-        model,
-        x,
-        REGULARISATION_PASSES,
-        &mut left,
-        &mut vec![0.0; x.len()],
-    );
+    solver.reduce(&mut left);
     let most = norm_inf(&left);
     if most <= UNREACHED_PART * asked {
         return Vec::new();
@@ -94,13 +88,7 @@ pub(crate) fn dependent_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId>
             *left = 0.0;
         }
     }
-    solver.reduce(
-        model,
-        x,
-        REGULARISATION_PASSES,
-        &mut left,
-        &mut vec![0.0; x.len()],
-    );
+    solver.reduce(&mut left);
     match norm_inf(&left) {
         most if most > UNREACHED_PART => free_ends(model, &left, most),
         _ => Vec::new(),

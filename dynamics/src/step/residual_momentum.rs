@@ -2,6 +2,7 @@
 
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
+use crate::linear::constrained::{ConstrainedSolver, ConstrainedSystem, SupportRows};
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
 use crate::step::checkpoint_error::{CheckpointError, check_finite, check_length};
@@ -142,7 +143,6 @@ impl ResidualMomentum {
     /// A factorisation for each entry. Where the linear algebra fails the entry is left out.
     pub(crate) fn shares(&self, model: &SheetModel, t: f64) -> Shares {
         let (n, edges) = (model.coordinate_count(), model.rods().len());
-        let rods = model.rods();
         let mut shares = Shares {
             pins: vec![0.0; n],
             loads: vec![(Vector3::zeros(), Vector3::zeros()); model.constraints().len()],
@@ -155,8 +155,8 @@ impl ResidualMomentum {
         };
         let mut rows = VertexRows::new(model.constraints(), model.constrained_vertices(), 1.0);
         let (along, transverse) = (penalties(model, ROD_PENALTY), vec![0.0; edges]);
-        let (mut left, mut answer) = (vec![0.0; n], vec![0.0; n]);
-        let (mut tension, mut change) = (vec![0.0; edges], vec![0.0; edges]);
+        let mut solver = ConstrainedSolver::new(model);
+        let (mut left, mut y) = (vec![0.0; n], vec![0.0; n]);
         for Entry {
             x,
             active,
@@ -164,37 +164,41 @@ impl ResidualMomentum {
         } in &self.entries[..self.len]
         {
             rows.evaluate(model.constraints(), t, x);
-            rows.clear();
             rows.equality.copy_from_slice(active);
             matrix.assemble(model, x, &along, &transverse);
             rows.add_equalities(ROD_PENALTY, &mut matrix.sink(model));
             if matrix.factorize().is_err() {
                 continue;
             }
-            tension.fill(0.0);
+            let mut system = ConstrainedSystem {
+                model,
+                matrix: &mut matrix,
+                supports: SupportRows::Equalities {
+                    rows: &rows,
+                    penalty: ROD_PENALTY,
+                },
+            };
+            solver.multipliers.clear();
             let mut goal = None;
             for _ in 0..=MAX_PASSES {
                 left.copy_from_slice(momentum);
-                rods.apply_transpose_add(x, &tension, &mut left);
-                rows.apply_transpose_add(&rows.multipliers, &mut left);
+                system.apply_transpose_add(&solver.multipliers, &mut left);
                 let mut free = left.clone();
                 model.clear_pinned(&mut free);
                 let size = norm_inf(&free);
                 if size <= *goal.get_or_insert(BALANCED_PART * size) {
                     break;
                 }
-                matrix.solve(model, &free, &mut answer);
-                rods.apply(x, &answer, &mut change);
-                for ((w, c), p) in tension.iter_mut().zip(&change).zip(&along) {
-                    *w -= p * c;
-                }
-                rows.add_displacement(ROD_PENALTY, &answer);
+                system.matrix.solve(model, &free, &mut y);
+                solver.residual.clear();
+                solver.subtract(&system, &y);
+                solver.pass(&mut system, &mut y);
             }
             for (p, f) in shares.pins.iter_mut().zip(&left) {
                 *p += f;
             }
             for (i, (multiplier, force)) in shares.loads.iter_mut().enumerate() {
-                let own = rows.multipliers[i];
+                let own = solver.multipliers.supports[i];
                 *multiplier += own;
                 *force -= rows.local(i).jacobian.tr_mul(&own);
             }

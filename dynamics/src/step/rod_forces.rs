@@ -33,11 +33,6 @@ impl Method {
 /// 13, 1.7 and 1.5 N.
 const FLATTEST_FOLD: f64 = 5e-3;
 
-/// Passes of iterated regularisation. Of the force of a singular value `s` the part
-/// `(s0^2 / (s^2 + s0^2))^passes` is missing, with `s0` the [`FLATTEST_FOLD`]: in folds of ten times that angle
-/// 1e-8.
-const REGULARISATION_PASSES: usize = 4;
-
 /// The forces of the rods of which these are the multipliers at positions `x`, newtons, see
 /// [`Simulation::rod_forces`](crate::Simulation::rod_forces).
 pub(crate) fn rod_forces(
@@ -76,15 +71,8 @@ pub(crate) fn rod_forces(
 /// With the rigidity matrix `A` of unit rods these are `F = A (A^T A)^+ A^T F0`, see [`RodLeastSquares`]. Nothing if
 /// the memory for the matrix runs out.
 fn least_forces(model: &SheetModel, x: &[f64], given: &[f64]) -> Option<Vec<f64>> {
-    let mut solver = RodLeastSquares::new(model, x, FLATTEST_FOLD)?;
     let mut left = given.to_vec();
-    solver.reduce(
-        model,
-        x,
-        REGULARISATION_PASSES,
-        &mut left,
-        &mut vec![0.0; x.len()],
-    );
+    RodLeastSquares::new(model, x, FLATTEST_FOLD)?.reduce(&mut left);
     Some(
         given
             .iter()

@@ -77,7 +77,7 @@ tuning! {
     /// in the altitude.
     sliver = 1e-3,
     /// Stiffness of the rods, over that of the masses, in systems that are solved for their multipliers.
-    /// These are regularised saddle-point systems `[H G^T; G -1/r]` with penalties `r`; `MultiplierSolver`
+    /// These are regularised saddle-point systems `[H G^T; G -1/r]` with penalties `r`; `ConstrainedSolver`
     /// takes the regularisation out again. With 1e10 steps keep momentum and symmetries to round-off, with
     /// 1e11 no longer.
     first_stiffness = 1e10,

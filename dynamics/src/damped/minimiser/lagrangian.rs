@@ -4,8 +4,10 @@ use super::problem::StepProblem;
 use crate::constraint::rows::{HessianPart, VertexRows};
 use crate::contact::StepSpan;
 use crate::damped::iterate::Iterate;
+use crate::linear::constrained::{
+    ConstrainedSolver, ConstrainedSystem, MultiplierGoal, RowValues, SupportRows,
+};
 use crate::linear::free::penalties;
-use crate::linear::multipliers::{LinearisedRows, MultiplierGoal, MultiplierSolver};
 use crate::linear::primal::PrimalMatrix;
 use crate::model::PINNED;
 use crate::step::effort::SolverEffort;
@@ -34,8 +36,8 @@ pub(crate) struct Lagrangian {
     pub(super) matrix: PrimalMatrix,
     pub(super) multipliers: Vec<f64>,
     /// Multipliers before a linear system was solved.
-    kept: Vec<f64>,
-    solver: MultiplierSolver,
+    kept: RowValues,
+    solver: ConstrainedSolver,
     pub(super) vertex_rows: VertexRows,
     /// Penalties `r_e` of equations as stiff as the masses.
     unit_penalty: Vec<f64>,
@@ -189,8 +191,8 @@ impl Lagrangian {
             iterate: Iterate::new(n),
             matrix: PrimalMatrix::new(model)?,
             multipliers: vec![0.0; m],
-            kept: vec![0.0; m],
-            solver: MultiplierSolver::new(model),
+            kept: RowValues::new(model),
+            solver: ConstrainedSolver::new(model),
             vertex_rows: VertexRows::new(model.constraints(), vertices, 1.0),
             unit_penalty: penalties(model, 1.0),
             stiffness: 1.0,
@@ -476,29 +478,50 @@ impl Lagrangian {
         Ok(self.slope())
     }
 
-    /// Keeps the multipliers of the isometry, for [`Lagrangian::restore_multipliers`].
+    /// Keeps the multipliers, for [`Lagrangian::restore_multipliers`].
     pub(super) fn keep_multipliers(&mut self) {
-        self.kept.copy_from_slice(&self.multipliers);
+        self.kept.rods.copy_from_slice(&self.multipliers);
+        let supports = &self.vertex_rows.multipliers;
+        self.kept.supports.copy_from_slice(supports);
     }
 
-    /// Takes back what has changed the multipliers of the isometry since they were kept.
+    /// Takes back what has changed the multipliers since they were kept.
     pub(super) fn restore_multipliers(&mut self) {
-        self.multipliers.copy_from_slice(&self.kept);
+        self.multipliers.copy_from_slice(&self.kept.rods);
+        let supports = &mut self.vertex_rows.multipliers;
+        supports.copy_from_slice(&self.kept.supports);
     }
 
-    /// Improves the multipliers of the isometry and the step `-dx` that was solved for with them; the
+    /// Improves the multipliers of rods and supports and the step `-dx` that was solved for with them; the
     /// violation of the linearised equations that is left, as a strain.
     pub(super) fn improve_multipliers(&mut self, model: &SheetModel, goal: MultiplierGoal) -> f64 {
-        let mut system = LinearisedRows {
+        let Self {
+            solver,
+            multipliers,
+            vertex_rows: rows,
+            dx,
+            ..
+        } = self;
+        solver.multipliers.rods.copy_from_slice(multipliers);
+        solver
+            .multipliers
+            .supports
+            .copy_from_slice(&rows.multipliers);
+        solver.residual.rods.copy_from_slice(&self.c);
+        for (i, r) in solver.residual.supports.iter_mut().enumerate() {
+            *r = rows.equality_value(i);
+        }
+        let mut system = ConstrainedSystem {
             model,
             matrix: &mut self.matrix,
-            x: self.iterate.x(),
-            values: &self.c,
-            stiffness: self.stiffness,
-            unit_penalty: &self.unit_penalty,
+            supports: SupportRows::Equalities { rows, penalty: 1.0 },
         };
-        let (multipliers, dx) = (&mut self.multipliers, &mut self.dx);
-        self.solver.improve(&mut system, multipliers, dx, goal)
+        solver.subtract(&system, dx);
+        let violation = solver.improve(&mut system, dx, goal);
+        multipliers.copy_from_slice(&solver.multipliers.rods);
+        rows.multipliers
+            .copy_from_slice(&solver.multipliers.supports);
+        violation
     }
 
     /// Slope of the value along `-dx`, the gradient being current.

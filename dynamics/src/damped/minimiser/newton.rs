@@ -6,7 +6,7 @@ use super::problem::StepProblem;
 use super::workspace::{LengthGoal, Workspace};
 use crate::constraint::rows::HessianPart;
 use crate::damped::restoration::FirstMatrix;
-use crate::linear::multipliers::MultiplierGoal;
+use crate::linear::constrained::MultiplierGoal;
 use crate::step::effort::SolverEffort;
 use crate::step::reason::Reason;
 use crate::step::report::StepOutcome;
@@ -296,7 +296,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
                     break;
                 }
                 violation = Some(lagrangian.improve_multipliers(model, goal));
-                let [change, largest] = lagrangian.vertex_rows.update_after(&lagrangian.dx);
+                let [change, largest] = lagrangian.vertex_rows.update_one_sided(&lagrangian.dx);
                 if change <= options.tolerance * largest {
                     break;
                 }

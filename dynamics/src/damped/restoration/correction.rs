@@ -3,6 +3,7 @@
 use super::{Restoration, RestorationContact};
 use crate::SheetModel;
 use crate::damped::iterate::Iterate;
+use crate::linear::constrained::{ConstrainedSystem, SupportRows};
 use crate::linear::primal::PrimalMatrix;
 
 impl Restoration {
@@ -26,25 +27,24 @@ impl Restoration {
         iterate: &mut Iterate,
         target: f64,
     ) {
-        let rods = model.rods();
         let mut strain = self.worst(model, iterate.x());
         loop {
             if strain <= target || strain.is_nan() {
                 return;
             }
-            let Some(linearisation) = matrix.linearisation() else {
+            if matrix.linearisation().is_none() {
                 return;
-            };
-            for (w, (r, c)) in self
-                .w
-                .iter_mut()
-                .zip(linearisation.penalties.iter().zip(&self.c))
-            {
-                *w = -r * c;
             }
-            self.rhs.fill(0.0);
-            rods.apply_transpose_add(linearisation.x, &self.w, &mut self.rhs);
-            matrix.solve(model, &self.rhs, &mut self.dx);
+            for (r, c) in self.solver.residual.rods.iter_mut().zip(&self.c) {
+                *r = -c;
+            }
+            let mut system = ConstrainedSystem {
+                model,
+                matrix,
+                supports: SupportRows::None,
+            };
+            self.dx.fill(0.0);
+            self.solver.pass(&mut system, &mut self.dx);
             self.start.copy_from_slice(iterate.x());
             self.keep_contact_forces(contact.as_deref(), iterate);
             let geometry = contact.as_mut().map(|c| &mut *c.contact);

@@ -1,6 +1,6 @@
 //! Steps and multipliers against the equations of the saddle-point system.
 
-use super::{LinearisedRows, MultiplierGoal, MultiplierSolver};
+use super::{ConstrainedSolver, ConstrainedSystem, MultiplierGoal, SupportRows};
 use crate::SheetModel;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
@@ -47,14 +47,10 @@ fn solve(
     model.clear_pinned(&mut right);
     let mut dx = vec![0.0; x.len()];
     matrix.solve(model, &right, &mut dx);
-    let mut multipliers = vec![0.0; rods.len()];
-    let mut system = LinearisedRows {
+    let mut system = ConstrainedSystem {
         model,
         matrix: &mut matrix,
-        x,
-        values,
-        stiffness,
-        unit_penalty: &unit_penalty,
+        supports: SupportRows::None,
     };
     let goal = MultiplierGoal {
         max_iterations,
@@ -62,11 +58,13 @@ fn solve(
         change: 0.0,
         longest: f64::INFINITY,
     };
-    let mut solver = MultiplierSolver::new(model);
-    let violation = solver.improve(&mut system, &mut multipliers, &mut dx, goal);
+    let mut solver = ConstrainedSolver::new(model);
+    solver.residual.rods.copy_from_slice(values);
+    solver.subtract(&system, &dx);
+    let violation = solver.improve(&mut system, &mut dx, goal);
     Outcome {
         dx,
-        multipliers,
+        multipliers: solver.multipliers.rods,
         violation,
     }
 }
