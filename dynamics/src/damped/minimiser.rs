@@ -205,7 +205,7 @@ impl Minimiser {
             Multipliers::Rounds => now.rod_scale.max(bound.rod_scale),
         };
         let slack = problem.h * problem.h * self.length_slack(problem)
-            + self.work.tuning.comparison_slack
+            + self.work.tuning.round_off_operations
                 * (now.round_off
                     + bound.round_off
                     + self.work.options.strain_tolerance * rod_scale);

@@ -160,7 +160,7 @@ impl Restoration {
             self.start.copy_from_slice(iterate.x());
             let geometry = contact.as_mut().map(|c| &mut *c.contact);
             let limit = iterate.safe_fraction(geometry, &self.dx);
-            if limit < self.tuning.smallest_length {
+            if limit < self.tuning.shortest_part() {
                 // Contact is in the way; more pressure has to build up before.
                 break;
             }
@@ -177,7 +177,7 @@ impl Restoration {
             } else {
                 0
             };
-            let is_stationary = length < self.tuning.smallest_length
+            let is_stationary = length < self.tuning.shortest_part()
                 || slow >= self.tuning.slow_iterations as usize;
             if linear > self.tuning.slow * before
                 && penalty < self.tuning.last_stiffness
@@ -194,7 +194,7 @@ impl Restoration {
                 // direction, opens it.
                 penalty = self.tuning.restoration_penalty;
                 let size = self.tuning.opening_growth.powi(openings) * strain.sqrt();
-                let size = size.min(self.tuning.largest_opening);
+                let size = size.min(self.tuning.iterate_strain);
                 self.unfold(model, contact.as_mut(), iterate, size);
                 openings += 1;
                 slow = 0;
@@ -284,7 +284,7 @@ impl Restoration {
             self.evaluate(model, t, iterate.x());
             let after = self.error();
             let is_enough = after <= (1.0 - self.tuning.armijo * length) * before;
-            if is_enough || length < self.tuning.smallest_length {
+            if is_enough || length < self.tuning.shortest_part() {
                 return (length, after);
             }
             length *= 0.5;

@@ -49,16 +49,13 @@ tuning! {
     /// default: a draping sheet needs three to six, an impact more where contact cuts them. With 1 a stamped
     /// sheet needs 1.4 times the factorisations.
     contact_iteration_share = 4.0,
-    /// Edge strain that iterates of the first phase may have. From 0.005 to 0.2 hanging sheets and sheets on
-    /// tables and balls cost the same to a tenth.
+    /// Edge strain that iterates of the first phase may have, and largest displacement, in rod lengths, that opens
+    /// a flat patch in a restoration. From 0.005 to 0.2 hanging sheets and sheets on tables and balls cost the same
+    /// to a tenth.
     iterate_strain = 0.03,
-    /// Largest number of halvings of a search direction in the first phase; after these the next phase
-    /// begins, which takes longer. Four in contact cost 6 % more over drapes and a stamp.
+    /// Largest number of halvings of a search direction in the first phase and in restorations; after these the
+    /// next phase begins, which takes longer. Four in contact cost 6 % more over drapes and a stamp.
     halvings = 8.0,
-    /// Largest number of rounds of the method of multipliers in contact. A sheet that lies flat resists a
-    /// restoration of its lengths: it would have to fold against the barrier, by the root of the length
-    /// error. Multipliers take the load instead, and each round shrinks the error by the penalty.
-    rounds_in_contact = 12.0,
     /// Growth of the penalty from round to round. Ten keeps the iteration close to its quadratic range: with
     /// thirty a sheet draping on a floor needs twice the iterations.
     penalty_growth = 10.0,
@@ -113,14 +110,12 @@ tuning! {
     /// three times as many factorisations in steps of 0.25 ms; up to 512 triangles there is no difference.
     perturbation = 1e-4,
     /// Bound on the number of operations that a term of the merit function goes through, for its round-off;
-    /// its square for the squares of length errors that are themselves round-off of the positions.
+    /// its square for the squares of length errors that are themselves round-off of the positions. A minimum may be above
+    /// the start of its step by so many times the round-off of both.
     round_off_operations = 8.0,
     /// Penalty, over the masses, that a restoration starts from: a Gauss-Newton step to round-off wherever
     /// the rods are independent.
     restoration_penalty = 1e9,
-    /// Allowance for round-off, in units of its estimate, when a minimum is compared with the start of the step. With 1 a
-    /// triangle that hangs at rest counts as raised, and the next phase loses five digits of the rods' forces.
-    comparison_slack = 10.0,
     /// Factor by which a restoration changes its penalty; its square where the masses hold the step back.
     penalty_step = 10.0,
     /// Part of the length error that an iteration leaves above which it is slow: a correction with the matrix
@@ -131,9 +126,6 @@ tuning! {
     /// factorisation. It keeps what round-off adds in later steps below the tolerance, and so a sheet at rest
     /// from having to fold.
     reserve = 0.1,
-    /// A line search of a restoration that has halved its step this often has stalled, and contact that
-    /// leaves less of it is in the way.
-    smallest_length = 1e-2,
     /// Part of the length error that an iteration of a restoration leaves from which it counts towards a
     /// stationary iterate. With 0.5 sheets of 2048 triangles need twice the factorisations.
     slow = 0.9,
@@ -143,8 +135,6 @@ tuning! {
     /// Growth of the displacement that opens a flat patch in a restoration from one attempt to the next: the
     /// next one has to leave the basin that the last one fell back into.
     opening_growth = 4.0,
-    /// Largest such displacement, in rod lengths: beyond, faces could turn over.
-    largest_opening = 0.05,
     /// Largest number of such displacements in contact, where they may be in vain; after these the caller
     /// minimises again. The first step of a sheet that lies flat on a table takes 490 factorisations without
     /// a limit (means of 24 starts), 350 with three to five, and 610 with two.
@@ -167,4 +157,12 @@ tuning! {
     /// The work of bodies, pins and moving constraints is known to the accuracy of the trapezoidal rule only:
     /// this many times the gain that kinetic energy allows.
     drive_uncertainty = 5.0,
+}
+
+impl Tuning {
+    /// The shortest part of a step that a line search tries: one that has been halved to it has stalled, and contact
+    /// that leaves less is in the way.
+    pub(crate) fn shortest_part(&self) -> f64 {
+        0.5_f64.powi(self.halvings as i32)
+    }
 }

@@ -97,8 +97,8 @@ impl Phase {
     /// | phase | start | multipliers | iterates | rounds |
     /// |---|---|---|---|---|
     /// | programming | start of the step | of the step before (in contact none); solved for | near the lengths | 1 |
-    /// | prediction | prediction | none; by rounds | free | 12 loose ones in contact |
-    /// | exact rounds | start of the step | none; by rounds | free | 12 exact ones in contact |
+    /// | prediction | prediction | none; by rounds | free | many loose ones in contact |
+    /// | exact rounds | start of the step | none; by rounds | free | many exact ones in contact |
     ///
     /// Elastic sheets have no rods to solve for, and pins that move in contact stall programming: both begin with the
     /// second row. Slivers begin with it without contact, with its own multipliers of the step before. At rest and
@@ -188,7 +188,7 @@ impl Phase {
             iterations: options.max_iterations,
             halvings: f64::MANTISSA_DIGITS as usize,
             rounds: match has_contact {
-                true => tuning.rounds_in_contact as usize,
+                true => options.max_iterations,
                 false => 1,
             },
             small_strain: match has_contact {
