@@ -2,9 +2,12 @@
 
 use super::{ConstrainedSolver, ConstrainedSystem, MultiplierGoal, SupportRows};
 use crate::SheetModel;
+use crate::constraint::rows::VertexRows;
 use crate::linear::free::penalties;
 use crate::linear::primal::PrimalMatrix;
+use crate::vectors::{add, point};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
+use nalgebra::Vector3;
 
 /// A square of 25 vertices, pinned at a corner, and crumpled by random displacements of a given size
 /// (metres).
@@ -150,4 +153,71 @@ fn nearly_dependent_equations_take_as_many_iterations_as_there_are_of_them() {
         after_twelve < 1e-6 * first,
         "{after_twelve} after twelve iterations"
     );
+}
+
+#[test]
+fn supports_are_equations_like_rods() {
+    use crate::constraint::{Plane, Side, VertexConstraint};
+    let (model, x) = model(0.05);
+    let corner = VertexId(24);
+    let at = [x[72], x[73], x[74]];
+    let plane = Plane::new(at, [0.6, 0.0, 0.8]).unwrap();
+    let model = model
+        .with_constraint(VertexConstraint::on_surface(corner, plane, Side::On))
+        .unwrap();
+    let (force, values) = load(&model, &x);
+    // As for rods, values that a displacement has.
+    let asked = 0.6 * (0.7 * 72.0_f64).cos() + 0.8 * (0.7 * 74.0_f64).cos();
+    let mut rows = VertexRows::new(model.constraints(), model.constrained_vertices(), 10.0);
+    rows.evaluate(model.constraints(), 0.0, &x);
+    let penalties: Vec<f64> = penalties(&model, 10.0);
+    let mut matrix = PrimalMatrix::new(&model).unwrap();
+    matrix.assemble(&model, &x, &penalties, &vec![0.0; penalties.len()]);
+    rows.add_equalities(1.0, &mut matrix.sink(&model));
+    matrix.factorize().unwrap();
+    let rods = model.rods();
+    let weighted: Vec<f64> = penalties.iter().zip(&values).map(|(r, c)| r * c).collect();
+    let normal = Vector3::new(0.6, 0.0, 0.8);
+    let mut right = force.clone();
+    rods.apply_transpose_add(&x, &weighted, &mut right);
+    let weight = rows.equality_penalty(0).unwrap() * asked;
+    add(&mut right, corner, &(weight * normal));
+    model.clear_pinned(&mut right);
+    let mut dx = vec![0.0; x.len()];
+    matrix.solve(&model, &right, &mut dx);
+    let mut system = ConstrainedSystem {
+        model: &model,
+        matrix: &mut matrix,
+        supports: SupportRows::Equalities {
+            rows: &rows,
+            penalty: 1.0,
+        },
+    };
+    let mut solver = ConstrainedSolver::new(&model);
+    solver.residual.rods.copy_from_slice(&values);
+    solver.residual.supports[0].x = asked;
+    solver.subtract(&system, &dx);
+    let goal = MultiplierGoal {
+        max_iterations: 100,
+        violation: 1e-14,
+        change: 0.0,
+        longest: f64::INFINITY,
+    };
+    solver.improve(&mut system, &mut dx, goal);
+    let moved = normal.dot(&point(&dx, corner));
+    assert!((moved - asked).abs() < 1e-12, "{moved} {asked}");
+    // The support's force is part of the balance.
+    let mut loaded = force.clone();
+    add(
+        &mut loaded,
+        corner,
+        &(solver.multipliers.supports[0].x * normal),
+    );
+    let outcome = Outcome {
+        dx,
+        multipliers: solver.multipliers.rods,
+        violation: 0.0,
+    };
+    let errors = residuals(&model, &x, (&loaded, &values), &outcome);
+    assert!(errors.iter().all(|e| *e < 1e-11), "{errors:?}");
 }
