@@ -7,7 +7,7 @@ use crate::linearised::Linearised;
 use crate::newton::newton;
 use crate::placement::{jacobian_f, jacobian_g, jacobian_h};
 use crate::placement_error::PlacementError;
-use crate::realise::{Frame, FrontMap, Guide, RealiseOptions, check, check_length};
+use crate::realise::{Frame, FrontMap, RealiseOptions, check, check_length};
 use crate::row_pattern::RowPattern;
 use crate::select::pivot_columns;
 use crate::system::RodSystem;
@@ -440,7 +440,7 @@ impl Chart for FrontChart {
     ) -> Result<(), ChartError> {
         check("q", q, self.dimension())?;
         if self.kept.len() == self.map.coordinate_count() {
-            self.map.realise(q, Guide::Near(near), x)?;
+            self.map.realise(q, near, x)?;
             return Ok(());
         }
         check("near", near, x.len())?;

@@ -75,7 +75,7 @@ pub use front_chart::FrontChart;
 pub use linearised::Linearised;
 pub use placement::Branch;
 pub use placement_error::PlacementError;
-pub use realise::{FrontMap, Guide, RealiseError, RealiseOptions, RealiseReport};
+pub use realise::{FrontMap, RealiseError, RealiseOptions, RealiseReport};
 pub use row_pattern::RowPattern;
 pub use saddle::{SaddlePoint, apply_mass};
 pub use system::{RodSystem, SystemError};

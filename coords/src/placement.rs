@@ -209,17 +209,6 @@ pub fn place_f(
     })
 }
 
-/// The branch of [`place_f`] that a position is on; positions in the plane count as above.
-#[must_use]
-pub fn branch_of(known: [&[f64; 3]; 3], position: &[f64; 3]) -> Branch {
-    let n = cross(&sub(known[1], known[0]), &sub(known[2], known[0]));
-    if dot(&n, &sub(position, known[0])) >= 0.0 {
-        Branch::Above
-    } else {
-        Branch::Below
-    }
-}
-
 /// A 3 x 3 derivative, row by row: entry `[i][j]` is the change of component i with input j.
 pub type PositionDerivative = [[f64; 3]; 3];
 

@@ -10,7 +10,7 @@ pub use error::RealiseError;
 
 use crate::assignment::{Assignment, Placing, Rule};
 use crate::frames::{EdgeFrame, SphericalFrame};
-use crate::placement::{Branch, branch_of, place_f, place_g, place_h, place_on_line};
+use crate::placement::{Branch, place_f, place_g, place_h, place_on_line};
 use crate::placement_error::PlacementError;
 use crate::vec3::{Vec3, at, cross, dot, norm, sub};
 use isosheet_mesh::{AngleTriple, EdgeId, Sheet, VertexId, angle_from_lengths};
@@ -52,17 +52,6 @@ impl RealiseOptions {
         }
         Ok(())
     }
-}
-
-/// How mirror branches (rule f) are chosen.
-#[derive(Clone, Copy, Debug)]
-pub enum Guide<'a> {
-    /// By continuity: the image nearer to this state (three values per vertex). In the case of
-    /// Fig. 7 the angle about the line is taken from it too.
-    Near(&'a [f64]),
-    /// By stored signs, one per vertex, as [`FrontMap::branches`] returns them; entries of vertices
-    /// with another rule are ignored. The case of Fig. 7 is an error.
-    Signs(&'a [Branch]),
 }
 
 /// What happened in [`FrontMap::realise`].
@@ -240,24 +229,9 @@ impl FrontMap {
         Ok(())
     }
 
-    /// The mirror branch of every vertex in a state; [`Branch::Above`] for vertices without rule f.
-    ///
-    /// # Errors
-    /// [`RealiseError::WrongLength`], [`RealiseError::NotFinite`].
-    pub fn branches(&self, x: &[f64]) -> Result<Vec<Branch>, RealiseError> {
-        check("x", x, self.rest.len())?;
-        let mut branches = vec![Branch::Above; self.assignment.order().len()];
-        for placing in self.assignment.order() {
-            if let Rule::F { known, .. } = placing.rule {
-                let k = known.map(|w| at(x, w));
-                branches[placing.vertex.index()] =
-                    branch_of([&k[0], &k[1], &k[2]], &at(x, placing.vertex));
-            }
-        }
-        Ok(branches)
-    }
-
-    /// Positions from coordinate values, with exact edge lengths (Eq. 14).
+    /// Positions from coordinate values, with exact edge lengths (Eq. 14). Of the two mirror images of rule f
+    /// the one nearer to the state `near` (three values per vertex) is taken, and in the case of Fig. 7 the
+    /// angle about the line.
     ///
     /// # Errors
     /// [`RealiseError::Incompatible`] naming edge and angles where Eq. 10 is violated (Theorem 1:
@@ -267,22 +241,17 @@ impl FrontMap {
     pub fn realise(
         &self,
         q: &[f64],
-        guide: Guide<'_>,
+        near: &[f64],
         x: &mut [f64],
     ) -> Result<RealiseReport, RealiseError> {
         check("q", q, self.coordinate_count())?;
         check_length("x", x.len(), self.rest.len())?;
-        match guide {
-            Guide::Near(near) => check("near", near, self.rest.len())?,
-            Guide::Signs(signs) => {
-                check_length("signs", signs.len(), self.assignment.order().len())?;
-            }
-        }
+        check("near", near, self.rest.len())?;
         let mut report = RealiseReport::default();
         for (placing, frame) in self.assignment.order().iter().zip(&self.frames) {
             let v = placing.vertex;
             let position = self
-                .place(placing, frame, q, guide, x, &mut report)
+                .place(placing, frame, q, near, x, &mut report)
                 .map_err(|source| self.explain(v, &placing.rule, x, source))?;
             x[3 * v.index()..3 * v.index() + 3].copy_from_slice(&position);
         }
@@ -296,7 +265,7 @@ impl FrontMap {
         placing: &Placing,
         frame: &Frame,
         q: &[f64],
-        guide: Guide<'_>,
+        near: &[f64],
         x: &[f64],
         report: &mut RealiseReport,
     ) -> Result<Vec3<f64>, PlacementError> {
@@ -329,33 +298,30 @@ impl FrontMap {
             (Rule::F { known, edges, .. }, _) => {
                 let known = known.map(|w| at(x, w));
                 let lengths = edges.map(|e| self.length(e));
-                self.place_from_three(v, &known, lengths, guide, report)
+                self.place_from_three(v, &known, lengths, near, report)
             }
             (rule, frame) => unreachable!("frames are built with the rules: {rule:?} {frame:?}"),
         }
     }
 
-    /// Rule f, or where the three known vertices are on a line (Fig. 7) the angle of the guide's state.
+    /// Rule f, or where the three known vertices are on a line (Fig. 7) the angle of the state `near`.
     fn place_from_three(
         &self,
         v: VertexId,
         known: &[Vec3<f64>; 3],
         lengths: [f64; 3],
-        guide: Guide<'_>,
+        near: &[f64],
         report: &mut RealiseReport,
     ) -> Result<Vec3<f64>, PlacementError> {
         let tolerance = self.options.flat_tolerance;
-        let branch = match guide {
-            Guide::Near(near) => Branch::Near(at(near, v)),
-            Guide::Signs(signs) => signs[v.index()],
-        };
+        let branch = Branch::Near(at(near, v));
         let [a, b, c] = known;
-        match (place_f([a, b, c], lengths, branch, tolerance), guide) {
-            (Ok(placed), _) => {
+        match place_f([a, b, c], lengths, branch, tolerance) {
+            Ok(placed) => {
                 report.flat += usize::from(placed.height_squared.abs() <= tolerance);
                 Ok(placed.position)
             }
-            (Err(PlacementError::Collinear { .. }), Guide::Near(near)) => {
+            Err(PlacementError::Collinear { .. }) => {
                 report.on_line.push(v);
                 let (i, j) = farthest(known);
                 let placed = place_on_line(
@@ -366,7 +332,7 @@ impl FrontMap {
                 )?;
                 Ok(placed.position)
             }
-            (Err(e), _) => Err(e),
+            Err(e) => Err(e),
         }
     }
 

@@ -89,12 +89,11 @@ fn chart_steps(c: &mut Criterion) {
         let (sheet, state) = falling(*level);
         for (name, method) in [
             ("Runge-Kutta 4", ChartMethod::RungeKutta4),
-            ("symplectic Euler", ChartMethod::SymplecticEuler),
             ("forward Euler", ChartMethod::ForwardEuler),
         ] {
             for (solver, kind) in [
                 ("saddle", MassSolverKind::Saddle),
-                ("Cholesky", MassSolverKind::Cholesky),
+                ("dense LU", MassSolverKind::DenseLu),
             ] {
                 let system = RodSystem::new(&sheet, &[corner(*level)]).expect("valid");
                 let chart = CartesianChart::new(system, Choice::Auto, &state.x).expect("a chart");

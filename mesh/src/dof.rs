@@ -73,21 +73,6 @@ impl Dof {
         )
     }
 
-    /// The count for each component, in the order of [`Topology::vertex_component`].
-    pub fn of_components(t: &Topology) -> Vec<Self> {
-        let mut totals = vec![0i64; t.component_count()];
-        for v in t.vertex_ids() {
-            totals[t.vertex_component(v)] += 3;
-        }
-        for e in t.edges() {
-            totals[t.vertex_component(e[0])] -= 1;
-        }
-        totals
-            .into_iter()
-            .map(|total| Self::new(total, 1))
-            .collect()
-    }
-
     /// How many of the E length equations are redundant, to first order, in a state in which every component
     /// is flat.
     ///
@@ -172,8 +157,6 @@ mod tests {
         );
         let octagon = generate::octagon_244(1.0).unwrap();
         assert_eq!(Dof::of(octagon.topology()).total, 49);
-        let octagon = generate::octagon_249(1.0).unwrap();
-        assert_eq!(Dof::of(octagon.topology()).total, 51);
     }
 
     #[test]
@@ -227,18 +210,6 @@ mod tests {
             let dof = Dof::of(&t);
             prop_assert_eq!(dof.total, t.boundary_edge_count() as i64 + 3 * t.euler_characteristic());
             prop_assert_eq!(dof.internal, dof.total - 6 * t.component_count() as i64);
-            let parts = Dof::of_components(&t);
-            prop_assert_eq!(parts.iter().map(|d| d.total).sum::<i64>(), dof.total);
-            prop_assert_eq!(parts.iter().map(|d| d.internal).sum::<i64>(), dof.internal);
-            // Each component on its own.
-            for (c, part) in parts.iter().enumerate() {
-                let of_part = |v: &crate::VertexId| t.vertex_component(*v) == c;
-                let v = t.vertex_ids().filter(of_part).count() as i64;
-                let f = t.faces().iter().filter(|f| of_part(&f[0])).count() as i64;
-                let inner = t.edge_ids().filter(|&e| of_part(&t.edges()[e.index()][0]));
-                let (rim, all) = inner.fold((0, 0), |(b, n), e| (b + i64::from(t.is_boundary_edge(e)), n + 1));
-                prop_assert_eq!(part.total, rim + 3 * (v - all + f));
-            }
         }
 
         #[test]

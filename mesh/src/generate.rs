@@ -23,7 +23,7 @@ pub use grid::{
 };
 pub use hypar::hypar;
 pub use kresling::kresling;
-pub use octagon::{octagon_244, octagon_249};
+pub use octagon::octagon_244;
 pub use origami::{FoldAssignment, FoldPattern, degree_four, miura, miura_zigzags};
 pub use outline::{polygon_rings, regular_outline};
 pub use refine::{refine_isotropic, split_1_4};

@@ -141,7 +141,7 @@ fn triangle() -> (SheetModel, State, Box<dyn Chart>, ChartOptions) {
     let system = RodSystem::from_parts(model.topology(), model.rods().lengths(), &[]);
     let chart = CartesianChart::new(system.expect("vertices exist"), Choice::Auto, &x);
     let options = ChartOptions {
-        method: ChartMethod::SymplecticEuler,
+        method: ChartMethod::RungeKutta4,
         control: ChartStepControl::Fixed(0.1 * STEP),
         ..Default::default()
     };

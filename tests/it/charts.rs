@@ -81,7 +81,6 @@ fn the_mass_solvers_give_the_same_motion() {
     for solver in [
         MassSolverKind::Cramer,
         MassSolverKind::DenseLu,
-        MassSolverKind::Cholesky,
         MassSolverKind::Saddle,
     ] {
         let options = ChartOptions {

@@ -263,8 +263,8 @@ fn other_sheets_versions_and_damage_are_refused() {
     assert!(matches!(
         with(8, 1),
         CheckpointError::Version {
-            found: 11,
-            supported: 10
+            found: 10,
+            supported: 11
         }
     ));
     // Every other byte is under the checksum, the checksum included.
@@ -278,12 +278,12 @@ fn other_sheets_versions_and_damage_are_refused() {
         assert!(Checkpoint::from_bytes(&bytes[..length]).is_err());
     }
     let text = checkpoint.to_json().expect("encoded");
-    let other = text.replacen("\"version\":10", "\"version\":9", 1);
+    let other = text.replacen("\"version\":11", "\"version\":9", 1);
     assert_eq!(
         Checkpoint::from_json(&other),
         Err(CheckpointError::Version {
             found: 9,
-            supported: 10
+            supported: 11
         })
     );
     assert!(matches!(

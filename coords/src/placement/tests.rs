@@ -97,8 +97,8 @@ proptest! {
         let height = dot(&n, &sub(&x, k[0])) / norm(&n);
         prop_assume!(collinearity(k) > 0.2 && height.abs() > 0.2);
         let r = k.map(|a| distance(&x, a));
-        let branch = branch_of(k, &x);
-        let other = if branch == Branch::Above { Branch::Below } else { Branch::Above };
+        let (branch, other) =
+            if height > 0.0 { (Branch::Above, Branch::Below) } else { (Branch::Below, Branch::Above) };
         prop_assert!(close(&place_f(k, r, branch, TOL).unwrap().position, &x, 1e-12));
         let mirror = axpy(&x, -2.0 * height / norm(&n), &n);
         prop_assert!(close(&place_f(k, r, other, TOL).unwrap().position, &mirror, 1e-12));

@@ -30,14 +30,10 @@ proptest! {
         let mut q = vec![0.0; map.coordinate_count()];
         map.coordinates(&x, &mut q).unwrap();
         let mut y = vec![0.0; x.len()];
-        map.realise(&q, Guide::Near(&x), &mut y).unwrap();
+        map.realise(&q, &x, &mut y).unwrap();
         prop_assert!(strain(&sheet, &y) < 1e-12);
         // Positions carry rounding amplified by the chart; lengths do not.
         prop_assert!(largest_difference(&x, &y) < 1e-7, "{}", largest_difference(&x, &y));
-        let signs = map.branches(&x).unwrap();
-        let mut z = vec![0.0; x.len()];
-        map.realise(&q, Guide::Signs(&signs), &mut z).unwrap();
-        prop_assert!(largest_difference(&y, &z) < 1e-7);
         // The other way round: coordinates of the realised state.
         let mut r = q.clone();
         map.coordinates(&y, &mut r).unwrap();
@@ -56,7 +52,7 @@ proptest! {
         let assignment = sys_coord_assnmt_single(&sheet, Start::Pinned(VertexId(0))).unwrap();
         let map = FrontMap::new(&sheet, assignment, &x, RealiseOptions::default()).unwrap();
         let mut y = vec![0.0; x.len()];
-        match map.realise(&q, Guide::Near(&x), &mut y) {
+        match map.realise(&q, &x, &mut y) {
             Ok(_) => prop_assert!(strain(&sheet, &y) < 1e-11, "{}", strain(&sheet, &y)),
             Err(RealiseError::Incompatible { edge, vertex, angles, .. }) => {
                 prop_assert!(angles.margin() < 0.0, "{angles:?}");
@@ -78,7 +74,7 @@ proptest! {
         if map.coordinates(&x, &mut q).is_err() { return Ok(()) }
         let mut y = vec![0.0; x.len()];
         // The lengths that are placed are exact; closures hold up to amplified rounding, or are reported.
-        match map.realise(&q, Guide::Near(&x), &mut y) {
+        match map.realise(&q, &x, &mut y) {
             Ok(report) => prop_assert!(report.closure_strain <= 1e-5),
             Err(RealiseError::Closure { strain, .. }) => prop_assert!(strain.abs() > 1e-5),
             Err(RealiseError::Incompatible { height_squared, .. } | RealiseError::Placement { source: PlacementError::OutOfReach { height_squared }, .. }) => {
@@ -89,7 +85,7 @@ proptest! {
         }
         if closures > 0 {
             for (k, v) in q.iter_mut().enumerate() { *v += 0.05 * (1.0 + (1.7 * k as f64).sin()); }
-            prop_assert!(map.realise(&q, Guide::Near(&x), &mut y).is_err());
+            prop_assert!(map.realise(&q, &x, &mut y).is_err());
         }
     }
 }
@@ -107,7 +103,7 @@ fn flat_states_are_realised_by_continuity() {
             let mut q = vec![0.0; map.coordinate_count()];
             map.coordinates(x, &mut q).unwrap();
             let mut y = vec![0.0; x.len()];
-            let report = map.realise(&q, Guide::Near(x), &mut y).unwrap();
+            let report = map.realise(&q, x, &mut y).unwrap();
             on_line += report.on_line.len();
             assert!(largest_difference(x, &y) < 1e-9, "M^{level} from {v}");
         }
@@ -130,7 +126,7 @@ fn a_line_vertex_swings() {
     let assignment = assign(&sheet, &x, &options).unwrap();
     let map = FrontMap::new(&sheet, assignment, &x, RealiseOptions::default()).unwrap();
     let mut y = vec![0.0; 12];
-    let report = map.realise(&[0.5], Guide::Near(&x), &mut y).unwrap();
+    let report = map.realise(&[0.5], &x, &mut y).unwrap();
     assert!(strain(&sheet, &y) < 1e-14 && report.closure_strain < 1e-14);
     assert!((y[10] - 0.5f64.cos()).abs() < 1e-15 && (y[11].abs() - 0.5f64.sin()).abs() < 1e-15);
 }
@@ -167,7 +163,7 @@ fn eq_10_is_refused_with_edge_and_angles() {
     let assignment = assign(&sheet, sheet.positions(), &options).unwrap();
     let map = FrontMap::new(&sheet, assignment, &bad, RealiseOptions::default()).unwrap();
     let mut y = vec![0.0; 12];
-    let error = map.realise(&[], Guide::Near(&bad), &mut y).unwrap_err();
+    let error = map.realise(&[], &bad, &mut y).unwrap_err();
     let RealiseError::Incompatible {
         edge,
         vertex,
@@ -194,13 +190,13 @@ fn malformed_input() {
     let map = FrontMap::new(&sheet, assignment, x, RealiseOptions::default()).unwrap();
     let mut y = vec![0.0; x.len()];
     assert!(matches!(
-        map.realise(&[0.0; 3], Guide::Near(x), &mut y),
+        map.realise(&[0.0; 3], x, &mut y),
         Err(RealiseError::WrongLength { what: "q", .. })
     ));
     let mut q = vec![0.0; map.coordinate_count()];
     q[2] = f64::NAN;
     assert!(matches!(
-        map.realise(&q, Guide::Near(x), &mut y),
+        map.realise(&q, x, &mut y),
         Err(RealiseError::NotFinite { index: 2, .. })
     ));
     assert!((angle_from_lengths(3.0, 4.0, 5.0) - std::f64::consts::FRAC_PI_2).abs() < 1e-15);

@@ -157,18 +157,6 @@ pub enum ChartDynamicsError {
         /// What went wrong in the last attempt.
         cause: String,
     },
-    /// The implicit equation for the momenta did not converge.
-    #[error(
-        "the momenta of the symplectic Euler step did not converge (change {change}) at step {h} \
-         s",
-        change = brief(*change), h = brief(*h)
-    )]
-    Momenta {
-        /// Step, seconds.
-        h: f64,
-        /// Relative change in the last iteration.
-        change: f64,
-    },
     /// The edge lengths have drifted too far.
     #[error(
         "at t = {t} s the largest edge strain is {strain}, above {limit}: the scheme has diverged",
@@ -237,7 +225,6 @@ impl Advice for ChartDynamicsError {
                 "loosen the tolerance, stay away from singularities of the chart, or use a method without a \
                  chart",
             ),
-            Self::Momenta { .. } => Some("take a smaller step"),
             Self::Diverged { .. } => {
                 Some("take smaller steps, exact positions or other equations of motion")
             }

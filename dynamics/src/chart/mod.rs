@@ -4,7 +4,7 @@
 //! * [`MassSolver`]: `qdot = C^-1 p` by Cramer's minors as published, by dense factorisations, or by one
 //!   sparse saddle-point solve;
 //! * [`ChartMechanics`]: p, H and their derivatives at a state;
-//! * [`ChartSimulation`]: forward Euler with the published step control, symplectic Euler and Runge-Kutta in
+//! * [`ChartSimulation`]: forward Euler with the published step control and Runge-Kutta in
 //!   a chart, in the published, re-formed and full equations of motion. A chart eliminates the pins it was
 //!   built with; more pins, moving ones, curves and surfaces are closure equations
 //!   ([`ChartSimulation::from_state`]). Contact acts by impulses ([`ChartSimulation::with_contact`]).

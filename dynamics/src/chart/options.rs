@@ -9,8 +9,6 @@ pub enum ChartMethod {
     /// Forward Euler, Eq. 20; first order, gains energy.
     #[default]
     ForwardEuler,
-    /// Momenta first (implicit in p where dT/dq depends on them), then coordinates; first order, symplectic.
-    SymplecticEuler,
     /// The classical Runge-Kutta method of fourth order. Needs [`Equations::Full`] and
     /// [`PositionUpdate::Exact`].
     RungeKutta4,

@@ -3,7 +3,7 @@
 use super::ChartDynamicsError;
 use isosheet_coords::{Chart, Linearised, RodSystem, SaddlePoint, mass_matrix};
 use isosheet_mesh::MassMatrix;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, LU};
+use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 /// Largest number of coordinates for [`CramerSolver`]: n^2 determinants of order n take some
 /// seconds there.
@@ -57,8 +57,6 @@ pub enum MassSolverKind {
     Saddle,
     /// Dense LU factorisation of C.
     DenseLu,
-    /// Dense Cholesky factorisation of C.
-    Cholesky,
     /// Cramer's rule with determinants from LU factorisations, exactly as published in Sec. 4.1:
     /// `qdot_i = D_*i / D`, and `d(qdot_i)/dp_j = (-1)^(i+j) M_ji / D` with the minors of D. For at most 40
     /// coordinates.
@@ -79,7 +77,6 @@ impl MassSolverKind {
         Ok(match self {
             Self::Saddle => Box::new(SaddleSolver::new(system, mass)?),
             Self::DenseLu => Box::new(DenseLuSolver::default()),
-            Self::Cholesky => Box::new(CholeskySolver::default()),
             Self::Cramer => {
                 let dimension = system.dof();
                 if dimension > CRAMER_LIMIT {
@@ -186,39 +183,6 @@ impl MassSolver for DenseLuSolver {
         let mut b = DVector::from_column_slice(p);
         let solved = self.factor.as_ref().is_some_and(|f| f.solve_mut(&mut b));
         store(b.as_slice(), solved, qdot)
-    }
-}
-
-/// See [`MassSolverKind::Cholesky`].
-#[derive(Default)]
-struct CholeskySolver {
-    factor: Option<Cholesky<f64, Dyn>>,
-}
-
-impl MassSolver for CholeskySolver {
-    fn prepare(
-        &mut self,
-        system: &RodSystem,
-        chart: &dyn Chart,
-        mass: &MassMatrix,
-        linear: &mut Linearised,
-        x: &[f64],
-    ) -> Result<(), ChartDynamicsError> {
-        self.factor = dense(system, chart, mass, linear, x)?.cholesky();
-        match self.factor {
-            Some(_) => Ok(()),
-            None => Err(ChartDynamicsError::SingularMass {
-                dimension: chart.dimension(),
-            }),
-        }
-    }
-
-    fn velocity(&mut self, p: &[f64], qdot: &mut [f64]) -> Result<(), ChartDynamicsError> {
-        let mut b = DVector::from_column_slice(p);
-        if let Some(f) = &self.factor {
-            f.solve_mut(&mut b);
-        }
-        store(b.as_slice(), self.factor.is_some(), qdot)
     }
 }
 

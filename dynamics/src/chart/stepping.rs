@@ -8,12 +8,6 @@ use crate::contact::ContactPoint;
 use crate::step::reaction::Balance;
 use serde::{Deserialize, Serialize};
 
-/// Relative change of the momenta at which the implicit part of symplectic Euler has converged.
-const MOMENTA_TOLERANCE: f64 = 1e-13;
-
-/// Most iterations for it; it contracts with the step size, and four to eight are usual.
-const MOMENTA_ITERATIONS: u32 = 60;
-
 /// Power iterations after a rebase; later ones start from the last vector, one per step.
 const POWER_STEPS: usize = 6;
 
@@ -238,7 +232,6 @@ impl Stepper {
     ) -> Result<PhaseState, ChartDynamicsError> {
         let mut trial = match self.method {
             ChartMethod::ForwardEuler => self.forward_euler(t, s, h),
-            ChartMethod::SymplecticEuler => self.symplectic_euler(t, s, h),
             ChartMethod::RungeKutta4 => self.runge_kutta(t, s, h),
         }?;
         let finite = |a: &[f64]| a.iter().all(|c| c.is_finite());
@@ -267,43 +260,7 @@ impl Stepper {
         Ok(trial)
     }
 
-    fn symplectic_euler(
-        &mut self,
-        t: f64,
-        s: &PhaseState,
-        h: f64,
-    ) -> Result<PhaseState, ChartDynamicsError> {
-        let (mut qdot, mut pdot) = (vec![0.0; s.q.len()], vec![0.0; s.q.len()]);
-        let mut v = vec![0.0; s.x.len()];
-        self.open(t, &s.x)?;
-        let mut trial = s.clone();
-        // p1 = p0 - h dH/dq(q0, p1): fixed point; explicit when dT/dq is left out.
-        let mut change = f64::INFINITY;
-        for _ in 0..MOMENTA_ITERATIONS {
-            self.mechanics.velocity(&trial.p, &mut qdot, &mut v)?;
-            self.momentum_rate((t, h), &s.x, &v, &mut pdot)?;
-            let (mut size, mut moved) = (0.0f64, 0.0f64);
-            for k in 0..pdot.len() {
-                let p = s.p[k] + h * pdot[k];
-                moved = moved.max((p - trial.p[k]).abs());
-                size = size.max(p.abs());
-                trial.p[k] = p;
-            }
-            change = if moved == 0.0 { 0.0 } else { moved / size };
-            if change <= MOMENTA_TOLERANCE || self.equations != Equations::Full {
-                break;
-            }
-        }
-        // Rounding of an ill-conditioned chart may keep the last digits moving.
-        if self.equations == Equations::Full && (change.is_nan() || change > 1e-9) {
-            return Err(ChartDynamicsError::Momenta { h, change });
-        }
-        self.mechanics.velocity(&trial.p, &mut qdot, &mut v)?;
-        self.finish((t, h), s, &qdot, &v, &mut trial)?;
-        Ok(trial)
-    }
-
-    /// Positions of the Euler methods, and the momenta formed anew where that is asked for. Leaves the
+    /// Positions of the Euler method, and the momenta formed anew where that is asked for. Leaves the
     /// mechanics at the new state.
     fn finish(
         &mut self,

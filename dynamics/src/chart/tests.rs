@@ -52,11 +52,10 @@ fn numbers(n: usize, seed: f64) -> Vec<f64> {
 }
 
 #[test]
-fn four_solvers_agree() {
+fn solvers_agree() {
     let kinds = [
         MassSolverKind::Saddle,
         MassSolverKind::DenseLu,
-        MassSolverKind::Cholesky,
         MassSolverKind::Cramer,
     ];
     for (level, kind) in [(0, MassKind::Lumped), (1, MassKind::Consistent)] {

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the format. It grows with every change of the fields, because the binary format does not name
 /// them.
-const VERSION: u32 = 10;
+const VERSION: u32 = 11;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";

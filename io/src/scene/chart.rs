@@ -63,8 +63,6 @@ pub enum Coordinates {
 pub enum ChartScheme {
     /// The paper's: first order, gains energy.
     ForwardEuler,
-    /// First order, symplectic.
-    SymplecticEuler,
     /// The classical method of fourth order, for full equations and exact positions.
     #[default]
     RungeKutta4,
@@ -105,8 +103,6 @@ pub enum ChartSolver {
     Sparse,
     /// By LU factorisation of the mass matrix of the chart.
     DenseLu,
-    /// By Cholesky factorisation of it.
-    Cholesky,
     /// By Cramer's rule, as published; for at most 40 coordinates.
     Cramer,
 }
@@ -189,7 +185,7 @@ impl Chart {
             self.equations == ChartEquations::Full && self.positions == ChartPositions::Exact;
         if self.scheme == ChartScheme::RungeKutta4 && !exact {
             let message = "the method of fourth order needs full equations and exact positions";
-            let remedy = "choose `forward_euler` or `symplectic_euler`, or leave out `equations` and `positions`";
+            let remedy = "choose `forward_euler`, or leave out `equations` and `positions`";
             checks.report(key.name("scheme"), message, remedy);
         }
     }
@@ -225,7 +221,6 @@ impl Chart {
         ChartOptions {
             method: match self.scheme {
                 ChartScheme::ForwardEuler => ChartMethod::ForwardEuler,
-                ChartScheme::SymplecticEuler => ChartMethod::SymplecticEuler,
                 ChartScheme::RungeKutta4 => ChartMethod::RungeKutta4,
             },
             equations: match self.equations {
@@ -253,7 +248,6 @@ impl Chart {
             solver: match self.solver {
                 ChartSolver::Sparse => MassSolverKind::Saddle,
                 ChartSolver::DenseLu => MassSolverKind::DenseLu,
-                ChartSolver::Cholesky => MassSolverKind::Cholesky,
                 ChartSolver::Cramer => MassSolverKind::Cramer,
             },
             rebase: match self.singular {

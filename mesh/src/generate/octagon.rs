@@ -1,10 +1,9 @@
-//! The two octagonal sheets.
+//! The octagonal sheet of Fig. 15.
 
 use std::f64::consts::{FRAC_PI_4, FRAC_PI_8};
 
 use super::delaunay::{relaxed, subdivide};
 use super::error::{GenerateError, check_size};
-use super::isotropic_square;
 use crate::Sheet;
 
 /// A regular octagon with exactly 244 vertices and 440 faces, the counts of Liu, Tang and Joneja 2007, Fig.
@@ -59,26 +58,6 @@ pub fn octagon_244(radius: f64) -> Result<Sheet, GenerateError> {
     Ok(unit.map_positions(|p| p.map(|c| radius * c))?)
 }
 
-/// The octagon with 249 vertices and 448 faces that is left of the 16 x 16 union-jack square of side `side`
-/// (metres) when four cells are cut off each corner along the diagonals.
-///
-/// It has all the symmetries of the square; four sides are side/2 long and four side sqrt(2)/4, so it is not
-/// regular.
-///
-/// # Errors
-/// [`GenerateError::Size`] for a side that is not positive.
-pub fn octagon_249(side: f64) -> Result<Sheet, GenerateError> {
-    const CUT: f64 = 4.0 / 16.0;
-    let square = isotropic_square(3, side)?;
-    let kept = square.keep_faces(|f| {
-        let corners = square.topology().faces()[f.index()].map(|v| square.position(v));
-        // Centroid in units of the side, measured from the nearest corner of the square.
-        let [x, y] = [0, 1].map(|k| corners.iter().map(|p| p[k]).sum::<f64>() / (3.0 * side));
-        x.min(1.0 - x) + y.min(1.0 - y) > CUT
-    })?;
-    Ok(kept)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,29 +91,5 @@ mod tests {
             .iter()
             .fold((f64::MAX, 0.0f64), |(a, b), &l| (a.min(l), b.max(l)));
         assert!(max / min < 2.1, "edges from {min} to {max}");
-    }
-
-    #[test]
-    fn symmetric_octagon() {
-        let s = octagon_249(1.0).unwrap();
-        let t = s.topology();
-        t.check_invariants();
-        assert_eq!((t.vertex_count(), t.face_count()), (249, 448));
-        assert_eq!(t.boundary_edge_count(), 48);
-        assert!((s.area() - 0.875).abs() < 1e-14);
-        // A quarter turn maps the set of faces on itself.
-        let places = |turn: bool| {
-            let faces = t.faces().iter().map(|f| {
-                let mut c = f.map(|v| {
-                    let p = s.position(v);
-                    let (x, y) = ((p[0] * 16.0).round() as i64, (p[1] * 16.0).round() as i64);
-                    if turn { [16 - y, x] } else { [x, y] }
-                });
-                c.sort_unstable();
-                c
-            });
-            faces.collect::<std::collections::BTreeSet<_>>()
-        };
-        assert_eq!(places(false), places(true));
     }
 }

@@ -264,7 +264,7 @@ fn chart_error(
     let chart = front_chart(&sheet, corner(0), Degenerate::Assign, sheet.positions())?;
     let position = match method {
         ChartMethod::RungeKutta4 => PositionUpdate::Exact,
-        _ => PositionUpdate::Linear,
+        ChartMethod::ForwardEuler => PositionUpdate::Linear,
     };
     let options = ChartOptions {
         method,

@@ -252,14 +252,12 @@ const CHARTS: [(ChartKind, &str); 2] = [
     (ChartKind::Cartesian, "Cartesian chart"),
     (ChartKind::Front, "front chart"),
 ];
-const METHODS: [(ChartMethod, &str); 3] = [
+const METHODS: [(ChartMethod, &str); 2] = [
     (ChartMethod::RungeKutta4, "Runge-Kutta 4"),
-    (ChartMethod::SymplecticEuler, "symplectic Euler"),
     (ChartMethod::ForwardEuler, "forward Euler"),
 ];
-const SOLVERS: [(MassSolverKind, &str); 4] = [
+const SOLVERS: [(MassSolverKind, &str); 3] = [
     (MassSolverKind::Saddle, "saddle"),
-    (MassSolverKind::Cholesky, "Cholesky"),
     (MassSolverKind::DenseLu, "dense LU"),
     (MassSolverKind::Cramer, "Cramer"),
 ];

@@ -355,8 +355,6 @@ impl Study {
                 continue;
             } else if name.starts_with("Runge") {
                 (palette::INK, Marker::Triangle)
-            } else if name.starts_with("symplectic") {
-                (palette::GREY, Marker::Disc)
             } else {
                 (palette::GREY, Marker::Diamond)
             };
@@ -384,7 +382,6 @@ impl Study {
             &[
                 ("method, chart", &|stem| (*stem).into()),
                 ("saddle (µs)", &|stem| time(stem, "saddle")),
-                ("Cholesky (µs)", &|stem| time(stem, "Cholesky")),
                 ("dense LU (µs)", &|stem| time(stem, "dense LU")),
                 ("Cramer (µs)", &|stem| time(stem, "Cramer")),
             ],
@@ -419,7 +416,7 @@ mod tests {
         let svg = study.plot().to_svg("t");
         assert!(svg.contains("RATTLE composition"));
         assert_eq!(study.table().rows.len(), Scheme::all().len());
-        assert_eq!(study.solver_table().rows.len(), 6);
+        assert_eq!(study.solver_table().rows.len(), 4);
         // Second order shows in a few milliseconds already; a busy machine may take longer than the quick limit.
         let schemes = Scheme::all();
         let rattle = schemes.iter().find(|s| s.name == "RATTLE").unwrap();

@@ -57,7 +57,6 @@ impl Problem {
 
     fn orders(&self, coarse: u32, fine: u32, error: &dyn Fn(&[f64]) -> f64) {
         self.order(ChartMethod::ForwardEuler, coarse, error);
-        self.order(ChartMethod::SymplecticEuler, coarse, error);
         self.order(ChartMethod::RungeKutta4, fine, error);
     }
 }
@@ -291,11 +290,6 @@ fn published_equations_do_not_converge() {
         (Equations::Reformed, euler, PositionUpdate::Exact),
         (Equations::Reformed, euler, PositionUpdate::Projected),
         (Equations::Full, euler, PositionUpdate::Exact),
-        (
-            Equations::Full,
-            ChartMethod::SymplecticEuler,
-            PositionUpdate::Exact,
-        ),
     ] {
         let e = [300, 1200].map(|n| error(equations, method, position, n));
         let ratio = e[0] / e[1];
