@@ -1,9 +1,8 @@
-//! Dynamics of developable meshes: sheets of rigid rods moved by Hamilton's principle, after Liu,
-//! Tang and Joneja, *Modeling dynamic developable meshes by the Hamilton principle*,
-//! Computer-Aided Design 39 (2007) 719-731, Secs. 2, 4 and 5.
+//! Dynamics of developable meshes after Liu, Tang and Joneja, *Modeling dynamic developable meshes by the
+//! Hamilton principle*, Computer-Aided Design 39 (2007) 719-731, Secs. 2, 4 and 5.
 //!
-//! A [`SheetModel`] says what moves: rods, masses, pins, potentials, forces, damping. A
-//! [`Simulation`] moves it and reports on every step ([`StepReport`]).
+//! A [`SheetModel`] has rods or an elastic sheet, masses, supports, potentials, forces and damping. A
+//! [`Simulation`] advances it in time, with a [`StepReport`] for each step.
 //!
 //! | method | order | energy | takes flat states | solve |
 //! |---|---|---|---|---|
@@ -15,56 +14,47 @@
 //! | [`Method::RattleComposition`] | 4 | bounded error | unloaded ones | LU, `3V + E` unknowns |
 //! | [`Simulation::in_chart`]: the paper's scheme and relatives | 1 or 4 | | no | see [`chart`] |
 //!
-//! # Why not the paper's scheme
+//! # Singular states
 //!
-//! Where a sheet is flat, one length constraint for each interior vertex depends on the others,
-//! and the paper's system coordinates do not exist; near flat, the rigidity matrix is
-//! nearly singular. Every sheet starts there. The damped methods minimise an incremental
-//! potential over the positions with the right lengths, which has a solution at any rank of the
-//! constraints; the conservative ones solve for rod impulses, shorten their steps near
-//! singular states, and refuse loaded flat ones with [`StepError::RankDeficient`]: start them from
-//! a folded state, displace the sheet with [`leave_flat`], or allow a [`Fallback`].
+//! In a flat state one length constraint per interior vertex is linearly dependent, and the paper's system
+//! coordinates do not exist. The damped methods minimise an incremental potential, which has a solution at
+//! any rank of the constraints. The conservative methods solve for rod impulses; near singular states their
+//! steps shrink, and loaded flat states are refused with [`StepError::RankDeficient`]: start from a folded
+//! state, displace the sheet with [`leave_flat`], or allow a [`Fallback`].
 //!
-//! Every accepted step has the rest lengths to the tolerance of its method (a relative 1e-12 or better by
-//! default, or the round-off of the coordinates where that is larger), finite energies, and, with a damped
-//! method or the fallback, an energy gain of at most a tenth of the kinetic energy in a step and a fiftieth of the
-//! largest kinetic energy in all steps together: compressed rods that snap through can feed any implicit method. Such
-//! steps are taken with implicit Euler, or shortened.
+//! An accepted step has the rest lengths to the tolerance of its method (by default a relative 1e-12, or the
+//! round-off of the coordinates) and finite energies. With a damped method or the fallback a step gains at
+//! most a tenth of the kinetic energy, and all steps together a fiftieth of the largest kinetic energy; steps
+//! that gain more are repeated with implicit Euler or shortened.
 //!
 //! # Isometry
 //!
-//! What keeps the lengths is chosen with the model ([`Isometry`]). The default are rigid rods along all
-//! edges. An elastic sheet ([`SheetModel::with_elastic_sheet`]) stretches as the material does, up to a limit: it
-//! bends smoothly in every direction and along clamps of any line. It is for BDF2 and implicit Euler.
-//! [`StepReport::strain`] is the strain of edges whatever keeps them;
-//! [`StepReport::constrained_strain`] is what an accepted step holds below its tolerance.
+//! The edges are rigid rods by default ([`Isometry`]). An elastic sheet ([`SheetModel::with_elastic_sheet`];
+//! BDF2 and implicit Euler) stretches up to a strain limit, and bends along any line. [`StepReport::strain`]
+//! is the strain of the edges, [`StepReport::constrained_strain`] the one below the tolerance of the method.
 //!
 //! # Limits
 //!
-//! Constraints that leave a vertex no room at all, such as two pins that stretch a straight line of rods
-//! taut, are approached only as far as the square root of round-off allows. With pins at rest such vertices
-//! become pins, and cost nothing, as far as they are found ([`Simulation::immobile_vertices`]). Sheets of rods
-//! that are clamped flat along anything but a line of the mesh lock as a whole, and their steps are refused
-//! after a bounded effort ([`StepError::Locked`]): model them as elastic.
-//! [`SheetModel::clamps_across_the_mesh`] finds such clamps beforehand. Conservative runs on fine, nearly flat
-//! sheets are slow: the exact motion flutters on ever smaller scales there.
+//! Vertices that supports at rest hold in place become pins where this is detected
+//! ([`Simulation::immobile_vertices`]); other taut states are reached to the square root of round-off. A
+//! sheet of rods that is clamped flat along anything but a line of edges locks ([`StepError::Locked`]): use
+//! an elastic sheet. [`SheetModel::clamps_across_the_mesh`] finds such clamps. Conservative runs on fine,
+//! nearly flat sheets are slow.
 //!
 //! # Conventions
 //!
-//! SI units; positions, velocities and forces are flat slices of length `3V`; gravity acts along
-//! -z. Length constraints are `c_e = (|x_a - x_b|^2 - l_e^2) / 2` with Jacobian `G`; a positive
-//! rod multiplier in [`chart`] and in the implicit methods is a tension.
+//! SI units; positions, velocities and forces are slices of length `3V`; gravity acts along -z. Length
+//! constraints are `c_e = (|x_a - x_b|^2 - l_e^2) / 2` with Jacobian `G`; positive rod multipliers are
+//! tensions in [`chart`], BDF2 and implicit Euler.
 //!
-//! # Contact, constraints and reactions
+//! # Contact, supports and forces
 //!
-//! [`Simulation::with_contact`] takes a [`contact::Contact`]: a barrier potential whose Hessian couples more
-//! vertices than the mesh does, and a bound on every displacement. BDF2 and implicit Euler take it; in a
-//! chart contact acts by impulses ([`ChartSimulation::with_contact`](chart::ChartSimulation::with_contact)).
-//! Every method takes moving pins ([`SheetModel::with_moving_pin`]) and vertices on curves and surfaces
-//! ([`SheetModel::with_constraint`]), one-sided ones the damped methods only. [`Simulation::reactions`] are
-//! the forces of pins and constraints on the sheet, [`Simulation::body_loads`] those of the sheet on the
-//! bodies, [`Simulation::contact_forces`] those of contact on each vertex of the sheet,
-//! [`Simulation::rod_forces`] the tensions of the rods.
+//! [`Simulation::with_contact`] takes a [`contact::Contact`], a barrier potential with a bound on
+//! displacements, for BDF2 and implicit Euler; in a chart contact acts by impulses
+//! ([`ChartSimulation::with_contact`](chart::ChartSimulation::with_contact)). Supports are pins, moving pins
+//! ([`SheetModel::with_moving_pin`]), and curves and surfaces ([`SheetModel::with_constraint`]; one-sided
+//! ones for the damped methods only). Forces: [`Simulation::reactions`], [`Simulation::body_loads`],
+//! [`Simulation::contact_forces`], [`Simulation::rod_forces`].
 #![doc = include_str!("paper.md")]
 
 pub mod chart;

@@ -8,32 +8,27 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImplicitOptions {
-    /// Penalty of length errors and of vertex constraints in the merit function, relative to the masses. Default
-    /// 1e4: in the augmented Lagrangian a hundred times more needs several times the iterations, a hundred times less
-    /// twice the projections.
+    /// Penalty on errors of lengths and vertex constraints in the merit function, relative to the masses.
+    /// Default 1e4.
     pub stiffness: f64,
-    /// Newton's method stops when the decrease it still promises is this fraction of the
-    /// inertia term of the incremental potential. Default 1e-4, far below the error of the
-    /// method itself; the lengths do not depend on it.
+    /// Newton's method stops when the decrease predicted by its quadratic model is below this fraction of the
+    /// inertia term of the incremental potential. Default 1e-4. Lengths have a tolerance of their own.
     pub tolerance: f64,
-    /// Largest relative edge length error of an accepted step. Default 1e-12. Round-off sets a floor of a
-    /// few units in the last place of the coordinates.
+    /// Largest relative error of an edge length after a step, above the round-off of the coordinates. Default
+    /// 1e-12.
     pub strain_tolerance: f64,
-    /// Largest number of iterations of Newton's method in a phase, a quarter of it in the first phase in contact. The
-    /// count begins anew with each round of the augmented Lagrangian, lagged friction and saddle. Default 80.
+    /// Largest number of Newton iterations per solver phase, a quarter of it in the first phase with contact;
+    /// counted anew in each round of the augmented Lagrangian and of lagged friction. Default 80.
     pub max_iterations: usize,
-    /// Largest number of iterations of one restoration of the lengths. Default 400; the first phase gives up after at
-    /// most 20 of these.
+    /// Largest number of iterations per projection onto the lengths, 20 at most in the first phase. Default
+    /// 400.
     pub max_projections: usize,
-    /// Largest change of a normal force of friction, relative to the largest normal force, between its last
-    /// two evaluations in a step. Default 1e-3. With 1e-5 sheets that drape need a fifth more factorisations;
-    /// with 0.05 they need as many as with 1e-3. In the augmented Lagrangian 0.05 at least.
+    /// Largest change of a normal force between the last two updates of lagged friction, relative to the
+    /// largest normal force. Default 1e-3; at least 0.05 in the augmented Lagrangian.
     pub friction_tolerance: f64,
-    /// How often an iteration that has converged goes on because friction exceeds its tolerance. Default 5;
-    /// without friction it never does.
+    /// Largest number of updates of lagged friction per sub-step. Default 5.
     pub max_friction_updates: usize,
-    /// Seed of the perturbation that decides which way a sheet folds that sits on a saddle of
-    /// the incremental potential. Default 0.
+    /// Seed of the perturbation of a state at a saddle point of the incremental potential. Default 0.
     pub seed: u64,
 }
 

@@ -1,4 +1,4 @@
-//! Checkpoints: a simulation between two steps, as a value and as a file.
+//! Checkpoints.
 
 use crate::chart::{ChartOptions, ChartState};
 use crate::step::checkpoint_error::{CheckpointError, check_finite};
@@ -8,25 +8,19 @@ use crc::{CRC_32_ISO_HDLC, CRC_64_XZ, Crc};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Version of the format. It grows with every change of the fields, because the binary format does not name
-/// them.
+/// Format version; it grows with every change of the fields.
 const VERSION: u32 = 11;
 
 /// First bytes of a checkpoint file.
 const MAGIC: &[u8; 8] = b"isosheet";
 
-/// Everything that the next step depends on besides the model and the contact: state, history of multistep
-/// methods, multipliers, energy sums, method and options, and in a chart its reference state, coordinates and
-/// momenta.
-///
-/// Model and contact are supplied again by [`Simulation::resume`](crate::Simulation::resume), because they
-/// may hold functions. A simulation that is resumed continues bit for bit as it would have continued without
-/// a stop.
+/// All data of a simulation but model and contact, which [`Simulation::resume`](crate::Simulation::resume)
+/// takes again. A resumed simulation continues bit for bit.
 ///
 /// # Format
-/// [`Checkpoint::to_bytes`]: the eight bytes `isosheet`, the version (little-endian `u32`), the fields in the
-/// `postcard` encoding, and the CRC-32 of all that as a little-endian `u32`. [`Checkpoint::to_json`]: the
-/// same fields by name, numbers with as many digits as a round trip needs.
+/// [`Checkpoint::to_bytes`]: the eight bytes `isosheet`, the version (little-endian `u32`), the fields in
+/// `postcard` encoding, the CRC-32 of all that (little-endian `u32`). [`Checkpoint::to_json`]: the same
+/// fields by name.
 ///
 /// ```
 /// use isosheet_dynamics::{Checkpoint, Method, SheetModel, Simulation, State};
@@ -56,7 +50,7 @@ pub struct Checkpoint {
     pub(crate) motion: EngineState,
 }
 
-/// What moves the sheet, and where the motion is.
+/// State of the engine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum EngineState {
     /// A chart-free method.
@@ -65,17 +59,17 @@ pub(crate) enum EngineState {
     Chart(Box<InChart>),
 }
 
-/// A simulation in a chart between two steps.
+/// State of a simulation in a chart.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct InChart {
     pub(crate) options: ChartOptions,
     pub(crate) motion: ChartState,
-    /// Velocities of the vertices at the end of the last step, `3V`, metres per second.
+    /// Velocities of the vertices, `3V`, metres per second.
     pub(crate) velocities: Vec<f64>,
-    /// Forces of the supports at the end of the last step, newtons; empty before the first.
+    /// Forces of the supports, newtons; empty before the first step.
     pub(crate) reactions: Vec<Vector3<f64>>,
     pub(crate) has_contact: bool,
-    /// Mean forces of contact over the last step, `3V`, newtons; empty before the first and without contact.
+    /// Mean contact forces of the last step, `3V`, newtons; empty before the first and without contact.
     pub(crate) contact_forces: Vec<f64>,
 }
 
@@ -92,7 +86,7 @@ pub(crate) struct EnergySums {
     pub(crate) friction: f64,
 }
 
-/// What tells one model from another: counts for the message, sums of bits for certainty.
+/// Sizes and checksums of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct SheetFingerprint {
     vertices: usize,
@@ -198,7 +192,7 @@ impl Checkpoint {
     /// Reads the binary form.
     ///
     /// # Errors
-    /// [`CheckpointError`] if the bytes are no checkpoint, one of another version, or damaged.
+    /// [`CheckpointError`] if the bytes are damaged, of another version, or not a checkpoint.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         let length = bytes.len();
         let no_checkpoint = CheckpointError::NoCheckpoint { length };
@@ -228,7 +222,7 @@ impl Checkpoint {
     /// Reads the JSON form.
     ///
     /// # Errors
-    /// [`CheckpointError`] if the text is no checkpoint or one of another version.
+    /// [`CheckpointError`] if the text is of another version or not a checkpoint.
     pub fn from_json(text: &str) -> Result<Self, CheckpointError> {
         /// The one field that all versions have.
         #[derive(Deserialize)]

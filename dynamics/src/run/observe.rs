@@ -1,12 +1,10 @@
-//! Whole runs: steps of equal length, watched by observers.
+//! Runs of equal steps with observers.
 
 use crate::step::report::{StepError, StepReport};
 use crate::{Simulation, State};
 use std::ops::ControlFlow;
 
-/// Watches a run.
-///
-/// Closures `FnMut(&Simulation, &StepReport) -> ControlFlow<()>` are observers, too.
+/// Observer of a run; closures `FnMut(&Simulation, &StepReport) -> ControlFlow<()>` are observers.
 pub trait Observer {
     /// Called once before the first step.
     fn start(&mut self, _simulation: &Simulation) {}
@@ -21,7 +19,7 @@ impl<F: FnMut(&Simulation, &StepReport) -> ControlFlow<()>> Observer for F {
     }
 }
 
-/// Keeps the state at the start and after every so many steps.
+/// Keeps the initial state and every n-th one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frames {
     every: usize,
@@ -30,7 +28,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// A frame after every `every` steps; zero counts as one.
+    /// One frame in `every` steps; zero counts as one.
     pub fn every(every: usize) -> Self {
         Self {
             every: every.max(1),
@@ -39,7 +37,7 @@ impl Frames {
         }
     }
 
-    /// The frames so far, that of the start first.
+    /// The frames, the initial state first.
     pub fn states(&self) -> &[State] {
         &self.states
     }
@@ -66,7 +64,7 @@ pub struct History {
 }
 
 impl History {
-    /// The reports so far.
+    /// The reports.
     pub fn reports(&self) -> &[StepReport] {
         &self.reports
     }
@@ -82,23 +80,22 @@ impl Observer for History {
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RunEnd {
-    /// The whole time has passed.
+    /// The duration has passed.
     Complete,
     /// An observer ended it.
     Stopped,
-    /// The step control stopped at a taut state, see
-    /// [`Unsatisfiable::StopTaut`](crate::Unsatisfiable::StopTaut).
+    /// The step control stopped at a taut state
+    /// ([`Unsatisfiable::StopTaut`](crate::Unsatisfiable::StopTaut)).
     Taut,
 }
 
-/// Part of a step by which the duration of a run may differ from a whole number of steps, to allow for
-/// round-off: enough for the product of a step and a number of steps up to a million.
+/// Relative tolerance of a whole number of steps: round-off of the product of a step and up to a million
+/// steps.
 const ROUND_OFF: f64 = 1e-9;
 
 impl Simulation {
-    /// Advances by `duration` seconds in steps of `step` seconds, the last one shorter where the duration
-    /// asks for it, and shows every step to the observers, in their order. A duration of a whole number of
-    /// steps gives the same bits as as many calls of [`Simulation::step`].
+    /// Advances by `duration` seconds in steps of `step` seconds, the last one shorter if needed, and calls
+    /// the observers in order after each.
     ///
     /// ```
     /// use isosheet_dynamics::{Frames, History, Method, RunEnd, SheetModel, Simulation, State};
@@ -120,8 +117,7 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// As [`Simulation::step`]; [`StepError::StepSize`] if the duration is not positive and finite. What the
-    /// observers have kept up to then stays with them.
+    /// As [`Simulation::step`]; [`StepError::StepSize`] if the duration is not positive and finite.
     pub fn run(
         &mut self,
         duration: f64,

@@ -1,4 +1,4 @@
-//! A sheet in motion: state, integrator, step control and energy balance.
+//! Simulations.
 
 use crate::chart::engine::ChartEngine;
 use crate::chart::{ChartOptions, ChartSimulation};
@@ -18,7 +18,7 @@ use isosheet_coords::Chart;
 use isosheet_mesh::VertexId;
 use std::ops::ControlFlow;
 
-/// A sheet in motion. Owns the model, the state and the integrator.
+/// A simulation: model, state, integrator, step control and energy balance.
 ///
 /// ```
 /// use isosheet_dynamics::{Method, SheetModel, Simulation, State};
@@ -38,12 +38,12 @@ use std::ops::ControlFlow;
 /// ```
 pub struct Simulation {
     engine: Engine,
-    /// What tells the model, as its user built it, from another one.
+    /// Identifies the model that its user built.
     sheet: SheetFingerprint,
     energy: EnergySums,
-    /// Room for a sum of forces, `3V`.
+    /// Scratch, `3V`.
     force: Vec<f64>,
-    /// Who is told what the iterations do.
+    /// Receives trace events.
     trace: Option<Box<TraceSink>>,
 }
 
@@ -59,17 +59,14 @@ enum Engine {
 }
 
 impl Simulation {
-    /// A simulation of `model` from `state` by one of the chart-free methods.
+    /// A chart-free simulation of `model` from `state`.
     ///
-    /// Velocities of pinned vertices are set to zero, or to those of their motion. Vertices on a straight
-    /// line of rods between two pins at rest cannot move either, and become pins: the upper edge of a banner
-    /// that hangs by its corners. (The tension that would keep them in place against a force
-    /// perpendicular to the line is infinite; as pins they have a share of the reactions.)
+    /// Velocities of pinned vertices are set to those of their motion. Vertices on a straight line of rods
+    /// between two pins at rest become pins, see [`Simulation::immobile_vertices`].
     ///
     /// # Errors
-    /// [`SimulationError`] if the options or the state make no sense, or the state does not
-    /// have the rest lengths to 1e-8 (see
-    /// [`project_positions`](crate::project_positions)).
+    /// [`SimulationError`] if options or state are invalid, or the state does not have the rest lengths to
+    /// 1e-8 (see [`project_positions`](crate::project_positions)).
     pub fn new(
         model: SheetModel,
         mut state: State,
@@ -85,15 +82,14 @@ impl Simulation {
         Ok(Self::start(engine, sheet))
     }
 
-    /// A simulation of `model` from `state` in system coordinates: the paper's scheme and its
-    /// relatives (see [`chart`](crate::chart)).
+    /// A simulation of `model` from `state` in system coordinates (see [`chart`](crate::chart)).
     ///
-    /// Of the velocities only the part that keeps the lengths is used. Supports that the chart does not
-    /// eliminate are closure equations, see [`ChartSimulation::from_state`].
+    /// Velocities are projected onto those that keep the lengths. Supports that the chart does not eliminate
+    /// are closure equations, see [`ChartSimulation::from_state`].
     ///
     /// # Errors
-    /// [`SimulationError`] if the options or the state make no sense, or the chart is singular or
-    /// too ill-conditioned at the state.
+    /// [`SimulationError`] if options or state are invalid, or the chart is singular or too ill-conditioned
+    /// at the state.
     pub fn in_chart(
         model: SheetModel,
         mut state: State,
@@ -123,7 +119,7 @@ impl Simulation {
         simulation
     }
 
-    /// Everything that the next step depends on besides model and contact, as a value.
+    /// The checkpoint of the present state.
     pub fn checkpoint(&self) -> Checkpoint {
         let motion = match &self.engine {
             Engine::Free(engine) => EngineState::Free(Box::new(engine.motion())),
@@ -132,12 +128,12 @@ impl Simulation {
         Checkpoint::new(self.sheet, self.energy, motion)
     }
 
-    /// Continues from a checkpoint of a chart-free method, with the model and the contact that it was made
-    /// with: bit for bit as the simulation would have continued that the checkpoint was made of.
+    /// Resumes a chart-free simulation from a checkpoint bit for bit, with the model and the contact of its
+    /// start.
     ///
     /// # Errors
-    /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of
-    /// simulation, or has numbers that are not finite.
+    /// [`SimulationError::Checkpoint`] if the checkpoint is invalid, or of another model or kind of
+    /// simulation.
     pub fn resume(
         model: SheetModel,
         contact: Option<Box<dyn Contact>>,
@@ -153,12 +149,12 @@ impl Simulation {
         Ok(Self::resumed(engine, checkpoint.sheet, checkpoint.energy))
     }
 
-    /// Continues from a checkpoint of a simulation in a chart, with the model, the chart and the contact that
-    /// it was started with: bit for bit as the simulation would have continued.
+    /// Resumes a simulation in a chart from a checkpoint bit for bit, with the model, the chart and the
+    /// contact of its start.
     ///
     /// # Errors
-    /// [`SimulationError::Checkpoint`] if the checkpoint belongs to another sheet or another kind of
-    /// simulation, or has numbers that are not finite.
+    /// [`SimulationError::Checkpoint`] if the checkpoint is invalid, or of another model or kind of
+    /// simulation.
     pub fn resume_in_chart(
         model: SheetModel,
         chart: Box<dyn Chart>,
@@ -187,10 +183,10 @@ impl Simulation {
         simulation
     }
 
-    /// Replaces the step control of a chart-free method.
+    /// Sets the step control of a chart-free method.
     ///
     /// # Errors
-    /// [`SimulationError`] if it makes no sense.
+    /// [`SimulationError::Options`], [`SimulationError::ChartControl`].
     pub fn with_control(mut self, control: StepControl) -> Result<Self, SimulationError> {
         match &mut self.engine {
             Engine::Free(engine) => engine.set_control(control)?,
@@ -199,7 +195,7 @@ impl Simulation {
         Ok(self)
     }
 
-    /// Replaces the constants of the damped methods: for the report that measures what each of them is worth.
+    /// Sets the constants of the damped methods, for measurements.
     ///
     /// # Errors
     /// [`SimulationError::ChartControl`] in charts, [`SimulationError::Linalg`] if memory runs out.
@@ -212,9 +208,8 @@ impl Simulation {
         Ok(self)
     }
 
-    /// Tells a sink what the steps to come do: each iteration and why it was cut, each phase, refusal and accepted
-    /// sub-step ([`TraceEvent`]). The result does not depend on the sink, and without one nothing is paid. In charts
-    /// nothing is told.
+    /// Sets a sink for the [`TraceEvent`]s of the steps to come: iterations, phases, refusals and accepted
+    /// sub-steps. Results do not depend on it. Charts have no events.
     ///
     /// ```
     /// # use isosheet_dynamics::{Method, SheetModel, Simulation, State, TraceEvent};
@@ -246,11 +241,11 @@ impl Simulation {
         self.trace = Some(Box::new(sink));
     }
 
-    /// Adds contact with bodies and of the sheet with itself: a barrier that keeps every gap positive at
-    /// every accepted step; in a chart impulses, see [`ChartSimulation::with_contact`].
+    /// Adds contact: a barrier potential that keeps every gap positive, in a chart impulses
+    /// ([`ChartSimulation::with_contact`]).
     ///
     /// # Errors
-    /// [`SimulationError::Contact`] if the method has no place for contact or something touches already.
+    /// [`SimulationError::Contact`] if the method does not support contact or the state is in contact.
     pub fn with_contact(
         mut self,
         contact: impl Contact + 'static,
@@ -263,7 +258,7 @@ impl Simulation {
         Ok(self)
     }
 
-    /// Free vertices that became pins at the start because rods to fixed vertices hold them in place (see
+    /// Free vertices that rods to fixed vertices hold in place and that became pins at the start (see
     /// [`immobile_vertices`](crate::immobile_vertices)). Empty in charts.
     pub fn immobile_vertices(&self) -> &[VertexId] {
         match &self.engine {
@@ -272,7 +267,7 @@ impl Simulation {
         }
     }
 
-    /// The contacts at the present state; `None` in scenes without contact.
+    /// The contacts of the present state; `None` without contact.
     pub fn contacts(&self) -> Option<&ActiveContacts> {
         match &self.engine {
             Engine::Free(engine) => engine.contact().map(|(_, contacts)| &contacts.active),
@@ -280,29 +275,25 @@ impl Simulation {
         }
     }
 
-    /// What the sheet does to the bodies, in the order in which they were added; empty without contact, and
-    /// in charts, where impulses act ([`ChartSimulation::impulses`]).
+    /// Loads of the sheet on the bodies, in order of addition; empty without contact and in charts, where
+    /// impulses act ([`ChartSimulation::impulses`]).
     pub fn body_loads(&self) -> Vec<BodyLoad> {
         self.barrier().map_or_else(Vec::new, |(contact, contacts)| {
             contact.terms(contacts, &self.state().x).loads()
         })
     }
 
-    /// Force of contact on each vertex of the sheet, newtons (`3V`): of bodies and of the sheet on itself,
-    /// normal forces and friction together. `None` in scenes without contact.
+    /// Contact forces on the vertices, newtons (`3V`), normal forces and friction of bodies and of the sheet
+    /// with itself; `None` without contact.
     ///
-    /// Under BDF2 and implicit Euler these are the forces at the end of the last accepted sub-step,
-    /// `-d(B + D)/dx` with the barrier potential `B` and the friction potential `D` of the sub-step. In a
-    /// chart they are the impulses of the last step over its duration: a mean.
+    /// BDF2 and implicit Euler: `-d(B + D)/dx` at the end of the last accepted sub-step, with the barrier
+    /// potential `B` and the friction potential `D`. Charts: impulses of the last step over its duration.
+    /// Forces on edges and faces are distributed to their corners by the weights of the closest point.
     ///
-    /// An edge or a face that touches shares its force out to its corners by the weights of the closest
-    /// point. The forces of a contact of the sheet with itself add up to zero; over all vertices the sum is
-    /// minus that of the forces on the bodies ([`Simulation::body_loads`]), and enters the balance of
-    /// momentum that [`Simulation::reactions`] states. Before the first step
-    /// there is no friction, and in a chart there is no force. The friction of a
-    /// step acts with the normal forces for which the step was solved: a contact that has just opened may
-    /// have friction without a normal force. With rigid rods the projection that ends a step changes the
-    /// forces once more, to second order: those of a flat sheet at rest balance its weight to a percent.
+    /// The sum over the vertices is minus that of [`Simulation::body_loads`]. Before the first step there is
+    /// no friction, and in charts no force. The lagged friction of a contact that has just opened may be
+    /// present without a normal force. With rigid rods the final projection changes the forces by
+    /// second-order terms, about a percent for a flat sheet at rest.
     pub fn contact_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Engine::Free(engine) => {
@@ -313,10 +304,9 @@ impl Simulation {
         }
     }
 
-    /// Gap of each vertex of the sheet, metres: the smallest gap of the contacts in which the vertex takes
-    /// part, by itself or as a corner of an edge or a face that does. A gap is a distance less the thickness
-    /// of the sheet (and the radius of a rounded body). Contacts reach as far as the activation distance of
-    /// the barrier; a vertex without any has that distance as its gap. `None` in scenes without contact.
+    /// Gap of each vertex, metres: the smallest of the contacts of the vertex or of its edges and faces. A
+    /// gap is a distance less the thickness of the sheet and the radius of a rounded body. Vertices without
+    /// contacts have the activation distance of the barrier. `None` without contact.
     pub fn vertex_gaps(&self) -> Option<Vec<f64>> {
         let reach = match &self.engine {
             Engine::Free(engine) => engine.contact()?.0.barrier().activation(),
@@ -326,7 +316,7 @@ impl Simulation {
         Some(self.contacts()?.vertex_gaps(vertices, reach))
     }
 
-    /// Contact that acts by its barrier.
+    /// Contact by a barrier.
     fn barrier(&self) -> Option<(&RunContact, &ContactState)> {
         match &self.engine {
             Engine::Free(engine) => engine.contact(),
@@ -334,32 +324,24 @@ impl Simulation {
         }
     }
 
-    /// Forces of the pins and vertex constraints on the sheet in the last accepted sub-step, newtons, pins
-    /// first; empty before the first step. In charts the forces at the end of the step.
+    /// Forces of the pins, then of the vertex constraints, on the sheet in the last accepted sub-step,
+    /// newtons; in charts at the end of the step. Empty before the first step.
     ///
-    /// The forces come from the integrator's own balance of momentum: at a pin `R = M a - f + G^T lambda`
-    /// with the discrete acceleration `a` and the multipliers `lambda` (tension positive) of the sub-step, at
-    /// a vertex constraint with Jacobian `J` and multipliers `mu` `R = -J^T mu`. The reactions of a sub-step
-    /// of `h` seconds, the forces of bodies on the sheet, the weight and the other forces add up to the rate
-    /// of change of the momentum `p = sum M v` that belongs to the method, before velocity damping, which
-    /// acts after the step:
+    /// At a pin `R = M a - f + G^T lambda` with the discrete acceleration `a` and the multipliers `lambda`
+    /// (tension positive), at a vertex constraint with Jacobian `J` and multipliers `mu` `R = -J^T mu`.
+    /// Reactions, contact forces, weight and other forces add up to a rate of the momentum `p = sum M v`
+    /// before velocity damping, for a sub-step of `h` seconds:
     ///
     /// | method | rate of `p` | weight and other forces |
     /// |---|---|---|
-    /// | BDF2 | `(3/2 p1 - 2 p0 + 1/2 p_) / h`; after a restart as implicit Euler | at the end |
+    /// | BDF2 | `(p1 - (1 + b) p0 + b p_) / (k h)`, see [`Method::Bdf2`] | at the end |
     /// | implicit Euler | `(p1 - p0) / h` | at the end |
     /// | projection, energy-momentum, RATTLE | `(p1 - p0) / h` | over the step |
     ///
-    /// For BDF2 with steps in the ratio `w` the rate is `(p1 - (1 + b) p0 + b p_) / (k h)` with
-    /// `b = w^2 / (1 + 2w)` and `k = (1 + w) / (1 + 2w)`. The difference quotient `(p1 - p0) / h` of a BDF2
-    /// step is another number, and differs from the sum of the forces by as much as they change in the step.
+    /// The conservative methods keep this balance to round-off; the damped methods to the tolerance of
+    /// Newton's method, and in contact to the second-order change of contact forces by the final projection.
     ///
-    /// The conservative methods keep this balance to round-off. The damped methods leave two things over:
-    /// what Newton's method leaves at free vertices, which shrinks with its tolerance, and, where there is
-    /// contact, the change of the contact forces by the projection that ends a step, beyond first order.
-    ///
-    /// For the damped methods this call factorises a matrix of the size of a step's for every iteration of
-    /// the last projection: ask only when the forces are wanted.
+    /// With damped methods a call costs one factorisation per iteration of the last projection.
     pub fn reactions(&self) -> Vec<Reaction> {
         match &self.engine {
             Engine::Free(engine) => {
@@ -370,27 +352,20 @@ impl Simulation {
         }
     }
 
-    /// Force of each rod in the last accepted sub-step, newtons, tension positive, in the order of the edges:
-    /// the multiplier of its length equation times its length.
+    /// Forces of the rods in the last accepted sub-step, newtons, tension positive, in the order of the
+    /// edges. `None` in charts, for elastic sheets and in projection ([`Method::solves_for_rod_forces`]).
     ///
-    /// `None` where the method does not solve for these forces: in charts, for elastic
-    /// sheets and in projection
-    /// ([`Method::solves_for_rod_forces`]).
-    ///
-    /// | method | the forces are those |
+    /// | method | time of the forces |
     /// |---|---|
-    /// | BDF2, implicit Euler | at the end of the sub-step |
-    /// | energy-momentum | over the sub-step, in the mean |
-    /// | RATTLE | at the start of the sub-step, in compositions of the last of its parts |
+    /// | BDF2, implicit Euler | end of the sub-step |
+    /// | energy-momentum | mean over the sub-step |
+    /// | RATTLE | start of the sub-step, in compositions of the last part |
     ///
-    /// All forces are zero before the first step, after a sub-step of the [`Fallback`](crate::Fallback),
-    /// and in free fall under the energy-momentum method. The force of a rod between two vertices that cannot move is zero, since
-    /// nothing determines it. Where rods depend on each other, as in a flat sheet, their forces are not
-    /// unique. BDF2 and implicit Euler, which take such states, give the least forces (in the sum of their
-    /// squares) that load the free vertices as the multipliers of the step do; loads across folds flatter
-    /// than some 0.3 degrees, which rods could only carry with 200 times their size, are left out. This call
-    /// then factorises a matrix of the size of a step's. Without the share of the projection that ends a
-    /// damped step, which is of the size of the tolerances.
+    /// Zero before the first step, after a [`Fallback`](crate::Fallback), and between vertices that cannot
+    /// move. Where rods are dependent, as in a flat sheet, their forces are not unique: BDF2 and implicit
+    /// Euler then give the forces of least squares with the same loads on the free vertices, without those
+    /// across folds flatter than 0.3 degrees; this costs one factorisation. The share of the final
+    /// projection, of the size of the tolerances, is left out.
     pub fn rod_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Engine::Free(engine) => engine.rod_forces(),
@@ -406,7 +381,7 @@ impl Simulation {
         }
     }
 
-    /// The simulation in system coordinates, if this is one: coordinates, momenta, step range.
+    /// The simulation in system coordinates, if it is one.
     pub fn chart(&self) -> Option<&ChartSimulation> {
         match &self.engine {
             Engine::Free(_) => None,
@@ -436,18 +411,16 @@ impl Simulation {
         }
     }
 
-    /// Advances by exactly `h` seconds, in sub-steps where the integrator rejects the whole or,
-    /// in a chart, where its own step control asks for them.
+    /// Advances by exactly `h` seconds, in sub-steps where the step control asks for them.
     ///
     /// # Errors
-    /// [`StepError`]; the state is then that of the last accepted sub-step.
+    /// [`StepError`]; the state is that of the last accepted sub-step.
     pub fn step(&mut self, h: f64) -> Result<StepReport, StepError> {
         self.advance(h, None)
     }
 
-    /// As [`Simulation::step`], watched: before each factorisation, in a chart before each sub-step, the
-    /// closure sees what has been done of the step, and may end it. The result does not depend on a watch that
-    /// lets the step go on.
+    /// As [`Simulation::step`]. Before each factorisation, in a chart before each sub-step, `watch` receives
+    /// the progress and may end the step. Results do not depend on it otherwise.
     ///
     /// ```
     /// # use isosheet_dynamics::{Method, SheetModel, Simulation, State, StepError};
@@ -480,7 +453,7 @@ impl Simulation {
         self.advance(h, Some(watch))
     }
 
-    /// Advances with the trace of the simulation.
+    /// Advances with the trace.
     fn advance(&mut self, h: f64, watch: Option<Watch<'_>>) -> Result<StepReport, StepError> {
         let mut trace = self.trace.take();
         let watch = watch.map(|watch| &mut *watch as _);
@@ -536,7 +509,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// What a step of `h` seconds did.
+    /// The report of a step of `h` seconds.
     fn report(&self, h: f64, totals: &StepTotals<'_>) -> StepReport {
         let model = self.model();
         let State { t, x, v } = self.state();
@@ -593,7 +566,7 @@ impl Simulation {
     }
 }
 
-/// Over parts of this time (seconds) the velocities of moving pins at the start are taken by differences.
+/// Time over which initial velocities of moving pins are differences, seconds.
 const MOTION_SPAN: f64 = 1e-2;
 
 fn check_length(model: &SheetModel, state: &State) -> Result<(), SimulationError> {

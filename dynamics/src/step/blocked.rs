@@ -1,4 +1,4 @@
-//! Rods that depend on each other and block a motion.
+//! Dependent rods that block a motion.
 
 use crate::linear::rod_least_squares::RodLeastSquares;
 use crate::vectors::point;
@@ -8,26 +8,23 @@ use isosheet_mesh::VertexId;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Singular value of the rigidity matrix of unit rods below which rods count as dependent: the bound of
+/// Singular value of the rigidity matrix of unit rods below which rods are dependent, as in
 /// [`rod_rank`](crate::rod_rank).
 const DEPENDENT_BELOW: f64 = 1e-5;
-/// Part of the second-order elongations, or of random forces, that other displacements have to leave over for a
-/// motion to count as blocked, or rods as dependent. The part is 1e-5 or less where a sheet may fold along a line
-/// of the mesh, and a tenth or more where it may not.
+/// Part of the second-order elongations, or of random forces, outside the range of the rigidity matrix from
+/// which a motion is blocked. It is 1e-5 or less where a sheet may fold along a line of the mesh, a tenth or
+/// more elsewhere.
 const UNREACHED_PART: f64 = 1e-2;
-/// Part of the largest value from which the displacement of a vertex, and what is left over of the elongation
-/// of a rod, count.
+/// Part of the largest value from which displacements of vertices and elongations of rods count.
 const COUNTED_PART: f64 = 0.1;
 
-/// The free vertices that inertia and loads would move within `h` seconds, and which rods block; none where
-/// the motion is not blocked to second order, and for sheets without rods.
+/// The free vertices that inertia and loads would move within `h` seconds at rods that block the motion to
+/// second order; none where it is not blocked, and for sheets without rods.
 ///
-/// The displacement `d` that inertia and loads alone would give is projected onto those that keep all
-/// lengths to first order, `A d = 0` with the rigidity matrix `A` of unit rods. To second order it makes rods
-/// longer by `q_e = |d_a - d_b|^2 / (2 l_e)`. A motion exists only if a displacement `w` of second order makes
-/// up for that, `A w = -q`. Where rods depend on each other, as in a flat sheet, the part of `q` that no `w`
-/// reaches is a self-stress: the rods that it acts in block the motion (Connelly and Whiteley, SIAM J.
-/// Discrete Math. 9, 1996).
+/// The free displacement is projected onto the first-order flexes `A d = 0` of the rigidity matrix `A` of
+/// unit rods. The elongations `q_e = |d_a - d_b|^2 / (2 l_e)` need a second-order displacement `A w = -q`;
+/// the part of `q` outside the range of `A` is a self-stress of the blocking rods (Connelly and Whiteley,
+/// SIAM J. Discrete Math. 9, 1996).
 pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec<VertexId> {
     let x = &state.x;
     let Some(mut solver) =
@@ -71,9 +68,8 @@ pub(crate) fn blocked_vertices(model: &SheetModel, state: &State, h: f64) -> Vec
     vertices
 }
 
-/// The free vertices at rods that depend on others at positions `x` (`3V`, metres); none for sheets without rods.
-///
-/// The rods are those in which the self-stresses act that a random vector of forces has a part of.
+/// The free vertices at rods with self-stresses, found from a random vector of forces, at positions `x`
+/// (`3V`, metres); none for sheets without rods.
 pub(crate) fn dependent_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId> {
     let Some(mut solver) =
         rods_of(model).and_then(|model| RodLeastSquares::new(model, x, DEPENDENT_BELOW))
@@ -95,12 +91,12 @@ pub(crate) fn dependent_vertices(model: &SheetModel, x: &[f64]) -> Vec<VertexId>
     }
 }
 
-/// A model, if it is one of rods.
+/// The model, if it has rods.
 fn rods_of(model: &SheetModel) -> Option<&SheetModel> {
     (model.isometry() == Isometry::Rods).then_some(model)
 }
 
-/// The free vertices at the rods at which a value counts beside the largest one.
+/// The free vertices at rods with values above [`COUNTED_PART`] of the largest.
 fn free_ends(model: &SheetModel, values: &[f64], largest: f64) -> Vec<VertexId> {
     let counting = model.rods().edges().iter().zip(values);
     let counting = counting.filter(|(_, q)| q.abs() >= COUNTED_PART * largest);
@@ -111,7 +107,7 @@ fn free_ends(model: &SheetModel, values: &[f64], largest: f64) -> Vec<VertexId> 
     vertices
 }
 
-/// The displacement of all vertices within `h` seconds if there were no rods.
+/// The displacements within `h` seconds without rods, metres.
 fn free_displacement(model: &SheetModel, state: &State, h: f64) -> Vec<f64> {
     let State { t, x, v } = state;
     let mut force = vec![0.0; x.len()];

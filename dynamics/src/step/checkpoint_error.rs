@@ -1,9 +1,9 @@
-//! Why a checkpoint cannot be used, and the checks of its arrays.
+//! Errors and checks of checkpoints.
 
 use isosheet_mesh::Advice;
 use isosheet_mesh::wording::given;
 
-/// Why a checkpoint cannot be read or resumed.
+/// Errors of a checkpoint.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CheckpointError {
     /// The bytes are not a checkpoint.
@@ -14,29 +14,29 @@ pub enum CheckpointError {
         /// Number of bytes.
         length: usize,
     },
-    /// The checkpoint has another version.
+    /// The format version is not supported.
     #[error("the checkpoint has version {found}, this program reads version {supported}")]
     Version {
-        /// Version of the checkpoint.
+        /// Of the checkpoint.
         found: u32,
-        /// Version that this program reads.
+        /// The supported one.
         supported: u32,
     },
-    /// The file is damaged.
+    /// The checksum does not match.
     #[error("the checkpoint is damaged: its checksum is {found:08x} instead of {expected:08x}")]
     Damaged {
-        /// Checksum in the file.
+        /// In the file.
         expected: u32,
-        /// Checksum of the bytes.
+        /// Of the bytes.
         found: u32,
     },
-    /// The fields cannot be decoded.
+    /// Decoding failed.
     #[error("the checkpoint cannot be decoded: {0}")]
     Decode(String),
-    /// The fields cannot be encoded.
+    /// Encoding failed.
     #[error("the checkpoint cannot be encoded: {0}")]
     Encode(String),
-    /// The sheet has another size.
+    /// The model has another number of vertices or edges.
     #[error(
         "the checkpoint is of a sheet of {} vertices and {} edges, the model has {} and {}",
         expected[0], expected[1], found[0], found[1]
@@ -47,23 +47,23 @@ pub enum CheckpointError {
         /// Vertices and edges of the model.
         found: [usize; 2],
     },
-    /// The sheet is another one.
+    /// The model is another one.
     #[error("the {what} of the model are not those of the checkpoint")]
     OtherSheet {
         /// What differs.
         what: &'static str,
     },
-    /// A value of the state makes no sense.
+    /// An array has the wrong length.
     #[error("{what} of the checkpoint has {found} values where the model needs {expected}")]
     Length {
         /// Which array.
         what: &'static str,
-        /// Values in the checkpoint.
+        /// Its length.
         found: usize,
-        /// Values that the model needs.
+        /// The length needed.
         expected: usize,
     },
-    /// A number of the state is not finite.
+    /// A number is not finite.
     #[error(
         "{what} of the checkpoint have the value {value} at index {index}: the checkpoint was \
          changed from outside",
@@ -77,7 +77,7 @@ pub enum CheckpointError {
         /// The value.
         value: f64,
     },
-    /// A vertex of the checkpoint does not exist.
+    /// A vertex does not exist.
     #[error(
         "the checkpoint names vertex {vertex}, the model has only {vertices} vertices: the checkpoint was changed from outside"
     )]
@@ -87,18 +87,18 @@ pub enum CheckpointError {
         /// Vertices of the model.
         vertices: usize,
     },
-    /// Contact is missing or was not expected.
+    /// Contact is missing or not expected.
     #[error("the checkpoint was made {} contact and is resumed {} it",
         if *.expected { "with" } else { "without" }, if *.expected { "without" } else { "with" })]
     Contact {
         /// Whether the checkpoint has contact.
         expected: bool,
     },
-    /// A chart is missing or was not expected.
+    /// A chart is missing or not expected.
     #[error("the checkpoint is of a simulation {}",
         if *.in_chart { "in a chart" } else { "without a chart" })]
     Chart {
-        /// Whether the checkpoint is of a simulation in a chart.
+        /// Whether the checkpoint is in a chart.
         in_chart: bool,
     },
 }

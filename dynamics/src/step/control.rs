@@ -1,29 +1,27 @@
-//! Step control: what follows from a proposal, and what from a refusal.
-//!
-//! An integrator proposes a sub-step or refuses to; nothing but [`take_substep`] commits one:
+//! Step control: the decision after each proposed sub-step.
 //!
 //! | proposal | without a chart ([`Subdivision`]) | in a chart ([`EnergyBound`], Sec. 4.2) |
 //! |---|---|---|
-//! | made, and within its bounds | commit | commit |
-//! | refused: would create energy, has a history | restart as a one-step method | |
-//! | refused: the chart is singular there | | restart from a new reference state |
-//! | refused, the step may be shortened | halve | shorten by that bound, by contact to its safe part |
-//! | refused, a fallback is allowed | fall back: implicit Euler | |
-//! | refused otherwise | stop | stop |
+//! | accepted | commit | commit |
+//! | energy gain of a multistep method | restart as a one-step method | |
+//! | singular chart | | restart from a new reference state |
+//! | step above its minimum | halve | shorten by the energy bound or contact |
+//! | fallback allowed | implicit Euler | |
+//! | otherwise | stop | stop |
 //!
 //! [`Subdivision`]: crate::step::subdivision::Subdivision
 //! [`EnergyBound`]: crate::chart::energy_bound::EnergyBound
 
-/// What to do after a refusal.
+/// Decision after a refusal.
 #[derive(Debug)]
 pub(crate) enum Decision<E> {
-    /// Propose the same sub-step without what the method remembers.
+    /// Repeat the sub-step without history.
     Restart,
-    /// Propose a sub-step of this length, seconds.
+    /// Repeat with this length, seconds.
     Shorten(f64),
-    /// Propose a sub-step of this length, seconds, with the fallback.
+    /// Repeat with this length, seconds, and the fallback method.
     FallBack(f64),
-    /// Give up.
+    /// Return an error.
     Stop(E),
 }
 
@@ -39,32 +37,32 @@ impl<E> Decision<E> {
     }
 }
 
-/// Something that moves in sub-steps.
+/// A motion in sub-steps.
 pub(crate) trait Stepping {
-    /// Why a sub-step was refused.
+    /// Cause of a refusal.
     type Refusal;
-    /// Why there is no sub-step.
+    /// Error of a step.
     type Error;
-    /// What a committed sub-step did.
+    /// Report of a sub-step.
     type Report;
 
-    /// Proposes a sub-step of `h` seconds. What the next step depends on stays as it is.
+    /// Proposes a sub-step of `h` seconds; the state does not change.
     fn propose(&mut self, h: f64) -> Result<(), Self::Refusal>;
 
-    /// Decides what follows from the refusal of a sub-step of `h` seconds.
+    /// Decides after the refusal of a sub-step of `h` seconds.
     fn decide(&mut self, refusal: Self::Refusal, h: f64) -> Decision<Self::Error>;
 
-    /// Drops what the method remembers for the sub-step to come.
+    /// Drops the history for the next proposal.
     fn restart(&mut self) -> Result<(), Self::Error>;
 
-    /// Has the fallback method propose the sub-step to come.
+    /// Uses the fallback method for the next proposal.
     fn fall_back(&mut self);
 
-    /// Takes the sub-step that was proposed last, of `h` seconds.
+    /// Commits the last proposal, of `h` seconds.
     fn commit(&mut self, h: f64) -> Result<Self::Report, Self::Error>;
 }
 
-/// Takes one sub-step of `h` seconds or less.
+/// Takes a sub-step of at most `h` seconds.
 pub(crate) fn take_substep<S: Stepping>(moving: &mut S, h: f64) -> Result<S::Report, S::Error> {
     let mut h = h;
     loop {

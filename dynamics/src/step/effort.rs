@@ -1,49 +1,48 @@
-//! The work that a step takes, and who watches it.
+//! Counters of a step, with its watch and its trace.
 
 use crate::step::reason::Reason;
 use crate::step::trace::TraceEvent;
 use std::fmt;
 use std::ops::ControlFlow;
 
-/// What has been done so far of a step that is under way, see
-/// [`Simulation::step_watched`](crate::Simulation::step_watched).
+/// Progress of a step under way, see [`Simulation::step_watched`](crate::Simulation::step_watched).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepProgress {
-    /// Time that the accepted sub-steps have reached, seconds.
+    /// End of the accepted sub-steps, seconds.
     pub t: f64,
-    /// Newton iterations of the step, those of rejected sub-steps included.
+    /// Newton iterations, with those of rejected sub-steps.
     pub iterations: usize,
-    /// Matrix factorisations of the step, those of rejected sub-steps included.
+    /// Matrix factorisations, with those of rejected sub-steps.
     pub factorisations: usize,
 }
 
-/// Is asked between factorisations whether a step goes on.
+/// Decides before each factorisation whether a step continues.
 pub(crate) type Watch<'w> = &'w mut dyn FnMut(&StepProgress) -> ControlFlow<()>;
 
-/// Is told what the iterations do.
+/// Receives the events of a trace.
 pub(crate) type TraceSink = dyn FnMut(&TraceEvent) + Send;
 
-/// Counters of attempted sub-steps, filled also when they fail.
+/// Counters of a step, with those of rejected sub-steps.
 #[derive(Default)]
 pub(crate) struct SolverEffort<'w> {
     /// Newton iterations.
     pub(crate) iterations: usize,
     /// Matrix factorisations.
     pub(crate) factorisations: usize,
-    /// Start of the sub-step that is attempted, seconds.
+    /// Start of the sub-step, seconds.
     pub(crate) t: f64,
     watch: Option<Watch<'w>>,
     sink: Option<&'w mut TraceSink>,
     is_interrupted: bool,
-    /// Matrix factorisations until the last accepted state.
+    /// Factorisations up to the last accepted state.
     begun: usize,
-    /// Largest number of factorisations from there on, if there is one.
+    /// Largest number of factorisations from there on.
     limit: Option<usize>,
     is_spent: bool,
 }
 
 impl<'w> SolverEffort<'w> {
-    /// No work yet; with who watches it, and who is told what the iterations do.
+    /// Counters at zero, with a watch and a trace.
     pub(crate) fn new(watch: Option<Watch<'w>>, sink: Option<&'w mut TraceSink>) -> Self {
         Self {
             watch,
@@ -52,19 +51,19 @@ impl<'w> SolverEffort<'w> {
         }
     }
 
-    /// Whether somebody listens to [`SolverEffort::trace`].
+    /// Whether events are traced.
     pub(crate) fn is_traced(&self) -> bool {
         self.sink.is_some()
     }
 
-    /// Tells an event, which is made only if somebody listens.
+    /// Traces an event; it is not computed without a trace.
     pub(crate) fn trace(&mut self, event: impl FnOnce() -> TraceEvent) {
         if let Some(sink) = &mut self.sink {
             sink(&event());
         }
     }
 
-    /// The reason of a failure: that the iteration has been ended, if it has, and else the one given.
+    /// The cause of a failure: [`Reason::Ended`] if the iteration was ended, else the one given.
     pub(crate) fn failed(&self, reason: Reason) -> Reason {
         match self.is_spent || self.is_interrupted {
             true => Reason::Ended,
@@ -72,20 +71,19 @@ impl<'w> SolverEffort<'w> {
         }
     }
 
-    /// Whether the watch has ended the step. What an integrator proposes after that has no meaning.
+    /// Whether the watch ended the step; later proposals are meaningless.
     pub(crate) fn is_interrupted(&self) -> bool {
         self.is_interrupted
     }
 
-    /// Begins at an accepted state, from which the attempts until the next one may take a number of
-    /// factorisations, or as many as they need.
+    /// Begins at an accepted state, with a limit of factorisations until the next one.
     pub(crate) fn begin(&mut self, limit: Option<usize>) {
         self.begun = self.factorisations;
         self.limit = limit;
         self.is_spent = false;
     }
 
-    /// Allows as many factorisations as are needed until the next accepted state.
+    /// Removes the limit until the next accepted state.
     pub(crate) fn lift_limit(&mut self) {
         self.limit = None;
         self.is_spent = false;
@@ -96,12 +94,12 @@ impl<'w> SolverEffort<'w> {
         self.factorisations - self.begun
     }
 
-    /// Whether the limit has ended an attempt. What an integrator proposes after that has no meaning.
+    /// Whether the limit was reached; later proposals are meaningless.
     pub(crate) fn is_spent(&self) -> bool {
         self.is_spent
     }
 
-    /// Asks the watch whether the step goes on. Once it has said no, the answer stays no.
+    /// Whether the watch lets the step continue; once refused, the answer stays.
     pub(crate) fn goes_on(&mut self) -> bool {
         let progress = StepProgress {
             t: self.t,
@@ -116,8 +114,7 @@ impl<'w> SolverEffort<'w> {
         !self.is_interrupted
     }
 
-    /// Counts a factorisation that is about to be made; false if the step has been interrupted or the limit is
-    /// reached, and nothing is to be factorised.
+    /// Counts the next factorisation; false if the step has ended.
     pub(crate) fn count_factorisation(&mut self) -> bool {
         self.is_spent |= self.limit.is_some_and(|limit| self.spent() >= limit);
         let goes_on = !self.is_spent && self.goes_on();

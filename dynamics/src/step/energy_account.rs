@@ -1,4 +1,4 @@
-//! What damped methods may gain in energy.
+//! Bound of the energy gained by damped methods.
 
 use crate::step::report::StepError;
 use crate::step::tuning::Tuning;
@@ -6,19 +6,18 @@ use crate::{SheetModel, State};
 use isosheet_coords::linalg::norm_inf;
 use serde::{Deserialize, Serialize};
 
-/// Gains and losses of the steps of a damped method, which should but lose: numerical errors alone, without
-/// the work of forces, bodies and supports.
+/// Energy gains of the steps of a damped method, without the work of forces, bodies and supports.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct EnergyAccount {
-    /// Sum of all gains, losses being negative, joules.
+    /// Sum of the gains, joules.
     net: f64,
-    /// Sum of what steps could not know of, joules.
+    /// Sum of the uncertainties, joules.
     unknown: f64,
-    /// Largest kinetic energy so far, joules.
+    /// Largest kinetic energy, joules.
     kinetic: f64,
 }
 
-/// Energy that a step exchanges with what is not the sheet.
+/// Energy exchanged in a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Exchange {
     /// Work of the non-conservative forces, joules.
@@ -29,7 +28,7 @@ pub(crate) struct Exchange {
     pub(crate) bodies: f64,
     /// Change of the barrier potential, joules.
     pub(crate) barrier: f64,
-    /// Energy that the tolerance of the lengths leaves open in contact, joules.
+    /// Uncertainty in contact from the tolerance of the lengths, joules.
     pub(crate) length_slack: f64,
 }
 
@@ -37,8 +36,7 @@ impl EnergyAccount {
     /// The account after a step.
     ///
     /// # Errors
-    /// [`StepError::EnergyGain`] if the step gains too much, [`StepError::NonFiniteEnergy`] if its energy
-    /// is not a finite number.
+    /// [`StepError::EnergyGain`], [`StepError::NonFiniteEnergy`].
     pub(crate) fn after(
         &self,
         model: &SheetModel,
@@ -100,8 +98,8 @@ impl EnergyAccount {
         })
     }
 
-    /// Takes energy out, joules: what velocity damping dissipates. (A two-step method that remembers the
-    /// undamped past gives part of it back.)
+    /// Subtracts the energy dissipated by velocity damping, joules. (A two-step method with undamped history
+    /// returns part of it.)
     pub(crate) fn spend(&mut self, dissipated: f64) {
         self.net -= dissipated;
     }

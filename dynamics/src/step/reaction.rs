@@ -1,4 +1,4 @@
-//! Forces of pins, curves and surfaces on the sheet.
+//! Forces of supports on the sheet.
 
 use crate::SheetModel;
 use crate::constraint::rows::VertexRows;
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 pub struct Reaction {
     /// The support.
     pub support: Support,
-    /// Its force on the sheet, newtons: at rest the sum over all supports is minus the weight.
+    /// Force on the sheet, newtons.
     pub force: Vector3<f64>,
 }
 
@@ -33,33 +33,32 @@ pub(crate) fn supports(model: &SheetModel) -> impl Iterator<Item = Support> + '_
         .chain(constraints)
 }
 
-/// At what time of a step forces are known.
+/// Time at which forces are known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum ForceTime {
-    /// At its end.
+    /// The end of the step.
     End,
-    /// Their mean over it.
+    /// The mean over the step.
     Mean,
 }
 
-/// Forces of all supports in the last accepted step, from the integrator's own balance of momentum: at a pin
-/// `R = M a - f + G^T lambda` with the discrete acceleration and the multipliers (tension positive) of the
-/// step, at a vertex constraint `R = -J^T mu`. [`Simulation::reactions`](crate::Simulation::reactions) says
-/// for each method which rate of the momentum they balance.
+/// Forces of all supports in the last accepted sub-step: at a pin `R = M a - f + G^T lambda`, with the
+/// discrete acceleration `a` and the multipliers `lambda` (tension positive), at a vertex constraint
+/// `R = -J^T mu`; see [`Simulation::reactions`](crate::Simulation::reactions).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Balance {
-    /// At pinned vertices the force of the pin, elsewhere zero; `3V`, newtons.
+    /// Forces of pins, zero at other vertices; `3V`, newtons.
     pub pins: Vec<f64>,
-    /// Of each vertex constraint the multipliers of its equations, newtons. Of the damped methods, here and
-    /// in the other two, without the share that supports have in projections.
+    /// Multipliers of the vertex constraints, newtons. In the damped methods no field contains the share of
+    /// projections.
     pub multipliers: Vec<Vector3<f64>>,
-    /// Of each vertex constraint its force on the vertex, newtons.
+    /// Forces of the vertex constraints, newtons.
     pub constraints: Vec<Vector3<f64>>,
-    /// When.
+    /// Time of the forces.
     pub time: ForceTime,
-    /// Newtons that are not shared out between the supports yet.
+    /// Newtons not yet distributed to the supports.
     pub(crate) residual_momentum: ResidualMomentum,
-    /// Room for intermediate results, `3V`.
+    /// Scratch, `3V`.
     #[serde(skip)]
     work: Vec<f64>,
 }
@@ -82,7 +81,7 @@ impl Balance {
         }
     }
 
-    /// With room for what is shared out later.
+    /// With a residual momentum.
     pub(crate) fn with_residual(model: &SheetModel, time: ForceTime) -> Self {
         Self {
             residual_momentum: ResidualMomentum::new(model),
@@ -90,7 +89,7 @@ impl Balance {
         }
     }
 
-    /// Starts with the inertia `M a`; returns false where there is nothing to balance.
+    /// Sets the inertia `M a`; false if there are no supports.
     pub(crate) fn begin(&mut self, model: &SheetModel, a: impl Fn(usize) -> f64) -> bool {
         for (i, w) in self.work.iter_mut().enumerate() {
             *w = a(i);
@@ -146,7 +145,7 @@ impl Balance {
         self.residual_momentum.check(n, m)
     }
 
-    /// The forces alone, without room for further ones.
+    /// The forces without scratch.
     pub(crate) fn compact(&self) -> Self {
         Self {
             pins: self.pins.clone(),
@@ -178,7 +177,7 @@ impl Balance {
         }
     }
 
-    /// Takes off `share` of the potentials' forces.
+    /// Subtracts `share` of the potential forces.
     pub(crate) fn add_potentials(&mut self, model: &SheetModel, t: f64, x: &[f64], share: f64) {
         self.work.fill(0.0);
         for p in model.potentials() {
@@ -187,7 +186,7 @@ impl Balance {
         self.add_work(share);
     }
 
-    /// Takes off `share` of the non-conservative forces.
+    /// Subtracts `share` of the non-conservative forces.
     pub(crate) fn add_applied(
         &mut self,
         model: &SheetModel,
@@ -203,12 +202,12 @@ impl Balance {
         self.add_work(-share);
     }
 
-    /// Takes off the forces of contact.
+    /// Subtracts the contact forces.
     pub(crate) fn add_contact(&mut self, contact: &ContactTerms<'_>) {
         contact.add_gradient(1.0, &mut self.pins);
     }
 
-    /// Takes off the forces of the rods, `-share G(x)^T multipliers`.
+    /// Subtracts the rod forces `-share G(x)^T multipliers`.
     pub(crate) fn add_rods(
         &mut self,
         model: &SheetModel,
@@ -223,7 +222,7 @@ impl Balance {
         self.add_work(share);
     }
 
-    /// Adds a share of the vertex constraints' multipliers with their equations as last evaluated.
+    /// Adds a share of the multipliers of vertex constraints.
     pub(crate) fn add_constraints(
         &mut self,
         rows: &VertexRows,
@@ -236,7 +235,7 @@ impl Balance {
         }
     }
 
-    /// Adds loads of vertex constraints: multipliers and forces.
+    /// Adds multipliers and forces of vertex constraints.
     pub(crate) fn add_loads(&mut self, loads: impl Iterator<Item = (Vector3<f64>, Vector3<f64>)>) {
         for (i, (multiplier, force)) in loads.enumerate() {
             self.multipliers[i] += multiplier;
@@ -250,8 +249,8 @@ impl Balance {
         }
     }
 
-    /// Leaves only what is at pins; what is at free vertices at positions `x` goes to the residual momentum,
-    /// for the rods and the vertex constraints `active`.
+    /// Keeps the forces at pins; those at free vertices at positions `x` become residual momentum, for the
+    /// rods and the `active` vertex constraints.
     pub(crate) fn leave(&mut self, model: &SheetModel, x: &[f64], active: &[bool]) {
         self.work.copy_from_slice(&self.pins);
         for (c, f) in model.constraints().iter().zip(&self.constraints) {
@@ -263,7 +262,7 @@ impl Balance {
         self.finish(model);
     }
 
-    /// Leaves only what is at pins.
+    /// Keeps the forces at pins.
     pub(crate) fn finish(&mut self, model: &SheetModel) {
         for v in model
             .topology()
@@ -274,7 +273,7 @@ impl Balance {
         }
     }
 
-    /// Adds the shares of the residual momentum of a step that ended at time `t`.
+    /// Distributes the residual momentum of a step that ended at time `t`.
     pub(crate) fn settle(&mut self, model: &SheetModel, t: f64) {
         let shares = self.residual_momentum.shares(model, t);
         self.residual_momentum.clear();
@@ -285,7 +284,7 @@ impl Balance {
         self.finish(model);
     }
 
-    /// The forces, with the shares of the residual momentum of a step that ended at time `t`.
+    /// The reactions, with the distributed residual momentum of a step that ended at time `t`.
     pub(crate) fn reactions(&self, model: &SheetModel, t: f64) -> Vec<Reaction> {
         let shares = self.residual_momentum.shares(model, t);
         let pins = model.pins().into_iter().map(|v| Reaction {
@@ -304,9 +303,8 @@ impl Balance {
         pins.chain(constraints).collect()
     }
 
-    /// Work that moving pins and vertex constraints do on the sheet in a step from `x0` at `t0` to `x1` at
-    /// `t1`, joules: with the mean forces or, where they are known at the end, by the trapezoidal rule with
-    /// those of the step before.
+    /// Work of moving pins and vertex constraints in a step from `x0` at `t0` to `x1` at `t1`, joules: with
+    /// mean forces or, for forces at the end, by the trapezoidal rule with those of the step before.
     pub(crate) fn drive_work(
         &self,
         model: &SheetModel,

@@ -1,25 +1,25 @@
-//! Why an iteration found no step.
+//! Causes of failed iterations.
 
 use serde::Serialize;
 use std::fmt;
 
-/// Why an iteration ended without a step.
+/// Cause of a failed iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reason {
-    /// No part of the search direction decreases the merit function.
+    /// The line search found no decrease of the merit function.
     NoDescent,
-    /// The rods depend on each other, or nearly so: the lengths could not be restored.
+    /// The lengths were not restored: the rods are linearly dependent, or nearly so.
     DependentRods,
-    /// Contact or the limit of the strain leaves no part of a displacement.
+    /// Contact or the strain limit allows no displacement.
     Blocked,
-    /// All iterations were used.
+    /// The number of iterations reached its limit.
     Iterations,
-    /// The minimum that was found has a higher incremental potential than the start of the step.
+    /// The incremental potential at the minimum exceeds that at the start.
     AboveStart,
     /// The linear algebra failed.
     LinearAlgebra,
-    /// The watch of the step, or its bound of factorisations, ended the iteration.
+    /// The watch of the step or the limit of factorisations ended the iteration.
     Ended,
 }
 

@@ -1,4 +1,4 @@
-//! What a step tells, and why a step fails.
+//! Reports and errors of steps.
 
 use crate::chart::ChartDynamicsError;
 use crate::contact::BodyMotionError;
@@ -10,91 +10,85 @@ use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::wording::{brief, counted, given};
 use isosheet_mesh::{Advice, EdgeId, FaceId, VertexId};
 
-/// How a step was obtained.
+/// The solver that the hardest sub-step needed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StepOutcome {
     /// Newton's method with full steps.
     Newton,
-    /// Newton's method with shortened steps or a modified, positive definite matrix, as near flat states and impacts
-    /// need it.
+    /// Newton's method with a line search or a modified, positive definite Hessian.
     Globalised,
-    /// As `Globalised`, and a seeded perturbation decided which way the sheet folds.
+    /// As `Globalised`, after a seeded perturbation at a saddle point.
     BranchSeeded,
-    /// The integrator asked for rejected every sub-step, and implicit Euler took one instead.
+    /// Implicit Euler, after the chosen integrator had rejected every sub-step.
     Fallback,
-    /// Explicitly, in a chart.
+    /// An explicit step in a chart.
     Chart,
-    /// As `Chart`, and the chart was rebased on the way.
+    /// As `Chart`, with a change of the reference state of the chart.
     Rebased,
 }
 
-/// What one call of [`Simulation::step`](crate::Simulation::step) did.
+/// Result of one call of [`Simulation::step`](crate::Simulation::step).
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct StepReport {
     /// Time at the end of the step, seconds.
     pub t: f64,
     /// Length of the step, seconds.
     pub h: f64,
-    /// Accepted sub-steps; 1 unless some had to be shortened.
+    /// Accepted sub-steps.
     pub substeps: usize,
-    /// Sub-steps that were tried and rejected.
+    /// Rejected sub-steps.
     pub rejected: usize,
-    /// Newton iterations, those of rejected sub-steps included.
+    /// Newton iterations, with those of rejected sub-steps.
     pub iterations: usize,
-    /// Matrix factorisations, those of rejected sub-steps included.
+    /// Matrix factorisations, with those of rejected sub-steps.
     pub factorisations: usize,
-    /// Largest relative residual of the momentum balance over the sub-steps. For the
-    /// conservative integrators the largest acceleration left over against the largest one
-    /// asked for; for implicit Euler the Newton decrement before the last iteration against
-    /// the inertia term of the incremental potential (root of the energy ratio), an upper bound
-    /// of what that iteration left; for the projection step the length rates left over against
-    /// the speed.
+    /// Largest relative residual over the sub-steps: for conservative methods the largest unbalanced
+    /// acceleration over the largest acceleration; for BDF2 and implicit Euler the Newton decrement before
+    /// the last iteration, as the root of its energy over the inertia term; for projection the length rates
+    /// over the speed.
     pub residual: f64,
     /// Kinetic energy at the end, joules.
     pub kinetic: f64,
     /// Potential energy at the end, contact included, joules.
     pub potential: f64,
-    /// Work done since the start by the non-conservative forces, by moving bodies, pins and vertex
-    /// constraints, and by changing driven potentials
-    /// ([`Potential::is_driven`](crate::Potential::is_driven)), joules.
+    /// Work since the start, joules, of non-conservative forces, moving bodies and supports, and
+    /// [driven](crate::Potential::is_driven) potentials.
     pub work: f64,
-    /// Energy taken out since the start by velocity damping, joules.
+    /// Energy dissipated by velocity damping since the start, joules.
     pub dissipated: f64,
-    /// Energy lost to friction since the start, in charts to impacts, joules.
+    /// Energy lost to friction, in charts to impacts, since the start, joules.
     pub friction: f64,
-    /// `T + V - work + dissipated + friction` minus its value at the start, joules: the error of the
-    /// integrator, zero for the exact motion.
+    /// Energy error `T + V - work + dissipated + friction` relative to its value at the start, joules.
     pub energy_drift: f64,
     /// Largest relative edge length error at the end.
     pub strain: f64,
-    /// Largest violation of the equations of isometry at the end, which the tolerance of the method bounds:
-    /// the edge strain of rods, zero for elastic sheets (see
-    /// [`SheetModel::constrained_strain`](crate::SheetModel::constrained_strain)).
+    /// Largest violation of the constraints of isometry at the end
+    /// ([`SheetModel::constrained_strain`](crate::SheetModel::constrained_strain)): the edge strain of rods,
+    /// zero for elastic sheets.
     pub constrained_strain: f64,
-    /// Smallest gap to an obstacle or between parts of the sheet, metres; `None` without contact.
+    /// Smallest gap at the end, metres; `None` without contact.
     pub gap: Option<f64>,
-    /// Largest distance by which a vertex constraint is broken at the end, metres; `None` without
-    /// constraints.
+    /// Largest distance of a vertex from its constraint at the end, metres; `None` without constraints.
     pub violation: Option<f64>,
-    /// Set where the step stopped at a taut state (see [`Unsatisfiable`](crate::Unsatisfiable)).
+    /// The infeasible support where the step stopped at a taut state
+    /// ([`Unsatisfiable`](crate::Unsatisfiable)).
     pub taut: Option<Infeasibility>,
-    /// How the hardest sub-step was obtained.
+    /// The solver that the hardest sub-step needed.
     pub outcome: StepOutcome,
 }
 
 impl StepReport {
-    /// Total energy `H = T + V` (Liu, Tang and Joneja 2007, Eq. 17), joules.
+    /// Total energy `T + V` (Liu, Tang and Joneja 2007, Eq. 17), joules.
     pub fn hamiltonian(&self) -> f64 {
         self.kinetic + self.potential
     }
 }
 
-/// Why a step could not be taken. [`Simulation::step`](crate::Simulation::step) leaves the state at the last
-/// accepted sub-step.
+/// Errors of a step; the state is that of the last accepted sub-step.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StepError {
-    /// The step size makes no sense.
+    /// The step size is not positive and finite.
     #[error("the step size is {h} s at t = {t} s", h = brief(*h), t = brief(*t))]
     StepSize {
         /// The step size given, seconds.
@@ -108,7 +102,7 @@ pub enum StepError {
         /// The time given, seconds.
         t: f64,
     },
-    /// An energy or the work of a force is not finite.
+    /// An energy or work is not finite.
     #[error("{quantity} is {value} J at t = {t} s", value = brief(*value), t = brief(*t))]
     NonFiniteEnergy {
         /// Which one.
@@ -118,7 +112,7 @@ pub enum StepError {
         /// Time, seconds.
         t: f64,
     },
-    /// No positions with the rest lengths were found.
+    /// The projection onto the rest lengths did not converge.
     #[error(
         "no positions with the rest lengths were found near the ones given: the best have edge \
          strain {strain} after {iterations} iterations, {tolerance} was asked for",
@@ -132,7 +126,7 @@ pub enum StepError {
         /// Iterations done.
         iterations: usize,
     },
-    /// A position or velocity of the state is not finite.
+    /// A position or velocity is not finite.
     #[error(
         "{vertex} has position or velocity {value} at t = {t} s",
         value = brief(*value), t = brief(*t)
@@ -161,7 +155,7 @@ pub enum StepError {
     /// The prescribed motion of a body is not finite.
     #[error(transparent)]
     Body(#[from] BodyMotionError),
-    /// The start state is not where a support has it.
+    /// A vertex of the start state is off its support.
     #[error(
         "{support} is {distance} m away from its vertex at t = {t} s",
         distance = brief(*distance), t = brief(*t)
@@ -174,7 +168,7 @@ pub enum StepError {
         /// Time, seconds.
         t: f64,
     },
-    /// A potential or force returned a value that is not finite.
+    /// A potential or force is not finite.
     #[error(
         "a potential or force is {value} at {vertex}, t = {t} s",
         value = brief(*value), t = brief(*t)
@@ -187,7 +181,7 @@ pub enum StepError {
         /// Time, seconds.
         t: f64,
     },
-    /// The start state does not have the rest lengths.
+    /// An edge of the start state is off its rest length.
     #[error(
         "{edge} of {rest} m is {} at t = {t} s",
         off_by(length - rest), rest = brief(*rest), t = brief(*t)
@@ -202,7 +196,7 @@ pub enum StepError {
         /// Time, seconds.
         t: f64,
     },
-    /// An elastic sheet is stretched or compressed beyond its limit at the start.
+    /// The start state exceeds the strain limit of the elastic sheet.
     #[error(
         "{face} has the strain {strain} at t = {t} s, and the limit of the elastic sheet is {limit}",
         strain = brief(*strain), limit = given(*limit), t = brief(*t)
@@ -237,7 +231,7 @@ pub enum StepError {
         /// Why.
         reason: Reason,
     },
-    /// A damped step would have created energy.
+    /// A step of a damped method gains energy.
     #[error(
         "a step of {h} s at t = {t} s would create {gain} J (kinetic energy {kinetic} J): rods in \
          compression snap through faster than the step resolves",
@@ -253,7 +247,7 @@ pub enum StepError {
         /// Kinetic energy at the end of the step, joules.
         kinetic: f64,
     },
-    /// A step would have ended in contact.
+    /// A step ends in contact.
     #[error(
         "a step of {h} s at t = {t} s would close the smallest gap to {gap} m",
         h = brief(*h), t = brief(*t), gap = brief(*gap)
@@ -266,7 +260,7 @@ pub enum StepError {
         /// The gap, metres.
         gap: f64,
     },
-    /// The length constraints are dependent, or so nearly that the multipliers are noise.
+    /// The length constraints are linearly dependent, or nearly so.
     #[error(
         "the length constraints are dependent or nearly so at t = {t} s ({rank_deficiency} \
          redundant, smallest singular value of the rigidity matrix with unit rods \
@@ -278,8 +272,8 @@ pub enum StepError {
         t: f64,
         /// Number of dependent constraints.
         rank_deficiency: usize,
-        /// Smallest singular value of the rigidity matrix with rows scaled to unit rods; zero
-        /// if the matrix has fewer unknowns than rods.
+        /// Smallest singular value of the rigidity matrix of unit rods; zero if it has more rows than
+        /// columns.
         smallest_singular_value: f64,
     },
     /// Moving supports ask for more than the rods allow.
@@ -294,7 +288,7 @@ pub enum StepError {
         /// Which support, by how much and when.
         infeasibility: Infeasibility,
     },
-    /// Even the smallest step allowed was rejected.
+    /// The smallest sub-step was rejected.
     #[error(
         "no step of at least {min_step} s was accepted at t = {t} s; last reason: {cause}",
         min_step = brief(*min_step), t = brief(*t)
@@ -307,8 +301,7 @@ pub enum StepError {
         /// Why the last step was rejected.
         cause: Box<StepError>,
     },
-    /// A sheet of rods locks: no motion was found, and rods block the one that inertia and loads ask for, or
-    /// depend on each other while supports and bodies rest.
+    /// The rods block the motion, or are dependent while supports and bodies rest.
     #[error(
         "the sheet locks at t = {t} s: no motion was found with {}, and the rods at {} depend on each other (a \
          sheet of rods folds along lines of edges only)",
@@ -318,10 +311,9 @@ pub enum StepError {
     Locked {
         /// Time of the last accepted sub-step, seconds.
         t: f64,
-        /// Factorisations since then ([`StepControl::max_factorisations`](crate::StepControl::max_factorisations)
-        /// bounds them).
+        /// Factorisations since then.
         factorisations: usize,
-        /// The free vertices that could not move, at rods that depend on each other.
+        /// Free vertices at the dependent rods.
         vertices: Vec<VertexId>,
     },
     /// The watch of [`Simulation::step_watched`](crate::Simulation::step_watched) ended the step.

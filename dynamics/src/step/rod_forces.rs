@@ -5,17 +5,14 @@ use crate::step::history::Multipliers;
 use crate::{Isometry, Method, SheetModel};
 
 impl Method {
-    /// Whether the method solves for the forces of rigid rods: all but projection, which corrects positions
-    /// and velocities and has no multipliers that would balance the other forces.
+    /// Whether the method solves for the forces of rigid rods: all but projection.
     pub fn solves_for_rod_forces(&self) -> bool {
         !matches!(self, Self::Projection(_))
     }
 
-    /// Force densities (force over length, tension positive, N/m) of multipliers with the value 1.
-    ///
-    /// Minimising methods have `h^2` times the density as multipliers, with the effective step `h`.
-    /// Conservative ones have impulses that push the ends of a rod apart: energy-momentum over the whole
-    /// step, RATTLE at each of its ends over half of it (the one at the start is kept).
+    /// Force density (tension over length, N/m) of a unit multiplier: BDF2 and implicit Euler have
+    /// multipliers `h^2` times the density, with the effective step `h`; energy-momentum the impulse over the
+    /// step, RATTLE that over its first half, both compressive.
     fn density_of_multipliers(&self, h: f64) -> f64 {
         match self {
             Self::ImplicitEuler(_) | Self::Bdf2(_) => 1.0 / (h * h),
@@ -26,15 +23,13 @@ impl Method {
     }
 }
 
-/// Singular value of the rigidity matrix of unit rods, about the angle of a fold in radians, below which forces
-/// are left out of the balance that the least forces keep. Lengths that are exact to 1e-12 determine fold angles
-/// to 1e-6, and what a flatter fold carries is noise times the inverse of its angle. The largest force in a
-/// tablecloth of 2 N that rests on a box is 300 N, and while it falls 2e4 N; with 1e-3, 5e-3 and 1e-2 here it is
-/// 13, 1.7 and 1.5 N.
+/// Smallest singular value of the rigidity matrix of unit rods, about a fold angle in radians, that rod
+/// forces take part in: lengths exact to 1e-12 give fold angles to 1e-6, and forces across flatter folds are
+/// noise over the angle. In a tablecloth of 2 N on a box the largest force is 300 N without this bound, and
+/// 13, 1.7 and 1.5 N with 1e-3, 5e-3 and 1e-2.
 const FLATTEST_FOLD: f64 = 5e-3;
 
-/// The forces of the rods of which these are the multipliers at positions `x`, newtons, see
-/// [`Simulation::rod_forces`](crate::Simulation::rod_forces).
+/// Rod forces at positions `x`, newtons, see [`Simulation::rod_forces`](crate::Simulation::rod_forces).
 pub(crate) fn rod_forces(
     model: &SheetModel,
     method: &Method,
@@ -65,11 +60,9 @@ pub(crate) fn rod_forces(
     }
 }
 
-/// The least forces, in the sum of their squares, that load the free vertices as the given ones do, but for
-/// directions in which rods depend on each other nearly ([`FLATTEST_FOLD`]).
-///
-/// With the rigidity matrix `A` of unit rods these are `F = A (A^T A)^+ A^T F0`, see [`RodLeastSquares`]. Nothing if
-/// the memory for the matrix runs out.
+/// The forces of least squares that load the free vertices as the given ones do, without singular directions
+/// below [`FLATTEST_FOLD`]: `F = A (A^T A)^+ A^T F0` with the rigidity matrix `A` of unit rods. `None` if
+/// memory runs out.
 fn least_forces(model: &SheetModel, x: &[f64], given: &[f64]) -> Option<Vec<f64>> {
     let mut left = given.to_vec();
     RodLeastSquares::new(model, x, FLATTEST_FOLD)?.reduce(&mut left);

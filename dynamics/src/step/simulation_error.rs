@@ -1,4 +1,4 @@
-//! Why a simulation cannot start.
+//! Errors of the start of a simulation.
 
 use crate::chart::ChartDynamicsError;
 use crate::contact::ContactError;
@@ -8,13 +8,13 @@ use crate::step::report::StepError;
 use isosheet_coords::linalg::LinalgError;
 use isosheet_mesh::Advice;
 
-/// Why a simulation cannot start.
+/// Errors of the start of a simulation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SimulationError {
-    /// An option makes no sense.
+    /// An option is out of range.
     #[error(transparent)]
     Options(#[from] OptionsError),
-    /// The state does not fit the model.
+    /// The state does not have three values per vertex of the model.
     #[error(
         "the state has {positions} position and {velocities} velocity values, the sheet needs \
          {expected} of each"
@@ -24,37 +24,37 @@ pub enum SimulationError {
         positions: usize,
         /// Number of velocity values.
         velocities: usize,
-        /// Three for each vertex.
+        /// Three per vertex.
         expected: usize,
     },
-    /// The start state is not one that a step could start from.
+    /// The start state is invalid.
     #[error(transparent)]
     Start(#[from] StepError),
-    /// The linear algebra could not be set up.
+    /// Linear algebra failed.
     #[error(transparent)]
     Linalg(#[from] LinalgError),
-    /// The chart cannot be used.
+    /// The chart is invalid.
     #[error(transparent)]
     Chart(#[from] ChartDynamicsError),
-    /// Contact cannot start here.
+    /// The start state is in contact, or the method does not support contact.
     #[error(transparent)]
     Contact(#[from] ContactError),
-    /// A one-sided constraint is in a scene of a conservative method.
+    /// Conservative methods do not support one-sided constraints.
     #[error(
         "vertex constraint {index} is one-sided, which the conservative methods have no place for \
          (an impact loses energy)"
     )]
     OneSided {
-        /// Place in the order in which the constraints were added.
+        /// Index in the order of addition.
         index: usize,
     },
-    /// An elastic sheet is in a scene of a method that needs rods.
+    /// The method does not support elastic sheets.
     #[error("the sheet has no rigid rods (it is elastic), and the method needs them")]
     Elastic,
-    /// The checkpoint does not belong to the model or cannot be resumed this way.
+    /// The checkpoint is invalid or of another model.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
-    /// Step control by subdivision was asked for a chart, which has its own.
+    /// Charts do not use [`StepControl`](crate::StepControl).
     #[error("a simulation in a chart controls its steps by `ChartOptions::control`")]
     ChartControl,
 }
