@@ -18,14 +18,13 @@
 //!
 //! In a flat state one length constraint per interior vertex is linearly dependent, and the paper's system
 //! coordinates do not exist. The damped methods minimise an incremental potential, which has a solution at
-//! any rank of the constraints. The conservative methods solve for rod impulses; near singular states their
-//! steps shrink, and loaded flat states are refused with [`StepError::RankDeficient`]: start from a folded
-//! state, displace the sheet with [`leave_flat`], or allow a [`Fallback`].
+//! any rank of the constraints. The steps of the conservative methods shrink near singular states, and loaded
+//! flat states are refused with [`StepError::RankDeficient`]: start from a folded state, displace the sheet
+//! with [`leave_flat`], or allow a [`Fallback`].
 //!
 //! An accepted step has the rest lengths to the tolerance of its method (by default a relative 1e-12, or the
 //! round-off of the coordinates) and finite energies. With a damped method or the fallback a step gains at
-//! most a tenth of the kinetic energy, and all steps together a fiftieth of the largest kinetic energy; steps
-//! that gain more are repeated with implicit Euler or shortened.
+//! most a tenth of the kinetic energy, and all steps together a fiftieth of the largest kinetic energy.
 //!
 //! # Isometry
 //!
@@ -47,14 +46,13 @@
 //! constraints are `c_e = (|x_a - x_b|^2 - l_e^2) / 2` with Jacobian `G`; positive rod multipliers are
 //! tensions in [`chart`], BDF2 and implicit Euler.
 //!
-//! # Contact, supports and forces
+//! # Contact and supports
 //!
-//! [`Simulation::with_contact`] takes a [`contact::Contact`], a barrier potential with a bound on
-//! displacements, for BDF2 and implicit Euler; in a chart contact acts by impulses
+//! [`Simulation::with_contact`] takes a [`contact::Contact`], a barrier potential, for BDF2 and implicit
+//! Euler; in a chart contact acts by impulses
 //! ([`ChartSimulation::with_contact`](chart::ChartSimulation::with_contact)). Supports are pins, moving pins
 //! ([`SheetModel::with_moving_pin`]), and curves and surfaces ([`SheetModel::with_constraint`]; one-sided
-//! ones for the damped methods only). Forces: [`Simulation::reactions`], [`Simulation::body_loads`],
-//! [`Simulation::contact_forces`], [`Simulation::rod_forces`].
+//! ones for the damped methods only). Their forces are [`Simulation::reactions`].
 #![doc = include_str!("paper.md")]
 
 pub mod chart;

@@ -287,13 +287,12 @@ impl Simulation {
     /// with itself; `None` without contact.
     ///
     /// BDF2 and implicit Euler: `-d(B + D)/dx` at the end of the last accepted sub-step, with the barrier
-    /// potential `B` and the friction potential `D`. Charts: impulses of the last step over its duration.
-    /// Forces on edges and faces are distributed to their corners by the weights of the closest point.
+    /// potential `B` and the potential `D` of lagged friction. Charts: impulses of the last step over its
+    /// duration. Forces on edges and faces are distributed to their corners by the weights of the closest
+    /// point. The sum over the vertices is minus that of [`Simulation::body_loads`].
     ///
-    /// The sum over the vertices is minus that of [`Simulation::body_loads`]. Before the first step there is
-    /// no friction, and in charts no force. The lagged friction of a contact that has just opened may be
-    /// present without a normal force. With rigid rods the final projection changes the forces by
-    /// second-order terms, about a percent for a flat sheet at rest.
+    /// Before the first step there is no friction, and in charts no force. With rigid rods the final
+    /// projection changes the forces to second order, about a percent for a flat sheet at rest.
     pub fn contact_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Engine::Free(engine) => {
@@ -304,9 +303,9 @@ impl Simulation {
         }
     }
 
-    /// Gap of each vertex, metres: the smallest of the contacts of the vertex or of its edges and faces. A
-    /// gap is a distance less the thickness of the sheet and the radius of a rounded body. Vertices without
-    /// contacts have the activation distance of the barrier. `None` without contact.
+    /// Smallest gap of each vertex and of its edges and faces, metres: a distance less the thickness of the
+    /// sheet and the radius of a rounded body, and at most the activation distance of the barrier. `None`
+    /// without contact.
     pub fn vertex_gaps(&self) -> Option<Vec<f64>> {
         let reach = match &self.engine {
             Engine::Free(engine) => engine.contact()?.0.barrier().activation(),
@@ -362,10 +361,9 @@ impl Simulation {
     /// | RATTLE | start of the sub-step, in compositions of the last part |
     ///
     /// Zero before the first step, after a [`Fallback`](crate::Fallback), and between vertices that cannot
-    /// move. Where rods are dependent, as in a flat sheet, their forces are not unique: BDF2 and implicit
-    /// Euler then give the forces of least squares with the same loads on the free vertices, without those
-    /// across folds flatter than 0.3 degrees; this costs one factorisation. The share of the final
-    /// projection, of the size of the tolerances, is left out.
+    /// move. Forces of dependent rods, as in a flat sheet, are not unique: BDF2 and implicit Euler give those
+    /// of least squares with the same loads on the free vertices, without loads across folds flatter than 0.3
+    /// degrees, at the cost of one factorisation.
     pub fn rod_forces(&self) -> Option<Vec<f64>> {
         match &self.engine {
             Engine::Free(engine) => engine.rod_forces(),

@@ -18,45 +18,43 @@ use serde::{Deserialize, Serialize};
 /// impulses `L`. Velocity damping ([`SheetModel::with_damping`]) acts after the step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Method {
-    /// Implicit Euler method. First order, strongly dissipative, unconditionally stable.
+    /// Implicit Euler method: first order, strongly dissipative.
     ///
     /// ```text
     /// M (v1 - v0) = h f(x1) + G(x1)^T L,   x1 = x0 + h v1,   c(x1) = 0.
     /// ```
     ///
     /// `x1` minimises the incremental potential `|x - x0 - h v0|_M^2 / 2 + h^2 V(x)` subject to `c(x) = 0`.
-    /// The solver is Newton's method with a line search: sequential quadratic programming, or an augmented
-    /// Lagrangian where that fails, for elastic sheets, and in contact with moving supports. A projection
-    /// restores the lengths. Non-conservative forces are explicit.
+    /// It is found by Newton's method with a line search, in sequential quadratic programming or an augmented
+    /// Lagrangian, and projected onto the lengths. Non-conservative forces are explicit.
     ImplicitEuler(ImplicitOptions),
-    /// Second-order backward differentiation formula (BDF2), the default. Second order, lightly dissipative.
-    /// With the ratio `w = h / h_` of the step to the one before:
+    /// Second-order backward differentiation formula (BDF2), lightly dissipative, the default. With the ratio
+    /// `w = h / h_` of the step to the one before:
     ///
     /// ```text
     /// x1 = a x0 - b x_ + k h v1,   M v1 = M (a v0 - b v_) + k h f(x1) + G(x1)^T L,   c(x1) = 0,
     /// a = (1 + w)^2 / (1 + 2w),   b = w^2 / (1 + 2w),   k = (1 + w) / (1 + 2w).
     /// ```
     ///
-    /// `x_` and `v_` belong to the start of the step before. The solver is that of [`Method::ImplicitEuler`]
-    /// with the step `k h`. The first step, the first after the state was changed from outside, and a step
-    /// more than twice as long as the one before are implicit Euler (`w = 0`). Non-conservative forces are
-    /// explicit, of first order.
+    /// `x_` and `v_` belong to the start of the step before. Solved as [`Method::ImplicitEuler`] with the
+    /// step `k h`. The first step, the first after a change of the state from outside, and steps with `w > 2`
+    /// are implicit Euler (`w = 0`). Non-conservative forces are explicit, of first order.
     Bdf2(ImplicitOptions),
-    /// Predicts positions with the forces, projects them onto `c(x) = 0`, takes the velocity from the
-    /// displacement and projects it onto `G(x1) v = 0` (after Goldenthal et al., "Efficient simulation of
-    /// inextensible cloth", ACM Transactions on Graphics 26, 2007). First order, strongly dissipative,
-    /// unconditionally stable; the linear systems are positive definite at any rank of `G`.
+    /// Explicit step projected onto `c(x) = 0`, with the velocity of the displacement projected onto
+    /// `G(x1) v = 0` (after Goldenthal et al., "Efficient simulation of inextensible cloth", ACM Transactions
+    /// on Graphics 26, 2007). First order, strongly dissipative. The linear systems are positive definite at
+    /// any rank of `G`.
     Projection(ProjectionStepOptions),
-    /// Energy-momentum method (after Simo and Gonzalez). Second order, symmetric. With `w = (v0 + v1) / 2`,
+    /// Energy-momentum method (after Simo and Gonzalez): second order, symmetric. With `w = (v0 + v1) / 2`,
     /// `x1 = x0 + h w` and `xm = (x0 + x1) / 2`:
     ///
     /// ```text
     /// 2 M (w - v0) = h f + G(xm)^T L,   c(x1) = 0.
     /// ```
     ///
-    /// `G(xm)` is the exact discrete gradient of the quadratic `c`, and nonlinear potentials enter by
-    /// Gonzalez' discrete gradient: energy, linear and angular momentum are conserved to the tolerance of
-    /// Newton's method, which takes one sparse LU factorisation an iteration.
+    /// `G(xm)` is the exact discrete gradient of the quadratic `c`; nonlinear potentials enter by Gonzalez'
+    /// discrete gradient. Energy, linear and angular momentum are conserved to the tolerance of Newton's
+    /// method.
     EnergyMomentum(EnergyMomentumOptions),
     /// RATTLE (Andersen 1983; Hairer, Lubich and Wanner, "Geometric Numerical Integration", Sec. VII.1.4).
     /// Second order, symmetric, symplectic.
