@@ -14,13 +14,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The reports that write what they measured.
-const REPORTS: [&str; 6] = [
+const REPORTS: [&str; 7] = [
     "condition-table",
     "hard-cases",
     "locking",
     "reproduce-figures",
     "scale",
     "speed-vs-error",
+    "tuning",
 ];
 
 /// Arguments of `measured`.
