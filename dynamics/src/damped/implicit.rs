@@ -144,6 +144,7 @@ fn two_step(
         h: k * h,
         prediction: &prediction,
         applied: &applied,
+        phases: attempt.phases,
     };
     let outcome = minimiser.minimise(problem, effort);
     (minimiser.applied, minimiser.prediction) = (applied, prediction);

@@ -13,7 +13,7 @@ use crate::step::energy_account::{EnergyAccount, Exchange};
 use crate::step::free_state::FreeState;
 use crate::step::infeasibility::{Infeasibility, infeasibility};
 use crate::step::integrator::{
-    Attempt, ContactSupport, Integrator, Memory, Proposal, RodDemand, Scene, SolverState,
+    Attempt, ContactSupport, Integrator, Memory, Phases, Proposal, RodDemand, Scene, SolverState,
 };
 use crate::step::reaction::Balance;
 use crate::step::report::{StepError, StepOutcome, StepTotals};
@@ -344,8 +344,13 @@ impl Substeps<'_, '_> {
             has_moved,
             proposal,
             tuning,
+            control,
             ..
         } = &mut *self.engine;
+        let phases = match self.lengths.is_whole() && self.lengths.can_halve(control.min_fraction) {
+            true => Phases::Brief,
+            false => Phases::All,
+        };
         let t = solver.state.t + h;
         if let Some((support, value)) = model.find_bad_motion(t) {
             return Err(StepError::NonFiniteMotion { support, value, t });
@@ -360,7 +365,7 @@ impl Substeps<'_, '_> {
             model,
             contact: contact.as_mut().map(RunContact::step),
         };
-        let attempt = Attempt::new(solver, h, self.memory);
+        let attempt = Attempt::new(solver, h, self.memory).with(phases);
         let effort = &mut self.totals.effort;
         let is_fallback = self.proposer == Proposer::Fallback;
         effort.t = solver.state.t;

@@ -126,8 +126,19 @@ pub(crate) struct Attempt<'a> {
     pub(crate) state: &'a State,
     /// Its length, seconds. (Negative ones occur inside compositions.)
     pub(crate) h: f64,
+    /// The phases of a minimisation that may be tried.
+    pub(crate) phases: Phases,
     history: &'a History,
     memory: Memory,
+}
+
+/// The phases of a minimisation that a sub-step of rods in contact may try.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Phases {
+    /// The first two, each with as many iterations as the first one has: where both fail the step is divided.
+    Brief,
+    /// All of them.
+    All,
 }
 
 /// How much of the history a sub-step begins with. Each refusal of a sub-step takes away from it.
@@ -149,14 +160,20 @@ static NONE: Multipliers = Multipliers {
 };
 
 impl<'a> Attempt<'a> {
-    /// A sub-step of `h` seconds from a solver state.
+    /// A sub-step of `h` seconds from a solver state that may try all phases.
     pub(crate) fn new(start: &'a SolverState, h: f64, memory: Memory) -> Self {
         Self {
             state: &start.state,
             h,
+            phases: Phases::All,
             history: &start.history,
             memory,
         }
+    }
+
+    /// With these phases of a minimisation alone.
+    pub(crate) fn with(self, phases: Phases) -> Self {
+        Self { phases, ..self }
     }
 
     /// The state before the present one, for methods that look back.

@@ -46,10 +46,20 @@ impl Subdivision {
         self.start + self.h
     }
 
+    /// Whether the sub-step is the whole step.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.fraction == 1.0
+    }
+
+    /// Whether halves of the sub-step are parts of the step of at least `smallest`.
+    pub(crate) fn can_halve(&self, smallest: f64) -> bool {
+        0.5 * self.fraction >= smallest
+    }
+
     /// Halves the next sub-step and returns its length; nothing if it would be shorter than the fraction
     /// `smallest` of the step.
     pub(crate) fn halve(&mut self, smallest: f64) -> Option<f64> {
-        if 0.5 * self.fraction < smallest {
+        if !self.can_halve(smallest) {
             return None;
         }
         self.fraction *= 0.5;

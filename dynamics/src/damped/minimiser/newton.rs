@@ -68,7 +68,10 @@ pub(super) struct Newton<'a, 'b, 'w> {
     round: usize,
     /// Penalty of the rods in the merit function of this round.
     penalty: f64,
+    /// Iterations since the last round, continuation or the start.
     iterations: usize,
+    /// All iterations.
+    spent: usize,
     /// How often the iteration has gone on because friction had not settled where it had converged.
     friction_updates: usize,
     /// Whether the iteration has left a saddle.
@@ -94,6 +97,7 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
             penalty: phase.merit_penalty,
             phase,
             iterations: 0,
+            spent: 0,
             friction_updates: 0,
             has_left_saddle: false,
             hessian: HessianPart::Full,
@@ -112,8 +116,9 @@ impl<'a, 'b, 'w> Newton<'a, 'b, 'w> {
 
     fn iterate(&mut self) -> Result<Minimum, Reason> {
         self.begin();
-        while self.iterations < self.phase.iterations {
+        while self.iterations < self.phase.iterations && self.spent < self.phase.all_iterations {
             self.iterations += 1;
+            self.spent += 1;
             let is_driven = self.work.lagrangian.is_driven(self.problem);
             let mut direction = self.direction()?;
             let mut limit = self.work.lagrangian.begin_line_search(self.problem);

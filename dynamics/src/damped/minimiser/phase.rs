@@ -1,6 +1,7 @@
 //! The phases of a minimisation, as a table.
 
 use super::problem::StepProblem;
+use crate::step::integrator::Phases;
 use crate::step::tuning::Tuning;
 use crate::{ImplicitOptions, Isometry, SheetModel};
 use isosheet_mesh::area_from_lengths;
@@ -78,6 +79,8 @@ pub(super) struct Phase {
     pub(super) merit_penalty: f64,
     /// Iterations until the next round, continuation or failure.
     pub(super) iterations: usize,
+    /// Largest number of iterations in all.
+    pub(super) all_iterations: usize,
     /// Largest number of halvings of a search direction; those of the last phases end at round-off.
     pub(super) halvings: usize,
     /// Rounds of the method of multipliers.
@@ -103,6 +106,11 @@ impl Phase {
     /// Elastic sheets have no rods to solve for, and pins that move in contact stall programming: both begin with the
     /// second row. Slivers begin with it without contact, with its own multipliers of the step before. At rest and
     /// without contact the last row would repeat the second one.
+    ///
+    /// A whole step of rods in contact tries the first two rows, each with the iterations of the first one, and is
+    /// divided where both fail: sheets that buckle, or touch while they are exactly flat, take fewer iterations in
+    /// its parts. (Sheets of 289 vertices that fall onto a table take 2000 to 3000 factorisations in half a second, and
+    /// 3000 to 12 000 where whole steps try all rows.)
     pub(super) fn table(
         problem: &StepProblem<'_>,
         faces: Faces,
@@ -128,6 +136,13 @@ impl Phase {
                 ..programming
             };
             [Some(prediction), Some(programming), last]
+        } else if has_contact && problem.phases == Phases::Brief {
+            let all_iterations = programming.iterations;
+            let prediction = Self {
+                all_iterations,
+                ..prediction
+            };
+            [Some(programming), Some(prediction), None]
         } else {
             [Some(programming), Some(prediction), last]
         }
@@ -152,6 +167,7 @@ impl Phase {
                 true => (options.max_iterations / tuning.contact_iteration_share as usize).max(1),
                 false => options.max_iterations,
             },
+            all_iterations: usize::MAX,
             halvings: tuning.halvings as usize,
             rounds: 1,
             small_strain: match has_contact {
@@ -186,6 +202,7 @@ impl Phase {
             iterate_strain: f64::INFINITY,
             merit_penalty: options.stiffness,
             iterations: options.max_iterations,
+            all_iterations: usize::MAX,
             halvings: f64::MANTISSA_DIGITS as usize,
             rounds: match has_contact {
                 true => options.max_iterations,

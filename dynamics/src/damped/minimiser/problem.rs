@@ -1,6 +1,7 @@
 //! The problem of one implicit step.
 
 use crate::contact::StepContact;
+use crate::step::integrator::Phases;
 use crate::{SheetModel, State};
 
 /// Minimise `Phi(x) = |x - x^|_M^2 / 2 + h^2 (V(x, t) + B(x) + D(x - x0) - f . x)` over the positions with
@@ -24,6 +25,8 @@ pub(crate) struct StepProblem<'a> {
     pub(crate) prediction: &'a [f64],
     /// Non-conservative forces `f`, `3V`, newtons.
     pub(crate) applied: &'a [f64],
+    /// Phases that may be tried.
+    pub(crate) phases: Phases,
 }
 
 impl<'a> StepProblem<'a> {

@@ -8,6 +8,7 @@ use crate::damped::iterate::Iterate;
 use crate::damped::restoration::{FirstMatrix, Restoration, RestorationGoal};
 use crate::linear::primal::PrimalMatrix;
 use crate::step::effort::SolverEffort;
+use crate::step::integrator::Phases;
 use crate::step::tuning::Tuning;
 use crate::{CreaseSprings, ElasticSheet, ImplicitOptions, PlateBending, SheetModel, State};
 use isosheet_mesh::{MassKind, Sheet, VertexId, generate};
@@ -59,6 +60,7 @@ impl Scene {
             h: H,
             prediction: &self.prediction,
             applied: &self.applied,
+            phases: Phases::All,
         }
     }
 
@@ -291,6 +293,7 @@ fn the_minimum_does_not_depend_on_what_is_factorised() {
                 h: H,
                 prediction: &state.x,
                 applied: &vec![0.0; state.x.len()],
+                phases: Phases::All,
             };
             let mut effort = SolverEffort::default();
             minimiser.minimise(problem, &mut effort).unwrap();
