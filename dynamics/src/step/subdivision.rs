@@ -121,8 +121,11 @@ mod tests {
     #[test]
     fn halving_ends() {
         let mut steps = Subdivision::new(0.0, 1.0, 4);
+        assert!(!steps.can_halve(1.0) && steps.can_halve(0.5) && steps.is_whole());
         assert_eq!(steps.halve(1.0), None);
+        assert!(steps.is_whole());
         assert_eq!(steps.halve(0.25), Some(0.5));
+        assert!(!steps.is_whole() && steps.can_halve(0.25));
         assert_eq!(steps.halve(0.25), Some(0.25));
         assert_eq!(steps.halve(0.25), None);
         assert_eq!(steps.advance(), 0.25);
