@@ -168,7 +168,8 @@ mod tests {
         }
     }
 
-    /// The rods around each interior vertex of a flat sheet depend on each other, those of a folded one do not.
+    /// The rods around each interior vertex of a flat sheet depend on each other, those of a folded one do
+    /// not.
     #[test]
     fn rods_of_flat_parts_are_dependent() {
         let sheet = generate::isotropic_square(1, 1.0).unwrap();

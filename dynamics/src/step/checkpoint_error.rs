@@ -79,7 +79,8 @@ pub enum CheckpointError {
     },
     /// A vertex does not exist.
     #[error(
-        "the checkpoint names vertex {vertex}, the model has only {vertices} vertices: the checkpoint was changed from outside"
+        "the checkpoint names vertex {vertex}, the model has only {vertices} vertices: the checkpoint was \
+         changed from outside"
     )]
     NoSuchVertex {
         /// The vertex.

@@ -303,8 +303,8 @@ pub enum StepError {
     },
     /// The rods block the motion, or are dependent while supports and bodies rest.
     #[error(
-        "the sheet locks at t = {t} s: no motion was found with {}, and the rods at {} depend on each other (a \
-         sheet of rods folds along lines of edges only)",
+        "the sheet locks at t = {t} s: no motion was found with {}, and the rods at {} depend on each other \
+         (a sheet of rods folds along lines of edges only)",
         counted(*.factorisations, "factorisation", "factorisations"), listed(.vertices),
         t = brief(*t)
     )]
@@ -372,8 +372,9 @@ impl Advice for StepError {
             }
             Self::StepTooSmall { cause, .. } => cause.advice(),
             Self::Locked { .. } => Some(
-                "give the sheet the stiffness of its material (`SheetModel::with_elastic_sheet`), make a mesh with a line \
-                 of edges along each clamp, or allow more `StepControl::max_factorisations`",
+                "give the sheet the stiffness of its material (`SheetModel::with_elastic_sheet`), make a mesh \
+                 with a line of edges along each clamp, or allow more \
+                 `StepControl::max_factorisations`",
             ),
             Self::Interrupted { .. } => {
                 Some("the state is that of the last accepted sub-step: step on from there")
