@@ -11,13 +11,13 @@
 //! # use std::path::Path;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let mut cloth = Sheet::new(Mesh::Square { side: 1.0, level: 2 });
-//! cloth.material = Some(Material::named("cotton"));
+//! let mut cloth = Sheet::new(Mesh::Square { side: 0.5, level: 3 });
+//! cloth.material = Some(Material::named("polycarbonate film"));
 //! cloth.damping = 2.0;
-//! cloth.placement = Pose::at([-0.5, -0.5, 0.0]);
-//! let table = Obstacle::new(Shape::Box { size: [0.5, 0.5, 0.3] });
+//! cloth.placement = Pose::at([-0.25, -0.25, 0.0]);
+//! let table = Obstacle::new(Shape::Cylinder { radius: 0.15, height: 0.2 });
 //! let mut scene = Scene::new(cloth);
-//! scene.obstacle = vec![Obstacle { pose: Pose::at([0.0, 0.0, -0.16]), friction: 0.3, ..table }];
+//! scene.obstacle = vec![Obstacle { pose: Pose::at([0.0, 0.0, -0.11]), friction: 0.3, ..table }];
 //! scene.contact = Contact { self_contact: true, friction: 0.3, ..Contact::default() };
 //! scene.forces.gravity = Some([0.0, 0.0, -9.81]);
 //! scene.stop.time = 1.0;

@@ -7,7 +7,7 @@ pub enum StartingPoint {
     Hanging,
     /// A strip of paper that is clamped at one end.
     Clamp,
-    /// A cloth that drapes over a box.
+    /// A tablecloth of plastic film that drapes over a round table.
     Drape,
     /// A sheet that a die presses through an opening.
     Stamp,

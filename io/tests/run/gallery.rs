@@ -66,7 +66,7 @@ fn a_gallery_shows_every_run_beneath_its_folders_and_needs_nothing_else() {
     );
     assert_eq!(
         drape.caption,
-        "A cloth that falls on a box and drapes over its edges."
+        "A tablecloth of plastic film that falls on a round table and drapes over its rim."
     );
     assert!(drape.summary.is_none() && drape.t > 0.0 && drape.t < 30.0);
     let summary = fold.summary.as_ref().unwrap();
@@ -153,9 +153,12 @@ fn huge_bodies_are_drawn() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let scene = StartingPoint::Drape.text();
-    let scene = scene.replace("side = 1.0", "side = 0.2");
-    let scene = scene.replace("[-0.5, -0.5, 0.0]", "[-0.1, -0.1, 0.0]");
-    let scene = scene.replace("[0.5, 0.5, 0.3]", "[100.0, 100.0, 0.3]");
+    let scene = scene.replace("side = 0.5", "side = 0.2");
+    let scene = scene.replace("[-0.25, -0.25, 0.0]", "[-0.1, -0.1, 0.0]");
+    let scene = scene.replace(
+        "cylinder = { radius = 0.15, height = 0.2 }",
+        "box = { size = [100.0, 100.0, 0.2] }",
+    );
     assert!(
         scene.contains("100.0") && scene.contains("side = 0.2") && scene.contains("-0.1, -0.1")
     );

@@ -8,6 +8,20 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+/// The first run of a newcomer ends with a result that can be used.
+#[test]
+fn starting_points_run_without_a_warning() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    for kind in StartingPoint::ALL {
+        let name = kind.name();
+        assert_eq!(code(&run(dir, &["new", name, "--kind", name])), Some(0));
+        let done = run(dir, &["simulate", &format!("{name}.toml")]);
+        assert_eq!(code(&done), Some(0), "{}", stderr(&done));
+        assert!(!stderr(&done).contains("warning"), "{}", stderr(&done));
+    }
+}
+
 #[test]
 fn new_check_info_and_completions() {
     let dir = tempfile::tempdir().unwrap();

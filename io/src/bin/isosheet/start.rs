@@ -14,7 +14,7 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   isosheet new cloth                           a sheet of paper that hangs by one corner, in cloth.toml
-  isosheet new cloth --kind drape              a cloth that drapes over a box
+  isosheet new cloth --kind drape              a tablecloth that drapes over a table
   isosheet new -o scenes/punch.toml --kind stamp";
 
 /// Write a commented scene to start from
@@ -39,7 +39,7 @@ enum Kind {
     Hanging,
     /// A strip of paper that is clamped at one end and bends under its weight
     Clamp,
-    /// A cloth that drapes over a box
+    /// A tablecloth of plastic film that drapes over a round table
     Drape,
     /// A sheet of aluminium that a punch presses between two bars
     Stamp,
