@@ -43,7 +43,7 @@ fn a_run_that_is_killed_at_any_moment_continues_to_the_same_bits() {
     let recording = Recording::read(&dir.join("whole-0")).unwrap();
     // A frame every eighth step of 0.004 s, that of the start, and the last.
     assert_eq!(recording.trajectory.len(), 1 + 150 / 8 + 1);
-    assert_eq!(recording.poses(0.0)[0].translation.z, -0.16);
+    assert_eq!(recording.poses(0.0)[0].translation.z, -0.11);
 }
 
 /// Moving pins, moving bodies and friction continue as well.
