@@ -334,6 +334,12 @@ impl Substeps<'_, '_> {
 
     /// Proposes a sub-step of `h` seconds within the limit of the effort.
     fn attempt(&mut self, h: f64) -> Result<(), StepError> {
+        // A sheet has to follow what moves: there, shorter steps do not spare it what it buckles under.
+        let can_be_divided = self.lengths.can_halve(self.engine.control.min_fraction);
+        let phases = match self.lengths.is_whole() && can_be_divided {
+            true if self.engine.surroundings_rest(self.lengths.end()) => Phases::Brief,
+            _ => Phases::All,
+        };
         let Engine {
             model,
             contact,
@@ -344,13 +350,8 @@ impl Substeps<'_, '_> {
             has_moved,
             proposal,
             tuning,
-            control,
             ..
         } = &mut *self.engine;
-        let phases = match self.lengths.is_whole() && self.lengths.can_halve(control.min_fraction) {
-            true => Phases::Brief,
-            false => Phases::All,
-        };
         let t = solver.state.t + h;
         if let Some((support, value)) = model.find_bad_motion(t) {
             return Err(StepError::NonFiniteMotion { support, value, t });
