@@ -8,6 +8,10 @@ use super::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Gravity on earth, the example of the schema. (Without features that other crates bring, `schemars` reads names
+/// and no arrays.)
+const EARTH: [f64; 3] = [0.0, 0.0, -9.81];
+
 /// Forces on the sheet besides those of supports and contact.
 ///
 /// ```toml
@@ -23,7 +27,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct Forces {
     /// Acceleration of gravity, m/s2: `[0, 0, -9.81]` on earth. Without it there is no gravity.
-    #[schemars(example = [0.0, 0.0, -9.81])]
+    #[schemars(example = EARTH)]
     pub gravity: Option<[f64; 3]>,
     /// Loads on vertices.
     pub load: Vec<Load>,
