@@ -114,6 +114,7 @@ fn imbalance(supports: Supports, method: &Method, mass: MassKind) -> Imbalance {
     let mut simulation = supports.simulation(method.clone(), mass);
     let mut old = momentum(&simulation);
     let mut older = None;
+    let mut was_divided = false;
     let mut worst = Imbalance::default();
     for step in 0..60 {
         let report = simulation.step(h).expect("accepted");
@@ -123,7 +124,10 @@ fn imbalance(supports: Supports, method: &Method, mass: MassKind) -> Imbalance {
         if report.rejected > 0 {
             older = None;
         }
-        if report.substeps == 1 {
+        // The formula of BDF2 above is that of equal steps.
+        let is_regular = report.substeps == 1 && !was_divided;
+        was_divided = report.substeps > 1;
+        if is_regular {
             let reactions = simulation.reactions().into_iter().map(|r| r.force);
             let loads = simulation.body_loads().into_iter().map(|l| -l.force);
             let forces: Vec<_> = reactions.chain(loads).chain([weight]).collect();

@@ -5,7 +5,7 @@ use isosheet_collide::{Coefficients, ContactOptions, Contacts, Obstacle, Shape};
 use isosheet_coords::{CartesianChart, Choice, RodSystem};
 use isosheet_dynamics::chart::{ChartMethod, ChartOptions, ChartStepControl};
 use isosheet_dynamics::{
-    Checkpoint, ElasticSheet, ImplicitOptions, Method, SheetModel, Simulation, State,
+    Checkpoint, ElasticSheet, ImplicitOptions, Method, SheetModel, Simulation, State, StepControl,
 };
 use isosheet_mesh::{MassKind, Sheet, generate};
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
@@ -127,8 +127,13 @@ fn falling(is_elastic: bool, friction: f64, method: Method) -> Simulation {
         .and_then(|c| c.with_body(ball, mu))
         .and_then(|c| c.with_self_contact(mu))
         .expect("valid");
+    // Forces are those of whole steps.
+    let control = StepControl {
+        min_fraction: 1.0,
+        ..StepControl::default()
+    };
     Simulation::new(model, State::at_rest(x), method)
-        .and_then(|s| s.with_contact(contacts))
+        .and_then(|s| s.with_control(control)?.with_contact(contacts))
         .expect("nothing touches")
 }
 
